@@ -1,0 +1,19 @@
+# What kdray is built from; all of it Debian packages (scripts/dependencies lists them). Nothing is downloaded.
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+find_package(Threads REQUIRED)
+find_package(OpenCL REQUIRED)          # ocl-icd-opencl-dev, opencl-clhpp-headers
+find_package(glm REQUIRED)             # libglm-dev
+find_package(TBB REQUIRED)             # libtbb-dev
+find_package(CLI11 REQUIRED)           # libcli11-dev
+find_package(fmt REQUIRED)             # libfmt-dev
+find_package(nlohmann_json REQUIRED)   # nlohmann-json3-dev
+find_package(PNG REQUIRED)             # libpng-dev
+find_package(ZLIB REQUIRED)            # zlib1g-dev
+find_package(LibLZMA REQUIRED)         # liblzma-dev
+find_package(PkgConfig REQUIRED)       # pkg-config; Debian's OpenEXR config file wants packages nobody needs
+pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)  # libopenexr-dev
+find_package(assimp QUIET)             # libassimp-dev, optional: mesh formats without a reader of our own
+find_package(benchmark QUIET)           # libbenchmark-dev, optional: bench/
+if(KDRAY_TESTS)
+  find_package(GTest REQUIRED)         # libgtest-dev, libgmock-dev
+endif()

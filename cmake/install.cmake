@@ -1,0 +1,41 @@
+# cmake --install: bin/kdray, the rooms as static libraries, the two public headers, and the package that
+# find_package(kdray) finds, with the target kdray::kdray. tests/consumer uses what is installed.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kdray)
+get_property(rooms GLOBAL PROPERTY KDRAY_ROOMS)
+
+# What a user links: the API, and through it every room behind it.
+add_library(kdray INTERFACE)
+add_library(kdray::kdray ALIAS kdray)
+target_link_libraries(kdray INTERFACE kdray::api)
+
+install(TARGETS kdray ${rooms} EXPORT kdray
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES host/api/kdray/kdray.h host/base/kdray/error.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kdray)
+if(TARGET kdray_cli)
+  install(TARGETS kdray_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
+# The program holds the kernels; as text they are there to be read, and to be changed under KDRAY_KERNEL_DIR.
+install(DIRECTORY kernels/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kdray/kernels
+        FILES_MATCHING PATTERN "*.cl" PATTERN "*.clh" PATTERN "layout/*.h")
+install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kdray/scenes)
+foreach(document README.md LICENSE CHANGELOG.md docs)
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${document})
+    install(DIRECTORY ${document}/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/${document})
+  elseif(EXISTS ${PROJECT_SOURCE_DIR}/${document})
+    install(FILES ${document} DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  endif()
+endforeach()
+
+install(EXPORT kdray NAMESPACE kdray:: FILE kdrayTargets.cmake DESTINATION ${package_dir})
+configure_package_config_file(cmake/kdrayConfig.cmake.in ${PROJECT_BINARY_DIR}/kdrayConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+# Before 1.0 a minor version may change the interface.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/kdrayConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/kdrayConfig.cmake ${PROJECT_BINARY_DIR}/kdrayConfigVersion.cmake
+        DESTINATION ${package_dir})

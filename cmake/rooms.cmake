@@ -1,0 +1,57 @@
+# One static library per room of host/. The rooms' links are the architecture; tests/rooms checks that no room includes
+# another that it doesn't link.
+add_library(kdray_warnings INTERFACE)
+target_compile_options(kdray_warnings INTERFACE -Wall -Wextra $<$<BOOL:${KDRAY_WERROR}>:-Werror>)
+# g++ 12 reports std::string's own memcpy as overlapping (GCC bug 105651): off for that compiler only.
+target_compile_options(kdray_warnings INTERFACE $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
+# The host's arithmetic is as written: contraction would change the numbers between compilers, and g++ 12 at -O2 drops
+# the rounding of double -> float -> double when it pairs two such conversions in a vector (seen with 12.2:
+# dvec3(vec3(p)) == p), on which bounds and exact tests depend.
+add_library(kdray_numerics INTERFACE)
+target_compile_options(kdray_numerics INTERFACE
+  -ffp-contract=off
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-fno-tree-slp-vectorize>)
+add_library(kdray_sanitizers INTERFACE)
+if(KDRAY_SANITIZE)
+  target_compile_options(kdray_sanitizers INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+                                                    -fno-omit-frame-pointer)
+  # Instrumented code makes g++ see uninitialised uses in std::function and std::regex that are not there.
+  target_compile_options(kdray_sanitizers INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  target_link_options(kdray_sanitizers INTERFACE -fsanitize=address,undefined)
+endif()
+
+# kdray_room(NAME SOURCES ... [PUBLIC libs...] [PRIVATE libs...])
+#   Adds the library kdray_NAME (alias kdray::NAME) from host/NAME. Headers are included as "NAME/file.h".
+function(kdray_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(kdray_${name} STATIC ${ROOM_SOURCES})
+  add_library(kdray::${name} ALIAS kdray_${name})
+  target_compile_features(kdray_${name} PUBLIC cxx_std_20)
+  set_target_properties(kdray_${name} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name})
+  target_include_directories(kdray_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/host>)
+  target_link_libraries(kdray_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE}
+                        $<BUILD_INTERFACE:kdray_warnings> $<BUILD_INTERFACE:kdray_numerics>
+                        $<BUILD_INTERFACE:kdray_sanitizers>)
+  set_property(GLOBAL APPEND PROPERTY KDRAY_ROOMS kdray_${name})
+endfunction()
+
+# kdray_test(NAME SOURCES ... LIBS ... [LABELS ...])
+#   One test executable per room, each of its cases a CTest test labelled as given.
+function(kdray_test name)
+  cmake_parse_arguments(T "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  add_executable(${name}_test ${T_SOURCES})
+  set_target_properties(${name}_test PROPERTIES CXX_EXTENSIONS OFF)
+  target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${name}_test PRIVATE KDRAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                             KDRAY_DATA_DIR="${KDRAY_DATA_DIR}")
+  target_link_libraries(${name}_test PRIVATE ${T_LIBS} GTest::gtest GTest::gtest_main
+                        kdray_warnings kdray_numerics kdray_sanitizers)
+  if(NOT T_TIMEOUT)
+    set(T_TIMEOUT 300)
+  endif()
+  gtest_discover_tests(${name}_test TEST_PREFIX "${name}/" DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${T_TIMEOUT})
+  # gtest_discover_tests takes a list of labels apart, so they are set when ctest reads the discovered cases.
+  set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
+  file(WRITE ${labels_file} "if(${name}_test_TESTS)\n  set_tests_properties(\${${name}_test_TESTS} PROPERTIES LABELS \"${T_LABELS}\")\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels_file})
+endfunction()

@@ -1,0 +1,26 @@
+#include "scene/scene.h"
+
+#include "kdray/kdray.h"
+#include "scene/load.h"
+
+namespace kdray {
+
+Scene Scene::load(const std::filesystem::path& file) {
+  return Scene(scene::load(file));
+}
+Scene::Scene(scene::Scene&& model) : model_(std::make_unique<scene::Scene>(std::move(model))) {}
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
+std::uint32_t Scene::primitives() const {
+  return model_->primitive_count();
+}
+const std::vector<std::string>& Scene::warnings() const {
+  return model_->warnings;
+}
+const scene::Scene& Scene::model() const {
+  return *model_;
+}
+
+}  // namespace kdray

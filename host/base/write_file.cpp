@@ -1,0 +1,132 @@
+#include "base/write_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <random>
+
+#include "base/error.h"
+
+namespace kdray {
+namespace fs = std::filesystem;
+namespace {
+
+Error cannot_write(const fs::path& file, int error, const fs::path& folder) {
+  const std::string where = "'" + folder.string() + "'";
+  switch (error) {
+    case ENOENT:
+      return input_error(file.string(), 0, "the folder " + where + " does not exist",
+                         "make it (mkdir -p) or name another place");
+    case ENOTDIR:
+      return input_error(file.string(), 0, where + " is not a folder", "name another place");
+    case EACCES:
+    case EPERM:
+      return input_error(file.string(), 0, "no permission to write in the folder " + where,
+                         "name a place where you may write");
+    case EROFS:
+      return input_error(file.string(), 0, "the folder " + where + " is on a read-only file system",
+                         "name another place");
+    case ENOSPC:
+    case EDQUOT:
+      return input_error(file.string(), 0, "the disk is full", "free some space or name another place");
+    case ENAMETOOLONG:
+      return input_error(file.string(), 0, "the file name is too long", "choose a shorter one");
+    default:
+      return input_error(file.string(), 0, std::string("cannot be written: ") + std::strerror(error));
+  }
+}
+
+fs::path folder_of(const fs::path& file) {
+  const fs::path parent = file.parent_path();
+  return parent.empty() ? fs::path(".") : parent;
+}
+
+// Where the bytes will go at last: `file`, or what the symbolic links it is made of point to (which need not
+// exist).
+fs::path resolve_links(fs::path file) {
+  std::error_code error;
+  for (int n_links = 0; n_links < 40 && fs::is_symlink(file, error); ++n_links) {
+    const fs::path to = fs::read_symlink(file, error);
+    if (error) break;
+    file = to.is_absolute() ? to : folder_of(file) / to;
+  }
+  return file;
+}
+
+// An existing target must be a file that its owner left writable: a rename would not ask.
+void check_target(const fs::path& file, const fs::path& target, const fs::file_status& status) {
+  if (target.filename().empty() || fs::is_directory(status))
+    throw input_error(file.string(), 0, "is a folder", "name a file in it");
+  if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0)
+    throw input_error(file.string(), 0, "exists and is write-protected", "remove it or name another file");
+}
+
+bool is_special(const fs::file_status& status) {
+  return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+// Creates an empty file of a new name beside `target`, with the permissions that the umask leaves.
+fs::path create_beside(const fs::path& file, const fs::path& target) {
+  const fs::path folder = folder_of(target);
+  std::random_device random;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    char name[48];
+    std::snprintf(name, sizeof name, ".kdray-%d-%08x", static_cast<int>(::getpid()), random());
+    const fs::path temporary = folder / (name + target.extension().string());
+    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+      ::close(descriptor);
+      return temporary;
+    }
+    if (errno != EEXIST) throw cannot_write(file, errno, folder);
+  }
+  throw cannot_write(file, EEXIST, folder);
+}
+
+}  // namespace
+
+void write_atomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+  std::error_code error;
+  const fs::path target = resolve_links(file);
+  const fs::file_status status = fs::status(target, error);
+  check_target(file, target, status);
+  if (is_special(status)) return write(target);
+  const fs::path temporary = create_beside(file, target);
+  try {
+    write(temporary);
+    if (fs::exists(status)) fs::permissions(temporary, status.permissions(), error);
+    if (std::rename(temporary.c_str(), target.c_str()) != 0)
+      throw cannot_write(file, errno, folder_of(target));
+  } catch (...) {
+    fs::remove(temporary, error);
+    throw;
+  }
+}
+
+void write_bytes(const fs::path& temporary, const fs::path& shown, std::string_view content) {
+  std::FILE* stream = std::fopen(temporary.c_str(), "ab");
+  if (!stream) throw cannot_write(shown, errno, folder_of(shown));
+  // fwrite wants a pointer even for nothing.
+  bool good = content.empty() || std::fwrite(content.data(), 1, content.size(), stream) == content.size();
+  int error = errno;
+  // A full disk may show only when the buffer is flushed.
+  if (std::fclose(stream) != 0 && good) good = false, error = errno;
+  if (!good) throw cannot_write(shown, error, folder_of(shown));
+}
+
+void write_file(const fs::path& file, std::string_view content) {
+  write_atomically(file, [&](const fs::path& temporary) { write_bytes(temporary, file, content); });
+}
+
+void check_writable(const fs::path& file) {
+  std::error_code error;
+  const fs::path target = resolve_links(file);
+  const fs::file_status status = fs::status(target, error);
+  check_target(file, target, status);
+  if (!is_special(status)) fs::remove(create_beside(file, target), error);
+}
+
+}  // namespace kdray

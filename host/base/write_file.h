@@ -1,0 +1,28 @@
+// What    Output files, written whole or not at all: under a temporary name in the same folder first, then
+//         renamed onto the target. A symbolic link is followed; a device or pipe is written directly, since a
+//         rename would replace it. The permissions of a file that is replaced are kept.
+// Errors  kdray::Error, ErrorCode::input: a folder, a missing folder, no permission, disk full.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+namespace kdray {
+
+// Calls `write(temporary)` and renames the temporary onto `file`; removes it if `write` throws.
+void write_atomically(const std::filesystem::path& file,
+                      const std::function<void(const std::filesystem::path&)>& write);
+
+// The usual case: the content is in memory.
+void write_file(const std::filesystem::path& file, std::string_view content);
+
+// Throws what write_atomically would throw for this name, so that a long job can fail before it starts.
+void check_writable(const std::filesystem::path& file);
+
+// Appends to a file being written, `shown` being the name for messages (the temporary's would puzzle the
+// user).
+void write_bytes(const std::filesystem::path& temporary, const std::filesystem::path& shown,
+                 std::string_view content);
+
+}  // namespace kdray

@@ -1,0 +1,66 @@
+// What    kdray devices: the OpenCL devices of this machine, numbered as --device takes them.
+#include <fmt/format.h>
+
+#include <memory>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/message.h"
+#include "cli/output.h"
+#include "cli/stats.h"
+#include "kdray/kdray.h"
+
+namespace kdray::cli {
+
+namespace {
+
+std::string as_text(const std::vector<DeviceInfo>& devices) {
+  std::string text;
+  for (const DeviceInfo& d : devices) {
+    text += fmt::format("{}  {}\n", d.number, one_line(d.name));
+    text += fmt::format("   {}, {} compute units, {} of memory ({} in one piece)\n", d.kind, d.compute_units,
+                        bytes_in_words(d.global_memory), bytes_in_words(d.max_allocation));
+    text +=
+        fmt::format("   {}, {}, driver {}\n", one_line(d.platform), one_line(d.version), one_line(d.driver));
+    if (!d.usable) text += fmt::format("   not usable: {}\n", one_line(d.why_not));
+  }
+  return text;
+}
+
+std::string as_json(const std::vector<DeviceInfo>& devices) {
+  Json list = Json::array();
+  for (const DeviceInfo& d : devices)
+    list.push_back({{"number", d.number},
+                    {"name", d.name},
+                    {"platform", d.platform},
+                    {"version", d.version},
+                    {"driver", d.driver},
+                    {"kind", d.kind},
+                    {"compute_units", d.compute_units},
+                    {"global_memory", d.global_memory},
+                    {"max_allocation", d.max_allocation},
+                    {"usable", d.usable},
+                    {"why_not", d.why_not}});
+  return list.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+int run(bool json) {
+  const std::vector<DeviceInfo> all = devices();
+  print(json ? as_json(all) : as_text(all));
+  for (const DeviceInfo& d : all)
+    if (d.usable) return 0;
+  throw Error(ErrorCode::no_device, all.empty()
+                                        ? "no OpenCL device found; 'kdray doctor' says what is missing"
+                                        : "no usable OpenCL device; 'kdray doctor' says more");
+}
+
+}  // namespace
+
+Command add_devices(CLI::App& kdray) {
+  CLI::App* const app = kdray.add_subcommand("devices", "List the OpenCL devices");
+  const auto json = std::make_shared<bool>(false);
+  app->add_flag("--json", *json, "Print JSON");
+  return {app, [json] { return run(*json); }};
+}
+
+}  // namespace kdray::cli

@@ -1,0 +1,78 @@
+// What    kdray generate: Haines' scenes as NFF files, at any size.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "base/error.h"
+#include "base/write_file.h"
+#include "cli/command.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/parse.h"
+#include "generate/generate.h"
+
+namespace kdray::cli {
+
+namespace {
+
+constexpr int kSizeMax = 1'000'000'000;  // each generator has a limit of its own below this
+
+struct Options {
+  std::string name, output;
+  int size = -1;  // < 0: the generator's own
+};
+
+std::string what_there_is() {
+  std::string text = "The scenes, with their usual size:";
+  for (const generate::Generator& g : generate::generators())
+    text += fmt::format("\n  {:<10} {:>4}  {}", g.name, g.default_size, g.description);
+  return text;
+}
+
+// An unknown name has no size of its own; generate() refuses it with the list of what there is.
+int default_size(const std::string& name) {
+  for (const generate::Generator& g : generate::generators())
+    if (g.name == name) return g.default_size;
+  return 1;
+}
+
+void write(const Options& o, int size, std::ostream& out, const std::string& where) {
+  generate::generate(o.name, size, out);
+  out.flush();
+  if (!out) throw input_error(where, 0, "can't be written", "is the disk full?");
+}
+
+int run(const Options& o) {
+  const int size = o.size < 0 ? default_size(o.name) : o.size;
+  if (o.output.empty() || o.output == "-") {
+    write(o, size, std::cout, "standard output");
+    return 0;
+  }
+  check_text_output(o.output);
+  if (const std::string ending = ending_of(o.output); ending == ".gz" || ending == ".xz")
+    throw input_error(o.output, 0, "generate writes plain text",
+                      "leave " + ending + " off and compress it after");
+  write_atomically(o.output, [&](const std::filesystem::path& file) {
+    std::ofstream out(file, std::ios::binary);
+    write(o, size, out, o.output);
+  });
+  return 0;
+}
+
+}  // namespace
+
+Command add_generate(CLI::App& kdray) {
+  CLI::App* const app = kdray.add_subcommand("generate", "Write one of Haines' SPD scenes as an NFF file");
+  const auto o = std::make_shared<Options>();
+  app->add_option("NAME", o->name, "Which scene")->required()->type_name("");
+  add_int(*app, "--size", "Size factor (default: the scene's own, see below)", 0, kSizeMax, o->size);
+  add_path(*app, "-o,--output", "The file (default: standard output)", o->output);
+  app->footer(what_there_is());
+  return {app, [o] { return run(*o); }};
+}
+
+}  // namespace kdray::cli

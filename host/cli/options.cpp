@@ -1,0 +1,86 @@
+#include "cli/options.h"
+
+#include <array>
+#include <string_view>
+
+#include "cli/parse.h"
+
+namespace kdray::cli {
+
+namespace {
+
+// "-o,--output" -> "--output", for messages.
+std::string long_name(const std::string& name) {
+  return name.substr(name.find("--"));
+}
+
+}  // namespace
+
+CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string& shape,
+                      const std::string& help, std::function<void(const std::string&)> take) {
+  return app.add_option_function<std::string>(name, std::move(take), help)->type_name(shape);
+}
+
+CLI::Option* add_int(CLI::App& app, const std::string& name, const std::string& help, int lo, int hi,
+                     int& value) {
+  return add_text(app, name, "N", help, [option = long_name(name), lo, hi, &value](const std::string& text) {
+    value = parse_int(option, text, lo, hi);
+  });
+}
+
+CLI::Option* add_real(CLI::App& app, const std::string& name, const std::string& shape,
+                      const std::string& help, double lo, double hi, double& value) {
+  return add_text(app, name, shape, help,
+                  [option = long_name(name), lo, hi, &value](const std::string& text) {
+                    value = parse_real(option, text, lo, hi);
+                  });
+}
+
+CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string& help, std::string& value) {
+  return app.add_option(name, value, help)->type_name("FILE");
+}
+
+void add_tree_options(CLI::App& app, TreeOptions& tree) {
+  const std::string group = "Tree";
+  add_int(app, "--tree-depth", "Deepest leaf (default: 8 + 1.3*log2 of the primitives)", 0, 64,
+          tree.max_depth)
+      ->group(group);
+  add_real(app, "--cost-traverse", "C", "Cost of one inner node in the surface area heuristic (default 1)", 0,
+           1e6, tree.cost_traverse)
+      ->group(group);
+  add_real(app, "--cost-intersect", "C", "Cost of one primitive test (default 1.5)", 1e-6, 1e6,
+           tree.cost_intersect)
+      ->group(group);
+  add_real(app, "--empty-bonus", "B",
+           "Share of its cost that a split pays when it cuts off empty space (default 0.8)", 0, 1,
+           tree.empty_bonus)
+      ->group(group);
+}
+
+void add_device_options(CLI::App& app, DeviceOptions& device) {
+  const std::string group = "Device";
+  static constexpr std::array<std::string_view, 2> kTraversals = {"auto", "binary"};
+  static constexpr std::array<std::string_view, 1> kPrecisions = {"float"};
+  add_text(app, "--device", "SPEC", "auto, cpu, gpu, a number from 'kdray devices', or a part of a name",
+           [&device](const std::string& text) {
+             if (text.empty())
+               throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
+             device.device = text;
+           })
+      ->group(group);
+  add_int(app, "--queues", "Command queues, each on its own equal part of the device (default 1)", 1, 1024,
+          device.queues)
+      ->group(group);
+  add_int(app, "--work-group",
+          "Work-items in a group of the per-ray kernels (default: chosen for the device)", 1, 65536,
+          device.work_group)
+      ->group(group);
+  add_text(app, "--traversal", "NAME", "How rays walk the tree: auto, binary", [](const std::string& text) {
+    parse_choice("--traversal", text, kTraversals);
+  })->group(group);
+  add_text(app, "--precision", "NAME", "Arithmetic of the kernels: float", [](const std::string& text) {
+    parse_choice("--precision", text, kPrecisions);
+  })->group(group);
+}
+
+}  // namespace kdray::cli

@@ -1,0 +1,28 @@
+// What    Options that several commands share, and the one way options are added: as text, parsed by
+//         parse.h, so that a wrong value gives kdray's own message and never CLI11's.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "kdray/kdray.h"
+
+namespace kdray::cli {
+
+// Adds an option whose text goes to `take`; `shape` stands for the value in --help.
+CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string& shape,
+                      const std::string& help, std::function<void(const std::string&)> take);
+
+CLI::Option* add_int(CLI::App& app, const std::string& name, const std::string& help, int lo, int hi,
+                     int& value);
+CLI::Option* add_real(CLI::App& app, const std::string& name, const std::string& shape,
+                      const std::string& help, double lo, double hi, double& value);
+CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string& help, std::string& value);
+
+// --tree-depth --cost-traverse --cost-intersect --empty-bonus
+void add_tree_options(CLI::App& app, TreeOptions& tree);
+
+// --device --queues --work-group --traversal --precision
+void add_device_options(CLI::App& app, DeviceOptions& device);
+
+}  // namespace kdray::cli

@@ -1,0 +1,90 @@
+#include "cli/parse.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace kdray::cli {
+
+namespace {
+
+// The whole of `text` as a number: "1e3 " or "5x" are none, and neither are "inf" and "nan".
+template <class T>
+bool whole_number(std::string_view text, T& value) {
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stopped != end) return false;
+  if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
+  return true;
+}
+
+bool is_one_of(std::string_view text, std::span<const std::string_view> accepted) {
+  return std::find(accepted.begin(), accepted.end(), text) != accepted.end();
+}
+
+}  // namespace
+
+Error usage_error(std::string_view option, std::string_view given, std::string_view wanted) {
+  return Error(ErrorCode::usage, fmt::format("{} '{}': expected {}", option, given, wanted));
+}
+
+int parse_int(std::string_view option, std::string_view text, int lo, int hi) {
+  int value = 0;
+  if (!whole_number(text, value) || value < lo || value > hi)
+    throw usage_error(option, text, fmt::format("a whole number from {} to {}", lo, hi));
+  return value;
+}
+
+double parse_real(std::string_view option, std::string_view text, double lo, double hi) {
+  double value = 0;
+  if (!whole_number(text, value) || value < lo || value > hi)
+    throw usage_error(option, text, fmt::format("a number from {} to {}", lo, hi));
+  return value;
+}
+
+Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max) {
+  Size size;
+  const std::size_t cross = text.find_first_of("xX");
+  const bool good = cross != std::string_view::npos && whole_number(text.substr(0, cross), size.width) &&
+                    whole_number(text.substr(cross + 1), size.height) && size.width >= 1 &&
+                    size.height >= 1 && size.width <= side_max && size.height <= side_max;
+  if (!good) throw usage_error(option, text, fmt::format("WIDTHxHEIGHT, each from 1 to {}", side_max));
+  if (static_cast<long long>(size.width) * size.height > pixels_max)
+    throw usage_error(option, text, fmt::format("no more than {} pixels in all", pixels_max));
+  return size;
+}
+
+film::Transfer parse_gamma(std::string_view option, std::string_view text) {
+  if (text == "srgb") return {};
+  double gamma = 0;
+  if (!whole_number(text, gamma) || gamma < 0.1 || gamma > 10)
+    throw usage_error(option, text, "srgb or a number from 0.1 to 10");
+  return {.srgb = false, .gamma = gamma};
+}
+
+std::string parse_choice(std::string_view option, std::string_view text,
+                         std::span<const std::string_view> accepted) {
+  if (!is_one_of(text, accepted))
+    throw usage_error(option, text,
+                      fmt::format("{}{}", accepted.size() > 1 ? "one of " : "", fmt::join(accepted, ", ")));
+  return std::string(text);
+}
+
+std::vector<std::string> parse_list(std::string_view option, std::string_view text,
+                                    std::span<const std::string_view> accepted) {
+  std::vector<std::string> names;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    const std::string name(text.substr(start, comma - start));
+    if (!is_one_of(name, accepted))
+      throw usage_error(option, text,
+                        fmt::format("names from {}, with commas between", fmt::join(accepted, ", ")));
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    start = comma + 1;
+  }
+  return names;
+}
+
+}  // namespace kdray::cli

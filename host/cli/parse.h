@@ -1,0 +1,39 @@
+// What    Turns the text of an option into a value: numbers, sizes, names from a list. One place, so
+//         that every option is as strict (the whole text counts) and every message has the same form.
+// Errors  kdray::Error, ErrorCode::usage: the option, what was given, what is accepted.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "film/write.h"
+#include "kdray/error.h"
+
+namespace kdray::cli {
+
+struct Size {
+  int width = 0, height = 0;
+};
+
+[[nodiscard]] Error usage_error(std::string_view option, std::string_view given, std::string_view wanted);
+
+int parse_int(std::string_view option, std::string_view text, int lo, int hi);
+double parse_real(std::string_view option, std::string_view text, double lo, double hi);
+
+// "640x480"; each side from 1 to `side_max`, and no more than `pixels_max` pixels.
+Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max);
+
+// "srgb", or the exponent G of v^(1/G).
+film::Transfer parse_gamma(std::string_view option, std::string_view text);
+
+// One of `accepted`.
+std::string parse_choice(std::string_view option, std::string_view text,
+                         std::span<const std::string_view> accepted);
+
+// "a,b,c", each one of `accepted`; a name given twice counts once.
+std::vector<std::string> parse_list(std::string_view option, std::string_view text,
+                                    std::span<const std::string_view> accepted);
+
+}  // namespace kdray::cli

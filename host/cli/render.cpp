@@ -1,0 +1,189 @@
+// What    kdray render: a scene file to a picture.
+// Shape   Everything that can be refused is refused before the scene is read; the picture is written
+//         whole or not at all, the statistics after it.
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "base/timer.h"
+#include "cli/command.h"
+#include "cli/memory.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/parse.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
+#include "cli/summary.h"
+#include "film/write.h"
+#include "kdray/kdray.h"
+#include "scene/scene.h"
+
+namespace kdray::cli {
+
+namespace {
+
+constexpr int kSideMax = 65536;
+constexpr long long kPixelsMax = 1ll << 28;  // 16384 x 16384; memory.h refuses what this machine can't hold
+
+struct Options {
+  std::string scene, output, stats;
+  bool quiet = false;
+  bool gamma_given = false, bits_given = false;
+  TreeOptions tree;
+  DeviceOptions device;
+  RenderOptions render;
+  film::WriteOptions write;
+};
+
+void add_picture_options(CLI::App& app, Options& o) {
+  add_text(app, "--size", "WxH", "Pixels across and down (default: the scene's, or 1024x1024)",
+           [&o](const std::string& text) {
+             const Size size = parse_size("--size", text, kSideMax, kPixelsMax);
+             o.render.width = size.width, o.render.height = size.height;
+           });
+  add_int(app, "--depth", "Deepest ray; the eye ray is 1 (default: the scene's, or 5)", 1, 64,
+          o.render.depth);
+  add_real(app, "--min-weight", "W",
+           "Rays of less weight are not traced (default: what can't change an 8-bit picture); 0: trace all",
+           0, 1, o.render.min_weight);
+  add_int(app, "--samples", "Rays per pixel, stratified (default: the scene's, or 1)", 1, 65536,
+          o.render.samples);
+  static constexpr std::array<std::string_view, 2> kGrids = {"centers", "corners"};
+  add_text(app, "--grid", "NAME",
+           "centers: rays through the pixels' centers; corners: the outermost rays go through the picture's "
+           "corners, "
+           "as the counts published for the SPD scenes are made",
+           [&o](const std::string& text) {
+             const bool corners = parse_choice("--grid", text, kGrids) == "corners";
+             o.render.grid = corners ? PixelGrid::corners : PixelGrid::centers;
+           });
+}
+
+void add_file_options(CLI::App& app, Options& o) {
+  static constexpr std::array<std::string_view, 2> kBits = {"8", "16"};
+  static constexpr std::array<std::string_view, 4> kChannels = {"depth", "normal", "primitive", "cost"};
+  add_path(app, "-o,--output", "The picture, .png or .exr (default: the scene's name with .png, here)",
+           o.output);
+  add_text(app, "--gamma", "G", "PNG's transfer curve: srgb (default) or v^(1/G)",
+           [&o](const std::string& text) {
+             o.write.transfer = parse_gamma("--gamma", text);
+             o.gamma_given = true;
+           });
+  add_text(app, "--bits", "N", "Bits per channel of a PNG: 8 (default) or 16", [&o](const std::string& text) {
+    o.write.png_bits = parse_choice("--bits", text, kBits) == "16" ? 16 : 8;
+    o.bits_given = true;
+  });
+  add_text(app, "--aov", "LIST",
+           "More channels, in the EXR or as files beside the PNG: depth,normal,primitive,cost",
+           [&o](const std::string& text) { o.render.channels = parse_list("--aov", text, kChannels); });
+  add_path(app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o.stats);
+  app.add_flag("-q,--quiet", o.quiet, "Say nothing unless something is wrong");
+}
+
+void add_schedule_options(CLI::App& app, Options& o) {
+  static constexpr std::array<std::string_view, 2> kModes = {"auto", "pdprt"};
+  add_text(app, "--mode", "NAME", "How the work is divided: auto, pdprt (the pixels are divided)",
+           [](const std::string& text) { parse_choice("--mode", text, kModes); })
+      ->group("Device");
+  add_text(app, "--tile", "WxH", "Size of the tiles the picture is divided into (default: chosen)",
+           [&o](const std::string& text) {
+             const Size size = parse_size("--tile", text, kSideMax, kPixelsMax);
+             o.render.tile_width = size.width, o.render.tile_height = size.height;
+           })
+      ->group("Device");
+}
+
+void check_files(Options& o) {
+  if (o.output.empty()) o.output = default_picture(o.scene).string();
+  film::check_picture_name(o.output);
+  if (!o.stats.empty()) check_text_output(o.stats);
+  check_apart("SCENE", o.scene, "--output", o.output);
+  check_apart("SCENE", o.scene, "--stats", o.stats);
+  check_apart("--output", o.output, "--stats", o.stats);
+  if (ending_of(o.output) == ".exr" && !o.quiet) {
+    if (o.gamma_given) say("--gamma has no effect: an EXR holds linear values");
+    if (o.bits_given) say("--bits has no effect: an EXR holds floats");
+  }
+}
+
+// As the renderer will resolve it (RenderOptions::width).
+void check_memory(const RenderOptions& render, const scene::RenderSettings& asked) {
+  const int width = render.width > 0 ? render.width : asked.width.value_or(1024);
+  const int height = render.height > 0 ? render.height : asked.height.value_or(1024);
+  std::uint64_t n_channels = 0;
+  for (const std::string& name : render.channels) n_channels += name == "normal" ? 3 : 1;
+  check_picture_fits(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), n_channels,
+                     free_memory());
+}
+
+film::Image to_image(const Picture& picture) {
+  film::Image image{picture.width, picture.height, {}};
+  image.pixels.reserve(picture.rgb.size() / 3);
+  for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3)
+    image.pixels.emplace_back(picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]);
+  return image;
+}
+
+film::Written write(Picture&& picture, const Options& o) {
+  std::vector<film::Channel> channels;
+  for (Channel& c : picture.channels) channels.push_back({std::move(c.name), std::move(c.values)});
+  const film::Image image = to_image(picture);
+  picture.rgb = {};  // large pictures: no third copy while the file is made
+  return film::write_picture(o.output, image, channels, o.write);
+}
+
+Picture render(Renderer& renderer, const Options& o) {
+  Progress progress(o.quiet);
+  RenderOptions options = o.render;
+  options.progress = [&progress](double share) { progress.update(share); };
+  return renderer.render(options);
+}
+
+int run(Options& o) {
+  const Timer total;
+  check_files(o);
+  OwnSeconds seconds;
+  Timer step;
+  const Scene scene = Scene::load(o.scene);
+  seconds.load = step.seconds();
+  if (!o.quiet)
+    for (const std::string& warning : scene.warnings()) say(warning);
+  check_memory(o.render, scene.model().settings);
+
+  Renderer renderer(scene, o.tree, o.device);
+  Picture picture = render(renderer, o);
+  step.restart();
+  const film::Written written = write(std::move(picture), o);
+  seconds.write = step.seconds();
+  seconds.total = total.seconds();
+
+  Json stats = collect_stats("render", o.scene, renderer.statistics(), seconds);
+  for (const auto& file : written.files) stats["files"].push_back(file.string());
+  if (!o.stats.empty()) write_stats(o.stats, stats);
+  if (!o.quiet) print_render_summary(stats, written.nan_values);
+  return 0;
+}
+
+}  // namespace
+
+Command add_render(CLI::App& kdray) {
+  CLI::App* const app = kdray.add_subcommand("render", "Render a scene to a picture");
+  const auto o = std::make_shared<Options>();
+  app->add_option("SCENE", o->scene,
+                  "The scene: .nff .obj .ply .stl .gltf .glb .json, also .gz and .xz of them")
+      ->required()
+      ->type_name("");
+  add_file_options(*app, *o);
+  add_picture_options(*app, *o);
+  add_schedule_options(*app, *o);
+  add_device_options(*app, o->device);
+  add_tree_options(*app, o->tree);
+  return {app, [o] { return run(*o); }};
+}
+
+}  // namespace kdray::cli

@@ -1,0 +1,96 @@
+#include "device/context.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "device/opencl_error.h"
+#include "device/program.h"
+
+namespace kdray::device {
+
+namespace {
+
+// `n` equal parts of the device, or the device itself when it can't be divided.
+std::vector<cl::Device> divide(cl::Device device, int n) {
+  const cl_uint units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  const cl_uint parts = std::min<cl_uint>(static_cast<cl_uint>(n), units);
+  if (parts < 2) return {device};
+  const cl_device_partition_property by_counts = CL_DEVICE_PARTITION_BY_COUNTS;
+  std::vector<cl_device_partition_property> properties{by_counts};
+  for (cl_uint i = 0; i < parts; ++i)
+    properties.push_back(
+        static_cast<cl_device_partition_property>(units / parts + (i < units % parts ? 1 : 0)));
+  properties.push_back(CL_DEVICE_PARTITION_BY_COUNTS_LIST_END);
+  properties.push_back(0);
+  std::vector<cl::Device> sub_devices;
+  try {
+    device.createSubDevices(properties.data(), &sub_devices);
+  } catch (const cl::Error&) {
+    return {device};  // most GPUs
+  }
+  return sub_devices;
+}
+
+Opened open(const cl::Device& device, int n_queues) {
+  Opened opened;
+  opened.devices = divide(device, n_queues);
+  opened.context = cl::Context(opened.devices);
+  for (int i = 0; i < n_queues; ++i)
+    opened.queues.emplace_back(opened.context,
+                               opened.devices[static_cast<std::size_t>(i) % opened.devices.size()],
+                               cl_command_queue_properties{CL_QUEUE_PROFILING_ENABLE});
+  return opened;
+}
+
+// Never destroyed, on purpose: see the header.
+const Opened& opened_before_or_now(const FoundDevice& found, int n_queues) {
+  static std::mutex mutex;
+  static auto* all = new std::map<std::pair<int, int>, Opened>;
+  const std::lock_guard lock(mutex);
+  const std::pair key{found.info.number, n_queues};
+  auto place = all->find(key);
+  if (place == all->end()) place = all->emplace(key, open(found.device, n_queues)).first;
+  return place->second;
+}
+
+}  // namespace
+
+Context::Context(const std::string& device_spec, int n_queues) : found_(choose_device(device_spec)) {
+  checked("opening " + found_.info.name, [&] { opened_ = &opened_before_or_now(found_, n_queues); });
+}
+
+std::size_t Context::max_work_group() const {
+  return checked("asking " + found_.info.name,
+                 [&] { return found_.device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>(); });
+}
+
+bool Context::rounds_division_correctly() const {
+  return checked("asking " + found_.info.name, [&] {
+    return (found_.device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+  });
+}
+
+cl::Program Context::build(const std::string& file, const std::string& options) const {
+  return build_program(opened_->context, opened_->devices, file, options);
+}
+
+cl::Program Context::build_text(const std::string& name, const std::string& text,
+                                const std::string& options) const {
+  return build_source(opened_->context, opened_->devices, name, expand_text(name, text), options);
+}
+
+cl::Buffer Context::buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const {
+  if (bytes > found_.info.max_allocation)
+    throw Error(
+        ErrorCode::out_of_memory,
+        fmt::format("{} wants {} MiB in one piece, {} gives {} MiB at most; try a smaller scene or picture",
+                    what, bytes >> 20, found_.info.name, found_.info.max_allocation >> 20));
+  return checked("allocating " + what,
+                 [&] { return cl::Buffer(opened_->context, flags, std::max<std::size_t>(bytes, 16)); });
+}
+
+}  // namespace kdray::device

@@ -1,0 +1,48 @@
+// What    One OpenCL context on the chosen device and its queues: one queue on the whole device, or one per sub-device
+//         (clCreateSubDevices, equal shares) when several are asked for.
+// Why     What is opened stays open until the process ends, and the next Context of the same kind shares it: PoCL 3.1
+//         lets go of a command's event after the command is reported as done, and crashes when the queue has been
+//         released in between. OpenCL's queues may be used from several threads.
+// Errors  Queues beyond what the device can be divided into share its parts in turn.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/opencl.h"
+#include "device/platform.h"
+
+namespace kdray::device {
+
+// An OpenCL context with its devices (the device itself, or its sub-devices) and queues.
+struct Opened {
+  std::vector<cl::Device> devices;
+  cl::Context context;
+  std::vector<cl::CommandQueue> queues;
+};
+
+class Context {
+ public:
+  Context(const std::string& device_spec, int n_queues);
+
+  const DeviceInfo& info() const { return found_.info; }
+  const cl::Context& get() const { return opened_->context; }
+  const std::vector<cl::CommandQueue>& queues() const { return opened_->queues; }
+  std::size_t max_work_group() const;
+  bool rounds_division_correctly() const;  // CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT
+  std::size_t n_sub_devices() const { return opened_->devices.size(); }
+
+  cl::Program build(const std::string& file, const std::string& options) const;
+  // A source that is no file of kernels/, but may include them.
+  cl::Program build_text(const std::string& name, const std::string& text, const std::string& options) const;
+
+  // Throws ErrorCode::out_of_memory, naming the device's limit, when a buffer of `bytes` is too large for it. A buffer
+  // of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
+  cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
+
+ private:
+  FoundDevice found_;
+  const Opened* opened_;
+};
+
+}  // namespace kdray::device

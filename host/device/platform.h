@@ -1,0 +1,25 @@
+// What    The OpenCL devices of this machine, and the choice of one by what the user said.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/opencl.h"
+#include "kdray/kdray.h"
+
+namespace kdray::device {
+
+struct FoundDevice {
+  DeviceInfo info;
+  cl::Platform platform;
+  cl::Device device;
+};
+
+// Every device of every platform, in the platforms' order; empty where there is none.
+std::vector<FoundDevice> find_devices();
+
+// spec: "auto" (a GPU if there is a usable one, else a CPU), "cpu", "gpu", a number, or a part of a device's or
+// platform's name. Throws ErrorCode::no_device, listing what there is.
+FoundDevice choose_device(const std::string& spec);
+
+}  // namespace kdray::device

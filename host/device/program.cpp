@@ -1,0 +1,109 @@
+#include "device/program.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "device/opencl_error.h"
+#include "kernels.h"
+
+namespace kdray::device {
+
+namespace {
+
+std::string text_of(const std::string& name) {
+  if (const char* folder = std::getenv("KDRAY_KERNEL_DIR")) {
+    std::ifstream in(std::filesystem::path(folder) / name, std::ios::binary);
+    if (!in)
+      throw input_error((std::filesystem::path(folder) / name).string(), 0, "cannot be read",
+                        "unset KDRAY_KERNEL_DIR to use the built-in kernels");
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  for (const kernels::Source& source : kernels::sources())
+    if (source.name == name) return std::string(source.text);
+  throw Error(ErrorCode::internal, fmt::format("kernel source '{}' is not embedded", name));
+}
+
+// The name in an include line of ours; empty for every other line (and for <system> includes).
+std::string included_name(const std::string& line) {
+  constexpr std::string_view kInclude = "#include \"";
+  if (!line.starts_with(kInclude)) return "";
+  return line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
+}
+
+void expand(const std::string& name, const std::string& source, std::set<std::string>& seen,
+            std::string& out) {
+  seen.insert(name);
+  std::istringstream text(source);
+  out += fmt::format("#line 1 \"{}\"\n", name);
+  std::string line;
+  for (int number = 1; std::getline(text, line); ++number) {
+    const std::string included = included_name(line);
+    if (included.empty()) {
+      out += line + '\n';
+    } else if (!seen.contains(included)) {
+      expand(included, text_of(included), seen, out);
+      out += fmt::format("#line {} \"{}\"\n", number + 1, name);
+    } else {
+      out += '\n';
+    }
+  }
+}
+
+std::string first_error(const std::string& log) {
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("error") != std::string::npos) return line;
+  return log.substr(0, log.find('\n'));
+}
+
+[[noreturn]] void report_failed_build(const std::string& file, const std::string& options,
+                                      const std::string& source, const std::string& log) {
+  std::string name = file;
+  for (char& c : name)
+    if (c == '/') c = '_';
+  const std::filesystem::path dump = std::filesystem::temp_directory_path() / ("kdray_failed_" + name);
+  std::ofstream out(dump);
+  out << "// options: " << options << "\n" << source << "\n/* build log:\n" << log << "\n*/\n";
+  throw Error(ErrorCode::no_device,
+              fmt::format("the device's compiler refuses {}: {}; source and log are in {}", file,
+                          first_error(log), dump.string()));
+}
+
+}  // namespace
+
+std::string expand_text(const std::string& name, const std::string& text) {
+  std::set<std::string> seen;
+  std::string out;
+  expand(name, text, seen, out);
+  return out;
+}
+
+std::string expand_source(const std::string& file) {
+  return expand_text(file, text_of(file));
+}
+
+cl::Program build_source(const cl::Context& context, const std::vector<cl::Device>& devices,
+                         const std::string& name, const std::string& source, const std::string& options) {
+  cl::Program program = checked("loading " + name, [&] { return cl::Program(context, source); });
+  try {
+    program.build(devices, options.c_str());
+  } catch (const cl::Error& error) {
+    if (error.err() != CL_BUILD_PROGRAM_FAILURE) throw translate(error, "building " + name);
+    report_failed_build(name, options, source, program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(devices.front()));
+  }
+  return program;
+}
+
+cl::Program build_program(const cl::Context& context, const std::vector<cl::Device>& devices,
+                          const std::string& file, const std::string& options) {
+  return build_source(context, devices, file, expand_source(file), options);
+}
+
+}  // namespace kdray::device

@@ -1,0 +1,22 @@
+// What    OpenEXR to and from memory: 32-bit float scan lines, ZIP compressed (lossless), any channels.
+// Errors  decode_exr: kdray::Error, ErrorCode::input, naming `file`.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "film/image.h"
+
+namespace kdray::film {
+
+// The colour as R G B, `channels` under the names they have in an EXR (exr_name).
+std::string encode_exr(const Image& image, std::span<const Channel> channels);
+
+// R G B, or grey from Y alone. The picture is the file's data window; other channels are passed over.
+Image decode_exr(std::string_view bytes, const std::string& file);
+
+// "depth" -> "Z", "normal.x" -> "N.X", others as they are.
+std::string exr_name(const std::string& channel);
+
+}  // namespace kdray::film

@@ -1,0 +1,25 @@
+// What    Pictures in memory: linear RGB float, row by row from the top left; and named extra channels
+//         (AOVs).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace kdray::film {
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<vec3> pixels;  // width * height, row 0 is the top
+};
+
+// One float channel beside the colour, as wide and high as the picture: "depth" (multiples of the unit-length
+// ray direction, inf where nothing is hit), "normal.x" ".y" ".z" (unit, 0 where nothing is hit), "primitive"
+// (number, -1 where nothing is hit), "cost" (nodes visited + primitives tested).
+struct Channel {
+  std::string name;
+  std::vector<float> values;
+};
+
+}  // namespace kdray::film

@@ -1,0 +1,99 @@
+#include "flatten/features.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "layout/features.h"
+
+namespace kdray::flatten {
+
+namespace {
+
+struct Name {
+  std::uint32_t bit;
+  const char* name;
+};
+constexpr Name kNames[] = {
+    {KDRAY_FEATURE_TRIANGLES, "triangles"},
+    {KDRAY_FEATURE_SPHERES, "spheres"},
+    {KDRAY_FEATURE_CONES, "cones"},
+    {KDRAY_FEATURE_SMOOTH, "smooth normals"},
+    {KDRAY_FEATURE_REFLECT, "reflection"},
+    {KDRAY_FEATURE_TRANSMIT, "refraction"},
+    {KDRAY_FEATURE_SPECULAR, "highlights"},
+    {KDRAY_FEATURE_DIFFUSE, "diffuse"},
+    {KDRAY_FEATURE_LIGHTS, "lights"},
+    {KDRAY_FEATURE_ATTENUATION, "attenuation"},
+    {KDRAY_FEATURE_DIRECTIONAL, "directional"},
+    {KDRAY_FEATURE_SPOT, "spot"},
+    {KDRAY_FEATURE_BACKGROUND, "background"},
+    {KDRAY_FEATURE_SUPERSAMPLE, "supersampling"},
+};
+
+std::uint32_t when(bool needed, std::uint32_t bit) {
+  return needed ? bit : 0;
+}
+bool any(const vec3& color) {
+  return glm::any(glm::greaterThan(color, vec3(0)));
+}
+
+template <class Items, class Predicate>
+bool some(const Items& items, Predicate predicate) {
+  return std::any_of(items.begin(), items.end(), predicate);
+}
+
+std::uint32_t geometry_features(const scene::Scene& scene, const scene::Geometry& geometry) {
+  const auto smooth = [&](const scene::TriangleGeometry& t) {
+    return scene.triangles[t.source].normal[0] != scene::kNone;
+  };
+  return when(!geometry.triangles.empty(), KDRAY_FEATURE_TRIANGLES) |
+         when(!geometry.spheres.empty(), KDRAY_FEATURE_SPHERES) |
+         when(!geometry.cones.empty(), KDRAY_FEATURE_CONES) |
+         when(some(geometry.triangles, smooth), KDRAY_FEATURE_SMOOTH);
+}
+
+// A material counts only when a primitive wears it.
+std::uint32_t material_features(const scene::Scene& scene, const scene::Geometry& geometry) {
+  std::vector<bool> used(scene.materials.size(), false);
+  for (const auto& t : geometry.triangles) used[scene.triangles[t.source].material] = true;
+  for (const auto& s : geometry.spheres) used[scene.spheres[s.source].material] = true;
+  for (const auto& c : geometry.cones) used[scene.cones[c.source].material] = true;
+  std::uint32_t mask = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i]) continue;
+    const scene::Material& m = scene.materials[i];
+    mask |= when(any(m.reflect), KDRAY_FEATURE_REFLECT) | when(any(m.transmit), KDRAY_FEATURE_TRANSMIT) |
+            when(any(m.specular), KDRAY_FEATURE_SPECULAR) | when(any(m.diffuse), KDRAY_FEATURE_DIFFUSE);
+  }
+  return mask;
+}
+
+bool attenuated(const scene::Light& l) {
+  return l.attenuation != vec3(1, 0, 0) || std::isfinite(l.range);
+}
+
+}  // namespace
+
+std::uint32_t features_of(const scene::Scene& scene, const scene::Geometry& geometry) {
+  std::uint32_t mask = geometry_features(scene, geometry) | material_features(scene, geometry) |
+                       when(any(scene.background), KDRAY_FEATURE_BACKGROUND);
+  if (!(mask & (KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_SPECULAR)))
+    return mask;  // nothing that light could change
+  for (const scene::Light& light : scene.lights)
+    mask |= KDRAY_FEATURE_LIGHTS | when(attenuated(light), KDRAY_FEATURE_ATTENUATION) |
+            when(light.kind == scene::LightKind::directional, KDRAY_FEATURE_DIRECTIONAL) |
+            when(light.kind == scene::LightKind::spot, KDRAY_FEATURE_SPOT);
+  return mask;
+}
+
+std::uint32_t features_of_samples(int samples) {
+  return when(samples > 1, KDRAY_FEATURE_SUPERSAMPLE);
+}
+
+FeatureNames feature_names(std::uint32_t mask) {
+  FeatureNames names;
+  for (const Name& n : kNames) (mask & n.bit ? names.on : names.off).push_back(n.name);
+  return names;
+}
+
+}  // namespace kdray::flatten

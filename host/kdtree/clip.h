@@ -1,0 +1,26 @@
+// What    "Perfect splits": the bounds of the part of a primitive's surface inside a cell.
+// Shape   All bounds contain what they bound, whatever the rounding (docs/design/kdtree.md has the proofs);
+//         an empty result proves that the surface does not meet the closed cell.
+#pragma once
+
+#include "kdtree/reference.h"
+#include "scene/geometry.h"
+
+namespace kdray::kdtree {
+
+struct SplitBounds {
+  Bounds below, above;
+};
+
+// `r` is bounded inside `cell`; the plane is inside its bounds.
+SplitBounds clip_to_sides(const scene::Geometry& geometry, const BoundedRef& r, const Bounds& cell, int axis,
+                          float position);
+
+// The same for one kind. `known` are bounds of the part inside the cell, found before.
+SplitBounds clip_triangle(const scene::TriangleGeometry& t, const Bounds& known, const Bounds& cell, int axis,
+                          float position);
+// Bounds of the surface inside a region; the region is a cell or known bounds of the surface inside it.
+Bounds clip_sphere(const scene::SphereGeometry& s, const Bounds& region);
+Bounds clip_cone(const scene::ConeGeometry& c, const Bounds& region);
+
+}  // namespace kdray::kdtree

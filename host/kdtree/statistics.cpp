@@ -1,0 +1,63 @@
+#include "kdtree/statistics.h"
+
+#include <algorithm>
+
+#include "kdtree/sah.h"
+
+namespace kdray::kdtree {
+
+namespace {
+
+constexpr std::size_t kSizeClasses = 33;  // 0 to 31 references, and 32 or more
+
+struct Visit {
+  std::uint32_t node;
+  int depth;
+  Bounds cell;
+};
+
+void count_leaf(const Node& leaf, int depth, Statistics& s) {
+  const std::uint32_t n = leaf.right;
+  ++s.leaves;
+  s.empty_leaves += n == 0;
+  s.references += n;
+  ++s.leaves_by_size[std::min<std::size_t>(n, kSizeClasses - 1)];
+  s.largest_leaf = std::max(s.largest_leaf, n);
+  s.max_depth = std::max(s.max_depth, depth);
+  s.mean_leaf_depth += depth;
+}
+
+}  // namespace
+
+Statistics measure(const Tree& tree, const scene::Geometry& geometry, const BuildConfig& config) {
+  Statistics s;
+  s.leaves_by_size.assign(kSizeClasses, 0);
+  if (tree.nodes.empty()) return s;
+  const Bounds root = bounds_from(tree.bounds);
+  const double root_area = root.empty() ? 0 : half_area(root);
+  std::vector<Visit> stack{{0, 0, root}};
+  while (!stack.empty()) {
+    const Visit v = stack.back();
+    stack.pop_back();
+    const Node& node = tree.nodes[v.node];
+    // The chance that a ray through the root's cell meets this one; a root without area is met at the root
+    // only.
+    const double chance = root_area > 0 ? half_area(v.cell) / root_area : (v.depth == 0 ? 1.0 : 0.0);
+    if (node.is_leaf()) {
+      count_leaf(node, v.depth, s);
+      s.sah_cost += chance * config.cost_intersect * node.right;
+      continue;
+    }
+    ++s.inner_nodes;
+    s.sah_cost += chance * config.cost_traverse;
+    const int axis = static_cast<int>(node.axis);
+    stack.push_back({node.right, v.depth + 1, above(v.cell, axis, node.split)});
+    stack.push_back({node.left, v.depth + 1, below(v.cell, axis, node.split)});
+  }
+  s.mean_leaf_depth /= static_cast<double>(s.leaves);
+  if (geometry.size() > 0)
+    s.duplication = static_cast<double>(s.references) / static_cast<double>(geometry.size());
+  return s;
+}
+
+}  // namespace kdray::kdtree

@@ -1,0 +1,24 @@
+// What    What `kdray info` tells about a tree: shape, duplication, expected cost.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kdtree/build.h"
+
+namespace kdray::kdtree {
+
+struct Statistics {
+  std::uint64_t inner_nodes = 0, leaves = 0, empty_leaves = 0, references = 0;
+  std::vector<std::uint64_t>
+      leaves_by_size;  // [k] = leaves of k references, the last entry: that many or more
+  std::uint32_t largest_leaf = 0;
+  int max_depth = 0;
+  double mean_leaf_depth = 0;
+  double duplication = 0;  // references / primitives
+  double sah_cost = 0;     // expected cost of a ray that hits the bounds, in units of BuildConfig's constants
+};
+
+Statistics measure(const Tree& tree, const scene::Geometry& geometry, const BuildConfig& config = {});
+
+}  // namespace kdray::kdtree

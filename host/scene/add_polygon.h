@@ -1,0 +1,16 @@
+// What    Adds a polygon's triangles to a scene, numbered in file order; a concave one is cut by triangulate().
+// Shape   `corners` index scene.vertices, which must be there already when there are more than three; `normals`
+//         (into scene.normals) is empty or as long as `corners`.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scene/scene.h"
+
+namespace kdray::scene {
+
+void add_polygon(Scene& scene, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> normals,
+                 std::uint32_t material);
+
+}  // namespace kdray::scene

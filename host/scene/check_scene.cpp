@@ -1,0 +1,154 @@
+#include "scene/check_scene.h"
+
+#include <string>
+
+#include "base/error.h"
+
+namespace kdray::scene {
+
+namespace {
+
+bool is_finite_vec3(const vec3& v) {
+  return is_finite(dvec3(v));
+}
+
+bool at_least_zero(const vec3& v) {
+  return is_finite_vec3(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
+}
+
+class Checker {
+ public:
+  explicit Checker(const Scene& scene) : scene_(scene) {}
+
+  void run() const {
+    check_counts();
+    check_values();
+    check_triangles();
+    check_spheres();
+    check_cones();
+  }
+
+ private:
+  void require(bool good, const std::string& what) const {
+    if (!good) throw input_error(scene_.name, 0, what, "correct the file");
+  }
+  void require_internal(bool good, const char* what) const {
+    if (!good) throw Error(ErrorCode::internal, scene_.name + ": the reader of this format left " + what);
+  }
+  void require_none(const char* fault, const std::string& where) const {
+    if (fault) require(false, where + ": " + fault);
+  }
+
+  void check_counts() const {
+    const auto few = [](std::size_t n) { return n < kMaxPrimitivesPerKind; };
+    const bool good = few(scene_.triangles.size()) && few(scene_.spheres.size()) && few(scene_.cones.size());
+    if (!good) {
+      throw input_error(scene_.name, 0, "more than 2^30 primitives of one kind", "split the scene");
+    }
+    require_internal(scene_.primitive_count() == 0 || !scene_.materials.empty(),
+                     "primitives without a material");
+  }
+
+  void check_values() const {
+    for (std::size_t i = 0; i < scene_.vertices.size(); ++i) {
+      if (!is_finite(scene_.vertices[i])) require(false, "vertex " + std::to_string(i) + " is not finite");
+    }
+    for (std::size_t i = 0; i < scene_.normals.size(); ++i) {
+      if (!is_finite_vec3(scene_.normals[i]))
+        require(false, "normal " + std::to_string(i) + " is not finite");
+    }
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+      require_none(fault_of(scene_.materials[i]), "material " + std::to_string(i));
+    }
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+      require_none(fault_of(scene_.lights[i]), "light " + std::to_string(i));
+    }
+    if (scene_.camera) require_none(fault_of(*scene_.camera), "camera");
+    require(at_least_zero(scene_.background), "the background colour is not finite, or below 0");
+    require(at_least_zero(scene_.ambient), "the ambient light is not finite, or below 0");
+  }
+
+  void check_triangles() const {
+    const std::size_t n_vertices = scene_.vertices.size();
+    const std::size_t n_normals = scene_.normals.size();
+    for (const Triangle& t : scene_.triangles) {
+      bool good = t.material < scene_.materials.size();
+      for (const std::uint32_t v : t.vertex) good = good && v < n_vertices;
+      const bool smooth = t.normal[0] != kNone;
+      for (const std::uint32_t n : t.normal) good = good && (smooth ? n < n_normals : n == kNone);
+      if (!good) require_internal(false, "a triangle with an index that is out of range");
+    }
+  }
+
+  void check_spheres() const {
+    for (const Sphere& s : scene_.spheres) {
+      require_internal(s.material < scene_.materials.size(), "a sphere without a material");
+      if (!is_finite(s.center) || !std::isfinite(s.radius) || !(s.radius > 0)) {
+        require(false, "primitive " + std::to_string(s.number) +
+                           ": a sphere needs a finite center and a radius above 0");
+      }
+    }
+  }
+
+  void check_cones() const {
+    for (const Cone& c : scene_.cones) {
+      require_internal(c.material < scene_.materials.size(), "a cone without a material");
+      const bool radii = std::isfinite(c.base_radius) && std::isfinite(c.apex_radius) && c.base_radius >= 0 &&
+                         c.apex_radius >= 0 && c.base_radius + c.apex_radius > 0;
+      if (!radii || !is_finite(c.base) || !is_finite(c.apex) || c.base == c.apex) {
+        require(false, "primitive " + std::to_string(c.number) +
+                           ": a cone needs two different finite ends and radii of 0 or more, not both 0");
+      }
+    }
+  }
+
+  const Scene& scene_;
+};
+
+}  // namespace
+
+void check_scene(const Scene& scene) {
+  Checker(scene).run();
+}
+
+const char* fault_of(const Camera& c) {
+  if (!is_finite(c.from) || !is_finite(c.at) || !is_finite(c.up)) return "a coordinate is not finite";
+  const dvec3 forward = c.at - c.from;
+  const double length = glm::length(forward);
+  if (!(length > 0)) return "'from' and 'at' are the same point";
+  const double up = glm::length(c.up);
+  if (!(up > 0)) return "'up' has no length";
+  // Nearer to parallel than this, the sideways direction would be made of rounding errors.
+  if (glm::length(glm::cross(forward / length, c.up / up)) < 1e-9)
+    return "'up' is parallel to the view direction";
+  if (!(c.vertical_fov > 0 && c.vertical_fov < 3.14159265))
+    return "the angle of view is not between 0 and 180 degrees";
+  if (!std::isfinite(c.hither) || c.hither < 0) return "'hither' is below 0";
+  return nullptr;
+}
+
+const char* fault_of(const Material& m) {
+  for (const vec3* v : {&m.emission, &m.ambient, &m.diffuse, &m.specular, &m.reflect, &m.transmit}) {
+    if (!at_least_zero(*v)) return "a colour is not finite, or below 0";
+  }
+  if (!std::isfinite(m.shine) || m.shine < 0) return "the shine is not finite, or below 0";
+  if (!std::isfinite(m.index) || m.index <= 0) return "the index of refraction is not above 0";
+  return nullptr;
+}
+
+const char* fault_of(const Light& l) {
+  if (!at_least_zero(l.color)) return "the colour is not finite, or below 0";
+  if (!is_finite(l.position)) return "the position is not finite";
+  const bool has_direction = l.kind != LightKind::point;
+  if (has_direction && !(std::abs(glm::length(l.direction) - 1) < 1e-6))
+    return "the direction has no unit length";
+  const vec3 a = l.attenuation;
+  if (!at_least_zero(a) || !(a.x + a.y + a.z > 0)) return "the attenuation is not finite, below 0, or all 0";
+  if (!(l.range > 0)) return "the range is not above 0";
+  if (!(l.cos_outer >= -1 && l.cos_outer <= l.cos_inner && l.cos_inner <= 1)) {
+    return "the spot's inner angle is wider than its outer one";
+  }
+  return nullptr;
+}
+
+}  // namespace kdray::scene

@@ -1,0 +1,147 @@
+#include "scene/frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace kdray::scene {
+
+namespace {
+
+constexpr double kFov = 0.6981317007977318;  // 40 degrees
+constexpr double kMargin = 1.05;             // of the half picture: 2.5% of its height stay free on each side
+constexpr float kKey = 0.75f, kFill = 0.25f;
+
+// Right, up and forward of a camera, unit vectors.
+struct Basis {
+  dvec3 right, up, forward;
+};
+
+Basis basis_of(const Camera& camera) {
+  const dvec3 forward = glm::normalize(camera.at - camera.from);
+  const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+  return {right, glm::cross(right, forward), forward};
+}
+
+double aspect_of(const RenderSettings& settings) {
+  if (!settings.width || !settings.height) return 1;
+  return static_cast<double>(*settings.width) / *settings.height;
+}
+
+// A view from the front, the right and above (y is up, as in glTF and most OBJ files) onto the middle of the
+// box, from as near as lets all eight corners into the picture.
+Camera three_quarter_view(const DBox& box, double aspect) {
+  Camera camera;
+  camera.at = box.center();
+  camera.vertical_fov = kFov;
+  const dvec3 away = glm::normalize(dvec3(0.8, 0.6, 1.2));
+  camera.from = camera.at + away;
+  const Basis view = basis_of(camera);
+  const double tan_up = std::tan(kFov / 2) / kMargin;
+  const double tan_side = tan_up * aspect;
+  double distance = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const dvec3 p = dvec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                          corner & 4 ? box.hi.z : box.lo.z) -
+                    camera.at;
+    const double sideways = std::abs(glm::dot(p, view.right)) / tan_side;
+    const double upward = std::abs(glm::dot(p, view.up)) / tan_up;
+    distance = std::max(distance, std::max(sideways, upward) - glm::dot(p, view.forward));
+  }
+  if (!(distance > 0)) distance = 1;  // a single point
+  camera.from = camera.at + distance * away;
+  return camera;
+}
+
+Light directional(const dvec3& direction, float intensity) {
+  Light light;
+  light.kind = LightKind::directional;
+  light.direction = glm::normalize(direction);
+  light.color = vec3(intensity);
+  return light;
+}
+
+Light point(const dvec3& position, float intensity) {
+  Light light;
+  light.position = position;
+  light.color = vec3(intensity);
+  return light;
+}
+
+bool contains(const DBox& box, const dvec3& p) {
+  return glm::all(glm::lessThanEqual(box.lo, p)) && glm::all(glm::lessThanEqual(p, box.hi));
+}
+
+// A key light from over the viewer's left shoulder and a weaker one from the right. A viewer inside the scene
+// (a room) gets lamps instead, for walls would keep light from outside away: one at the eye and one beside
+// it.
+void add_lights(Scene& scene, const DBox& box) {
+  const Basis view = basis_of(*scene.camera);
+  const dvec3 eye = scene.camera->from;
+  if (contains(box, eye)) {
+    const double step = 0.02 * glm::length(box.extent());
+    scene.lights.push_back(point(eye, kKey));
+    scene.lights.push_back(point(eye + step * view.up, kFill));
+  } else {
+    scene.lights.push_back(directional(view.forward + 0.5 * view.right - 0.7 * view.up, kKey));
+    scene.lights.push_back(directional(view.forward - 0.9 * view.right - 0.1 * view.up, kFill));
+  }
+}
+
+// Middles of about kSampled primitives, evenly through the file.
+std::vector<dvec3> sampled_middles(const Scene& scene) {
+  constexpr std::size_t kSampled = 20000;
+  const std::size_t step = std::max<std::size_t>(1, scene.primitive_count() / kSampled);
+  std::vector<dvec3> middles;
+  for (std::size_t i = 0; i < scene.triangles.size(); i += step) {
+    const auto& v = scene.triangles[i].vertex;
+    middles.push_back((scene.vertices[v[0]] + scene.vertices[v[1]] + scene.vertices[v[2]]) / 3.0);
+  }
+  for (std::size_t i = 0; i < scene.spheres.size(); i += step) middles.push_back(scene.spheres[i].center);
+  for (std::size_t i = 0; i < scene.cones.size(); i += step)
+    middles.push_back(0.5 * (scene.cones[i].base + scene.cones[i].apex));
+  return middles;
+}
+
+// The box of the middles of all but the outermost hundredth of the primitives, on each side of each axis.
+DBox inner_box(std::vector<dvec3> middles) {
+  DBox box;
+  const std::size_t cut = middles.size() / 100;
+  for (int k = 0; k < 3; ++k) {
+    const auto below = [k](const dvec3& a, const dvec3& b) { return a[k] < b[k]; };
+    std::nth_element(middles.begin(), middles.begin() + static_cast<std::ptrdiff_t>(cut), middles.end(),
+                     below);
+    box.lo[k] = middles[cut][k];
+    std::nth_element(middles.begin(), middles.end() - 1 - static_cast<std::ptrdiff_t>(cut), middles.end(),
+                     below);
+    box.hi[k] = middles[middles.size() - 1 - cut][k];
+  }
+  return box;
+}
+
+// What the camera should show: the bounding box, unless a few far or huge primitives (a ground plane, a stray vertex)
+// would leave the scene itself a speck in it. Then it is the box of all the others, with a warning.
+DBox worth_showing(Scene& scene, const DBox& bounds) {
+  constexpr double kSpeck = 4;
+  constexpr std::size_t kFew = 100;  // with fewer primitives each of them matters
+  if (scene.primitive_count() < kFew) return bounds;
+  DBox box = inner_box(sampled_middles(scene));
+  const dvec3 margin = 0.05 * box.extent();
+  box = intersection(DBox{box.lo - margin, box.hi + margin}, bounds);
+  if (glm::length(box.extent()) * kSpeck > glm::length(bounds.extent())) return bounds;
+  scene.warnings.push_back("a few primitives reach far beyond the others: the camera looks at the others");
+  return box;
+}
+
+}  // namespace
+
+void frame_scene(Scene& scene) {
+  const DBox bounds = scene.bounds();
+  const DBox box = scene.camera || bounds.empty() ? bounds : worth_showing(scene, bounds);
+  if (!scene.camera) {
+    scene.camera = box.empty() ? Camera{} : three_quarter_view(box, aspect_of(scene.settings));
+  }
+  if (scene.lights.empty() && !box.empty()) add_lights(scene, box);
+}
+
+}  // namespace kdray::scene

@@ -1,0 +1,178 @@
+#include "scene/geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "scene/cone_bounds.h"
+#include "scene/predicates.h"
+
+namespace kdray::scene {
+
+namespace {
+
+// The largest float <= value.
+float round_down(double value) {
+  const auto f = static_cast<float>(value);
+  return f > value ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+
+// a + b rounded down to float: the sum in double and, where that rounded up, one step below it first.
+float sum_down(double a, double b) {
+  double sum = a + b;
+  const double back = sum - a;
+  const double lost = (a - (sum - back)) + (b - back);  // exactly what the rounding took
+  if (lost < 0) sum = std::nextafter(sum, -std::numeric_limits<double>::infinity());
+  return round_down(sum);
+}
+
+Box box_around(const vec3& center, const dvec3& reach) {
+  Box box;
+  for (int i = 0; i < 3; ++i) {
+    box.lo[i] = sum_down(center[i], -reach[i]);
+    box.hi[i] = -sum_down(-static_cast<double>(center[i]), -reach[i]);
+  }
+  return box;
+}
+
+// Where the scene's own origin is to be, along one axis. A coordinate near the origin stays as it is, so that
+// the floats of a file stay the floats of the file. Otherwise the middle is taken, rounded to a multiple of
+// the power of two below the scene's size: every float coordinate x of such a scene has |x| > size, so x -
+// center is a multiple of ulp(x) of at most 1.5 times that power, which a float holds without loss.
+double center_along(double lo, double hi, double size) {
+  const double middle = lo + (hi - lo) * 0.5;
+  if (std::abs(middle) <= 1.5 * size) return 0;
+  if (!(size > 0)) return middle;  // everything is in one point
+  const double step = std::exp2(std::floor(std::log2(size)));
+  const double rounded = std::round(middle / step) * step;
+  return std::isfinite(rounded) ? rounded : middle;
+}
+
+dvec3 center_of(const DBox& box) {
+  if (box.empty()) return dvec3(0);
+  const dvec3 extent = box.extent();
+  const double size = std::max({extent.x, extent.y, extent.z});
+  return {center_along(box.lo.x, box.hi.x, size), center_along(box.lo.y, box.hi.y, size),
+          center_along(box.lo.z, box.hi.z, size)};
+}
+
+// Whether a triangle of floats has exactly no area: its three projections all have none.
+bool is_flat(const std::array<vec3, 3>& v) {
+  const auto flat_across = [&](int i, int j) {
+    return orient_sign({v[0][i], v[0][j]}, {v[1][i], v[1][j]}, {v[2][i], v[2][j]}) == 0;
+  };
+  return flat_across(0, 1) && flat_across(1, 2) && flat_across(2, 0);
+}
+
+class Maker {
+ public:
+  explicit Maker(const Scene& scene) : scene_(scene) {
+    bounds_ = scene.bounds();
+    out_.center = center_of(bounds_);
+    check_range();
+  }
+
+  Geometry make() {
+    add_triangles();
+    add_spheres();
+    add_cones();
+    return std::move(out_);
+  }
+
+ private:
+  // All vertices and centers are inside the bounds, so it takes no test per primitive.
+  void check_range() const {
+    if (bounds_.empty()) return;
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    const dvec3 lo = glm::abs(bounds_.lo - out_.center);
+    const dvec3 hi = glm::abs(bounds_.hi - out_.center);
+    const double reach = std::max({lo.x, lo.y, lo.z, hi.x, hi.y, hi.z});
+    if (!(reach <= kLargest)) throw out_of_range();
+  }
+
+  Error out_of_range() const {
+    return input_error(scene_.name, 0, "coordinates beyond the range of single precision (3.4e38)",
+                       "scale the scene down");
+  }
+
+  vec3 local(const dvec3& p) const { return vec3(p - out_.center); }
+
+  void add_triangles() {
+    std::vector<vec3> vertices(scene_.vertices.size());
+    std::ranges::transform(scene_.vertices, vertices.begin(), [&](const dvec3& p) { return local(p); });
+    out_.triangles.reserve(scene_.triangles.size());
+    for (std::uint32_t i = 0; i < scene_.triangles.size(); ++i) {
+      const auto& v = scene_.triangles[i].vertex;
+      const TriangleGeometry t{{vertices[v[0]], vertices[v[1]], vertices[v[2]]}, i};
+      if (is_flat(t.vertex)) {
+        ++out_.dropped_degenerate;
+        continue;
+      }
+      out_.triangles.push_back(t);
+      for (const vec3& p : t.vertex) out_.bounds.grow(p);
+    }
+  }
+
+  void add_spheres() {
+    out_.spheres.reserve(scene_.spheres.size());
+    for (std::uint32_t i = 0; i < scene_.spheres.size(); ++i) {
+      const Sphere& s = scene_.spheres[i];
+      const SphereGeometry g{local(s.center), static_cast<float>(s.radius), i};
+      keep(out_.spheres, g, g.radius > 0);
+    }
+  }
+
+  void add_cones() {
+    out_.cones.reserve(scene_.cones.size());
+    for (std::uint32_t i = 0; i < scene_.cones.size(); ++i) {
+      const Cone& c = scene_.cones[i];
+      const ConeGeometry g{local(c.base), local(c.apex), static_cast<float>(c.base_radius),
+                           static_cast<float>(c.apex_radius), i};
+      // A disc's radius can be larger than what its bounds reach along any axis.
+      if (!std::isfinite(g.base_radius) || !std::isfinite(g.apex_radius)) throw out_of_range();
+      keep(out_.cones, g, g.base != g.apex && (g.base_radius > 0 || g.apex_radius > 0));
+    }
+  }
+
+  template <class Primitive>
+  void keep(std::vector<Primitive>& into, const Primitive& primitive, bool has_area) {
+    if (has_area) {
+      into.push_back(primitive);
+      out_.bounds.grow(bounds_of(primitive));
+    } else {
+      ++out_.dropped_degenerate;
+    }
+  }
+
+  const Scene& scene_;
+  DBox bounds_;
+  Geometry out_;
+};
+
+}  // namespace
+
+Geometry make_geometry(const Scene& scene) {
+  return Maker(scene).make();
+}
+
+Box bounds_of(const TriangleGeometry& t) {
+  Box box;
+  for (const vec3& p : t.vertex) box.grow(p);
+  return box;
+}
+
+Box bounds_of(const SphereGeometry& s) {
+  return box_around(s.center, dvec3(s.radius));
+}
+
+Box bounds_of(const ConeGeometry& c) {
+  // The hull of its two discs. 2^-48 covers the dozen roundings of disc_reach and of its product with the
+  // radius.
+  const dvec3 reach = disc_reach(dvec3(c.apex) - dvec3(c.base)) * (1 + 0x1p-48);
+  Box box = box_around(c.base, reach * static_cast<double>(c.base_radius));
+  box.grow(box_around(c.apex, reach * static_cast<double>(c.apex_radius)));
+  return box;
+}
+
+}  // namespace kdray::scene

@@ -1,0 +1,142 @@
+// What    glTF 2.0, .gltf and .glb: the default scene's meshes, lights and first perspective camera, placed by their
+//         nodes. Animations, skins and pictures are left out, with a warning.
+// Errors  A node that has two parents, or is its own ancestor, refuses the file; so does all that the parts'
+//         headers name.
+// Source  Khronos Group, "glTF 2.0 Specification", 2021; KHR_lights_punctual.
+#include <glm/gtc/quaternion.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/gltf_document.h"
+#include "scene/gltf_lights.h"
+#include "scene/gltf_mesh.h"
+#include "scene/importers.h"
+
+namespace kdray::scene {
+
+namespace gltf {
+namespace {
+
+// `key`'s N numbers, or nothing when the object has no such key.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers(const JsonNode& object, std::string_view key) {
+  const auto node = object.find(key);
+  if (!node) return std::nullopt;
+  const std::vector<JsonNode> parts = node->elements();
+  if (parts.size() != N) throw node->expected(std::to_string(N) + " numbers");
+  std::array<double, N> out;
+  for (std::size_t i = 0; i < N; ++i) out[i] = parts[i].number();
+  return out;
+}
+
+dmat4 local_transform(const JsonNode& node) {
+  dmat4 m(1);
+  if (const auto matrix = numbers<16>(node, "matrix")) {
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = (*matrix)[static_cast<std::size_t>(i)];
+    return m;
+  }
+  if (const auto rotation = numbers<4>(node, "rotation")) {
+    const glm::dquat q((*rotation)[3], (*rotation)[0], (*rotation)[1], (*rotation)[2]);
+    if (glm::length(q) > 0) m = glm::mat4_cast(glm::normalize(q));
+  }
+  if (const auto scale = numbers<3>(node, "scale")) {
+    for (int i = 0; i < 3; ++i) m[i] *= (*scale)[static_cast<std::size_t>(i)];
+  }
+  if (const auto move = numbers<3>(node, "translation")) m[3] = {(*move)[0], (*move)[1], (*move)[2], 1};
+  return m;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::filesystem::path& path)
+      : document_(text, path), meshes_(document_, scene_) {}
+
+  Scene read() {
+    visited_.assign(document_.entries("nodes").size(), false);
+    read_nodes();
+    if (!document_.entries("animations").empty()) meshes_.warn("animations are left out");
+    if (scene_.triangles.empty()) meshes_.warn("no triangles");
+    meshes_.finish();
+    expose(scene_);
+    return std::move(scene_);
+  }
+
+ private:
+  struct Visit {
+    JsonNode node;
+    dmat4 to_parent;
+  };
+
+  // Depth first, in the file's order, without recursion: nodes may be nested deeper than a stack is.
+  void read_nodes() {
+    std::vector<Visit> open;
+    push(roots(), dmat4(1), open);
+    while (!open.empty()) {
+      const Visit visit = open.back();
+      open.pop_back();
+      const dmat4 to_world = visit.to_parent * local_transform(visit.node);
+      read_node(visit.node, to_world);
+      if (const auto children = visit.node.find("children")) push(children->elements(), to_world, open);
+    }
+  }
+
+  void push(const std::vector<JsonNode>& indices, const dmat4& to_parent, std::vector<Visit>& open) {
+    for (auto it = indices.rbegin(); it != indices.rend(); ++it) {
+      const JsonNode& node = document_.entry("nodes", *it);
+      if (visited_[whole(*it)]) {
+        throw it->error("node " + std::to_string(whole(*it)) +
+                        " comes a second time: it has two parents, or is " + "inside itself");
+      }
+      visited_[whole(*it)] = true;
+      open.push_back({node, to_parent});
+    }
+  }
+
+  // The nodes of the default scene, or of the first one. A file without scenes is a library: nothing is shown.
+  std::vector<JsonNode> roots() {
+    const auto& scenes = document_.entries("scenes");
+    const auto index = document_.root().find("scene");
+    if (!index && scenes.empty()) return {};
+    const JsonNode& scene = index ? document_.entry("scenes", *index) : scenes.front();
+    const auto nodes = scene.find("nodes");
+    return nodes ? nodes->elements() : std::vector<JsonNode>{};
+  }
+
+  void read_node(const JsonNode& node, const dmat4& to_world) {
+    if (node.find("skin")) meshes_.warn("skins are left out: the mesh is shown in its rest pose");
+    if (extension(node, "EXT_mesh_gpu_instancing")) {
+      meshes_.warn("EXT_mesh_gpu_instancing is left out: the mesh is shown once");
+    }
+    if (const auto mesh = node.find("mesh")) meshes_.add(document_.entry("meshes", *mesh), to_world);
+    if (const auto camera = node.find("camera"); camera && !scene_.camera) {
+      scene_.camera = read_camera(document_.entry("cameras", *camera), to_world, scene_.warnings);
+    }
+    if (const auto light = extension(node, "KHR_lights_punctual")) read_light_of(*light, to_world);
+  }
+
+  void read_light_of(const JsonNode& reference, const dmat4& to_world) {
+    if (lights_.empty()) {
+      const auto list = extension(document_.root(), "KHR_lights_punctual");
+      if (!list) throw reference.error("the file has no /extensions/KHR_lights_punctual");
+      lights_ = (*list)["lights"].elements();
+    }
+    const std::uint64_t i = whole(reference["light"]);
+    if (i >= lights_.size()) throw reference["light"].error("there is no such light");
+    scene_.lights.push_back(read_light(lights_[i], to_world));
+  }
+
+  Document document_;
+  Scene scene_;
+  MeshReader meshes_;
+  std::vector<bool> visited_;
+  std::vector<JsonNode> lights_;  // of the file, once a node asks for one
+};
+
+}  // namespace
+}  // namespace gltf
+
+Scene read_gltf(std::string_view text, const std::filesystem::path& file) {
+  return gltf::Reader(text, file).read();
+}
+
+}  // namespace kdray::scene

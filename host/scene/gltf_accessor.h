@@ -1,0 +1,21 @@
+// What    The numbers of glTF accessors: positions, normals and indices, of any component type, interleaved, normalised
+//         and sparse.
+// Errors  kdray::Error with the accessor's path for everything that doesn't fit its buffer view, and for values that
+//         are not finite. An accessor without a buffer view (all zeros) may not be much larger than the file.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/vec.h"
+#include "scene/gltf_document.h"
+
+namespace kdray::scene::gltf {
+
+std::uint64_t accessor_count(const JsonNode& accessor);
+// VEC3 of floats, or of integers, which `normalized` scales to [-1, 1] or [0, 1].
+std::vector<dvec3> read_vectors(Document& document, const JsonNode& accessor);
+// SCALAR of unsigned integers, each below `end`.
+std::vector<std::uint32_t> read_indices(Document& document, const JsonNode& accessor, std::uint64_t end);
+
+}  // namespace kdray::scene::gltf

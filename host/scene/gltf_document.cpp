@@ -1,0 +1,191 @@
+#include "scene/gltf_document.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <system_error>
+
+#include "base/error.h"
+#include "scene/gltf_uri.h"
+#include "scene/read_file.h"
+#include "scene/text_scanner.h"
+
+namespace kdray::scene::gltf {
+
+namespace {
+
+constexpr std::size_t kGlbHeader = 12;
+constexpr std::size_t kChunkHeader = 8;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;
+
+std::uint32_t load_u32(std::string_view text, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(text[at + i])) << (8 * i);
+  }
+  return value;
+}
+
+// Extensions that a file may require and that are read, or change nothing but pictures, names and surfaces.
+bool can_do_with(std::string_view name) {
+  constexpr std::array<std::string_view, 7> kKnown = {"KHR_lights_punctual", "KHR_mesh_quantization",
+                                                      "EXT_texture_webp",    "EXT_texture_avif",
+                                                      "MSFT_texture_dds",    "KHR_xmp",
+                                                      "KHR_xmp_json_ld"};
+  return name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+         std::ranges::find(kKnown, name) != kKnown.end();
+}
+
+}  // namespace
+
+Document::Document(std::string_view text, const std::filesystem::path& path)
+    : text_(text), json_text_(text), path_(path), file_(path.string()) {
+  if (text.starts_with("glTF")) {
+    split_glb();
+  } else if (format_of(path) == ".glb" && !text.starts_with("{")) {
+    throw input_error(file_, 0, "not a GLB file: it does not begin with 'glTF'",
+                      "is it damaged or misnamed?");
+  }
+  if (json_text_.starts_with("\xef\xbb\xbf")) json_text_.remove_prefix(3);
+  json_ = parse_json(json_text_, file_);
+  check_asset();
+  check_extensions();
+}
+
+void Document::split_glb() {
+  const auto fault = [&](const std::string& what) { return input_error(file_, 0, what, "export it again"); };
+  if (text_.size() < kGlbHeader + kChunkHeader) throw fault("too short for a GLB file");
+  const std::uint32_t version = load_u32(text_, 4);
+  if (version != 2) throw fault("a GLB file of version " + std::to_string(version) + ", not 2");
+  if (load_u32(text_, 8) > text_.size()) {
+    throw fault("the GLB header says " + std::to_string(load_u32(text_, 8)) + " bytes, but the file has " +
+                std::to_string(text_.size()));
+  }
+  std::size_t at = kGlbHeader;
+  for (int i = 0; text_.size() - at >= kChunkHeader; ++i) {
+    const std::size_t size = load_u32(text_, at);
+    const std::uint32_t type = load_u32(text_, at + 4);
+    at += kChunkHeader;
+    if (size > text_.size() - at) {
+      throw fault("chunk " + std::to_string(i) + " says " + std::to_string(size) + " bytes, but " +
+                  std::to_string(text_.size() - at) + " are left");
+    }
+    if (i == 0 && type != kJsonChunk) throw fault("the first chunk is not JSON");
+    if (i == 0) json_text_ = text_.substr(at, size);
+    if (type == kBinaryChunk && !binary_chunk_) binary_chunk_ = text_.substr(at, size);
+    at += size;  // the padding is counted in
+  }
+}
+
+void Document::check_asset() {
+  const JsonNode asset = root()["asset"];
+  const std::string version = asset["version"].string();
+  if (!version.starts_with("2.")) {
+    throw asset["version"].error("glTF '" + printable(version) + "' is not read",
+                                 "convert the file to glTF 2.0");
+  }
+  const auto least = asset.find("minVersion");
+  if (least && least->string() != "2.0") throw least->error("needs glTF " + printable(least->string()));
+}
+
+void Document::check_extensions() {
+  const auto required = root().find("extensionsRequired");
+  if (!required) return;
+  for (const JsonNode& node : required->elements()) {
+    const std::string name = node.string();
+    if (can_do_with(name)) continue;
+    const bool packed = name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression";
+    throw node.error("the file needs the extension " + printable(name) + ", which is not read",
+                     packed ? "export it without mesh compression" : "export it without that extension");
+  }
+}
+
+const std::vector<JsonNode>& Document::entries(const std::string& array) {
+  const auto [it, added] = arrays_.try_emplace(array);
+  if (added) {
+    if (const auto node = root().find(array)) it->second = node->elements();
+  }
+  return it->second;
+}
+
+const JsonNode& Document::entry(const std::string& array, const JsonNode& index) {
+  const auto& all = entries(array);
+  const std::uint64_t i = whole(index);
+  if (i >= all.size()) {
+    throw index.error("there is no " + std::to_string(i) + " in /" + array + " (it has " +
+                      std::to_string(all.size()) + ")");
+  }
+  return all[i];
+}
+
+std::string_view Document::view_bytes(const JsonNode& view) {
+  const std::string_view buffer = buffer_bytes(view["buffer"]);
+  const std::uint64_t offset = whole_or(view, "byteOffset", 0);
+  const std::uint64_t length = whole(view["byteLength"]);
+  if (offset > buffer.size() || length > buffer.size() - offset) {
+    throw view.error("reaches to byte " + std::to_string(offset + length) + " of a buffer of " +
+                     std::to_string(buffer.size()));
+  }
+  return buffer.substr(offset, length);
+}
+
+std::string_view Document::buffer_bytes(const JsonNode& index) {
+  const JsonNode& buffer = entry("buffers", index);
+  const std::uint64_t length = whole(buffer["byteLength"]);
+  const auto uri = buffer.find("uri");
+  std::string_view bytes;
+  if (uri) {
+    const auto [it, added] = buffers_.try_emplace(whole(index));
+    if (added) it->second = read_buffer(*uri, uri->string());
+    bytes = it->second;
+  } else if (whole(index) == 0 && binary_chunk_) {
+    bytes = *binary_chunk_;
+  } else {
+    throw buffer.error("has neither a uri nor the binary chunk of a GLB file");
+  }
+  if (bytes.size() < length) {
+    throw buffer.error("says " + std::to_string(length) + " bytes, but there are " +
+                       std::to_string(bytes.size()));
+  }
+  return bytes.substr(0, length);
+}
+
+std::string Document::read_buffer(const JsonNode& node, const std::string& uri) const {
+  if (uri.starts_with("data:")) {
+    std::optional<std::string> bytes = decode_data_uri(uri);
+    if (!bytes) throw node.error("not a data: URI in base64");
+    return std::move(*bytes);
+  }
+  const std::optional<std::filesystem::path> name = relative_path_of(uri);
+  if (!name) throw node.error("'" + printable(uri) + "' is not a file beside the scene, or below");
+  const std::filesystem::path buffer = path_.parent_path() / *name;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(buffer, ignored)) {
+    throw node.error("there is no file '" + printable(uri) + "' beside the scene", "put it there");
+  }
+  return read_file(buffer);
+}
+
+std::uint64_t whole(const JsonNode& node) {
+  const double v = node.number_between(0, 9007199254740992.0);
+  if (v != std::floor(v)) throw node.expected("a whole number");
+  return static_cast<std::uint64_t>(v);
+}
+
+std::uint64_t whole_or(const JsonNode& object, std::string_view key, std::uint64_t otherwise) {
+  const auto node = object.find(key);
+  return node ? whole(*node) : otherwise;
+}
+
+double number_or(const JsonNode& object, std::string_view key, double otherwise) {
+  const auto node = object.find(key);
+  return node ? node->number() : otherwise;
+}
+
+std::optional<JsonNode> extension(const JsonNode& object, std::string_view name) {
+  const auto extensions = object.find("extensions");
+  return extensions ? extensions->find(name) : std::nullopt;
+}
+
+}  // namespace kdray::scene::gltf

@@ -1,0 +1,34 @@
+// What    glTF materials in the terms of the Whitted model, and their numbers in the scene. docs/scenes-meshes.md tells
+//         users how they are mapped.
+// Source  glTF 2.0, appendix B (the metallic-roughness model); KHR_materials_ior, _transmission, _volume,
+//         _emissive_strength, _unlit, _pbrSpecularGlossiness.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scene/gltf_document.h"
+#include "scene/scene.h"
+
+namespace kdray::scene::gltf {
+
+class Materials {
+ public:
+  Materials(Document& document, Scene& scene) : document_(document), scene_(scene) {}
+
+  // The scene's number of the material that a primitive names, or of glTF's default material.
+  std::uint32_t number_of(const JsonNode& primitive);
+  // After the last primitive: what was left out.
+  void warn();
+
+ private:
+  Material read(const JsonNode& node);
+
+  Document& document_;
+  Scene& scene_;
+  std::map<std::uint64_t, std::uint32_t> numbers_;  // by the file's index; kDefault for no material
+  bool any_picture_ = false;
+};
+
+}  // namespace kdray::scene::gltf

@@ -1,0 +1,142 @@
+#include "scene/gltf_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include "scene/gltf_accessor.h"
+#include "scene/settle_normals.h"
+
+namespace kdray::scene::gltf {
+
+namespace {
+
+constexpr std::uint64_t kTriangles = 4;  // 5 are strips
+constexpr std::uint64_t kFan = 6;
+// Instances may make more of a file than is in it, but a small file of nested instances must not fill the memory.
+constexpr std::size_t kMostOfSmallFile = std::size_t{1} << 22;
+constexpr std::size_t kMostPerByte = 16;
+
+using Triple = std::array<std::uint32_t, 3>;
+
+std::vector<Triple> triangles_of(std::uint64_t mode, const std::vector<std::uint32_t>& corners) {
+  std::vector<Triple> out;
+  const std::size_t n = corners.size();
+  if (mode == kTriangles) {
+    for (std::size_t i = 0; i + 3 <= n; i += 3) out.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    return out;
+  }
+  for (std::size_t i = 0; i + 3 <= n; ++i) {
+    if (mode == kFan) {
+      out.push_back({corners[0], corners[i + 1], corners[i + 2]});
+    } else {
+      const bool turned = i % 2 == 1;
+      out.push_back({corners[i], corners[i + (turned ? 2 : 1)], corners[i + (turned ? 1 : 2)]});
+    }
+  }
+  return out;
+}
+
+// The matrix that moves normals: the inverse transpose, up to a positive factor. The cofactors are that even where
+// the transform is flat and has no inverse.
+dmat3 normal_matrix(const dmat3& m) {
+  const dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  return glm::determinant(m) < 0 ? -cofactors : cofactors;
+}
+
+}  // namespace
+
+MeshReader::MeshReader(Document& document, Scene& scene)
+    : document_(document),
+      scene_(scene),
+      materials_(document, scene),
+      most_(std::max(kMostOfSmallFile, kMostPerByte * document.file_size())) {}
+
+void MeshReader::add(const JsonNode& mesh, const dmat4& to_world) {
+  if (mesh.find("weights")) warn("morph targets are left out");
+  for (const JsonNode& primitive : mesh["primitives"].elements()) add_primitive(primitive, to_world);
+}
+
+void MeshReader::check_size(const JsonNode& primitive) const {
+  if (scene_.vertices.size() <= most_ && scene_.triangles.size() <= most_ && n_primitives_ <= most_ / 16)
+    return;
+  throw primitive.error(
+      "the instances of this file make more than " + std::to_string(most_) + " triangles of it",
+      "split the scene");
+}
+
+void MeshReader::add_vertices(const JsonNode& accessor, const dmat4& to_world) {
+  for (const dvec3& p : read_vectors(document_, accessor)) {
+    const dvec3 moved = dvec3(to_world * glm::dvec4(p, 1));
+    if (!is_finite(moved)) throw accessor.error("a node's transform makes a position infinite");
+    scene_.vertices.push_back(moved);
+  }
+}
+
+bool MeshReader::add_normals(const JsonNode& attributes, std::size_t n_vertices, const dmat4& to_world) {
+  const auto index = attributes.find("NORMAL");
+  if (!index) return false;
+  const auto& accessor = document_.entry("accessors", *index);
+  if (accessor_count(accessor) != n_vertices) {
+    warn("normals that are not as many as their positions are left out");
+    return false;
+  }
+  const dmat3 to_normal = normal_matrix(dmat3(to_world));
+  for (const dvec3& n : read_vectors(document_, accessor)) {
+    scene_.normals.push_back(direction_of(to_normal * n));
+  }
+  return true;
+}
+
+void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world) {
+  ++n_primitives_;
+  check_size(primitive);
+  if (extension(primitive, "KHR_draco_mesh_compression")) {
+    throw primitive.error("is packed with KHR_draco_mesh_compression, which is not read",
+                          "export it without mesh compression");
+  }
+  if (primitive.find("targets")) warn("morph targets are left out");
+  const std::uint64_t mode = whole_or(primitive, "mode", kTriangles);
+  if (mode > kFan) throw primitive["mode"].expected("a mode from 0 to 6");
+  if (mode < kTriangles) return warn("points and lines are left out: they have no surface");
+  const JsonNode attributes = primitive["attributes"];
+  if (attributes.find("COLOR_0")) warn("vertex colours are left out: a material holds for a whole primitive");
+  const auto position = attributes.find("POSITION");
+  if (!position) return warn("primitives without positions are left out");
+
+  const auto first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
+  const auto first_normal = static_cast<std::uint32_t>(scene_.normals.size());
+  add_vertices(document_.entry("accessors", *position), to_world);
+  const std::size_t n_vertices = scene_.vertices.size() - first_vertex;
+  const bool smooth = add_normals(attributes, n_vertices, to_world);
+
+  std::vector<std::uint32_t> corners;
+  if (const auto indices = primitive.find("indices")) {
+    corners = read_indices(document_, document_.entry("accessors", *indices), n_vertices);
+  } else {
+    corners.resize(n_vertices);
+    std::iota(corners.begin(), corners.end(), 0u);
+  }
+  if (mode == kTriangles && corners.size() % 3 != 0) {
+    warn("corners that are left over after the last whole triangle of a primitive are left out");
+  }
+  const bool mirrored = glm::determinant(dmat3(to_world)) < 0;
+  const std::uint32_t material = materials_.number_of(primitive);
+  for (Triple corner : triangles_of(mode, corners)) {
+    if (mirrored) std::swap(corner[1], corner[2]);
+    Triangle t{.vertex = {first_vertex + corner[0], first_vertex + corner[1], first_vertex + corner[2]}};
+    if (smooth) t.normal = {first_normal + corner[0], first_normal + corner[1], first_normal + corner[2]};
+    t.material = material;
+    t.number = static_cast<std::uint32_t>(scene_.triangles.size());
+    scene_.triangles.push_back(t);
+  }
+}
+
+void MeshReader::finish() {
+  materials_.warn();
+  for (const std::string& what : left_out_) scene_.warnings.push_back(document_.file() + ": " + what);
+  settle_normals(scene_, document_.file());
+}
+
+}  // namespace kdray::scene::gltf

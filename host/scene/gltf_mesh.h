@@ -1,0 +1,42 @@
+// What    Adds the primitives of a glTF mesh to a scene, moved by a node's transform; a mirroring transform turns the
+//         triangles over, so that their front stays where the normals point.
+// Shape   Strips and fans become triangles. Points and lines, morph targets and vertex colours are left out, with a
+//         warning.
+// Errors  As gltf_accessor.h; also when instances multiply a small file beyond all measure.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "math/vec.h"
+#include "scene/gltf_document.h"
+#include "scene/gltf_materials.h"
+#include "scene/scene.h"
+
+namespace kdray::scene::gltf {
+
+class MeshReader {
+ public:
+  MeshReader(Document& document, Scene& scene);
+
+  void add(const JsonNode& mesh, const dmat4& to_world);
+  // After the last mesh.
+  void finish();
+  // One line per kind of thing left out, however often it comes.
+  void warn(const std::string& what) { left_out_.insert(what); }
+
+ private:
+  void add_primitive(const JsonNode& primitive, const dmat4& to_world);
+  void add_vertices(const JsonNode& accessor, const dmat4& to_world);
+  bool add_normals(const JsonNode& attributes, std::size_t n_vertices, const dmat4& to_world);
+  void check_size(const JsonNode& primitive) const;
+
+  Document& document_;
+  Scene& scene_;
+  Materials materials_;
+  std::size_t most_;  // vertices or triangles
+  std::size_t n_primitives_ = 0;
+  std::set<std::string> left_out_;
+};
+
+}  // namespace kdray::scene::gltf

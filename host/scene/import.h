@@ -1,0 +1,14 @@
+// What    Reads a file by its ending as load() does, but leaves the scene as the file has it: no camera or
+//         lights are made up. For files that include others.
+// Errors  As load().
+#pragma once
+
+#include <filesystem>
+
+#include "scene/scene.h"
+
+namespace kdray::scene {
+
+Scene import_scene(const std::filesystem::path& file);
+
+}  // namespace kdray::scene

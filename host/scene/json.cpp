@@ -1,0 +1,126 @@
+// What    kdray's own scene format: camera, lights, materials and render settings in JSON, objects inline or
+//         from mesh files. docs/scenes.md describes it, docs/scene.schema.json defines it, json_keys.h lists
+//         its keys.
+// Units   Angles in degrees; `fov` is the full vertical field of view; colours linear RGB, a single number is
+//         grey.
+// Errors  "file:line" for what is not JSON, "file: /path/of/the/value" for what is not a scene.
+#include <cmath>
+#include <filesystem>
+
+#include "scene/check_scene.h"
+#include "scene/importers.h"
+#include "scene/json_node.h"
+#include "scene/json_objects.h"
+
+namespace kdray::scene {
+
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+Camera read_camera(const JsonNode& node) {
+  node.expect_keys(json_keys::kCamera);
+  Camera camera;
+  camera.from = node["from"].vector();
+  camera.at = node["at"].vector();
+  if (const auto up = node.find("up")) camera.up = up->vector();
+  if (const auto fov = node.find("fov")) camera.vertical_fov = fov->number_between(1e-6, 179.999) * kDegree;
+  if (const auto hither = node.find("hither")) camera.hither = hither->number_from(0);
+  if (const char* fault = fault_of(camera)) throw node.error(fault);
+  return camera;
+}
+
+RenderSettings read_settings(const JsonNode& node) {
+  node.expect_keys(json_keys::kRender);
+  RenderSettings settings;
+  if (const auto size = node.find("size")) {
+    if (!size->is_array() || size->size() != 2) throw size->expected("[width, height]");
+    const auto sides = size->elements();
+    settings.width = sides[0].integer(1, 65536);
+    settings.height = sides[1].integer(1, 65536);
+  }
+  if (const auto depth = node.find("depth")) settings.depth = depth->integer(1, 1000);
+  if (const auto samples = node.find("samples")) settings.samples = samples->integer(1, 65536);
+  if (const auto weight = node.find("min_weight")) settings.min_weight = weight->number_between(0, 1);
+  return settings;
+}
+
+void read_reach(const JsonNode& node, Light& light) {
+  if (const auto range = node.find("range")) light.range = range->number_above(0);
+  if (const auto attenuation = node.find("attenuation")) {
+    light.attenuation = attenuation->color();
+    if (!attenuation->is_array() || light.attenuation == vec3(0)) {
+      throw attenuation->expected("[constant, linear, quadratic], not all 0");
+    }
+  }
+}
+
+void read_cone_angles(const JsonNode& node, Light& light) {
+  const double outer = node["outer"].number_between(0, 180);
+  const auto inner = node.find("inner");
+  const double full = inner ? inner->number_between(0, 180) : outer;
+  if (full > outer) throw inner->error("the inner angle is wider than the outer one");
+  light.cos_inner = static_cast<float>(std::cos(full * kDegree));
+  light.cos_outer = static_cast<float>(std::cos(outer * kDegree));
+}
+
+Light read_light(const JsonNode& node) {
+  const JsonNode type = node["type"];
+  const std::string name = type.string();
+  Light light;
+  if (name == "point") {
+    node.expect_keys(json_keys::kPointLight);
+    light.position = node["position"].vector();
+    read_reach(node, light);
+  } else if (name == "directional") {
+    node.expect_keys(json_keys::kDirectionalLight);
+    light.kind = LightKind::directional;
+    light.direction = node["direction"].direction();
+  } else if (name == "spot") {
+    node.expect_keys(json_keys::kSpotLight);
+    light.kind = LightKind::spot;
+    light.position = node["position"].vector();
+    light.direction = node["direction"].direction();
+    read_cone_angles(node, light);
+    read_reach(node, light);
+  } else {
+    throw type.expected("one of point, directional, spot");
+  }
+  if (const auto color = node.find("color")) light.color = color->color();
+  if (const char* fault = fault_of(light)) throw node.error(fault);
+  return light;
+}
+
+void check_head(const JsonNode& root) {
+  root.expect_keys(json_keys::kScene);
+  if (const auto schema = root.find("$schema")) (void)schema->string();
+  if (const auto version = root.find("kdray")) (void)version->integer(1, 1);
+}
+
+}  // namespace
+
+Scene read_json(std::string_view text, const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const nlohmann::json document = parse_json(text, name);
+  const JsonNode root(document, name);
+  check_head(root);
+  Scene scene;
+  if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera);
+  if (const auto background = root.find("background")) scene.background = background->color();
+  if (const auto ambient = root.find("ambient")) scene.ambient = ambient->color();
+  if (const auto render = root.find("render")) scene.settings = read_settings(*render);
+  if (const auto lights = root.find("lights")) {
+    for (const JsonNode& light : lights->elements()) scene.lights.push_back(read_light(light));
+  }
+  NamedMaterials named;
+  if (const auto materials = root.find("materials")) {
+    for (const auto& [key, material] : materials->members()) named.emplace(key, read_material(material));
+  }
+  JsonObjects objects(scene, named, file.parent_path());
+  if (const auto list = root.find("objects")) {
+    for (const JsonNode& object : list->elements()) objects.read(object);
+  }
+  return scene;
+}
+
+}  // namespace kdray::scene

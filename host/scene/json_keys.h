@@ -1,0 +1,58 @@
+// What    The keys of every kind of object in kdray's JSON scenes: what the reader accepts, and what
+//         docs/scene.schema.json is tested against.
+// Shape   `name` is the object's name under "$defs" in the schema ("scene" is the schema itself).
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace kdray::scene {
+
+struct JsonKeys {
+  std::string_view name;
+  std::span<const std::string_view> keys;
+};
+
+namespace json_keys {
+
+namespace list {
+inline constexpr std::string_view scene[] = {"$schema", "kdray",     "camera", "background", "ambient",
+                                             "render",  "materials", "lights", "objects"};
+inline constexpr std::string_view camera[] = {"from", "at", "up", "fov", "hither"};
+inline constexpr std::string_view render[] = {"size", "depth", "samples", "min_weight"};
+inline constexpr std::string_view material[] = {"color",   "ka",       "kd",    "ks",      "shine",
+                                                "reflect", "transmit", "index", "emission"};
+inline constexpr std::string_view point_light[] = {"type", "position", "color", "attenuation", "range"};
+inline constexpr std::string_view directional_light[] = {"type", "direction", "color"};
+inline constexpr std::string_view spot_light[] = {"type",  "position", "direction",   "inner",
+                                                  "outer", "color",    "attenuation", "range"};
+inline constexpr std::string_view mesh[] = {"type",   "file",  "material", "translate",
+                                            "rotate", "scale", "matrix"};
+inline constexpr std::string_view triangles[] = {"type",      "vertices", "faces", "normals", "material",
+                                                 "translate", "rotate",   "scale", "matrix"};
+inline constexpr std::string_view sphere[] = {"type", "center", "radius", "material"};
+inline constexpr std::string_view cone[] = {"type", "base", "base_radius", "apex", "apex_radius", "material"};
+inline constexpr std::string_view turn[] = {"axis", "angle"};
+}  // namespace list
+
+inline constexpr JsonKeys kScene{"scene", list::scene};
+inline constexpr JsonKeys kCamera{"camera", list::camera};
+inline constexpr JsonKeys kRender{"render", list::render};
+inline constexpr JsonKeys kMaterial{"material", list::material};
+inline constexpr JsonKeys kPointLight{"point_light", list::point_light};
+inline constexpr JsonKeys kDirectionalLight{"directional_light", list::directional_light};
+inline constexpr JsonKeys kSpotLight{"spot_light", list::spot_light};
+inline constexpr JsonKeys kMesh{"mesh", list::mesh};
+inline constexpr JsonKeys kTriangles{"triangles", list::triangles};
+inline constexpr JsonKeys kSphere{"sphere", list::sphere};
+inline constexpr JsonKeys kCone{"cone", list::cone};
+inline constexpr JsonKeys kTurn{"turn", list::turn};
+
+inline constexpr std::array kAll = {kScene,      kCamera,           kRender,    kMaterial,
+                                    kPointLight, kDirectionalLight, kSpotLight, kMesh,
+                                    kTriangles,  kSphere,           kCone,      kTurn};
+
+}  // namespace json_keys
+
+}  // namespace kdray::scene

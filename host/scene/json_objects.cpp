@@ -1,0 +1,237 @@
+#include "scene/json_objects.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "scene/check_scene.h"
+#include "scene/import.h"
+#include "scene/read_file.h"
+#include "scene/transform.h"
+#include "scene/triangulate.h"
+
+namespace kdray::scene {
+
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+vec3 color_or(const JsonNode& object, std::string_view key, const vec3& otherwise) {
+  const auto node = object.find(key);
+  return node ? node->color() : otherwise;
+}
+
+// [x, y, z] degrees about the axes, x first; or {"axis": [x, y, z], "angle": degrees}.
+dmat4 read_rotation(const JsonNode& node) {
+  if (node.is_object()) {
+    node.expect_keys(json_keys::kTurn);
+    return rotation(node["axis"].direction(), node["angle"].number() * kDegree);
+  }
+  if (!node.is_array()) throw node.expected("[x, y, z] in degrees or {\"axis\": ..., \"angle\": ...}");
+  const dvec3 turn = node.vector() * kDegree;
+  return rotation({0, 0, 1}, turn.z) * rotation({0, 1, 0}, turn.y) * rotation({1, 0, 0}, turn.x);
+}
+
+dvec3 read_scale(const JsonNode& node) {
+  const dvec3 scale = node.is_array() ? node.vector() : dvec3(node.number());
+  if (scale.x == 0 || scale.y == 0 || scale.z == 0) throw node.error("a scale of 0");
+  return scale;
+}
+
+// Sixteen numbers row by row, the last row 0 0 0 1, as they are written on paper.
+dmat4 read_matrix(const JsonNode& node) {
+  if (!node.is_array() || node.size() != 16) throw node.expected("16 numbers, row by row");
+  const auto elements = node.elements();
+  dmat4 m;
+  for (int i = 0; i < 16; ++i) m[i % 4][i / 4] = elements[static_cast<std::size_t>(i)].number();
+  if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1)
+    throw node.error("the last row is not 0 0 0 1");
+  const double volume = glm::determinant(dmat3(m));
+  if (!std::isfinite(volume) || volume == 0) throw node.error("the matrix flattens the object");
+  return m;
+}
+
+// Scaled first, then turned, then moved.
+std::optional<dmat4> read_transform(const JsonNode& object) {
+  const auto translate = object.find("translate"), rotate = object.find("rotate"),
+             scale = object.find("scale");
+  const auto matrix = object.find("matrix");
+  if (matrix) {
+    if (translate || rotate || scale)
+      throw matrix->error("a matrix beside translate, rotate or scale", "keep one kind");
+    return read_matrix(*matrix);
+  }
+  if (!translate && !rotate && !scale) return std::nullopt;
+  dmat4 m(1);
+  if (translate) m = m * translation(translate->vector());
+  if (rotate) m = m * read_rotation(*rotate);
+  if (scale) m = m * scaling(read_scale(*scale));
+  return m;
+}
+
+void place(const JsonNode& object, Scene& part) {
+  const std::optional<dmat4> m = read_transform(object);
+  if (!m) return;
+  try {
+    apply_transform(*m, part);
+  } catch (const std::domain_error& e) {
+    throw object.error(e.what());
+  }
+}
+
+float narrow(const JsonNode& node, double value) {
+  const auto f = static_cast<float>(value);
+  if (!std::isfinite(f)) throw node.error("a value beyond 3.4e38");
+  return f;
+}
+
+}  // namespace
+
+Material read_material(const JsonNode& node) {
+  node.expect_keys(json_keys::kMaterial);
+  const vec3 color = color_or(node, "color", vec3(1));
+  Material m;
+  m.ambient = color_or(node, "ka", vec3(0.1f)) * color;
+  m.diffuse = color_or(node, "kd", vec3(0.9f)) * color;
+  m.specular = color_or(node, "ks", vec3(0));
+  m.reflect = color_or(node, "reflect", vec3(0));
+  m.transmit = color_or(node, "transmit", vec3(0)) * color;
+  m.emission = color_or(node, "emission", vec3(0));
+  if (const auto shine = node.find("shine")) m.shine = narrow(*shine, shine->number_from(0));
+  if (const auto index = node.find("index")) m.index = narrow(*index, index->number_above(0));
+  if (const char* fault = fault_of(m)) throw node.error(fault);
+  return m;
+}
+
+JsonObjects::JsonObjects(Scene& scene, const NamedMaterials& named, std::filesystem::path folder)
+    : scene_(scene), named_(named), folder_(std::move(folder)), materials_(scene.materials) {}
+
+void JsonObjects::read(const JsonNode& object) {
+  const JsonNode type = object["type"];
+  const std::string name = type.string();
+  if (name == "mesh") return read_mesh(object);
+  if (name == "triangles") return read_triangles(object);
+  if (name == "sphere") return read_sphere(object);
+  if (name == "cone") return read_cone(object);
+  throw type.expected("one of mesh, triangles, sphere, cone");
+}
+
+Material JsonObjects::material_of(const JsonNode& object) const {
+  const auto node = object.find("material");
+  if (!node) return Material{.ambient = vec3(0.08f), .diffuse = vec3(0.72f)};
+  if (!node->is_string()) return read_material(*node);
+  const std::string name = node->string();
+  const auto it = named_.find(name);
+  if (it != named_.end()) return it->second;
+  std::vector<std::string_view> names;
+  for (const auto& entry : named_) names.push_back(entry.first);
+  throw node->error("no material '" + name + "' in /materials", did_you_mean(name, names));
+}
+
+const Scene& JsonObjects::mesh(const JsonNode& file) {
+  const std::string name = file.string();
+  const auto it = meshes_.find(name);
+  if (it != meshes_.end()) return it->second;
+  const std::filesystem::path path = folder_ / name;
+  if (format_of(path) == ".json") throw file.error("a scene cannot include another .json scene");
+  Scene& part = meshes_[name] = import_scene(path);
+  scene_.warnings.insert(scene_.warnings.end(), part.warnings.begin(), part.warnings.end());
+  return part;
+}
+
+void JsonObjects::read_mesh(const JsonNode& object) {
+  object.expect_keys(json_keys::kMesh);
+  Scene part = mesh(object["file"]);
+  place(object, part);
+  if (object.find("material")) {
+    part.materials = {material_of(object)};
+    for (Triangle& t : part.triangles) t.material = 0;
+    for (Sphere& s : part.spheres) s.material = 0;
+    for (Cone& c : part.cones) c.material = 0;
+  }
+  append(part, object);
+}
+
+void JsonObjects::read_triangles(const JsonNode& object) {
+  object.expect_keys(json_keys::kTriangles);
+  Scene part;
+  part.materials = {material_of(object)};
+  part.vertices = object["vertices"].vectors();
+  const auto normals = object.find("normals");
+  if (normals) {
+    const std::vector<dvec3> given = normals->vectors();
+    if (given.size() != part.vertices.size()) throw normals->error("not one normal for each vertex");
+    for (const dvec3& n : given) {
+      const double length = glm::length(n);
+      if (!(length > 0) || !std::isfinite(length)) throw normals->error("a normal without a direction");
+      part.normals.emplace_back(n / length);
+    }
+  }
+  std::vector<dvec3> corners;
+  for (const auto& face : object["faces"].faces(part.vertices.size())) {
+    corners.clear();
+    for (const std::uint32_t v : face) corners.push_back(part.vertices[v]);
+    for (const auto& corner : triangulate(corners)) {
+      Triangle t;
+      for (std::size_t i = 0; i < 3; ++i) t.vertex[i] = face[corner[i]];
+      if (normals) t.normal = t.vertex;
+      t.number = static_cast<std::uint32_t>(part.triangles.size());
+      part.triangles.push_back(t);
+    }
+  }
+  place(object, part);
+  append(part, object);
+}
+
+void JsonObjects::read_sphere(const JsonNode& object) {
+  object.expect_keys(json_keys::kSphere);
+  Scene part;
+  part.materials = {material_of(object)};
+  part.spheres = {{.center = object["center"].vector(), .radius = object["radius"].number_above(0)}};
+  append(part, object);
+}
+
+void JsonObjects::read_cone(const JsonNode& object) {
+  object.expect_keys(json_keys::kCone);
+  Cone c{};
+  c.base = object["base"].vector();
+  c.base_radius = object["base_radius"].number_from(0);
+  c.apex = object["apex"].vector();
+  if (const auto radius = object.find("apex_radius")) c.apex_radius = radius->number_from(0);
+  if (c.base == c.apex) throw object.error("base and apex are the same point");
+  if (c.base_radius == 0 && c.apex_radius == 0) throw object.error("both radii are 0");
+  Scene part;
+  part.materials = {material_of(object)};
+  part.cones = {c};
+  append(part, object);
+}
+
+void JsonObjects::append(const Scene& part, const JsonNode& object) {
+  const std::uint64_t primitives = std::uint64_t{number_} + part.primitive_count();
+  if (primitives >= kMaxPrimitivesPerKind || scene_.vertices.size() + part.vertices.size() >= kNone ||
+      scene_.normals.size() + part.normals.size() >= kNone) {
+    throw object.error("more than 2^30 primitives in all", "leave some out");
+  }
+  std::vector<std::uint32_t> material(part.materials.size(), kNone);
+  const auto take = [&](auto primitive) {  // numbers within the part become numbers within the scene
+    std::uint32_t& m = material[primitive.material];
+    if (m == kNone) m = materials_.add(part.materials[primitive.material]);
+    primitive.material = m;
+    primitive.number += number_;
+    return primitive;
+  };
+  const auto first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
+  const auto first_normal = static_cast<std::uint32_t>(scene_.normals.size());
+  scene_.vertices.insert(scene_.vertices.end(), part.vertices.begin(), part.vertices.end());
+  scene_.normals.insert(scene_.normals.end(), part.normals.begin(), part.normals.end());
+  for (Triangle t : part.triangles) {
+    for (std::uint32_t& v : t.vertex) v += first_vertex;
+    for (std::uint32_t& n : t.normal) n = n == kNone ? kNone : n + first_normal;
+    scene_.triangles.push_back(take(t));
+  }
+  for (const Sphere& s : part.spheres) scene_.spheres.push_back(take(s));
+  for (const Cone& c : part.cones) scene_.cones.push_back(take(c));
+  number_ = static_cast<std::uint32_t>(primitives);
+}
+
+}  // namespace kdray::scene

@@ -1,0 +1,103 @@
+#include "scene/line_scanner.h"
+
+#include <utility>
+
+#include "scene/text_scanner.h"
+
+namespace kdray::scene {
+
+namespace {
+
+constexpr bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+constexpr bool is_end(char c) {
+  return c == '\n' || c == '\r';
+}
+
+}  // namespace
+
+LineScanner::LineScanner(std::string_view text, std::string file) : file_(std::move(file)) {
+  if (text.starts_with("\xfe\xff") || text.starts_with("\xff\xfe")) {
+    throw input_error(file_, 1, "this is UTF-16 text", "save it as UTF-8");
+  }
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  at_ = text.data();
+  end_ = at_ + text.size();
+}
+
+// Whether a backslash and a line end stand at `p`.
+bool LineScanner::at_join(const char* p) const {
+  return *p == '\\' && p + 1 != end_ && is_end(p[1]);
+}
+
+void LineScanner::skip_space() {
+  while (at_ != end_) {
+    if (is_blank(*at_)) {
+      ++at_;
+    } else if (at_join(at_)) {
+      at_ += at_[1] == '\r' && at_ + 2 != end_ && at_[2] == '\n' ? 3 : 2;
+      ++line_;
+    } else {
+      return;
+    }
+  }
+}
+
+bool LineScanner::next_line() {
+  if (started_) {
+    while (at_ != end_ && !is_end(*at_)) {
+      if (at_join(at_)) {
+        skip_space();
+      } else {
+        ++at_;
+      }
+    }
+    if (at_ == end_) return false;
+    at_ += *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n' ? 2 : 1;
+  }
+  started_ = true;
+  ++line_;
+  return at_ != end_;
+}
+
+std::string_view LineScanner::word() {
+  skip_space();
+  if (at_ != end_ && *at_ == '#') {
+    // A comment is not joined to the next line: a backslash at its end is more likely the end of a Windows path.
+    while (at_ != end_ && !is_end(*at_)) ++at_;
+  }
+  const char* first = at_;
+  while (at_ != end_ && !is_blank(*at_) && !is_end(*at_) && !at_join(at_)) ++at_;
+  return {first, static_cast<std::size_t>(at_ - first)};
+}
+
+std::string_view LineScanner::rest() {
+  skip_space();
+  const char* first = at_;
+  while (at_ != end_ && !is_end(*at_)) ++at_;
+  const char* last = at_;
+  while (last != first && is_blank(last[-1])) --last;
+  return {first, static_cast<std::size_t>(last - first)};
+}
+
+bool LineScanner::try_number(std::string_view what, double& value) {
+  const std::string_view found = word();
+  if (found.empty()) return false;
+  if (!read_number(found.data(), found.data() + found.size(), value)) {
+    throw error("expected " + std::string(what) + " (a finite number), found '" + printable(found) + "'");
+  }
+  return true;
+}
+
+double LineScanner::number(std::string_view what) {
+  double value = 0;
+  if (!try_number(what, value)) throw error("expected " + std::string(what) + ", but the line ends here");
+  return value;
+}
+
+Error LineScanner::error(const std::string& what, const std::string& remedy) const {
+  return input_error(file_, line_, what, remedy);
+}
+
+}  // namespace kdray::scene

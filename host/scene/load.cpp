@@ -1,0 +1,88 @@
+#include "scene/load.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "base/error.h"
+#include "scene/check_scene.h"
+#include "scene/frame.h"
+#include "scene/import.h"
+#include "scene/importers.h"
+#include "scene/read_file.h"
+
+namespace kdray::scene {
+
+namespace {
+
+struct Format {
+  std::string_view ending;
+  Scene (*read)(std::string_view text, const std::filesystem::path& file);
+};
+
+constexpr std::array kFormats = {
+    Format{".nff", read_nff},   Format{".obj", read_obj},   Format{".ply", read_ply},
+    Format{".stl", read_stl},   Format{".gltf", read_gltf}, Format{".glb", read_gltf},
+    Format{".json", read_json},
+};
+
+// Mesh formats assimp reads that carry what a ray tracer needs.
+constexpr std::array<std::string_view, 22> kAssimpEndings = {
+    ".3ds", ".3mf", ".ac",  ".ase", ".assbin", ".b3d",     ".blend", ".cob", ".dae", ".dxf", ".fbx",
+    ".ifc", ".irr", ".lwo", ".lws", ".md2",    ".md5mesh", ".ms3d",  ".off", ".wrl", ".x",   ".x3d"};
+
+#ifdef KDRAY_WITH_ASSIMP
+constexpr bool kWithAssimp = true;
+#else
+constexpr bool kWithAssimp = false;
+#endif
+
+std::string known_endings() {
+  std::string known;
+  for (const Format& f : kFormats) known.append(known.empty() ? "" : " ").append(f.ending);
+  if (kWithAssimp) {
+    for (const std::string_view ending : kAssimpEndings) known.append(" ").append(ending);
+  }
+  return "known are " + known + ", each also with .gz or .xz after it";
+}
+
+Scene read_by_ending(std::string_view text, const std::filesystem::path& file, const std::string& ending) {
+  const auto format = std::ranges::find(kFormats, ending, &Format::ending);
+  if (format != kFormats.end()) return format->read(text, file);
+  return read_assimp(text, file);
+}
+
+// Before the file is read: a wrong ending should not cost the reading of gigabytes.
+void check_ending(const std::filesystem::path& file, const std::string& ending) {
+  if (std::ranges::find(kFormats, ending, &Format::ending) != kFormats.end()) return;
+  const bool assimp_reads = std::ranges::find(kAssimpEndings, ending) != kAssimpEndings.end();
+  if (assimp_reads && kWithAssimp) return;
+  if (assimp_reads) {
+    throw input_error(file.string(), 0,
+                      "reading '" + ending + "' needs assimp, which this kdray was built without",
+                      "build with libassimp-dev installed, or convert the file to .obj, .ply or .glb");
+  }
+  throw input_error(file.string(), 0,
+                    ending.empty() ? "no ending that tells its format" : "unknown format '" + ending + "'",
+                    known_endings());
+}
+
+}  // namespace
+
+Scene import_scene(const std::filesystem::path& file) {
+  const std::string ending = format_of(file);
+  check_ending(file, ending);
+  const std::string text = read_file(file);
+  Scene scene = read_by_ending(text, file, ending);
+  scene.name = file.string();
+  check_scene(scene);
+  return scene;
+}
+
+Scene load(const std::filesystem::path& file) {
+  Scene scene = import_scene(file);
+  frame_scene(scene);
+  return scene;
+}
+
+}  // namespace kdray::scene

@@ -1,0 +1,102 @@
+#include "scene/mtl.h"
+
+#include <algorithm>
+
+#include "scene/line_scanner.h"
+#include "scene/text_scanner.h"
+
+namespace kdray::scene {
+
+namespace {
+
+class MtlReader {
+ public:
+  MtlReader(std::string_view text, const std::string& file, std::vector<MtlMaterial>& materials,
+            std::vector<std::string>& warnings)
+      : in_(text, file), materials_(materials), warnings_(warnings) {}
+
+  void read() {
+    while (in_.next_line()) {
+      const std::string_view keyword = in_.word();
+      if (keyword.empty()) continue;
+      if (keyword == "newmtl") {
+        materials_.emplace_back();
+        materials_.back().name = in_.rest();
+        current_ = true;
+      } else if (current_) {
+        read_statement(keyword, materials_.back());
+      }
+    }
+  }
+
+ private:
+  void read_statement(std::string_view keyword, MtlMaterial& m) {
+    if (keyword == "Kd") return read_color(keyword, m.kd);
+    if (keyword == "Ks") return read_color(keyword, m.ks);
+    if (keyword == "Ke") return read_color(keyword, m.ke);
+    if (keyword == "Tf" || keyword == "Kt") return read_filter(keyword, m);
+    if (keyword == "Ns") m.ns = std::max(0.0f, number(keyword));
+    if (keyword == "Ni") m.ni = number(keyword);
+    if (keyword == "d") m.dissolve = read_dissolve();
+    if (keyword == "Tr") m.tr = std::clamp(number(keyword), 0.0f, 1.0f);
+    if (keyword == "illum") m.illum = static_cast<int>(std::clamp(number(keyword), 0.0f, 10.0f));
+    if (keyword == "map_Kd") m.has_picture = true;
+  }
+
+  // Brought into float's range, which is all that materials have.
+  float number(std::string_view what) {
+    constexpr double kMost = 1e30;
+    return static_cast<float>(std::clamp(in_.number(what), -kMost, kMost));
+  }
+
+  // d FACTOR, or d -halo FACTOR for what fades towards its edges (taken as even).
+  float read_dissolve() {
+    const std::string_view first = in_.word();
+    if (first == "-halo") return std::clamp(number("d"), 0.0f, 1.0f);
+    double value = 0;
+    if (!read_number(first.data(), first.data() + first.size(), value)) {
+      throw in_.error("expected d (a finite number), found '" + printable(first) + "'");
+    }
+    return static_cast<float>(std::clamp(value, 0.0, 1.0));
+  }
+
+  // Three numbers, or one for a grey. Spectral files and CIE colours are left out, with a warning.
+  void read_color(std::string_view keyword, vec3& color) {
+    const std::string_view first = in_.word();
+    if (first == "spectral" || first == "xyz") {
+      warnings_.push_back(in_.file() + ":" + std::to_string(in_.line()) + ": '" + std::string(keyword) + " " +
+                          std::string(first) + "' is left out: colours are red, green and blue here");
+      return;
+    }
+    double r = 0;
+    if (!read_number(first.data(), first.data() + first.size(), r)) {
+      throw in_.error("expected " + std::string(keyword) + " (a finite number), found '" + printable(first) +
+                      "'");
+    }
+    double g = r;
+    double b = r;
+    if (in_.try_number(keyword, g)) b = in_.number(keyword);
+    constexpr double kMost = 1e30;
+    color = vec3(glm::clamp(dvec3(r, g, b), dvec3(0), dvec3(kMost)));
+  }
+
+  void read_filter(std::string_view keyword, MtlMaterial& m) {
+    vec3 filter(1);
+    read_color(keyword, filter);
+    m.tf = glm::min(filter, vec3(1));
+  }
+
+  LineScanner in_;
+  std::vector<MtlMaterial>& materials_;
+  std::vector<std::string>& warnings_;
+  bool current_ = false;
+};
+
+}  // namespace
+
+void read_mtl(std::string_view text, const std::string& file, std::vector<MtlMaterial>& materials,
+              std::vector<std::string>& warnings) {
+  MtlReader(text, file, materials, warnings).read();
+}
+
+}  // namespace kdray::scene

@@ -1,0 +1,32 @@
+// What    The materials of an MTL file, as the file says them.
+// Errors  kdray::Error with the file and line: what is not a finite number where one is wanted. What is only out of
+//         range (a negative colour) is brought into range; unknown statements are skipped, as every exporter has its
+//         own.
+// Source  Alias Wavefront, "MTL material format", Appendix B2 of the Advanced Visualizer manual.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace kdray::scene {
+
+struct MtlMaterial {
+  std::string name;
+  vec3 kd{0.8f}, ks{0}, ke{0};
+  std::optional<vec3> tf;         // colour that is let through
+  std::optional<float> dissolve;  // `d`: 1 is opaque
+  std::optional<float> tr;        // 1 - d, as some exporters write it; `d` wins
+  float ns = 0, ni = 1;
+  std::optional<int> illum;
+  bool has_picture = false;  // map_Kd
+};
+
+// Adds the file's materials to `materials`, its warnings to `warnings`.
+void read_mtl(std::string_view text, const std::string& file, std::vector<MtlMaterial>& materials,
+              std::vector<std::string>& warnings);
+
+}  // namespace kdray::scene

@@ -1,0 +1,109 @@
+#include "scene/ply_binary.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace kdray::scene::ply {
+
+namespace {
+
+// Rows converted at a time: few enough that the bytes of a block stay in the first-level cache from one column to
+// the next.
+constexpr std::uint64_t kBlock = 512;
+constexpr std::size_t kTriangleBytes = 13;
+
+// One column of a block; false when a value is not finite.
+template <class T, bool swap, class Out>
+bool convert(const unsigned char* bytes, std::size_t stride, std::uint64_t n, Out* out,
+             std::size_t out_stride) {
+  unsigned bad = 0;
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const auto value = static_cast<Out>(load<T, swap>(bytes + i * stride));
+    if constexpr (std::is_floating_point_v<T>) bad |= !std::isfinite(value);
+    out[i * out_stride] = value;
+  }
+  return bad == 0;
+}
+
+// Goes through the rows of a block value by value, which throws at the one that is not finite. A double that is
+// too large for a normal's float gets through: settle_normals() sees to it.
+template <bool swap>
+void refuse(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
+            std::uint64_t first, std::uint64_t n) {
+  for (std::uint64_t row = first; row < first + n; ++row) {
+    source.begin_row(element, row);
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const Type type = element.properties[i].type;
+      if (columns.of_property[i] < 0) {
+        source.skip(type);
+      } else {
+        source.number(type);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+template <bool swap>
+void read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
+                  std::vector<dvec3>& vertices, std::vector<vec3>& normals) {
+  const std::size_t stride = BinarySource<swap>::least_size(element);
+  for (std::uint64_t row = 0; row < element.count; row += kBlock) {
+    const std::uint64_t n = std::min(kBlock, element.count - row);
+    std::size_t offset = 0;
+    bool good = true;
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const Type type = element.properties[i].type;
+      const unsigned char* bytes = source.at() + offset;
+      const int column = columns.of_property[i];
+      offset += size_of(type);
+      if (column < 0) continue;
+      const bool finite = with_type(type, [&](auto t) {
+        using T = decltype(t);
+        if (column < 3) return convert<T, swap>(bytes, stride, n, &vertices[row][column], 3);
+        return convert<T, swap>(bytes, stride, n, &normals[row][column - 3], 3);
+      });
+      good = good && finite;
+    }
+    if (good) {
+      source.advance(n * stride);
+    } else {
+      refuse(source, element, columns, row, n);
+    }
+  }
+}
+
+template <bool swap>
+std::uint64_t read_triangles(BinarySource<swap>& source, const Element& element, Mesh& mesh) {
+  const Property& list = element.properties[0];
+  const bool fits = element.properties.size() == 1 && size_of(list.count_type) == 1 &&
+                    (list.type == Type::i32 || list.type == Type::u32);
+  if (!fits) return 0;
+  const auto* at = source.at();
+  const std::uint64_t n =
+      std::min(element.count, static_cast<std::uint64_t>(source.end() - at) / kTriangleBytes);
+  const std::uint32_t n_vertices = mesh.n_vertices();
+  auto& triangles = mesh.triangles();
+  triangles.reserve(triangles.size() + n);
+  std::uint64_t row = 0;
+  for (; row < n; ++row, at += kTriangleBytes) {
+    // A negative index is a large one here.
+    const auto a = load<std::uint32_t, swap>(at + 1);
+    const auto b = load<std::uint32_t, swap>(at + 5);
+    const auto c = load<std::uint32_t, swap>(at + 9);
+    if (at[0] != 3 || std::max({a, b, c}) >= n_vertices) break;
+    mesh.add_triangle(a, b, c);
+  }
+  source.advance(row * kTriangleBytes);
+  return row;
+}
+
+template void read_columns(BinarySource<false>&, const Element&, const VertexColumns&, std::vector<dvec3>&,
+                           std::vector<vec3>&);
+template void read_columns(BinarySource<true>&, const Element&, const VertexColumns&, std::vector<dvec3>&,
+                           std::vector<vec3>&);
+template std::uint64_t read_triangles(BinarySource<false>&, const Element&, Mesh&);
+template std::uint64_t read_triangles(BinarySource<true>&, const Element&, Mesh&);
+
+}  // namespace kdray::scene::ply

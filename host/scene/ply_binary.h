@@ -1,0 +1,30 @@
+// What    The fast paths of binary PLY files: vertices without lists, column by column, and faces that are nothing
+//         but triangles of 32-bit indices after a one-byte count. Everything else ply.cpp reads value by value.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/vec.h"
+#include "scene/ply_header.h"
+#include "scene/ply_mesh.h"
+#include "scene/ply_source.h"
+
+namespace kdray::scene::ply {
+
+// What each property of a vertex is: 0 1 2 for x y z, 3 4 5 for nx ny nz, -1 for what is skipped.
+struct VertexColumns {
+  std::vector<int> of_property;
+  bool has_normals = false;
+};
+
+// Fills `vertices` (and `normals`), which have element.count entries, for which the source has the bytes.
+template <bool swap>
+void read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
+                  std::vector<dvec3>& vertices, std::vector<vec3>& normals);
+
+// Reads rows as long as they are good triangles, and says how many those were.
+template <bool swap>
+std::uint64_t read_triangles(BinarySource<swap>& source, const Element& element, Mesh& mesh);
+
+}  // namespace kdray::scene::ply

@@ -1,0 +1,75 @@
+#include "scene/ply_mesh.h"
+
+#include <algorithm>
+
+#include "scene/mesh_material.h"
+#include "scene/settle_normals.h"
+#include "scene/triangulate.h"
+
+namespace kdray::scene::ply {
+
+bool Mesh::add_face(std::span<const std::int64_t> corners) {
+  if (!std::ranges::all_of(corners, [&](std::int64_t c) { return is_vertex(c); })) return false;
+  const auto corner = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
+  if (corners.size() < 3) {
+    ++n_small_faces_;
+  } else if (corners.size() == 3) {
+    add_triangle(corner(0), corner(1), corner(2));
+  } else {
+    polygons_.push_back(
+        {scene_.triangles.size(), polygon_corners_.size(), static_cast<std::uint32_t>(corners.size())});
+    for (std::size_t i = 0; i < corners.size(); ++i) polygon_corners_.push_back(corner(i));
+    for (std::size_t i = 2; i < corners.size(); ++i) add_triangle(corner(0), corner(i - 1), corner(i));
+  }
+  return true;
+}
+
+bool Mesh::add_strip(std::span<const std::int64_t> corners) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (corners[i] == -1) {
+      first = i + 1;
+      continue;
+    }
+    if (!is_vertex(corners[i])) return false;
+    if (i < first + 2) continue;
+    const bool turned = (i - first) % 2 == 1;
+    add_triangle(static_cast<std::uint32_t>(corners[turned ? i - 1 : i - 2]),
+                 static_cast<std::uint32_t>(corners[turned ? i - 2 : i - 1]),
+                 static_cast<std::uint32_t>(corners[i]));
+  }
+  return true;
+}
+
+void Mesh::cut_polygons() {
+  std::vector<dvec3> points;
+  for (const Polygon& polygon : polygons_) {
+    const std::span<const std::uint32_t> corners(polygon_corners_.data() + polygon.first_corner,
+                                                 polygon.n_corners);
+    points.clear();
+    for (const std::uint32_t c : corners) points.push_back(scene_.vertices[c]);
+    Triangle* out = scene_.triangles.data() + polygon.first_triangle;
+    for (const auto& pick : triangulate(points)) {
+      out->vertex = {corners[pick[0]], corners[pick[1]], corners[pick[2]]};
+      ++out;
+    }
+  }
+}
+
+Scene Mesh::finish(const std::string& file) {
+  cut_polygons();
+  for (std::string& warning : scene_.warnings) warning = file + ": " + warning;
+  if (n_small_faces_ > 0) {
+    scene_.warnings.push_back(file + ": " + std::to_string(n_small_faces_) +
+                              " faces with fewer than 3 corners are left out");
+  }
+  if (scene_.triangles.empty()) scene_.warnings.push_back(file + ": no faces");
+  scene_.materials = {mesh_material()};
+  if (!scene_.normals.empty()) {
+    for (Triangle& t : scene_.triangles) t.normal = t.vertex;
+    settle_normals(scene_, file);
+  }
+  return std::move(scene_);
+}
+
+}  // namespace kdray::scene::ply

@@ -1,0 +1,59 @@
+// What    Collects what the rows of a PLY file say into a Scene, in whatever order the elements come.
+// Shape   Faces may come before the vertices: triangles are made at once, larger polygons get the numbers of their
+//         n - 2 triangles at once and are cut in finish(). Indices are checked against the header's vertex count.
+// Errors  None of its own: the functions return false for what a row may not hold; the caller knows the place.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace kdray::scene::ply {
+
+class Mesh {
+ public:
+  explicit Mesh(std::uint32_t n_vertices) : n_vertices_(n_vertices) {}
+
+  // To be filled with all vertices; a normal for each, or none.
+  std::vector<dvec3>& vertices() { return scene_.vertices; }
+  std::vector<vec3>& normals() { return scene_.normals; }
+  std::vector<Triangle>& triangles() { return scene_.triangles; }
+  std::uint32_t n_vertices() const { return n_vertices_; }
+
+  // One polygon; false when it has a corner that is no vertex. Fewer than three corners: counted and left out.
+  bool add_face(std::span<const std::int64_t> corners);
+  // Triangles over each three neighbours, every second one turned over; -1 starts a new strip.
+  bool add_strip(std::span<const std::int64_t> corners);
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+
+  void warn(const std::string& what) { scene_.warnings.push_back(what); }
+  // `file` names the file in warnings.
+  Scene finish(const std::string& file);
+
+ private:
+  struct Polygon {
+    std::size_t first_triangle;
+    std::size_t first_corner;  // in polygon_corners_
+    std::uint32_t n_corners;
+  };
+
+  bool is_vertex(std::int64_t index) const { return index >= 0 && index < n_vertices_; }
+  void cut_polygons();
+
+  Scene scene_;
+  std::uint32_t n_vertices_;
+  std::vector<Polygon> polygons_;
+  std::vector<std::uint32_t> polygon_corners_;
+  std::size_t n_small_faces_ = 0;
+};
+
+inline void Mesh::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  Triangle t{.vertex = {a, b, c}};
+  t.number = static_cast<std::uint32_t>(scene_.triangles.size());
+  scene_.triangles.push_back(t);
+}
+
+}  // namespace kdray::scene::ply

@@ -1,0 +1,107 @@
+// What    A scene as read from a file: primitives in file order and double precision, materials, lights, camera.
+// Shape   Triangles index a shared pool of vertices and normals; every primitive carries its number, the 0-based
+//         place in file order over all kinds (a polygon's triangles count one each, in order).
+// Units   World units of the file, linear RGB, angles in radians.
+// Errors  Loaders refuse NaN and infinity with file and line; what is in a Scene is finite, but a triangle may be
+//         degenerate (geometry.h drops and counts those).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "math/box.h"
+#include "math/vec.h"
+
+namespace kdray::scene {
+
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+// The Whitted terms (DESIGN.md section 3), each with its colour multiplied in already:
+//   C = emission + ambient*Camb + sum_lights Clight*att*(diffuse*(N.L) + specular*(R.V)^shine)
+//     + reflect*C(reflected) + transmit*C(refracted)
+struct Material {
+  vec3 emission{0};
+  vec3 ambient{0};
+  vec3 diffuse{0};
+  vec3 specular{0};
+  vec3 reflect{0};
+  vec3 transmit{0};
+  float shine = 1;  // exponent of (R.V), >= 0
+  float index = 1;  // index of refraction of the inside against the outside, > 0
+  bool operator==(const Material&) const = default;
+};
+
+enum class LightKind { point, directional, spot };
+
+struct Light {
+  LightKind kind = LightKind::point;
+  dvec3 position{0};          // point, spot
+  dvec3 direction{0, 0, -1};  // directional, spot: the way the light travels, unit length
+  vec3 color{1};              // linear RGB intensity
+  vec3 attenuation{1, 0, 0};  // att(d) = 1 / (a.x + a.y*d + a.z*d^2); sum > 0, all >= 0
+  double range = std::numeric_limits<double>::infinity();  // no light beyond this distance
+  float cos_inner = 1, cos_outer = -1;                     // spot: full inside inner, none outside outer
+};
+
+// A pinhole camera. `vertical_fov` spans the full height of the picture, from its lower to its upper edge; the
+// horizontal angle follows from the aspect ratio of the picture (square pixels).
+struct Camera {
+  dvec3 from{0, 0, 5}, at{0}, up{0, 1, 0};
+  double vertical_fov = 0.7853981633974483;
+  double hither = 0;  // distance along the view direction in front of which nothing is seen
+};
+
+struct Triangle {
+  std::array<std::uint32_t, 3> vertex;                       // into Scene::vertices
+  std::array<std::uint32_t, 3> normal{kNone, kNone, kNone};  // into Scene::normals; all or none
+  std::uint32_t material = 0;
+  std::uint32_t number = 0;
+};
+
+struct Sphere {
+  dvec3 center;
+  double radius;  // > 0
+  std::uint32_t material = 0;
+  std::uint32_t number = 0;
+};
+
+// A truncated cone or cylinder without end caps, seen from both sides.
+struct Cone {
+  dvec3 base, apex;                 // end points of the axis, apart
+  double base_radius, apex_radius;  // >= 0, not both 0
+  std::uint32_t material = 0;
+  std::uint32_t number = 0;
+};
+
+// What a scene file may ask for; the command line wins over it.
+struct RenderSettings {
+  std::optional<int> width, height, depth, samples;
+  std::optional<double> min_weight;
+};
+
+struct Scene {
+  std::string name;  // the file it came from
+  std::vector<dvec3> vertices;
+  std::vector<vec3> normals;  // unit length
+  std::vector<Triangle> triangles;
+  std::vector<Sphere> spheres;
+  std::vector<Cone> cones;
+  std::vector<Material> materials;  // at least one when there is a primitive
+  std::vector<Light> lights;
+  std::optional<Camera> camera;  // loaders leave it empty when the file has none; frame_scene() fills it
+  vec3 background{0};
+  vec3 ambient{1};  // Camb
+  RenderSettings settings;
+  std::vector<std::string> warnings;  // one line each: what the loader left out or changed
+
+  std::uint32_t primitive_count() const {
+    return static_cast<std::uint32_t>(triangles.size() + spheres.size() + cones.size());
+  }
+  DBox bounds() const;
+};
+
+}  // namespace kdray::scene

@@ -1,0 +1,55 @@
+#include "scene/settle_normals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kdray::scene {
+
+namespace {
+
+constexpr bool is_zero(const vec3& v) {
+  return v.x == 0 && v.y == 0 && v.z == 0;
+}
+
+bool uses_zero(const Scene& scene, const Triangle& t) {
+  return std::ranges::any_of(t.normal, [&](std::uint32_t n) { return is_zero(scene.normals[n]); });
+}
+
+std::size_t flatten(Scene& scene) {
+  std::size_t n_flat = 0;
+  for (Triangle& t : scene.triangles) {
+    if (t.normal[0] == kNone || !uses_zero(scene, t)) continue;
+    t.normal.fill(kNone);
+    ++n_flat;
+  }
+  return n_flat;
+}
+
+}  // namespace
+
+vec3 direction_of(const dvec3& v) {
+  // Scaled first, so that the squares of very short and very long vectors don't vanish or overflow.
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(largest > 0)) return vec3(0);
+  const dvec3 scaled = v / largest;
+  if (!is_finite(scaled)) return vec3(0);
+  return vec3(scaled / glm::length(scaled));
+}
+
+void settle_normals(Scene& scene, const std::string& file) {
+  bool any_zero = false;
+  for (vec3& n : scene.normals) {
+    n = direction_of(dvec3(n));
+    any_zero = any_zero || is_zero(n);
+  }
+  if (!any_zero) return;
+  const std::size_t n_flat = flatten(scene);
+  for (vec3& n : scene.normals) {
+    if (is_zero(n)) n = vec3(0, 0, 1);
+  }
+  if (n_flat == 0) return;
+  scene.warnings.push_back(file + ": " + std::to_string(n_flat) +
+                           " triangles have a corner normal without a direction: they are shaded flat");
+}
+
+}  // namespace kdray::scene

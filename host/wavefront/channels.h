@@ -1,0 +1,20 @@
+// What    Renders the extra channels (AOVs): one eye ray per pixel, apart from the film.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "film/image.h"
+#include "layout/frame.layout.h"
+#include "wavefront/programs.h"
+#include "wavefront/scene_buffers.h"
+
+namespace kdray::wavefront {
+
+// `names` of "depth", "normal", "primitive", "cost"; throws ErrorCode::usage, naming what there is, for others.
+std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
+                                           Programs& programs, const layout::Frame& frame,
+                                           std::uint32_t features, std::span<const std::string> names);
+
+}  // namespace kdray::wavefront

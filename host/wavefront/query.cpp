@@ -1,0 +1,91 @@
+#include "wavefront/query.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/timer.h"
+#include "device/opencl_error.h"
+#include "layout/rays.layout.h"
+#include "wavefront/stage.h"
+
+namespace kdray::wavefront {
+
+namespace {
+
+static_assert(sizeof(Ray) == sizeof(layout::QueryRay) && sizeof(Hit) == sizeof(layout::QueryHit));
+
+constexpr std::size_t kRaysPerChunk = std::size_t{1} << 24;  // 512 MiB of rays
+constexpr std::int32_t kInvalid = -2;                        // KDRAY_QUERY_INVALID of trace_query.cl
+
+bool all_finite(const float (&v)[3]) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+const char* fault_of(const Ray& ray) {
+  if (!all_finite(ray.origin)) return "its origin is not finite";
+  if (!all_finite(ray.direction)) return "its direction is not finite";
+  if (ray.direction[0] == 0 && ray.direction[1] == 0 && ray.direction[2] == 0) return "its direction is 0";
+  if (!std::isfinite(ray.t_min)) return "its t_min is not finite";
+  if (std::isnan(ray.t_max)) return "its t_max is not a number";
+  return nullptr;
+}
+
+void check(std::span<const Ray> rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (const char* fault = fault_of(rays[i]))
+      throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault));
+}
+
+cl_float4 float4(const vec3& v) {
+  return cl_float4{{v.x, v.y, v.z, 0}};
+}
+
+float world_max(const Box& bounds) {
+  if (bounds.empty()) return 0;
+  const vec3 m = glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi));
+  return std::max({m.x, m.y, m.z});
+}
+
+}  // namespace
+
+QueryResult trace_query(const device::Context& context, const SceneBuffers& scene, Programs& programs,
+                        const scene::Geometry& geometry, std::uint32_t features, std::size_t work_group,
+                        std::span<const Ray> rays, bool any_hit, int repeat) {
+  check(rays);
+  QueryResult result{std::vector<Hit>(rays.size()),
+                     std::vector<double>(static_cast<std::size_t>(std::max(repeat, 1)))};
+  if (rays.empty()) return result;
+  const std::size_t chunk = std::min(
+      {rays.size(), kRaysPerChunk, static_cast<std::size_t>(context.info().max_allocation / sizeof(Ray))});
+  const cl::Buffer ray_buffer = context.buffer(CL_MEM_READ_ONLY, chunk * sizeof(Ray), "the rays");
+  const cl::Buffer hit_buffer = context.buffer(CL_MEM_WRITE_ONLY, chunk * sizeof(Hit), "the hits");
+  const std::string name = any_hit ? "trace_query_any" : "trace_query_closest";
+  Stage stage(name, programs.kernel("traverse/trace_query.cl", name, features));
+  cl::CommandQueue queue = context.queues().front();
+  device::checked("tracing rays", [&] {
+    const cl_uint first_argument = scene.set_tree_arguments(stage.kernel());
+    for (std::size_t first = 0; first < rays.size(); first += chunk) {
+      const std::size_t n = std::min(chunk, rays.size() - first);
+      queue.enqueueWriteBuffer(ray_buffer, CL_TRUE, 0, n * sizeof(Ray), rays.data() + first);
+      stage.set_arguments(first_argument, float4(geometry.bounds.lo), float4(geometry.bounds.hi),
+                          float4(vec3(geometry.center)), world_max(geometry.bounds), static_cast<cl_uint>(n),
+                          ray_buffer, hit_buffer);
+      for (double& seconds : result.seconds) {
+        const Timer timer;
+        stage.launch(queue, n, work_group);
+        queue.finish();
+        seconds += timer.seconds();
+      }
+      queue.enqueueReadBuffer(hit_buffer, CL_TRUE, 0, n * sizeof(Hit), result.hits.data() + first);
+    }
+  });
+  if (std::any_of(result.hits.begin(), result.hits.end(),
+                  [](const Hit& h) { return h.primitive == kInvalid; }))
+    throw Error(ErrorCode::internal,
+                "a ray overflowed the traversal's stack; please report it with the scene");
+  return result;
+}
+
+}  // namespace kdray::wavefront

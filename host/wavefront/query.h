@@ -1,0 +1,25 @@
+// What    Traces rays from outside (kdray trace): closest hits or occlusion, in chunks that fit the device.
+// Errors  ErrorCode::input for a ray that is not one: NaN anywhere, an infinite origin or t_min, a direction that is
+//         infinite or 0; the message has the ray's number.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kdray/kdray.h"
+#include "scene/geometry.h"
+#include "wavefront/programs.h"
+#include "wavefront/scene_buffers.h"
+
+namespace kdray::wavefront {
+
+struct QueryResult {
+  std::vector<Hit> hits;
+  std::vector<double> seconds;  // wall time of each repetition, rays already on the device
+};
+
+QueryResult trace_query(const device::Context& context, const SceneBuffers& scene, Programs& programs,
+                        const scene::Geometry& geometry, std::uint32_t features, std::size_t work_group,
+                        std::span<const Ray> rays, bool any_hit, int repeat);
+
+}  // namespace kdray::wavefront

@@ -1,0 +1,39 @@
+#include "wavefront/scene_buffers.h"
+
+#include "device/opencl_error.h"
+
+namespace kdray::wavefront {
+
+namespace {
+
+template <class T>
+cl::Buffer upload(const device::Context& context, const std::vector<T>& items, const std::string& what) {
+  const std::size_t bytes = items.size() * sizeof(T);
+  cl::Buffer buffer = context.buffer(CL_MEM_READ_ONLY, bytes, what);
+  if (bytes > 0)
+    device::checked("uploading " + what, [&] {
+      context.queues().front().enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, items.data());
+    });
+  return buffer;
+}
+
+}  // namespace
+
+SceneBuffers::SceneBuffers(const device::Context& context, const flatten::FlatScene& flat)
+    : nodes(upload(context, flat.nodes, "the kd-tree's nodes")),
+      refs(upload(context, flat.refs, "the kd-tree's references")),
+      triangles(upload(context, flat.triangles, "the triangles")),
+      normals(upload(context, flat.normals, "the vertex normals")),
+      spheres(upload(context, flat.spheres, "the spheres")),
+      cones(upload(context, flat.cones, "the cones")),
+      materials(upload(context, flat.materials, "the materials")),
+      lights(upload(context, flat.lights, "the lights")) {}
+
+cl_uint SceneBuffers::set_tree_arguments(cl::Kernel& kernel) const {
+  cl_uint index = 0;
+  for (const cl::Buffer* buffer : {&nodes, &refs, &triangles, &spheres, &cones})
+    kernel.setArg(index++, *buffer);
+  return index;
+}
+
+}  // namespace kdray::wavefront

@@ -1,0 +1,18 @@
+// What    A flattened scene on the device; shared by all queues of a context, read only.
+#pragma once
+
+#include "device/context.h"
+#include "flatten/flatten.h"
+
+namespace kdray::wavefront {
+
+struct SceneBuffers {
+  cl::Buffer nodes, refs, triangles, normals, spheres, cones, materials, lights;
+
+  SceneBuffers(const device::Context& context, const flatten::FlatScene& flat);
+
+  // Sets KDRAY_SCENE_PARAMETERS (kernels/traverse/scene.clh) as the kernel's first arguments; the next free index.
+  cl_uint set_tree_arguments(cl::Kernel& kernel) const;
+};
+
+}  // namespace kdray::wavefront

@@ -1,0 +1,21 @@
+#include "wavefront/stage.h"
+
+namespace kdray::wavefront {
+
+void Stage::launch(cl::CommandQueue& queue, std::size_t items, std::size_t local) {
+  const std::size_t groups = (items + local - 1) / local;
+  cl::Event event;
+  queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * local), cl::NDRange(local), nullptr,
+                             &event);
+  launches_.push_back(std::move(event));
+}
+
+double Stage::collect_seconds() {
+  for (const cl::Event& event : launches_)
+    seconds_ += 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                           event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+  launches_.clear();
+  return seconds_;
+}
+
+}  // namespace kdray::wavefront

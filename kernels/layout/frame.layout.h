@@ -1,0 +1,69 @@
+// What    What a frame's kernels know: camera, picture, limits; and the state of a slice.
+#ifndef KDRAY_LAYOUT_FRAME_H
+#define KDRAY_LAYOUT_FRAME_H
+#include "layout/base.layout.h"
+
+// The film holds sums in units of 2^-36: 64-bit integers, so that adding is exact and has no order. One contribution
+// is cut at 2^20; sums saturate at 2^27.
+#define KDRAY_FILM_SCALE 68719476736.0f
+#define KDRAY_FILM_MAX 1048576.0f
+
+KDRAY_LAYOUT_BEGIN
+typedef struct Frame {
+  // A sample at (sx, sy), in pixels from the top left, looks along forward + x*right + y*up with
+  // x = sx*x_scale + x_offset and y = sy*y_scale + y_offset.
+  float eye[3];
+  float hither;
+  float forward[3];
+  float x_scale;
+  float right[3];
+  float x_offset;
+  float up[3];
+  float y_scale;
+  float background[3];
+  float y_offset;
+  float root_lo[3];  // the root's cell
+  float world_max;   // largest |coordinate| of the root's cell
+  float root_hi[3];
+  float spawn_threshold;  // a ray whose largest weight is below this is not spawned
+  u32 width, height;
+  u32 tile_width, tile_height;
+  u32 n_tiles_x, n_tiles;
+  u32 n_samples;
+  u32 max_depth;
+  u32 n_lights;
+  u32 corner_grid;      // 1: samples at the pixels' corners, 0: at their centres
+  u32 batch_size;       // rays a slice traces in one wave
+  u32 pool_size;        // rays a slice's pool can hold
+  u32 light_batch;      // lights served between two waves of shadow rays
+  u32 first_pixel;      // the film buffer begins with this pixel
+  u32 keep_weightless;  // 1: rays of no weight are traced too (--min-weight 0), as the SPD's ray counts have them
+  u32 pad;
+} Frame;
+KDRAY_ASSERT_SIZE(Frame, 176)
+KDRAY_ASSERT_OFFSET(Frame, width, 112)
+
+// A slice works through the tiles first_tile, first_tile + tile_stride, ... below end_tile. One work-item at a time
+// owns it, so its counters need no atomics; the host adds them up.
+typedef struct Slice {
+  u32 tile;         // the tile in work; >= end_tile: none left
+  u32 next_sample;  // the next eye ray of the tile
+  u32 n_pool;
+  u32 n_batch;
+  u32 n_shadow;
+  u32 end_tile;
+  u32 tile_stride;
+  u32 pad;
+  u64 n_primary, n_primary_hit, n_shadow_rays, n_reflected, n_refracted;
+  u64 n_skipped_behind;  // shadow rays to lights behind the surface
+  u64 n_skipped_unlit;   // ... to lights out of reach or outside their cone, or of no weight
+  u64 n_skipped_weight;  // secondary rays below the spawn threshold
+  u64 n_skipped_depth;   // secondary rays deeper than the limit
+  u64 n_invalid;         // rays whose traversal failed
+  u64 n_nan;             // contributions that were not numbers
+  u64 n_pool_overflow;   // spawned rays that found no place: a broken bound
+} Slice;
+KDRAY_ASSERT_SIZE(Slice, 128)
+KDRAY_ASSERT_OFFSET(Slice, n_primary, 32)
+KDRAY_LAYOUT_END
+#endif

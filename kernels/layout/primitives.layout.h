@@ -1,0 +1,46 @@
+// What    Primitives as the kernels read them, about the scene's centre (host/scene/geometry.h).
+#ifndef KDRAY_LAYOUT_PRIMITIVES_H
+#define KDRAY_LAYOUT_PRIMITIVES_H
+#include "layout/base.layout.h"
+
+#define KDRAY_NO_NORMALS 0xffffffffu
+
+KDRAY_LAYOUT_BEGIN
+typedef struct Triangle {
+  float v[3][3];
+  u32 number;    // place in file order
+  u32 material;  // into materials
+  u32 normals;   // into the vertex normals, or KDRAY_NO_NORMALS
+} Triangle;
+KDRAY_ASSERT_SIZE(Triangle, 48)
+KDRAY_ASSERT_OFFSET(Triangle, number, 36)
+
+typedef struct VertexNormals {
+  float n[3][3];  // unit length
+} VertexNormals;
+KDRAY_ASSERT_SIZE(VertexNormals, 36)
+
+typedef struct Sphere {
+  float center[3];
+  float radius;
+  u32 number;
+  u32 material;
+  u32 pad[2];
+} Sphere;
+KDRAY_ASSERT_SIZE(Sphere, 32)
+
+// The points base + s*axis + (base_radius + slope*s)*n, 0 <= s <= height, n unit and at right angles to the axis.
+typedef struct Cone {
+  float base[3];
+  float base_radius;
+  float axis[3];  // unit
+  float height;
+  float slope;  // (apex radius - base radius) / height
+  u32 number;
+  u32 material;
+  u32 pad;
+} Cone;
+KDRAY_ASSERT_SIZE(Cone, 48)
+KDRAY_ASSERT_OFFSET(Cone, height, 28)
+KDRAY_LAYOUT_END
+#endif

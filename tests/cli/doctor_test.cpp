@@ -1,0 +1,78 @@
+// What    kdray devices and kdray doctor, with the machine's devices and without any.
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "support/folder.h"
+
+namespace kdray::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+RunOptions vendors(const Folder& folder) {
+  return {.environment = {{"OCL_ICD_VENDORS", folder.path().string() + "/"}}};
+}
+
+TEST(DevicesCommand, ListsWhatRenderCanUse) {
+  KDRAY_NEED_DEVICE();
+  const Outcome run = kdray({"devices", "--json"});
+  ASSERT_TRUE(succeeds(run));
+  const Json list = Json::parse(run.out);
+  ASSERT_GE(list.size(), 1u);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    EXPECT_EQ(list[i]["number"], i);
+    EXPECT_GT(list[i]["compute_units"], 0);
+    EXPECT_NE(kdray({"devices"}).out.find(list[i]["platform"].get<std::string>()), std::string::npos);
+  }
+}
+
+TEST(DevicesCommand, WithoutADeviceItIsExitCode3) {
+  const Folder folder;
+  EXPECT_TRUE(fails_with(kdray({"devices"}, vendors(folder)), 3, "doctor"));
+  const Outcome json = kdray({"devices", "--json"}, vendors(folder));
+  EXPECT_EQ(json.code, 3);
+  EXPECT_EQ(Json::parse(json.out), Json::array());
+}
+
+TEST(DoctorCommand, FindsAWorkingDeviceWell) {
+  KDRAY_NEED_DEVICE();
+  const Outcome run = kdray({"doctor"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_NE(run.out.find("[ok]   device 0"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("picture and rays are right"), std::string::npos) << run.out;
+}
+
+TEST(DoctorCommand, SaysThatNoDriverIsRegistered) {
+  const Folder folder;
+  const Outcome run = kdray({"doctor"}, vendors(folder));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_NE(run.out.find("no OpenCL driver is registered in " + folder.path().string()), std::string::npos)
+      << run.out;
+  EXPECT_NE(run.out.find("pocl-opencl-icd"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("OCL_ICD_VENDORS replaces"), std::string::npos) << run.out;
+  EXPECT_EQ(run.err, "kdray: no usable OpenCL device; the lines marked [bad] say why\n");
+}
+
+TEST(DoctorCommand, NamesADriverThatDoesNotOpen) {
+  const Folder folder;
+  folder.put("broken.icd", "libno-such-driver.so.1\n");
+  const Outcome run = kdray({"doctor"}, vendors(folder));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_NE(run.out.find("[bad]  driver libno-such-driver.so.1"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("broken.icd"), std::string::npos) << run.out;
+}
+
+TEST(DoctorCommand, NamesAKernelCacheThatCannotBeWritten) {
+  KDRAY_NEED_DEVICE();
+  if (kdray({"doctor"}).out.find("Portable Computing Language") == std::string::npos)
+    GTEST_SKIP() << "no PoCL";
+  const Folder folder;
+  const fs::path file = folder.put("file", "a file, where a folder is wanted");
+  const Outcome run = kdray({"doctor"}, {.environment = {{"POCL_CACHE_DIR", file / "cache"}}});
+  EXPECT_NE(run.out.find("is not writable"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("POCL_CACHE_DIR"), std::string::npos) << run.out;
+}
+
+}  // namespace
+}  // namespace kdray::test

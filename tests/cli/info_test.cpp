@@ -1,0 +1,94 @@
+// What    kdray info: the figures of a scene whose figures are known; without any device.
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "cli/scenes.h"
+#include "support/folder.h"
+
+namespace kdray::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+// An empty folder for drivers: OpenCL's loader finds no platform.
+RunOptions no_device(const Folder& folder) {
+  fs::create_directory(folder / "vendors");
+  return {.environment = {{"OCL_ICD_VENDORS", (folder / "vendors").string() + "/"}}};
+}
+
+TEST(InfoCommand, CountsBoundsAndMaterialsWithoutADevice) {
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const Outcome run = kdray({"info", scene, "--json"}, no_device(folder));
+  ASSERT_TRUE(succeeds(run));
+  const Json info = Json::parse(run.out);
+  EXPECT_EQ(info["primitives"]["total"], 3);
+  EXPECT_EQ(info["primitives"]["triangles"], 2);
+  EXPECT_EQ(info["primitives"]["spheres"], 1);
+  EXPECT_EQ(info["primitives"]["dropped_degenerate"], 0);
+  EXPECT_EQ(info["bounds"]["min"], Json({-4.0, -4.0, 0.0}));
+  EXPECT_EQ(info["bounds"]["max"], Json({4.0, 4.0, 2.0}));
+  EXPECT_EQ(info["lights"].size(), 1u);
+  ASSERT_EQ(info["materials"].size(), 2u);
+  EXPECT_EQ(info["materials"][0]["primitives"], 2);
+  EXPECT_EQ(info["materials"][1]["primitives"], 1);
+  EXPECT_NEAR(info["camera"]["vertical_fov_degrees"], 40, 1e-9);
+}
+
+TEST(InfoCommand, TheTreesFiguresAgreeWithEachOther) {
+  const Folder folder;
+  const fs::path scene = folder / "b.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "2", "-o", scene})));
+  const Json info = Json::parse(kdray({"info", scene, "--json"}).out);
+  const Json& tree = info["tree"];
+  EXPECT_EQ(tree["leaves"].get<int>(), tree["inner_nodes"].get<int>() + 1);
+  EXPECT_EQ(tree["nodes"].get<int>(), tree["inner_nodes"].get<int>() + tree["leaves"].get<int>());
+  int leaves = 0;
+  for (const Json& count : tree["leaves_by_size"]) leaves += count.get<int>();
+  EXPECT_EQ(leaves, tree["leaves"]);
+  EXPECT_GE(tree["duplication"], 1.0);
+  EXPECT_GT(tree["sah_cost"], 0.0);
+  EXPECT_GT(info["memory"]["tree_bytes"], 8 * tree["nodes"].get<int>());
+}
+
+TEST(InfoCommand, TreeOptionsChangeTheTree) {
+  const Folder folder;
+  const fs::path scene = folder / "b.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "2", "-o", scene})));
+  const auto depth = [&](const std::vector<std::string>& more) -> int {
+    std::vector<std::string> arguments = {"info", scene, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Json::parse(kdray(arguments).out)["tree"]["max_depth"];
+  };
+  EXPECT_EQ(depth({"--tree-depth", "0"}), 0);
+  EXPECT_EQ(depth({"--tree-depth", "3"}), 3);
+  EXPECT_GT(depth({}), 3);
+  // Nothing is worth a split when tests cost nothing beside nodes.
+  EXPECT_EQ(depth({"--cost-traverse", "1000000", "--cost-intersect", "0.000001", "--empty-bonus", "1"}), 0);
+}
+
+TEST(InfoCommand, TextHasThoseFiguresForPeople) {
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const Outcome run = kdray({"info", scene});
+  ASSERT_TRUE(succeeds(run));
+  for (const char* const text : {"3: 2 triangles, 1 spheres, 0 cones", "(-4, -4, 0) to (4, 4, 2)",
+                                 "40 degrees", "SAH cost", "materials", "memory"})
+    EXPECT_NE(run.out.find(text), std::string::npos) << text << " in " << run.out;
+}
+
+TEST(InfoCommand, AnEmptySceneIsToldAsSuch) {
+  const Folder folder;
+  const fs::path scene = folder.put("none.nff", "b 0 0 0\n");
+  const Outcome run = kdray({"info", scene, "--json"});
+  if (run.code == 0) {
+    EXPECT_TRUE(Json::parse(run.out)["bounds"].is_null());
+  } else {
+    EXPECT_TRUE(fails_with(run, 1, "none.nff"));
+  }
+  EXPECT_EQ(kdray({"info", scene}).code, run.code);
+}
+
+}  // namespace
+}  // namespace kdray::test

@@ -1,0 +1,119 @@
+#include "cli/program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <stdexcept>
+#include <thread>
+
+namespace kdray::test {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A file without a name: no pipe that could fill up while nobody reads it.
+class Capture {
+ public:
+  Capture() : file_(std::tmpfile()) {
+    if (!file_) throw std::runtime_error("no temporary file");
+  }
+  ~Capture() { std::fclose(file_); }
+  Capture(const Capture&) = delete;
+  Capture& operator=(const Capture&) = delete;
+  int descriptor() const { return ::fileno(file_); }
+  std::string text() const {
+    std::rewind(file_);
+    std::string text;
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, file_)) text.append(buffer, n);
+    return text;
+  }
+
+ private:
+  std::FILE* file_;
+};
+
+[[noreturn]] void become_kdray(const std::vector<std::string>& arguments, const RunOptions& options, int out,
+                               int err) {
+  if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(127);
+  for (const auto& [name, value] : options.environment) ::setenv(name.c_str(), value.c_str(), 1);
+  if (!options.stdout_file.empty())
+    out = ::open(options.stdout_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (const rlim_t limit = options.limit_address_space; limit > 0) {
+    const rlimit address_space{limit, limit};
+    ::setrlimit(RLIMIT_AS, &address_space);
+  }
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  ::dup2(nothing, 0), ::dup2(out, 1), ::dup2(err, 2);
+  std::vector<char*> argv{const_cast<char*>("kdray")};
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  ::execv(KDRAY_PROGRAM, argv.data());
+  ::_exit(127);
+}
+
+// Waits in small steps, so that a child that hangs can be killed.
+void wait_for(pid_t child, double limit_seconds, Outcome& run) {
+  const Clock::time_point start = Clock::now();
+  int status = 0;
+  rusage usage{};
+  bool killed = false;
+  while (::wait4(child, &status, WNOHANG, &usage) == 0) {
+    run.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (run.seconds > limit_seconds && !killed) ::kill(child, SIGKILL), killed = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  run.exited = WIFEXITED(status);
+  run.code = run.exited ? WEXITSTATUS(status) : -1;
+  run.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  run.peak_kib = usage.ru_maxrss;
+}
+
+}  // namespace
+
+Outcome kdray(const std::vector<std::string>& arguments, const RunOptions& options) {
+  const Capture out, err;
+  Outcome run;
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("fork failed");
+  if (child == 0) become_kdray(arguments, options, out.descriptor(), err.descriptor());
+  wait_for(child, options.limit_seconds, run);
+  run.out = out.text();
+  run.err = err.text();
+  return run;
+}
+
+::testing::AssertionResult fails_with(const Outcome& run, int code, const std::string& text) {
+  const auto no = [&run](const std::string& why) {
+    return ::testing::AssertionFailure() << why << "; exit code " << run.code << ", signal " << run.signal
+                                         << ", stderr: " << run.err << ", stdout: " << run.out;
+  };
+  if (!run.exited || run.code != code) return no("not exit code " + std::to_string(code));
+  if (!run.out.empty()) return no("something on stdout");
+  if (std::count(run.err.begin(), run.err.end(), '\n') != 1 || run.err.back() != '\n')
+    return no("not one line");
+  if (run.err.rfind("kdray: ", 0) != 0) return no("not from kdray");
+  if (run.err.find(text) == std::string::npos) return no("'" + text + "' is not said");
+  return ::testing::AssertionSuccess();
+}
+
+::testing::AssertionResult succeeds(const Outcome& run) {
+  if (run.exited && run.code == 0) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure()
+         << "exit code " << run.code << ", signal " << run.signal << ", stderr: " << run.err;
+}
+
+bool has_device() {
+  static const bool has = kdray({"devices"}).code == 0;
+  return has;
+}
+
+}  // namespace kdray::test

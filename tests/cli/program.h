@@ -1,0 +1,46 @@
+// What    Runs the built kdray as a user would, in a process of its own, and tells what came of it.
+// Shape   No shell is involved. A run that takes too long is killed, and then neither exited nor has a
+//         code.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kdray::test {
+
+struct Outcome {
+  bool exited = false;  // false: killed, by a signal of its own or for taking too long
+  int code = -1;
+  int signal = 0;
+  std::string out, err;
+  double seconds = 0;
+  long peak_kib = 0;  // the largest resident set
+};
+
+struct RunOptions {
+  std::filesystem::path folder = {};                    // to run in; empty: where the test runs
+  std::map<std::string, std::string> environment = {};  // set on top of the test's own
+  std::filesystem::path stdout_file = {};               // instead of Outcome::out
+  double limit_seconds = 60;
+  std::size_t limit_address_space = 0;  // bytes; 0: none
+};
+
+Outcome kdray(const std::vector<std::string>& arguments, const RunOptions& options = {});
+
+// The run failed as the command line promises: this code, nothing on stdout, one line "kdray: ..." with
+// `text` in it.
+::testing::AssertionResult fails_with(const Outcome& run, int code, const std::string& text);
+
+// The run ended with 0; says what it printed otherwise.
+::testing::AssertionResult succeeds(const Outcome& run);
+
+bool has_device();
+
+}  // namespace kdray::test
+
+#define KDRAY_NEED_DEVICE() \
+  if (!kdray::test::has_device()) GTEST_SKIP() << "no usable OpenCL device"

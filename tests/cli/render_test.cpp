@@ -1,0 +1,213 @@
+// What    kdray render through the real program: pictures, statistics, defaults, and what is refused.
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "cli/scenes.h"
+#include "film/read.h"
+#include "support/folder.h"
+
+namespace kdray::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+film::Image read(const fs::path& file) {
+  return film::read_picture(file, {});
+}
+
+TEST(RenderCommand, WritesAPictureNamedAfterTheSceneInTheCurrentFolder) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  fs::create_directory(folder / "scenes");
+  folder.put("scenes/ball.nff", kSphereOnSquare);
+  const Outcome run = kdray({"render", "scenes/ball.nff"}, {.folder = folder.path()});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_TRUE(run.out.empty()) << run.out;
+  EXPECT_NE(run.err.find("ball.png"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("Mrays/s"), std::string::npos) << run.err;
+  const film::Image picture = read(folder / "ball.png");
+  EXPECT_EQ(picture.width, 48);
+  EXPECT_EQ(picture.height, 32);
+  EXPECT_EQ(folder.n_entries(), 2u);  // nothing is left beside the picture
+}
+
+TEST(RenderCommand, TheSameOptionsInBothFormatsGiveTheSamePicture) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "--size=40x30", "-o", folder / "a.exr", "-q"})));
+  ASSERT_TRUE(
+      succeeds(kdray({"render", scene, "--size", "40x30", "-o", folder / "b.png", "--bits", "16", "-q"})));
+  const film::Image exr = read(folder / "a.exr"), png = read(folder / "b.png");
+  ASSERT_EQ(exr.pixels.size(), 1200u);
+  ASSERT_EQ(png.pixels.size(), 1200u);
+  for (std::size_t i = 0; i < exr.pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(png.pixels[i][c], std::min(exr.pixels[i][c], 1.0f), 3e-5f) << "pixel " << i;
+  // The sky's colour is the background exactly: the picture is upright, with the sky in its first row.
+  EXPECT_FLOAT_EQ(exr.pixels[0].x, 0.1f);
+  EXPECT_FLOAT_EQ(exr.pixels[0].z, 0.4f);
+  EXPECT_NE(exr.pixels.back().z, 0.4f);
+}
+
+TEST(RenderCommand, QuietIsSilent) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const Outcome run = kdray({"render", scene, "-o", folder / "a.png", "--quiet"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_TRUE(run.out.empty() && run.err.empty()) << run.out << run.err;
+}
+
+TEST(RenderCommand, StatisticsHoldWhatIsPromised) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.png", "--stats", folder / "s.json"})));
+  const Json stats = Json::parse(folder.get("s.json"));
+  double parts = 0;
+  for (const char* const stage :
+       {"load", "build", "flatten", "upload", "compile", "trace", "shade", "render", "write", "total"}) {
+    ASSERT_TRUE(stats["seconds"][stage].is_number()) << stage;
+    EXPECT_GE(stats["seconds"][stage], 0.0) << stage;
+  }
+  for (const char* const stage : {"load", "build", "flatten", "upload", "render", "write"})
+    parts += stats["seconds"][stage].get<double>();
+  EXPECT_LE(parts, stats["seconds"]["total"]);
+  const Json& rays = stats["rays"];
+  EXPECT_EQ(rays["primary"], 48 * 32);
+  EXPECT_EQ(rays["total"].get<long>(), rays["primary"].get<long>() + rays["shadow"].get<long>() +
+                                           rays["reflected"].get<long>() + rays["refracted"].get<long>());
+  EXPECT_GT(rays["shadow"], 0);
+  EXPECT_GT(rays["reflected"], 0);
+  EXPECT_EQ(rays["refracted"], 0);
+  EXPECT_TRUE(rays["skipped"].is_object());
+  EXPECT_GT(stats["mrays_per_s"], 0.0);
+  for (const char* const object : {"tree", "memory", "device", "mode"})
+    EXPECT_FALSE(stats[object].empty()) << object;
+  EXPECT_FALSE(stats["features"]["on"].empty());
+  EXPECT_FALSE(stats["features"]["off"].empty());
+  EXPECT_GT(stats["memory"]["process_peak_bytes"], 1 << 20);
+}
+
+TEST(RenderCommand, StatisticsGoToStdoutAsDash) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const Outcome run = kdray({"render", scene, "-o", folder / "a.png", "--stats", "-", "-q"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_EQ(Json::parse(run.out)["command"], "render");
+  EXPECT_EQ(folder.n_entries(), 2u);
+}
+
+TEST(RenderCommand, ChannelsComeBesideThePicture) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  ASSERT_TRUE(
+      succeeds(kdray({"render", scene, "-o", folder / "a.png", "--aov", "depth,normal,primitive,cost"})));
+  for (const char* const name : {"a.png", "a.depth.png", "a.normal.png", "a.primitive.png", "a.cost.png"})
+    EXPECT_EQ(read(folder / name).pixels.size(), 48u * 32u) << name;
+}
+
+TEST(RenderCommand, EveryScheduleGivesTheSameBytes) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.exr", "-q"})));
+  const std::vector<std::vector<std::string>> schedules = {
+      {"--tile", "7x3"}, {"--work-group", "16"}, {"--mode", "pdprt", "--traversal", "binary"}};
+  for (std::vector<std::string> arguments : schedules) {
+    for (const char* const more : {"render", "-q", "-o"}) arguments.push_back(more);
+    std::rotate(arguments.begin(), arguments.end() - 3, arguments.end() - 2);  // "render" first
+    arguments.push_back(folder / "b.exr");
+    arguments.push_back(scene);
+    ASSERT_TRUE(succeeds(kdray(arguments))) << arguments[1];
+    EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr")) << arguments[1];
+  }
+}
+
+TEST(RenderCommand, WhatCannotBeWrittenIsRefusedBeforeTheSceneIsRead) {
+  const Folder folder;
+  fs::create_directory(folder / "folder.png");
+  folder.put("file", "");
+  // The scene does not exist: a message about it would mean that it was looked for first.
+  const auto refuses = [&](const std::string& output, const std::string& text) {
+    return fails_with(kdray({"render", "no-such-scene.nff", "-o", output}, {.folder = folder.path()}), 1,
+                      text);
+  };
+  EXPECT_TRUE(refuses("missing/a.png", "missing"));
+  EXPECT_TRUE(refuses("file/a.png", "file"));
+  EXPECT_TRUE(refuses("a.jpg", ".png or .exr"));
+  EXPECT_TRUE(refuses("a", ".png or .exr"));
+  EXPECT_TRUE(refuses("folder.png", "is a folder"));
+  EXPECT_TRUE(fails_with(
+      kdray({"render", "no-such-scene.nff", "--stats", "missing/s.json"}, {.folder = folder.path()}), 1,
+      "missing"));
+  EXPECT_EQ(folder.n_entries(), 2u);
+}
+
+TEST(RenderCommand, FilesThatWouldDestroyEachOtherAreRefused) {
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "--stats", scene, "-o", folder / "a.png"}), 2, "same file"));
+  EXPECT_TRUE(fails_with(
+      kdray({"render", "ball.nff", "--stats", "./a.png", "-o", "a.png"}, {.folder = folder.path()}), 2,
+      "same file"));
+  EXPECT_EQ(folder.get("ball.nff"), kSphereOnSquare);
+  EXPECT_EQ(folder.n_entries(), 1u);
+}
+
+TEST(RenderCommand, AFaultySceneIsNamedWithItsLineAndLeavesNothing) {
+  const Folder folder;
+  const fs::path scene = folder.put("bad.nff", "b 0 0 0\ns 0 0 nan 1\n");
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "-o", folder / "a.png"}), 1, scene.string() + ":2: "));
+  EXPECT_TRUE(fails_with(kdray({"render", folder / "none.nff", "-o", folder / "a.png"}), 1, "none.nff"));
+  EXPECT_TRUE(
+      fails_with(kdray({"render", folder.path(), "-o", folder / "a.png"}), 1, folder.path().string()));
+  EXPECT_EQ(folder.n_entries(), 1u);
+}
+
+TEST(RenderCommand, AFailedRunKeepsTheOldPicture) {
+  const Folder folder;
+  folder.put("a.png", "the old picture");
+  const fs::path scene = folder.put("bad.nff", "s 0 0\n");
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "-o", folder / "a.png"}), 1, "bad.nff:1"));
+  EXPECT_EQ(folder.get("a.png"), "the old picture");
+}
+
+TEST(RenderCommand, APictureTooLargeForTheMemoryIsExitCode4WithWhatWouldFit) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer needs all of the address space";
+#endif
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const Outcome run = kdray({"render", scene, "-o", folder / "a.png", "--size", "16384x8192"},
+                            {.limit_address_space = std::size_t{2} << 30});
+  EXPECT_TRUE(fails_with(run, 4, "would fit"));
+  int width = 0, height = 0;
+  const std::size_t at = run.err.find("--size ");
+  ASSERT_NE(at, std::string::npos) << run.err;
+  ASSERT_EQ(std::sscanf(run.err.c_str() + at, "--size %dx%d", &width, &height), 2) << run.err;
+  EXPECT_NEAR(static_cast<double>(width) / height, 2, 0.01);
+  EXPECT_GT(width, 1024);
+  EXPECT_LT(width, 16384 / 2);  // 2 GiB hold less than a quarter of it
+  EXPECT_EQ(folder.n_entries(), 1u);
+}
+
+TEST(RenderCommand, ADeviceThatIsNotThereIsExitCode3) {
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "-o", folder / "a.png", "--device", "no-such-device"}), 3,
+                         "device"));
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "-o", folder / "a.png"},
+                               {.environment = {{"OCL_ICD_VENDORS", folder.path().string() + "/"}}}),
+                         3, "device"));
+  EXPECT_EQ(folder.n_entries(), 1u);
+}
+
+}  // namespace
+}  // namespace kdray::test

@@ -1,0 +1,93 @@
+// What    What people read: numbers in words, the summary's lines, messages of one line, default names.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "base/error.h"
+#include "cli/memory.h"
+#include "cli/message.h"
+#include "cli/output.h"
+#include "cli/stats.h"
+#include "cli/summary.h"
+
+namespace kdray::cli {
+namespace {
+
+TEST(Words, CountsTimesAndBytes) {
+  EXPECT_EQ(in_words(0), "0");
+  EXPECT_EQ(in_words(999), "999");
+  EXPECT_EQ(in_words(1234567), "1.23 M");
+  EXPECT_EQ(in_words(2.5e9), "2.5 G");
+  EXPECT_EQ(seconds_in_words(0.00123), "1.23 ms");
+  EXPECT_EQ(seconds_in_words(0.9999), "1 s");
+  EXPECT_EQ(seconds_in_words(59.99), "1 min 0 s");
+  EXPECT_EQ(seconds_in_words(75.4), "1 min 15 s");
+  EXPECT_EQ(seconds_in_words(7320), "2 h 2 min");
+  EXPECT_EQ(bytes_in_words(1023), "1023 B");
+  EXPECT_EQ(bytes_in_words(1536), "1.5 KiB");
+  EXPECT_EQ(bytes_in_words(3ull << 30), "3 GiB");
+}
+
+TEST(Words, OneLineStaysOneLine) {
+  EXPECT_EQ(one_line("a\nb\t\tc\n"), "a b c");
+  EXPECT_EQ(one_line("\033[31mred\x7f"), "[31mred");
+  EXPECT_EQ(one_line("naïve"), "naïve");
+  EXPECT_EQ(one_line(""), "");
+}
+
+TEST(Words, DefaultPictureIsTheScenesNameHere) {
+  EXPECT_EQ(default_picture("scenes/dragon.ply.xz"), "dragon.png");
+  EXPECT_EQ(default_picture("a.b.NFF.GZ"), "a.b.png");
+  EXPECT_EQ(default_picture("/x/balls.nff"), "balls.png");
+}
+
+TEST(Stats, RendererFiguresAreKeptAndOwnOnesAdded) {
+  const Json stats = collect_stats(
+      "render", "a.nff",
+      R"({"seconds":{"build":0.5,"extra":0.1},"rays":{"total":7},"scene":{"primitives":3},"memory":{"x":1}})",
+      {.load = 1, .write = 2, .total = 4});
+  EXPECT_EQ(stats["seconds"]["load"], 1.0);
+  EXPECT_EQ(stats["seconds"]["build"], 0.5);
+  EXPECT_EQ(stats["seconds"]["extra"], 0.1);
+  EXPECT_EQ(stats["seconds"]["shade"], 0.0);
+  EXPECT_EQ(stats["seconds"]["write"], 2.0);
+  EXPECT_EQ(stats["seconds"]["total"], 4.0);
+  EXPECT_EQ(stats["scene"]["file"], "a.nff");
+  EXPECT_EQ(stats["scene"]["primitives"], 3);
+  EXPECT_EQ(stats["rays"]["total"], 7);
+  EXPECT_EQ(stats["memory"]["x"], 1);
+}
+
+TEST(Memory, WhatWouldFitFits) {
+  const std::uint64_t free = std::uint64_t{1} << 30;
+  EXPECT_NO_THROW(check_picture_fits(1024, 1024, 6, free));
+  EXPECT_GT(picture_bytes(100, 100, 6), picture_bytes(100, 100, 0));
+  try {
+    check_picture_fits(60000, 4000, 0, free);
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::out_of_memory);
+    unsigned width = 0, height = 0;
+    const std::string what = error.what();
+    ASSERT_EQ(std::sscanf(what.c_str() + what.find("--size"), "--size %ux%u", &width, &height), 2) << what;
+    EXPECT_NO_THROW(check_picture_fits(width, height, 0, free)) << what;
+    EXPECT_GT(picture_bytes(width, height, 0), free / 2) << "too careful: " << what;
+  }
+  EXPECT_GT(free_memory(), 0u);
+}
+
+TEST(Summary, LinesSayWhatWasMeasuredAndLeftOut) {
+  const Json stats = Json::parse(R"({
+    "seconds": {"load": 0.001, "build": 0.25, "trace": 0.75, "render": 1.5, "total": 2},
+    "rays": {"primary": 1000000, "shadow": 500000, "reflected": 0, "total": 1500000,
+             "skipped": {"light_behind": 20, "too_deep": 0}},
+    "mrays_per_s": 1.0,
+    "features": {"on": ["spheres"], "off": ["cones", "spot"]}})");
+  EXPECT_EQ(stages_line(stats), "load 1 ms, build 250 ms, render 1.5 s; 2 s in all");
+  EXPECT_EQ(rays_line(stats), "1.5 M rays, 1 M primary, 500 k shadow: 1 Mrays/s");
+  EXPECT_EQ(left_out_line(stats), "rays not traced: 20 light behind; not compiled: cones, spot");
+  EXPECT_EQ(left_out_line(Json::object()), "");
+}
+
+}  // namespace
+}  // namespace kdray::cli

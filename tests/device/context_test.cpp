@@ -1,0 +1,68 @@
+// Choice of devices, sub-devices and the errors of both.
+#include "device/context.h"
+
+#include <gtest/gtest.h>
+
+#include "device/opencl_error.h"
+#include "support/device.h"
+
+namespace kdray::device {
+namespace {
+
+class ContextTest : public test::EachDevice {};
+
+TEST_P(ContextTest, OpensTheDeviceOfThatNumber) {
+  const Context context(GetParam(), 1);
+  EXPECT_EQ(std::to_string(context.info().number), GetParam());
+  EXPECT_EQ(context.queues().size(), 1u);
+  EXPECT_GT(context.info().max_allocation, 0u);
+}
+
+TEST_P(ContextTest, GivesAsManyQueuesAsAskedFor) {
+  const Context context(GetParam(), 3);
+  EXPECT_EQ(context.queues().size(), 3u);
+  EXPECT_GE(context.n_sub_devices(), 1u);
+  EXPECT_LE(context.n_sub_devices(), 3u);
+}
+
+TEST_P(ContextTest, RefusesABufferLargerThanTheDeviceAllows) {
+  const Context context(GetParam(), 1);
+  try {
+    (void)context.buffer(CL_MEM_READ_WRITE, context.info().max_allocation + 1, "a test");
+    FAIL() << "no exception";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::out_of_memory);
+    EXPECT_NE(std::string(error.what()).find("a test"), std::string::npos) << error.what();
+  }
+}
+
+TEST_P(ContextTest, AnEmptyBufferIsNoError) {
+  const Context context(GetParam(), 1);
+  EXPECT_NO_THROW((void)context.buffer(CL_MEM_READ_ONLY, 0, "nothing"));
+}
+
+KDRAY_FOR_EACH_DEVICE(ContextTest);
+
+TEST(ChooseDevice, NamesWhatThereIsWhenThereIsNoSuchDevice) {
+  try {
+    (void)choose_device("no such device");
+    FAIL() << "no exception";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::no_device);
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+}
+
+TEST(OpenClError, NamesCallAndCode) {
+  const Error error = translate(cl::Error(CL_INVALID_KERNEL_ARGS, "clEnqueueNDRangeKernel"), "rendering");
+  EXPECT_EQ(error.code(), ErrorCode::no_device);
+  EXPECT_NE(std::string(error.what()).find("rendering: clEnqueueNDRangeKernel gave CL_INVALID_KERNEL_ARGS"),
+            std::string::npos)
+      << error.what();
+  EXPECT_EQ(translate(cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE, "x"), "y").code(),
+            ErrorCode::out_of_memory);
+  EXPECT_EQ(code_name(-4242), "OpenCL error -4242");
+}
+
+}  // namespace
+}  // namespace kdray::device

@@ -1,0 +1,143 @@
+// The structs of kernels/layout have the same size and offsets on the host and on each device: a kernel writes its own
+// back. (Both compilers assert sizes as well; this covers a device compiler that would ignore the assertions.)
+#include <gtest/gtest.h>
+
+#include "device/context.h"
+#include "layout/frame.layout.h"
+#include "layout/primitives.layout.h"
+#include "layout/rays.layout.h"
+#include "layout/shading.layout.h"
+#include "layout/tree.layout.h"
+#include "support/device.h"
+
+namespace kdray::layout {
+namespace {
+
+struct Probe {
+  std::string expression;  // as the device evaluates it
+  std::size_t host;
+};
+
+#define SIZE(type)                    \
+  Probe {                             \
+    "sizeof(" #type ")", sizeof(type) \
+  }
+#define OFFSET(type, field)                                            \
+  Probe {                                                              \
+    "__builtin_offsetof(" #type ", " #field ")", offsetof(type, field) \
+  }
+
+const std::vector<Probe> kProbes = {SIZE(KdNode),
+                                    SIZE(Triangle),
+                                    SIZE(VertexNormals),
+                                    SIZE(Sphere),
+                                    SIZE(Cone),
+                                    SIZE(Material),
+                                    SIZE(Light),
+                                    SIZE(Ray),
+                                    SIZE(Hit),
+                                    SIZE(ShadowRay),
+                                    SIZE(QueryRay),
+                                    SIZE(QueryHit),
+                                    SIZE(Frame),
+                                    SIZE(Slice),
+                                    OFFSET(KdNode, word1),
+                                    OFFSET(Triangle, v),
+                                    OFFSET(Triangle, number),
+                                    OFFSET(Triangle, material),
+                                    OFFSET(Triangle, normals),
+                                    OFFSET(Sphere, radius),
+                                    OFFSET(Sphere, number),
+                                    OFFSET(Sphere, material),
+                                    OFFSET(Cone, base_radius),
+                                    OFFSET(Cone, axis),
+                                    OFFSET(Cone, height),
+                                    OFFSET(Cone, slope),
+                                    OFFSET(Cone, number),
+                                    OFFSET(Cone, material),
+                                    OFFSET(Material, diffuse),
+                                    OFFSET(Material, specular),
+                                    OFFSET(Material, reflect),
+                                    OFFSET(Material, transmit),
+                                    OFFSET(Material, shine),
+                                    OFFSET(Material, index),
+                                    OFFSET(Light, kind),
+                                    OFFSET(Light, direction),
+                                    OFFSET(Light, range),
+                                    OFFSET(Light, color),
+                                    OFFSET(Light, cos_inner),
+                                    OFFSET(Light, attenuation),
+                                    OFFSET(Light, cos_outer),
+                                    OFFSET(Ray, t_min),
+                                    OFFSET(Ray, direction),
+                                    OFFSET(Ray, depth),
+                                    OFFSET(Ray, weight),
+                                    OFFSET(Ray, pixel),
+                                    OFFSET(Hit, ref),
+                                    OFFSET(Hit, u),
+                                    OFFSET(Hit, v),
+                                    OFFSET(ShadowRay, t_max),
+                                    OFFSET(ShadowRay, direction),
+                                    OFFSET(ShadowRay, skip),
+                                    OFFSET(ShadowRay, contribution),
+                                    OFFSET(ShadowRay, pixel),
+                                    OFFSET(QueryRay, t_min),
+                                    OFFSET(QueryRay, direction),
+                                    OFFSET(QueryRay, t_max),
+                                    OFFSET(QueryHit, primitive),
+                                    OFFSET(QueryHit, u),
+                                    OFFSET(Frame, hither),
+                                    OFFSET(Frame, forward),
+                                    OFFSET(Frame, x_scale),
+                                    OFFSET(Frame, right),
+                                    OFFSET(Frame, up),
+                                    OFFSET(Frame, background),
+                                    OFFSET(Frame, root_lo),
+                                    OFFSET(Frame, world_max),
+                                    OFFSET(Frame, root_hi),
+                                    OFFSET(Frame, spawn_threshold),
+                                    OFFSET(Frame, width),
+                                    OFFSET(Frame, tile_width),
+                                    OFFSET(Frame, n_tiles_x),
+                                    OFFSET(Frame, n_samples),
+                                    OFFSET(Frame, max_depth),
+                                    OFFSET(Frame, corner_grid),
+                                    OFFSET(Frame, batch_size),
+                                    OFFSET(Frame, pool_size),
+                                    OFFSET(Frame, light_batch),
+                                    OFFSET(Frame, first_pixel),
+                                    OFFSET(Frame, keep_weightless),
+                                    OFFSET(Slice, n_pool),
+                                    OFFSET(Slice, n_shadow),
+                                    OFFSET(Slice, end_tile),
+                                    OFFSET(Slice, tile_stride),
+                                    OFFSET(Slice, n_primary),
+                                    OFFSET(Slice, n_pool_overflow)};
+
+class LayoutTest : public test::EachDevice {};
+
+TEST_P(LayoutTest, TheDeviceSeesTheSameStructs) {
+  std::string source;
+  for (const char* header : {"frame", "primitives", "rays", "shading", "tree"})
+    source += "#include \"layout/" + std::string(header) + ".layout.h\"\n";
+  source += "__kernel void probe(__global uint* out) {\n";
+  for (std::size_t i = 0; i < kProbes.size(); ++i)
+    source += "out[" + std::to_string(i) + "] = (uint)" + kProbes[i].expression + ";\n";
+  source += "}\n";
+
+  const device::Context context(GetParam(), 1);
+  cl::Kernel kernel(context.build_text("layout_probe.cl", source, "-cl-std=CL1.2"), "probe");
+  const cl::Buffer out = context.buffer(CL_MEM_WRITE_ONLY, kProbes.size() * sizeof(cl_uint), "the probes");
+  kernel.setArg(0, out);
+  const cl::CommandQueue& queue = context.queues().front();
+  queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1));
+  std::vector<cl_uint> device(kProbes.size());
+  queue.enqueueReadBuffer(out, CL_TRUE, 0, device.size() * sizeof(cl_uint), device.data());
+  for (std::size_t i = 0; i < kProbes.size(); ++i)
+    EXPECT_EQ(device[i], kProbes[i].host) << kProbes[i].expression;
+}
+
+KDRAY_FOR_EACH_DEVICE(LayoutTest);
+
+}  // namespace
+}  // namespace kdray::layout

@@ -1,0 +1,77 @@
+// The flat arrays hold what scene, geometry and tree say.
+#include "flatten/flatten.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "kdray/error.h"
+
+namespace kdray::flatten {
+namespace {
+
+scene::Scene mixed_scene() {
+  scene::Scene s;
+  s.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  s.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  s.triangles = {{.vertex = {0, 1, 2}, .material = 0, .number = 1},
+                 {.vertex = {0, 1, 3}, .normal = {0, 1, 2}, .material = 1, .number = 3}};
+  s.spheres = {{.center = {2, 0, 0}, .radius = 0.5, .material = 1, .number = 0}};
+  s.cones = {
+      {.base = {0, 0, 0}, .apex = {0, 0, 4}, .base_radius = 2, .apex_radius = 1, .material = 0, .number = 2}};
+  s.materials = {{.emission = vec3(0.25f), .ambient = vec3(0.5f), .shine = 7},
+                 {.transmit = vec3(1), .index = 1.5f}};
+  s.ambient = vec3(0.5f);
+  return s;
+}
+
+kdtree::Tree leaf_of_all() {
+  using scene::PrimitiveKind;
+  kdtree::Tree tree;
+  tree.refs = {kdtree::make_ref(PrimitiveKind::triangle, 0), kdtree::make_ref(PrimitiveKind::triangle, 1),
+               kdtree::make_ref(PrimitiveKind::sphere, 0), kdtree::make_ref(PrimitiveKind::cone, 0)};
+  tree.nodes = {{.left = 0, .right = 4}};
+  return tree;
+}
+
+TEST(Flatten, KeepsNumbersMaterialsAndNormals) {
+  const scene::Scene s = mixed_scene();
+  const scene::Geometry g = scene::make_geometry(s);
+  const FlatScene flat = flatten(s, g, leaf_of_all());
+  ASSERT_EQ(flat.triangles.size(), 2u);
+  EXPECT_EQ(flat.triangles[0].number, 1u);
+  EXPECT_EQ(flat.triangles[0].normals, KDRAY_NO_NORMALS);
+  EXPECT_EQ(flat.triangles[1].number, 3u);
+  ASSERT_EQ(flat.triangles[1].normals, 0u);
+  EXPECT_EQ(flat.normals[0].n[1][1], 1.0f);
+  EXPECT_EQ(flat.spheres[0].radius, 0.5f);
+  EXPECT_EQ(flat.spheres[0].number, 0u);
+  EXPECT_EQ(flat.cones[0].height, 4.0f);
+  EXPECT_EQ(flat.cones[0].slope, -0.25f);
+  EXPECT_EQ(flat.cones[0].axis[2], 1.0f);
+  EXPECT_EQ(flat.materials[0].unshadowed[0], 0.5f);  // emission + ambient * Camb
+  EXPECT_EQ(flat.materials[1].index, 1.5f);
+}
+
+TEST(Flatten, PacksInnerNodesAndLeaves) {
+  const scene::Scene s = mixed_scene();
+  kdtree::Tree tree = leaf_of_all();
+  tree.nodes = {
+      {.axis = 1, .split = -0.75f, .left = 1, .right = 2}, {.left = 0, .right = 3}, {.left = 3, .right = 1}};
+  const FlatScene flat = flatten(s, scene::make_geometry(s), tree);
+  EXPECT_EQ(std::bit_cast<float>(flat.nodes[0].word0), -0.75f);
+  EXPECT_EQ(flat.nodes[0].word1, 2u << 2 | 1u);
+  EXPECT_EQ(flat.nodes[1].word1, 3u << 2 | KDRAY_NODE_LEAF);
+  EXPECT_EQ(flat.nodes[2].word0, 3u);
+}
+
+TEST(Flatten, RefusesATreeInAnotherOrder) {
+  const scene::Scene s = mixed_scene();
+  kdtree::Tree tree = leaf_of_all();
+  tree.nodes = {
+      {.axis = 0, .split = 0, .left = 2, .right = 1}, {.left = 0, .right = 3}, {.left = 3, .right = 1}};
+  EXPECT_THROW((void)flatten(s, scene::make_geometry(s), tree), Error);
+}
+
+}  // namespace
+}  // namespace kdray::flatten

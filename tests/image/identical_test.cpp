@@ -1,0 +1,84 @@
+// What    The same picture bit for bit whatever the tiles, the work-group, the number of queues and the run
+//         (DESIGN.md section 1).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "image/render.h"
+#include "image/scenes.h"
+
+namespace kdray::test {
+namespace {
+
+constexpr int kWidth = 150, kHeight = 101;  // no multiple of any tile
+
+struct Schedule {
+  int tile_width, tile_height, work_group, queues;
+};
+
+Picture render(const Scene& scene, const Schedule& s, const std::vector<std::string>& channels = {}) {
+  DeviceOptions device;
+  device.queues = s.queues;
+  device.work_group = s.work_group;
+  Renderer renderer(scene, {}, device);
+  RenderOptions options = exact_options(kWidth, kHeight);
+  options.tile_width = s.tile_width;
+  options.tile_height = s.tile_height;
+  options.channels = channels;
+  return renderer.render(options);
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::ranges::equal(a, b, [](float l, float r) {
+    return std::bit_cast<std::uint32_t>(l) == std::bit_cast<std::uint32_t>(r);
+  });
+}
+
+class Identical : public testing::TestWithParam<NamedScene> {};
+
+TEST_P(Identical, WhateverTheSchedule) {
+  const Scene scene{GetParam().make()};
+  const Picture first = render(scene, {0, 0, 0, 1});
+  ASSERT_EQ(first.rgb.size(), 3u * kWidth * kHeight);
+  ASSERT_GT(mean_luminance(first), 0.05);
+  for (const int queues : {1, 2}) {
+    for (const int work_group : {1, 16, 64}) {
+      for (const auto& [width, height] : {std::pair{8, 8}, {16, 16}, {64, 32}}) {
+        const Picture other = render(scene, {width, height, work_group, queues});
+        EXPECT_TRUE(same_bits(first.rgb, other.rgb))
+            << fmt::format("tiles {}x{}, work-group {}, queues {}", width, height, work_group, queues);
+      }
+    }
+  }
+}
+
+TEST_P(Identical, FromRunToRunAndWithChannels) {
+  const Scene scene{GetParam().make()};
+  const Schedule schedule{16, 16, 0, 2};
+  const std::vector<std::string> names = {"depth", "normal", "primitive"};
+  const Picture first = render(scene, schedule, names), again = render(scene, schedule, names);
+  EXPECT_TRUE(same_bits(first.rgb, again.rgb));
+  for (const char* name : {"depth", "normal.x", "normal.y", "normal.z", "primitive"})
+    EXPECT_TRUE(same_bits(channel(first, name), channel(again, name))) << name;
+  EXPECT_TRUE(same_bits(first.rgb, render(scene, schedule).rgb)) << "channels change the colour";
+}
+
+TEST_P(Identical, OneRendererTwice) {
+  const Scene scene{GetParam().make()};
+  Renderer renderer(scene);
+  const Picture first = renderer.render(exact_options(kWidth, kHeight));
+  const Picture small = renderer.render(exact_options(16, 9));  // leaves nothing behind for the next
+  EXPECT_EQ(small.rgb.size(), 3u * 16 * 9);
+  EXPECT_TRUE(same_bits(first.rgb, renderer.render(exact_options(kWidth, kHeight)).rgb));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Identical,
+                         testing::Values(NamedScene{"spheres_and_glass", glass_and_mirror_balls},
+                                         NamedScene{"smooth_meshes", smooth_meshes},
+                                         NamedScene{"cones", cones_and_cylinders}),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace kdray::test

@@ -1,0 +1,193 @@
+#include "image/scenes.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "oracle/build_scene.h"
+
+namespace kdray::test {
+namespace {
+
+using oracle::SceneBuilder;
+
+scene::Material plastic(const vec3& color, float shine, float reflect = 0) {
+  scene::Material m = oracle::matte(color);
+  m.ambient = 0.1f * color;
+  m.specular = vec3(0.5f);
+  m.shine = shine;
+  m.reflect = vec3(reflect);
+  return m;
+}
+
+scene::Material tinted_glass(const vec3& tint, float index) {
+  scene::Material m = oracle::glass(index, 0.8f * tint, vec3(0.1f));
+  m.ambient = vec3(0.02f);
+  m.specular = vec3(0.4f);
+  m.shine = 40;
+  return m;
+}
+
+SceneBuilder with_floor(double height = -1) {
+  SceneBuilder b;
+  b.quad({-20, height, 20}, {40, 0, 0}, {0, 0, -40}, plastic({0.6f, 0.55f, 0.4f}, 8, 0.1f));
+  b.background({0.2f, 0.3f, 0.5f}).ambient(vec3(0.5f)).camera({0, 2.3, 7.1}, {0.05, 0.1, 0}, 0.62);
+  return b.light({4, 8, 6}, vec3(0.6f)).light({-6, 5, 3}, {0.3f, 0.35f, 0.4f});
+}
+
+}  // namespace
+
+void add_smooth_ball(scene::Scene& scene, const dvec3& center, double radius, int rows,
+                     const scene::Material& m) {
+  const int columns = 2 * rows;
+  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+  const auto first_normal = static_cast<std::uint32_t>(scene.normals.size());
+  scene.materials.push_back(m);
+  for (int i = 0; i <= rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const double theta = std::numbers::pi * i / rows, phi = 2 * std::numbers::pi * j / columns;
+      const dvec3 n{std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi)};
+      scene.vertices.push_back(center + radius * n);
+      scene.normals.push_back(vec3(n));
+    }
+  }
+  const auto add = [&](int i0, int j0, int i1, int j1, int i2, int j2) {
+    scene::Triangle t;
+    const int corner[3] = {i0 * columns + j0 % columns, i1 * columns + j1 % columns,
+                           i2 * columns + j2 % columns};
+    for (int k = 0; k < 3; ++k) t.vertex[k] = first + corner[k], t.normal[k] = first_normal + corner[k];
+    t.material = static_cast<std::uint32_t>(scene.materials.size() - 1);
+    t.number = scene.primitive_count();
+    scene.triangles.push_back(t);
+  };
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      // At a pole two of the four corners are one, and one of the two triangles is none.
+      if (i + 1 < rows) add(i, j, i + 1, j, i + 1, j + 1);
+      if (i > 0) add(i, j, i + 1, j + 1, i, j + 1);
+    }
+  }
+}
+
+scene::Scene glass_and_mirror_balls() {
+  SceneBuilder b = with_floor();
+  b.sphere({-1.3, 0, 0.4}, 1, tinted_glass({1, 0.9f, 0.9f}, 1.5f));
+  b.sphere({-1.3, 0.1, 0.4}, 0.5, tinted_glass({0.9f, 1, 0.9f}, 1.2f));
+  b.sphere({1.2, -0.2, 0.2}, 0.8, plastic({0.1f, 0.1f, 0.15f}, 60, 0.7f));
+  b.sphere({0.2, -0.6, 1.6}, 0.4, plastic({0.8f, 0.2f, 0.1f}, 20));
+  b.sphere({0.5, 0.9, -1.5}, 0.7, plastic({0.2f, 0.7f, 0.3f}, 5, 0.2f));
+  return b.scene();
+}
+
+scene::Scene smooth_meshes() {
+  scene::Scene s = with_floor().scene();
+  add_smooth_ball(s, {-1.4, 0, 0}, 1, 6, plastic({0.7f, 0.3f, 0.2f}, 12));
+  add_smooth_ball(s, {0.6, -0.2, 1.1}, 0.8, 8, tinted_glass({0.9f, 0.95f, 1}, 1.4f));
+  add_smooth_ball(s, {1.6, 0.3, -0.8}, 1, 7, plastic({0.1f, 0.1f, 0.1f}, 50, 0.6f));
+  return s;
+}
+
+scene::Scene cones_and_cylinders() {
+  SceneBuilder b = with_floor();
+  b.cone({-1.8, -1, 0}, 0.8, {-1.6, 1.2, 0.1}, 0, plastic({0.8f, 0.6f, 0.1f}, 15));
+  b.cone({0, -1, 0.3}, 0.5, {0, 0.6, 0.3}, 0.9, plastic({0.2f, 0.4f, 0.8f}, 25, 0.2f));  // open at the top
+  b.cone({0.4, -0.6, 2}, 0.3, {1.6, -0.5, 1.7}, 0.3, tinted_glass({0.9f, 1, 0.9f}, 1.3f));
+  b.cone({1.8, -1, -0.4}, 0.6, {1.8, 0.9, -0.4}, 0.6, plastic({0.05f, 0.05f, 0.05f}, 80, 0.8f));
+  b.cone({2.2, 1.6, -1}, 0, {-1.5, 1.5, -1.4}, 0.5, plastic({0.7f, 0.2f, 0.5f}, 10));
+  return b.scene();
+}
+
+scene::Scene every_light() {
+  SceneBuilder b;
+  b.quad({-20, -1, 20}, {40, 0, 0}, {0, 0, -40}, plastic(vec3(0.7f), 6));
+  b.sphere({-1, 0, 0}, 1, plastic({0.5f, 0.6f, 0.7f}, 30));
+  b.cone({1.2, -1, 0.5}, 0.5, {1.2, 0.7, 0.5}, 0.2, plastic({0.7f, 0.6f, 0.3f}, 9));
+  scene::Material lamp = oracle::glowing({0.9f, 0.8f, 0.4f});
+  lamp.diffuse = vec3(0.2f);
+  b.sphere({2.2, -0.6, -1}, 0.4, lamp);
+  b.background({0.05f, 0.05f, 0.1f}).ambient({0.3f, 0.2f, 0.4f}).camera({0, 3, 7}, {0, -0.1, 0}, 0.6);
+
+  scene::Light near;
+  near.position = {-3, 1, 2};
+  near.color = {2, 1.5f, 1};
+  near.attenuation = {0.2f, 0.1f, 0.3f};
+  scene::Light reach;
+  reach.position = {3, 0.5, 1};
+  reach.color = {0.2f, 0.4f, 0.6f};
+  reach.range = 2.6;
+  scene::Light sun;
+  sun.kind = scene::LightKind::directional;
+  sun.direction = glm::normalize(dvec3(-0.6, -1, -0.5));
+  sun.color = {0.25f, 0.25f, 0.2f};
+  sun.attenuation = {0, 0, 1};  // means nothing for a light without a place
+  scene::Light spot;
+  spot.kind = scene::LightKind::spot;
+  spot.position = {0, 5, 3};
+  spot.direction = glm::normalize(dvec3(0.1, -1, -0.4));
+  spot.color = {0.6f, 0.2f, 0.2f};
+  spot.cos_inner = 0.97f;
+  spot.cos_outer = 0.9f;
+  scene::Light sharp = spot;
+  sharp.position = {-5, 4, -1};
+  sharp.direction = glm::normalize(dvec3(1, -1, 0));
+  sharp.color = {0.1f, 0.5f, 0.3f};
+  sharp.cos_inner = sharp.cos_outer = 0.95f;
+  return b.light(near).light(reach).light(sun).light(spot).light(sharp).scene();
+}
+
+scene::Scene flat_glass() {
+  SceneBuilder b = with_floor();
+  const scene::Material pane = tinted_glass({0.9f, 1, 1}, 1.5f), air = oracle::glass(1, {0.9f, 0.6f, 0.6f});
+  b.quad({-2.4, -0.9, 0.5}, {1.5, 0, 0.3}, {0, 1.8, 0}, pane);  // slab, front
+  b.quad({-2.4, -0.9, 0.2}, {0, 1.8, 0}, {1.5, 0, 0.3}, pane);  // slab, back
+  b.quad({-0.4, -0.9, 1.5}, {1.3, 0, 0.1}, {0, 1.5, 0}, pane);  // prism: upright face, slope and floor
+  b.quad({-0.4, 0.6, 1.5}, {1.3, 0, 0.1}, {0, -1.5, -1.5}, pane);
+  b.quad({-0.4, -0.9, 1.5}, {0, 0, -1.5}, {1.3, 0, 0.1}, pane);
+  b.quad({1.3, -0.8, 1}, {0.9, 0, -0.3}, {0, 1.2, 0}, air);
+  b.quad({-3, -1, -3}, {6, 0, 0}, {0, 4, 0}, oracle::mirror({0.8f, 0.8f, 0.7f}));
+  b.sphere({0.8, -0.4, -1}, 0.6, plastic({0.9f, 0.5f, 0.1f}, 12));
+  return b.scene();
+}
+
+scene::Scene moved(scene::Scene model, double scale, const dvec3& offset) {
+  const auto place = [&](dvec3& p) { p = p * scale + offset; };
+  for (dvec3& v : model.vertices) place(v);
+  for (scene::Sphere& s : model.spheres) place(s.center), s.radius *= scale;
+  for (scene::Cone& c : model.cones) {
+    place(c.base), place(c.apex);
+    c.base_radius *= scale, c.apex_radius *= scale;
+  }
+  for (scene::Light& l : model.lights) {
+    place(l.position);
+    l.range *= scale;
+    l.attenuation.y = static_cast<float>(l.attenuation.y / scale);
+    l.attenuation.z = static_cast<float>(l.attenuation.z / (scale * scale));
+  }
+  place(model.camera->from), place(model.camera->at);
+  model.camera->hither *= scale;
+  return model;
+}
+
+const std::vector<NamedScene>& small_scenes() {
+  static const std::vector<NamedScene> all = {
+      {"glass_and_mirror_balls", glass_and_mirror_balls},
+      {"smooth_meshes", smooth_meshes},
+      {"cones_and_cylinders", cones_and_cylinders},
+      {"every_light", every_light},
+      {"flat_glass", flat_glass},
+      {"scaled_down", [] { return moved(glass_and_mirror_balls(), 1e-4, dvec3(0)); }},
+      {"scaled_up", [] { return moved(cones_and_cylinders(), 1e4, dvec3(0)); }},
+      {"far_away",
+       [] {
+         return moved(smooth_meshes(), 1, {1e6, -1e6, 1e6});
+       }},
+      {"hither",
+       [] {
+         scene::Scene s = cones_and_cylinders();
+         s.camera->hither = 6.9;  // cuts the nearer cones open
+         return s;
+       }},
+  };
+  return all;
+}
+
+}  // namespace kdray::test

@@ -1,0 +1,36 @@
+// What    The small scenes that the picture tests share: between them every kind of primitive, material and
+//         light.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace kdray::test {
+
+// A sphere of rows x 2*rows patches with vertex normals; coarse on purpose, so that shading and geometry
+// disagree.
+void add_smooth_ball(scene::Scene& scene, const dvec3& center, double radius, int rows,
+                     const scene::Material& m);
+
+scene::Scene glass_and_mirror_balls();  // spheres: nested, glass in glass, a mirror; a floor
+scene::Scene smooth_meshes();           // vertex normals: matte, glossy, glass, mirror
+scene::Scene cones_and_cylinders();     // pointed, truncated, cylinders, glass and mirror ones, seen into
+scene::Scene every_light();             // point with attenuation, range, directional, spots; emission
+scene::Scene flat_glass();              // a slab, a prism with total reflection, index 1, a box of mirrors
+
+// `model` moved by `offset` and scaled by `scale` about the origin, camera and lights with it.
+scene::Scene moved(scene::Scene model, double scale, const dvec3& offset);
+
+struct NamedScene {
+  std::string name;
+  scene::Scene (*make)();
+};
+inline void PrintTo(const NamedScene& s, std::ostream* out) {
+  *out << s.name;
+}
+const std::vector<NamedScene>& small_scenes();
+
+}  // namespace kdray::test

@@ -1,0 +1,166 @@
+// Whole trees: well formed, complete, the same for any number of threads.
+#include "kdtree/build.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "kdray/error.h"
+#include "kdtree/check_tree.h"
+#include "kdtree/statistics.h"
+
+namespace kdray::test {
+namespace {
+
+using kdtree::BuildConfig;
+using kdtree::Tree;
+
+int default_depth(std::size_t n) {
+  return static_cast<int>(8 + 1.3 * std::log2(static_cast<double>(n)));
+}
+
+void check_tree(const scene::Geometry& g, const BuildConfig& config = {}) {
+  const Tree tree = kdtree::build(g, config);
+  check_shape(tree, g, config.max_depth >= 0 ? config.max_depth : default_depth(g.size()));
+  if (!testing::Test::HasFatalFailure()) check_complete(tree, g, 12, 99);
+}
+
+TEST(Build, EmptyGeometryIsOneEmptyLeaf) {
+  const Tree tree = kdtree::build({});
+  ASSERT_EQ(tree.nodes.size(), 1u);
+  EXPECT_TRUE(tree.nodes[0].is_leaf());
+  EXPECT_EQ(tree.nodes[0].right, 0u);
+  EXPECT_TRUE(tree.refs.empty());
+  EXPECT_TRUE(tree.bounds.empty());
+}
+
+TEST(Build, OnePrimitiveOfEachKind) {
+  scene::Geometry triangle, sphere, cone;
+  add_triangle(triangle, {0, 0, 0}, {1, 0, 0}, {0, 1, 1});
+  sphere.spheres.push_back({{1, 2, 3}, 2, 0});
+  cone.cones.push_back({{0, 0, 0}, {1, 2, 3}, 1, 0.5f, 0});
+  for (const scene::Geometry& g : {triangle, sphere, cone}) check_tree(g);
+}
+
+TEST(Build, RandomPrimitives) {
+  for (const float size : {0.1f, 1.0f, 6.0f}) {
+    SCOPED_TRACE(size);
+    Random random(11);
+    check_tree(mixed_geometry(random, 1500, size));
+  }
+}
+
+TEST(Build, ManySmallScenes) {
+  Random random(12);
+  for (int trial = 0; trial < 300 && !HasFailure(); ++trial) {
+    SCOPED_TRACE(trial);
+    check_tree(mixed_geometry(random, 2 + trial % 30, trial % 2 == 0 ? 1.0f : 5.0f));
+  }
+}
+
+TEST(Build, Architecture) {
+  Random random(13);
+  scene::Geometry g;
+  add_architecture(g, random, 2000);
+  check_tree(g);
+}
+
+// All geometry in one plane: the root itself is flat.
+TEST(Build, FlatScene) {
+  Random random(14);
+  scene::Geometry g;
+  add_triangles(g, random, 2000, 0.5f);
+  for (auto& t : g.triangles) {
+    for (vec3& v : t.vertex) v.y = 3;
+  }
+  check_tree(g);
+}
+
+TEST(Build, AFloorGetsAFlatCell) {
+  scene::Geometry g;
+  for (int i = 0; i < 40; ++i) {
+    const vec3 c(i % 8, i / 8, 0);
+    add_triangle(g, c, c + vec3(1, 0, 0), c + vec3(1, 1, 0));
+    add_triangle(g, c, c + vec3(1, 1, 0), c + vec3(0, 1, 0));
+  }
+  add_triangle(g, {0, 0, 4}, {8, 0, 5}, {4, 5, 6});
+  const Tree tree = kdtree::build(g);
+  // Somewhere a plane at z = 0 parts the floor from the air above it.
+  bool found = false;
+  for (const kdtree::Node& n : tree.nodes) found |= !n.is_leaf() && n.axis == 2 && n.split == 0;
+  EXPECT_TRUE(found);
+  check_tree(g);
+}
+
+TEST(Build, BoxedIsValidAndHasMoreReferences) {
+  Random random(15);
+  const scene::Geometry g = mixed_geometry(random, 2000, 1.5f);
+  BuildConfig boxed;
+  boxed.clip = false;
+  check_tree(g, boxed);
+  const auto clipped_cost = kdtree::measure(kdtree::build(g), g).sah_cost;
+  const auto boxed_cost = kdtree::measure(kdtree::build(g, boxed), g, boxed).sah_cost;
+  EXPECT_LT(clipped_cost, boxed_cost);
+}
+
+TEST(Build, DepthIsRespected) {
+  Random random(16);
+  const scene::Geometry g = mixed_geometry(random, 500, 0.5f);
+  for (const int depth : {0, 1, 5, 12}) {
+    SCOPED_TRACE(depth);
+    BuildConfig config;
+    config.max_depth = depth;
+    check_tree(g, config);
+    EXPECT_EQ(kdtree::build(g, config).max_depth, depth);
+  }
+  BuildConfig deep;
+  deep.max_depth = 1000;  // the traversal's stack is the limit
+  EXPECT_LE(kdtree::build(g, deep).max_depth, 64);
+}
+
+TEST(Build, OtherCosts) {
+  Random random(17);
+  const scene::Geometry g = mixed_geometry(random, 800, 0.7f);
+  BuildConfig dear, cheap;
+  dear.cost_traverse = 20;
+  cheap.cost_traverse = 0;
+  cheap.empty_bonus = 1;
+  check_tree(g, dear);
+  check_tree(g, cheap);
+  EXPECT_LT(kdtree::build(g, dear).nodes.size(), kdtree::build(g, cheap).nodes.size());
+}
+
+TEST(Build, SenselessCostsAreRefused) {
+  for (const double bad : {0.0, -1.0, double{NAN}, double{INFINITY}}) {
+    BuildConfig config;
+    config.cost_intersect = bad;
+    EXPECT_THROW(kdtree::build({}, config), Error);
+    config = {};
+    config.empty_bonus = bad;
+    EXPECT_THROW(kdtree::build({}, config), Error);
+  }
+}
+
+TEST(Build, ThreadsDoNotShow) {
+  Random random(18);
+  scene::Geometry g;
+  add_triangles(g, random, 40000, 0.3f);
+  add_spheres(g, random, 5000, 0.3f);
+  std::vector<Tree> trees;
+  for (const int threads : {1, 2, 5}) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    trees.push_back(kdtree::build(g));
+  }
+  for (const Tree& t : trees) {
+    ASSERT_EQ(t.nodes.size(), trees[0].nodes.size());
+    ASSERT_EQ(t.refs, trees[0].refs);
+    EXPECT_EQ(std::memcmp(t.nodes.data(), trees[0].nodes.data(), t.nodes.size() * sizeof(kdtree::Node)), 0);
+  }
+  check_shape(trees[0], g, default_depth(g.size()));
+  if (!HasFatalFailure()) check_complete(trees[0], g, 6, 5);
+}
+
+}  // namespace
+}  // namespace kdray::test

@@ -1,0 +1,169 @@
+#include "kdtree/check_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kdtree/reference.h"
+
+namespace kdray::test {
+
+namespace {
+
+using kdtree::Bounds;
+using kdtree::Node;
+using kdtree::Ref;
+using kdtree::ref_index;
+using kdtree::ref_kind;
+using kdtree::Tree;
+
+class ShapeCheck {
+ public:
+  ShapeCheck(const Tree& tree, const scene::Geometry& geometry) : tree_(tree), geometry_(geometry) {}
+
+  void run(int max_depth) {
+    ASSERT_FALSE(tree_.nodes.empty());
+    visit(0, kdtree::bounds_from(tree_.bounds), 0);
+    EXPECT_EQ(n_visited_, tree_.nodes.size());
+    EXPECT_EQ(next_ref_, tree_.refs.size());
+    EXPECT_EQ(deepest_, tree_.max_depth);
+    EXPECT_LE(tree_.max_depth, max_depth);
+  }
+
+ private:
+  // Preorder without a gap: so children are found once, and cells of one node's children share a face only.
+  void visit(std::uint32_t index, const Bounds& cell, int depth) {
+    ASSERT_EQ(index, n_visited_);
+    ASSERT_LT(index, tree_.nodes.size());
+    ASSERT_LE(depth, 64);
+    ++n_visited_;
+    const Node& node = tree_.nodes[index];
+    if (node.is_leaf()) {
+      deepest_ = std::max(deepest_, depth);
+      return check_leaf(node);
+    }
+    ASSERT_LT(node.axis, 3u);
+    ASSERT_LE(cell.lo[node.axis], node.split);
+    ASSERT_GE(cell.hi[node.axis], node.split);
+    ASSERT_LT(cell.lo[node.axis], cell.hi[node.axis]) << "a flat cell cut across its thickness";
+    EXPECT_EQ(node.left, index + 1);
+    const int axis = static_cast<int>(node.axis);
+    visit(node.left, kdtree::below(cell, axis, node.split), depth + 1);
+    if (testing::Test::HasFatalFailure()) return;
+    visit(node.right, kdtree::above(cell, axis, node.split), depth + 1);
+  }
+
+  void check_leaf(const Node& leaf) {
+    ASSERT_EQ(leaf.left, next_ref_);
+    next_ref_ += leaf.right;
+    ASSERT_LE(next_ref_, tree_.refs.size());
+    for (std::size_t i = leaf.left; i < next_ref_; ++i) {
+      const Ref r = tree_.refs[i];
+      if (i > leaf.left) {
+        ASSERT_LT(tree_.refs[i - 1], r);
+      }
+      const std::size_t sizes[3] = {geometry_.triangles.size(), geometry_.spheres.size(),
+                                    geometry_.cones.size()};
+      ASSERT_LT(static_cast<std::uint32_t>(ref_kind(r)), 3u);
+      ASSERT_LT(ref_index(r), sizes[static_cast<std::uint32_t>(ref_kind(r))]);
+    }
+  }
+
+  const Tree& tree_;
+  const scene::Geometry& geometry_;
+  std::size_t n_visited_ = 0, next_ref_ = 0;
+  int deepest_ = 0;
+};
+
+// Whether a leaf whose closed cell, widened by `tolerance`, holds p refers to r.
+bool leaf_refers(const Tree& tree, const dvec3& p, double tolerance, Ref r) {
+  std::vector<std::uint32_t> stack{0};
+  while (!stack.empty()) {
+    const Node& node = tree.nodes[stack.back()];
+    stack.pop_back();
+    if (node.is_leaf()) {
+      const auto first = tree.refs.begin() + node.left;
+      if (std::binary_search(first, first + node.right, r)) return true;
+      continue;
+    }
+    const double x = p[static_cast<int>(node.axis)];
+    if (x - tolerance <= node.split) stack.push_back(node.left);
+    if (x + tolerance >= node.split) stack.push_back(node.right);
+  }
+  return false;
+}
+
+bool in_bounds(const Box& b, const dvec3& p, double tolerance) {
+  return glm::all(glm::lessThanEqual(dvec3(b.lo) - tolerance, p)) &&
+         glm::all(glm::lessThanEqual(p, dvec3(b.hi) + tolerance));
+}
+
+// Vertices, points of edges and of the inside; exact, since coordinates and weights have few bits.
+dvec3 triangle_point(const scene::TriangleGeometry& t, int sample, Random& random) {
+  constexpr int kWhole = 1024;
+  int i = static_cast<int>(random() % (kWhole + 1)), j = static_cast<int>(random() % (kWhole - i + 1));
+  if (sample < 3) {
+    i = sample == 0 ? kWhole : 0;
+    j = sample == 1 ? kWhole : 0;
+  } else if (sample < 6) {
+    j = sample == 3 ? kWhole - i : (sample == 4 ? 0 : j);
+    if (sample == 5) i = 0;
+  }
+  const dvec3 sum = dvec3(t.vertex[0]) * double(i) + dvec3(t.vertex[1]) * double(j) +
+                    dvec3(t.vertex[2]) * double(kWhole - i - j);
+  return sum / double(kWhole);
+}
+
+void expect_found(const Tree& tree, const dvec3& p, double tolerance, Ref r) {
+  ASSERT_TRUE(in_bounds(tree.bounds, p, tolerance));
+  ASSERT_TRUE(leaf_refers(tree, p, tolerance, r))
+      << "kind " << static_cast<int>(ref_kind(r)) << " number " << ref_index(r) << " at " << p.x << ' ' << p.y
+      << ' ' << p.z;
+}
+
+}  // namespace
+
+void check_shape(const Tree& tree, const scene::Geometry& geometry, int max_depth) {
+  ShapeCheck(tree, geometry).run(max_depth);
+}
+
+void check_complete(const Tree& tree, const scene::Geometry& geometry, int per_primitive,
+                    std::uint64_t seed) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  Random random(seed);
+  using scene::PrimitiveKind;
+  const auto check_all = [&](PrimitiveKind kind, std::size_t n, double tolerance, auto point) {
+    for (std::uint32_t i = 0; i < n && !testing::Test::HasFatalFailure(); ++i) {
+      for (int sample = 0; sample < per_primitive; ++sample)
+        expect_found(tree, point(i, sample), tolerance, kdtree::make_ref(kind, i));
+    }
+  };
+  check_all(PrimitiveKind::triangle, geometry.triangles.size(), 0, [&](std::uint32_t i, int sample) {
+    return triangle_point(geometry.triangles[i], sample, random);
+  });
+  // These points are off by some rounding of doubles of size 20.
+  check_all(PrimitiveKind::sphere, geometry.spheres.size(), 1e-14,
+            [&](std::uint32_t i, int) { return surface_point(geometry.spheres[i], random); });
+  check_all(PrimitiveKind::cone, geometry.cones.size(), 1e-14,
+            [&](std::uint32_t i, int) { return surface_point(geometry.cones[i], random); });
+}
+
+dvec3 surface_point(const scene::SphereGeometry& s, Random& random) {
+  dvec3 d;
+  do {
+    d = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)};
+  } while (glm::length(d) < 0.1);
+  return dvec3(s.center) + static_cast<double>(s.radius) * glm::normalize(d);
+}
+
+dvec3 surface_point(const scene::ConeGeometry& c, Random& random) {
+  const dvec3 axis = glm::normalize(dvec3(c.apex) - dvec3(c.base));
+  const dvec3 helper = std::abs(axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  const dvec3 u = glm::normalize(glm::cross(axis, helper)), v = glm::cross(axis, u);
+  const double s = uniform(random, 0, 1), a = uniform(random, 0, 6.2831853f);
+  const double radius = c.base_radius + s * (static_cast<double>(c.apex_radius) - c.base_radius);
+  return dvec3(c.base) + s * (dvec3(c.apex) - dvec3(c.base)) + radius * (std::cos(a) * u + std::sin(a) * v);
+}
+
+}  // namespace kdray::test

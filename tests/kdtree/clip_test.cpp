@@ -1,0 +1,297 @@
+// Clipped bounds against exact arithmetic (triangles) and closed forms (spheres and cones).
+#include "kdtree/clip.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kdtree/check_tree.h"
+#include "kdtree/exact_clip.h"
+#include "kdtree/rounding.h"
+#include "kdtree/shapes.h"
+
+namespace kdray::test {
+namespace {
+
+using kdtree::Bounds;
+
+// ---- triangles
+// -----------------------------------------------------------------------------------------------------
+
+struct IntegerCase {
+  std::array<Point, 3> triangle;
+  Point lo, hi;
+  int axis;
+  std::int64_t plane;
+};
+
+IntegerCase random_case(Random& random, int size) {
+  const auto whole = [&] { return static_cast<std::int64_t>(random() % (2 * size + 1)) - size; };
+  IntegerCase c;
+  for (Point& p : c.triangle) p = {whole(), whole(), whole()};
+  if (random() % 4 == 0) {  // axis-aligned
+    const int k = static_cast<int>(random() % 3);
+    c.triangle[1][k] = c.triangle[2][k] = c.triangle[0][k];
+  }
+  for (int k = 0; k < 3; ++k) {
+    const std::int64_t a = whole(), b = whole();
+    c.lo[k] = std::min(a, b), c.hi[k] = std::max(a, b);
+    if (random() % 2 == 0) c.lo[k] = -size, c.hi[k] = size;
+  }
+  c.axis = static_cast<int>(random() % 3);
+  const std::int64_t length = c.hi[c.axis] - c.lo[c.axis];
+  c.plane = c.lo[c.axis] + (length > 0 ? static_cast<std::int64_t>(random() % (length + 1)) : 0);
+  return c;
+}
+
+// Integer coordinates about an offset, times a power of two: still exact floats.
+float to_float(std::int64_t x, float offset, float scale) {
+  return (static_cast<float>(x) + offset) * scale;
+}
+
+Bounds to_bounds(const Point& lo, const Point& hi, float offset, float scale) {
+  Bounds b;
+  for (int k = 0; k < 3; ++k) {
+    b.lo[k] = to_float(lo[k], offset, scale);
+    b.hi[k] = to_float(hi[k], offset, scale);
+  }
+  return b;
+}
+
+// bound - f, exact in its sign: all of it has fewer than 64 bits.
+long double excess(float bound, const Fraction& f, float offset, float scale) {
+  const long double b = static_cast<long double>(bound) / scale - offset;
+  return (b * f.denominator - f.numerator) / f.denominator;
+}
+
+void check_part(const Bounds& found, const std::optional<ExactBounds>& exact, float offset, float scale,
+                int size) {
+  ASSERT_EQ(found.empty(), !exact.has_value());
+  if (!exact) return;
+  // As tight as floats are: one step outward, and one more for the clipping's own margin next to a float.
+  const long double loose = 2.0L * std::numeric_limits<float>::epsilon() * (std::abs(offset) + size);
+  for (int k = 0; k < 3; ++k) {
+    const long double below = excess(found.lo[k], exact->lo[k], offset, scale);
+    const long double above = excess(found.hi[k], exact->hi[k], offset, scale);
+    EXPECT_LE(below, 0) << "axis " << k;
+    EXPECT_GE(above, 0) << "axis " << k;
+    EXPECT_GE(below, -loose) << "axis " << k;
+    EXPECT_LE(above, loose) << "axis " << k;
+  }
+}
+
+void check_integer_cases(std::uint64_t seed, int size, float offset, float scale) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed << " offset " << offset << " scale " << scale);
+  Random random(seed);
+  int n_both = 0, n_empty = 0;
+  for (int trial = 0; trial < 30000 && !testing::Test::HasFailure(); ++trial) {
+    SCOPED_TRACE(trial);
+    const IntegerCase c = random_case(random, size);
+    scene::TriangleGeometry t{};
+    for (int v = 0; v < 3; ++v) {
+      for (int k = 0; k < 3; ++k) t.vertex[v][k] = to_float(c.triangle[v][k], offset, scale);
+    }
+    const Bounds cell = to_bounds(c.lo, c.hi, offset, scale);
+    const Bounds known = kdtree::intersection(cell, kdtree::bounds_from(scene::bounds_of(t)));
+    const kdtree::SplitBounds parts =
+        kdtree::clip_triangle(t, known, cell, c.axis, to_float(c.plane, offset, scale));
+    Point below_hi = c.hi, above_lo = c.lo;
+    below_hi[c.axis] = above_lo[c.axis] = c.plane;
+    const auto below = exact_clip(c.triangle, c.lo, below_hi), above = exact_clip(c.triangle, above_lo, c.hi);
+    check_part(parts.below, below, offset, scale, size);
+    check_part(parts.above, above, offset, scale, size);
+    n_both += below && above;
+    n_empty += !below && !above;
+  }
+  EXPECT_GT(n_both, 1000);  // the cases are not all alike
+  EXPECT_GT(n_empty, 1000);
+}
+
+TEST(ClipTriangle, IsExactOnIntegers) {
+  check_integer_cases(1, 40, 0, 1);
+}
+TEST(ClipTriangle, IsExactOnACoarseGrid) {
+  check_integer_cases(2, 3, 0, 1);
+}
+TEST(ClipTriangle, IsExactFarFromTheOrigin) {
+  check_integer_cases(3, 30, 131072, 1);
+}
+TEST(ClipTriangle, IsExactWhenTiny) {
+  check_integer_cases(4, 30, 0, 0x1p-120f);
+}
+TEST(ClipTriangle, IsExactWhenHuge) {
+  check_integer_cases(5, 30, 0, 0x1p+110f);
+}
+
+// Floats of very different size: points of the triangle, exact in 128 bits, must be in the bounds of their
+// side.
+struct FixedPoint {
+  static constexpr int kShareBits = 12;  // barycentric weights are multiples of 2^-12
+  using Integer = __int128;              // coordinates are multiples of 2^-40
+  static float quantise(float x) { return static_cast<float>(std::round(x * 0x1p40) * 0x1p-40); }
+  static Integer of(float x) { return static_cast<Integer>(static_cast<long double>(x) * 0x1p40L); }
+  static Integer shared(float x) { return of(x) << kShareBits; }
+};
+
+TEST(ClipTriangle, ContainsItsPoints) {
+  constexpr std::uint64_t kSeed = 6;
+  SCOPED_TRACE(kSeed);
+  Random random(kSeed);
+  const auto coordinate = [&](float reach) {
+    const float x = uniform(random, -reach, reach);
+    return FixedPoint::quantise(random() % 3 == 0 ? x * std::exp2(-uniform(random, 0, 20)) : x);
+  };
+  int n_inside = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    SCOPED_TRACE(trial);
+    const float reach = trial % 2 == 0 ? 1.0f : 500.0f;
+    scene::TriangleGeometry t{};
+    for (vec3& v : t.vertex) v = {coordinate(reach), coordinate(reach), coordinate(reach)};
+    if (trial % 5 == 0) t.vertex[2] = t.vertex[0] + (t.vertex[1] - t.vertex[0]) * 0.5f;  // a needle
+    for (int k = 0; k < 3; ++k) t.vertex[2][k] = FixedPoint::quantise(t.vertex[2][k]);
+    Bounds cell;
+    for (int k = 0; k < 3; ++k) {
+      const float a = coordinate(reach), b = coordinate(reach);
+      cell.lo[k] = std::min(a, b), cell.hi[k] = std::max(a, b);
+    }
+    const int axis = trial % 3;
+    const float plane = std::clamp(coordinate(reach), cell.lo[axis], cell.hi[axis]);
+    const Bounds known = kdtree::intersection(cell, kdtree::bounds_from(scene::bounds_of(t)));
+    const kdtree::SplitBounds parts = kdtree::clip_triangle(t, known, cell, axis, plane);
+    for (int sample = 0; sample < 300; ++sample) {
+      const int whole = 1 << FixedPoint::kShareBits;
+      int i = static_cast<int>(random() % (whole + 1)), j = static_cast<int>(random() % (whole - i + 1));
+      if (sample % 3 == 0) j = whole - i;  // on an edge
+      FixedPoint::Integer p[3];
+      for (int k = 0; k < 3; ++k)
+        p[k] = FixedPoint::of(t.vertex[0][k]) * i + FixedPoint::of(t.vertex[1][k]) * j +
+               FixedPoint::of(t.vertex[2][k]) * (whole - i - j);
+      const auto inside = [&](const Bounds& b) {
+        for (int k = 0; k < 3; ++k) {
+          if (p[k] < FixedPoint::shared(b.lo[k]) || p[k] > FixedPoint::shared(b.hi[k])) return false;
+        }
+        return true;
+      };
+      if (!inside(cell)) continue;
+      ++n_inside;
+      if (p[axis] <= FixedPoint::shared(plane)) {
+        ASSERT_FALSE(parts.below.empty());
+        ASSERT_TRUE(inside(parts.below));
+      }
+      if (p[axis] >= FixedPoint::shared(plane)) {
+        ASSERT_FALSE(parts.above.empty());
+        ASSERT_TRUE(inside(parts.above));
+      }
+    }
+  }
+  EXPECT_GT(n_inside, 10000);
+}
+
+// ---- spheres and cones
+// ---------------------------------------------------------------------------------------------
+
+// `found` must contain [lo, hi] and be no looser than rounding.
+void expect_bounds(const Bounds& found, const std::array<double, 3>& lo, const std::array<double, 3>& hi) {
+  ASSERT_FALSE(found.empty());
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LE(found.lo[k], lo[k] + 1e-15);
+    EXPECT_GE(found.hi[k], hi[k] - 1e-15);
+    EXPECT_NEAR(found.lo[k], lo[k], 1e-6);
+    EXPECT_NEAR(found.hi[k], hi[k], 1e-6);
+  }
+}
+
+TEST(ClipSphere, ClosedForms) {
+  const scene::SphereGeometry unit{{0, 0, 0}, 1, 0};
+  expect_bounds(kdtree::clip_sphere(unit, {{-2, -2, -2}, {2, 2, 2}}), {-1, -1, -1}, {1, 1, 1});
+  const double cap = std::sqrt(0.75);
+  expect_bounds(kdtree::clip_sphere(unit, {{0.5f, -2, -2}, {2, 2, 2}}), {0.5, -cap, -cap}, {1, cap, cap});
+  // A rod that begins inside: the surface is where it comes out.
+  const float w = 0.125f;
+  expect_bounds(kdtree::clip_sphere(unit, {{-0.5f, -w, -w}, {2, w, w}}), {std::sqrt(1 - 2.0 * w * w), -w, -w},
+                {1, w, w});
+  expect_bounds(kdtree::clip_sphere(unit, {{1, -1, -1}, {3, 1, 1}}), {1, 0, 0}, {1, 0, 0});  // touched
+}
+
+TEST(ClipSphere, DropsWhatHoldsNoSurface) {
+  const scene::SphereGeometry s{{1, 2, 3}, 2, 0};
+  EXPECT_TRUE(kdtree::clip_sphere(s, {{0, 1, 2}, {2, 3, 4}}).empty());           // inside
+  EXPECT_TRUE(kdtree::clip_sphere(s, {{2.5f, 3.5f, 4.5f}, {5, 5, 5}}).empty());  // off the corner of its box
+  EXPECT_TRUE(kdtree::clip_sphere(s, {{3.001f, 0, 0}, {4, 9, 9}}).empty());      // beside it
+  EXPECT_FALSE(kdtree::clip_sphere(s, {{3, 0, 0}, {4, 9, 9}}).empty());          // touching
+  EXPECT_FALSE(kdtree::clip_sphere(s, {{0, 1, 2}, {2, 3, 5}}).empty());          // one corner pokes out
+}
+
+TEST(ClipCone, ClosedForms) {
+  const scene::ConeGeometry cylinder{{0, 0, 0}, {0, 0, 10}, 1, 1, 0};
+  expect_bounds(kdtree::clip_cone(cylinder, {{-9, -9, 2}, {9, 9, 3}}), {-1, -1, 2}, {1, 1, 3});
+  EXPECT_TRUE(kdtree::clip_cone(cylinder, {{-0.5f, -0.5f, 2}, {0.5f, 0.5f, 3}}).empty());  // inside
+  EXPECT_TRUE(
+      kdtree::clip_cone(cylinder, {{-0.5f, -0.5f, -5}, {0.5f, 0.5f, 30}}).empty());  // through: no caps
+  EXPECT_TRUE(kdtree::clip_cone(cylinder, {{-9, -9, 10.5f}, {9, 9, 20}}).empty());
+  const scene::ConeGeometry pointed{{0, 0, 0}, {0, 0, 4}, 2, 0, 0};
+  expect_bounds(kdtree::clip_cone(pointed, {{-9, -9, 2}, {9, 9, 9}}), {-1, -1, 2}, {1, 1, 4});
+  expect_bounds(kdtree::clip_cone(pointed, {{-9, -9, 4}, {9, 9, 9}}), {0, 0, 4}, {0, 0, 4});
+  // Only the circles near the base reach out there.
+  expect_bounds(kdtree::clip_cone(pointed, {{1, -9, -9}, {9, 9, 9}}), {1, -2, 0}, {2, 2, 2});
+}
+
+// Points of the surface in random boxes lie in the bounds, but for the point's own rounding.
+template <class Primitive, class Clip>
+void check_samples(const std::vector<Primitive>& primitives, Random& random, Clip clip) {
+  constexpr double kRounding = 1e-14;  // of points of size 20 in double
+  int n_inside = 0;
+  for (const Primitive& p : primitives) {
+    for (int trial = 0; trial < 20; ++trial) {
+      const dvec3 middle = surface_point(p, random);
+      Bounds box;
+      for (int k = 0; k < 3; ++k) {
+        box.lo[k] = static_cast<float>(middle[k]) - uniform(random, 0, 1);
+        box.hi[k] = static_cast<float>(middle[k]) + uniform(random, 0, 1);
+      }
+      const Bounds found = clip(p, box);
+      for (int sample = 0; sample < 40; ++sample) {
+        const dvec3 q = sample == 0 ? middle : surface_point(p, random);
+        bool inside = true;
+        for (int k = 0; k < 3; ++k) inside &= box.lo[k] <= q[k] && q[k] <= box.hi[k];
+        if (!inside) continue;
+        ++n_inside;
+        for (int k = 0; k < 3; ++k) {
+          ASSERT_LE(found.lo[k] - kRounding, q[k]);
+          ASSERT_GE(found.hi[k] + kRounding, q[k]);
+        }
+      }
+    }
+  }
+  EXPECT_GT(n_inside, 1000);
+}
+
+TEST(ClipSphere, ContainsItsPoints) {
+  constexpr std::uint64_t kSeed = 7;
+  SCOPED_TRACE(kSeed);
+  Random random(kSeed);
+  scene::Geometry g;
+  add_spheres(g, random, 400, 3);
+  check_samples(g.spheres, random, kdtree::clip_sphere);
+}
+
+TEST(ClipCone, ContainsItsPoints) {
+  constexpr std::uint64_t kSeed = 8;
+  SCOPED_TRACE(kSeed);
+  Random random(kSeed);
+  scene::Geometry g;
+  add_cones(g, random, 400, 3);
+  check_samples(g.cones, random, kdtree::clip_cone);
+}
+
+TEST(Rounding, IsOutward) {
+  for (const double x : {1.0 + 1e-12, -1.0 - 1e-12, 1e-60, -1e-60, 0.1, -0.1, 0.0, 16777217.0}) {
+    EXPECT_LE(kdtree::round_down(x), x);
+    EXPECT_GE(kdtree::round_up(x), x);
+    EXPECT_GT(std::nextafter(kdtree::round_down(x), INFINITY), x);
+    EXPECT_LT(std::nextafter(kdtree::round_up(x), -INFINITY), x);
+  }
+}
+
+}  // namespace
+}  // namespace kdray::test

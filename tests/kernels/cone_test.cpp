@@ -1,0 +1,132 @@
+// The cone test: every root lies on the surface and within its length, and agrees in number with a scan in double.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "layout/primitives.layout.h"
+#include "math/vec.h"
+#include "support/device.h"
+#include "support/run_kernel.h"
+
+namespace kdray {
+namespace {
+
+struct Case {
+  layout::Cone cone;
+  float origin[3], direction[3];
+};
+struct Found {
+  int hit;
+  float t[2];
+};
+
+void set(float (&out)[3], const vec3& v) {
+  for (int k = 0; k < 3; ++k) out[k] = v[k];
+}
+
+// Signed distance-like value: |across| - radius at the height of p; the height through `s`.
+double off_surface(const layout::Cone& c, const dvec3& p, double* s) {
+  const dvec3 axis(c.axis[0], c.axis[1], c.axis[2]), from = p - dvec3(c.base[0], c.base[1], c.base[2]);
+  *s = glm::dot(from, axis);
+  return glm::length(from - *s * axis) - (c.base_radius + c.slope * *s);
+}
+
+Case random_case(std::mt19937& random, int i) {
+  std::uniform_real_distribution<float> unit(-1, 1), size(0.05f, 2);
+  const auto point = [&] { return vec3(unit(random), unit(random), unit(random)); };
+  Case c{};
+  const vec3 base = point(), axis = glm::normalize(point() + vec3(0, 0, 1e-3f));
+  const float r0 = size(random),
+              r1 = i % 3 == 0 ? r0 : (i % 3 == 1 ? 0.0f : size(random));  // cylinder, tip, frustum
+  set(c.cone.base, base);
+  set(c.cone.axis, axis);
+  c.cone.height = size(random);
+  c.cone.base_radius = r0;
+  c.cone.slope = (r1 - r0) / c.cone.height;
+  const vec3 target = base + axis * (c.cone.height * 0.5f * (unit(random) + 1)) + 0.5f * point();
+  const vec3 origin = target + point() * (i % 2 ? 3.0f : 300.0f);
+  set(c.origin, origin);
+  set(c.direction, glm::normalize(target - origin));
+  return c;
+}
+
+// Sign changes of off_surface along the ray within the cone's length, by a fine scan around it.
+int crossings(const Case& c, bool* clear) {
+  const dvec3 o(c.origin[0], c.origin[1], c.origin[2]), d(c.direction[0], c.direction[1], c.direction[2]);
+  const double reach =
+      c.cone.height + std::max<double>(c.cone.base_radius, c.cone.base_radius + c.cone.slope * c.cone.height);
+  const dvec3 base(c.cone.base[0], c.cone.base[1], c.cone.base[2]);
+  const double middle = glm::dot(base - o, d);
+  constexpr int kSteps = 4000;
+  int count = 0;
+  double last = 0, last_s = 0;
+  *clear = true;
+  for (int i = 0; i <= kSteps; ++i) {
+    double s;
+    const double value = off_surface(c.cone, o + d * (middle + reach * (2.0 * i / kSteps - 1) * 1.5), &s);
+    const bool inside = s >= 0 && s <= c.cone.height;
+    if (std::abs(value) < 2e-3 && (std::abs(s) < 0.01 || std::abs(s - c.cone.height) < 0.01))
+      *clear = false;  // the rim
+    if (i > 0 && (value > 0) != (last > 0) && inside && last_s >= 0 && last_s <= c.cone.height) ++count;
+    // Touching without crossing between two steps can't be told by a scan.
+    if (i > 0 && inside && std::abs(value) < 1e-3 * reach && (value > 0) == (last > 0))
+      *clear = *clear && std::abs(value - last) > 2e-4;
+    last = value, last_s = s;
+  }
+  return count;
+}
+
+class ConeTest : public test::EachDevice {};
+
+TEST_P(ConeTest, RootsLieOnTheSurfaceAndNoneIsMissing) {
+  const unsigned seed = 31;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::vector<Case> in;
+  for (int i = 0; i < 6000; ++i) in.push_back(random_case(random, i));
+  const std::vector<Found> out = test::run_kernel<Found>(
+      GetParam(),
+      "#include \"intersect/cone.clh\"\n"
+      "typedef struct Case { Cone cone; float origin[3], direction[3]; } Case;\n"
+      "typedef struct Found { int hit; float t[2]; } Found;\n"
+      "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"
+      "  const uint i = get_global_id(0);\n"
+      "  if (i >= n) return;\n"
+      "  ConeRoots roots;\n"
+      "  Found f = {0, {NAN, NAN}};\n"
+      "  f.hit = intersect_cone(load3(in[i].origin), load3(in[i].direction), &in[i].cone, &roots);\n"
+      "  if (f.hit) { f.t[0] = roots.t[0]; f.t[1] = roots.t[1]; }\n"
+      "  out[i] = f;\n"
+      "}\n",
+      in);
+  int compared = 0, hits = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const dvec3 o(in[i].origin[0], in[i].origin[1], in[i].origin[2]);
+    const dvec3 d(in[i].direction[0], in[i].direction[1], in[i].direction[2]);
+    int found = 0;
+    for (const float t : out[i].t) {
+      if (std::isnan(t)) continue;
+      ++found;
+      double s;
+      const double off = off_surface(in[i].cone, o + d * static_cast<double>(t), &s);
+      const double tolerance = 64 * 0x1p-24 * (glm::length(o) + 4);
+      EXPECT_NEAR(off, 0, 40 * tolerance) << i;  // steep where the ray grazes
+      EXPECT_GT(s, -tolerance) << i;
+      EXPECT_LT(s, in[i].cone.height + tolerance) << i;
+    }
+    bool clear;
+    const int wanted = crossings(in[i], &clear);
+    if (!clear) continue;
+    ++compared;
+    hits += wanted > 0;
+    EXPECT_EQ(found, wanted) << i;
+  }
+  EXPECT_GT(compared, 4000);
+  EXPECT_GT(hits, 1500);
+}
+
+KDRAY_FOR_EACH_DEVICE(ConeTest);
+
+}  // namespace
+}  // namespace kdray

@@ -1,0 +1,160 @@
+// The triangle test: nothing escapes from closed meshes at edges and vertices, and a ray never hits the plane that it
+// starts in. (The full stress suites are elsewhere; these are the method's own tests.)
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "math/vec.h"
+#include "support/device.h"
+#include "support/run_kernel.h"
+
+namespace kdray {
+namespace {
+
+struct Case {
+  float origin[3], direction[3];
+  float v[3][3];
+};
+struct Found {
+  int hit;
+  float t, u, v;
+};
+
+const char* const kSource =
+    "#include \"intersect/triangle.clh\"\n"
+    "typedef struct Case { float origin[3], direction[3]; float v[3][3]; } Case;\n"
+    "typedef struct Found { int hit; float t, u, v; } Found;\n"
+    "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"
+    "  const uint i = get_global_id(0);\n"
+    "  if (i >= n) return;\n"
+    "  Found f = {0, 0, 0, 0};\n"
+    "  f.hit = intersect_triangle(make_shear(load3(in[i].direction)), load3(in[i].origin), &in[i].v[0][0], "
+    "&f.t,\n"
+    "                             &f.u, &f.v);\n"
+    "  out[i] = f;\n"
+    "}\n";
+
+void set(float (&out)[3], const vec3& v) {
+  for (int k = 0; k < 3; ++k) out[k] = v[k];
+}
+
+Case make_case(const vec3& o, const vec3& d, const std::array<vec3, 3>& triangle) {
+  Case c;
+  set(c.origin, o);
+  set(c.direction, d);
+  for (std::size_t k = 0; k < 3; ++k) set(c.v[k], triangle[k]);
+  return c;
+}
+
+// The 8 faces of a random octahedron around the origin: closed, every edge shared by two, every vertex by four.
+std::vector<std::array<vec3, 3>> octahedron(std::mt19937& random) {
+  std::uniform_real_distribution<float> length(0.1f, 10), bend(-0.2f, 0.2f);
+  std::array<vec3, 6> v;
+  for (int k = 0; k < 6; ++k) {
+    v[static_cast<std::size_t>(k)] = vec3(bend(random), bend(random), bend(random));
+    v[static_cast<std::size_t>(k)][k / 2] = (k % 2 ? -1.0f : 1.0f) * length(random);
+  }
+  std::vector<std::array<vec3, 3>> faces;
+  for (std::size_t x : {0u, 1u})
+    for (std::size_t y : {2u, 3u})
+      for (std::size_t z : {4u, 5u}) faces.push_back({v[x], v[y], v[z]});
+  return faces;
+}
+
+class TriangleTest : public test::EachDevice {};
+
+TEST_P(TriangleTest, NoRayEscapesAtAVertexOrAnEdge) {
+  const unsigned seed = 3;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(0, 1), inner(-0.01f, 0.01f);
+  std::vector<Case> in;
+  constexpr int kRays = 20000;
+  for (int i = 0; i < kRays; ++i) {
+    const auto faces = octahedron(random);
+    const vec3 origin(inner(random), inner(random), inner(random));
+    const auto& face = faces[static_cast<std::size_t>(i) % 8];
+    const float s = i % 3 == 0 ? 0.0f : unit(random);  // a vertex, or a point of an edge
+    const vec3 target = face[0] + s * (face[1] - face[0]);
+    for (const auto& f : faces) in.push_back(make_case(origin, target - origin, f));
+  }
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in);
+  for (int i = 0; i < kRays; ++i) {
+    // A face seen edge-on may put its hit anywhere along the edge; another face has it at the target.
+    float nearest_error = INFINITY;
+    for (int f = 0; f < 8; ++f) {
+      const Found& found = out[static_cast<std::size_t>(i * 8 + f)];
+      if (found.hit && found.t > 0) nearest_error = std::min(nearest_error, std::abs(found.t - 1));
+    }
+    ASSERT_LT(nearest_error, 1e-4f) << "ray " << i << " escapes";
+  }
+}
+
+TEST_P(TriangleTest, ARayInThePlaneItStartsFromDoesNotHitIt) {
+  const unsigned seed = 5;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> coordinate(-1000, 1000), unit(0, 1);
+  std::vector<Case> in;
+  for (int i = 0; i < 100000; ++i) {
+    const int axis = i % 3;
+    const float height = i % 2 ? 0.0f : coordinate(random);
+    std::array<vec3, 3> triangle;
+    for (vec3& v : triangle) {
+      v = vec3(coordinate(random), coordinate(random), coordinate(random));
+      v[axis] = height;
+    }
+    float s = unit(random), t = unit(random);
+    if (s + t > 1) s = 1 - s, t = 1 - t;
+    vec3 origin = triangle[0] + s * (triangle[1] - triangle[0]) + t * (triangle[2] - triangle[0]);
+    origin[axis] = height;
+    vec3 direction(coordinate(random), coordinate(random), coordinate(random));
+    if (i % 5 == 0) direction[axis] *= 1e-6f;  // grazing
+    in.push_back(make_case(origin, direction, triangle));
+  }
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in);
+  int met = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    met += out[i].hit;
+    ASSERT_FALSE(out[i].hit && out[i].t != 0.0f) << i << " t = " << out[i].t;
+  }
+  EXPECT_GT(met, 50000);  // the line does pass through the triangle: t = 0 exactly
+}
+
+TEST_P(TriangleTest, AgreesWithDoubleAwayFromEdges) {
+  const unsigned seed = 9;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> coordinate(-1, 1);
+  const auto point = [&] { return vec3(coordinate(random), coordinate(random), coordinate(random)); };
+  std::vector<Case> in;
+  for (int i = 0; i < 100000; ++i) in.push_back(make_case(point(), point(), {point(), point(), point()}));
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in);
+  int compared = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const auto at = [](const float(&p)[3]) { return dvec3(p[0], p[1], p[2]); };
+    // Moeller and Trumbore in double.
+    const dvec3 a = at(in[i].v[0]), e1 = at(in[i].v[1]) - a, e2 = at(in[i].v[2]) - a, d = at(in[i].direction);
+    const dvec3 p = glm::cross(d, e2), s = at(in[i].origin) - a, q = glm::cross(s, e1);
+    const double det = glm::dot(e1, p);
+    if (std::abs(det) < 1e-3) continue;
+    const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, t = glm::dot(e2, q) / det;
+    const double margin = std::min({u, v, 1 - u - v});
+    if (std::abs(margin) < 1e-3) continue;
+    ++compared;
+    ASSERT_EQ(out[i].hit != 0, margin > 0) << i;
+    if (margin < 0) continue;
+    EXPECT_NEAR(out[i].t, t, 1e-3 * std::max(1.0, std::abs(t))) << i;
+    EXPECT_NEAR(out[i].u, u, 1e-3) << i;
+    EXPECT_NEAR(out[i].v, v, 1e-3) << i;
+  }
+  EXPECT_GT(compared, 50000);
+}
+
+KDRAY_FOR_EACH_DEVICE(TriangleTest);
+
+}  // namespace
+}  // namespace kdray

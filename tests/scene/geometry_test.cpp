@@ -1,0 +1,233 @@
+#include "scene/geometry.h"
+
+#include <random>
+
+#include "scene/scratch.h"
+
+namespace kdray::scene {
+namespace {
+
+using test::refusal;
+
+Scene triangle_scene(const std::vector<dvec3>& corners) {
+  Scene s;
+  s.materials.emplace_back();
+  s.vertices = corners;
+  for (std::uint32_t i = 0; i + 2 < corners.size(); i += 3) {
+    s.triangles.push_back({.vertex = {i, i + 1, i + 2}, .number = i / 3});
+  }
+  return s;
+}
+
+Scene scene_of(const Sphere& sphere) {
+  Scene s;
+  s.spheres = {sphere};
+  return s;
+}
+
+Scene scene_of(const Cone& cone) {
+  Scene s;
+  s.cones = {cone};
+  return s;
+}
+
+TEST(MakeGeometry, KeepsFloatsNearTheOriginAsTheyAre) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> coordinate(-1, 3);  // the middle is not at the origin
+  std::vector<dvec3> corners(300);
+  for (dvec3& p : corners) p = dvec3(coordinate(random), coordinate(random), coordinate(random));
+  const Geometry g = make_geometry(triangle_scene(corners));
+  EXPECT_EQ(g.center, dvec3(0));
+  ASSERT_EQ(g.triangles.size(), 100u);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    EXPECT_EQ(dvec3(g.triangles[i / 3].vertex[i % 3]), corners[i]);
+  }
+}
+
+// Float coordinates far from the origin lose no bit by the move, whatever the place and size.
+TEST(MakeGeometry, MovesFarFloatsWithoutLoss) {
+  for (unsigned seed = 0; seed < 400; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(-1, 1), exponent(-3, 7);
+    const double size = std::pow(10, exponent(random) / 2);
+    const dvec3 place = dvec3(unit(random), unit(random), unit(random)) * std::pow(10, exponent(random));
+    std::vector<dvec3> corners(60);
+    for (dvec3& p : corners) {
+      p = dvec3(vec3(place +
+                     size * dvec3(unit(random), unit(random), unit(random))));  // as a file of floats has it
+    }
+    const Geometry g = make_geometry(triangle_scene(corners));
+    for (const TriangleGeometry& t : g.triangles) {
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(dvec3(t.vertex[i]) + g.center, corners[t.source * 3 + i]) << "size " << size;
+      }
+    }
+  }
+}
+
+TEST(MakeGeometry, KeepsTheShapeOfAModelAMillionAway) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<dvec3> corners(300);
+  for (dvec3& p : corners) p = dvec3(1e6) + dvec3(unit(random), unit(random), unit(random));
+  const Geometry g = make_geometry(triangle_scene(corners));
+  EXPECT_NEAR(g.center.x, 1e6, 1);
+  for (const TriangleGeometry& t : g.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const dvec3 back = dvec3(t.vertex[i]) + g.center;
+      EXPECT_LT(glm::length(back - corners[t.source * 3 + i]), 1e-7) << "float at 1e6 would be off by 0.03";
+    }
+  }
+}
+
+TEST(MakeGeometry, DropsAndCountsTrianglesWithoutArea) {
+  const Scene s = triangle_scene({
+      {0, 0, 0},
+      {1, 0, 0},
+      {0, 1, 0},  // fine
+      {1, 1, 1},
+      {1, 1, 1},
+      {2, 2, 2},  // two corners the same
+      {0, 0, 0},
+      {1, 2, 3},
+      {2, 4, 6},  // on a line
+      {0, 0, 0},
+      {0, 0, 1},
+      {0, 1, 0},  // fine
+      {0.1, 0.1, 0.1},
+      {0.2, 0.2, 0.2},
+      {0.3, 0.3, 0.3},  // on a line in float as well: x = y = z
+  });
+  const Geometry g = make_geometry(s);
+  ASSERT_EQ(g.triangles.size(), 2u);
+  EXPECT_EQ(g.triangles[0].source, 0u);
+  EXPECT_EQ(g.triangles[1].source, 3u);
+  EXPECT_EQ(g.dropped_degenerate, 3u);
+}
+
+// One ulp off a line is area enough: only what is exactly flat goes, or else watertight meshes would get
+// holes.
+TEST(MakeGeometry, DecidesFlatnessExactly) {
+  const double x = 1 + 0x1p-23;
+  for (const double third : {std::nextafter(3.0f, 0.0f) * 1.0, 3.0, std::nextafter(3.0f, 4.0f) * 1.0}) {
+    const Geometry g = make_geometry(triangle_scene({{-1, -1, 5}, {1, 1, 5}, {3, third, 5}}));
+    EXPECT_EQ(g.triangles.size(), third == 3.0 ? 0u : 1u) << third;
+  }
+  const Geometry g = make_geometry(triangle_scene({{0, 0, 0}, {x, 1, 0}, {x * x, x, 0}}));
+  // x * x needs more bits than float has: in float the third corner is off the line.
+  EXPECT_EQ(g.triangles.size(), 1u);
+}
+
+TEST(MakeGeometry, DropsSpheresAndConesThatVanishInFloat) {
+  Scene s;
+  s.spheres = {{.center = dvec3(0), .radius = 1e-60}, {.center = dvec3(1), .radius = 1}};
+  s.cones = {{.base = dvec3(0), .apex = dvec3(1), .base_radius = 1e-50, .apex_radius = 0},
+             {.base = dvec3(0), .apex = dvec3(1e-50), .base_radius = 1, .apex_radius = 1},
+             {.base = dvec3(0), .apex = dvec3(0, 0, 1), .base_radius = 1, .apex_radius = 0}};
+  const Geometry g = make_geometry(s);
+  ASSERT_EQ(g.spheres.size(), 1u);
+  EXPECT_EQ(g.spheres[0].source, 1u);
+  ASSERT_EQ(g.cones.size(), 1u);
+  EXPECT_EQ(g.cones[0].source, 2u);
+  EXPECT_EQ(g.dropped_degenerate, 3u);
+  EXPECT_EQ(g.size(), 2u);
+}
+
+TEST(MakeGeometry, RefusesWhatFloatCannotHold) {
+  const auto refused = [](const Scene& s) {
+    return refusal([&] { make_geometry(s); }).find("single precision") != std::string::npos;
+  };
+  EXPECT_TRUE(refused(triangle_scene({{-1e39, 0, 0}, {1e39, 0, 0}, {0, 1e39, 0}})));
+  EXPECT_TRUE(refused(scene_of(Sphere{.center = dvec3(0), .radius = 1e39})));
+  EXPECT_TRUE(
+      refused(scene_of(Cone{.base = dvec3(0), .apex = dvec3(1), .base_radius = 1e39, .apex_radius = 1})));
+  // Far away but small is no trouble.
+  EXPECT_EQ(make_geometry(scene_of(Sphere{.center = dvec3(1e60), .radius = 1e50 * 0 + 1})).spheres.size(),
+            1u);
+}
+
+TEST(MakeGeometry, TakesAnEmptyScene) {
+  const Geometry g = make_geometry(Scene{});
+  EXPECT_EQ(g.size(), 0u);
+  EXPECT_TRUE(g.bounds.empty());
+  EXPECT_EQ(g.center, dvec3(0));
+}
+
+TEST(SceneBounds, LeaveOutVerticesThatNoTriangleUses) {
+  Scene s = triangle_scene({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  s.vertices.push_back(dvec3(100));
+  EXPECT_EQ(s.bounds().hi, dvec3(1, 1, 0));
+}
+
+bool inside(const Box& box, const glm::dvec3& p) {
+  return glm::all(glm::lessThanEqual(dvec3(box.lo), p)) && glm::all(glm::lessThanEqual(p, dvec3(box.hi)));
+}
+
+TEST(BoundsOf, ASphereAreTightAndHoldIt) {
+  const Box box = bounds_of(SphereGeometry{vec3(1, 2, 3), 0.5f, 0});
+  EXPECT_EQ(box.lo, vec3(0.5f, 1.5f, 2.5f));
+  EXPECT_EQ(box.hi, vec3(1.5f, 2.5f, 3.5f));
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1), exponent(-30, 30);
+    const SphereGeometry s{vec3(unit(random), unit(random), unit(random)) * std::exp2(exponent(random)),
+                           std::exp2(exponent(random)), 0};
+    const Box b = bounds_of(s);
+    for (int i = 0; i < 3; ++i) {
+      // long double holds the sum of two floats of this range with bits to spare for a fair comparison.
+      const long double lo = static_cast<long double>(s.center[i]) - s.radius;
+      const long double hi = static_cast<long double>(s.center[i]) + s.radius;
+      EXPECT_LE(b.lo[i], lo) << "seed " << seed;
+      EXPECT_GE(b.hi[i], hi) << "seed " << seed;
+      EXPECT_GT(std::nextafter(b.lo[i], std::numeric_limits<float>::infinity()), lo) << "seed " << seed;
+      EXPECT_LT(std::nextafter(b.hi[i], -std::numeric_limits<float>::infinity()), hi) << "seed " << seed;
+    }
+  }
+}
+
+TEST(BoundsOf, AConeAlongAnAxisAreExact) {
+  const Box box = bounds_of(ConeGeometry{vec3(0, 0, -1), vec3(0, 0, 3), 2, 0.5f, 0});
+  EXPECT_EQ(box.lo.z, -1);
+  EXPECT_EQ(box.hi.z, 3);
+  EXPECT_NEAR(box.hi.x, 2, 1e-6);
+  EXPECT_GE(box.hi.x, 2);
+  EXPECT_NEAR(box.lo.y, -2, 1e-6);
+  const Box point = bounds_of(ConeGeometry{vec3(1, 1, 1), vec3(5, 1, 1), 1, 0, 0});
+  EXPECT_EQ(point.lo.x, 1);
+  EXPECT_EQ(point.hi.x, 5);
+}
+
+TEST(BoundsOf, ACone_HoldsItsSurfaceAndTouchesIt) {
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1), radius(0, 2);
+    const vec3 place = vec3(unit(random), unit(random), unit(random)) * 100.0f;
+    const ConeGeometry c{place, place + vec3(unit(random), unit(random), unit(random)), radius(random),
+                         seed % 3 ? radius(random) : 0.0f, 0};
+    const Box box = bounds_of(c);
+    const dvec3 axis = dvec3(c.apex) - dvec3(c.base);
+    const dvec3 w = glm::normalize(axis);
+    const dvec3 u = glm::normalize(glm::cross(w, std::abs(w.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+    const dvec3 v = glm::cross(w, u);
+    DBox reached;
+    for (int i = 0; i < 720; ++i) {
+      const double phi = i * std::acos(-1.0) / 360;
+      for (const double t : {0.0, 0.25, 0.5, 1.0}) {
+        const double r = c.base_radius + t * (static_cast<double>(c.apex_radius) - c.base_radius);
+        const dvec3 p = dvec3(c.base) + t * axis + r * (std::cos(phi) * u + std::sin(phi) * v);
+        reached.grow(p);
+        // The sample itself is rounded, by far less than a float's step at 100.
+        EXPECT_TRUE(inside(Box{box.lo - 1e-12f, box.hi + 1e-12f}, p + (dvec3(c.base) - p) * 1e-13));
+      }
+    }
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(box.lo[i], reached.lo[i], 1e-4);
+      EXPECT_NEAR(box.hi[i], reached.hi[i], 1e-4);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kdray::scene

@@ -1,0 +1,356 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "scene/check_scene.h"
+#include "scene/gltf_samples.h"
+#include "scene/importers.h"
+#include "scene/scratch.h"
+
+namespace kdray::scene {
+namespace {
+
+using nlohmann::json;
+using test::bytes_of;
+using test::GltfSample;
+using test::refusal;
+using test::ScratchFolder;
+using test::square;
+
+Scene read(const std::string& text, const std::filesystem::path& file = "a.gltf") {
+  Scene scene = read_gltf(text, file);
+  check_scene(scene);
+  return scene;
+}
+Scene read(const GltfSample& sample) {
+  return read(sample.text());
+}
+
+std::string refused(const std::string& text, const std::filesystem::path& file = "a.gltf") {
+  return refusal([&] { read_gltf(text, file); });
+}
+std::string refused(const GltfSample& sample) {
+  return refused(sample.text());
+}
+
+#define EXPECT_SAYS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
+
+using Corners = std::array<std::uint32_t, 3>;
+
+dvec3 facet_normal(const Scene& s, std::size_t i) {
+  const auto& v = s.triangles[i].vertex;
+  return glm::normalize(glm::cross(s.vertices[v[1]] - s.vertices[v[0]], s.vertices[v[2]] - s.vertices[v[0]]));
+}
+
+TEST(Gltf, ReadsASquare) {
+  const Scene s = read(square());
+  ASSERT_EQ(s.triangles.size(), 2u);
+  EXPECT_EQ(s.vertices[2], dvec3(1, 1, 0));
+  EXPECT_EQ(s.triangles[1].vertex, (Corners{0, 2, 3}));
+  EXPECT_EQ(s.triangles[1].number, 1u);
+  EXPECT_EQ(s.materials.size(), 1u);
+  EXPECT_TRUE(s.warnings.empty());
+}
+
+TEST(Gltf, ReadsGlb) {
+  const std::string positions = bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+  const std::string glb = square().glb(positions);
+  EXPECT_EQ(read(glb, "a.glb").triangles.size(), 2u);
+  std::string wrong = glb;
+  wrong[4] = 1;
+  EXPECT_SAYS(refused(wrong), "a GLB file of version 1, not 2");
+  EXPECT_SAYS(refused(glb.substr(0, glb.size() - 1)), "the GLB header says");
+  wrong = glb;
+  wrong.replace(12, 4, "\xf0\xff\xff\xff");
+  EXPECT_SAYS(refused(wrong), "chunk 0 says 4294967280 bytes");
+  wrong = glb;
+  wrong[16] = 'X';
+  EXPECT_SAYS(refused(wrong), "the first chunk is not JSON");
+  EXPECT_SAYS(refused(glb.substr(1), "a.glb"), "a.glb: not a GLB file");
+  EXPECT_SAYS(refused("glTF"), "too short for a GLB file");
+}
+
+TEST(Gltf, ReadsBuffersBesideIt) {
+  const ScratchFolder folder;
+  folder.write("a b.bin", bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) + "padding");
+  GltfSample sample = square();
+  auto& uri = sample.json["buffers"][0]["uri"];
+  for (const std::string name : {"a%20b.bin", "a b.bin", "./a%20b.bin"}) {
+    uri = name;
+    EXPECT_EQ(read(sample.text(), folder / "a.gltf").triangles.size(), 2u);
+  }
+  uri = "none.bin";
+  EXPECT_SAYS(refused(sample.text(), folder / "a.gltf"), "/buffers/0/uri: there is no file 'none.bin'");
+  for (const std::string name :
+       {"/etc/hostname", "../a.bin", "x/../../a.bin", "http://a/b.bin", "file:a", "%2e%2e/a"}) {
+    uri = name;
+    EXPECT_SAYS(refused(sample.text(), folder / "a.gltf"), "is not a file beside the scene");
+  }
+  uri = "data:application/octet-stream;base64,!!!!";
+  EXPECT_SAYS(refused(sample), "/buffers/0/uri: not a data: URI in base64");
+  uri = "data:application/octet-stream;base64,AAAA";
+  EXPECT_SAYS(refused(sample), "/buffers/0: says 48 bytes, but there are 3");
+  sample.json["buffers"][0].erase("uri");
+  EXPECT_SAYS(refused(sample), "has neither a uri nor the binary chunk");
+}
+
+TEST(Gltf, ReadsAllModes) {
+  GltfSample sample = square();
+  auto& primitive = sample.primitive();
+  primitive["indices"] = sample.indices<std::uint8_t>({0, 1, 3, 2, 0});
+  primitive["mode"] = 5;
+  Scene s = read(sample);
+  ASSERT_EQ(s.triangles.size(), 3u);
+  EXPECT_EQ(s.triangles[0].vertex, (Corners{0, 1, 3}));
+  EXPECT_EQ(s.triangles[1].vertex, (Corners{1, 2, 3}));
+  EXPECT_EQ(s.triangles[2].vertex, (Corners{3, 2, 0}));
+  primitive["indices"] = sample.indices<std::uint32_t>({0, 1, 2, 3});
+  primitive["mode"] = 6;
+  s = read(sample);
+  ASSERT_EQ(s.triangles.size(), 2u);
+  EXPECT_EQ(s.triangles[1].vertex, (Corners{0, 2, 3}));
+  primitive.erase("indices");
+  EXPECT_EQ(read(sample).triangles.size(), 2u);
+  primitive["mode"] = 4;
+  s = read(sample);
+  EXPECT_EQ(s.triangles.size(), 1u);
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_SAYS(s.warnings[0], "left over after the last whole triangle");
+  primitive["mode"] = 1;
+  s = read(sample);
+  EXPECT_EQ(s.triangles.size(), 0u);
+  EXPECT_SAYS(s.warnings.at(1), "points and lines are left out");
+  primitive["mode"] = 7;
+  EXPECT_SAYS(refused(sample), "/meshes/0/primitives/0/mode: expected a mode from 0 to 6");
+}
+
+TEST(Gltf, ReadsInterleavedAndNormalizedData) {
+  GltfSample sample = square();
+  std::string bytes(4, 'x');
+  for (int i = 0; i < 3; ++i) {
+    bytes += bytes_of<std::int16_t>(
+        {static_cast<std::int16_t>(i == 0 ? -32768 : 32767), 0, static_cast<std::int16_t>(i * 16384)});
+    bytes += "--";
+  }
+  bytes.resize(bytes.size() - 2);  // the last element needs no full stride
+  const int accessor = sample.accessor(sample.view(bytes, 8), 5122, "VEC3", 3);
+  sample.json["accessors"][static_cast<std::size_t>(accessor)]["byteOffset"] = 4;
+  sample.json["accessors"][static_cast<std::size_t>(accessor)]["normalized"] = true;
+  sample.primitive()["attributes"]["POSITION"] = accessor;
+  sample.primitive().erase("indices");
+  const Scene s = read(sample);
+  EXPECT_EQ(s.vertices[0], dvec3(-1, 0, 0));
+  EXPECT_EQ(s.vertices[1], dvec3(1, 0, 16384.0 / 32767));
+  sample.json["accessors"][static_cast<std::size_t>(accessor)]["count"] = 4;
+  EXPECT_SAYS(refused(sample), "/accessors/2: its 4 elements reach beyond the 26 bytes of their buffer view");
+}
+
+TEST(Gltf, AppliesSparseAccessors) {
+  GltfSample sample = square();
+  const int indices = sample.view(bytes_of<std::uint8_t>({1, 3}));
+  const int values = sample.view(bytes_of<float>({5, 6, 7, 8, 9, 10}));
+  json& accessor = sample.json["accessors"][0];
+  accessor["sparse"] = {{"count", 2},
+                        {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                        {"values", {{"bufferView", values}}}};
+  Scene s = read(sample);
+  EXPECT_EQ(s.vertices[0], dvec3(0, 0, 0));
+  EXPECT_EQ(s.vertices[1], dvec3(5, 6, 7));
+  EXPECT_EQ(s.vertices[3], dvec3(8, 9, 10));
+  accessor.erase("bufferView");  // then all others are zero
+  s = read(sample);
+  EXPECT_EQ(s.vertices[2], dvec3(0, 0, 0));
+  EXPECT_EQ(s.vertices[1], dvec3(5, 6, 7));
+  accessor["count"] = 3;
+  EXPECT_SAYS(refused(sample), "/accessors/0/sparse/indices: names element 3, which is not there");
+  accessor["count"] = 4000000000u;
+  EXPECT_SAYS(refused(sample), "/accessors/0/count: as many zeros as that are not believed");
+}
+
+TEST(Gltf, PlacesNodes) {
+  GltfSample sample = square();
+  const double half = std::sqrt(0.5);
+  sample.json["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, half, half}}},
+                          {{"mesh", 0}, {"scale", {2, 3, 4}}}};
+  Scene s = read(sample);  // scaled, turned by 90 degrees about z, moved
+  EXPECT_NEAR(s.vertices[1].x, 10, 1e-12);
+  EXPECT_NEAR(s.vertices[1].y, 2, 1e-12);
+  EXPECT_NEAR(s.vertices[3].x, 7, 1e-12);
+  sample.json["nodes"][1] = {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}};
+  sample.json["nodes"][0] = {{"children", {1}}};
+  EXPECT_EQ(read(sample).vertices[0], dvec3(5, 6, 7));
+  sample.json["nodes"][1]["matrix"] = {1, 2, 3};
+  EXPECT_SAYS(refused(sample), "/nodes/1/matrix: expected 16 numbers");
+}
+
+// A mirrored instance shows the same side to the same eye.
+TEST(Gltf, TurnsMirroredTrianglesOver) {
+  GltfSample sample = square();
+  const std::vector<float> normals = {0.6f, 0, 0.8f, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  sample.primitive()["attributes"]["NORMAL"] = sample.vectors(normals);
+  for (const json& scale : {json{1, 1, 1}, json{-2, 1, 1}, json{1, 1, -1}, json{-1, -1, -1}}) {
+    sample.json["nodes"][0]["scale"] = scale;
+    const Scene s = read(sample);
+    const double side = scale[2].get<double>();
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(facet_normal(s, i).z, side, 1e-12) << scale;
+      for (const std::uint32_t n : s.triangles[i].normal) EXPECT_GT(s.normals[n].z * side, 0.7) << scale;
+    }
+    // Perpendicular to what it was perpendicular to: (0.8, 0, -0.6), scaled.
+    const dvec3 tangent(0.8 * scale[0].get<double>(), 0, -0.6 * scale[2].get<double>());
+    EXPECT_NEAR(glm::dot(dvec3(s.normals[s.triangles[0].normal[0]]), tangent), 0, 1e-6) << scale;
+  }
+}
+
+TEST(Gltf, RefusesLoopsAndGoesDeep) {
+  GltfSample sample = square();
+  sample.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
+  EXPECT_SAYS(refused(sample), "/nodes/1/children/0: node 0 comes a second time");
+  sample.json["nodes"] = {{{"children", {1, 2}}}, {{"children", {2}}}, json::object()};
+  EXPECT_SAYS(refused(sample), "node 2 comes a second time");
+  sample.json["nodes"] = json::array();
+  constexpr int kDeep = 20000;
+  for (int i = 0; i < kDeep; ++i)
+    sample.json["nodes"].push_back({{"children", {i + 1}}, {"translation", {1, 0, 0}}});
+  sample.json["nodes"].push_back({{"mesh", 0}});
+  EXPECT_EQ(read(sample).vertices[0], dvec3(kDeep, 0, 0));
+}
+
+// Nested so deep that a reader which calls itself would run out of stack.
+TEST(Gltf, RefusesDeepJson) {
+  const std::string deep = "{\"asset\":{\"version\":\"2.0\",\"extras\":" + std::string(1000000, '[');
+  EXPECT_SAYS(refused(deep), "a.gltf:1: not JSON");
+  std::string closed = deep + std::string(1000000, ']') + "}}";
+  EXPECT_EQ(read(closed).triangles.size(), 0u);
+}
+
+TEST(Gltf, RefusesWithThePlace) {
+  EXPECT_SAYS(refused("{\n\"asset\": {,\n}"), "a.gltf:2: not JSON");
+  EXPECT_SAYS(refused("{}"), "a.gltf: the scene: lacks 'asset'");
+  EXPECT_SAYS(refused("[]"), "expected an object");
+  EXPECT_SAYS(refused("{\"asset\": {\"version\": \"1.0\"}}"), "/asset/version: glTF '1.0' is not read");
+  GltfSample sample = square();
+  const auto broken = [&](const std::string& pointer, const json& value) {
+    GltfSample copy = sample;
+    copy.json[json::json_pointer(pointer)] = value;
+    return refused(copy);
+  };
+  EXPECT_SAYS(broken("/scene", 1), "/scene: there is no 1 in /scenes (it has 1)");
+  EXPECT_SAYS(broken("/nodes/0/mesh", -1), "/nodes/0/mesh: expected a number from 0");
+  EXPECT_SAYS(broken("/nodes/0/mesh", 0.5), "/nodes/0/mesh: expected a whole number");
+  EXPECT_SAYS(broken("/meshes/0/primitives/0/attributes/POSITION", 9),
+              "there is no 9 in /accessors (it has 2)");
+  EXPECT_SAYS(broken("/accessors/0/count", 5), "/accessors/0: its 5 elements reach beyond");
+  EXPECT_SAYS(broken("/accessors/0/count", 9007199254740991u),
+              "/accessors/0/count: expected fewer than 2^32");
+  EXPECT_SAYS(broken("/accessors/0/byteOffset", 9007199254740991u),
+              "/accessors/0: its 4 elements reach beyond");
+  EXPECT_SAYS(broken("/accessors/0/type", "VEC4"), "/accessors/0/type: expected \"VEC3\"");
+  EXPECT_SAYS(broken("/accessors/0/componentType", 5124),
+              "/accessors/0/componentType: expected a component type");
+  EXPECT_SAYS(broken("/accessors/1/componentType", 5126), "expected an unsigned integer type");
+  EXPECT_SAYS(broken("/bufferViews/0/byteLength", 49),
+              "/bufferViews/0: reaches to byte 49 of a buffer of 48");
+  EXPECT_SAYS(broken("/bufferViews/0/byteOffset", 9007199254740991u), "/bufferViews/0: reaches to byte");
+  EXPECT_SAYS(broken("/bufferViews/0/byteStride", 8), "/bufferViews/0/byteStride: does not fit");
+  EXPECT_SAYS(broken("/bufferViews/0/buffer", 7), "/bufferViews/0/buffer: there is no 7 in /buffers");
+  EXPECT_SAYS(broken("/nodes/0/translation", {1, 2}), "/nodes/0/translation: expected 3 numbers");
+  EXPECT_SAYS(broken("/nodes/0", {{"mesh", 0}, {"scale", {1e308, 1, 1}}, {"translation", {1e308, 0, 0}}}),
+              "/accessors/0: a node's transform makes a position infinite");
+  sample.primitive()["indices"] = sample.indices<std::uint16_t>({0, 1, 4});
+  EXPECT_SAYS(refused(sample), "/accessors/2: index 2 names vertex 4 of 4");
+  sample = square();
+  sample.primitive()["attributes"]["POSITION"] = sample.vectors({0, 0, 0, 1, NAN, 0, 1, 1, 0, 0, 1, 0});
+  EXPECT_SAYS(refused(sample), "/accessors/2: element 1 is not finite");
+}
+
+TEST(Gltf, RefusesPackedMeshes) {
+  GltfSample sample = square();
+  sample.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_draco_mesh_compression"};
+  EXPECT_SAYS(refused(sample),
+              "needs the extension KHR_draco_mesh_compression, which is not read; export it without");
+  sample.json["extensionsRequired"] = {"EXT_meshopt_compression"};
+  EXPECT_SAYS(refused(sample), "EXT_meshopt_compression");
+  sample.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_lights_punctual", "KHR_mesh_quantization"};
+  EXPECT_EQ(read(sample).triangles.size(), 2u);
+}
+
+// A file of a few kilobytes can ask for any number of copies.
+TEST(Gltf, BoundsWhatInstancesMake) {
+  GltfSample sample;
+  const std::string positions(std::size_t{12} * 30000, '\0');
+  sample.primitive()["attributes"]["POSITION"] = sample.accessor(sample.view(positions), 5126, "VEC3", 30000);
+  json nodes = json::array();
+  json roots = json::array();
+  for (int i = 0; i < 2000; ++i) nodes.push_back({{"mesh", 0}}), roots.push_back(i);
+  sample.json["nodes"] = nodes;
+  sample.json["scenes"][0]["nodes"] = roots;
+  EXPECT_SAYS(refused(sample), "the instances of this file make more than");
+}
+
+TEST(Gltf, ReadsTheFirstPerspectiveCamera) {
+  GltfSample sample = square();
+  sample.json["cameras"] = {{{"type", "orthographic"}, {"orthographic", json::object()}},
+                            {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.25}}}}};
+  sample.json["nodes"] = {{{"mesh", 0}, {"children", {1, 2}}, {"translation", {1, 0, 0}}},
+                          {{"camera", 0}},
+                          {{"camera", 1}, {"translation", {0, 2, 0}}, {"rotation", {0, 1, 0, 0}}}};
+  const Scene s = read(sample);
+  ASSERT_TRUE(s.camera);
+  EXPECT_EQ(s.camera->from, dvec3(1, 2, 0));
+  EXPECT_NEAR(s.camera->at.z, 1, 1e-12);  // turned about y: it looks along +z
+  EXPECT_EQ(s.camera->vertical_fov, 0.5);
+  EXPECT_EQ(s.camera->hither, 0.25);
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_SAYS(s.warnings[0], "an orthographic camera is left out");
+}
+
+TEST(Gltf, ReadsAndExposesLights) {
+  GltfSample sample = square();
+  sample.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "directional"}, {"intensity", 50000}, {"color", {1, 0.5, 0}}},
+      {{"type", "spot"},
+       {"intensity", 800},
+       {"range", 9},
+       {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.3}}}},
+      {{"type", "point"}}};
+  sample.json["nodes"] = {{{"mesh", 0}, {"children", {1, 2, 3}}}};
+  for (int i = 0; i < 3; ++i) {
+    sample.json["nodes"].push_back(
+        {{"translation", {0.5, 0.5, 10}}, {"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
+  }
+  const Scene s = read(sample);
+  ASSERT_EQ(s.lights.size(), 3u);
+  EXPECT_EQ(s.lights[0].kind, LightKind::directional);
+  EXPECT_EQ(s.lights[0].direction, dvec3(0, 0, -1));
+  EXPECT_EQ(s.lights[1].kind, LightKind::spot);
+  EXPECT_EQ(s.lights[1].range, 9);
+  EXPECT_NEAR(s.lights[1].cos_outer, std::cos(0.3), 1e-6);
+  EXPECT_EQ(s.lights[2].attenuation, vec3(0, 0, 1));
+  EXPECT_EQ(s.lights[2].position, dvec3(0.5, 0.5, 10));
+  // All together give 1 at the middle, and keep their shares.
+  const double sum = s.lights[0].color.x + (s.lights[1].color.x + s.lights[2].color.x) / 100;
+  EXPECT_NEAR(sum, 1, 1e-5);
+  EXPECT_NEAR(s.lights[0].color.x / s.lights[1].color.x, 50000.0 / 800, 1e-3);
+  EXPECT_NEAR(s.lights[0].color.y / s.lights[0].color.x, 0.5, 1e-6);
+  sample.json["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 3;
+  EXPECT_SAYS(refused(sample), "/nodes/1/extensions/KHR_lights_punctual/light: there is no such light");
+}
+
+TEST(Gltf, WarnsOfWhatItLeavesOut) {
+  GltfSample sample = square();
+  sample.json["animations"] = {json::object()};
+  sample.json["nodes"][0]["skin"] = 0;
+  sample.primitive()["targets"] = json::array();
+  sample.primitive()["attributes"]["COLOR_0"] = 0;
+  const Scene s = read(sample);
+  ASSERT_EQ(s.warnings.size(), 4u);
+  EXPECT_SAYS(s.warnings[0], "a.gltf: animations are left out");
+  EXPECT_SAYS(s.warnings[1], "morph targets");
+  EXPECT_SAYS(s.warnings[2], "skins");
+  EXPECT_SAYS(s.warnings[3], "vertex colours");
+}
+
+}  // namespace
+}  // namespace kdray::scene

@@ -1,0 +1,182 @@
+// What    Holds docs/scene.schema.json against the reader: the same objects, the same keys, the same ones
+//         required, and the same defaults. Values for every key are made up from the schema itself, so a key
+//         added to one side only fails here.
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "scene/importers.h"
+#include "scene/json_keys.h"
+#include "scene/scratch.h"
+#include "support/data.h"
+
+namespace kdray::scene {
+namespace {
+
+using nlohmann::json;
+
+json schema() {
+  std::ifstream in(test::source_path("docs/scene.schema.json"));
+  return json::parse(in);
+}
+
+const json& definition(const json& root, const std::string& name) {
+  return name == "scene" ? root : root.at("$defs").at(name);
+}
+
+std::set<std::string> keys_of(const json& object) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.insert(key);
+  return keys;
+}
+
+// A value the schema allows. Numbers are taken low in their range, and vectors so that no direction is 0 and
+// no two points of one object are the same.
+json example(const json& root, const json& rule, const std::string& key);
+
+json example_object(const json& root, const json& rule) {
+  json object = json::object();
+  for (const auto& [key, value] : rule.at("properties").items()) object[key] = example(root, value, key);
+  if (object.contains("matrix")) object.erase("matrix");  // stands instead of the other three
+  return object;
+}
+
+json example(const json& root, const json& rule, const std::string& key) {
+  if (rule.contains("const")) return rule["const"];
+  if (key == "vertices" || key == "normals") return json::parse("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]");
+  if (key == "faces") return json::parse("[[0, 1, 2]]");
+  if (key == "file") return "mesh.nff";
+  if (key == "material") return "m";
+  if (key == "materials") return json::object({{"m", example_object(root, definition(root, "material"))}});
+  if (key == "at" || key == "apex") return {1, 2, 9};
+  if (key == "matrix") return {1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1};
+  if (rule.contains("$ref")) {
+    const std::string ref = rule["$ref"];
+    return example(root, definition(root, ref.substr(ref.rfind('/') + 1)), key);
+  }
+  if (rule.contains("oneOf")) return example(root, rule["oneOf"][0], key);
+  const std::string type = rule.at("type");
+  if (type == "object") return example_object(root, rule);
+  if (type == "string") return "text";
+  if (type == "array") {
+    json array = json::array();
+    const int n = rule.value("minItems", 1);
+    for (int i = 0; i < n; ++i)
+      array.push_back(key == "objects" || key == "lights" ? example(root, rule["items"], "") : json(i + 1));
+    return array;
+  }
+  const double low = rule.value("minimum", 1.0);
+  return type == "integer" ? json(static_cast<int>(std::max(low, 2.0))) : json(std::max(low, 1.0));
+}
+
+class Schema : public ::testing::Test {
+ protected:
+  Schema() { folder_.write("mesh.nff", "f 1 1 1 1 0 1 0 0\ns 0 0 0 1\n"); }
+
+  // A scene around one object of the kind `name`.
+  json document_with(const std::string& name, json object) const {
+    json document;
+    document["materials"]["m"] = json::object();
+    if (name == "scene") return object;
+    if (name == "camera" || name == "render") {
+      document[name] = object;
+    } else if (name == "material") {
+      document["materials"]["m"] = object;
+    } else if (name.ends_with("_light")) {
+      document["lights"] = json::array({object});
+    } else if (name == "turn") {
+      document["objects"] = json::array({json{{"type", "mesh"}, {"file", "mesh.nff"}, {"rotate", object}}});
+    } else {
+      document["objects"] = json::array({object});
+    }
+    return document;
+  }
+  Scene read(const json& document) const { return read_json(document.dump(), folder_ / "s.json"); }
+
+  const json root_ = schema();
+  test::ScratchFolder folder_;
+};
+
+TEST_F(Schema, ListsTheKeysOfTheReader) {
+  std::set<std::string> names;
+  for (const JsonKeys& object : json_keys::kAll) {
+    names.insert(std::string(object.name));
+    const json& rule = definition(root_, std::string(object.name));
+    EXPECT_EQ(keys_of(rule.at("properties")), (std::set<std::string>(object.keys.begin(), object.keys.end())))
+        << object.name;
+    EXPECT_EQ(rule.at("additionalProperties"), false) << object.name;
+  }
+  for (const auto& [name, rule] : root_.at("$defs").items()) {
+    EXPECT_EQ(rule.contains("properties"), names.contains(name))
+        << name << ": an object the reader does not know";
+  }
+}
+
+TEST_F(Schema, EveryKeyIsRead) {
+  for (const JsonKeys& keys : json_keys::kAll) {
+    const std::string name(keys.name);
+    const json& rule = definition(root_, name);
+    const json full = example_object(root_, rule);
+    EXPECT_NO_THROW(read(document_with(name, full))) << name << ": " << full.dump();
+    for (const auto& [key, value] : rule.at("properties").items()) {
+      json wrong = full;
+      wrong[key] = json::parse(R"([[], {}])");  // right for no key: a key the reader skips would let it pass
+      if (key == "matrix") wrong.erase("translate"), wrong.erase("rotate"), wrong.erase("scale");
+      EXPECT_THROW(read(document_with(name, wrong)), Error) << name << " does not read " << key;
+      wrong = full;
+      wrong[key + "_"] = 1;
+      EXPECT_THROW(read(document_with(name, wrong)), Error) << name << " takes an unknown key";
+    }
+  }
+}
+
+TEST_F(Schema, RequiresWhatTheReaderRequires) {
+  for (const JsonKeys& keys : json_keys::kAll) {
+    const std::string name(keys.name);
+    const json& rule = definition(root_, name);
+    const json required = rule.value("required", json::array());
+    const json full = example_object(root_, rule);
+    for (const auto& [key, value] : full.items()) {
+      json less = full;
+      less.erase(key);
+      const bool needed = std::find(required.begin(), required.end(), key) != required.end();
+      if (key == "materials") continue;  // the objects of the example name one
+      if (needed) {
+        EXPECT_THROW(read(document_with(name, less)), Error) << name << " without " << key;
+      } else {
+        EXPECT_NO_THROW(read(document_with(name, less))) << name << " without " << key;
+      }
+    }
+  }
+}
+
+TEST_F(Schema, TellsTheReadersDefaults) {
+  for (const JsonKeys& keys : json_keys::kAll) {
+    const std::string name(keys.name);
+    const json& rule = definition(root_, name);
+    const json full = example_object(root_, rule);
+    for (const auto& [key, value] : rule.at("properties").items()) {
+      if (!value.contains("default")) continue;
+      json with = full, without = full;
+      with[key] = value["default"];
+      without.erase(key);
+      const Scene a = read(document_with(name, with)), b = read(document_with(name, without));
+      EXPECT_EQ(a.materials, b.materials) << name << "/" << key;
+      EXPECT_EQ(a.background, b.background);
+      EXPECT_EQ(a.ambient, b.ambient);
+      if (a.camera && b.camera) {
+        EXPECT_EQ(a.camera->up, b.camera->up);
+        EXPECT_DOUBLE_EQ(a.camera->vertical_fov, b.camera->vertical_fov);
+        EXPECT_EQ(a.camera->hither, b.camera->hither);
+      }
+      ASSERT_EQ(a.lights.size(), b.lights.size());
+      for (std::size_t i = 0; i < a.lights.size(); ++i) EXPECT_EQ(a.lights[i].color, b.lights[i].color);
+      ASSERT_EQ(a.cones.size(), b.cones.size());
+      for (std::size_t i = 0; i < a.cones.size(); ++i)
+        EXPECT_EQ(a.cones[i].apex_radius, b.cones[i].apex_radius);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kdray::scene

@@ -1,0 +1,116 @@
+// What    Files that are cut off anywhere, or with some bytes changed: each either loads, as a scene that keeps all
+//         promises, or is refused in one line. Most telling under the sanitizers.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <random>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "scene/check_scene.h"
+#include "scene/gltf_samples.h"
+#include "scene/importers.h"
+
+namespace kdray::scene {
+namespace {
+
+using Reader = Scene (*)(std::string_view, const std::filesystem::path&);
+
+void expect_safe(Reader reader, const std::string& text) {
+  try {
+    check_scene(reader(text, "a"));
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::input) << e.what();
+    const std::string what = e.what();
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+  }
+}
+
+void mutate(Reader reader, const std::string& good, int n_rounds) {
+  EXPECT_NO_THROW(check_scene(reader(good, "a")));
+  for (std::size_t n = 0; n < good.size(); ++n) expect_safe(reader, good.substr(0, n));
+  const unsigned seed = 4711;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  for (int round = 0; round < n_rounds; ++round) {
+    std::string bad = good;
+    const int n_changes = 1 + static_cast<int>(random() % 4);
+    for (int i = 0; i < n_changes; ++i) {
+      const std::size_t at = random() % bad.size();
+      switch (random() % 4) {
+        case 0:
+          bad[at] = static_cast<char>(random());
+          break;
+        case 1:  // what numbers and counts are made of
+          bad[at] = "0123456789-+.eE \n/"[random() % 18];
+          break;
+        case 2:
+          bad.insert(at, 1, bad[random() % bad.size()]);
+          break;
+        default:
+          bad.erase(at, 1 + random() % 3);
+          if (bad.empty()) bad = "x";
+      }
+    }
+    expect_safe(reader, bad);
+  }
+}
+
+constexpr int kRounds = 4000;
+
+std::string ply_header(const std::string& format) {
+  return "ply\nformat " + format +
+         " 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty "
+         "uchar "
+         "red\nelement face 2\nproperty list uchar int vertex_indices\nelement tristrips 1\nproperty list "
+         "int int "
+         "vertex_indices\nend_header\n";
+}
+
+TEST(Mutations, OfAsciiPly) {
+  mutate(read_ply,
+         ply_header("ascii") + "0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n3 0 1 2\n4 0 1 2 3\n5 0 1 2 -1 3\n",
+         kRounds);
+}
+
+TEST(Mutations, OfBinaryPly) {
+  std::string data = ply_header("binary_little_endian");
+  for (float i = 0; i < 4; ++i) data += test::bytes_of<float>({i, i * i, 1}) + "r";
+  data += "\3" + test::bytes_of<std::int32_t>({0, 1, 2}) + "\4" + test::bytes_of<std::int32_t>({0, 1, 2, 3});
+  data += test::bytes_of<std::int32_t>({5, 0, 1, 2, -1, 3});
+  mutate(read_ply, data, kRounds);
+}
+
+TEST(Mutations, OfStl) {
+  mutate(
+      read_stl,
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+      "endsolid a\n",
+      kRounds);
+  std::string binary(80, 'b');
+  binary += test::bytes_of<std::uint32_t>({2});
+  for (int i = 0; i < 2; ++i) binary += test::bytes_of<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) + "ab";
+  mutate(read_stl, binary, kRounds);
+}
+
+TEST(Mutations, OfObj) {
+  mutate(read_obj,
+         "mtllib a.mtl\nv 0 0 0\nv 1 0 0 \\\n\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvn 0 0 1\nusemtl a b\nf 1 2 3\nf "
+         "1//1 2//1 3//1 "
+         "4//1\nf -1/1/-1 -2/1/1 -3/1/1\nl 1 2\n",
+         kRounds);
+}
+
+TEST(Mutations, OfGltf) {
+  test::GltfSample sample = test::square();
+  sample.json["materials"] = {
+      {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}, {"alphaMode", "BLEND"}}};
+  sample.primitive()["material"] = 0;
+  sample.json["nodes"][0]["scale"] = {1, 2, 3};
+  mutate(read_gltf, sample.text(), kRounds);
+  mutate(read_gltf, sample.glb(test::bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})), kRounds);
+}
+
+}  // namespace
+}  // namespace kdray::scene
