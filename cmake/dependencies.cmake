@@ -14,6 +14,10 @@ find_package(PkgConfig REQUIRED)       # pkg-config; Debian's OpenEXR config fil
 pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)  # libopenexr-dev
 find_package(assimp QUIET)             # libassimp-dev, optional: mesh formats without a reader of our own
 find_package(benchmark QUIET)           # libbenchmark-dev, optional: bench/
+find_package(embree 4 QUIET)            # libembree-dev, optional: what `kdray bench` compares with; version 4 or 3
+if(NOT embree_FOUND)
+  find_package(embree 3 QUIET)
+endif()
 if(KDRAY_TESTS)
   find_package(GTest REQUIRED)         # libgtest-dev, libgmock-dev
 endif()

@@ -27,18 +27,34 @@ auto timed(api::Json& seconds, const char* name, Work&& work) {
   return result;
 }
 
-kdtree::BuildConfig config_of(const TreeOptions& o) {
+kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
   kdtree::BuildConfig config;
   config.max_depth = o.max_depth;
   config.cost_traverse = o.cost_traverse;
   config.cost_intersect = o.cost_intersect;
   config.empty_bonus = o.empty_bonus;
-  return config;
+  return kdtree::suited(config, n_primitives);
+}
+
+const char* traversal_name(Traversal traversal) {
+  switch (traversal) {
+    case Traversal::binary:
+      return "binary";
+    case Traversal::wide:
+      return "wide";
+    case Traversal::packet:
+      return "packet";
+    case Traversal::batch:
+      return "batch";
+    default:
+      return "auto";
+  }
 }
 
 void check(const DeviceOptions& o) {
   if (o.queues < 1 || o.queues > 1024) throw Error(ErrorCode::usage, "the number of queues may be 1 to 1024");
   if (o.work_group < 0) throw Error(ErrorCode::usage, "the work-group size may not be negative");
+  if (o.compute_units < 0) throw Error(ErrorCode::usage, "the number of compute units may not be negative");
 }
 
 std::size_t work_group_of(const DeviceOptions& o, const device::Context& context) {
@@ -74,9 +90,10 @@ struct Renderer::Impl {
   Impl(const Scene& scene, const TreeOptions& tree, const DeviceOptions& device);
 
   Picture render(const RenderOptions& options);
-  std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat);
+  std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal);
   wavefront::Schedule schedule_for(const layout::Frame& frame, const RenderOptions& options) const;
-  void record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t features);
+  void record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t features,
+              Traversal traversal);
 
   // The parts of the scene that a frame needs (camera, lights, materials): its geometry is on the device.
   scene::Scene settings;
@@ -96,26 +113,31 @@ Renderer::Impl::Impl(const Scene& scene, const TreeOptions& tree_options,
   const scene::Scene& model = scene.model();
   api::Json& seconds = statistics["seconds"];
   // The device first: without one there is no use in building a tree.
-  context = std::make_unique<device::Context>(device_options.device, device_options.queues);
+  context = std::make_unique<device::Context>(device_options.device, device_options.queues,
+                                              device_options.compute_units);
   work_group = work_group_of(device_options, *context);
 
   const Timer build_timer;
   geometry = scene::make_geometry(model);
-  const kdtree::Tree tree = kdtree::build(geometry, config_of(tree_options));
+  const kdtree::BuildConfig config = config_of(tree_options, geometry.size());
+  const kdtree::Tree tree = kdtree::build(geometry, config);
   seconds["build"] = build_timer.seconds();
   geometry.bounds = tree.bounds;  // the root's cell: what the rays are clipped to
   tree_depth = tree.max_depth;
   features = flatten::features_of(model, geometry);
 
-  const flatten::FlatScene flat =
-      timed(seconds, "flatten", [&] { return flatten::flatten(model, geometry, tree); });
-  buffers =
-      timed(seconds, "upload", [&] { return std::make_unique<wavefront::SceneBuffers>(*context, flat); });
-  programs = std::make_unique<wavefront::Programs>(*context, tree_depth);
+  const auto [flat, wide] = timed(seconds, "flatten", [&] {
+    flatten::FlatScene scene_arrays = flatten::flatten(model, geometry, tree);
+    flatten::WideForm form = flatten::make_wide(tree, scene_arrays, flatten::choose_block(tree));
+    return std::pair{std::move(scene_arrays), std::move(form)};
+  });
+  buffers = timed(seconds, "upload",
+                  [&] { return std::make_unique<wavefront::SceneBuffers>(*context, flat, wide); });
+  programs = std::make_unique<wavefront::Programs>(*context, tree_depth, wide);
   seconds["compile"] = 0.0;
 
-  statistics["tree"] = api::tree_json(tree, kdtree::measure(tree, geometry, config_of(tree_options)));
-  statistics["memory"] = {{"scene_bytes", flat.bytes()}};
+  statistics["tree"] = api::tree_json(tree, kdtree::measure(tree, geometry, config));
+  statistics["memory"] = {{"scene_bytes", flat.bytes() + wide.bytes()}};
   statistics["device"] = api::device_json(context->info());
   statistics["features"] = api::features_json(features);
   statistics["scene"] = {{"primitives", model.primitive_count()},
@@ -140,7 +162,6 @@ Renderer::Impl::Impl(const Scene& scene, const TreeOptions& tree_options,
 // Slices enough to keep every lane of a launch busy, but no more than the picture has tiles.
 wavefront::Schedule Renderer::Impl::schedule_for(const layout::Frame& frame,
                                                  const RenderOptions& options) const {
-  constexpr std::uint32_t kSlices = 256;
   wavefront::Schedule schedule;
   if (options.tile_width > 0) schedule.tile_width = static_cast<std::uint32_t>(options.tile_width);
   if (options.tile_height > 0) schedule.tile_height = static_cast<std::uint32_t>(options.tile_height);
@@ -152,11 +173,16 @@ wavefront::Schedule Renderer::Impl::schedule_for(const layout::Frame& frame,
   schedule.work_group = work_group;
   const std::uint64_t tiles_x = (frame.width + schedule.tile_width - 1) / schedule.tile_width;
   const std::uint64_t tiles_y = (frame.height + schedule.tile_height - 1) / schedule.tile_height;
-  schedule.n_slices = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(tiles_x * tiles_y, 1, kSlices));
+  // Enough slices that the last ones to end leave no core idle for long; each has a pool and streams of its own.
+  const std::uint64_t slices = std::max<std::uint64_t>(schedule.n_slices, 16 * context->info().compute_units);
+  schedule.n_slices = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(tiles_x * tiles_y, 1, slices));
+  schedule.traversal = options.traversal;
+  schedule.fused = context->info().kind == "cpu";
   return schedule;
 }
 
-void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t used) {
+void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t used,
+                            Traversal traversal) {
   api::Json& seconds = statistics["seconds"];
   const auto stage = [&](const char* name) {
     const auto found = result.stage_seconds.find(name);
@@ -175,7 +201,7 @@ void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& fr
   statistics["mode"] = {{"name", "pdprt"},
                         {"queues", context->queues().size()},
                         {"sub_devices", context->n_sub_devices()},
-                        {"traversal", "binary"},
+                        {"traversal", traversal_name(traversal)},
                         {"precision", "float"},
                         {"work_group", work_group},
                         {"programs", programs->n_built()},
@@ -194,22 +220,26 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
   const std::uint32_t used = features | flatten::features_of_samples(o.samples);
   const pdprt::Result result =
       pdprt::render(*context, *buffers, *programs, frame, schedule_for(frame, o), used, o.progress);
-  record(result, frame, used);
+  record(result, frame, used, options.traversal);
   return to_picture(result.image,
                     wavefront::render_channels(*context, *buffers, *programs, frame, used, o.channels));
 }
 
-std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat) {
+std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat,
+                                       Traversal traversal) {
   wavefront::QueryResult result = wavefront::trace_query(*context, *buffers, *programs, geometry, features,
-                                                         work_group, rays, any_hit, repeat);
+                                                         work_group, traversal, rays, any_hit, repeat);
   const double seconds = median(result.seconds);
   statistics["seconds"]["compile"] = programs->build_seconds();
   statistics["seconds"]["trace"] = seconds;
   statistics["rays"] = {{"total", rays.size()}};
   statistics["mrays_per_s"] = mrays_per_s(rays.size(), seconds);
-  statistics["mode"] = {{"name", "query"},          {"queues", 1},
-                        {"traversal", "binary"},    {"precision", "float"},
-                        {"work_group", work_group}, {"repeat", result.seconds.size()}};
+  statistics["mode"] = {{"name", "query"},
+                        {"queues", 1},
+                        {"traversal", traversal_name(traversal)},
+                        {"precision", "float"},
+                        {"work_group", work_group},
+                        {"repeat", result.seconds.size()}};
   return std::move(result.hits);
 }
 
@@ -222,8 +252,8 @@ Renderer::~Renderer() = default;
 Picture Renderer::render(const RenderOptions& options) {
   return impl_->render(options);
 }
-std::vector<Hit> Renderer::trace(std::span<const Ray> rays, bool any_hit, int repeat) {
-  return impl_->trace(rays, any_hit, repeat);
+std::vector<Hit> Renderer::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal) {
+  return impl_->trace(rays, any_hit, repeat, traversal);
 }
 std::string Renderer::statistics() const {
   return impl_->statistics.dump(2);

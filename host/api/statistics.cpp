@@ -26,7 +26,8 @@ Json device_json(const DeviceInfo& info) {
           {"kind", info.kind},
           {"compute_units", info.compute_units},
           {"global_memory", info.global_memory},
-          {"max_allocation", info.max_allocation}};
+          {"max_allocation", info.max_allocation},
+          {"vectors", info.vectors}};
 }
 
 Json features_json(std::uint32_t mask) {

@@ -22,6 +22,7 @@ std::string as_text(const std::vector<DeviceInfo>& devices) {
                         bytes_in_words(d.global_memory), bytes_in_words(d.max_allocation));
     text +=
         fmt::format("   {}, {}, driver {}\n", one_line(d.platform), one_line(d.version), one_line(d.driver));
+    if (d.usable) text += fmt::format("   vectors: {}\n", d.vectors);
     if (!d.usable) text += fmt::format("   not usable: {}\n", one_line(d.why_not));
   }
   return text;
@@ -39,6 +40,7 @@ std::string as_json(const std::vector<DeviceInfo>& devices) {
                     {"compute_units", d.compute_units},
                     {"global_memory", d.global_memory},
                     {"max_allocation", d.max_allocation},
+                    {"vectors", d.vectors},
                     {"usable", d.usable},
                     {"why_not", d.why_not}});
   return list.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

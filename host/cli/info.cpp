@@ -33,10 +33,11 @@ int run(const Options& o) {
 
   step.restart();
   const scene::Geometry geometry = scene::make_geometry(scene);
-  const kdtree::BuildConfig config{.cost_traverse = o.tree.cost_traverse,
-                                   .cost_intersect = o.tree.cost_intersect,
-                                   .empty_bonus = o.tree.empty_bonus,
-                                   .max_depth = o.tree.max_depth};
+  const kdtree::BuildConfig config = kdtree::suited({.cost_traverse = o.tree.cost_traverse,
+                                                     .cost_intersect = o.tree.cost_intersect,
+                                                     .empty_bonus = o.tree.empty_bonus,
+                                                     .max_depth = o.tree.max_depth},
+                                                    geometry.size());
   const kdtree::Tree tree = kdtree::build(geometry, config);
   const double build_seconds = step.seconds();
 

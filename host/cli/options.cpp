@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -8,6 +9,9 @@
 namespace kdray::cli {
 
 namespace {
+
+// In the order of Traversal.
+constexpr std::array<std::string_view, 5> kTraversals = {"auto", "binary", "wide", "packet", "batch"};
 
 // "-o,--output" -> "--output", for messages.
 std::string long_name(const std::string& name) {
@@ -48,8 +52,7 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
   add_real(app, "--cost-traverse", "C", "Cost of one inner node in the surface area heuristic (default 1)", 0,
            1e6, tree.cost_traverse)
       ->group(group);
-  add_real(app, "--cost-intersect", "C", "Cost of one primitive test (default 1.5)", 1e-6, 1e6,
-           tree.cost_intersect)
+  add_real(app, "--cost-intersect", "C", "Cost of one leaf test (default 3)", 1e-6, 1e6, tree.cost_intersect)
       ->group(group);
   add_real(app, "--empty-bonus", "B",
            "Share of its cost that a split pays when it cuts off empty space (default 0.8)", 0, 1,
@@ -57,9 +60,8 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
       ->group(group);
 }
 
-void add_device_options(CLI::App& app, DeviceOptions& device) {
+void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal) {
   const std::string group = "Device";
-  static constexpr std::array<std::string_view, 2> kTraversals = {"auto", "binary"};
   static constexpr std::array<std::string_view, 1> kPrecisions = {"float"};
   add_text(app, "--device", "SPEC", "auto, cpu, gpu, a number from 'kdray devices', or a part of a name",
            [&device](const std::string& text) {
@@ -75,9 +77,13 @@ void add_device_options(CLI::App& app, DeviceOptions& device) {
           "Work-items in a group of the per-ray kernels (default: chosen for the device)", 1, 65536,
           device.work_group)
       ->group(group);
-  add_text(app, "--traversal", "NAME", "How rays walk the tree: auto, binary", [](const std::string& text) {
-    parse_choice("--traversal", text, kTraversals);
-  })->group(group);
+  add_text(app, "--traversal", "NAME", "How rays walk the tree: auto, binary, wide, packet, batch",
+           [&traversal](const std::string& text) {
+             parse_choice("--traversal", text, kTraversals);
+             const auto name = std::find(kTraversals.begin(), kTraversals.end(), text);
+             traversal = static_cast<Traversal>(name - kTraversals.begin());
+           })
+      ->group(group);
   add_text(app, "--precision", "NAME", "Arithmetic of the kernels: float", [](const std::string& text) {
     parse_choice("--precision", text, kPrecisions);
   })->group(group);

@@ -23,6 +23,6 @@ CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string&
 void add_tree_options(CLI::App& app, TreeOptions& tree);
 
 // --device --queues --work-group --traversal --precision
-void add_device_options(CLI::App& app, DeviceOptions& device);
+void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal);
 
 }  // namespace kdray::cli

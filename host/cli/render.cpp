@@ -181,7 +181,7 @@ Command add_render(CLI::App& kdray) {
   add_file_options(*app, *o);
   add_picture_options(*app, *o);
   add_schedule_options(*app, *o);
-  add_device_options(*app, o->device);
+  add_device_options(*app, o->device, o->render.traversal);
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};
 }

@@ -24,6 +24,7 @@ struct Options {
   std::string scene, rays, output, stats;
   bool any_hit = false, quiet = false;
   int repeat = 1;
+  Traversal traversal = Traversal::automatic;
   TreeOptions tree;
   DeviceOptions device;
 };
@@ -52,7 +53,7 @@ int run(const Options& o) {
     for (const std::string& warning : scene.warnings()) say(warning);
 
   Renderer renderer(scene, o.tree, o.device);
-  const std::vector<Hit> hits = renderer.trace(rays, o.any_hit, o.repeat);
+  const std::vector<Hit> hits = renderer.trace(rays, o.any_hit, o.repeat, o.traversal);
   step.restart();
   rays::write_hits(o.output, hits);
   seconds.write = step.seconds();
@@ -83,7 +84,7 @@ Command add_trace(CLI::App& kdray) {
   add_int(*app, "--repeat", "Trace that often and report the median time (default 1)", 1, 1000000, o->repeat);
   add_path(*app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o->stats);
   app->add_flag("-q,--quiet", o->quiet, "Say nothing unless something is wrong");
-  add_device_options(*app, o->device);
+  add_device_options(*app, o->device, o->traversal);
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};
 }

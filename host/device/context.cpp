@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
-#include <utility>
+#include <tuple>
 
+#include "device/host_memory.h"
 #include "device/opencl_error.h"
 #include "device/program.h"
 
@@ -14,11 +15,11 @@ namespace kdray::device {
 
 namespace {
 
-// `n` equal parts of the device, or the device itself when it can't be divided.
-std::vector<cl::Device> divide(cl::Device device, int n) {
-  const cl_uint units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+// `n` equal parts of the device's first `units` compute units, or the device itself when it can't be divided.
+std::vector<cl::Device> divide(cl::Device device, int n, cl_uint units) {
   const cl_uint parts = std::min<cl_uint>(static_cast<cl_uint>(n), units);
-  if (parts < 2) return {device};
+  const bool whole = units == device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  if (parts < 2 && whole) return {device};
   const cl_device_partition_property by_counts = CL_DEVICE_PARTITION_BY_COUNTS;
   std::vector<cl_device_partition_property> properties{by_counts};
   for (cl_uint i = 0; i < parts; ++i)
@@ -30,14 +31,17 @@ std::vector<cl::Device> divide(cl::Device device, int n) {
   try {
     device.createSubDevices(properties.data(), &sub_devices);
   } catch (const cl::Error&) {
+    if (!whole)
+      throw Error(ErrorCode::no_device,
+                  fmt::format("the device can't be cut down to {} of its compute units", units));
     return {device};  // most GPUs
   }
   return sub_devices;
 }
 
-Opened open(const cl::Device& device, int n_queues) {
+Opened open(const cl::Device& device, int n_queues, cl_uint units) {
   Opened opened;
-  opened.devices = divide(device, n_queues);
+  opened.devices = divide(device, n_queues, units);
   opened.context = cl::Context(opened.devices);
   for (int i = 0; i < n_queues; ++i)
     opened.queues.emplace_back(opened.context,
@@ -49,18 +53,25 @@ Opened open(const cl::Device& device, int n_queues) {
 // Never destroyed, on purpose: see the header.
 const Opened& opened_before_or_now(const FoundDevice& found, int n_queues) {
   static std::mutex mutex;
-  static auto* all = new std::map<std::pair<int, int>, Opened>;
+  static auto* all = new std::map<std::tuple<int, int, cl_uint>, Opened>;
   const std::lock_guard lock(mutex);
-  const std::pair key{found.info.number, n_queues};
+  const std::tuple key{found.info.number, n_queues, found.info.compute_units};
   auto place = all->find(key);
-  if (place == all->end()) place = all->emplace(key, open(found.device, n_queues)).first;
+  if (place == all->end())
+    place = all->emplace(key, open(found.device, n_queues, found.info.compute_units)).first;
   return place->second;
 }
 
 }  // namespace
 
-Context::Context(const std::string& device_spec, int n_queues) : found_(choose_device(device_spec)) {
+Context::Context(const std::string& device_spec, int n_queues, int compute_units)
+    : found_(choose_device(device_spec)) {
+  if (compute_units > 0)
+    found_.info.compute_units =
+        std::min(found_.info.compute_units, static_cast<std::uint32_t>(compute_units));
   checked("opening " + found_.info.name, [&] { opened_ = &opened_before_or_now(found_, n_queues); });
+  simd_ = choose_simd(found_, *opened_);
+  found_.info.vectors = in_words(simd_);
 }
 
 std::size_t Context::max_work_group() const {
@@ -89,8 +100,12 @@ cl::Buffer Context::buffer(cl_mem_flags flags, std::size_t bytes, const std::str
         ErrorCode::out_of_memory,
         fmt::format("{} wants {} MiB in one piece, {} gives {} MiB at most; try a smaller scene or picture",
                     what, bytes >> 20, found_.info.name, found_.info.max_allocation >> 20));
-  return checked("allocating " + what,
-                 [&] { return cl::Buffer(opened_->context, flags, std::max<std::size_t>(bytes, 16)); });
+  return checked("allocating " + what, [&] {
+    const bool in_host = found_.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU &&
+                         found_.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
+    if (in_host && bytes >= kLargePages) return host_buffer(opened_->context, flags, bytes);
+    return cl::Buffer(opened_->context, flags, std::max<std::size_t>(bytes, 16));
+  });
 }
 
 }  // namespace kdray::device

@@ -11,6 +11,7 @@
 
 #include "device/opencl.h"
 #include "device/platform.h"
+#include "device/simd.h"
 
 namespace kdray::device {
 
@@ -23,9 +24,13 @@ struct Opened {
 
 class Context {
  public:
-  Context(const std::string& device_spec, int n_queues);
+  // `compute_units` > 0: a sub-device of that many of the device's units, or all where it has no more; throws
+  // ErrorCode::no_device when it can't be divided.
+  Context(const std::string& device_spec, int n_queues, int compute_units = 0);
 
   const DeviceInfo& info() const { return found_.info; }
+  Simd simd() const { return simd_; }  // the form of vectors that kernels are to be built with
+  const Opened& opened() const { return *opened_; }
   const cl::Context& get() const { return opened_->context; }
   const std::vector<cl::CommandQueue>& queues() const { return opened_->queues; }
   std::size_t max_work_group() const;
@@ -43,6 +48,7 @@ class Context {
  private:
   FoundDevice found_;
   const Opened* opened_;
+  Simd simd_ = Simd::portable;
 };
 
 }  // namespace kdray::device

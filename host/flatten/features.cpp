@@ -18,6 +18,7 @@ constexpr Name kNames[] = {
     {KDRAY_FEATURE_SPHERES, "spheres"},
     {KDRAY_FEATURE_CONES, "cones"},
     {KDRAY_FEATURE_SMOOTH, "smooth normals"},
+    {KDRAY_FEATURE_NUMBERS, "primitive numbers"},
     {KDRAY_FEATURE_REFLECT, "reflection"},
     {KDRAY_FEATURE_TRANSMIT, "refraction"},
     {KDRAY_FEATURE_SPECULAR, "highlights"},
@@ -42,11 +43,23 @@ bool some(const Items& items, Predicate predicate) {
   return std::any_of(items.begin(), items.end(), predicate);
 }
 
+// True when each primitive's place in the file is its index in its kind's array: one kind, and none dropped.
+bool numbers_are_indices(const scene::Scene& scene, const scene::Geometry& geometry) {
+  const auto in_order = [](const auto& kept, const auto& source) {
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      if (source[kept[i].source].number != i) return false;
+    return true;
+  };
+  return in_order(geometry.triangles, scene.triangles) && in_order(geometry.spheres, scene.spheres) &&
+         in_order(geometry.cones, scene.cones);
+}
+
 std::uint32_t geometry_features(const scene::Scene& scene, const scene::Geometry& geometry) {
   const auto smooth = [&](const scene::TriangleGeometry& t) {
     return scene.triangles[t.source].normal[0] != scene::kNone;
   };
-  return when(!geometry.triangles.empty(), KDRAY_FEATURE_TRIANGLES) |
+  return when(!numbers_are_indices(scene, geometry), KDRAY_FEATURE_NUMBERS) |
+         when(!geometry.triangles.empty(), KDRAY_FEATURE_TRIANGLES) |
          when(!geometry.spheres.empty(), KDRAY_FEATURE_SPHERES) |
          when(!geometry.cones.empty(), KDRAY_FEATURE_CONES) |
          when(some(geometry.triangles, smooth), KDRAY_FEATURE_SMOOTH);

@@ -20,14 +20,17 @@ namespace kdray::kdtree {
 
 namespace {
 
-constexpr std::size_t kSubtree = 4096;  // references; smaller cells are built in one thread
-constexpr int kDepthLimit = 64;         // the traversal's stack
+constexpr std::size_t kSubtree = 4096;                   // references; smaller cells are built in one thread
+constexpr std::size_t kFineMesh = std::size_t{1} << 19;  // primitives
+constexpr int kDepthLimit = 64;                          // the traversal's stack
 
 void check(const BuildConfig& c, std::size_t n) {
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   if (!positive(c.cost_intersect) || !(std::isfinite(c.cost_traverse) && c.cost_traverse >= 0) ||
       !(positive(c.empty_bonus) && c.empty_bonus <= 1))
     throw Error(ErrorCode::usage, "kd-tree: costs must be positive and the empty-space factor in (0, 1]");
+  if (c.block < 1 || c.block > 64 || (c.block & (c.block - 1)) != 0)
+    throw Error(ErrorCode::usage, "kd-tree: the block size must be a power of two from 1 to 64");
   if (n > (std::size_t{1} << (kRefIndexBits - 1)))
     throw Error(ErrorCode::input, "too many primitives for one tree: " + std::to_string(n));
 }
@@ -89,7 +92,8 @@ class TopBuilder {
 
  private:
   // False, with refs as they were, where a leaf is to be made.
-  bool divide(TopNode& node, std::vector<BoundedRef>&& refs, const CellState& state) const {
+  bool divide(TopNode& node, std::vector<BoundedRef>&& refs, const CellState& loose) const {
+    const CellState state = tightened(loose, refs, config_);
     SweepScratch scratch;
     const Split split = choose_split(refs, state, config_, max_depth_, scratch);
     scratch = {};
@@ -139,6 +143,7 @@ void place_fragment(Fragment& fragment, std::size_t first_node, std::size_t firs
     tree.nodes[first_node + i] = node;
   }
   std::copy(fragment.refs.begin(), fragment.refs.end(), tree.refs.begin() + first_ref);
+  std::copy(fragment.contents.begin(), fragment.contents.end(), tree.contents.begin() + first_node);
   fragment = {};
 }
 
@@ -152,7 +157,24 @@ void place(TopNode& node, std::size_t first_node, std::size_t first_ref, Tree& t
                        [&] { place(*node.above, above, above_ref, tree); });
 }
 
+// Children follow their parents, so one pass from the end sees every child first.
+void sum_up_contents(Tree& tree) {
+  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+    const Node& node = tree.nodes[i];
+    if (node.is_leaf()) continue;
+    tree.contents[i] = tree.contents[node.left];
+    tree.contents[i].grow(tree.contents[node.right]);
+  }
+}
+
 }  // namespace
+
+BuildConfig suited(BuildConfig config, std::size_t n_primitives) {
+  const bool fine_mesh = n_primitives > kFineMesh;
+  config.block = fine_mesh ? 8 : 1;
+  config.tight_cells = fine_mesh;
+  return config;
+}
 
 Tree build(const scene::Geometry& geometry, const BuildConfig& config) {
   const std::size_t n = geometry.size();
@@ -160,6 +182,7 @@ Tree build(const scene::Geometry& geometry, const BuildConfig& config) {
   Tree tree;
   if (n == 0) {
     tree.nodes.push_back({});
+    tree.contents.emplace_back();
     return tree;
   }
   std::vector<BoundedRef> refs = all_refs(geometry);
@@ -168,9 +191,11 @@ Tree build(const scene::Geometry& geometry, const BuildConfig& config) {
   const std::unique_ptr<TopNode> top =
       TopBuilder(geometry, config, depth_for(config, n)).build(std::move(refs), root);
   tree.nodes.resize(top->n_nodes);
+  tree.contents.resize(top->n_nodes);
   tree.refs.resize(top->n_refs);
   tree.max_depth = top->max_depth;
   place(*top, 0, 0, tree);
+  sum_up_contents(tree);
   return tree;
 }
 

@@ -38,6 +38,24 @@ inline double half_area(const Bounds& b) {
   return x * y + y * z + z * x;
 }
 
+class LeafCost {
+ public:
+  explicit LeafCost(const BuildConfig& config)
+      : block_(static_cast<std::uint32_t>(config.block)), each_(config.block > 1 ? kEach : 0) {}
+
+  // Tests that a leaf of n references takes. In blocks, a full one is a little dearer than one of a single reference, so
+  // that of two equal splits the one with fewer duplicates is taken.
+  double operator()(std::uint32_t n) const { return (n + block_ - 1) / block_ + each_ * n; }
+
+  // What no leaf of n references is below.
+  double at_least(std::uint32_t n) const { return static_cast<double>(n) / block_ + each_ * n; }
+
+ private:
+  static constexpr double kEach = 1e-3;
+  std::uint32_t block_;
+  double each_;
+};
+
 // The expected costs of all planes across one axis of one cell.
 class AxisCosts {
  public:
@@ -46,7 +64,8 @@ class AxisCosts {
         hi_(cell.hi[axis]),
         traverse_(config.cost_traverse),
         intersect_(config.cost_intersect / half_area(cell)),
-        bonus_(config.empty_bonus) {
+        bonus_(config.empty_bonus),
+        tests_(config) {
     const int i = axis == 2 ? 0 : axis + 1, j = i == 2 ? 0 : i + 1;
     const double a = static_cast<double>(cell.hi[i]) - cell.lo[i];
     const double b = static_cast<double>(cell.hi[j]) - cell.lo[j];
@@ -60,12 +79,13 @@ class AxisCosts {
   // The expected cost with n_below and n_above references in the children; cells that cut off empty space are
   // favoured, since a ray leaves them at once.
   double operator()(double s, std::uint32_t n_below, std::uint32_t n_above) const {
-    const double cost = sum(area_below(s) * n_below + area_above(s) * n_above);
+    const double cost = sum(area_below(s) * tests_(n_below) + area_above(s) * tests_(n_above));
     return n_below == 0 || n_above == 0 ? bonus_ * cost : cost;
   }
 
-  // Of references weighted by their cells' areas.
-  double sum(double weighted_refs) const { return traverse_ + intersect_ * weighted_refs; }
+  // Of tests weighted by their cells' areas.
+  double sum(double weighted_tests) const { return traverse_ + intersect_ * weighted_tests; }
+  const LeafCost& tests() const { return tests_; }
 
   // Whether a plane there cuts the cell at all.
   bool inside(float s) const { return lo_ < s && s < hi_; }
@@ -76,6 +96,7 @@ class AxisCosts {
 
  private:
   double lo_, hi_, face_, rim_, traverse_, intersect_, bonus_;
+  LeafCost tests_;
 };
 
 // Offers the plane at s to `best`; n_planar references lie in it. A plane on the cell's own boundary makes a

@@ -45,7 +45,7 @@ Statistics measure(const Tree& tree, const scene::Geometry& geometry, const Buil
     const double chance = root_area > 0 ? half_area(v.cell) / root_area : (v.depth == 0 ? 1.0 : 0.0);
     if (node.is_leaf()) {
       count_leaf(node, v.depth, s);
-      s.sah_cost += chance * config.cost_intersect * node.right;
+      s.sah_cost += chance * config.cost_intersect * LeafCost(config)(node.right);
       continue;
     }
     ++s.inner_nodes;

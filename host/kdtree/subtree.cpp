@@ -27,8 +27,9 @@ class SubtreeBuilder {
   }
 
  private:
-  void build(std::size_t first, const CellState& state) {
+  void build(std::size_t first, const CellState& loose) {
     const std::span<BoundedRef> refs = std::span(stack_).subspan(first);
+    const CellState state = tightened(loose, refs, config_);
     const Split split = choose_split(refs, state, config_, max_depth_, scratch_);
     if (!split.found()) return append_leaf(refs, state.depth, out_);
     below_.clear();
@@ -43,6 +44,7 @@ class SubtreeBuilder {
 
     const std::size_t node = out_.nodes.size();
     out_.nodes.emplace_back();
+    out_.contents.emplace_back();
     build(first + n_above, child_below(state, split, n_below, n_above));
     stack_.resize(first + n_above);
     out_.nodes[node] = {static_cast<std::uint32_t>(split.axis), split.position,
@@ -66,6 +68,14 @@ CellState child_of(const CellState& parent, const Bounds& cell, std::size_t n, s
 
 }  // namespace
 
+CellState tightened(const CellState& state, std::span<const BoundedRef> refs, const BuildConfig& config) {
+  if (!config.tight_cells || refs.empty()) return state;
+  CellState tight = state;
+  tight.cell = no_bounds();
+  for (const BoundedRef& r : refs) tight.cell = hull(tight.cell, r.bounds());
+  return tight;
+}
+
 double reference_budget(std::size_t n_primitives) {
   return std::min(kMostReferences, kMaxDuplication * static_cast<double>(n_primitives) + kFreeReferences);
 }
@@ -86,13 +96,18 @@ Split choose_split(std::span<const BoundedRef> refs, const CellState& state, con
                    int max_depth, SweepScratch& scratch) {
   if (state.depth >= max_depth) return {};
   const Split split = find_split(refs, state.cell, config, scratch);
-  const double leaf_cost = config.cost_intersect * static_cast<double>(refs.size());
+  const double leaf_cost = config.cost_intersect * LeafCost(config)(static_cast<std::uint32_t>(refs.size()));
   return split.found() && split.cost < leaf_cost ? split : Split{};
 }
 
 void append_leaf(std::span<const BoundedRef> refs, int depth, Fragment& out) {
   const auto first = static_cast<std::uint32_t>(out.refs.size());
-  for (const BoundedRef& r : refs) out.refs.push_back(r.ref);
+  Bounds contents = no_bounds();
+  for (const BoundedRef& r : refs) {
+    out.refs.push_back(r.ref);
+    contents = hull(contents, r.bounds());
+  }
+  out.contents.push_back(box_from(contents));
   std::sort(out.refs.begin() + first, out.refs.end());
   out.nodes.push_back({Node::kLeaf, 0, first, static_cast<std::uint32_t>(refs.size())});
   out.max_depth = std::max(out.max_depth, depth);

@@ -14,6 +14,7 @@ namespace kdray::kdtree {
 struct Fragment {
   std::vector<Node> nodes;
   std::vector<Ref> refs;
+  std::vector<Box> contents;  // of each node; of inner nodes empty as yet
   int max_depth = 0;
 };
 
@@ -23,6 +24,9 @@ struct CellState {
   int depth = 0;
   double budget = 0;  // references that the leaves below it may have in all; at least those of the cell
 };
+
+// The state with the cell that costs are reckoned over: the contents' bounds, with BuildConfig::tight_cells.
+CellState tightened(const CellState& state, std::span<const BoundedRef> refs, const BuildConfig& config);
 
 // The whole tree's budget. Splits that only multiply references (needles across many cells, fans around a
 // vertex) still lower the expected cost, without end: the budget ends them.

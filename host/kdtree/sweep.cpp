@@ -56,7 +56,7 @@ class Sweep {
       : refs_(refs),
         costs_{AxisCosts(config, cell, 0), AxisCosts(config, cell, 1), AxisCosts(config, cell, 2)},
         scratch_(scratch),
-        upper_bound_(config.cost_intersect * static_cast<double>(refs.size())) {
+        upper_bound_(config.cost_intersect * LeafCost(config)(static_cast<std::uint32_t>(refs.size()))) {
     set_maps(cell);
   }
 
@@ -157,20 +157,18 @@ class Sweep {
     // What is neither surely below nor surely above goes at least to the smaller side.
     const std::uint32_t rest = n - std::min(n, below + above_end);
     const bool below_is_small = costs.area_below(lo) <= costs.area_above(hi);
+    const LeafCost& tests = costs.tests();
     const double split_cost =
-        raw_cost(costs, lo, hi, below + (below_is_small ? rest : 0), above_end + (below_is_small ? 0 : rest));
+        costs.sum(costs.area_below(lo) * tests.at_least(below + (below_is_small ? rest : 0)) +
+                  costs.area_above(hi) * tests.at_least(above_end + (below_is_small ? 0 : rest)));
     const bool may_be_empty = below == 0 || above_end == 0;
     bins.lower_bound[b] = split_cost * (may_be_empty ? std::min(1.0, costs.bonus()) : 1.0) * kSlack;
     // An upper bound needs a plane that surely cuts the cell, and one that surely is there.
     if (has_inner_plane(axis, b)) {
-      const double most = raw_cost(costs, hi, lo, below_end, bins.n_above[b]);
+      const double most =
+          costs.sum(costs.area_below(hi) * tests(below_end) + costs.area_above(lo) * tests(bins.n_above[b]));
       upper_bound_ = std::min(upper_bound_, most / kSlack);
     }
-  }
-
-  static double raw_cost(const AxisCosts& costs, double s_below, double s_above, std::uint32_t n_below,
-                         std::uint32_t n_above) {
-    return costs.sum(costs.area_below(s_below) * n_below + costs.area_above(s_above) * n_above);
   }
 
   // All positions of the bin are inside the cell, not on its boundary.

@@ -35,6 +35,8 @@ struct Node {
 struct Tree {
   std::vector<Node> nodes;
   std::vector<Ref> refs;
+  std::vector<Box>
+      contents;       // of each node: bounds of what its leaves hold, clipped to their cells; empty boxes too
   Box bounds;         // of the geometry; the root's cell
   int max_depth = 0;  // of any leaf; a lone root leaf has depth 0
 };

@@ -5,12 +5,14 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/timer.h"
 #include "pdprt/tiles.h"
-#include "wavefront/film_sums.h"
+#include "wavefront/develop.h"
 
 namespace kdray::pdprt {
 
@@ -21,8 +23,8 @@ constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // per queue; lar
 // What the queues' threads share.
 struct Frame {
   Bag bag;
-  wavefront::FilmSums film;
-  std::mutex film_mutex;
+  film::Image image;  // bands are disjoint: each queue writes its own
+  int samples;
   std::mutex wait_mutex;
   std::condition_variable changed;
   std::uint32_t n_running = 0;
@@ -40,10 +42,10 @@ void serve(Frame& shared, wavefront::Wavefront& queue) {
   while (!shared.failed) {
     const std::optional<Band> band = shared.bag.take();
     if (!band) return;
-    const auto sums =
-        queue.render_tiles(band->first_tile, band->end_tile, band->first_pixel, band->n_pixels, tiles_done);
-    const std::lock_guard lock(shared.film_mutex);
-    shared.film.add(band->first_pixel, sums);
+    const std::span pixels = std::span(shared.image.pixels).subspan(band->first_pixel, band->n_pixels);
+    queue.render_tiles(
+        band->first_tile, band->end_tile, band->first_pixel, band->n_pixels, tiles_done,
+        [&](std::span<const layout::i64> sums) { wavefront::develop(sums, shared.samples, pixels); });
   }
 }
 
@@ -81,8 +83,9 @@ Result render(const device::Context& context, const wavefront::SceneBuffers& sce
   const std::size_t n_queues = context.queues().size();
   const std::uint32_t rows = rows_per_band(frame, n_queues, kMaxFilmBytes);
   Frame shared{.bag = Bag(frame, rows),
-               .film = wavefront::FilmSums(static_cast<int>(frame.width), static_cast<int>(frame.height)),
-               .film_mutex = {},
+               .image = {static_cast<int>(frame.width), static_cast<int>(frame.height),
+                         std::vector<vec3>(std::size_t{frame.width} * frame.height)},
+               .samples = static_cast<int>(frame.n_samples),
                .wait_mutex = {},
                .changed = {},
                .n_running = static_cast<std::uint32_t>(n_queues),
@@ -107,8 +110,8 @@ Result render(const device::Context& context, const wavefront::SceneBuffers& sce
     }
   }
   if (shared.failure) std::rethrow_exception(shared.failure);
-  result.image = shared.film.develop(static_cast<int>(frame.n_samples));
   result.render_seconds = timer.seconds();
+  result.image = std::move(shared.image);
   for (const auto& queue : queues) {
     result.counters.add(queue->counters());
     for (const auto& [stage, seconds] : queue->stage_seconds()) result.stage_seconds[stage] += seconds;

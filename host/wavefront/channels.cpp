@@ -7,6 +7,7 @@
 
 #include "device/opencl_error.h"
 #include "layout/features.h"
+#include "layout/rays.layout.h"
 #include "wavefront/stage.h"
 
 namespace kdray::wavefront {
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kPlanes = 6;                 // floats per pixel that the kernel writes
 constexpr std::size_t kPixelsPerLaunch = 1 << 20;  // 24 MiB of buffer, whatever the picture's size
-constexpr std::size_t kWorkGroup = 64;
+constexpr std::size_t kWorkGroup = 16;             // items of KDRAY_LANES pixels
 
 struct Plane {
   const char* channel;  // as the user names it
@@ -63,7 +64,7 @@ std::vector<film::Channel> render_channels(const device::Context& context, const
       const std::size_t n = std::min(chunk, n_pixels - first);
       stage.set_arguments(first_argument, scene.normals, frame_buffer, static_cast<cl_uint>(first),
                           static_cast<cl_uint>(n), out);
-      stage.launch(queue, n, kWorkGroup);
+      stage.launch(queue, (n + KDRAY_LANES - 1) / KDRAY_LANES, kWorkGroup);
       queue.enqueueReadBuffer(out, CL_TRUE, 0, n * kPlanes * sizeof(float), values.data());
       for (std::size_t i = 0; i < n; ++i)
         if (std::isnan(values[i * kPlanes]))

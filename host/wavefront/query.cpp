@@ -8,6 +8,7 @@
 #include "base/timer.h"
 #include "device/opencl_error.h"
 #include "layout/rays.layout.h"
+#include "layout/traversal.h"
 #include "wavefront/stage.h"
 
 namespace kdray::wavefront {
@@ -17,7 +18,7 @@ namespace {
 static_assert(sizeof(Ray) == sizeof(layout::QueryRay) && sizeof(Hit) == sizeof(layout::QueryHit));
 
 constexpr std::size_t kRaysPerChunk = std::size_t{1} << 24;  // 512 MiB of rays
-constexpr std::int32_t kInvalid = -2;                        // KDRAY_QUERY_INVALID of trace_query.cl
+constexpr std::int32_t kInvalid = -2;                        // KDRAY_QUERY_INVALID of query.clh
 
 bool all_finite(const float (&v)[3]) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -52,7 +53,7 @@ float world_max(const Box& bounds) {
 
 QueryResult trace_query(const device::Context& context, const SceneBuffers& scene, Programs& programs,
                         const scene::Geometry& geometry, std::uint32_t features, std::size_t work_group,
-                        std::span<const Ray> rays, bool any_hit, int repeat) {
+                        Traversal traversal, std::span<const Ray> rays, bool any_hit, int repeat) {
   check(rays);
   QueryResult result{std::vector<Hit>(rays.size()),
                      std::vector<double>(static_cast<std::size_t>(std::max(repeat, 1)))};
@@ -61,20 +62,27 @@ QueryResult trace_query(const device::Context& context, const SceneBuffers& scen
       {rays.size(), kRaysPerChunk, static_cast<std::size_t>(context.info().max_allocation / sizeof(Ray))});
   const cl::Buffer ray_buffer = context.buffer(CL_MEM_READ_ONLY, chunk * sizeof(Ray), "the rays");
   const cl::Buffer hit_buffer = context.buffer(CL_MEM_WRITE_ONLY, chunk * sizeof(Hit), "the hits");
-  const std::string name = any_hit ? "trace_query_any" : "trace_query_closest";
-  Stage stage(name, programs.kernel("traverse/trace_query.cl", name, features));
+  Stage stage("trace_query", programs.kernel("traverse/query.cl", "trace_query", features, traversal));
+  const bool chunked = traversal != Traversal::binary && traversal != Traversal::wide;
   cl::CommandQueue queue = context.queues().front();
   device::checked("tracing rays", [&] {
     const cl_uint first_argument = scene.set_tree_arguments(stage.kernel());
     for (std::size_t first = 0; first < rays.size(); first += chunk) {
       const std::size_t n = std::min(chunk, rays.size() - first);
       queue.enqueueWriteBuffer(ray_buffer, CL_TRUE, 0, n * sizeof(Ray), rays.data() + first);
+      // Memory that nobody has written to yet is handed out page by page, which is no part of tracing.
+      queue.enqueueFillBuffer(hit_buffer, cl_int{0}, 0, n * sizeof(Hit));
+      queue.finish();
       stage.set_arguments(first_argument, float4(geometry.bounds.lo), float4(geometry.bounds.hi),
                           float4(vec3(geometry.center)), world_max(geometry.bounds), static_cast<cl_uint>(n),
-                          ray_buffer, hit_buffer);
+                          cl_uint{any_hit}, ray_buffer, hit_buffer);
       for (double& seconds : result.seconds) {
         const Timer timer;
-        stage.launch(queue, n, work_group);
+        if (chunked) {
+          stage.launch(queue, (n + KDRAY_CHUNK - 1) / KDRAY_CHUNK, 1);
+        } else {
+          stage.launch(queue, n, work_group);
+        }
         queue.finish();
         seconds += timer.seconds();
       }

@@ -20,6 +20,6 @@ struct QueryResult {
 
 QueryResult trace_query(const device::Context& context, const SceneBuffers& scene, Programs& programs,
                         const scene::Geometry& geometry, std::uint32_t features, std::size_t work_group,
-                        std::span<const Ray> rays, bool any_hit, int repeat);
+                        Traversal traversal, std::span<const Ray> rays, bool any_hit, int repeat);
 
 }  // namespace kdray::wavefront

@@ -3,13 +3,15 @@
 
 #include "device/context.h"
 #include "flatten/flatten.h"
+#include "flatten/wide.h"
 
 namespace kdray::wavefront {
 
 struct SceneBuffers {
   cl::Buffer nodes, refs, triangles, normals, spheres, cones, materials, lights;
+  cl::Buffer wide_nodes, triangle_blocks, sphere_blocks, cone_blocks;
 
-  SceneBuffers(const device::Context& context, const flatten::FlatScene& flat);
+  SceneBuffers(const device::Context& context, const flatten::FlatScene& flat, const flatten::WideForm& wide);
 
   // Sets KDRAY_SCENE_PARAMETERS (kernels/traverse/scene.clh) as the kernel's first arguments; the next free index.
   cl_uint set_tree_arguments(cl::Kernel& kernel) const;

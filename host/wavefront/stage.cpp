@@ -11,10 +11,13 @@ void Stage::launch(cl::CommandQueue& queue, std::size_t items, std::size_t local
 }
 
 double Stage::collect_seconds() {
-  for (const cl::Event& event : launches_)
+  while (!launches_.empty() &&
+         launches_.front().getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() == CL_COMPLETE) {
+    const cl::Event& event = launches_.front();
     seconds_ += 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
                                            event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-  launches_.clear();
+    launches_.pop_front();
+  }
   return seconds_;
 }
 

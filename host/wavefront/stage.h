@@ -1,8 +1,8 @@
 // What    One stage of the wavefront: a kernel with its arguments, launched on a queue, timed by the device's clock.
 #pragma once
 
+#include <deque>
 #include <string>
-#include <vector>
 
 #include "device/opencl.h"
 
@@ -24,13 +24,16 @@ class Stage {
   // Runs `items` work-items in groups of `local`; the launch is rounded up to whole groups (kernels check their bound).
   void launch(cl::CommandQueue& queue, std::size_t items, std::size_t local);
 
-  // Adds up the device time of the launches so far; the queue must be finished.
+  // Leaves the launches so far out of the time.
+  void forget_launches() { launches_.clear(); }
+
+  // Device time of all launches that have ended by now; never waits for one.
   double collect_seconds();
 
  private:
   std::string name_;
   cl::Kernel kernel_;
-  std::vector<cl::Event> launches_;
+  std::deque<cl::Event> launches_;  // whose time is still to be added
   double seconds_ = 0;
 };
 

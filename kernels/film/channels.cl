@@ -1,35 +1,66 @@
 // What    The extra channels of a picture (AOVs) from one eye ray per pixel, through its centre (or corner).
-// Shape   One work-item per pixel; out_channels[pixel*6]: depth, normal x y z, primitive number, cost.
+// Shape   One work-item per sixteen pixels; out_channels[pixel*6]: depth, normal x y z, primitive number, cost.
 //         Nothing hit: depth inf, normal 0, primitive -1. A failed walk: depth NaN, which the host takes for an error.
 #include "layout/features.h"
+#include "layout/rays.layout.h"
 #include "raygen/primary.clh"
 #include "shade/surface.clh"
 #include "traverse/closest.clh"
 
+// Sixteen floats in turn, by lane.
+typedef struct Row {
+  float lane[KDRAY_LANES];
+} Row;
+
+inline Row row_of(float16 v) {
+  Row row;
+  vstore16(v, 0, row.lane);
+  return row;
+}
+
 __kernel void channels(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
-                       __constant const Frame* frame, u32 first_pixel, u32 n_pixels, __global float* out_channels) {
-  const u32 item = (u32)get_global_id(0);
-  if (item >= n_pixels) return;
+                       __constant const Frame* frame, u32 first_pixel, u32 n_pixels,
+                       __global float* out_channels) {
+  const u32 first = (u32)get_global_id(0) * KDRAY_LANES;
+  if (first >= n_pixels) return;
+  const u32 n = min(n_pixels - first, KDRAY_LANES);
   const SceneArrays scene = KDRAY_SCENE_ARRAYS;
-  const u32 pixel = first_pixel + item;
-  const u32 x = pixel % frame->width, y = pixel / frame->width;
-  const float3 d = normalize3(eye_direction(frame, x, y, (float2)(0.5f, 0.5f)));
-  const float3 origin = load3_constant(frame->eye);
-  const float t_min = frame->hither / dot3(d, load3_constant(frame->forward));
-  const TreeRay r = make_tree_ray(origin, d, t_min, INFINITY, frame->world_max);
-  u32 cost = 0;
-  const Hit hit =
-      find_closest(&scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi), &cost);
-  __global float* out = out_channels + (size_t)item * 6;
-  float3 normal = (float3)(0.0f);
-  float number = -1.0f;
-  if (hit.ref < KDRAY_REF_INVALID) {
-    const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
-    normal = surface_at(&arrays, origin, d, &hit).shading;
-    number = (float)primitive_number(&scene, hit.ref);
+  const uint16 pixel = first_pixel + first + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const Float2x16 middle = {(float16)(0.5f), (float16)(0.5f)};
+  const Float3x16 d = normalize3(eye_direction(frame, pixel % frame->width, pixel / frame->width, middle));
+  const float3 eye = load3_constant(frame->eye);
+  const Row dx = row_of(d.x), dy = row_of(d.y), dz = row_of(d.z);
+  const Row t_min = row_of(frame->hither / dot3(d, splat3(load3_constant(frame->forward))));
+  Row t, u, v, number, cost;
+  uint refs[KDRAY_LANES];
+  for (u32 i = 0; i < KDRAY_LANES; ++i) {
+    refs[i] = KDRAY_REF_MISS;
+    if (i >= n) continue;
+    const TreeRay r = make_tree_ray(eye, (float3)(dx.lane[i], dy.lane[i], dz.lane[i]), t_min.lane[i],
+                                    INFINITY, frame->world_max);
+    u32 steps = 0;
+    const Hit hit =
+        find_closest(&scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi), &steps);
+    const bool found = hit.ref < KDRAY_REF_INVALID;
+    t.lane[i] = hit.ref == KDRAY_REF_INVALID ? NAN : hit.t;
+    u.lane[i] = hit.u;
+    v.lane[i] = hit.v;
+    refs[i] = found ? hit.ref : KDRAY_REF_MISS;
+    number.lane[i] = found ? (float)primitive_number(&scene, hit.ref) : -1.0f;
+    cost.lane[i] = (float)steps;
   }
-  out[0] = hit.ref == KDRAY_REF_INVALID ? NAN : hit.t;
-  store3(out + 1, normal);
-  out[4] = number;
-  out[5] = (float)cost;
+  const Hits hits = {vload16(0, t.lane), vload16(0, refs), vload16(0, u.lane), vload16(0, v.lane)};
+  const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
+  const lanes16 hit = hits.ref != KDRAY_REF_MISS;
+  Surface s;
+  surfaces_at(&arrays, splat3(eye), d, &hits, hit, &s);
+  const Float3x16 normal = select3(hit, s.shading, zero3());
+  const Row nx = row_of(normal.x), ny = row_of(normal.y), nz = row_of(normal.z);
+  for (u32 i = 0; i < n; ++i) {
+    __global float* out = out_channels + (size_t)(first + i) * 6;
+    out[0] = t.lane[i];
+    store3(out + 1, (float3)(nx.lane[i], ny.lane[i], nz.lane[i]));
+    out[4] = number.lane[i];
+    out[5] = cost.lane[i];
+  }
 }

@@ -9,6 +9,8 @@
 #define KDRAY_FEATURE_SPHERES 0x00000002u
 #define KDRAY_FEATURE_CONES 0x00000004u
 #define KDRAY_FEATURE_SMOOTH 0x00000008u  // vertex normals; removes interpolation and the terminator's shift
+#define KDRAY_FEATURE_NUMBERS \
+  0x00000010u  // numbers in file order that differ from indices; removes looking them up
 // Materials, bits 8-15.
 #define KDRAY_FEATURE_REFLECT 0x00000100u   // removes reflected rays (and, with TRANSMIT, the pool)
 #define KDRAY_FEATURE_TRANSMIT 0x00000200u  // removes refracted rays
@@ -33,6 +35,7 @@
 #define KDRAY_HAS_SPHERES ((KDRAY_FEATURES & KDRAY_FEATURE_SPHERES) != 0)
 #define KDRAY_HAS_CONES ((KDRAY_FEATURES & KDRAY_FEATURE_CONES) != 0)
 #define KDRAY_HAS_SMOOTH ((KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
+#define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
 #define KDRAY_HAS_REFLECT ((KDRAY_FEATURES & KDRAY_FEATURE_REFLECT) != 0)
 #define KDRAY_HAS_TRANSMIT ((KDRAY_FEATURES & KDRAY_FEATURE_TRANSMIT) != 0)
 #define KDRAY_HAS_SPECULAR ((KDRAY_FEATURES & KDRAY_FEATURE_SPECULAR) != 0)

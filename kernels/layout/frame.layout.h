@@ -8,6 +8,9 @@
 #define KDRAY_FILM_SCALE 68719476736.0f
 #define KDRAY_FILM_MAX 1048576.0f
 
+#define KDRAY_MAX_DEPTH 64
+#define KDRAY_MAX_LIGHT_BATCH 8
+
 KDRAY_LAYOUT_BEGIN
 typedef struct Frame {
   // A sample at (sx, sy), in pixels from the top left, looks along forward + x*right + y*up with
@@ -34,26 +37,31 @@ typedef struct Frame {
   u32 n_lights;
   u32 corner_grid;      // 1: samples at the pixels' corners, 0: at their centres
   u32 batch_size;       // rays a slice traces in one wave
-  u32 pool_size;        // rays a slice's pool can hold
+  u32 batch_capacity;   // words per field of a batch, of its hits and of one light's shadow rays
+  u32 pool_size;        // rays of one depth that a slice's pool can hold
+  u32 pool_capacity;    // words per field of one depth of the pool
   u32 light_batch;      // lights served between two waves of shadow rays
+  u32 shadow_capacity;  // words per field of a slice's shadow rays
   u32 first_pixel;      // the film buffer begins with this pixel
   u32 keep_weightless;  // 1: rays of no weight are traced too (--min-weight 0), as the SPD's ray counts have them
-  u32 pad;
+  u32 pad[2];
 } Frame;
-KDRAY_ASSERT_SIZE(Frame, 176)
+KDRAY_ASSERT_SIZE(Frame, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 
 // A slice works through the tiles first_tile, first_tile + tile_stride, ... below end_tile. One work-item at a time
 // owns it, so its counters need no atomics; the host adds them up.
 typedef struct Slice {
+  u64 next_place;   // the next pixel of the tile, in the order of raygen/place.clh
+  u32 next_sample;  // ... and its next sample
   u32 tile;         // the tile in work; >= end_tile: none left
-  u32 next_sample;  // the next eye ray of the tile
-  u32 n_pool;
-  u32 n_batch;
-  u32 n_shadow;
   u32 end_tile;
   u32 tile_stride;
+  u32 depth;  // of the batch in work; the eye rays have 1
+  u32 n_batch;
+  u32 n_shadow;
   u32 pad;
+  u32 n_pool[KDRAY_MAX_DEPTH];  // rays of depth d that wait: n_pool[d - 1]
   u64 n_primary, n_primary_hit, n_shadow_rays, n_reflected, n_refracted;
   u64 n_skipped_behind;  // shadow rays to lights behind the surface
   u64 n_skipped_unlit;   // ... to lights out of reach or outside their cone, or of no weight
@@ -62,8 +70,9 @@ typedef struct Slice {
   u64 n_invalid;         // rays whose traversal failed
   u64 n_nan;             // contributions that were not numbers
   u64 n_pool_overflow;   // spawned rays that found no place: a broken bound
+  u64 cycles_admit, cycles_closest, cycles_shade, cycles_shadow, cycles_add;  // wave.cl
 } Slice;
-KDRAY_ASSERT_SIZE(Slice, 128)
-KDRAY_ASSERT_OFFSET(Slice, n_primary, 32)
+KDRAY_ASSERT_SIZE(Slice, 432)
+KDRAY_ASSERT_OFFSET(Slice, n_primary, 296)
 KDRAY_LAYOUT_END
 #endif

@@ -1,39 +1,58 @@
-// What    Rays, hits and shadow rays as they lie in a slice's buffers, and the rays and hits of `kdray trace`.
+// What    Rays, hits and shadow rays as they lie in a slice's streams, and the rays and hits of `kdray trace`.
+// Shape   A stream is a structure of arrays of 32-bit words in one float buffer: field f of ray i of slice s lies at
+//         [(s*FIELDS + f)*capacity + i]. The capacity (frame.layout.h) leaves KDRAY_LANES words behind the last ray of
+//         each field, so that whole vectors may be read and written at every ray. Integers are stored by their bits.
+//         The traced fields come first and in the same order in every stream that is traced.
 #ifndef KDRAY_LAYOUT_RAYS_H
 #define KDRAY_LAYOUT_RAYS_H
 #include "layout/base.layout.h"
 
-KDRAY_LAYOUT_BEGIN
-// A ray that will add `weight` times what it finds to its pixel. Its direction has unit length, its end is open.
-typedef struct Ray {
-  float origin[3];
-  float t_min;
-  float direction[3];
-  u32 depth;  // the eye ray has 1
-  float weight[3];
-  u32 pixel;  // row * width + column
-} Ray;
-KDRAY_ASSERT_SIZE(Ray, 48)
-KDRAY_ASSERT_OFFSET(Ray, depth, 28)
+#define KDRAY_LANES 16u  // rays to a vector
 
+// The traced fields: the ray origin + t*direction with t_min < t < t_max.
+#define KDRAY_RAY_ORIGIN 0u  // x y z
+#define KDRAY_RAY_DIRECTION \
+  3u  // x y z; of unit length in a batch, from the origin to the light in a shadow stream
+#define KDRAY_RAY_T_MIN 6u
+#define KDRAY_RAY_T_MAX 7u
+// A batch: a ray that will add `weight` times what it finds to its pixel. All rays of a batch have one depth (Slice).
+#define KDRAY_RAY_WEIGHT 8u  // red green blue
+#define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
+#define KDRAY_RAY_FIELDS 12u
+
+// Shadow rays: each adds `contribution` to its pixel unless something lies inside of its interval.
+#define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS
+#define KDRAY_SHADOW_CONTRIBUTION 9u  // red green blue
+#define KDRAY_SHADOW_PIXEL 12u        // u32
+#define KDRAY_SHADOW_FIELDS 13u
+
+// Pooled rays wait for their batch; they begin at t = 0 and have no end.
+#define KDRAY_POOL_ORIGIN 0u
+#define KDRAY_POOL_DIRECTION 3u
+#define KDRAY_POOL_WEIGHT 6u
+#define KDRAY_POOL_PIXEL 9u
+#define KDRAY_POOL_FIELDS 10u
+
+// Hits of a batch, with the batch's capacity.
+#define KDRAY_HIT_T 0u
+#define KDRAY_HIT_REF 1u  // u32: kind and index (tree.layout.h), or KDRAY_REF_MISS, KDRAY_REF_INVALID
+#define KDRAY_HIT_U 2u
+#define KDRAY_HIT_V 3u
+#define KDRAY_HIT_FIELDS 4u
+
+// What became of a shadow ray: one byte for each.
+#define KDRAY_CLEAR 0u
+#define KDRAY_OCCLUDED 1u
+#define KDRAY_OCCLUSION_INVALID 2u  // the stack was too small
+
+KDRAY_LAYOUT_BEGIN
+// One hit, outside of streams.
 typedef struct Hit {
   float t;
-  u32 ref;  // kind and index (tree.layout.h), or KDRAY_REF_MISS, KDRAY_REF_INVALID
+  u32 ref;
   float u, v;
 } Hit;
 KDRAY_ASSERT_SIZE(Hit, 16)
-
-// From a lit point to a light: adds `contribution` to its pixel unless something lies strictly between 0 and t_max.
-typedef struct ShadowRay {
-  float origin[3];
-  float t_max;
-  float direction[3];
-  u32 skip;  // the reference that can't block (the triangle the point lies on), or KDRAY_REF_MISS
-  float contribution[3];
-  u32 pixel;
-} ShadowRay;
-KDRAY_ASSERT_SIZE(ShadowRay, 48)
-KDRAY_ASSERT_OFFSET(ShadowRay, skip, 28)
 
 // kdray::Ray and kdray::Hit of the public interface.
 typedef struct QueryRay {

@@ -77,8 +77,10 @@ TEST_P(RendererTest, StatisticsHoldTheContract) {
   EXPECT_EQ(s.at("rays").at("total"), 256);
   EXPECT_TRUE(s.at("rays").contains("skipped"));
   EXPECT_EQ(s.at("mode").at("name"), "pdprt");
-  EXPECT_EQ(s.at("features").at("on"), nlohmann::json({"triangles", "spheres", "background"}));
-  EXPECT_EQ(s.at("mode").at("programs"), 3);  // admit, trace_closest, shade: nothing for lights
+  EXPECT_EQ(s.at("features").at("on"),
+            nlohmann::json({"triangles", "spheres", "primitive numbers", "background"}));
+  // CPUs: the wave, all stages in one. Others: admit, trace_closest, shade; nothing for lights.
+  EXPECT_EQ(s.at("mode").at("programs"), s.at("device").at("kind") == "cpu" ? 1 : 3);
 }
 
 TEST_P(RendererTest, ClosestHitsAreInRayOrderAndInTheirUnits) {

@@ -23,8 +23,21 @@ TEST(DevicesCommand, ListsWhatRenderCanUse) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     EXPECT_EQ(list[i]["number"], i);
     EXPECT_GT(list[i]["compute_units"], 0);
+    if (!list[i]["usable"]) continue;
+    const auto vectors = list[i]["vectors"].get<std::string>();
+    EXPECT_TRUE(vectors == "portable" || vectors == "x86 AVX-512") << vectors;
+    EXPECT_NE(kdray({"devices"}).out.find("vectors: " + vectors), std::string::npos);
     EXPECT_NE(kdray({"devices"}).out.find(list[i]["platform"].get<std::string>()), std::string::npos);
   }
+}
+
+TEST(DevicesCommand, TheEnvironmentAsksForTheFormOfTheVectors) {
+  KDRAY_NEED_DEVICE();
+  const Outcome portable = kdray({"devices"}, {.environment = {{"KDRAY_SIMD", "portable"}}});
+  ASSERT_TRUE(succeeds(portable));
+  EXPECT_NE(portable.out.find("vectors: portable"), std::string::npos) << portable.out;
+  EXPECT_EQ(portable.out.find("x86 AVX-512"), std::string::npos) << portable.out;
+  EXPECT_TRUE(fails_with(kdray({"devices"}, {.environment = {{"KDRAY_SIMD", "neon"}}}), 2, "KDRAY_SIMD"));
 }
 
 TEST(DevicesCommand, WithoutADeviceItIsExitCode3) {

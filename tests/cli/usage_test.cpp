@@ -4,8 +4,8 @@
 namespace kdray::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"render", "trace",    "info",   "devices",
-                                            "doctor", "generate", "compare"};
+const std::vector<std::string> kCommands = {"render", "trace",  "info",     "devices",
+                                            "bench",  "doctor", "generate", "compare"};
 
 TEST(Usage, HelpNamesEveryCommand) {
   const Outcome run = kdray({"--help"});
@@ -31,7 +31,7 @@ TEST(Usage, VersionIsTheProjects) {
 }
 
 TEST(Usage, UnknownCommandIsToldWhatThereIs) {
-  for (const char* const command : {"tune", "bench", "view", "rendr", ""}) {
+  for (const char* const command : {"tune", "view", "rendr", ""}) {
     const Outcome run = kdray({command, "x"});
     EXPECT_TRUE(fails_with(run, 2, "'" + std::string(command) + "'"));
     for (const std::string& known : kCommands) EXPECT_NE(run.err.find(known), std::string::npos) << run.err;
@@ -73,8 +73,7 @@ TEST(Usage, ValuesThatAreNoneAreRefusedWithWhatIsAccepted) {
       {"--grid", "edges", "corners"},
       {"--mode", "odprt", "auto, pdprt"},
       {"--queues", "0", "from 1"},
-      {"--traversal", "wide", "auto, binary"},
-      {"--traversal", "packet", "binary"},
+      {"--traversal", "octree", "auto, binary, wide, packet, batch"},
       {"--precision", "double", "float"},
       {"--gamma", "0", "srgb"},
       {"--gamma", "warm", "srgb"},

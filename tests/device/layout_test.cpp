@@ -7,7 +7,9 @@
 #include "layout/primitives.layout.h"
 #include "layout/rays.layout.h"
 #include "layout/shading.layout.h"
+#include "layout/simd_test.layout.h"
 #include "layout/tree.layout.h"
+#include "layout/wide.layout.h"
 #include "support/device.h"
 
 namespace kdray::layout {
@@ -34,13 +36,14 @@ const std::vector<Probe> kProbes = {SIZE(KdNode),
                                     SIZE(Cone),
                                     SIZE(Material),
                                     SIZE(Light),
-                                    SIZE(Ray),
                                     SIZE(Hit),
-                                    SIZE(ShadowRay),
                                     SIZE(QueryRay),
                                     SIZE(QueryHit),
                                     SIZE(Frame),
                                     SIZE(Slice),
+                                    SIZE(WideNode),
+                                    SIZE(SimdCase),
+                                    SIZE(SimdAnswers),
                                     OFFSET(KdNode, word1),
                                     OFFSET(Triangle, v),
                                     OFFSET(Triangle, number),
@@ -68,19 +71,9 @@ const std::vector<Probe> kProbes = {SIZE(KdNode),
                                     OFFSET(Light, cos_inner),
                                     OFFSET(Light, attenuation),
                                     OFFSET(Light, cos_outer),
-                                    OFFSET(Ray, t_min),
-                                    OFFSET(Ray, direction),
-                                    OFFSET(Ray, depth),
-                                    OFFSET(Ray, weight),
-                                    OFFSET(Ray, pixel),
                                     OFFSET(Hit, ref),
                                     OFFSET(Hit, u),
                                     OFFSET(Hit, v),
-                                    OFFSET(ShadowRay, t_max),
-                                    OFFSET(ShadowRay, direction),
-                                    OFFSET(ShadowRay, skip),
-                                    OFFSET(ShadowRay, contribution),
-                                    OFFSET(ShadowRay, pixel),
                                     OFFSET(QueryRay, t_min),
                                     OFFSET(QueryRay, direction),
                                     OFFSET(QueryRay, t_max),
@@ -106,19 +99,30 @@ const std::vector<Probe> kProbes = {SIZE(KdNode),
                                     OFFSET(Frame, pool_size),
                                     OFFSET(Frame, light_batch),
                                     OFFSET(Frame, first_pixel),
+                                    OFFSET(Frame, batch_capacity),
+                                    OFFSET(Frame, pool_capacity),
+                                    OFFSET(Frame, shadow_capacity),
                                     OFFSET(Frame, keep_weightless),
                                     OFFSET(Slice, n_pool),
                                     OFFSET(Slice, n_shadow),
                                     OFFSET(Slice, end_tile),
                                     OFFSET(Slice, tile_stride),
                                     OFFSET(Slice, n_primary),
-                                    OFFSET(Slice, n_pool_overflow)};
+                                    OFFSET(Slice, n_pool_overflow),
+                                    OFFSET(Slice, next_place),
+                                    OFFSET(Slice, depth),
+                                    OFFSET(WideNode, child),
+                                    OFFSET(WideNode, order),
+                                    OFFSET(SimdCase, index),
+                                    OFFSET(SimdCase, mask),
+                                    OFFSET(SimdAnswers, select16),
+                                    OFFSET(SimdAnswers, permuteu8)};
 
 class LayoutTest : public test::EachDevice {};
 
 TEST_P(LayoutTest, TheDeviceSeesTheSameStructs) {
   std::string source;
-  for (const char* header : {"frame", "primitives", "rays", "shading", "tree"})
+  for (const char* header : {"frame", "primitives", "rays", "shading", "simd_test", "tree", "wide"})
     source += "#include \"layout/" + std::string(header) + ".layout.h\"\n";
   source += "__kernel void probe(__global uint* out) {\n";
   for (std::size_t i = 0; i < kProbes.size(); ++i)

@@ -6,10 +6,12 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "kdray/error.h"
 #include "kdtree/check_tree.h"
 #include "kdtree/statistics.h"
+#include "kdtree/subtree.h"
 
 namespace kdray::test {
 namespace {
@@ -141,6 +143,68 @@ TEST(Build, SenselessCostsAreRefused) {
     config.empty_bonus = bad;
     EXPECT_THROW(kdtree::build({}, config), Error);
   }
+}
+
+TEST(Build, SenselessBlocksAreRefused) {
+  for (const int bad : {-8, 0, 3, 128}) {
+    BuildConfig config;
+    config.block = bad;
+    try {
+      kdtree::build({}, config);
+      ADD_FAILURE() << "blocks of " << bad;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::usage);
+    }
+  }
+}
+
+// Blocks and tight cells move planes, never what a leaf must hold: the checks are those of any tree. More references than
+// one thread builds, so that the top is in it too.
+TEST(Build, BlocksAndTightCells) {
+  Random random(19);
+  std::vector<scene::Geometry> geometries{
+      mixed_geometry(random, 4000, 0.4f), mixed_geometry(random, 400, 6), {}, {}};
+  add_architecture(geometries[2], random, 1500);
+  for (int i = 0; i < 1000; ++i)
+    add_triangle(geometries[3], {0, 0, 0}, random_vec3(random, -1, 1), random_vec3(random, -1, 1));
+  for (const scene::Geometry& g : geometries)
+    for (const int block : {1, 4, 8, 64})
+      for (const bool tight : {false, true}) {
+        SCOPED_TRACE(testing::Message()
+                     << g.size() << " primitives, blocks of " << block << (tight ? ", tight" : ""));
+        BuildConfig config;
+        config.block = block;
+        config.tight_cells = tight;
+        check_tree(g, config);
+        if (testing::Test::HasFailure()) return;
+      }
+}
+
+TEST(Build, LargerBlocksMakeLargerLeavesAndFewerReferences) {
+  Random random(20);
+  const scene::Geometry g = mixed_geometry(random, 3000, 1);
+  std::size_t last = std::numeric_limits<std::size_t>::max();
+  for (const int block : {1, 4, 8, 64}) {
+    BuildConfig config;
+    config.block = block;
+    const std::size_t n = kdtree::build(g, config).refs.size();
+    EXPECT_LT(n, last) << block;
+    last = n;
+  }
+}
+
+TEST(Build, TightCellsAreTheirContents) {
+  const std::vector<kdtree::BoundedRef> refs{{{1, 2, 3}, 0, {2, 3, 4}}, {{0, 5, 3}, 1, {1, 6, 3}}};
+  const kdtree::CellState state{{{-9, -9, -9}, {9, 9, 9}}, 3, 20};
+  BuildConfig config;
+  EXPECT_EQ(kdtree::tightened(state, refs, config).cell.lo, state.cell.lo);
+  config.tight_cells = true;
+  const kdtree::CellState tight = kdtree::tightened(state, refs, config);
+  EXPECT_EQ(tight.cell.lo, (std::array<float, 3>{0, 2, 3}));
+  EXPECT_EQ(tight.cell.hi, (std::array<float, 3>{2, 6, 4}));
+  EXPECT_EQ(tight.depth, state.depth);
+  EXPECT_EQ(tight.budget, state.budget);
+  EXPECT_EQ(kdtree::tightened(state, {}, config).cell.hi, state.cell.hi);
 }
 
 TEST(Build, ThreadsDoNotShow) {

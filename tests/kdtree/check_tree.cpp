@@ -24,6 +24,7 @@ class ShapeCheck {
 
   void run(int max_depth) {
     ASSERT_FALSE(tree_.nodes.empty());
+    ASSERT_EQ(tree_.contents.size(), tree_.nodes.size());
     visit(0, kdtree::bounds_from(tree_.bounds), 0);
     EXPECT_EQ(n_visited_, tree_.nodes.size());
     EXPECT_EQ(next_ref_, tree_.refs.size());
@@ -39,7 +40,10 @@ class ShapeCheck {
     ASSERT_LE(depth, 64);
     ++n_visited_;
     const Node& node = tree_.nodes[index];
+    const Box& contents = tree_.contents[index];
+    ASSERT_TRUE(kdtree::box_from(cell).contains(contents)) << "node " << index;
     if (node.is_leaf()) {
+      ASSERT_EQ(contents.empty(), node.right == 0);
       deepest_ = std::max(deepest_, depth);
       return check_leaf(node);
     }
@@ -49,6 +53,9 @@ class ShapeCheck {
     ASSERT_LT(cell.lo[node.axis], cell.hi[node.axis]) << "a flat cell cut across its thickness";
     EXPECT_EQ(node.left, index + 1);
     const int axis = static_cast<int>(node.axis);
+    ASSERT_LT(node.right, tree_.nodes.size());
+    ASSERT_TRUE(contents.contains(tree_.contents[node.left]) &&
+                contents.contains(tree_.contents[node.right]));
     visit(node.left, kdtree::below(cell, axis, node.split), depth + 1);
     if (testing::Test::HasFatalFailure()) return;
     visit(node.right, kdtree::above(cell, axis, node.split), depth + 1);
@@ -76,12 +83,19 @@ class ShapeCheck {
   int deepest_ = 0;
 };
 
-// Whether a leaf whose closed cell, widened by `tolerance`, holds p refers to r.
+bool in_bounds(const Box& b, const dvec3& p, double tolerance) {
+  return glm::all(glm::lessThanEqual(dvec3(b.lo) - tolerance, p)) &&
+         glm::all(glm::lessThanEqual(p, dvec3(b.hi) + tolerance));
+}
+
+// Whether a leaf whose closed cell and contents, widened by `tolerance`, hold p refers to r.
 bool leaf_refers(const Tree& tree, const dvec3& p, double tolerance, Ref r) {
   std::vector<std::uint32_t> stack{0};
   while (!stack.empty()) {
     const Node& node = tree.nodes[stack.back()];
+    const Box& contents = tree.contents[stack.back()];
     stack.pop_back();
+    if (!in_bounds(contents, p, tolerance)) continue;
     if (node.is_leaf()) {
       const auto first = tree.refs.begin() + node.left;
       if (std::binary_search(first, first + node.right, r)) return true;
@@ -92,11 +106,6 @@ bool leaf_refers(const Tree& tree, const dvec3& p, double tolerance, Ref r) {
     if (x + tolerance >= node.split) stack.push_back(node.right);
   }
   return false;
-}
-
-bool in_bounds(const Box& b, const dvec3& p, double tolerance) {
-  return glm::all(glm::lessThanEqual(dvec3(b.lo) - tolerance, p)) &&
-         glm::all(glm::lessThanEqual(p, dvec3(b.hi) + tolerance));
 }
 
 // Vertices, points of edges and of the inside; exact, since coordinates and weights have few bits.

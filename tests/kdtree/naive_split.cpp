@@ -18,9 +18,16 @@ long double area(const Bounds& b) {
 
 }  // namespace
 
+long double naive_tests(std::size_t n, const BuildConfig& config) {
+  const auto block = static_cast<std::size_t>(config.block);
+  long double blocks = 0;
+  for (std::size_t tested = 0; tested < n; tested += block) ++blocks;
+  return block == 1 ? blocks : blocks + static_cast<long double>(n) / 1000;
+}
+
 long double naive_cost(const std::vector<BoundedRef>& refs, const Bounds& cell, const BuildConfig& config,
                        int axis, float position, bool planar_below) {
-  long double n_below = 0, n_above = 0, n_planar = 0;
+  std::size_t n_below = 0, n_above = 0, n_planar = 0;
   for (const BoundedRef& r : refs) {
     const bool planar = r.lo[axis] == position && r.hi[axis] == position;
     n_planar += planar;
@@ -35,9 +42,9 @@ long double naive_cost(const std::vector<BoundedRef>& refs, const Bounds& cell, 
   Bounds below = cell, above = cell;
   below.hi[axis] = position;
   above.lo[axis] = position;
-  const long double cost = config.cost_traverse + config.cost_intersect *
-                                                      (area(below) * n_below + area(above) * n_above) /
-                                                      area(cell);
+  const long double tests =
+      (area(below) * naive_tests(n_below, config) + area(above) * naive_tests(n_above, config)) / area(cell);
+  const long double cost = config.cost_traverse + config.cost_intersect * tests;
   return n_below == 0 || n_above == 0 ? config.empty_bonus * cost : cost;
 }
 

@@ -19,6 +19,9 @@ struct NaiveSplit {
   long double cost = std::numeric_limits<long double>::infinity();
 };
 
+// Tests that a leaf takes, in blocks of `block`: with blocks of several, a thousandth more for each reference.
+long double naive_tests(std::size_t n, const kdtree::BuildConfig& config);
+
 // The cost of one split; infinite where the plane doesn't cut the cell and nothing lies in it.
 long double naive_cost(const std::vector<kdtree::BoundedRef>& refs, const kdtree::Bounds& cell,
                        const kdtree::BuildConfig& config, int axis, float position, bool planar_below);

@@ -21,7 +21,7 @@ struct Cell {
 
 void check_against_naive(const Cell& cell, const BuildConfig& config, const Split& split, bool only_useful) {
   const NaiveSplit naive = naive_split(cell.refs, cell.bounds, config);
-  const long double leaf = config.cost_intersect * static_cast<long double>(cell.refs.size());
+  const long double leaf = config.cost_intersect * naive_tests(cell.refs.size(), config);
   if (naive.axis < 0 || (only_useful && naive.cost >= leaf * (1 - 1e-12L))) {
     // No plane at all, or none worth having: whatever was found must not look better than it is.
     EXPECT_TRUE(!split.found() || split.cost >= static_cast<double>(leaf) * (1 - 1e-11));
@@ -86,6 +86,8 @@ int size_of(Random& random, int trial) {
 
 BuildConfig config_of(Random& random) {
   BuildConfig c;
+  constexpr int kBlocks[] = {1, 4, 8};
+  c.block = kBlocks[random() % 3];
   if (random() % 2 == 0) return c;
   c.cost_traverse = uniform(random, 0, 4);
   c.cost_intersect = uniform(random, 0.5f, 4);
@@ -170,7 +172,33 @@ TEST(Split, LargeCell) {
     }
     refs.push_back(r);
   }
-  check_cell(cell_of(std::move(refs), random), {});
+  const Cell cell = cell_of(std::move(refs), random);
+  for (const int block : {1, 4, 8}) {
+    SCOPED_TRACE(block);
+    BuildConfig config;
+    config.block = block;
+    check_cell(cell, config);
+  }
+}
+
+TEST(Split, ALeafCostsItsBlocks) {
+  BuildConfig config;
+  for (const std::uint32_t n : {0u, 1u, 9u}) EXPECT_EQ(kdtree::LeafCost(config)(n), n);
+  config.block = 8;
+  const kdtree::LeafCost cost(config);
+  EXPECT_EQ(cost(0), 0);
+  EXPECT_DOUBLE_EQ(cost(1), 1.001);
+  EXPECT_DOUBLE_EQ(cost(8), 1.008);
+  EXPECT_DOUBLE_EQ(cost(9), 2.009);
+  // No split pays for itself where all fit a block; one test at a time, it would.
+  Cell cell{{}, {{0, 0, 0}, {8, 1, 1}}};
+  for (int i = 0; i < 8; ++i) {
+    const auto x = static_cast<float>(i);
+    cell.refs.push_back({{x, 0, 0}, 0, {x + 1, 1, 1}});
+  }
+  kdtree::SweepScratch scratch;
+  EXPECT_GT(kdtree::find_split(cell.refs, cell.bounds, config, scratch).cost, 3 * 1.008);
+  EXPECT_LT(kdtree::find_split(cell.refs, cell.bounds, {}, scratch).cost, 3 * 8);
 }
 
 TEST(Split, PlanarReferencesGoToTheCheaperSide) {

@@ -96,7 +96,9 @@ TEST_P(ArithmeticTest, SignedVolumeDecidesPointsAFewUlpOffAPlane) {
       "typedef struct Corners { float p[3], a[3], b[3], c[3]; } Corners;\n"
       "__kernel void test(__global const Corners* in, __global float* out, uint n) {\n"
       "  const uint i = get_global_id(0);\n"
-      "  if (i < n) out[i] = signed_volume(load3(in[i].p), load3(in[i].a), load3(in[i].b), load3(in[i].c));\n"
+      "  if (i >= n) return;\n"
+      "  const float3 p = load3(in[i].p), a = load3(in[i].a), b = load3(in[i].b), c = load3(in[i].c);\n"
+      "  out[i] = signed_volume(p.x, p.y, p.z, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z);\n"
       "}\n",
       in);
   int near_zero = 0;

@@ -93,10 +93,9 @@ TEST_P(ConeTest, RootsLieOnTheSurfaceAndNoneIsMissing) {
       "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"
       "  const uint i = get_global_id(0);\n"
       "  if (i >= n) return;\n"
-      "  ConeRoots roots;\n"
-      "  Found f = {0, {NAN, NAN}};\n"
-      "  f.hit = intersect_cone(load3(in[i].origin), load3(in[i].direction), &in[i].cone, &roots);\n"
-      "  if (f.hit) { f.t[0] = roots.t[0]; f.t[1] = roots.t[1]; }\n"
+      "  const ConeRoots_float roots = intersect_cone(load3(in[i].origin), load3(in[i].direction), "
+      "&in[i].cone);\n"
+      "  const Found f = {!isnan(roots.t0) || !isnan(roots.t1), {roots.t0, roots.t1}};\n"
       "  out[i] = f;\n"
       "}\n",
       in);

@@ -154,6 +154,87 @@ TEST_P(TriangleTest, AgreesWithDoubleAwayFromEdges) {
   EXPECT_GT(compared, 50000);
 }
 
+// ---- Seen edge-on
+
+// t as the wide form's walks find it, in the lanes of a vector: NaN is in no interval. Both decisions on its sign.
+const char* const kLanesSource =
+    "#include \"intersect/triangle.clh\"\n"
+    "typedef struct Case { float origin[3], direction[3]; float v[3][3]; } Case;\n"
+    "typedef struct Found { int met; float det, t, settled_t; } Found;\n"
+    "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"
+    "  const uint i = get_global_id(0);\n"
+    "  if (i >= n) return;\n"
+    "  const RayShear s = make_shear(load3(in[i].direction));\n"
+    "  const float3 o = load3(in[i].origin);\n"
+    "  const float3 p = load3(in[i].v[0]), q = load3(in[i].v[1]), r = load3(in[i].v[2]);\n"
+    "  const float3 a = p - o, b = q - o, c = r - o;\n"
+    "#define OF(v, k) ((LANES)(component(v, k)))\n"
+    "  const EdgeTest e = edge_test(OF(a, s.kx), OF(a, s.ky), OF(a, s.kz), OF(b, s.kx), OF(b, s.ky), OF(b, "
+    "s.kz),\n"
+    "                               OF(c, s.kx), OF(c, s.ky), OF(c, s.kz), (LANES)(s.sx), (LANES)(s.sy));\n"
+    "  const LANES sz = (LANES)(s.sz), t = sz * (e.scaled_t / e.det);\n"
+    "  const LANES settled = signed_t(t, e.det, sz, OF(o, 0), OF(o, 1), OF(o, 2), OF(p, 0), OF(p, 1), OF(p, "
+    "2),\n"
+    "                                 OF(q, 0), OF(q, 1), OF(q, 2), OF(r, 0), OF(r, 1), OF(r, 2));\n"
+    "  const LANES least = lesser(e.wa, lesser(e.wb, e.wc)), most = greater(e.wa, greater(e.wb, e.wc));\n"
+    "  out[i].met = LANE(least) >= 0.0f || LANE(most) <= 0.0f;\n"
+    "  out[i].det = LANE(e.det);\n"
+    "  out[i].t = LANE(t);\n"
+    "  out[i].settled_t = LANE(settled);\n"
+    "}\n";
+struct FoundInLanes {
+  int met;
+  float det, t, settled_t;
+};
+
+// The build options for a vector of n floats; its last lane is looked at.
+std::string lanes_options(int n) {
+  const std::string type = n == 1 ? "float" : "float" + std::to_string(n);
+  const std::string lane = n == 1 ? "(v)" : (n == 4 ? "(v).s3" : (n == 8 ? "(v).s7" : "(v).sf"));
+  return "-DLANES=" + type + " -DEdgeTest=EdgeTest_" + type + " -DLANE(v)=" + lane;
+}
+
+// Triangles with a ray along one of their edges, from its end or from beyond. The edge's slopes are exact, so that both of its
+// corners project to 0 and the determinant is 0.
+std::vector<Case> edge_on_cases(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> step(-16, 16), corner(0, 2);
+  const auto point = [&] { return vec3(step(random), step(random), step(random)) / 16.0f; };
+  // Found once: a hit at t = -1 in the walks of the wide form, none in the binary tree's.
+  std::vector<Case> cases{make_case({-1, -1, 0}, {-2, -0.5f, -0.25f},
+                                    {vec3(-1, -1, 0), vec3(1, -0.5f, 0.25f), vec3(0, 1, -0.5f)})};
+  while (cases.size() < 20000) {
+    vec3 edge = 2.0f * point();
+    const int largest = corner(random);
+    edge[largest] = random() % 2 ? 2.0f : -2.0f;
+    std::array<vec3, 3> triangle{point(), vec3(0), point()};
+    triangle[1] = triangle[0] + edge;
+    const vec3 beyond = static_cast<float>(static_cast<int>(random() % 4) - 1) * edge;
+    const vec3 origin = triangle[0] - beyond, direction = random() % 2 ? edge : -edge;
+    if (glm::length(glm::cross(edge, triangle[2] - triangle[0])) == 0) continue;
+    std::rotate(triangle.begin(), triangle.begin() + corner(random), triangle.end());
+    cases.push_back(make_case(origin, direction, triangle));
+  }
+  return cases;
+}
+
+TEST_P(TriangleTest, SeenEdgeOnIsNoHitInAnyForm) {
+  const unsigned seed = 10;
+  SCOPED_TRACE(seed);
+  const std::vector<Case> in = edge_on_cases(seed);
+  for (const Found& found : test::run_kernel<Found>(GetParam(), kSource, in)) ASSERT_FALSE(found.hit);
+  for (const int lanes : {1, 4, 8, 16}) {
+    SCOPED_TRACE(lanes);
+    const auto out = test::run_kernel<FoundInLanes>(GetParam(), kLanesSource, in, lanes_options(lanes));
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      ASSERT_TRUE(out[i].met) << i;  // the edge functions alone don't tell
+      ASSERT_EQ(out[i].det, 0) << i;
+      ASSERT_TRUE(std::isnan(out[i].t)) << i << " t = " << out[i].t;
+      ASSERT_TRUE(std::isnan(out[i].settled_t)) << i << " t = " << out[i].settled_t;
+    }
+  }
+}
+
 KDRAY_FOR_EACH_DEVICE(TriangleTest);
 
 }  // namespace

@@ -41,7 +41,8 @@ class Scene {
 struct TreeOptions {
   int max_depth = -1;  // -1: 8 + 1.3*log2(N)
   double cost_traverse = 1.0;
-  double cost_intersect = 1.5;
+  double cost_intersect =
+      3.0;  // of one test: of a primitive, or of a block of them where the tree is built for blocks
   double empty_bonus = 0.8;
 };
 
@@ -49,6 +50,16 @@ struct DeviceOptions {
   std::string device = "auto";  // "auto", "cpu", "gpu", a number from `kdray devices`, or a part of a name
   int queues = 1;               // one per sub-device of equal size when > 1
   int work_group = 0;           // local size of the per-ray kernels; 0: chosen for the device
+  int compute_units = 0;        // that many of the device's, as a sub-device; 0: all of them
+};
+
+// How rays find their way through the tree. A choice changes time, never a hit (docs/design/traversal.md).
+enum class Traversal {
+  automatic,  // per 16 rays, from how coherent they are
+  binary,     // the binary tree, one ray per work-item: the baseline
+  wide,       // the wide tree, one ray per work-item
+  packet,     // the wide tree, 16 coherent rays to a vector, several packets in flight
+  batch       // the wide tree, many independent rays in flight
 };
 
 enum class PixelGrid { centers, corners };  // corners: the outermost rays go through the picture's edges
@@ -59,7 +70,8 @@ struct RenderOptions {
   double min_weight = -1;     // < 0: what the scene asks for, or the default; 0: no cut
   int samples = 0;            // per pixel, stratified; 0: what the scene asks for, or 1
   PixelGrid grid = PixelGrid::centers;
-  int tile_width = 0, tile_height = 0;        // 0: chosen
+  int tile_width = 0, tile_height = 0;  // 0: chosen
+  Traversal traversal = Traversal::automatic;
   std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost"
   std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1
 };
@@ -99,7 +111,8 @@ class Renderer {
 
   // Hits in the order of the rays. `repeat` > 1 traces that often and reports the median time in statistics().
   // A ray with NaN or infinite origin, or a direction that is not finite or 0, is refused (ErrorCode::input).
-  std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit = false, int repeat = 1);
+  std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit = false, int repeat = 1,
+                         Traversal traversal = Traversal::automatic);
 
   // JSON: seconds, rays, tree, memory, features, device, mode of what has been done so far (DESIGN.md section 2).
   std::string statistics() const;
@@ -114,6 +127,7 @@ struct DeviceInfo {
   std::string name, platform, version, driver, kind;  // kind: "cpu", "gpu", "accelerator"
   std::uint32_t compute_units = 0;
   std::uint64_t global_memory = 0, max_allocation = 0;
+  std::string vectors;  // the form of the kernels' vector operations: "x86 AVX-512" or "portable"
   bool usable = true;
   std::string why_not;  // when not usable
 };

@@ -1,0 +1,23 @@
+#include "bench/embree.h"
+
+namespace kdray::bench {
+
+class EmbreeScenes {};
+
+std::string embree_version() {
+  return "";
+}
+
+std::shared_ptr<EmbreeScenes> make_embree_scenes(const scene::Scene&) {
+  return nullptr;
+}
+
+std::vector<Contestant> embree_contestants(const std::shared_ptr<EmbreeScenes>&, int) {
+  return {};
+}
+
+Traced trace_embree16(const std::shared_ptr<EmbreeScenes>&, const RayClass&, int) {
+  return {};
+}
+
+}  // namespace kdray::bench

@@ -1,0 +1,19 @@
+// What    The scenes of a bench: files, or built in by name. "boxes", an interior (a room with columns and heaps of small
+//         boxes, 307,572 triangles); "spheres", displaced spheres on uneven ground (897,500 triangles); and the
+//         generators' scenes (balls, rings, ...) at their usual sizes.
+// Errors  As scene::load's, for files.
+#pragma once
+
+#include <string>
+
+#include "scene/scene.h"
+
+namespace kdray::bench {
+
+scene::Scene boxes();
+scene::Scene spheres();
+
+// A built-in scene of that name, or else the file.
+scene::Scene load_scene(const std::string& name_or_file);
+
+}  // namespace kdray::bench

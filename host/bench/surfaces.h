@@ -1,0 +1,29 @@
+// What    The normal of a scene's primitive at a point of it, found by the primitive's number.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/geometry.h"
+#include "scene/scene.h"
+
+namespace kdray::bench {
+
+class Surfaces {
+ public:
+  explicit Surfaces(const scene::Scene& scene);  // which has to outlive this
+
+  // Unit length, of the surface itself (not interpolated); which side it points to is the primitive's affair.
+  dvec3 normal(std::uint32_t number, const dvec3& point) const;
+
+ private:
+  struct Place {
+    scene::PrimitiveKind kind;
+    std::uint32_t index;
+  };
+
+  const scene::Scene& scene_;
+  std::vector<Place> places_;  // by number
+};
+
+}  // namespace kdray::bench

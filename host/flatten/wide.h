@@ -1,0 +1,32 @@
+// What    The wide form of a kd-tree (kernels/layout/wide.layout.h): collapsed nodes and leaf blocks, ready to upload.
+// Shape   Of the nodes on the way down, the one whose contents have the largest surface is opened first, until eight
+//         children are found; empty leaves are dropped. A leaf that holds several kinds of primitives becomes a child for
+//         each of them. Within a node and a leaf the order is the tree's, so the form is the same on every machine.
+// Source  Kd cells are disjoint: one order for each octant of directions is front to back for all rays of it, without a sort.
+// Errors  ErrorCode::input where the form has more nodes or blocks than its indices can name.
+#pragma once
+
+#include <vector>
+
+#include "flatten/flatten.h"
+#include "kdtree/tree.h"
+#include "layout/wide.layout.h"
+
+namespace kdray::flatten {
+
+struct WideForm {
+  int block = 8;  // primitives to a block
+  std::vector<layout::WideNode> nodes;
+  std::vector<layout::u32> triangle_blocks, sphere_blocks, cone_blocks;  // words, a float's bits or an index
+  int stack_size = 0;  // the most entries that a walk stacks which pushes all children of a node, for any ray
+
+  std::size_t bytes() const;
+};
+
+// `primitives` has the arrays that the tree's references name; `block` is 4 or 8.
+WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int block);
+
+// The block size for a tree: 8 where its full leaves fill such blocks at least half, as fine meshes do, else 4.
+int choose_block(const kdtree::Tree& tree);
+
+}  // namespace kdray::flatten

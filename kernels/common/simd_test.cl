@@ -1,0 +1,61 @@
+// What    Every operation of simd.clh on given cases: the probe build and self-test of host/device/simd.h, and the test of
+//         both forms.
+// Shape   One work-item goes through all cases: the kernels that use simd.clh run one work-item to a vector, too.
+//         A compiler that says itself that its target has no AVX-512 gets no x86 kernel rather than a failed build, about
+//         which PoCL's would print a line.
+#if !(defined(KDRAY_SIMD_X86) && KDRAY_SIMD_X86) || \
+    (defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__))
+#include "common/simd.clh"
+#include "layout/simd_test.layout.h"
+
+inline void answer_scalars(__global const SimdCase* in, __global SimdAnswers* out) {
+  out->lanes_below = lanes_below(in->index[0] & 63u);
+  out->count_lanes = count_lanes(in->mask);
+  out->first_lane = first_lane(in->mask | 0x10000u);
+  out->pad = 0;
+}
+
+inline void answer16(__global const SimdCase* in, __global SimdAnswers* out) {
+  const uint16 ua = vload16(0, in->a), ub = vload16(0, in->b), index = vload16(0, in->index) & 15u;
+  const float16 a = as_float16(ua), b = as_float16(ub), zero = (float16)(0.0f);
+  const mask16 mask = in->mask & 0xffffu;
+  out->less16 = less16(a, b);
+  out->less_equal16 = less_equal16(a, b);
+  out->equal16 = equal16(a, b);
+  out->equalu16 = equalu16(ua, ub);
+  out->negative16 = negative16(a);
+  vstore16(as_uint16(select16(mask, a, b)), 0, out->select16);
+  vstore16(selectu16(mask, ua, ub), 0, out->selectu16);
+  vstore16(as_uint16(compress16(mask, a)), 0, out->compress16);
+  vstore16(compressu16(mask, ua), 0, out->compressu16);
+  prefetch_line(in->b);
+  vstore16(as_uint16(gather16((__global const float*)in->b, index)), 0, out->gather16);
+  vstore16(gatheru16(in->b, index), 0, out->gatheru16);
+  const float16 numbers = select16(equal16(a, a), a, zero);
+  out->smallest16 = as_uint(smallest16(numbers) + 0.0f);
+  out->largest16 = as_uint(largest16(numbers) + 0.0f);
+}
+
+inline void answer8(__global const SimdCase* in, __global SimdAnswers* out) {
+  const uint8 ua = vload8(0, in->a), ub = vload8(0, in->b), index = vload8(0, in->index);
+  const float8 a = as_float8(ua), b = as_float8(ub);
+  const mask8 mask = in->mask & 0xffu;
+  out->less8 = less8(a, b);
+  out->less_equal8 = less_equal8(a, b);
+  out->equal8 = equal8(a, b);
+  out->less4 = less4(a.lo, b.lo);
+  out->less_equal4 = less_equal4(a.lo, b.lo);
+  vstore8(as_uint8(compress8(mask, a)), 0, out->compress8);
+  vstore8(compressu8(mask, ua), 0, out->compressu8);
+  vstore8(as_uint8(permute8(a, index)), 0, out->permute8);
+  vstore8(permuteu8(ua, index), 0, out->permuteu8);
+}
+
+__kernel void simd_test(__global const SimdCase* cases, uint n, __global SimdAnswers* answers) {
+  for (uint i = 0; i < n; ++i) {
+    answer_scalars(cases + i, answers + i);
+    answer16(cases + i, answers + i);
+    answer8(cases + i, answers + i);
+  }
+}
+#endif

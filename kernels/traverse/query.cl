@@ -1,0 +1,53 @@
+// What    Query rays: the closest hit of each, or with any_hit whether anything lies inside of its interval (t = 0, else inf).
+// Shape   Binary and wide: one ray to a work-item. Otherwise one work-item to KDRAY_CHUNK rays.
+// Cost    reads 32 B of the ray and the tree, writes 16 B.
+// Errors  a full stack (binary tree) gives primitive KDRAY_QUERY_INVALID; the host checks for it.
+#include "layout/traversal.h"
+#include "traverse/any.clh"
+#include "traverse/query.clh"
+#include "traverse/query16.clh"
+// After the source of rays, which they use.
+#include "traverse/walk.clh"
+#include "traverse/wide.clh"
+
+// The binary tree has its own ray and its own two forms.
+inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 i, float3 root_lo, float3 root_hi,
+                         float world_max) {
+  RayIn in;
+  fetch_ray(source, i, &in);
+  const float3 o = (float3)(in.origin[0], in.origin[1], in.origin[2]);
+  const float3 d = (float3)(in.direction[0], in.direction[1], in.direction[2]);
+  const TreeRay r = make_tree_ray(o, d, in.t_min, in.t_max, world_max);
+  if (source->any_hit) {
+    const u32 found = find_any(scene, &r, root_lo, root_hi, KDRAY_REF_MISS);
+    const u32 ref = found == KDRAY_OCCLUDED ? 0u : KDRAY_REF_MISS;
+    store_query_hit(source, i, 0.0f, found == KDRAY_OCCLUSION_INVALID ? KDRAY_REF_INVALID : ref, 0.0f, 0.0f);
+  } else {
+    u32 cost;
+    const Hit hit = find_closest(scene, &r, root_lo, root_hi, &cost);
+    store_query_hit(source, i, hit.t, hit.ref, hit.u, hit.v);
+  }
+}
+
+__kernel void trace_query(KDRAY_SCENE_PARAMETERS, float4 root_lo, float4 root_hi, float4 center, float world_max, u32 n,
+                          u32 any_hit, __global const QueryRay* in_rays, __global QueryHit* out_hits) {
+  const u32 item = (u32)get_global_id(0);
+  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
+  const RaySource source = {&scene, in_rays, out_hits, {center.x, center.y, center.z}, any_hit};
+#if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
+  if (item < n) query_binary(&scene, &source, item, root_lo.xyz, root_hi.xyz, world_max);
+#elif KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_WIDE
+  (void)root_lo, (void)root_hi;
+  if (item >= n) return;
+  RayIn in;
+  fetch_ray(&source, item, &in);
+  WideRay r;
+  begin_ray(&r, &in, world_max);
+  walk_wide(&scene, &r);
+  store_ray(&source, item, &r);
+#else
+  (void)root_lo, (void)root_hi;
+  const u32 first = item * KDRAY_CHUNK;
+  if (first < n) walk_rays(&scene, &source, first, min(n, first + KDRAY_CHUNK), world_max);
+#endif
+}

@@ -1,0 +1,59 @@
+// What    A whole wave in one launch: a work-item takes its slice through all stages, admit to add.
+// Shape   One work-item per slice. The same functions as the stages' own kernels, so that pictures are the same.
+// Why     A slice's streams stay in the cache of the core that works on it: stage by stage, over all slices, they go
+//         through the last cache or memory between any two stages. No core waits for others between stages.
+// Cost    io_slices tells the cycles that each stage took, where the device has a cycle counter.
+#include "film/add.clh"
+#include "raygen/admit.clh"
+#include "shade/shade.clh"
+#include "traverse/trace_slice.clh"
+
+inline u64 cycles(void) {
+#if defined(__x86_64__)
+  return __builtin_readcyclecounter();
+#else
+  return 0;
+#endif
+}
+
+// Adds the cycles since `*since` to a stage.
+inline void clock_stage(__global u64* stage, u64* since) {
+  const u64 now = cycles();
+  *stage += now - *since;
+  *since = now;
+}
+
+__kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
+                   __global const Material* in_materials, __global const Light* in_lights,
+                   __constant const Frame* frame, u32 n_slices, u32 n_waves, __global Slice* io_slices,
+                   __global float* io_pool, __global float* io_batch, __global float* io_hits,
+                   __global float* io_shadow_rays, __global uchar* io_occluded, __global i64* io_film) {
+  const u32 slice_id = (u32)get_global_id(0);
+  if (slice_id >= n_slices) return;
+  __global Slice* slice = io_slices + slice_id;
+  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
+  const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
+  for (u32 k = 0; k < n_waves; ++k) {
+    u64 since = cycles();
+    admit_batch(frame, slice_id, slice, io_pool, io_batch, io_film);
+    clock_stage(&slice->cycles_admit, &since);
+    if (slice->n_batch == 0) return;
+    const RaySource rays = batch_rays(frame, slice_id, io_batch, io_hits);
+    trace_all(&scene, frame, &rays, slice->n_batch);
+    clock_stage(&slice->cycles_closest, &since);
+    u32 first_light = 0;
+    do {
+      shade_batch(&arrays, in_materials, in_lights, frame, slice_id, first_light, slice, io_batch, io_hits,
+                  io_pool, io_shadow_rays, io_film);
+      clock_stage(&slice->cycles_shade, &since);
+#if KDRAY_HAS_LIGHTS
+      const RaySource to_lights = shadow_rays(frame, slice_id, io_shadow_rays, io_occluded);
+      trace_all(&scene, frame, &to_lights, slice->n_shadow);
+      clock_stage(&slice->cycles_shadow, &since);
+      add_arrived(frame, slice_id, slice, io_shadow_rays, io_occluded, io_film);
+      clock_stage(&slice->cycles_add, &since);
+#endif
+      first_light += frame->light_batch;
+    } while (KDRAY_HAS_LIGHTS && first_light < frame->n_lights);
+  }
+}

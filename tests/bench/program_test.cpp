@@ -1,0 +1,99 @@
+// What    kdray bench as a user runs it, on a scene of three primitives: exit codes, the report's keys. No time is asserted.
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "cli/scenes.h"
+#include "kdray/kdray.h"
+#include "support/folder.h"
+
+namespace kdray::test {
+namespace {
+
+using Json = nlohmann::json;
+
+void expect_keys(const Json& json, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) EXPECT_TRUE(json.contains(key)) << key << " is not in " << json.dump();
+}
+
+TEST(BenchRays, WritesTableFiguresAndPlot) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const auto scene = folder.put("small.nff", kSphereOnSquare);
+  const Outcome run = kdray({"bench", "rays", scene.string(), "--rays", "1000", "--repeat", "1", "--cores",
+                             "all", "--traversals", "binary,wide", "--report", (folder / "report").string()},
+                            {.limit_seconds = 280});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_NE(run.err.find("small.nff: 2 triangles, 1 spheres,"), std::string::npos) << run.err;
+  const Json json = Json::parse(folder.get("report/rays.json"));
+  expect_keys(json, {"command", "embree", "rays", "repeat", "not_identical", "runs"});
+  EXPECT_EQ(json["not_identical"], 0);
+  ASSERT_EQ(json["runs"].size(), 1u);
+  const Json& bench_run = json["runs"][0];
+  expect_keys(bench_run, {"scene", "primitives", "cores", "device", "vectors", "classes"});
+  ASSERT_EQ(bench_run["classes"].size(), 7u);
+  for (const Json& c : bench_run["classes"]) {
+    expect_keys(c, {"name", "any_hit", "rays", "hits", "contestants", "ratios"});
+    EXPECT_LE(c["rays"], 31 * 31);
+    ASSERT_GE(c["contestants"].size(), 2u);
+    expect_keys(c["contestants"][0],
+                {"family", "mode", "flag", "seconds", "mrays_per_s", "differing_share", "not_identical"});
+    expect_keys(c["contestants"][0]["seconds"], {"median", "min", "max"});
+    expect_keys(c["ratios"],
+                {"best_to_fast", "best_to_robust", "auto_to_fast", "auto_to_robust", "auto_to_best_fixed"});
+  }
+  EXPECT_NE(folder.get("report/rays.svg").find("kdray wide"), std::string::npos);
+}
+
+TEST(BenchFrames, WritesTableFiguresAndPlot) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const auto scene = folder.put("small.nff", kSphereOnSquare);
+  const Outcome run = kdray({"bench", "frames", scene.string(), "--size", "32x24", "--depth", "2", "--repeat",
+                             "1", "--report", (folder / "report").string()},
+                            {.limit_seconds = 280});
+  ASSERT_TRUE(succeeds(run));
+  const Json json = Json::parse(folder.get("report/frames.json"));
+  expect_keys(json, {"command", "embree", "size", "depth", "repeat", "frames"});
+  ASSERT_EQ(json["frames"].size(), 1u);
+  const Json& frame = json["frames"][0];
+  expect_keys(frame, {"scene", "primitives", "cores", "device", "seconds", "mrays_per_s", "stages", "rays",
+                      "povray_seconds", "povray_ratio", "embree_primary_mrays_per_s"});
+  EXPECT_EQ(frame["rays"]["primary"], 32 * 24);
+  EXPECT_NE(folder.get("report/frames.svg").find(">small<"), std::string::npos);
+}
+
+TEST(BenchRays, RunsOnOneCoreAndOnAll) {
+  KDRAY_NEED_DEVICE();
+  for (const DeviceInfo& device : devices())
+    if (device.usable && device.kind != "cpu")
+      GTEST_SKIP() << "a GPU would be taken, which has no cores to choose";
+  const Folder folder;
+  const auto scene = folder.put("small.nff", kSphereOnSquare);
+  ASSERT_TRUE(succeeds(kdray({"bench", "rays", scene.string(), "--rays", "64", "--repeat", "1", "--classes",
+                              "primary", "--traversals", "binary", "--report", folder.path().string()},
+                             {.limit_seconds = 280})));
+  const Json runs = Json::parse(folder.get("rays.json"))["runs"];
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[0]["cores"], 1);
+  EXPECT_GE(runs[1]["cores"], 1);
+}
+
+TEST(Bench, RefusesWhatItDoesNotKnow) {
+  EXPECT_TRUE(fails_with(kdray({"bench"}), 2, "rays, frames"));
+  EXPECT_TRUE(fails_with(kdray({"bench", "modesty"}), 2, "modesty"));
+  EXPECT_TRUE(fails_with(kdray({"bench", "rays", "--classes", "primary,none"}), 2, "--classes"));
+  EXPECT_TRUE(fails_with(kdray({"bench", "rays", "--traversals", "all"}), 2, "--traversals"));
+  EXPECT_TRUE(fails_with(kdray({"bench", "rays", "--cores", "1,many"}), 2, "--cores"));
+  EXPECT_TRUE(fails_with(kdray({"bench", "rays", "--cores", "0"}), 2, "--cores"));
+  EXPECT_TRUE(fails_with(kdray({"bench", "frames", "--size", "0x4"}), 2, "--size"));
+}
+
+TEST(Bench, AFolderThatCannotBeMadeIsToldFirst) {
+  const Folder folder;
+  const auto file = folder.put("file", "");
+  EXPECT_TRUE(
+      fails_with(kdray({"bench", "rays", "tetra", "--report", (file / "report").string()}), 1, "file"));
+}
+
+}  // namespace
+}  // namespace kdray::test

@@ -1,0 +1,34 @@
+// What    The built-in scenes are as large as a bench says they are, and whole.
+#include "bench/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/check_scene.h"
+#include "support/errors.h"
+
+namespace kdray::bench {
+namespace {
+
+TEST(Scenes, BoxesAndSpheres) {
+  for (const auto& [name, triangles] : {std::pair{"boxes", 307572u}, std::pair{"spheres", 897800u}}) {
+    const scene::Scene s = load_scene(name);
+    EXPECT_EQ(s.name, name);
+    EXPECT_EQ(s.triangles.size(), triangles);
+    EXPECT_TRUE(s.camera && !s.lights.empty());
+    EXPECT_NO_THROW(scene::check_scene(s));
+  }
+}
+
+TEST(Scenes, OfTheGeneratorsByName) {
+  const scene::Scene rings = load_scene("rings");
+  EXPECT_EQ(rings.spheres.size(), 4200u);
+  EXPECT_EQ(rings.cones.size(), 4200u);
+  EXPECT_TRUE(rings.camera && !rings.lights.empty());
+}
+
+TEST(Scenes, AnotherNameIsAFile) {
+  EXPECT_TRUE(test::fails([] { load_scene("nosuch"); }, "nosuch"));
+}
+
+}  // namespace
+}  // namespace kdray::bench

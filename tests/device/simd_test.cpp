@@ -1,0 +1,166 @@
+// The choice of the vectors' form: what each device gets, what the environment asks for, and that a compiler that refuses
+// or miscomputes the builtins costs the x86 form, not the run. Broken compilers are played by broken kernel sources.
+#include "device/simd.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "device/context.h"
+#include "device/simd_answers.h"
+#include "kernels.h"
+#include "support/device.h"
+#include "support/errors.h"
+#include "support/folder.h"
+
+namespace kdray::device {
+namespace {
+
+// An environment variable for the length of a scope; what it was before comes back.
+class Variable {
+ public:
+  explicit Variable(const char* name) : name_(name) {
+    if (const char* value = std::getenv(name)) before_ = value;
+    ::unsetenv(name);
+  }
+  Variable(const char* name, const std::string& value) : Variable(name) { ::setenv(name, value.c_str(), 1); }
+  ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+// The kernels in a folder of their own, with one place of a file changed.
+void put_kernels(const test::Folder& folder, const std::string& file, const std::string& place,
+                 const std::string& changed) {
+  for (const kernels::Source& source : kernels::sources()) {
+    std::string text(source.text);
+    if (source.name == file) {
+      const std::size_t at = text.find(place);
+      ASSERT_NE(at, std::string::npos) << place;
+      text.replace(at, place.size(), changed);
+    }
+    std::filesystem::create_directories((folder / std::string(source.name)).parent_path());
+    folder.put(std::string(source.name), text);
+  }
+}
+
+class SimdTest : public test::EachDevice {
+ protected:
+  const Variable nothing_asked_for_{"KDRAY_SIMD"};
+  FoundDevice found_ = choose_device(GetParam());
+  const Opened& opened_ = Context(GetParam(), 1).opened();  // open until the process ends
+
+  bool x86_works() const { return why_no_x86(found_, opened_).empty(); }
+};
+
+TEST_P(SimdTest, TheContextHasTheFormThatPasses) {
+  const Context context(GetParam(), 1);
+  EXPECT_EQ(context.simd(), x86_works() ? Simd::x86 : Simd::portable);
+  EXPECT_EQ(context.info().vectors, in_words(context.simd()));
+}
+
+TEST_P(SimdTest, TheEnvironmentAsksForTheFormAndOtherContextsAreNotBoundByIt) {
+  {
+    const Variable asked("KDRAY_SIMD", "portable");
+    EXPECT_EQ(Context(GetParam(), 1).simd(), Simd::portable);
+  }
+  EXPECT_EQ(Context(GetParam(), 1).simd(), x86_works() ? Simd::x86 : Simd::portable);
+  const Variable asked("KDRAY_SIMD", "x86");
+  if (x86_works())
+    EXPECT_EQ(Context(GetParam(), 1).simd(), Simd::x86);
+  else
+    EXPECT_TRUE(test::fails([&] { (void)Context(GetParam(), 1); }, "KDRAY_SIMD=x86", ErrorCode::no_device));
+}
+
+TEST_P(SimdTest, AnUnknownFormIsAUsageError) {
+  const Variable asked("KDRAY_SIMD", "neon");
+  EXPECT_TRUE(test::fails([&] { (void)Context(GetParam(), 1); }, "'neon'", ErrorCode::usage));
+}
+
+TEST_P(SimdTest, ACompilerWithoutAvx512MeansPortableAndNothingIsPrinted) {
+  if (!x86_works()) GTEST_SKIP() << why_no_x86(found_, opened_);
+  const test::Folder folder;
+  put_kernels(folder, "common/simd_test.cl", "defined(__AVX512F__)", "defined(NO_SUCH_TARGET)");
+  const Variable kernels("KDRAY_KERNEL_DIR", folder.path().string());
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(probe_simd(found_, opened_), Simd::portable);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_P(SimdTest, ARefusedProbeBuildMeansPortableAndLeavesNothingBehind) {
+  if (!x86_works()) GTEST_SKIP() << why_no_x86(found_, opened_);
+  const test::Folder folder;
+  std::filesystem::create_directories(folder / "tmp");
+  put_kernels(folder, "common/simd.clh", "__builtin_ia32_cmpps512_mask", "__builtin_no_such_thing");
+  const Variable kernels("KDRAY_KERNEL_DIR", folder.path().string());
+  const Variable temporary("TMPDIR", (folder / "tmp").string());  // where source and log of a failed build go
+  EXPECT_EQ(probe_simd(found_, opened_), Simd::portable);
+  EXPECT_FALSE(std::filesystem::exists(folder / "tmp/kdray_failed_common_simd_test.cl"));
+  const Variable asked("KDRAY_SIMD", "x86");
+  EXPECT_TRUE(test::fails([&] { (void)probe_simd(found_, opened_); }, "refuses", ErrorCode::no_device));
+}
+
+TEST_P(SimdTest, AWrongAnswerMeansPortable) {
+  if (!x86_works()) GTEST_SKIP() << why_no_x86(found_, opened_);
+  const test::Folder folder;
+  // Not less-or-equal: true for NaN.
+  put_kernels(folder, "common/simd.clh", "#define KDRAY_CMP_LT 17\n", "#define KDRAY_CMP_LT 25\n");
+  const Variable kernels("KDRAY_KERNEL_DIR", folder.path().string());
+  EXPECT_EQ(probe_simd(found_, opened_), Simd::portable);
+  EXPECT_EQ(why_no_x86(found_, opened_), "the self-test fails at less16 of case 0");
+  const Variable asked("KDRAY_SIMD", "x86");
+  EXPECT_TRUE(test::fails([&] { (void)probe_simd(found_, opened_); }, "less16", ErrorCode::no_device));
+}
+
+TEST_P(SimdTest, ADeviceThatFailsThePortableFormIsNoDevice) {
+  const test::Folder folder;
+  put_kernels(folder, "common/simd.clh", "mask_of16(a <= b)", "mask_of16(a < b)");
+  const Variable kernels("KDRAY_KERNEL_DIR", folder.path().string());
+  const Variable asked("KDRAY_SIMD", "portable");
+  EXPECT_TRUE(test::fails([&] { (void)probe_simd(found_, opened_); },
+                          found_.info.name + " computes wrongly: less_equal16", ErrorCode::no_device));
+}
+
+KDRAY_FOR_EACH_DEVICE(SimdTest);
+
+// The self-test tells forms apart by bits: any changed word of any answer must be seen.
+TEST(SimdAnswers, EveryWordOfEveryAnswerIsCompared) {
+  const std::vector<layout::SimdCase> cases = known_cases();
+  std::vector<layout::SimdAnswers> answers;
+  for (const layout::SimdCase& c : cases) answers.push_back(expected_answers(c));
+  EXPECT_EQ(first_difference(cases, answers), "");
+  layout::SimdAnswers& last = answers.back();
+  constexpr std::size_t kWords = sizeof(last) / sizeof(layout::u32);
+  constexpr std::size_t kPad = offsetof(layout::SimdAnswers, pad) / sizeof(layout::u32);
+  auto* words = reinterpret_cast<layout::u32*>(&last);
+  for (std::size_t i = 0; i < kWords; ++i) {
+    words[i] ^= 1u;
+    EXPECT_EQ(first_difference(cases, answers).empty(), i == kPad) << "word " << i;
+    words[i] ^= 1u;
+  }
+}
+
+TEST(SimdAnswers, TheKnownCasesHaveEveryMaskOfEightAndEveryPairInEveryLane) {
+  std::set<std::uint32_t> low, high;
+  for (const layout::SimdCase& c : known_cases()) low.insert(c.mask & 255u), high.insert(c.mask >> 8);
+  EXPECT_EQ(low.size(), 256u);
+  EXPECT_EQ(high.size(), 256u);
+  for (int lane = 0; lane < 16; ++lane) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (const layout::SimdCase& c : known_cases()) pairs.insert({c.a[lane], c.b[lane]});
+    EXPECT_EQ(pairs.size(), 256u) << lane;
+  }
+}
+
+}  // namespace
+}  // namespace kdray::device

@@ -1,0 +1,600 @@
+// The wide form against the binary tree that it is made of: the same leaves below the same boxes, all of them in an order
+// that is front to back, on a stack that is large enough; and the numbers in its blocks.
+#include "flatten/wide.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <tuple>
+
+#include "flatten/flatten.h"
+#include "kdtree/build.h"
+#include "kdtree/shapes.h"
+
+namespace kdray::flatten {
+namespace {
+
+using layout::u32;
+using layout::WideNode;
+using test::Random;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kRows[3] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
+constexpr std::uint64_t kSeed = 71;
+
+// ---- Scenes
+
+// n triangles about one corner, which no plane parts there.
+void add_fan(scene::Geometry& g, Random& random, int n) {
+  for (int i = 0; i < n; ++i)
+    test::add_triangle(g, vec3(0), test::random_vec3(random, -1, 1), test::random_vec3(random, -1, 1));
+}
+
+// Squares of one plane that cover each other, and each of them several times.
+void add_layers(scene::Geometry& g) {
+  for (int i = 0; i < 60; ++i) {
+    const vec3 corner(i % 4, i % 5, 2);
+    for (int copy = 0; copy < 3; ++copy)
+      test::add_triangle(g, corner, corner + vec3(2, 0, 0), corner + vec3(0, 2, 0));
+  }
+}
+
+struct NamedGeometry {
+  const char* name;
+  scene::Geometry geometry;
+};
+
+std::vector<NamedGeometry> geometries() {
+  Random random(kSeed);
+  std::vector<NamedGeometry> all{{"empty", {}},        {"one triangle", {}}, {"one sphere", {}},
+                                 {"one cone", {}},     {"triangles", {}},    {"spheres", {}},
+                                 {"cones", {}},        {"mixed", {}},        {"large and mixed", {}},
+                                 {"architecture", {}}, {"layers", {}},       {"fan", {}}};
+  auto next = all.begin() + 1;
+  test::add_triangles((next++)->geometry, random, 1, 1);
+  test::add_spheres((next++)->geometry, random, 1, 1);
+  test::add_cones((next++)->geometry, random, 1, 1);
+  test::add_triangles((next++)->geometry, random, 1500, 0.5f);
+  test::add_spheres((next++)->geometry, random, 800, 0.7f);
+  test::add_cones((next++)->geometry, random, 800, 0.7f);
+  (next++)->geometry = test::mixed_geometry(random, 800, 0.5f);
+  (next++)->geometry = test::mixed_geometry(random, 200, 6);
+  test::add_architecture((next++)->geometry, random, 700);
+  add_layers((next++)->geometry);
+  add_fan((next++)->geometry, random, 3000);
+  return all;
+}
+
+// flatten() wants the scene that the geometry comes from; of it only the counts matter here.
+FlatScene flat_of(const scene::Geometry& g, const kdtree::Tree& tree) {
+  scene::Scene s;
+  s.triangles.resize(g.triangles.size());
+  s.spheres.resize(g.spheres.size());
+  s.cones.resize(g.cones.size());
+  return flatten(s, g, tree);
+}
+
+struct Subject {
+  std::string name;
+  kdtree::Tree tree;
+  FlatScene flat;
+  WideForm wide;
+};
+
+// Every scene, by every kind of tree, in blocks of 4 and of 8.
+const std::vector<Subject>& subjects() {
+  static const std::vector<Subject> all = [] {
+    std::vector<Subject> made;
+    for (const NamedGeometry& g : geometries())
+      for (const int leaf_block : {1, 8})
+        for (const bool tight : {false, true}) {
+          kdtree::BuildConfig config;
+          config.block = leaf_block;
+          config.tight_cells = tight;
+          const kdtree::Tree tree = kdtree::build(g.geometry, config);
+          const FlatScene flat = flat_of(g.geometry, tree);
+          for (const int block : {4, 8})
+            made.push_back({std::string(g.name) + ", leaves for blocks of " + std::to_string(leaf_block) +
+                                (tight ? ", tight" : "") + ", in blocks of " + std::to_string(block),
+                            tree, flat, make_wide(tree, flat, block)});
+        }
+    return made;
+  }();
+  return all;
+}
+
+template <class Check>
+void for_each_subject(Check check) {
+  for (const Subject& s : subjects()) {
+    SCOPED_TRACE(s.name);
+    check(s);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+// ---- Reading the form
+
+bool is_leaf(u32 child) {
+  return child & KDRAY_WIDE_LEAF;
+}
+int kind_of(u32 leaf) {
+  return static_cast<int>(leaf >> KDRAY_WIDE_KIND_SHIFT & 3u);
+}
+
+Box bounds_of(const WideNode& node, int slot) {
+  Box b;
+  for (int axis = 0; axis < 3; ++axis) {
+    b.lo[axis] = node.bounds[axis][0][slot];
+    b.hi[axis] = node.bounds[axis][1][slot];
+  }
+  return b;
+}
+
+// A slot without child has bounds that no ray meets; children come first.
+int n_children(const WideNode& node) {
+  int n = 0;
+  while (n < 8 && !bounds_of(node, n).empty()) ++n;
+  return n;
+}
+
+// The n-th slot from near to far for the octant.
+int nth_slot(const WideNode& node, unsigned octant, int n) {
+  return static_cast<int>(node.order[octant] >> 3 * (7 - n) & 7u);
+}
+
+const std::vector<u32>& blocks_of(const WideForm& wide, int kind) {
+  return kind == 0 ? wide.triangle_blocks : (kind == 1 ? wide.sphere_blocks : wide.cone_blocks);
+}
+
+// A lane of the kind's array, as numbered through all blocks.
+struct Lane {
+  const u32* words;
+  int block, rows;
+
+  Lane(const WideForm& wide, int kind, std::size_t number)
+      : words(&blocks_of(wide, kind)[number / wide.block * wide.block * kRows[kind] + number % wide.block]),
+        block(wide.block),
+        rows(kRows[kind]) {}
+  float number(int row) const { return std::bit_cast<float>(words[row * block]); }
+  u32 index() const { return words[(rows - 1) * block] & ~KDRAY_WIDE_LAST; }
+  bool is_last() const { return words[(rows - 1) * block] & KDRAY_WIDE_LAST; }
+};
+
+// The primitives of a leaf up to the first that says it is the last, as the kernels read it.
+std::vector<u32> indices_of(const WideForm& wide, u32 leaf) {
+  std::vector<u32> indices;
+  const std::size_t first = std::size_t{leaf & KDRAY_WIDE_FIRST_MASK} * wide.block;
+  const std::size_t n_lanes = blocks_of(wide, kind_of(leaf)).size() / kRows[kind_of(leaf)];
+  for (std::size_t i = first; i < n_lanes; ++i) {
+    const Lane lane(wide, kind_of(leaf), i);
+    indices.push_back(lane.index());
+    if (lane.is_last()) return indices;
+  }
+  ADD_FAILURE() << "a leaf without an end";
+  return indices;
+}
+
+// ---- Leaves
+
+using Corners = std::array<float, 6>;
+using Leaf = std::tuple<int, Corners, std::vector<u32>>;  // kind, bounds, indices
+
+Corners corners_of(const Box& b) {
+  return {b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z};
+}
+
+std::vector<Leaf> leaves_of(const kdtree::Tree& tree) {
+  std::vector<Leaf> leaves;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const kdtree::Node& node = tree.nodes[i];
+    if (!node.is_leaf()) continue;
+    std::vector<u32> indices[3];
+    for (u32 k = 0; k < node.right; ++k) {
+      const kdtree::Ref r = tree.refs[node.left + k];
+      indices[static_cast<int>(kdtree::ref_kind(r))].push_back(kdtree::ref_index(r));
+    }
+    for (int kind = 0; kind < 3; ++kind)
+      if (!indices[kind].empty()) leaves.emplace_back(kind, corners_of(tree.contents[i]), indices[kind]);
+  }
+  std::sort(leaves.begin(), leaves.end());
+  return leaves;
+}
+
+std::vector<Leaf> leaves_of(const WideForm& wide) {
+  std::vector<Leaf> leaves;
+  for (const WideNode& node : wide.nodes)
+    for (int slot = 0; slot < n_children(node); ++slot)
+      if (is_leaf(node.child[slot]))
+        leaves.emplace_back(kind_of(node.child[slot]), corners_of(bounds_of(node, slot)),
+                            indices_of(wide, node.child[slot]));
+  std::sort(leaves.begin(), leaves.end());
+  return leaves;
+}
+
+TEST(Wide, EveryNodeButTheRootHasOneParentBeforeIt) {
+  for_each_subject([](const Subject& s) {
+    std::vector<int> parents(s.wide.nodes.size(), 0);
+    for (std::size_t i = 0; i < s.wide.nodes.size(); ++i)
+      for (int slot = 0; slot < n_children(s.wide.nodes[i]); ++slot) {
+        const u32 child = s.wide.nodes[i].child[slot];
+        if (is_leaf(child)) continue;
+        ASSERT_LT(child, s.wide.nodes.size());
+        ASSERT_GT(child, i);  // so that all of them are below the root
+        ++parents[child];
+      }
+    ASSERT_FALSE(parents.empty());
+    EXPECT_EQ(parents[0], 0);
+    EXPECT_EQ(std::count(parents.begin() + 1, parents.end(), 1), static_cast<long>(parents.size()) - 1);
+  });
+}
+
+// With the test above: a path from the root leads to each of them, and no other.
+TEST(Wide, LeavesAreThoseOfTheBinaryTreeByKind) {
+  std::size_t largest = 0;
+  for_each_subject([&](const Subject& s) {
+    const std::vector<Leaf> wanted = leaves_of(s.tree), found = leaves_of(s.wide);
+    EXPECT_TRUE(found == wanted) << found.size() << " leaves, wanted " << wanted.size();
+    for (const Leaf& leaf : found) largest = std::max(largest, std::get<2>(leaf).size());
+  });
+  EXPECT_GT(largest, 1000u);  // the fan's: leaves of many blocks were among them
+}
+
+TEST(Wide, BoundsAreThoseOfWhatIsBelow) {
+  for_each_subject([](const Subject& s) {
+    std::vector<Box> wanted(s.wide.nodes.size());  // a child's bounds as its parent has them
+    wanted[0] = s.tree.contents[0];
+    for (std::size_t i = 0; i < s.wide.nodes.size(); ++i) {
+      const WideNode& node = s.wide.nodes[i];
+      Box all;
+      for (int slot = 0; slot < n_children(node); ++slot) {
+        all.grow(bounds_of(node, slot));
+        if (!is_leaf(node.child[slot])) wanted[node.child[slot]] = bounds_of(node, slot);
+      }
+      ASSERT_EQ(corners_of(all), corners_of(wanted[i])) << "node " << i;
+    }
+  });
+}
+
+TEST(Wide, SlotsWithoutChildHaveBoundsThatNoRayMeets) {
+  for_each_subject([](const Subject& s) {
+    for (const WideNode& node : s.wide.nodes)
+      for (int slot = n_children(node); slot < 8; ++slot)
+        for (int axis = 0; axis < 3; ++axis) {
+          ASSERT_EQ(node.bounds[axis][0][slot], kInfinity);
+          ASSERT_EQ(node.bounds[axis][1][slot], -kInfinity);
+        }
+  });
+}
+
+// ---- Blocks
+
+// Each lane is of one leaf: the blocks are cut up by the leaves without rest or overlap.
+TEST(Wide, LeavesShareNoBlockAndLeaveNone) {
+  for_each_subject([](const Subject& s) {
+    const auto block = static_cast<std::size_t>(s.wide.block);
+    for (int kind = 0; kind < 3; ++kind) {
+      std::vector<int> uses(blocks_of(s.wide, kind).size() / (kRows[kind] * block), 0);
+      ASSERT_EQ(uses.size() * kRows[kind] * block, blocks_of(s.wide, kind).size());
+      for (const WideNode& node : s.wide.nodes)
+        for (int slot = 0; slot < n_children(node); ++slot) {
+          if (!is_leaf(node.child[slot]) || kind_of(node.child[slot]) != kind) continue;
+          const std::size_t first = node.child[slot] & KDRAY_WIDE_FIRST_MASK;
+          const std::size_t n = (indices_of(s.wide, node.child[slot]).size() + block - 1) / block;
+          ASSERT_LE(first + n, uses.size());
+          for (std::size_t i = 0; i < n; ++i) ++uses[first + i];
+        }
+      EXPECT_EQ(std::count(uses.begin(), uses.end(), 1), static_cast<long>(uses.size()));
+    }
+  });
+}
+
+void expect_row(const Lane& lane, int first_row, const float* wanted, int n) {
+  for (int k = 0; k < n; ++k)
+    ASSERT_EQ(std::bit_cast<u32>(lane.number(first_row + k)), std::bit_cast<u32>(wanted[k])) << first_row + k;
+}
+
+void expect_primitive(const FlatScene& flat, int kind, const Lane& lane) {
+  if (kind == 0) {
+    ASSERT_LT(lane.index(), flat.triangles.size());
+    expect_row(lane, 0, &flat.triangles[lane.index()].v[0][0], 9);
+    ASSERT_TRUE(std::isfinite(lane.number(9)));
+  } else if (kind == 1) {
+    ASSERT_LT(lane.index(), flat.spheres.size());
+    const layout::Sphere& p = flat.spheres[lane.index()];
+    expect_row(lane, 0, p.center, 3);
+    expect_row(lane, 3, &p.radius, 1);
+  } else {
+    ASSERT_LT(lane.index(), flat.cones.size());
+    const layout::Cone& p = flat.cones[lane.index()];
+    expect_row(lane, 0, p.base, 3);
+    expect_row(lane, 3, p.axis, 3);
+    const float rest[] = {p.base_radius, p.height, p.slope};
+    expect_row(lane, 6, rest, 3);
+  }
+}
+
+// From the first that ends its leaf to the end of its block all lanes say so, and all but the first are empty.
+TEST(Wide, LanesHoldTheirPrimitiveOrNothing) {
+  for_each_subject([](const Subject& s) {
+    for (int kind = 0; kind < 3; ++kind) {
+      bool after_last = false;
+      for (std::size_t i = 0; i < blocks_of(s.wide, kind).size() / kRows[kind]; ++i) {
+        if (i % s.wide.block == 0) after_last = false;
+        const Lane lane(s.wide, kind, i);
+        if (after_last) {
+          ASSERT_TRUE(lane.is_last());
+          for (int row = 0; row + 1 < kRows[kind]; ++row) ASSERT_TRUE(std::isnan(lane.number(row))) << row;
+        } else {
+          ASSERT_NO_FATAL_FAILURE(expect_primitive(s.flat, kind, lane)) << "kind " << kind << " lane " << i;
+        }
+        after_last = lane.is_last();
+      }
+    }
+  });
+}
+
+// ---- Order
+
+TEST(Wide, OrderWordsArePermutations) {
+  for_each_subject([](const Subject& s) {
+    for (const WideNode& node : s.wide.nodes)
+      for (const u32 word : node.order) {
+        unsigned slots = 0;
+        for (int k = 0; k < 8; ++k) slots |= 1u << (word >> 3 * k & 7u);
+        ASSERT_EQ(slots, 0xffu);
+        ASSERT_EQ(word >> 24, 0u);
+      }
+  });
+}
+
+// Whether a ray of the octant, along no plane, can leave a for b but not b for a: a point of b is ahead of one of a along
+// every axis, and all of b along one of them.
+bool must_precede(const Box& a, const Box& b, unsigned octant) {
+  bool possible = true, apart = false;
+  for (int k = 0; k < 3; ++k) {
+    const bool negative = octant >> k & 1u;
+    const float a_near = negative ? -a.hi[k] : a.lo[k], a_far = negative ? -a.lo[k] : a.hi[k];
+    const float b_near = negative ? -b.hi[k] : b.lo[k], b_far = negative ? -b.lo[k] : b.hi[k];
+    possible = possible && a_near < b_far;
+    apart = apart || (a_far <= b_near && a_near < b_far);
+  }
+  return possible && apart;
+}
+
+TEST(Wide, ChildrenThatAPlanePartsAreOrderedByTheDirectionsSign) {
+  std::size_t n_pairs = 0;
+  for_each_subject([&](const Subject& s) {
+    for (const WideNode& node : s.wide.nodes)
+      for (unsigned octant = 0; octant < 8; ++octant)
+        for (int far = 1; far < n_children(node); ++far)
+          for (int near = 0; near < far; ++near) {
+            const Box a = bounds_of(node, nth_slot(node, octant, near));
+            const Box b = bounds_of(node, nth_slot(node, octant, far));
+            ASSERT_FALSE(must_precede(b, a, octant) && !must_precede(a, b, octant)) << "octant " << octant;
+            n_pairs += must_precede(a, b, octant);
+          }
+  });
+  EXPECT_GT(n_pairs, 100000u);
+}
+
+struct TestRay {
+  dvec3 origin, direction;
+
+  unsigned octant() const {
+    unsigned bits = 0;
+    for (int k = 0; k < 3; ++k) bits |= std::signbit(direction[k]) ? 1u << k : 0u;
+    return bits;
+  }
+  // Where the ray's line enters the box; infinity where it misses.
+  double entry(const Box& b) const {
+    double in = -kInfinity, out = kInfinity;
+    for (int k = 0; k < 3; ++k) {
+      const bool negative = std::signbit(direction[k]);
+      in = std::max(in, ((negative ? b.hi[k] : b.lo[k]) - origin[k]) / direction[k]);
+      out = std::min(out, ((negative ? b.lo[k] : b.hi[k]) - origin[k]) / direction[k]);
+    }
+    return in <= out ? in : kInfinity;
+  }
+};
+
+TestRay random_ray(const Box& box, Random& random) {
+  TestRay ray;
+  for (int k = 0; k < 3; ++k) {
+    ray.origin[k] = box.lo[k] + test::uniform(random, -0.5f, 1.5f) * (box.hi[k] - box.lo[k]);
+    ray.direction[k] = (random() % 2 ? 1 : -1) * std::exp(test::uniform(random, -6, 0));
+  }
+  return ray;
+}
+
+// Kd cells are disjoint, and a plane's distance is the same number from both sides: no rounding to allow for.
+TEST(Wide, MetChildrenComeFrontToBack) {
+  Random random(kSeed + 1);
+  std::size_t n_pairs = 0;
+  for_each_subject([&](const Subject& s) {
+    if (s.tree.refs.empty()) return;
+    for (int i = 0; i < 60; ++i) {
+      const TestRay ray = random_ray(s.tree.contents[0], random);
+      std::vector<u32> stack{0};
+      while (!stack.empty()) {
+        const WideNode& node = s.wide.nodes[stack.back()];
+        stack.pop_back();
+        double last = -kInfinity;
+        for (int k = 0; k < 8; ++k) {
+          const int slot = nth_slot(node, ray.octant(), k);
+          const double t = ray.entry(bounds_of(node, slot));
+          if (t == kInfinity) continue;
+          ASSERT_LE(last, t) << "child " << k;
+          n_pairs += last > -kInfinity;
+          last = t;
+          if (!is_leaf(node.child[slot])) stack.push_back(node.child[slot]);
+        }
+      }
+    }
+  });
+  EXPECT_GT(n_pairs, 5000u);
+}
+
+// ---- The stack
+
+// What a walk stacks that pushes all children far to near, in the octant's order, and pops the nearest.
+std::size_t most_stacked(const WideForm& wide, unsigned octant) {
+  std::vector<u32> stack{0};
+  std::size_t most = 0;
+  while (!stack.empty()) {
+    const u32 top = stack.back();
+    stack.pop_back();
+    if (is_leaf(top)) continue;
+    const WideNode& node = wide.nodes[top];
+    for (int k = 8; k-- > 0;) {
+      const int slot = nth_slot(node, octant, k);
+      if (slot < n_children(node)) stack.push_back(node.child[slot]);
+    }
+    most = std::max(most, stack.size());
+  }
+  return most;
+}
+
+// The same with each node in the order of its own that is worst.
+std::size_t most_stacked_in_any_order(const WideForm& wide) {
+  std::vector<std::size_t> below(wide.nodes.size(), 0);  // entries under a node once it is popped
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < wide.nodes.size(); ++i) {
+    const auto n = static_cast<std::size_t>(n_children(wide.nodes[i]));
+    most = std::max(most, below[i] + n);
+    for (std::size_t slot = 0; slot < n; ++slot)
+      if (!is_leaf(wide.nodes[i].child[slot])) below[wide.nodes[i].child[slot]] = below[i] + n - 1;
+  }
+  return most;
+}
+
+TEST(Wide, StackSizeIsEnoughForEachOctantAndTightOverAllOrders) {
+  for_each_subject([](const Subject& s) {
+    const auto size = static_cast<std::size_t>(s.wide.stack_size);
+    for (unsigned octant = 0; octant < 8; ++octant) EXPECT_LE(most_stacked(s.wide, octant), size);
+    EXPECT_EQ(most_stacked_in_any_order(s.wide), size);
+  });
+}
+
+// ---- The bound on |n|_1
+
+float diff_of_products(float a, float b, float c, float d) {
+  const float w = c * d;
+  return std::fma(a, b, -w) + std::fma(-c, d, w);
+}
+
+// As sign_limit in kernels/intersect/triangle.clh has it.
+float normal_in_float(const layout::Triangle& t) {
+  float e[3], f[3];
+  for (int k = 0; k < 3; ++k) {
+    e[k] = t.v[1][k] - t.v[0][k];
+    f[k] = t.v[2][k] - t.v[0][k];
+  }
+  const float x = std::abs(diff_of_products(e[1], f[2], e[2], f[1]));
+  const float y = std::abs(diff_of_products(e[2], f[0], e[0], f[2]));
+  const float z = std::abs(diff_of_products(e[0], f[1], e[1], f[0]));
+  return x + y + z;
+}
+
+// Triangles of all shapes in a leaf: general ones, needles, ones without area but for rounding; at any place.
+FlatScene shapes_at_scale(Random& random, float scale, int n) {
+  FlatScene flat;
+  for (int i = 0; i < n; ++i) {
+    const vec3 place = static_cast<float>(i % 3) * 30.0f * test::random_vec3(random, -1, 1);
+    const vec3 edge = test::random_vec3(random, -1, 1);
+    vec3 other = test::random_vec3(random, -1, 1);
+    if (i % 4 == 1) other = edge + 1e-3f * other;
+    if (i % 4 == 2) other = test::uniform(random, -1, 1) * edge;
+    if (i % 4 == 3) other = 1e-6f * other;
+    layout::Triangle t{};
+    const vec3 corner[3] = {place, place + edge, place + other};
+    for (int v = 0; v < 3; ++v)
+      for (int k = 0; k < 3; ++k) t.v[v][k] = scale * corner[v][k];
+    flat.triangles.push_back(t);
+  }
+  return flat;
+}
+
+kdtree::Tree leaf_of_triangles(u32 n) {
+  kdtree::Tree tree;
+  tree.nodes = {{.left = 0, .right = n}};
+  tree.contents = {{vec3(0), vec3(1)}};  // any that is not empty
+  for (u32 i = 0; i < n; ++i) tree.refs.push_back(kdtree::make_ref(scene::PrimitiveKind::triangle, i));
+  return tree;
+}
+
+TEST(Wide, NormalBoundIsNotBelowWhatFloatsGive) {
+  constexpr int kTriangles = 20000;
+  Random random(kSeed + 2);
+  const kdtree::Tree tree = leaf_of_triangles(kTriangles);
+  for (const float scale : {1.0f, 1e-3f, 1e5f, 0x1p50f, 0x1p60f, 0x1p-40f, 0x1p-55f, 0x1p-65f, 0x1p-70f,
+                            0x1p-73f, 0x1p-74f, 0x1p-75f, 0x1p-80f, 0x1p-120f}) {
+    SCOPED_TRACE(scale);
+    const FlatScene flat = shapes_at_scale(random, scale, kTriangles);
+    const WideForm wide = make_wide(tree, flat, 8);
+    int n_loose = 0;
+    for (std::size_t i = 0; i < kTriangles; ++i) {
+      const float bound = Lane(wide, 0, i).number(9), n = normal_in_float(flat.triangles[i]);
+      ASSERT_GE(bound, n) << i;
+      n_loose += i % 4 == 0 && bound > 1.01f * n;
+    }
+    if (scale > 1e-6f && scale < 1e6f) {  // near the truth for well-shaped ones
+      EXPECT_LT(n_loose, kTriangles / 100);
+    }
+  }
+}
+
+// ---- The choice of blocks
+
+kdtree::Tree leaves_of_size(std::initializer_list<u32> sizes) {
+  kdtree::Tree tree;
+  for (const u32 n : sizes) {
+    tree.nodes.push_back({.left = static_cast<u32>(tree.refs.size()), .right = n});
+    tree.refs.resize(tree.refs.size() + n);
+  }
+  return tree;
+}
+
+TEST(ChooseBlock, EightWhereLeavesFillThemAtLeastHalf) {
+  EXPECT_EQ(choose_block(leaves_of_size({8, 7, 8, 6, 16})), 8);
+  EXPECT_EQ(choose_block(leaves_of_size({4, 4, 4})), 8);
+  EXPECT_EQ(choose_block(leaves_of_size({4, 4, 3})), 4);
+  EXPECT_EQ(choose_block(leaves_of_size({1, 2, 1, 3, 2})), 4);
+  EXPECT_EQ(choose_block(leaves_of_size({1, 1, 30, 30})), 8);
+}
+
+// As many lanes either way: a test of eight takes no longer than two of four.
+TEST(ChooseBlock, EightWhereFourSavesNothing) {
+  EXPECT_EQ(choose_block(leaves_of_size({5, 5, 13})), 8);
+  EXPECT_EQ(choose_block(kdtree::build({})), 8);
+}
+
+// A sphere's surface in a net of two triangles to a square.
+scene::Geometry fine_mesh(int n) {
+  const auto point = [n](int i, int j) {
+    const double a = 6.283185307179586 * i / n, b = 3.141592653589793 * j / n;
+    return vec3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b));
+  };
+  scene::Geometry g;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      if (j > 0) test::add_triangle(g, point(i, j), point(i + 1, j), point(i, j + 1));
+      if (j + 1 < n) test::add_triangle(g, point(i + 1, j), point(i + 1, j + 1), point(i, j + 1));
+    }
+  return g;
+}
+
+TEST(ChooseBlock, FollowsTheTreeThatSuitsTheScene) {
+  Random random(kSeed + 3);
+  scene::Geometry clutter;
+  test::add_triangles(clutter, random, 4000, 0.2f);
+  EXPECT_EQ(choose_block(kdtree::build(clutter, kdtree::suited({}, clutter.size()))), 4);
+  const kdtree::BuildConfig for_millions = kdtree::suited({}, 1000000);
+  EXPECT_EQ(choose_block(kdtree::build(fine_mesh(60), for_millions)), 8);
+}
+
+}  // namespace
+}  // namespace kdray::flatten

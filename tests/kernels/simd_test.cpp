@@ -1,0 +1,82 @@
+// The operations of common/simd.clh, both forms, against answers made on the host lane by lane: the hard values of the
+// self-test at start, and random bits under every mask of 16 lanes.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "device/context.h"
+#include "device/opencl_error.h"
+#include "device/simd_answers.h"
+#include "support/device.h"
+
+namespace kdray {
+namespace {
+
+using device::Simd;
+using layout::SimdAnswers;
+using layout::SimdCase;
+
+constexpr std::uint32_t kMasks = 1u << 16;
+
+// Any bits but those of subnormal numbers, which a device may take for 0.
+std::uint32_t random_bits(std::mt19937& random) {
+  const std::uint32_t bits = static_cast<std::uint32_t>(random());
+  return (bits & 0x7f800000u) == 0 ? bits & 0x80000000u : bits;
+}
+
+// In one case of four b is a but for a few lanes, so that equal numbers are no rarity.
+SimdCase random_case(std::mt19937& random, std::uint32_t mask) {
+  SimdCase c{};
+  c.mask = mask;
+  const bool alike = random() % 4 == 0;
+  for (int i = 0; i < 16; ++i) {
+    c.a[i] = random_bits(random);
+    c.b[i] = alike && random() % 4 != 0 ? c.a[i] : random_bits(random);
+    c.index[i] = static_cast<std::uint32_t>(random());
+  }
+  return c;
+}
+
+class SimdFormsTest : public test::EachDevice {
+ protected:
+  // The answers of the device, with the program built once for all cases.
+  void expect_right(Simd form) {
+    const device::Context context(GetParam(), 1);
+    if (form == Simd::x86) {
+      const std::string why_not = device::why_no_x86(device::choose_device(GetParam()), context.opened());
+      if (!why_not.empty()) GTEST_SKIP() << why_not;
+    }
+    const cl::Program program =
+        context.build("common/simd_test.cl", "-cl-std=CL1.2 " + device::build_option(form));
+    expect_right_on(context, program, device::known_cases());
+    const unsigned seed = 31;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    for (std::uint32_t mask = 0; mask < kMasks;) {
+      std::vector<SimdCase> cases;
+      for (int i = 0; i < 4096; ++i) cases.push_back(random_case(random, mask++));
+      expect_right_on(context, program, cases);
+    }
+  }
+
+  void expect_right_on(const device::Context& context, const cl::Program& program,
+                       const std::vector<SimdCase>& cases) {
+    const std::vector<SimdAnswers> answers = device::checked("testing vectors", [&] {
+      return device::run_simd_test(context.opened(), cl::Kernel(program, "simd_test"), cases);
+    });
+    ASSERT_EQ(device::first_difference(cases, answers), "") << "first mask " << cases.front().mask;
+  }
+};
+
+TEST_P(SimdFormsTest, PortableFormGivesTheAnswersOfTheHost) {
+  expect_right(Simd::portable);
+}
+
+TEST_P(SimdFormsTest, X86FormGivesTheAnswersOfTheHost) {
+  expect_right(Simd::x86);
+}
+
+KDRAY_FOR_EACH_DEVICE(SimdFormsTest);
+
+}  // namespace
+}  // namespace kdray
