@@ -55,7 +55,7 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
   add_real(app, "--cost-intersect", "C", "Cost of one leaf test (default 3)", 1e-6, 1e6, tree.cost_intersect)
       ->group(group);
   add_real(app, "--empty-bonus", "B",
-           "Share of its cost that a split pays when it cuts off empty space (default 0.8)", 0, 1,
+           "Share of its cost that a split pays when it cuts off empty space (default 0.6)", 0, 1,
            tree.empty_bonus)
       ->group(group);
 }

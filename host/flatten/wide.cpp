@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -39,6 +40,9 @@ struct Items {
   const Item& operator[](int i) const { return item[static_cast<std::size_t>(i)]; }
 };
 
+// Entries on the stack, for rays of each octant.
+using Needs = std::array<int, 8>;
+
 class Collapse {
  public:
   Collapse(const kdtree::Tree& tree, int block, WideForm& out)
@@ -49,7 +53,8 @@ class Collapse {
     out_.nodes.emplace_back();
     Items root;
     if (!is_empty({0})) root.add({0});
-    out_.stack_size = fill(0, {0}, root);
+    const Needs needs = fill(0, {0}, root);
+    out_.stack_size = *std::max_element(needs.begin(), needs.end());
   }
 
   const std::vector<Run>& runs() const { return runs_; }
@@ -119,11 +124,15 @@ class Collapse {
     for (int k = 0; k < parts.n; ++k) order_below(parts[k], items, octant, out);
   }
 
-  layout::u32 order_word(const Item& root, const Items& items, unsigned octant) const {
-    std::vector<unsigned> near_to_far;
-    near_to_far.reserve(kWidth);
-    order_below(root, items, octant, near_to_far);
-    for (unsigned k = static_cast<unsigned>(items.n); k < kWidth; ++k) near_to_far.push_back(k);
+  std::vector<unsigned> near_to_far(const Item& root, const Items& items, unsigned octant) const {
+    std::vector<unsigned> slots;
+    slots.reserve(kWidth);
+    order_below(root, items, octant, slots);
+    return slots;
+  }
+
+  static layout::u32 order_word(std::vector<unsigned> near_to_far) {
+    for (auto k = static_cast<unsigned>(near_to_far.size()); k < kWidth; ++k) near_to_far.push_back(k);
     layout::u32 word = 0;
     for (unsigned k = 0; k < kWidth; ++k) word |= near_to_far[kWidth - 1 - k] << (3 * k);
     return word;
@@ -149,13 +158,17 @@ class Collapse {
     return KDRAY_WIDE_LEAF | static_cast<layout::u32>(i.kind) << KDRAY_WIDE_KIND_SHIFT | run.first_block;
   }
 
-  // Writes the node whose children are found below `items`, then its subtree. Returns the stack that the subtree needs:
-  // all children are pushed, then each is popped with at most the others left below it.
-  int fill(std::size_t index, const Item& root, Items items) {
+  // Writes the node whose children are found below `items`, then its subtree. Returns the stack that the subtree needs, for
+  // rays of each octant: all children are pushed, then each is popped with those behind it left below.
+  Needs fill(std::size_t index, const Item& root, Items items) {
     open_largest(items);
     layout::WideNode node{};
     set_bounds(node, items);
-    for (unsigned octant = 0; octant < 8; ++octant) node.order[octant] = order_word(root, items, octant);
+    std::array<std::vector<unsigned>, 8> order;
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      order[octant] = near_to_far(root, items, octant);
+      node.order[octant] = order_word(order[octant]);
+    }
     const std::size_t first_child = out_.nodes.size();
     std::size_t n_inner = 0;
     for (int slot = 0; slot < items.n; ++slot)
@@ -165,14 +178,21 @@ class Collapse {
       throw Error(ErrorCode::input, "the kd-tree has over 2^29 wide nodes");
     out_.nodes.resize(first_child + n_inner);
     out_.nodes[index] = node;
-    int need = items.n;
+    Needs needs;
+    needs.fill(items.n);
     for (int slot = 0; slot < items.n; ++slot) {
       if (is_closed(items[slot])) continue;
       Items child;
       child.add(items[slot]);
-      need = std::max(need, items.n - 1 + fill(node.child[slot], items[slot], child));
+      const Needs below = fill(node.child[slot], items[slot], child);
+      for (std::size_t octant = 0; octant < 8; ++octant) {
+        const auto nearer =
+            std::find(order[octant].begin(), order[octant].end(), static_cast<unsigned>(slot));
+        const int behind = static_cast<int>(order[octant].end() - nearer) - 1;
+        needs[octant] = std::max(needs[octant], behind + below[octant]);
+      }
     }
-    return need;
+    return needs;
   }
 
   const kdtree::Tree& tree_;
@@ -199,8 +219,8 @@ float normal_bound(const layout::Triangle& t) {
     sum += std::abs(e[0][i] * e[1][j] - e[0][j] * e[1][i]);
     size += std::abs(e[0][i] * e[1][j]) + std::abs(e[0][j] * e[1][i]);
   }
-  // In float the edges are off by 2^-24 of themselves, a product by 2^-22, and what is left may underflow.
-  return std::nextafter(static_cast<float>(sum * (1 + 1e-6) + size * 1e-6), kInfinity);
+  // In float the edges are off by 2^-24 of themselves, a product by 2^-22; where products underflow, a component by 2^-149.
+  return std::nextafter(static_cast<float>(sum * (1 + 1e-6) + size * 1e-6 + 0x1p-147), kInfinity);
 }
 
 // The rows of a primitive in its block, without the index.
@@ -263,7 +283,7 @@ int choose_block(const kdtree::Tree& tree) {
       lanes4 += (node.right + 3) / 4 * 4;
       lanes8 += (node.right + 7) / 8 * 8;
     }
-  return tree.refs.size() * 2 >= lanes8 || lanes8 == lanes4 ? 8 : 4;
+  return 2 * lanes8 <= 3 * lanes4 ? 8 : 4;
 }
 
 }  // namespace kdray::flatten

@@ -26,7 +26,7 @@ struct WideForm {
 // `primitives` has the arrays that the tree's references name; `block` is 4 or 8.
 WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int block);
 
-// The block size for a tree: 8 where its full leaves fill such blocks at least half, as fine meshes do, else 4.
+// The block size for a tree: 8 where it takes at most half as many lanes again as 4 would, as for fine meshes, else 4.
 int choose_block(const kdtree::Tree& tree);
 
 }  // namespace kdray::flatten

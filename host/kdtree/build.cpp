@@ -170,9 +170,7 @@ void sum_up_contents(Tree& tree) {
 }  // namespace
 
 BuildConfig suited(BuildConfig config, std::size_t n_primitives) {
-  const bool fine_mesh = n_primitives > kFineMesh;
-  config.block = fine_mesh ? 8 : 1;
-  config.tight_cells = fine_mesh;
+  config.block = n_primitives > kFineMesh ? 8 : 2;
   return config;
 }
 

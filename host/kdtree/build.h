@@ -13,14 +13,13 @@ struct BuildConfig {
   double cost_intersect = 3.0;  // Ci: one test, of `block` primitives
   int block = 1;             // primitives tested at once, a power of two: a leaf of n costs Ci*ceil(n/block)
   bool tight_cells = false;  // costs are those of the contents' bounds, not of the cell's
-  double empty_bonus = 0.8;  // lambda: a split that cuts off empty space costs this share
+  double empty_bonus = 0.6;  // lambda: a split that cuts off empty space costs this share
   int max_depth = -1;        // -1: 8 + 1.3*log2(N)
   bool clip = true;          // false: split the references' boxes only ("boxed" of the thesis)
 };
 
-// The leaves that the wide form's walks want of a scene of n primitives (docs/traversal.md): as small as they pay for
-// themselves for a clutter of large and small; whole blocks for fine meshes, where small leaves would multiply the references by
-// four and full blocks are as fast.
+// The leaves that the wide form's walks want of a scene of n primitives (docs/traversal.md): small ones for a clutter of
+// large and small, whole blocks for fine meshes, where small leaves would multiply the references and full blocks are as fast.
 BuildConfig suited(BuildConfig config, std::size_t n_primitives);
 
 Tree build(const scene::Geometry& geometry, const BuildConfig& config = {});

@@ -180,7 +180,7 @@ TEST(Build, BlocksAndTightCells) {
       }
 }
 
-TEST(Build, LargerBlocksMakeLargerLeavesAndFewerReferences) {
+TEST(Build, LargerBlocksTakeFewerReferences) {
   Random random(20);
   const scene::Geometry g = mixed_geometry(random, 3000, 1);
   std::size_t last = std::numeric_limits<std::size_t>::max();
@@ -220,6 +220,7 @@ TEST(Build, ThreadsDoNotShow) {
   for (const Tree& t : trees) {
     ASSERT_EQ(t.nodes.size(), trees[0].nodes.size());
     ASSERT_EQ(t.refs, trees[0].refs);
+    ASSERT_EQ(std::memcmp(t.contents.data(), trees[0].contents.data(), t.contents.size() * sizeof(Box)), 0);
     EXPECT_EQ(std::memcmp(t.nodes.data(), trees[0].nodes.data(), t.nodes.size() * sizeof(kdtree::Node)), 0);
   }
   check_shape(trees[0], g, default_depth(g.size()));

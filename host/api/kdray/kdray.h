@@ -43,7 +43,7 @@ struct TreeOptions {
   double cost_traverse = 1.0;
   double cost_intersect =
       3.0;  // of one test: of a primitive, or of a block of them where the tree is built for blocks
-  double empty_bonus = 0.8;
+  double empty_bonus = 0.6;
 };
 
 struct DeviceOptions {
