@@ -226,7 +226,10 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
 }
 
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat,
-                                       Traversal traversal) {
+                                       Traversal wanted) {
+  // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
+  const Traversal traversal =
+      wanted == Traversal::automatic && context->info().kind != "cpu" ? Traversal::wide : wanted;
   wavefront::QueryResult result = wavefront::trace_query(*context, *buffers, *programs, geometry, features,
                                                          work_group, traversal, rays, any_hit, repeat);
   const double seconds = median(result.seconds);
