@@ -2,9 +2,9 @@
 //         references per triangle and expected SAH cost.
 #include <benchmark/benchmark.h>
 
+#include "bench/meshes.h"
 #include "kdtree/build.h"
 #include "kdtree/statistics.h"
-#include "meshes.h"
 #include "scene/geometry.h"
 
 namespace kdray {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "meshes.h"
+#include "bench/meshes.h"
 #include "scene/importers.h"
 
 namespace kdray {

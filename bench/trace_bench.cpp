@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "bench/meshes.h"
 #include "kdray/kdray.h"
-#include "meshes.h"
 
 namespace kdray {
 namespace {

@@ -12,6 +12,8 @@ find_package(ZLIB REQUIRED)            # zlib1g-dev
 find_package(LibLZMA REQUIRED)         # liblzma-dev
 find_package(PkgConfig REQUIRED)       # pkg-config; Debian's OpenEXR config file wants packages nobody needs
 pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)  # libopenexr-dev
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)  # libxxhash-dev
+pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)  # libhwy-dev
 find_package(assimp QUIET)             # libassimp-dev, optional: mesh formats without a reader of our own
 find_package(benchmark QUIET)           # libbenchmark-dev, optional: bench/
 find_package(embree 4 QUIET)            # libembree-dev, optional: what `kdray bench` compares with; version 4 or 3

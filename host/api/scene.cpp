@@ -1,12 +1,16 @@
 #include "scene/scene.h"
 
+#include "base/timer.h"
 #include "kdray/kdray.h"
 #include "scene/load.h"
 
 namespace kdray {
 
 Scene Scene::load(const std::filesystem::path& file) {
-  return Scene(scene::load(file));
+  const Timer timer;
+  Scene scene(scene::load(file));
+  scene.load_seconds_ = timer.seconds();
+  return scene;
 }
 Scene::Scene(scene::Scene&& model) : model_(std::make_unique<scene::Scene>(std::move(model))) {}
 Scene::Scene(Scene&&) noexcept = default;

@@ -1,11 +1,24 @@
 #include "statistics.h"
 
 #include "flatten/features.h"
+#include "prepare/quality.h"
 
 namespace kdray::api {
 
-Json tree_json(const kdtree::Tree& tree, const kdtree::Statistics& s) {
-  return {{"nodes", tree.nodes.size()},
+Json scene_json(const prepare::Prepared& scene) {
+  return {{"primitives", scene.counts.primitives},
+          {"triangles", scene.counts.triangles},
+          {"spheres", scene.counts.spheres},
+          {"cones", scene.counts.cones},
+          {"lights", scene.settings.lights.size()},
+          {"materials", scene.settings.materials.size()},
+          {"dropped_degenerate", scene.geometry.dropped_degenerate}};
+}
+
+Json tree_json(const prepare::Prepared& scene) {
+  const kdtree::Statistics& s = scene.tree;
+  return {{"build", prepare::name_of(scene.tree_options.quality)},
+          {"nodes", scene.tree_nodes},
           {"inner_nodes", s.inner_nodes},
           {"leaves", s.leaves},
           {"empty_leaves", s.empty_leaves},

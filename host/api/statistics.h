@@ -5,14 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "kdray/kdray.h"
-#include "kdtree/statistics.h"
 #include "pdprt/render.h"
+#include "prepare/prepared.h"
 
 namespace kdray::api {
 
 using Json = nlohmann::json;
 
-Json tree_json(const kdtree::Tree& tree, const kdtree::Statistics& statistics);
+Json scene_json(const prepare::Prepared& scene);
+Json tree_json(const prepare::Prepared& scene);
 Json device_json(const DeviceInfo& info);
 Json features_json(std::uint32_t mask);
 Json rays_json(const wavefront::Counters& counters);

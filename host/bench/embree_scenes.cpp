@@ -1,5 +1,7 @@
 #include "bench/embree_scenes.h"
 
+#include <span>
+
 #include "base/error.h"
 
 namespace kdray::bench {
@@ -8,12 +10,6 @@ namespace {
 
 using scene::PrimitiveKind;
 
-RTCDevice open_device() {
-  const RTCDevice device = rtcNewDevice("frequency_level=simd512");
-  if (device == nullptr) throw Error(ErrorCode::internal, "Embree gives no device");
-  return device;
-}
-
 template <class T>
 T* new_buffer(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t stride, std::size_t n) {
   void* const memory = rtcSetNewGeometryBuffer(g, type, 0, format, stride, n);
@@ -21,7 +17,7 @@ T* new_buffer(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t s
   return static_cast<T*>(memory);
 }
 
-void fill(RTCGeometry g, const std::vector<scene::TriangleGeometry>& triangles) {
+void fill(RTCGeometry g, std::span<const scene::TriangleGeometry> triangles) {
   auto* vertex =
       new_buffer<vec3>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(vec3), 3 * triangles.size());
   auto* index = new_buffer<std::uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
@@ -47,7 +43,7 @@ void fill(RTCGeometry g, const std::vector<scene::ConeGeometry>& cones) {
     point[2 * i] = {cones[i].base, cones[i].base_radius};
     point[2 * i + 1] = {cones[i].apex, cones[i].apex_radius};
     index[i] = 2 * i;
-    flags[i] = RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
+    flags[i] = kOpenCone;
   }
 }
 
@@ -71,7 +67,13 @@ std::vector<std::uint32_t> numbers_of(const Sources& sources, const Primitives& 
 
 }  // namespace
 
-EmbreeScenes::EmbreeScenes(const scene::Scene& scene) : device_(open_device()) {
+RTCDevice open_embree() {
+  const RTCDevice device = rtcNewDevice("frequency_level=simd512");
+  if (device == nullptr) throw Error(ErrorCode::internal, "Embree gives no device");
+  return device;
+}
+
+EmbreeScenes::EmbreeScenes(const scene::Scene& scene) : device_(open_embree()) {
   const scene::Geometry geometry = scene::make_geometry(scene);
   center_ = vec3(geometry.center);
   numbers_ = {numbers_of(scene.triangles, geometry.triangles), numbers_of(scene.spheres, geometry.spheres),

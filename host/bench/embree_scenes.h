@@ -13,6 +13,12 @@
 
 namespace kdray::bench {
 
+// Throws ErrorCode::internal where Embree gives none.
+RTCDevice open_embree();
+
+// A curve's flags without end caps.
+inline constexpr std::uint8_t kOpenCone = RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
+
 class EmbreeScenes {
  public:
   explicit EmbreeScenes(const scene::Scene& scene);

@@ -1,4 +1,5 @@
 #include "bench/embree.h"
+#include "bench/embree_build.h"
 
 namespace kdray::bench {
 
@@ -13,6 +14,10 @@ std::shared_ptr<EmbreeScenes> make_embree_scenes(const scene::Scene&) {
 }
 
 std::vector<Contestant> embree_contestants(const std::shared_ptr<EmbreeScenes>&, int) {
+  return {};
+}
+
+TimedBuild embree_build(const scene::Scene&, const scene::Geometry&) {
   return {};
 }
 

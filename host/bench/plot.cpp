@@ -5,61 +5,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/svg.h"
+
 namespace kdray::bench {
 
 namespace {
+
+using svg::kTextWidth;
+using svg::line;
+using svg::rectangle;
+using svg::step_for;
+using svg::text;
 
 constexpr double kBar = 24, kGap = 22;  // a bar with its value fits, and the space between two groups
 constexpr double kLeft = 64, kRight = 24;
 constexpr double kHead = 62, kLegendLine = 20;
 constexpr double kPanel = 300, kTitle = 34, kFoot = 36;  // a panel's height, its title's and its labels'
-constexpr double kTextWidth = 0.6;                       // of a letter in font sizes, at the most
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '"') {
-      out += "&quot;";
-    } else if (static_cast<unsigned char>(c) >= 0x20) {  // XML has no control characters
-      out += c;
-    }
-  }
-  return out;
-}
-
-std::string text(double x, double y, double size, const std::string& anchor, const std::string& what,
-                 const std::string& more = "") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"{}\" text-anchor=\"{}\"{}>{}</text>\n", x,
-                     y, size, anchor, more, escaped(what));
-}
-
-std::string line(double x0, double y0, double x1, double y1, const std::string& color) {
-  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x0,
-                     y0, x1, y1, color);
-}
-
-std::string rectangle(double x, double y, double width, double height, const std::string& color) {
-  return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x,
-                     y, width, height, color);
-}
 
 // Three digits: 0.57, 8.61, 34.5, 120.
 std::string short_number(double value) {
   return fmt::format("{:.{}f}", value, value < 9.995 ? 2 : value < 99.95 ? 1 : 0);
-}
-
-// The next of 1, 2, 5, 10, ... such that about five steps reach the top.
-double step_for(double top) {
-  const double raw = top / 5, power = std::pow(10, std::floor(std::log10(raw)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (factor * power >= raw) return factor * power;
-  return 10 * power;
 }
 
 double highest(const Panel& panel) {
@@ -90,12 +55,7 @@ class Drawing {
       body += draw_panel(p, top);
       top += kPanel;
     }
-    return fmt::format(
-               "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-               "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-               "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\">\n",
-               width_, top + 8) +
-           rectangle(0, 0, width_, top + 8, "#ffffff") + body + "</svg>\n";
+    return svg::document(width_, top + 8, body);
   }
 
  private:

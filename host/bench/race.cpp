@@ -8,7 +8,7 @@ namespace kdray::bench {
 
 namespace {
 
-constexpr int kWarmUps = 2;
+constexpr int kWarmUps = 2;  // at the most: no more than rounds
 
 struct Runner {
   const Variant* variant = nullptr;
@@ -20,12 +20,12 @@ void hold_against(std::span<const Hit> reference, const std::vector<Hit>& hits, 
     outcome.n_not_identical = std::max(outcome.n_not_identical, count_not_identical(reference, hits));
 }
 
-Runner warm_up(const RayClass& rays, std::span<const Hit> reference, const Contestant& contestant,
+Runner warm_up(const RayClass& rays, std::span<const Hit> reference, const Contestant& contestant, int runs,
                Outcome& outcome) {
   Runner runner;
   double least = 0;
   for (const Variant& variant : contestant.variants)
-    for (int i = 0; i < kWarmUps; ++i) {
+    for (int i = 0; i < runs; ++i) {
       const Traced traced = variant.trace(rays);
       hold_against(reference, traced.hits, outcome);
       if (runner.variant != nullptr && traced.seconds >= least) continue;
@@ -53,7 +53,7 @@ std::vector<Outcome> race(const RayClass& rays, std::span<const Hit> reference,
   std::vector<Runner> runners;
   for (const Contestant& c : contestants) {
     outcomes.push_back({.family = c.family, .mode = c.mode, .variant = {}, .seconds = {}});
-    runners.push_back(warm_up(rays, reference, c, outcomes.back()));
+    runners.push_back(warm_up(rays, reference, c, std::min(rounds, kWarmUps), outcomes.back()));
   }
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < runners.size(); ++i) {

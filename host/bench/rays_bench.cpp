@@ -51,7 +51,7 @@ class SceneBench {
       : options_(options), name_(name), working_(working), scene_(load_scene(name)) {
     if (scene_.model().primitive_count() == 0)
       throw Error(ErrorCode::input, name + ": nothing to trace; the scene is empty");
-    embree_ = make_embree_scenes(scene_.model());
+    if (options.embree) embree_ = make_embree_scenes(scene_.model());
   }
 
   RaysRun run(int cores) {
@@ -62,7 +62,8 @@ class SceneBench {
     const auto renderer = std::make_shared<Renderer>(scene_, TreeOptions{}, device);
     RaysRun run = described(nlohmann::json::parse(renderer->statistics()).at("device"));
     std::vector<Contestant> contestants = kdray_contestants(renderer, options_.traversals);
-    for (Contestant& c : embree_contestants(embree_, run.cores)) contestants.push_back(std::move(c));
+    if (options_.embree)
+      for (Contestant& c : embree_contestants(embree_, run.cores)) contestants.push_back(std::move(c));
     for (std::size_t i = 0; i < classes_.size(); ++i)
       run.classes.push_back(race_on(classes_[i], references_[i], contestants, run.cores));
     return run;

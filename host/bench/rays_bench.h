@@ -17,6 +17,7 @@ struct RaysOptions {
   int rays = 1 << 20;                                      // of a class, at the most
   int repeat = 7;                                          // rounds
   std::vector<int> cores = {};                             // 0: all; empty: 1 and all, on a GPU all
+  bool embree = true;                                      // beside kdray, where there is one
   std::string device = "auto";
 };
 

@@ -20,6 +20,11 @@ const char* name_of(Family family) {
   }
 }
 
+// Empty when there was none, or when it was left out.
+std::string version_of_embree(const RaysOptions& options) {
+  return options.embree ? embree_version() : "";
+}
+
 std::string heading(const RaysRun& run) {
   std::string out = std::filesystem::path(run.scene).filename().string() + ":";
   const auto add = [&](std::size_t n, const char* what) {
@@ -195,7 +200,7 @@ std::string table_of(const RaysRun& run) {
 }
 
 Json json_of(std::span<const RaysRun> runs, const RaysOptions& options) {
-  const std::string embree = embree_version();
+  const std::string embree = version_of_embree(options);
   Json json = {{"command", "bench rays"},
                {"embree", embree.empty() ? Json() : Json(embree)},
                {"rays", options.rays},
@@ -208,13 +213,13 @@ Json json_of(std::span<const RaysRun> runs, const RaysOptions& options) {
 
 Plot plot_of(std::span<const RaysRun> runs, const RaysOptions& options) {
   const std::string device = runs.empty() ? "" : runs.front().device;
-  Plot plot{"Rays: kdray's traversals and Embree " + embree_version(),
+  const std::string embree = version_of_embree(options);
+  Plot plot{embree.empty() ? "Rays: kdray's traversals" : "Rays: kdray's traversals and Embree " + embree,
             fmt::format("{}; median of {} interleaved rounds, whiskers from the slowest to the fastest",
                         device, options.repeat),
             "Mrays/s",
             {},
             {}};
-  if (embree_version().empty()) plot.title = "Rays: kdray's traversals";
   std::vector<PlotSeries> used;
   for (const PlotSeries& s : plot_series())
     if (appears(s, runs)) used.push_back(s), plot.series.push_back(s.look);

@@ -21,8 +21,8 @@ dvec3 normal_of(const scene::Cone& c, const dvec3& point) {
   return radial / distance - axis * ((c.apex_radius - c.base_radius) / height);
 }
 
-template <class Primitive, class Place>
-void put(std::vector<Place>& places, const std::vector<Primitive>& primitives, PrimitiveKind kind) {
+template <class Primitives, class Place>
+void put(std::vector<Place>& places, const Primitives& primitives, PrimitiveKind kind) {
   for (std::uint32_t i = 0; i < primitives.size(); ++i) places[primitives[i].number] = {kind, i};
 }
 

@@ -4,23 +4,21 @@
 // Errors  Hits that differ between kdray's traversals: exit code 1, after everything has been written.
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <filesystem>
+#include <algorithm>
 #include <memory>
 #include <string>
 
-#include "base/write_file.h"
 #include "bench/embree.h"
 #include "bench/kdray_contestants.h"
-#include "bench/plot.h"
 #include "bench/povray.h"
 #include "bench/rays.h"
 #include "bench/rays_bench.h"
 #include "bench/report.h"
+#include "cli/bench_build.h"
+#include "cli/bench_report.h"
 #include "cli/command.h"
 #include "cli/message.h"
 #include "cli/options.h"
-#include "cli/output.h"
 #include "cli/parse.h"
 
 namespace kdray::cli {
@@ -39,36 +37,9 @@ struct RaysCommand {
   std::string report;
 };
 
-// A folder for the report, made before anything is measured.
-void prepare_report(const std::string& folder, const std::string& name) {
-  if (folder.empty()) return;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw input_error(folder, 0, "can't be made a folder: " + error.message(), "choose another --report");
-  for (const char* const ending : {".json", ".svg"})
-    check_writable(std::filesystem::path(folder) / (name + ending));
-}
-
-void write_report(const std::string& folder, const std::string& name, const bench::Json& json,
-                  const bench::Plot& plot) {
-  if (folder.empty()) return;
-  const std::filesystem::path base = std::filesystem::path(folder) / name;
-  write_file(base.string() + ".json", json.dump(2, ' ', false, bench::Json::error_handler_t::replace) + "\n");
-  write_file(base.string() + ".svg", bench::to_svg(plot));
-}
-
-void print_table(const std::string& table) {
-  std::fprintf(stderr, "%s\n", table.c_str());
-}
-
-void say_without_embree() {
-  if (bench::embree_version().empty()) say("this kdray was built without Embree: its columns are left out");
-}
-
 int run_rays(const RaysCommand& c) {
   prepare_report(c.report, "rays");
-  say_without_embree();
+  if (c.options.embree) say_without_embree();
   const auto runs = bench::bench_rays(
       c.options, [](const bench::RaysRun& run) { print_table(bench::table_of(run)); },
       [](const std::string& what) { say(what); });
@@ -102,16 +73,6 @@ std::vector<int> parse_cores(const std::string& text) {
   return cores;
 }
 
-void add_report(CLI::App& app, std::string& report) {
-  app.add_option("--report", report, "A folder for the figures (JSON) and a plot (SVG)")->type_name("DIR");
-}
-
-void add_scenes(CLI::App& app, std::vector<std::string>& scenes, const std::string& default_scenes) {
-  app.add_option("SCENE", scenes,
-                 "Scene files, or names of built-in scenes (default: " + default_scenes + ")")
-      ->type_name("");
-}
-
 Command add_rays(CLI::App& bench) {
   CLI::App* const app =
       bench.add_subcommand("rays", "The same rays through every traversal, and through Embree");
@@ -130,6 +91,8 @@ Command add_rays(CLI::App& bench) {
   add_int(*app, "--repeat", "Rounds to take the median of (default 7)", 1, kRepeatMax, o.repeat);
   add_text(*app, "--cores", "LIST", "Numbers of cores, or all (default 1,all; on a GPU all)",
            [&o](const std::string& text) { o.cores = parse_cores(text); });
+  app->add_flag_callback(
+      "--no-embree", [&o] { o.embree = false; }, "Leave Embree out: kdray's traversals against each other");
   add_report(*app, c->report);
   return {app, [c] { return run_rays(*c); }};
 }
@@ -157,11 +120,15 @@ Command add_bench(CLI::App& kdray) {
   CLI::App* const app =
       kdray.add_subcommand("bench", "Measure rays or frames, beside Embree and POV-Ray where they are");
   app->require_subcommand(0, 1);
-  const Command rays = add_rays(*app), frames = add_frames(*app);
-  return {app, [rays, frames] {
+  const Command rays = add_rays(*app), frames = add_frames(*app), build = add_bench_build(*app),
+                depth = add_bench_depth(*app);
+  return {app, [rays, frames, build, depth] {
             if (rays.app->parsed()) return rays.run();
             if (frames.app->parsed()) return frames.run();
-            throw Error(ErrorCode::usage, "what to bench is missing: rays, frames; see 'kdray bench --help'");
+            if (build.app->parsed()) return build.run();
+            if (depth.app->parsed()) return depth.run();
+            throw Error(ErrorCode::usage,
+                        "what to bench is missing: rays, frames, build, depth; see 'kdray bench --help'");
           }};
 }
 

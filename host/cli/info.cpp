@@ -1,17 +1,24 @@
 // What    kdray info: what a scene holds, the tree kdray builds for it, the memory both take. Needs no
 //         device.
 // Units   world units; bytes as held by this process; the tree's cost in units of its own constants.
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "base/peak_memory.h"
 #include "base/timer.h"
 #include "cli/command.h"
 #include "cli/info_report.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "flatten/flatten.h"
+#include "flatten/wide.h"
 #include "kdtree/build.h"
 #include "kdtree/statistics.h"
+#include "prepare/prepared.h"
+#include "prepare/quality.h"
 #include "scene/geometry.h"
 #include "scene/load.h"
 
@@ -25,6 +32,27 @@ struct Options {
   bool json = false;
 };
 
+// A tree and what a device gets of it, with the time that each took.
+struct Forms {
+  kdtree::Tree tree;
+  flatten::FlatScene flat;
+  flatten::WideForm wide;
+  double build_seconds = 0, flatten_seconds = 0;
+};
+
+Forms build_forms(const scene::Scene& scene, const scene::Geometry& geometry,
+                  const kdtree::BuildConfig& config) {
+  Forms forms;
+  Timer step;
+  forms.tree = kdtree::build(geometry, config);
+  forms.build_seconds = step.seconds();
+  step.restart();
+  forms.flat = flatten::flatten(scene, geometry, forms.tree);
+  forms.wide = flatten::make_wide(forms.tree, forms.flat, flatten::choose_block(forms.tree));
+  forms.flatten_seconds = step.seconds();
+  return forms;
+}
+
 int run(const Options& o) {
   Timer step;
   const scene::Scene scene = scene::load(o.scene);
@@ -33,18 +61,21 @@ int run(const Options& o) {
 
   step.restart();
   const scene::Geometry geometry = scene::make_geometry(scene);
-  const kdtree::BuildConfig config = kdtree::suited({.cost_traverse = o.tree.cost_traverse,
-                                                     .cost_intersect = o.tree.cost_intersect,
-                                                     .empty_bonus = o.tree.empty_bonus,
-                                                     .max_depth = o.tree.max_depth},
-                                                    geometry.size());
-  const kdtree::Tree tree = kdtree::build(geometry, config);
-  const double build_seconds = step.seconds();
+  const double geometry_seconds = step.seconds();
+  const kdtree::BuildConfig config = prepare::config_of(o.tree, geometry.size());
+  Forms forms;
+  const std::uint64_t peak_before = peak_memory();  // measuring the next one makes the system forget it
+  const std::optional<std::uint64_t> build_peak =
+      peak_bytes_of([&] { forms = build_forms(scene, geometry, config); });
 
   Json report = scene_report(scene, geometry);
-  report["tree"] = tree_report(tree, kdtree::measure(tree, geometry, config));
-  report["memory"] = memory_report(scene, geometry, tree);
-  report["seconds"] = {{"load", load_seconds}, {"build", build_seconds}};
+  report["tree"] = tree_report(forms.tree, kdtree::measure(forms.tree, geometry, config));
+  report["tree"]["build"] = prepare::name_of(o.tree.quality);
+  report["memory"] = memory_report({scene, geometry, forms.tree, forms.flat, forms.wide, build_peak,
+                                    std::max(peak_before, peak_memory())});
+  report["seconds"] = {{"load", load_seconds},
+                       {"build", geometry_seconds + forms.build_seconds},
+                       {"flatten", forms.flatten_seconds}};
   print(o.json ? report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : report_as_text(report));
   return 0;
 }

@@ -11,9 +11,51 @@ Json as_json(const Vec& v) {
   return Json::array({v.x, v.y, v.z});
 }
 
-template <class T>
-std::uint64_t bytes_of(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
+template <class Values>
+std::uint64_t bytes_of(const Values& v) {
+  return v.size() * sizeof(*v.data());
+}
+
+// The structs are taken apart into all their arrays, so that one that is added can't be forgotten.
+
+Json scene_arrays(const scene::Scene& scene) {
+  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, camera, background,
+               ambient, settings, warnings, files] = scene;
+  return {{"vertices", bytes_of(vertices)},   {"normals", bytes_of(normals)},
+          {"triangles", bytes_of(triangles)}, {"spheres", bytes_of(spheres)},
+          {"cones", bytes_of(cones)},         {"materials", bytes_of(materials)},
+          {"lights", bytes_of(lights)}};
+}
+
+Json geometry_arrays(const scene::Geometry& geometry) {
+  const auto& [center, triangles, spheres, cones, bounds, dropped] = geometry;
+  return {{"triangles", bytes_of(triangles)}, {"spheres", bytes_of(spheres)}, {"cones", bytes_of(cones)}};
+}
+
+Json tree_arrays(const kdtree::Tree& tree) {
+  const auto& [nodes, refs, contents, bounds, max_depth] = tree;
+  return {{"nodes", bytes_of(nodes)}, {"references", bytes_of(refs)}, {"contents", bytes_of(contents)}};
+}
+
+Json flat_arrays(const flatten::FlatScene& flat) {
+  const auto& [nodes, refs, triangles, normals, spheres, cones, materials, lights] = flat;
+  return {{"nodes", bytes_of(nodes)},         {"references", bytes_of(refs)},
+          {"triangles", bytes_of(triangles)}, {"normals", bytes_of(normals)},
+          {"spheres", bytes_of(spheres)},     {"cones", bytes_of(cones)},
+          {"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}};
+}
+
+Json wide_arrays(const flatten::WideForm& wide) {
+  return {{"nodes", bytes_of(wide.nodes)},
+          {"triangle_blocks", bytes_of(wide.triangle_blocks)},
+          {"sphere_blocks", bytes_of(wide.sphere_blocks)},
+          {"cone_blocks", bytes_of(wide.cone_blocks)}};
+}
+
+std::uint64_t sum(const Json& arrays) {
+  std::uint64_t bytes = 0;
+  for (const Json& array : arrays) bytes += array.get<std::uint64_t>();
+  return bytes;
 }
 
 Json material_report(const scene::Material& m, std::uint64_t uses) {
@@ -102,17 +144,25 @@ Json tree_report(const kdtree::Tree& tree, const kdtree::Statistics& s) {
           {"largest_leaf", s.largest_leaf},
           {"max_depth", s.max_depth},
           {"mean_leaf_depth", s.mean_leaf_depth},
-          {"sah_cost", s.sah_cost}};
+          {"sah_cost", s.sah_cost},
+          {"tight_cost", s.tight_cost}};
 }
 
-Json memory_report(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree) {
-  return {{"scene_bytes", bytes_of(scene.vertices) + bytes_of(scene.normals) + bytes_of(scene.triangles) +
-                              bytes_of(scene.spheres) + bytes_of(scene.cones) + bytes_of(scene.materials) +
-                              bytes_of(scene.lights)},
-          {"geometry_bytes",
-           bytes_of(geometry.triangles) + bytes_of(geometry.spheres) + bytes_of(geometry.cones)},
-          {"tree_bytes", bytes_of(tree.nodes) + bytes_of(tree.refs)},
-          {"process_peak_bytes", peak_memory()}};
+Json memory_report(const MemoryUsers& m) {
+  const Json arrays = {{"scene", scene_arrays(m.scene)},
+                       {"geometry", geometry_arrays(m.geometry)},
+                       {"tree", tree_arrays(m.tree)},
+                       {"flat", flat_arrays(m.flat)},
+                       {"wide", wide_arrays(m.wide)}};
+  return {{"scene_bytes", sum(arrays["scene"])},
+          {"geometry_bytes", sum(arrays["geometry"])},
+          {"tree_bytes", sum(arrays["tree"])},
+          {"flat_bytes", sum(arrays["flat"])},
+          {"wide_bytes", sum(arrays["wide"])},
+          {"final_bytes", sum(arrays["flat"]) + sum(arrays["wide"])},
+          {"build_peak_bytes", m.build_peak ? Json(*m.build_peak) : Json()},
+          {"process_peak_bytes", m.process_peak},
+          {"arrays", arrays}};
 }
 
 }  // namespace kdray::cli

@@ -2,9 +2,13 @@
 //         of figures for both.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "cli/stats.h"
+#include "flatten/flatten.h"
+#include "flatten/wide.h"
 #include "kdtree/statistics.h"
 #include "kdtree/tree.h"
 #include "scene/geometry.h"
@@ -14,7 +18,19 @@ namespace kdray::cli {
 
 Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry);
 Json tree_report(const kdtree::Tree& tree, const kdtree::Statistics& statistics);
-Json memory_report(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree);
+
+// What takes memory on the way from a file to the device.
+struct MemoryUsers {
+  const scene::Scene& scene;
+  const scene::Geometry& geometry;
+  const kdtree::Tree& tree;
+  const flatten::FlatScene& flat;
+  const flatten::WideForm& wide;
+  std::optional<std::uint64_t> build_peak;  // of building and flattening, beyond scene and geometry
+  std::uint64_t process_peak;
+};
+
+Json memory_report(const MemoryUsers& users);
 
 std::string report_as_text(const Json& report);
 

@@ -20,6 +20,11 @@ std::string vector_text(const Json& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
 }
 
+std::string with_spaces(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 // A colour, or one number where its channels are alike; empty for black.
 std::string color_text(const char* name, const Json& v) {
   const double r = v[0], g = v[1], b = v[2];
@@ -89,9 +94,10 @@ std::string leaf_sizes_text(const Json& sizes) {
 
 std::string tree_text(const Json& t) {
   std::string text;
-  text += line("tree", fmt::format("{} nodes: {} inner, {} leaves ({} empty)",
-                                   t["nodes"].get<std::uint64_t>(), t["inner_nodes"].get<std::uint64_t>(),
-                                   t["leaves"].get<std::uint64_t>(), t["empty_leaves"].get<std::uint64_t>()));
+  text += line(
+      "tree", fmt::format("built {}, {} nodes: {} inner, {} leaves ({} empty)", t["build"].get<std::string>(),
+                          t["nodes"].get<std::uint64_t>(), t["inner_nodes"].get<std::uint64_t>(),
+                          t["leaves"].get<std::uint64_t>(), t["empty_leaves"].get<std::uint64_t>()));
   text += line("  depth", fmt::format("{} at most, {:.2f} on average", t["max_depth"].get<int>(),
                                       t["mean_leaf_depth"].get<double>()));
   text +=
@@ -99,16 +105,39 @@ std::string tree_text(const Json& t) {
                                        t["references"].get<std::uint64_t>(), t["duplication"].get<double>(),
                                        t["largest_leaf"].get<std::uint64_t>()));
   text += line("  leaf sizes", leaf_sizes_text(t["leaves_by_size"]));
-  text += line("  SAH cost",
-               fmt::format("{:.2f} expected for a ray that meets the bounds", t["sah_cost"].get<double>()));
+  text +=
+      line("  SAH cost",
+           fmt::format("{:.2f} expected for a ray that meets the bounds, {:.2f} for one that skips what lies "
+                       "outside of each node's contents",
+                       t["sah_cost"].get<double>(), t["tight_cost"].get<double>()));
+  return text;
+}
+
+// "vertices 3.1 MB, triangles 12 MB": what takes a hundredth of all or more, each array by its name.
+std::string arrays_text(const Json& arrays, std::uint64_t all) {
+  std::string text;
+  for (const auto& [name, array] : arrays.items())
+    if (const std::uint64_t bytes = array; bytes > 0 && bytes >= all / 100)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", with_spaces(name), bytes_in_words(bytes));
   return text;
 }
 
 std::string memory_text(const Json& m) {
   const auto bytes = [&m](const char* name) { return bytes_in_words(m[name].get<std::uint64_t>()); };
-  return line("memory",
-              fmt::format("scene {}, geometry {}, tree {}; the process at most {}", bytes("scene_bytes"),
-                          bytes("geometry_bytes"), bytes("tree_bytes"), bytes("process_peak_bytes")));
+  std::string text = line("memory", fmt::format("{} on the device ({} flat, {} wide)", bytes("final_bytes"),
+                                                bytes("flat_bytes"), bytes("wide_bytes")));
+  for (const auto& [name, arrays] : m["arrays"].items()) {
+    const std::uint64_t all = m[name + "_bytes"];
+    text += line("  " + name, fmt::format("{}: {}", bytes_in_words(all), arrays_text(arrays, all)));
+  }
+  const Json& build = m["build_peak_bytes"];
+  text += line("  at most",
+               fmt::format("{}the process {}",
+                           build.is_null() ? ""
+                                           : "building " + bytes_in_words(build.get<std::uint64_t>()) +
+                                                 " beyond scene and geometry, ",
+                           bytes("process_peak_bytes")));
+  return text;
 }
 
 }  // namespace
@@ -123,8 +152,10 @@ std::string report_as_text(const Json& r) {
   text += line("background", vector_text(r["background"]));
   text += lights_text(r["lights"]) + materials_text(r["materials"]) + tree_text(r["tree"]) +
           memory_text(r["memory"]);
-  text += line("time", fmt::format("load {}, build {}", seconds_in_words(r["seconds"]["load"].get<double>()),
-                                   seconds_in_words(r["seconds"]["build"].get<double>())));
+  text += line("time", fmt::format("load {}, build {}, flatten {}",
+                                   seconds_in_words(r["seconds"]["load"].get<double>()),
+                                   seconds_in_words(r["seconds"]["build"].get<double>()),
+                                   seconds_in_words(r["seconds"]["flatten"].get<double>())));
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "cli/parse.h"
+#include "prepare/quality.h"
 
 namespace kdray::cli {
 
@@ -44,19 +45,43 @@ CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string&
   return app.add_option(name, value, help)->type_name("FILE");
 }
 
+void add_cache_options(CLI::App& app, CacheChoice& cache) {
+  const std::string group = "Cache";
+  add_text(app, "--cache", "DIR", "Keep prepared scenes there (default: the user's cache directory)",
+           [&cache](const std::string& text) {
+             if (text.empty()) throw usage_error("--cache", text, "a folder (--no-cache: no cache)");
+             cache.folder = text;
+           })
+      ->group(group);
+  app.add_flag("--no-cache", cache.off, "Read and build the scene anew, and don't keep it")->group(group);
+  add_text(app, "--cache-size", "BYTES", "The most that all kept scenes may take, as in 500M (default 4G)",
+           [&cache](const std::string& text) { cache.max_bytes = parse_bytes("--cache-size", text); })
+      ->group(group);
+}
+
+CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality) {
+  return add_text(app, "--build", "NAME", "Time spent on the tree: fast, balanced (default), best",
+                  [&quality](const std::string& text) {
+                    parse_choice("--build", text, prepare::kQualityNames);
+                    const auto name =
+                        std::find(prepare::kQualityNames.begin(), prepare::kQualityNames.end(), text);
+                    quality = static_cast<BuildQuality>(name - prepare::kQualityNames.begin());
+                  });
+}
+
 void add_tree_options(CLI::App& app, TreeOptions& tree) {
   const std::string group = "Tree";
+  add_build_option(app, tree.quality)->group(group);
   add_int(app, "--tree-depth", "Deepest leaf (default: 8 + 1.3*log2 of the primitives)", 0, 64,
           tree.max_depth)
       ->group(group);
   add_real(app, "--cost-traverse", "C", "Cost of one inner node in the surface area heuristic (default 1)", 0,
            1e6, tree.cost_traverse)
       ->group(group);
-  add_real(app, "--cost-intersect", "C", "Cost of one leaf test (default 3)", 1e-6, 1e6, tree.cost_intersect)
+  add_real(app, "--cost-intersect", "C", "Cost of one leaf test (default 2)", 1e-6, 1e6, tree.cost_intersect)
       ->group(group);
-  add_real(app, "--empty-bonus", "B",
-           "Share of its cost that a split pays when it cuts off empty space (default 0.6)", 0, 1,
-           tree.empty_bonus)
+  add_text(app, "--memory", "BYTES", "The most that the scene may take, as in 500M: the tree gets coarser",
+           [&tree](const std::string& text) { tree.memory_bytes = parse_bytes("--memory", text); })
       ->group(group);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 
 #include "kdray/kdray.h"
@@ -19,7 +20,19 @@ CLI::Option* add_real(CLI::App& app, const std::string& name, const std::string&
                       const std::string& help, double lo, double hi, double& value);
 CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string& help, std::string& value);
 
-// --tree-depth --cost-traverse --cost-intersect --empty-bonus
+// Where prepared scenes are kept.
+struct CacheChoice {
+  std::string folder;  // empty: the user's own
+  bool off = false;
+  std::uint64_t max_bytes = CacheOptions().max_bytes;
+};
+
+// --cache --no-cache --cache-size
+void add_cache_options(CLI::App& app, CacheChoice& cache);
+
+CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality);
+
+// --build --tree-depth --cost-traverse --cost-intersect
 void add_tree_options(CLI::App& app, TreeOptions& tree);
 
 // --device --queues --work-group --traversal --precision

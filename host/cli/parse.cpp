@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace kdray::cli {
 
@@ -42,6 +43,18 @@ double parse_real(std::string_view option, std::string_view text, double lo, dou
   if (!whole_number(text, value) || value < lo || value > hi)
     throw usage_error(option, text, fmt::format("a number from {} to {}", lo, hi));
   return value;
+}
+
+std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
+  constexpr std::string_view kUnits = "KMG";
+  const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+  const bool has_unit = unit != std::string_view::npos;
+  const unsigned shift = has_unit ? 10 * (static_cast<unsigned>(unit) + 1) : 0;
+  std::uint64_t value = 0;
+  const bool good = whole_number(text.substr(0, text.size() - (has_unit ? 1 : 0)), value);
+  if (!good || value > std::numeric_limits<std::uint64_t>::max() >> shift)
+    throw usage_error(option, text, "a number of bytes, as in 4096, 64K, 500M or 4G");
+  return value << shift;
 }
 
 Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max) {

@@ -3,6 +3,7 @@
 // Errors  kdray::Error, ErrorCode::usage: the option, what was given, what is accepted.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ struct Size {
 
 int parse_int(std::string_view option, std::string_view text, int lo, int hi);
 double parse_real(std::string_view option, std::string_view text, double lo, double hi);
+
+// "4096", "500M": a whole number, of KiB, MiB or GiB with K, M or G behind it.
+std::uint64_t parse_bytes(std::string_view option, std::string_view text);
 
 // "640x480"; each side from 1 to `side_max`, and no more than `pixels_max` pixels.
 Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max);

@@ -4,15 +4,18 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/timer.h"
 #include "cli/command.h"
 #include "cli/memory.h"
 #include "cli/message.h"
+#include "cli/open_scene.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/parse.h"
@@ -34,6 +37,7 @@ struct Options {
   std::string scene, output, stats;
   bool quiet = false;
   bool gamma_given = false, bits_given = false;
+  CacheChoice cache;
   TreeOptions tree;
   DeviceOptions device;
   RenderOptions render;
@@ -122,10 +126,9 @@ void check_memory(const RenderOptions& render, const scene::RenderSettings& aske
 }
 
 film::Image to_image(const Picture& picture) {
-  film::Image image{picture.width, picture.height, {}};
-  image.pixels.reserve(picture.rgb.size() / 3);
-  for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3)
-    image.pixels.emplace_back(picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]);
+  film::Image image{picture.width, picture.height, std::vector<vec3>(picture.rgb.size() / 3)};
+  static_assert(sizeof(vec3) == 3 * sizeof(float));
+  std::memcpy(image.pixels.data(), picture.rgb.data(), image.pixels.size() * sizeof(vec3));
   return image;
 }
 
@@ -147,22 +150,21 @@ Picture render(Renderer& renderer, const Options& o) {
 int run(Options& o) {
   const Timer total;
   check_files(o);
-  OwnSeconds seconds;
-  Timer step;
-  const Scene scene = Scene::load(o.scene);
-  seconds.load = step.seconds();
-  if (!o.quiet)
-    for (const std::string& warning : scene.warnings()) say(warning);
-  check_memory(o.render, scene.model().settings);
-
-  Renderer renderer(scene, o.tree, o.device);
+  OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet,
+                    [&o](const scene::Scene& asked) { check_memory(o.render, asked.settings); });
+  Renderer renderer(scene.scene(), o.device);
   Picture picture = render(renderer, o);
-  step.restart();
+  OwnSeconds seconds;
+  const Timer step;
   const film::Written written = write(std::move(picture), o);
   seconds.write = step.seconds();
+  scene.keep();
+  seconds.cache = scene.cache_seconds();
+  seconds.load = scene.load_seconds();
   seconds.total = total.seconds();
 
   Json stats = collect_stats("render", o.scene, renderer.statistics(), seconds);
+  stats["cache"] = scene.cache();
   for (const auto& file : written.files) stats["files"].push_back(file.string());
   if (!o.stats.empty()) write_stats(o.stats, stats);
   if (!o.quiet) print_render_summary(stats, written.nan_values);
@@ -182,6 +184,7 @@ Command add_render(CLI::App& kdray) {
   add_picture_options(*app, *o);
   add_schedule_options(*app, *o);
   add_device_options(*app, o->device, o->render.traversal);
+  add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};
 }

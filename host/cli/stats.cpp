@@ -11,6 +11,7 @@ namespace {
 // The names of DESIGN.md section 2 in their order; what the renderer never reached is 0.
 Json all_seconds(const Json& measured, const OwnSeconds& own) {
   Json seconds;
+  seconds["cache"] = own.cache;
   seconds["load"] = own.load;
   for (const char* const name : {"build", "flatten", "upload", "compile", "trace", "shade", "render"})
     seconds[name] = measured.value(name, 0.0);

@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 
 struct OwnSeconds {
   double load = 0;   // reading the scene file
+  double cache = 0;  // looking the scene up in the cache, and keeping it there
   double write = 0;  // writing pictures or hits
   double total = 0;  // from the start of the command to now
 };

@@ -49,6 +49,8 @@ std::string stages_line(const Json& stats) {
   std::vector<std::string> stages;
   // Within a frame, trace is a part of render: the line would count it twice. A query has only trace.
   const char* const work = number(seconds, "render") > 0 ? "render" : "trace";
+  if (const double s = number(seconds, "cache"); s > 0)
+    stages.push_back(fmt::format("cache {} {}", stats.value("cache", "off"), seconds_in_words(s)));
   for (const char* const name : {"load", "build", "flatten", "upload", "compile", work, "write"})
     if (const double s = number(seconds, name); s > 0)
       stages.push_back(fmt::format("{} {}", name, seconds_in_words(s)));

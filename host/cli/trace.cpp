@@ -8,7 +8,7 @@
 #include "base/timer.h"
 #include "base/write_file.h"
 #include "cli/command.h"
-#include "cli/message.h"
+#include "cli/open_scene.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/stats.h"
@@ -25,6 +25,7 @@ struct Options {
   bool any_hit = false, quiet = false;
   int repeat = 1;
   Traversal traversal = Traversal::automatic;
+  CacheChoice cache;
   TreeOptions tree;
   DeviceOptions device;
 };
@@ -42,24 +43,24 @@ void check_files(const Options& o) {
 int run(const Options& o) {
   const Timer total;
   check_files(o);
-  OwnSeconds seconds;
   Timer step;
   const std::vector<Ray> rays = rays::read_rays(o.rays);
   const double read_rays = step.seconds();
-  step.restart();
-  const Scene scene = Scene::load(o.scene);
-  seconds.load = step.seconds();
-  if (!o.quiet)
-    for (const std::string& warning : scene.warnings()) say(warning);
 
-  Renderer renderer(scene, o.tree, o.device);
+  OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet);
+  Renderer renderer(scene.scene(), o.device);
   const std::vector<Hit> hits = renderer.trace(rays, o.any_hit, o.repeat, o.traversal);
+  OwnSeconds seconds;
   step.restart();
   rays::write_hits(o.output, hits);
   seconds.write = step.seconds();
+  scene.keep();
+  seconds.cache = scene.cache_seconds();
+  seconds.load = scene.load_seconds();
   seconds.total = total.seconds();
 
   Json stats = collect_stats("trace", o.scene, renderer.statistics(), seconds);
+  stats["cache"] = scene.cache();
   stats["seconds"]["read_rays"] = read_rays;
   const auto found = std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return std::isfinite(h.t); });
   stats["hits"] = {{"file", o.output},
@@ -85,6 +86,7 @@ Command add_trace(CLI::App& kdray) {
   add_path(*app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o->stats);
   app->add_flag("-q,--quiet", o->quiet, "Say nothing unless something is wrong");
   add_device_options(*app, o->device, o->traversal);
+  add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};
 }

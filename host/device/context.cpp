@@ -7,6 +7,7 @@
 #include <mutex>
 #include <tuple>
 
+#include "base/memory.h"
 #include "device/host_memory.h"
 #include "device/opencl_error.h"
 #include "device/program.h"
@@ -101,11 +102,31 @@ cl::Buffer Context::buffer(cl_mem_flags flags, std::size_t bytes, const std::str
         fmt::format("{} wants {} MiB in one piece, {} gives {} MiB at most; try a smaller scene or picture",
                     what, bytes >> 20, found_.info.name, found_.info.max_allocation >> 20));
   return checked("allocating " + what, [&] {
-    const bool in_host = found_.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU &&
-                         found_.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
-    if (in_host && bytes >= kLargePages) return host_buffer(opened_->context, flags, bytes);
+    if (bytes >= kLargePages && works_in_host_memory()) {
+      const std::shared_ptr<void> memory = allocate(bytes);
+      return buffer_over(opened_->context, flags, memory.get(), bytes, memory);
+    }
     return cl::Buffer(opened_->context, flags, std::max<std::size_t>(bytes, 16));
   });
+}
+
+cl::Buffer Context::upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,
+                           const std::string& what) const {
+  const bool in_place = bytes > 0 && bytes <= found_.info.max_allocation &&
+                        checked("asking", [&] { return works_in_host_memory(); });
+  if (in_place)
+    return checked("sharing " + what, [&] {
+      return buffer_over(opened_->context, CL_MEM_READ_ONLY, data, bytes, std::move(owner));
+    });
+  cl::Buffer copy = buffer(CL_MEM_READ_ONLY, bytes, what);
+  if (bytes > 0)
+    checked("uploading " + what, [&] { queues().front().enqueueWriteBuffer(copy, CL_TRUE, 0, bytes, data); });
+  return copy;
+}
+
+bool Context::works_in_host_memory() const {
+  return found_.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU &&
+         found_.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
 }
 
 }  // namespace kdray::device

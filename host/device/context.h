@@ -6,6 +6,7 @@
 // Errors  Queues beyond what the device can be divided into share its parts in turn.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,14 @@ class Context {
   // of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
   cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
+  // A buffer for reading of what lies at `data`: that memory itself where the device works in the host's, which `owner` then
+  // keeps as long as the buffer lives; elsewhere a copy.
+  cl::Buffer upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,
+                    const std::string& what) const;
+
  private:
+  bool works_in_host_memory() const;
+
   FoundDevice found_;
   const Opened* opened_;
   Simd simd_ = Simd::portable;

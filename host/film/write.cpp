@@ -17,10 +17,11 @@ namespace {
 
 PngPixels quantized(const Image& image, const Transfer& transfer, int bits) {
   PngPixels pixels{image.width, image.height, 3, bits, {}};
-  pixels.samples.reserve(3 * image.pixels.size());
+  pixels.samples.resize(3 * image.pixels.size());
   const Quantizer quantize(transfer, bits == 16 ? 65535 : 255);
+  std::uint16_t* sample = pixels.samples.data();
   for (const vec3& p : image.pixels)
-    for (int c = 0; c < 3; ++c) pixels.samples.push_back(static_cast<std::uint16_t>(quantize(p[c])));
+    for (int c = 0; c < 3; ++c) *sample++ = static_cast<std::uint16_t>(quantize(p[c]));
   return pixels;
 }
 

@@ -1,7 +1,13 @@
 #include "flatten/flatten.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "base/error.h"
 
@@ -9,13 +15,10 @@ namespace kdray::flatten {
 
 namespace {
 
+constexpr std::size_t kGrain = 8192;  // items that one task packs
+
 void set(float (&out)[3], const vec3& v) {
   for (int k = 0; k < 3; ++k) out[k] = v[k];
-}
-
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
 }
 
 // The tree's nodes are in depth-first order with the lower child next to its parent, as the form wants; that they
@@ -27,31 +30,70 @@ layout::KdNode pack(const kdtree::Node& node, std::size_t self) {
   return {std::bit_cast<layout::u32>(node.split), node.right << 2 | node.axis};
 }
 
-std::vector<layout::KdNode> pack_nodes(const kdtree::Tree& tree) {
+// out[i] = value(i), with all cores.
+template <class T, class Value>
+Array<T> filled(std::size_t n, const Value& value) {
+  Array<T> out(n);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) out[i] = value(i);
+  });
+  return out;
+}
+
+Array<layout::KdNode> pack_nodes(const kdtree::Tree& tree) {
   if (tree.nodes.size() > KDRAY_NODE_MAX || tree.refs.size() > KDRAY_NODE_MAX)
     throw Error(ErrorCode::input, "the kd-tree has over 2^30 nodes or references; lower --tree-depth");
-  std::vector<layout::KdNode> nodes(tree.nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = pack(tree.nodes[i], i);
-  return nodes;
+  return filled<layout::KdNode>(tree.nodes.size(), [&](std::size_t i) { return pack(tree.nodes[i], i); });
+}
+
+bool is_smooth(const scene::Triangle& t) {
+  return t.normal[0] != scene::kNone;
+}
+
+// For each grain of triangles: how many before it have vertex normals; at the end, how many have in all.
+std::vector<std::size_t> smooth_before(const scene::Scene& scene, const scene::Geometry& geometry) {
+  const std::size_t n = geometry.triangles.size(), n_grains = (n + kGrain - 1) / kGrain;
+  std::vector<std::size_t> before(n_grains + 1, 0);
+  if (scene.normals.empty()) return before;
+  tbb::parallel_for(std::size_t{0}, n_grains, [&](std::size_t grain) {
+    for (std::size_t i = grain * kGrain; i < std::min(n, (grain + 1) * kGrain); ++i)
+      before[grain + 1] += is_smooth(scene.triangles[geometry.triangles[i].source]) ? 1 : 0;
+  });
+  std::partial_sum(before.begin(), before.end(), before.begin());
+  return before;
+}
+
+layout::Triangle pack(const scene::TriangleGeometry& g, const scene::Triangle& source) {
+  layout::Triangle t{};
+  for (int k = 0; k < 3; ++k) set(t.v[k], g.vertex[static_cast<std::size_t>(k)]);
+  t.number = source.number;
+  t.material = source.material;
+  t.normals = KDRAY_NO_NORMALS;
+  return t;
+}
+
+layout::VertexNormals pack_normals(const scene::Scene& scene, const scene::Triangle& source) {
+  layout::VertexNormals n{};
+  for (std::size_t k = 0; k < 3; ++k) set(n.n[k], scene.normals[source.normal[k]]);
+  return n;
 }
 
 void pack_triangles(const scene::Scene& scene, const scene::Geometry& geometry, FlatScene& flat) {
-  flat.triangles.reserve(geometry.triangles.size());
-  for (const scene::TriangleGeometry& g : geometry.triangles) {
-    const scene::Triangle& source = scene.triangles[g.source];
-    layout::Triangle t{};
-    for (int k = 0; k < 3; ++k) set(t.v[k], g.vertex[static_cast<std::size_t>(k)]);
-    t.number = source.number;
-    t.material = source.material;
-    t.normals = KDRAY_NO_NORMALS;
-    if (source.normal[0] != scene::kNone) {
-      t.normals = static_cast<layout::u32>(flat.normals.size());
-      layout::VertexNormals n{};
-      for (std::size_t k = 0; k < 3; ++k) set(n.n[k], scene.normals[source.normal[k]]);
-      flat.normals.push_back(n);
+  const std::size_t n = geometry.triangles.size();
+  const std::vector<std::size_t> before = smooth_before(scene, geometry);
+  flat.triangles = Array<layout::Triangle>(n);
+  flat.normals = Array<layout::VertexNormals>(before.back());
+  tbb::parallel_for(std::size_t{0}, before.size() - 1, [&](std::size_t grain) {
+    std::size_t smooth = before[grain];
+    for (std::size_t i = grain * kGrain; i < std::min(n, (grain + 1) * kGrain); ++i) {
+      const scene::TriangleGeometry& g = geometry.triangles[i];
+      const scene::Triangle& source = scene.triangles[g.source];
+      flat.triangles[i] = pack(g, source);
+      if (!is_smooth(source)) continue;
+      flat.triangles[i].normals = static_cast<layout::u32>(smooth);
+      flat.normals[smooth++] = pack_normals(scene, source);
     }
-    flat.triangles.push_back(t);
-  }
+  });
 }
 
 layout::Sphere pack(const scene::SphereGeometry& g, const scene::Sphere& source) {
@@ -116,20 +158,25 @@ layout::Light pack(const scene::Light& light, const dvec3& center) {
 }  // namespace
 
 std::size_t FlatScene::bytes() const {
-  return bytes_of(nodes) + bytes_of(refs) + bytes_of(triangles) + bytes_of(normals) + bytes_of(spheres) +
-         bytes_of(cones) + bytes_of(materials) + bytes_of(lights);
+  return nodes.bytes() + refs.bytes() + triangles.bytes() + normals.bytes() + spheres.bytes() +
+         cones.bytes() + materials.bytes() + lights.bytes();
 }
 
 FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree) {
   FlatScene flat;
   flat.nodes = pack_nodes(tree);
-  flat.refs = tree.refs;
+  flat.refs = filled<layout::u32>(tree.refs.size(), [&](std::size_t i) { return tree.refs[i]; });
   pack_triangles(scene, geometry, flat);
-  for (const scene::SphereGeometry& g : geometry.spheres)
-    flat.spheres.push_back(pack(g, scene.spheres[g.source]));
-  for (const scene::ConeGeometry& g : geometry.cones) flat.cones.push_back(pack(g, scene.cones[g.source]));
-  for (const scene::Material& m : scene.materials) flat.materials.push_back(pack(m, scene.ambient));
-  for (const scene::Light& l : scene.lights) flat.lights.push_back(pack(l, geometry.center));
+  flat.spheres = filled<layout::Sphere>(geometry.spheres.size(), [&](std::size_t i) {
+    return pack(geometry.spheres[i], scene.spheres[geometry.spheres[i].source]);
+  });
+  flat.cones = filled<layout::Cone>(geometry.cones.size(), [&](std::size_t i) {
+    return pack(geometry.cones[i], scene.cones[geometry.cones[i].source]);
+  });
+  flat.materials = filled<layout::Material>(
+      scene.materials.size(), [&](std::size_t i) { return pack(scene.materials[i], scene.ambient); });
+  flat.lights = filled<layout::Light>(scene.lights.size(),
+                                      [&](std::size_t i) { return pack(scene.lights[i], geometry.center); });
   return flat;
 }
 

@@ -1,10 +1,10 @@
 // What    Scene, geometry and tree -> the arrays of kernels/layout, ready to upload. The sole writer of those structs.
-// Shape   Primitive arrays keep Geometry's order, so that references need no translation.
+// Shape   Primitive arrays keep Geometry's order, so that references need no translation. Filled in parallel, in memory that a
+//         CPU device uses as it is.
 // Errors  ErrorCode::input when the tree has more nodes, references or leaf entries than the 30 bits of the form hold.
 #pragma once
 
-#include <vector>
-
+#include "base/array.h"
 #include "kdtree/tree.h"
 #include "layout/primitives.layout.h"
 #include "layout/shading.layout.h"
@@ -15,14 +15,14 @@
 namespace kdray::flatten {
 
 struct FlatScene {
-  std::vector<layout::KdNode> nodes;
-  std::vector<layout::u32> refs;
-  std::vector<layout::Triangle> triangles;
-  std::vector<layout::VertexNormals> normals;
-  std::vector<layout::Sphere> spheres;
-  std::vector<layout::Cone> cones;
-  std::vector<layout::Material> materials;
-  std::vector<layout::Light> lights;
+  Array<layout::KdNode> nodes;
+  Array<layout::u32> refs;
+  Array<layout::Triangle> triangles;
+  Array<layout::VertexNormals> normals;
+  Array<layout::Sphere> spheres;
+  Array<layout::Cone> cones;
+  Array<layout::Material> materials;
+  Array<layout::Light> lights;
 
   std::size_t bytes() const;
 };

@@ -9,218 +9,33 @@
 #include <limits>
 
 #include "base/error.h"
+#include "flatten/collapse.h"
 
 namespace kdray::flatten {
 
 namespace {
 
-constexpr int kWidth = 8;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// A child to be: a subtree of the binary tree, or, of a leaf, only its references of one kind.
-struct Item {
-  static constexpr int kWhole = -1;
-  std::uint32_t node = 0;
-  int kind = kWhole;
-  bool operator==(const Item&) const = default;
-};
-
-// References of one kind in a leaf, and where their blocks begin.
-struct Run {
-  std::uint32_t first_ref, n_refs;
-  layout::u32 first_block;
-  int kind;
-};
-
-struct Items {
-  std::array<Item, kWidth> item;
-  int n = 0;
-  void add(const Item& i) { item[static_cast<std::size_t>(n++)] = i; }
-  Item& operator[](int i) { return item[static_cast<std::size_t>(i)]; }
-  const Item& operator[](int i) const { return item[static_cast<std::size_t>(i)]; }
-};
-
-// Entries on the stack, for rays of each octant.
-using Needs = std::array<int, 8>;
-
-class Collapse {
- public:
-  Collapse(const kdtree::Tree& tree, int block, WideForm& out)
-      : tree_(tree), block_(static_cast<std::uint32_t>(block)), out_(out) {}
-
-  void run() {
-    out_.nodes.reserve(tree_.nodes.size() / 8 + 1);
-    out_.nodes.emplace_back();
-    Items root;
-    if (!is_empty({0})) root.add({0});
-    const Needs needs = fill(0, {0}, root);
-    out_.stack_size = *std::max_element(needs.begin(), needs.end());
-  }
-
-  const std::vector<Run>& runs() const { return runs_; }
-  std::size_t n_blocks(int kind) const { return n_blocks_[static_cast<std::size_t>(kind)]; }
-
- private:
-  bool is_empty(const Item& i) const { return tree_.contents[i.node].empty(); }
-
-  // The leaf's references of one kind; within a leaf references ascend, so kinds follow each other.
-  Run run_of(std::uint32_t leaf, int kind) const {
-    const kdtree::Node& node = tree_.nodes[leaf];
-    std::uint32_t first = node.left, end = node.left + node.right;
-    const auto kind_at = [&](std::uint32_t i) { return static_cast<int>(kdtree::ref_kind(tree_.refs[i])); };
-    while (first < end && kind_at(first) < kind) ++first;
-    std::uint32_t last = first;
-    while (last < end && kind_at(last) == kind) ++last;
-    return {first, last - first, 0, kind};
-  }
-
-  // What an item is made of; itself when it is a leaf of one kind.
-  Items opened(const Item& i) const {
-    Items parts;
-    const kdtree::Node& node = tree_.nodes[i.node];
-    if (i.kind != Item::kWhole) {
-      parts.add(i);
-    } else if (node.is_leaf()) {
-      for (int kind = 0; kind < 3; ++kind)
-        if (run_of(i.node, kind).n_refs > 0) parts.add({i.node, kind});
-    } else {
-      for (const std::uint32_t child : {node.left, node.right})
-        if (!is_empty({child})) parts.add({child});
-    }
-    return parts;
-  }
-
-  bool is_closed(const Item& i) const { return i.kind != Item::kWhole; }
-
-  // Opens the largest items until the node is full or all are leaves.
-  void open_largest(Items& items) const {
-    for (;;) {
-      int best = -1;
-      float best_area = -1;
-      for (int i = 0; i < items.n; ++i) {
-        if (is_closed(items[i])) continue;
-        const Items parts = opened(items[i]);
-        if (items.n - 1 + parts.n > kWidth) continue;
-        const float area = parts.n == 1 ? kInfinity : tree_.contents[items[i].node].area();
-        if (area > best_area) {
-          best = i;
-          best_area = area;
-        }
-      }
-      if (best < 0) return;
-      const Items parts = opened(items[best]);
-      items[best] = parts[0];
-      for (int i = 1; i < parts.n; ++i) items.add(parts[i]);
-    }
-  }
-
-  // Appends the slots of the items below `i`, near to far for directions of the octant.
-  void order_below(const Item& i, const Items& items, unsigned octant, std::vector<unsigned>& out) const {
-    for (int k = 0; k < items.n; ++k)
-      if (items[k] == i) return out.push_back(static_cast<unsigned>(k));
-    const kdtree::Node& node = tree_.nodes[i.node];
-    Items parts = opened(i);
-    if (!node.is_leaf() && parts.n == 2 && (octant >> node.axis & 1u)) std::swap(parts[0], parts[1]);
-    for (int k = 0; k < parts.n; ++k) order_below(parts[k], items, octant, out);
-  }
-
-  std::vector<unsigned> near_to_far(const Item& root, const Items& items, unsigned octant) const {
-    std::vector<unsigned> slots;
-    slots.reserve(kWidth);
-    order_below(root, items, octant, slots);
-    return slots;
-  }
-
-  static layout::u32 order_word(std::vector<unsigned> near_to_far) {
-    for (auto k = static_cast<unsigned>(near_to_far.size()); k < kWidth; ++k) near_to_far.push_back(k);
-    layout::u32 word = 0;
-    for (unsigned k = 0; k < kWidth; ++k) word |= near_to_far[kWidth - 1 - k] << (3 * k);
-    return word;
-  }
-
-  void set_bounds(layout::WideNode& node, const Items& items) const {
-    for (int slot = 0; slot < kWidth; ++slot) {
-      const Box box = slot < items.n ? tree_.contents[items[slot].node] : Box();
-      for (int axis = 0; axis < 3; ++axis) {
-        node.bounds[axis][0][slot] = box.lo[axis];
-        node.bounds[axis][1][slot] = box.hi[axis];
-      }
-    }
-  }
-
-  layout::u32 leaf_word(const Item& i) {
-    Run run = run_of(i.node, i.kind);
-    std::size_t& n = n_blocks_[static_cast<std::size_t>(i.kind)];
-    run.first_block = static_cast<layout::u32>(n);
-    n += (run.n_refs + block_ - 1) / block_;
-    if (n > KDRAY_WIDE_FIRST_MASK) throw Error(ErrorCode::input, "the kd-tree has over 2^29 leaf blocks");
-    runs_.push_back(run);
-    return KDRAY_WIDE_LEAF | static_cast<layout::u32>(i.kind) << KDRAY_WIDE_KIND_SHIFT | run.first_block;
-  }
-
-  // Writes the node whose children are found below `items`, then its subtree. Returns the stack that the subtree needs, for
-  // rays of each octant: all children are pushed, then each is popped with those behind it left below.
-  Needs fill(std::size_t index, const Item& root, Items items) {
-    open_largest(items);
-    layout::WideNode node{};
-    set_bounds(node, items);
-    std::array<std::vector<unsigned>, 8> order;
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      order[octant] = near_to_far(root, items, octant);
-      node.order[octant] = order_word(order[octant]);
-    }
-    const std::size_t first_child = out_.nodes.size();
-    std::size_t n_inner = 0;
-    for (int slot = 0; slot < items.n; ++slot)
-      node.child[slot] =
-          is_closed(items[slot]) ? leaf_word(items[slot]) : static_cast<layout::u32>(first_child + n_inner++);
-    if (first_child + n_inner > KDRAY_WIDE_FIRST_MASK)
-      throw Error(ErrorCode::input, "the kd-tree has over 2^29 wide nodes");
-    out_.nodes.resize(first_child + n_inner);
-    out_.nodes[index] = node;
-    Needs needs;
-    needs.fill(items.n);
-    for (int slot = 0; slot < items.n; ++slot) {
-      if (is_closed(items[slot])) continue;
-      Items child;
-      child.add(items[slot]);
-      const Needs below = fill(node.child[slot], items[slot], child);
-      for (std::size_t octant = 0; octant < 8; ++octant) {
-        const auto nearer =
-            std::find(order[octant].begin(), order[octant].end(), static_cast<unsigned>(slot));
-        const int behind = static_cast<int>(order[octant].end() - nearer) - 1;
-        needs[octant] = std::max(needs[octant], behind + below[octant]);
-      }
-    }
-    return needs;
-  }
-
-  const kdtree::Tree& tree_;
-  const std::uint32_t block_;
-  WideForm& out_;
-  std::vector<Run> runs_;
-  std::array<std::size_t, 3> n_blocks_{};
-};
-
 layout::u32 bits(float v) {
   return std::bit_cast<layout::u32>(v);
 }
 
-// |n|_1 of the normal that the kernels compute in float, or more.
+// |n|_1 of the normal that the kernels compute in float, or more. With u = 2^-24, an edge is off by u of itself, a product of
+// two by 3u, a component by 3u of the products' sizes and u of itself: here and there together by less than 8u of `size` and
+// 4u of `sum`. What underflows is below 2^-140.
 float normal_bound(const layout::Triangle& t) {
-  double e[2][3];
+  float e[2][3];
   for (int k = 0; k < 3; ++k) {
-    e[0][k] = static_cast<double>(t.v[1][k]) - t.v[0][k];
-    e[1][k] = static_cast<double>(t.v[2][k]) - t.v[0][k];
+    e[0][k] = t.v[1][k] - t.v[0][k];
+    e[1][k] = t.v[2][k] - t.v[0][k];
   }
-  double sum = 0, size = 0;
+  float sum = 0, size = 0;
   for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    sum += std::abs(e[0][i] * e[1][j] - e[0][j] * e[1][i]);
-    size += std::abs(e[0][i] * e[1][j]) + std::abs(e[0][j] * e[1][i]);
+    const int i = k == 2 ? 0 : k + 1, j = i == 2 ? 0 : i + 1;
+    const float p = e[0][i] * e[1][j], q = e[0][j] * e[1][i];
+    sum += std::abs(p - q);
+    size += std::abs(p) + std::abs(q);
   }
-  // In float the edges are off by 2^-24 of themselves, a product by 2^-22; where products underflow, a component by 2^-149.
-  return std::nextafter(static_cast<float>(sum * (1 + 1e-6) + size * 1e-6 + 0x1p-147), kInfinity);
+  return sum * (1 + 0x1p-20f) + (size * 0x1p-20f + 0x1p-140f);
 }
 
 // The rows of a primitive in its block, without the index.
@@ -235,44 +50,167 @@ std::array<float, KDRAY_CONE_ROWS - 1> rows_of(const layout::Cone& c) {
   return {c.base[0], c.base[1], c.base[2], c.axis[0], c.axis[1], c.axis[2], c.base_radius, c.height, c.slope};
 }
 
+// References that are read soon: those of the next leaves follow this one's.
+constexpr std::uint32_t kAhead = 16;
+
 template <class Primitive>
-void fill_run(const Run& run, const kdtree::Tree& tree, const std::vector<Primitive>& primitives,
-              std::uint32_t block, std::vector<layout::u32>& blocks) {
+void prefetch(const kdtree::Tree& tree, std::size_t ref, const Array<Primitive>& primitives) {
+  if (ref >= tree.refs.size()) return;
+  const std::size_t index = kdtree::ref_index(tree.refs[ref]);
+  if (index < primitives.size()) __builtin_prefetch(primitives.data() + index);  // it may be of another kind
+}
+
+// Writes a leaf's blocks of one kind, from `words` on.
+template <class Primitive>
+void write_blocks(const kdtree::Tree& tree, const LeafRun& run, const Array<Primitive>& primitives,
+                  std::uint32_t block, layout::u32* words) {
   constexpr std::size_t kRows = std::tuple_size_v<decltype(rows_of(Primitive()))>;
-  const std::uint32_t n_lanes = (run.n_refs + block - 1) / block * block;
+  const std::uint32_t n_lanes = (run.n + block - 1) / block * block;
   for (std::uint32_t i = 0; i < n_lanes; ++i) {
-    layout::u32* words = &blocks[(run.first_block + i / block) * (kRows + 1) * block] + i % block;
-    const bool used = i < run.n_refs;
-    const std::uint32_t index = used ? kdtree::ref_index(tree.refs[run.first_ref + i]) : 0;
+    layout::u32* lane = words + i / block * (kRows + 1) * block + i % block;
+    const bool used = i < run.n;
+    prefetch(tree, run.first + i + kAhead, primitives);
+    const std::uint32_t index = used ? kdtree::ref_index(tree.refs[run.first + i]) : 0;
     const auto rows = used ? rows_of(primitives[index]) : std::array<float, kRows>{};
-    for (std::size_t r = 0; r < kRows; ++r) words[r * block] = used ? bits(rows[r]) : bits(NAN);
-    words[kRows * block] = index | (i + 1 >= run.n_refs ? KDRAY_WIDE_LAST : 0);
+    for (std::size_t r = 0; r < kRows; ++r) lane[r * block] = used ? bits(rows[r]) : bits(NAN);
+    lane[kRows * block] = index | (i + 1 >= run.n ? KDRAY_WIDE_LAST : 0);
   }
+}
+
+// Where a part's nodes and blocks begin in the form.
+struct Places {
+  std::size_t first_node = 0;
+  std::array<std::size_t, 3> first_block{};
+
+  void skip(const CollapsedPart& part) {
+    first_node += part.nodes.size();
+    for (std::size_t kind = 0; kind < 3; ++kind) first_block[kind] += part.n_blocks[kind];
+  }
+};
+
+// Writes parts where they go: nodes with their bounds, and the blocks of their leaves.
+class Writer {
+ public:
+  Writer(const kdtree::Tree& tree, const FlatScene& primitives, WideForm& form)
+      : tree_(tree), primitives_(primitives), block_(static_cast<std::uint32_t>(form.block)), form_(form) {}
+
+  // `cuts`: the places of the parts cut off, from the first on.
+  void write(const CollapsedPart& part, const Places& places, const Places* cuts) const {
+    for (std::size_t i = 0; i < part.nodes.size(); ++i)
+      write_node(part.nodes[i], places, cuts, places.first_node + i);
+  }
+
+ private:
+  void write_node(const CollapsedNode& node, const Places& places, const Places* cuts,
+                  std::size_t index) const {
+    layout::WideNode& out = form_.nodes[index];
+    for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+      const Box box = slot < node.n ? tree_.contents[node.item[slot]] : Box();
+      for (int axis = 0; axis < 3; ++axis) {
+        out.bounds[axis][0][slot] = box.lo[axis];
+        out.bounds[axis][1][slot] = box.hi[axis];
+      }
+      out.order[slot] = node.order[slot];
+      out.child[slot] = slot < node.n ? child_word(node.child[slot], node.item[slot], places, cuts) : 0;
+    }
+  }
+
+  layout::u32 child_word(layout::u32 child, std::uint32_t item, const Places& places,
+                         const Places* cuts) const {
+    if (child & KDRAY_WIDE_LEAF) {
+      const std::uint32_t kind = child >> KDRAY_WIDE_KIND_SHIFT & 3u;
+      const std::size_t first = (child & KDRAY_WIDE_FIRST_MASK) + places.first_block[kind];
+      write_leaf(item, kind, first);
+      return (child & ~KDRAY_WIDE_FIRST_MASK) | static_cast<layout::u32>(first);
+    }
+    if (child & CollapsedPart::kCut)
+      return static_cast<layout::u32>(cuts[child & ~CollapsedPart::kCut].first_node);
+    return child + static_cast<layout::u32>(places.first_node);
+  }
+
+  void write_leaf(std::uint32_t leaf, std::uint32_t kind, std::size_t first) const {
+    const LeafRun run = leaf_run(tree_, leaf, kind);
+    if (kind == 0)
+      write_blocks(tree_, run, primitives_.triangles, block_,
+                   form_.triangle_blocks.data() + first * KDRAY_TRIANGLE_ROWS * block_);
+    if (kind == 1)
+      write_blocks(tree_, run, primitives_.spheres, block_,
+                   form_.sphere_blocks.data() + first * KDRAY_SPHERE_ROWS * block_);
+    if (kind == 2)
+      write_blocks(tree_, run, primitives_.cones, block_,
+                   form_.cone_blocks.data() + first * KDRAY_CONE_ROWS * block_);
+  }
+
+  const kdtree::Tree& tree_;
+  const FlatScene& primitives_;
+  const std::uint32_t block_;
+  WideForm& form_;
+};
+
+// The tree's top, and the parts below it that threads collapse apart.
+struct Parts {
+  CollapsedPart top;
+  std::vector<CollapsedPart> below;
+  int stack_size = 0;
+};
+
+std::uint32_t only_kind(const FlatScene& scene) {
+  const bool some[] = {!scene.triangles.empty(), !scene.spheres.empty(), !scene.cones.empty()};
+  if (some[0] + some[1] + some[2] != 1) return kAnyKind;
+  return some[0] ? 0 : some[1] ? 1 : 2;
+}
+
+Parts collapse_in_parts(const kdtree::Tree& tree, std::uint32_t block, std::uint32_t kind) {
+  const auto n = static_cast<std::uint32_t>(tree.nodes.size());
+  // Enough parts for any number of threads, none so small that it isn't worth a task.
+  const std::uint32_t cut_at = std::max(n / 256, 512u);
+  Parts parts{collapse(tree, {0, n}, block, kind, cut_at), {}, 0};
+  parts.below.resize(parts.top.cuts.size());
+  std::vector<StackNeeds> needs(parts.below.size());
+  tbb::parallel_for(std::size_t{0}, parts.below.size(), [&](std::size_t i) {
+    parts.below[i] = collapse(tree, parts.top.cuts[i], block, kind, 0);
+    needs[i] = stack_needs(parts.below[i], {});
+  });
+  const StackNeeds all = stack_needs(parts.top, needs);
+  parts.stack_size = *std::max_element(all.begin(), all.end());
+  return parts;
+}
+
+void check_sizes(const Places& all) {
+  if (all.first_node > KDRAY_WIDE_FIRST_MASK)
+    throw Error(ErrorCode::input, "the kd-tree has over 2^29 wide nodes");
+  if (*std::max_element(all.first_block.begin(), all.first_block.end()) > KDRAY_WIDE_FIRST_MASK)
+    throw Error(ErrorCode::input, "the kd-tree has over 2^29 leaf blocks");
 }
 
 }  // namespace
 
 std::size_t WideForm::bytes() const {
-  return nodes.size() * sizeof(layout::WideNode) +
-         (triangle_blocks.size() + sphere_blocks.size() + cone_blocks.size()) * sizeof(layout::u32);
+  return nodes.bytes() + triangle_blocks.bytes() + sphere_blocks.bytes() + cone_blocks.bytes();
 }
 
 WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int block) {
   WideForm form;
   form.block = block;
-  Collapse collapse(tree, block, form);
-  collapse.run();
   const auto width = static_cast<std::uint32_t>(block);
-  form.triangle_blocks.resize(collapse.n_blocks(0) * KDRAY_TRIANGLE_ROWS * width);
-  form.sphere_blocks.resize(collapse.n_blocks(1) * KDRAY_SPHERE_ROWS * width);
-  form.cone_blocks.resize(collapse.n_blocks(2) * KDRAY_CONE_ROWS * width);
-  const std::vector<Run>& runs = collapse.runs();
-  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    const Run& run = runs[i];
-    if (run.kind == 0) fill_run(run, tree, primitives.triangles, width, form.triangle_blocks);
-    if (run.kind == 1) fill_run(run, tree, primitives.spheres, width, form.sphere_blocks);
-    if (run.kind == 2) fill_run(run, tree, primitives.cones, width, form.cone_blocks);
-  });
+  const Parts parts = collapse_in_parts(tree, width, only_kind(primitives));
+  form.stack_size = parts.stack_size;
+  std::vector<Places> places(parts.below.size());
+  Places all;
+  all.skip(parts.top);
+  for (std::size_t i = 0; i < parts.below.size(); ++i) {
+    places[i] = all;
+    all.skip(parts.below[i]);
+  }
+  check_sizes(all);
+  form.nodes = Array<layout::WideNode>(all.first_node);
+  form.triangle_blocks = Array<layout::u32>(all.first_block[0] * KDRAY_TRIANGLE_ROWS * width);
+  form.sphere_blocks = Array<layout::u32>(all.first_block[1] * KDRAY_SPHERE_ROWS * width);
+  form.cone_blocks = Array<layout::u32>(all.first_block[2] * KDRAY_CONE_ROWS * width);
+  const Writer writer(tree, primitives, form);
+  writer.write(parts.top, Places(), places.data());
+  tbb::parallel_for(std::size_t{0}, parts.below.size(),
+                    [&](std::size_t i) { writer.write(parts.below[i], places[i], nullptr); });
   return form;
 }
 

@@ -6,8 +6,7 @@
 // Errors  ErrorCode::input where the form has more nodes or blocks than its indices can name.
 #pragma once
 
-#include <vector>
-
+#include "base/array.h"
 #include "flatten/flatten.h"
 #include "kdtree/tree.h"
 #include "layout/wide.layout.h"
@@ -16,8 +15,8 @@ namespace kdray::flatten {
 
 struct WideForm {
   int block = 8;  // primitives to a block
-  std::vector<layout::WideNode> nodes;
-  std::vector<layout::u32> triangle_blocks, sphere_blocks, cone_blocks;  // words, a float's bits or an index
+  Array<layout::WideNode> nodes;
+  Array<layout::u32> triangle_blocks, sphere_blocks, cone_blocks;  // words, a float's bits or an index
   int stack_size = 0;  // the most entries that a walk stacks which pushes all children of a node, for any ray
 
   std::size_t bytes() const;

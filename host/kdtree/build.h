@@ -8,12 +8,26 @@
 
 namespace kdray::kdtree {
 
+// How much time goes into a tree; docs/design/kdtree.md has what each costs and gains.
+enum class Quality {
+  fast,      // as balanced, but inner nodes count twice: larger leaves, sooner
+  balanced,  // planes between bins, and exact ones near the best of them, on cells as tight as their contents
+  best,      // the best of all planes, primitives clipped to the whole cell
+};
+
+// Where cells are split. The medians are the thesis' (chapter 5), for the bench; the exact builder knows all, the binned one
+// only the heuristic.
+enum class SplitRule { sah, spatial_median, object_median };
+
 struct BuildConfig {
+  Quality quality = Quality::balanced;
+  SplitRule split_rule = SplitRule::sah;
   double cost_traverse = 1.0;   // Ct: one inner node
-  double cost_intersect = 3.0;  // Ci: one test, of `block` primitives
-  int block = 1;             // primitives tested at once, a power of two: a leaf of n costs Ci*ceil(n/block)
-  bool tight_cells = false;  // costs are those of the contents' bounds, not of the cell's
-  double empty_bonus = 0.6;  // lambda: a split that cuts off empty space costs this share
+  double cost_intersect = 2.0;  // Ci: one test, of `block` primitives
+  int block = 1;  // primitives tested at once, a power of two: a leaf of n costs Ci*ceil(n/block)
+  bool tight_cells =
+      true;  // costs are those of the contents' bounds; false: of the cell's, as in the thesis (exact builder)
+  double empty_bonus = 0.6;  // lambda: with loose cells, a split that cuts off empty space costs this share
   int max_depth = -1;        // -1: 8 + 1.3*log2(N)
   bool clip = true;          // false: split the references' boxes only ("boxed" of the thesis)
 };
@@ -21,6 +35,9 @@ struct BuildConfig {
 // The leaves that the wide form's walks want of a scene of n primitives (docs/traversal.md): small ones for a clutter of
 // large and small, whole blocks for fine meshes, where small leaves would multiply the references and full blocks are as fast.
 BuildConfig suited(BuildConfig config, std::size_t n_primitives);
+
+// The deepest leaf that a tree of n primitives may have: what the config says, up to the traversal's stack.
+int depth_limit(const BuildConfig& config, std::size_t n_primitives);
 
 Tree build(const scene::Geometry& geometry, const BuildConfig& config = {});
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "kdtree/tree.h"
 
@@ -56,6 +57,12 @@ inline Bounds hull(const Bounds& a, const Bounds& b) {
     c.hi[k] = std::max(a.hi[k], b.hi[k]);
   }
   return c;
+}
+
+inline Bounds hull_of(std::span<const BoundedRef> refs) {
+  Bounds bounds = no_bounds();
+  for (const BoundedRef& r : refs) bounds = hull(bounds, r.bounds());
+  return bounds;
 }
 
 inline Bounds below(Bounds b, int axis, float position) {

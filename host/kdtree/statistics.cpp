@@ -43,13 +43,18 @@ Statistics measure(const Tree& tree, const scene::Geometry& geometry, const Buil
     // The chance that a ray through the root's cell meets this one; a root without area is met at the root
     // only.
     const double chance = root_area > 0 ? half_area(v.cell) / root_area : (v.depth == 0 ? 1.0 : 0.0);
+    const Bounds contents = bounds_from(tree.contents[v.node]);
+    const double tight_chance =
+        contents.empty() ? 0 : (root_area > 0 ? half_area(contents) / root_area : chance);
     if (node.is_leaf()) {
       count_leaf(node, v.depth, s);
       s.sah_cost += chance * config.cost_intersect * LeafCost(config)(node.right);
+      s.tight_cost += tight_chance * config.cost_intersect * LeafCost(config)(node.right);
       continue;
     }
     ++s.inner_nodes;
     s.sah_cost += chance * config.cost_traverse;
+    s.tight_cost += tight_chance * config.cost_traverse;
     const int axis = static_cast<int>(node.axis);
     stack.push_back({node.right, v.depth + 1, above(v.cell, axis, node.split)});
     stack.push_back({node.left, v.depth + 1, below(v.cell, axis, node.split)});

@@ -17,6 +17,8 @@ struct Statistics {
   double mean_leaf_depth = 0;
   double duplication = 0;  // references / primitives
   double sah_cost = 0;     // expected cost of a ray that hits the bounds, in units of BuildConfig's constants
+  double tight_cost =
+      0;  // the same of a walk that skips what lies outside of each node's contents, as the wide form's do
 };
 
 Statistics measure(const Tree& tree, const scene::Geometry& geometry, const BuildConfig& config = {});

@@ -4,8 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
-
+#include "base/raw_vector.h"
 #include "math/box.h"
 #include "scene/geometry.h"
 
@@ -33,9 +32,9 @@ struct Node {
 };
 
 struct Tree {
-  std::vector<Node> nodes;
-  std::vector<Ref> refs;
-  std::vector<Box>
+  RawVector<Node> nodes;
+  RawVector<Ref> refs;
+  RawVector<Box>
       contents;       // of each node: bounds of what its leaves hold, clipped to their cells; empty boxes too
   Box bounds;         // of the geometry; the root's cell
   int max_depth = 0;  // of any leaf; a lone root leaf has depth 0

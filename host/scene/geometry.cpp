@@ -1,8 +1,12 @@
 #include "scene/geometry.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "scene/cone_bounds.h"
@@ -65,6 +69,15 @@ bool is_flat(const std::array<vec3, 3>& v) {
   return flat_across(0, 1) && flat_across(1, 2) && flat_across(2, 0);
 }
 
+constexpr std::size_t kGrain = std::size_t{1} << 14;
+
+// Calls work(first, last) for grains of [0, n), in parallel.
+template <class Work>
+void for_each_grain(std::size_t n, const Work& work) {
+  tbb::parallel_for(std::size_t{0}, (n + kGrain - 1) / kGrain,
+                    [&](std::size_t grain) { work(grain * kGrain, std::min(n, (grain + 1) * kGrain)); });
+}
+
 class Maker {
  public:
   explicit Maker(const Scene& scene) : scene_(scene) {
@@ -99,19 +112,54 @@ class Maker {
   vec3 local(const dvec3& p) const { return vec3(p - out_.center); }
 
   void add_triangles() {
-    std::vector<vec3> vertices(scene_.vertices.size());
-    std::ranges::transform(scene_.vertices, vertices.begin(), [&](const dvec3& p) { return local(p); });
-    out_.triangles.reserve(scene_.triangles.size());
-    for (std::uint32_t i = 0; i < scene_.triangles.size(); ++i) {
+    const RawVector<vec3> vertices = local_vertices();
+    const auto triangle = [&](std::size_t i) {
       const auto& v = scene_.triangles[i].vertex;
-      const TriangleGeometry t{{vertices[v[0]], vertices[v[1]], vertices[v[2]]}, i};
-      if (is_flat(t.vertex)) {
-        ++out_.dropped_degenerate;
-        continue;
+      return TriangleGeometry{{vertices[v[0]], vertices[v[1]], vertices[v[2]]},
+                              static_cast<std::uint32_t>(i)};
+    };
+    const std::size_t n = scene_.triangles.size(), n_grains = (n + kGrain - 1) / kGrain;
+    std::vector<std::size_t> kept(n_grains);
+    std::vector<Box> bounds(n_grains);
+    out_.triangles.resize(n);
+    for_each_grain(n, [&](std::size_t first, std::size_t last) {
+      TriangleGeometry* out = out_.triangles.data() + first;
+      Box box;
+      for (std::size_t i = first; i < last; ++i) {
+        const TriangleGeometry t = triangle(i);
+        if (is_flat(t.vertex)) continue;
+        *out++ = t;
+        Box one{t.vertex[0], t.vertex[0]};
+        one.grow(t.vertex[1]);
+        one.grow(t.vertex[2]);
+        box.grow(one);
       }
-      out_.triangles.push_back(t);
-      for (const vec3& p : t.vertex) out_.bounds.grow(p);
+      kept[first / kGrain] = static_cast<std::size_t>(out - out_.triangles.data()) - first;
+      bounds[first / kGrain] = box;
+    });
+    close_gaps(kept);
+    out_.dropped_degenerate += static_cast<std::uint32_t>(n - out_.triangles.size());
+    for (const Box& box : bounds) out_.bounds.grow(box);
+  }
+
+  // Moves together the triangles that each grain kept at its beginning.
+  void close_gaps(const std::vector<std::size_t>& kept) {
+    const auto begin = out_.triangles.begin();
+    auto end = begin;
+    for (std::size_t grain = 0; grain < kept.size(); ++grain) {
+      const auto from = begin + static_cast<std::ptrdiff_t>(grain * kGrain);
+      const auto to = from + static_cast<std::ptrdiff_t>(kept[grain]);
+      end = from == end ? to : std::move(from, to, end);
     }
+    out_.triangles.resize(static_cast<std::size_t>(end - begin));
+  }
+
+  RawVector<vec3> local_vertices() const {
+    RawVector<vec3> vertices(scene_.vertices.size());
+    for_each_grain(vertices.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) vertices[i] = local(scene_.vertices[i]);
+    });
+    return vertices;
   }
 
   void add_spheres() {

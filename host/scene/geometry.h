@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/raw_vector.h"
 #include "math/box.h"
 #include "scene/scene.h"
 
@@ -32,7 +33,7 @@ struct ConeGeometry {
 
 struct Geometry {
   dvec3 center{0};  // world = local + center
-  std::vector<TriangleGeometry> triangles;
+  RawVector<TriangleGeometry> triangles;
   std::vector<SphereGeometry> spheres;
   std::vector<ConeGeometry> cones;
   Box bounds;  // contains every primitive

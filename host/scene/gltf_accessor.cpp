@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "scene/scene.h"
 
@@ -25,7 +26,7 @@ T load(const char* bytes) {
 template <class T>
 double component_value(const char* bytes, bool normalized) {
   const auto value = static_cast<double>(load<T>(bytes));
-  if (!normalized) return value;
+  if (std::is_floating_point_v<T> || !normalized) return value;
   return std::max(value / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
 }
 
@@ -42,22 +43,24 @@ std::size_t size_of(Component c) {
   }
 }
 
-double load_component(const char* bytes, Component c, bool normalized) {
+// Calls `use` with a value of the C++ type that `c` stands for.
+template <class Use>
+auto with_component(Component c, const Use& use) {
   switch (c) {
     case Component::i8:
-      return component_value<std::int8_t>(bytes, normalized);
+      return use(std::int8_t{});
     case Component::u8:
-      return component_value<std::uint8_t>(bytes, normalized);
+      return use(std::uint8_t{});
     case Component::i16:
-      return component_value<std::int16_t>(bytes, normalized);
+      return use(std::int16_t{});
     case Component::u16:
-      return component_value<std::uint16_t>(bytes, normalized);
+      return use(std::uint16_t{});
     case Component::u32:
-      return component_value<std::uint32_t>(bytes, normalized);
+      return use(std::uint32_t{});
     case Component::f32:
       break;
   }
-  return static_cast<double>(load<float>(bytes));
+  return use(float{});
 }
 
 Component component_of(const JsonNode& node) {
@@ -75,7 +78,8 @@ struct Elements {
   bool normalized = false;
 
   double at(std::uint64_t i, std::size_t c) const {
-    return load_component(bytes.data() + i * stride + c * size_of(component), component, normalized);
+    const char* const at = bytes.data() + i * stride + c * size_of(component);
+    return with_component(component, [&]<class T>(T) { return component_value<T>(at, normalized); });
   }
 };
 
@@ -104,9 +108,37 @@ std::uint64_t sparse_index(const Elements& indices, std::uint64_t i) {
   return static_cast<std::uint64_t>(indices.at(i, 0));
 }
 
-// Replaces elements of `out`, of n components each, as the accessor's "sparse" says.
-void apply_sparse(Document& document, const JsonNode& accessor, std::size_t n, Component component,
-                  bool normalized, std::vector<double>& out) {
+// What an accessor is read into: elements of kParts components each.
+struct Vectors {
+  using Element = dvec3;
+  static constexpr std::size_t kParts = 3;
+  static void set(dvec3& element, std::size_t c, double value) { element[static_cast<int>(c)] = value; }
+};
+struct Indices {
+  using Element = std::uint32_t;
+  static constexpr std::size_t kParts = 1;
+  static void set(std::uint32_t& element, std::size_t, double value) {
+    element = static_cast<std::uint32_t>(value);
+  }
+};
+
+// All of `from`, one loop for each component type.
+template <class Kind>
+void copy_elements(const Elements& from, RawVector<typename Kind::Element>& out) {
+  with_component(from.component, [&]<class T>(T) {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      for (std::size_t c = 0; c < Kind::kParts; ++c) {
+        const char* bytes = from.bytes.data() + i * from.stride + c * sizeof(T);
+        Kind::set(out[i], c, component_value<T>(bytes, from.normalized));
+      }
+    }
+  });
+}
+
+// Replaces elements of `out` as the accessor's "sparse" says.
+template <class Kind>
+void apply_sparse(Document& document, const JsonNode& accessor, Component component, bool normalized,
+                  RawVector<typename Kind::Element>& out) {
   const auto sparse = accessor.find("sparse");
   if (!sparse) return;
   const std::uint64_t count = whole((*sparse)["count"]);
@@ -117,36 +149,34 @@ void apply_sparse(Document& document, const JsonNode& accessor, std::size_t n, C
     throw indices_node["componentType"].expected("an unsigned integer type (5121, 5123 or 5125)");
   }
   const Elements indices = find_elements(document, indices_node, indices_node, count, 1, index_type);
-  Elements values = find_elements(document, values_node, values_node, count, n, component);
+  Elements values = find_elements(document, values_node, values_node, count, Kind::kParts, component);
   values.normalized = normalized;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t at = sparse_index(indices, i);
-    if (at >= out.size() / n)
+    if (at >= out.size())
       throw indices_node.error("names element " + std::to_string(at) + ", which is not there");
-    for (std::size_t c = 0; c < n; ++c) out[at * n + c] = values.at(i, c);
+    for (std::size_t c = 0; c < Kind::kParts; ++c) Kind::set(out[at], c, values.at(i, c));
   }
 }
 
-// All components of all elements.
-std::vector<double> read_components(Document& document, const JsonNode& accessor, std::size_t n,
-                                    Component component) {
+template <class Kind>
+RawVector<typename Kind::Element> read_elements(Document& document, const JsonNode& accessor,
+                                                Component component) {
   const std::uint64_t count = accessor_count(accessor);
   const auto flag = accessor.find("normalized");
   const bool normalized = flag && component != Component::f32 && flag->boolean();
-  std::vector<double> out;
+  RawVector<typename Kind::Element> out;
   if (accessor.find("bufferView")) {
-    Elements elements = find_elements(document, accessor, accessor, count, n, component);
+    Elements elements = find_elements(document, accessor, accessor, count, Kind::kParts, component);
     elements.normalized = normalized;
-    out.resize(count * n);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      for (std::size_t c = 0; c < n; ++c) out[i * n + c] = elements.at(i, c);
-    }
+    out.resize(count);
+    copy_elements<Kind>(elements, out);
   } else if (count > std::max<std::uint64_t>(kMostZeros, document.file_size())) {
     throw accessor["count"].error("as many zeros as that are not believed", "give the accessor a bufferView");
   } else {
-    out.resize(count * n);
+    out.assign(count, typename Kind::Element(0));
   }
-  apply_sparse(document, accessor, n, component, normalized, out);
+  apply_sparse<Kind>(document, accessor, component, normalized, out);
   return out;
 }
 
@@ -164,33 +194,26 @@ std::uint64_t accessor_count(const JsonNode& accessor) {
   return count;
 }
 
-std::vector<dvec3> read_vectors(Document& document, const JsonNode& accessor) {
+RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor) {
   expect_type(accessor, "VEC3");
-  const std::vector<double> values =
-      read_components(document, accessor, 3, component_of(accessor["componentType"]));
-  std::vector<dvec3> out(values.size() / 3);
+  auto out = read_elements<Vectors>(document, accessor, component_of(accessor["componentType"]));
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
     if (!is_finite(out[i])) throw accessor.error("element " + std::to_string(i) + " is not finite");
   }
   return out;
 }
 
-std::vector<std::uint32_t> read_indices(Document& document, const JsonNode& accessor, std::uint64_t end) {
+RawVector<std::uint32_t> read_indices(Document& document, const JsonNode& accessor, std::uint64_t end) {
   expect_type(accessor, "SCALAR");
   const Component component = component_of(accessor["componentType"]);
   if (component != Component::u8 && component != Component::u16 && component != Component::u32) {
     throw accessor["componentType"].expected("an unsigned integer type (5121, 5123 or 5125)");
   }
-  const std::vector<double> values = read_components(document, accessor, 1, component);
-  std::vector<std::uint32_t> out(values.size());
+  auto out = read_elements<Indices>(document, accessor, component);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (!(values[i] < static_cast<double>(end))) {
-      throw accessor.error("index " + std::to_string(i) + " names vertex " +
-                           std::to_string(static_cast<std::uint64_t>(values[i])) + " of " +
-                           std::to_string(end));
-    }
-    out[i] = static_cast<std::uint32_t>(values[i]);
+    if (out[i] < end) continue;
+    throw accessor.error("index " + std::to_string(i) + " names vertex " + std::to_string(out[i]) + " of " +
+                         std::to_string(end));
   }
   return out;
 }

@@ -5,8 +5,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "base/raw_vector.h"
 #include "math/vec.h"
 #include "scene/gltf_document.h"
 
@@ -14,8 +14,8 @@ namespace kdray::scene::gltf {
 
 std::uint64_t accessor_count(const JsonNode& accessor);
 // VEC3 of floats, or of integers, which `normalized` scales to [-1, 1] or [0, 1].
-std::vector<dvec3> read_vectors(Document& document, const JsonNode& accessor);
+RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor);
 // SCALAR of unsigned integers, each below `end`.
-std::vector<std::uint32_t> read_indices(Document& document, const JsonNode& accessor, std::uint64_t end);
+RawVector<std::uint32_t> read_indices(Document& document, const JsonNode& accessor, std::uint64_t end);
 
 }  // namespace kdray::scene::gltf

@@ -1,8 +1,8 @@
 #include "scene/gltf_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "scene/gltf_accessor.h"
@@ -18,24 +18,29 @@ constexpr std::uint64_t kFan = 6;
 constexpr std::size_t kMostOfSmallFile = std::size_t{1} << 22;
 constexpr std::size_t kMostPerByte = 16;
 
-using Triple = std::array<std::uint32_t, 3>;
-
-std::vector<Triple> triangles_of(std::uint64_t mode, const std::vector<std::uint32_t>& corners) {
-  std::vector<Triple> out;
+// Calls add(a, b, c) for each triangle.
+template <class Add>
+void for_each_triangle(std::uint64_t mode, std::span<const std::uint32_t> corners, const Add& add) {
   const std::size_t n = corners.size();
   if (mode == kTriangles) {
-    for (std::size_t i = 0; i + 3 <= n; i += 3) out.push_back({corners[i], corners[i + 1], corners[i + 2]});
-    return out;
+    for (std::size_t i = 0; i + 3 <= n; i += 3) add(corners[i], corners[i + 1], corners[i + 2]);
+    return;
   }
   for (std::size_t i = 0; i + 3 <= n; ++i) {
     if (mode == kFan) {
-      out.push_back({corners[0], corners[i + 1], corners[i + 2]});
+      add(corners[0], corners[i + 1], corners[i + 2]);
     } else {
       const bool turned = i % 2 == 1;
-      out.push_back({corners[i], corners[i + (turned ? 2 : 1)], corners[i + (turned ? 1 : 2)]});
+      add(corners[i], corners[i + (turned ? 2 : 1)], corners[i + (turned ? 1 : 2)]);
     }
   }
-  return out;
+}
+
+// Room for `n` more elements. A bare reserve() would make a file of many small primitives copy all of them for each.
+template <class Vector>
+void make_room(Vector& elements, std::size_t n) {
+  const std::size_t wanted = elements.size() + n;
+  if (wanted > elements.capacity()) elements.reserve(std::max(wanted, 2 * elements.capacity()));
 }
 
 // The matrix that moves normals: the inverse transpose, up to a positive factor. The cofactors are that even where
@@ -67,7 +72,9 @@ void MeshReader::check_size(const JsonNode& primitive) const {
 }
 
 void MeshReader::add_vertices(const JsonNode& accessor, const dmat4& to_world) {
-  for (const dvec3& p : read_vectors(document_, accessor)) {
+  const auto positions = read_vectors(document_, accessor);
+  make_room(scene_.vertices, positions.size());
+  for (const dvec3& p : positions) {
     const dvec3 moved = dvec3(to_world * glm::dvec4(p, 1));
     if (!is_finite(moved)) throw accessor.error("a node's transform makes a position infinite");
     scene_.vertices.push_back(moved);
@@ -111,7 +118,7 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
   const std::size_t n_vertices = scene_.vertices.size() - first_vertex;
   const bool smooth = add_normals(attributes, n_vertices, to_world);
 
-  std::vector<std::uint32_t> corners;
+  RawVector<std::uint32_t> corners;
   if (const auto indices = primitive.find("indices")) {
     corners = read_indices(document_, document_.entry("accessors", *indices), n_vertices);
   } else {
@@ -123,14 +130,15 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
   }
   const bool mirrored = glm::determinant(dmat3(to_world)) < 0;
   const std::uint32_t material = materials_.number_of(primitive);
-  for (Triple corner : triangles_of(mode, corners)) {
-    if (mirrored) std::swap(corner[1], corner[2]);
-    Triangle t{.vertex = {first_vertex + corner[0], first_vertex + corner[1], first_vertex + corner[2]}};
-    if (smooth) t.normal = {first_normal + corner[0], first_normal + corner[1], first_normal + corner[2]};
+  make_room(scene_.triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
+  for_each_triangle(mode, corners, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (mirrored) std::swap(b, c);
+    Triangle t{.vertex = {first_vertex + a, first_vertex + b, first_vertex + c}};
+    if (smooth) t.normal = {first_normal + a, first_normal + b, first_normal + c};
     t.material = material;
     t.number = static_cast<std::uint32_t>(scene_.triangles.size());
     scene_.triangles.push_back(t);
-  }
+  });
 }
 
 void MeshReader::finish() {

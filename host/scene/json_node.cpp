@@ -263,9 +263,9 @@ bool JsonNode::boolean() const {
   return value_->get<bool>();
 }
 
-std::vector<dvec3> JsonNode::vectors() const {
+RawVector<dvec3> JsonNode::vectors() const {
   if (!value_->is_array()) throw expected("an array of [x, y, z]");
-  std::vector<dvec3> out(value_->size());
+  RawVector<dvec3> out(value_->size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const json& v = (*value_)[i];
     if (!read_vector(v, out[i])) throw child(v, std::to_string(i)).expected("three numbers [x, y, z]");

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/raw_vector.h"
 #include "math/vec.h"
 #include "scene/json_keys.h"
 
@@ -46,7 +47,7 @@ class JsonNode {
 
   // [[x, y, z], ...] and [[corner, corner, corner, ...], ...] without a node per element: meshes are large.
   // The corners are below `n_corners`, three or more to a face.
-  std::vector<dvec3> vectors() const;
+  RawVector<dvec3> vectors() const;
   std::vector<std::vector<std::uint32_t>> faces(std::size_t n_corners) const;
 
   bool is_string() const { return value_->is_string(); }

@@ -159,7 +159,7 @@ void JsonObjects::read_triangles(const JsonNode& object) {
   part.vertices = object["vertices"].vectors();
   const auto normals = object.find("normals");
   if (normals) {
-    const std::vector<dvec3> given = normals->vectors();
+    const auto given = normals->vectors();
     if (given.size() != part.vertices.size()) throw normals->error("not one normal for each vertex");
     for (const dvec3& n : given) {
       const double length = glm::length(n);

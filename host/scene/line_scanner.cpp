@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "scene/plain_number.h"
 #include "scene/text_scanner.h"
 
 namespace kdray::scene {
@@ -31,11 +32,15 @@ bool LineScanner::at_join(const char* p) const {
   return *p == '\\' && p + 1 != end_ && is_end(p[1]);
 }
 
+bool LineScanner::ends_word(const char* p) const {
+  return p == end_ || is_blank(*p) || is_end(*p) || at_join(p);
+}
+
 void LineScanner::skip_space() {
   while (at_ != end_) {
     if (is_blank(*at_)) {
       ++at_;
-    } else if (at_join(at_)) {
+    } else if (*at_ == '\\' && at_join(at_)) {
       at_ += at_[1] == '\r' && at_ + 2 != end_ && at_[2] == '\n' ? 3 : 2;
       ++line_;
     } else {
@@ -68,8 +73,21 @@ std::string_view LineScanner::word() {
     while (at_ != end_ && !is_end(*at_)) ++at_;
   }
   const char* first = at_;
-  while (at_ != end_ && !is_blank(*at_) && !is_end(*at_) && !at_join(at_)) ++at_;
+  // Most characters are told at once: what may end a word is a backslash or not above ' '.
+  for (; at_ != end_; ++at_) {
+    const bool inside = *at_ > ' ' && *at_ != '\\';
+    if (!inside && ends_word(at_)) break;
+  }
   return {first, static_cast<std::size_t>(at_ - first)};
+}
+
+std::string_view LineScanner::plain_whole(std::int64_t& value) {
+  skip_space();
+  const char* const first = at_;
+  const char* const last = read_plain_whole(first, end_, value);
+  if (last == nullptr || !ends_word(last)) return {};
+  at_ = last;
+  return {first, static_cast<std::size_t>(last - first)};
 }
 
 std::string_view LineScanner::rest() {
@@ -82,6 +100,13 @@ std::string_view LineScanner::rest() {
 }
 
 bool LineScanner::try_number(std::string_view what, double& value) {
+  skip_space();
+  double plain = 0;
+  if (const char* last = read_plain_number(at_, end_, plain); last && ends_word(last)) {
+    at_ = last;
+    value = plain;
+    return true;
+  }
   const std::string_view found = word();
   if (found.empty()) return false;
   if (!read_number(found.data(), found.data() + found.size(), value)) {

@@ -5,6 +5,7 @@
 // Errors  "file:line: expected WHAT, found 'WORD'". UTF-16 is refused.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ class LineScanner {
   bool next_line();
   // The next word of the line; empty at its end.
   std::string_view word();
+  // The next word if it is digits only, and its value; empty, with nothing taken, if it is anything else.
+  std::string_view plain_whole(std::int64_t& value);
   // What is left of the line, without white space at its ends.
   std::string_view rest();
   // The next word as a finite number; `what` says what the number is.
@@ -30,12 +33,14 @@ class LineScanner {
   bool try_number(std::string_view what, double& value);
 
   std::uint32_t line() const { return line_; }
+  std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
   const std::string& file() const { return file_; }
   [[nodiscard]] Error error(const std::string& what, const std::string& remedy = "") const;
 
  private:
   void skip_space();
   bool at_join(const char* p) const;
+  bool ends_word(const char* p) const;
 
   const char* at_;
   const char* end_;

@@ -80,8 +80,10 @@ Scene import_scene(const std::filesystem::path& file) {
 }
 
 Scene load(const std::filesystem::path& file) {
+  FilesRead files;
   Scene scene = import_scene(file);
   frame_scene(scene);
+  scene.files = files.take();
   return scene;
 }
 

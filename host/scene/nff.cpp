@@ -13,6 +13,7 @@
 #include "scene/check_scene.h"
 #include "scene/importers.h"
 #include "scene/material_table.h"
+#include "scene/room.h"
 #include "scene/text_scanner.h"
 #include "scene/triangulate.h"
 
@@ -172,8 +173,10 @@ class NffReader {
   std::size_t add_vertices(std::uint32_t n) {
     const std::size_t first = scene_.vertices.size();
     check_room(first + n);
-    for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t i = 0; i < n; ++i) {
+      vertex_room_.make(scene_.vertices, in_.bytes_left());
       scene_.vertices.push_back(in_.vector("a corner of a polygon (x y z)"));
+    }
     return first;
   }
 
@@ -188,6 +191,7 @@ class NffReader {
     check_room(first + n);
     normals_.clear();
     for (std::uint32_t i = 0; i < n; ++i) {
+      vertex_room_.make(scene_.vertices, in_.bytes_left());
       scene_.vertices.push_back(in_.vector("a corner of a patch (x y z)"));
       normals_.push_back(in_.vector("a normal of a patch (x y z)"));
     }
@@ -206,6 +210,7 @@ class NffReader {
         scene_.normals.resize(first);
         return std::nullopt;
       }
+      normal_room_.make(scene_.normals, in_.bytes_left());
       scene_.normals.emplace_back(glm::normalize(n / largest));
     }
     return first;
@@ -222,6 +227,7 @@ class NffReader {
       }
       t.material = mat;
       t.number = next_number();
+      triangle_room_.make(scene_.triangles, in_.bytes_left());
       scene_.triangles.push_back(t);
     };
     if (n == 3) return add({0, 1, 2});  // most are, and need no list
@@ -293,6 +299,7 @@ class NffReader {
   TextScanner in_;
   Scene scene_;
   MaterialTable materials_;
+  Room vertex_room_, normal_room_, triangle_room_;
   std::optional<std::uint32_t> material_;  // of the last 'f'
   std::vector<bool> has_color_;            // per light
   std::vector<dvec3> normals_;             // of the patch being read

@@ -16,6 +16,8 @@
 #include "scene/importers.h"
 #include "scene/line_scanner.h"
 #include "scene/obj_materials.h"
+#include "scene/plain_number.h"
+#include "scene/room.h"
 #include "scene/settle_normals.h"
 #include "scene/text_scanner.h"
 
@@ -85,14 +87,28 @@ class ObjReader {
     return {x, y, z};
   }
 
-  void read_vertex() { scene_.vertices.push_back(three_numbers("a vertex of three numbers")); }
+  void read_vertex() {
+    vertex_room_.make(scene_.vertices, in_.bytes_left());
+    scene_.vertices.push_back(three_numbers("a vertex of three numbers"));
+  }
 
-  void read_normal() { scene_.normals.push_back(direction_of(three_numbers("a normal of three numbers"))); }
+  void read_normal() {
+    normal_room_.make(scene_.normals, in_.bytes_left());
+    scene_.normals.push_back(direction_of(three_numbers("a normal of three numbers")));
+  }
 
-  // One corner: v, v/vt, v//vn or v/vt/vn.
-  void read_corner(std::string_view word) {
+  // One corner: v, v/vt, v//vn or v/vt/vn; false at the end of the line.
+  bool read_corner() {
+    std::int64_t value = 0;
+    if (const std::string_view plain = in_.plain_whole(value); !plain.empty()) {
+      corners_.push_back(vertex_number(value, plain));
+      normals_.push_back(kNone);
+      return true;
+    }
+    const std::string_view word = in_.word();
+    if (word.empty()) return false;
     const std::size_t first = word.find('/');
-    corners_.push_back(vertex_number(word.substr(0, first), word));
+    corners_.push_back(vertex_number(whole_number(word.substr(0, first), word), word));
     std::uint32_t normal = kNone;
     if (first != std::string_view::npos) {
       const std::size_t second = word.find('/', first + 1);
@@ -101,20 +117,22 @@ class ObjReader {
       }
     }
     normals_.push_back(normal);
+    return true;
   }
 
   std::int64_t whole_number(std::string_view digits, std::string_view word) const {
     std::int64_t value = 0;
+    const char* const end = digits.data() + digits.size();
+    if (read_plain_whole(digits.data(), end, value) == end) return value;
     if (digits.starts_with('+')) digits.remove_prefix(1);
     const auto [stop, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (code != std::errc() || stop != digits.data() + digits.size() || digits.empty()) {
+    if (code != std::errc() || stop != end || digits.empty()) {
       throw in_.error("expected a corner like 7, 7/2, 7//3 or 7/2/3, found '" + printable(word) + "'");
     }
     return value;
   }
 
-  std::uint32_t vertex_number(std::string_view digits, std::string_view word) const {
-    const std::int64_t value = whole_number(digits, word);
+  std::uint32_t vertex_number(std::int64_t value, std::string_view word) const {
     const auto n = static_cast<std::int64_t>(scene_.vertices.size());
     const std::int64_t index = value < 0 ? n + value : value - 1;
     if (value == 0)
@@ -138,11 +156,13 @@ class ObjReader {
   void read_face() {
     corners_.clear();
     normals_.clear();
-    for (std::string_view word = in_.word(); !word.empty(); word = in_.word()) read_corner(word);
+    while (read_corner()) {
+    }
     if (corners_.size() < 3) return small_faces_.add(in_.line());
     bool smooth = true;
     for (const std::uint32_t n : normals_) smooth = smooth && n != kNone;
     if (!smooth) normals_.clear();
+    triangle_room_.make(scene_.triangles, in_.bytes_left());
     add_polygon(scene_, corners_, normals_, materials_.current());
   }
 
@@ -163,6 +183,7 @@ class ObjReader {
   LineScanner in_;
   Scene scene_;
   ObjMaterials materials_;
+  Room vertex_room_, normal_room_, triangle_room_;
   std::vector<std::uint32_t> corners_, normals_;
   LeftOut small_faces_, missing_normals_, points_and_lines_, free_forms_, unknown_;
   std::size_t n_statements_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "scene/files_read.h"
 #include "scene/mesh_material.h"
 #include "scene/read_file.h"
 #include "scene/text_scanner.h"
@@ -45,8 +46,11 @@ std::string slashed(std::string path) {
 
 // A name as it is given, beside the OBJ file or below.
 std::filesystem::path ObjMaterials::find(const std::string& name) const {
+  if (name.empty() || std::filesystem::path(name).is_absolute()) return "";
   const std::filesystem::path path = file_.parent_path() / name;
-  return !name.empty() && std::filesystem::path(name).is_relative() && is_file(path) ? path : "";
+  if (is_file(path)) return path;
+  FilesRead::add_missing(path);
+  return "";
 }
 
 // The last part of a path: exporters write the paths of their own machine.

@@ -2,6 +2,7 @@
 //         normals; ascii and binary, either byte order. Other elements and properties are skipped.
 // Errors  ascii: file and line; binary: file, element, row and byte.
 // Source  G. Turk, "The PLY Polygon File Format", 1994. Tristrips as the Stanford scanning repository writes them.
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -134,6 +135,11 @@ class BodyReader {
     std::uint64_t row = 0;
     if constexpr (Source::kBinary) {
       if (element.name == "face") row = read_triangles(source_, element, mesh_);
+    }
+    if (element.name == "face") {
+      constexpr std::uint64_t kLeastValues = 4;  // of a face that makes a triangle
+      auto& triangles = mesh_.triangles();
+      triangles.reserve(triangles.size() + std::min(element.count - row, source_.capacity() / kLeastValues));
     }
     std::vector<std::int64_t> corners;
     for (; row < element.count; ++row) {

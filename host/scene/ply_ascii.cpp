@@ -1,6 +1,7 @@
 #include <charconv>
 #include <utility>
 
+#include "scene/plain_number.h"
 #include "scene/ply_source.h"
 #include "scene/text_scanner.h"
 
@@ -22,9 +23,14 @@ AsciiSource::AsciiSource(std::string_view text, const Header& header, std::strin
 
 bool AsciiSource::skip_space() {
   for (; at_ != end_ && is_space(*at_); ++at_) {
+    if (*at_ == ' ') continue;
     if (*at_ == '\n' || (*at_ == '\r' && (at_ + 1 == end_ || at_[1] != '\n'))) ++line_;
   }
   return at_ == end_;
+}
+
+bool AsciiSource::ends_token(const char* p) const {
+  return p == end_ || is_space(*p);
 }
 
 void AsciiSource::finish_line() {
@@ -39,13 +45,18 @@ std::string_view AsciiSource::token() {
     throw error("the file ends too soon", "fetch it again, or correct the counts in its header");
   }
   const char* first = at_;
-  while (at_ != end_ && !is_space(*at_)) ++at_;
+  while (!ends_token(at_)) ++at_;
   return {first, static_cast<std::size_t>(at_ - first)};
 }
 
 double AsciiSource::number(Type) {
-  const std::string_view word = token();
   double value = 0;
+  skip_space();
+  if (const char* last = read_plain_number(at_, end_, value); last && ends_token(last)) {
+    at_ = last;
+    return value;
+  }
+  const std::string_view word = token();
   if (!read_number(word.data(), word.data() + word.size(), value)) {
     throw error("expected a finite number, found '" + printable(word) + "'");
   }
@@ -53,8 +64,13 @@ double AsciiSource::number(Type) {
 }
 
 std::int64_t AsciiSource::integer(Type) {
-  const std::string_view word = token();
   std::int64_t value = 0;
+  skip_space();
+  if (const char* last = read_plain_whole(at_, end_, value); last && ends_token(last)) {
+    at_ = last;
+    return value;
+  }
+  const std::string_view word = token();
   const auto [stop, code] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (code != std::errc() || stop != word.data() + word.size()) {
     throw error("expected a whole number, found '" + printable(word) + "'");

@@ -47,7 +47,7 @@ void refuse(BinarySource<swap>& source, const Element& element, const VertexColu
 
 template <bool swap>
 void read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
-                  std::vector<dvec3>& vertices, std::vector<vec3>& normals) {
+                  RawVector<dvec3>& vertices, RawVector<vec3>& normals) {
   const std::size_t stride = BinarySource<swap>::least_size(element);
   for (std::uint64_t row = 0; row < element.count; row += kBlock) {
     const std::uint64_t n = std::min(kBlock, element.count - row);
@@ -99,10 +99,10 @@ std::uint64_t read_triangles(BinarySource<swap>& source, const Element& element,
   return row;
 }
 
-template void read_columns(BinarySource<false>&, const Element&, const VertexColumns&, std::vector<dvec3>&,
-                           std::vector<vec3>&);
-template void read_columns(BinarySource<true>&, const Element&, const VertexColumns&, std::vector<dvec3>&,
-                           std::vector<vec3>&);
+template void read_columns(BinarySource<false>&, const Element&, const VertexColumns&, RawVector<dvec3>&,
+                           RawVector<vec3>&);
+template void read_columns(BinarySource<true>&, const Element&, const VertexColumns&, RawVector<dvec3>&,
+                           RawVector<vec3>&);
 template std::uint64_t read_triangles(BinarySource<false>&, const Element&, Mesh&);
 template std::uint64_t read_triangles(BinarySource<true>&, const Element&, Mesh&);
 

@@ -21,7 +21,7 @@ struct VertexColumns {
 // Fills `vertices` (and `normals`), which have element.count entries, for which the source has the bytes.
 template <bool swap>
 void read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
-                  std::vector<dvec3>& vertices, std::vector<vec3>& normals);
+                  RawVector<dvec3>& vertices, RawVector<vec3>& normals);
 
 // Reads rows as long as they are good triangles, and says how many those were.
 template <bool swap>

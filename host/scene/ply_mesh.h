@@ -18,9 +18,9 @@ class Mesh {
   explicit Mesh(std::uint32_t n_vertices) : n_vertices_(n_vertices) {}
 
   // To be filled with all vertices; a normal for each, or none.
-  std::vector<dvec3>& vertices() { return scene_.vertices; }
-  std::vector<vec3>& normals() { return scene_.normals; }
-  std::vector<Triangle>& triangles() { return scene_.triangles; }
+  RawVector<dvec3>& vertices() { return scene_.vertices; }
+  RawVector<vec3>& normals() { return scene_.normals; }
+  PageVector<Triangle>& triangles() { return scene_.triangles; }
   std::uint32_t n_vertices() const { return n_vertices_; }
 
   // One polygon; false when it has a corner that is no vertex. Fewer than three corners: counted and left out.

@@ -48,6 +48,7 @@ class AsciiSource {
  private:
   std::string_view token();
   bool skip_space();  // true at the end of the text
+  bool ends_token(const char* p) const;
   void finish_line();
 
   const char* at_;

@@ -10,6 +10,8 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/memory.h"
+#include "scene/files_read.h"
 
 namespace kdray::scene {
 
@@ -76,6 +78,8 @@ std::string read_packed(const std::filesystem::path& path, std::size_t max_bytes
   std::string text;
   const std::uintmax_t size = std::filesystem::file_size(path, code);
   if (!code && size <= max_bytes) {
+    text.reserve(static_cast<std::size_t>(size));
+    prefer_large_pages(text.data(), text.capacity());
     text.resize(static_cast<std::size_t>(size));
     text.resize(std::fread(text.data(), 1, text.size(), in.get()));
   }
@@ -169,6 +173,7 @@ std::string unxz(const std::string& packed, const std::string& file, std::size_t
 
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) {
   std::string bytes = read_packed(file, max_bytes);
+  FilesRead::add(file, bytes);
   const std::string ending = ending_of(file);
   if (ending == ".gz") return gunzip(bytes, file.string(), max_bytes);
   if (ending == ".xz") return unxz(bytes, file.string(), max_bytes);

@@ -13,8 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "base/raw_vector.h"
 #include "math/box.h"
 #include "math/vec.h"
+#include "scene/files_read.h"
 
 namespace kdray::scene {
 
@@ -85,9 +87,9 @@ struct RenderSettings {
 
 struct Scene {
   std::string name;  // the file it came from
-  std::vector<dvec3> vertices;
-  std::vector<vec3> normals;  // unit length
-  std::vector<Triangle> triangles;
+  RawVector<dvec3> vertices;
+  RawVector<vec3> normals;  // unit length
+  PageVector<Triangle> triangles;
   std::vector<Sphere> spheres;
   std::vector<Cone> cones;
   std::vector<Material> materials;  // at least one when there is a primitive
@@ -97,6 +99,7 @@ struct Scene {
   vec3 ambient{1};  // Camb
   RenderSettings settings;
   std::vector<std::string> warnings;  // one line each: what the loader left out or changed
+  std::vector<FileRead> files;        // what it was loaded from, by load() only
 
   std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(triangles.size() + spheres.size() + cones.size());

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "scene/plain_number.h"
+
 namespace kdray::scene {
 
 namespace {
@@ -51,6 +53,7 @@ TextScanner::TextScanner(std::string_view text, std::string file)
 void TextScanner::skip_space() {
   for (; at_ != end_; ++at_) {
     const char c = *at_;
+    if (c == ' ') continue;
     if (c == '#') {
       while (at_ + 1 != end_ && at_[1] != '\n' && at_[1] != '\r') ++at_;
     } else if (c == '\n' || (c == '\r' && (at_ + 1 == end_ || at_[1] != '\n'))) {
@@ -61,9 +64,13 @@ void TextScanner::skip_space() {
   }
 }
 
+bool TextScanner::ends_token(const char* p) const {
+  return p == end_ || is_space(*p) || *p == '#';
+}
+
 const char* TextScanner::token_end() const {
   const char* p = at_;
-  while (p != end_ && !is_space(*p) && *p != '#') ++p;
+  while (!ends_token(p)) ++p;
   return p;
 }
 
@@ -92,9 +99,12 @@ bool TextScanner::at_number() {
 
 double TextScanner::number(std::string_view what) {
   skip_space();
-  const char* last = token_end();
   double value = 0;
-  if (!read_number(at_, last, value)) throw expected(what);
+  const char* last = read_plain_number(at_, end_, value);
+  if (last == nullptr || !ends_token(last)) {
+    last = token_end();
+    if (!read_number(at_, last, value)) throw expected(what);
+  }
   at_ = last;
   last_line_ = line_;
   return value;

@@ -43,6 +43,7 @@ class TextScanner {
  private:
   void skip_space();
   const char* token_end() const;
+  bool ends_token(const char* p) const;
 
   const char* at_;
   const char* end_;

@@ -31,6 +31,7 @@ class Programs {
 
   const device::Context* context_;
   int stack_size_, wide_stack_size_, block_;
+  bool prefetch_;
   double build_seconds_ = 0;
   std::map<std::tuple<std::string, std::uint32_t, Traversal>, cl::Program> programs_;
 };

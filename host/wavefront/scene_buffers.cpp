@@ -1,20 +1,12 @@
 #include "wavefront/scene_buffers.h"
 
-#include "device/opencl_error.h"
-
 namespace kdray::wavefront {
 
 namespace {
 
 template <class T>
-cl::Buffer upload(const device::Context& context, const std::vector<T>& items, const std::string& what) {
-  const std::size_t bytes = items.size() * sizeof(T);
-  cl::Buffer buffer = context.buffer(CL_MEM_READ_ONLY, bytes, what);
-  if (bytes > 0)
-    device::checked("uploading " + what, [&] {
-      context.queues().front().enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, items.data());
-    });
-  return buffer;
+cl::Buffer upload(const device::Context& context, const Array<T>& items, const std::string& what) {
+  return context.upload(items.data(), items.bytes(), items.owner(), what);
 }
 
 }  // namespace

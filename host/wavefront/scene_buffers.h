@@ -1,4 +1,5 @@
-// What    A flattened scene on the device; shared by all queues of a context, read only.
+// What    A flattened scene on the device; shared by all queues of a context, read only. Where the device works in the host's
+//         memory, the buffers are the arrays themselves.
 #pragma once
 
 #include "device/context.h"

@@ -39,7 +39,7 @@ __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_norm
     clock_stage(&slice->cycles_admit, &since);
     if (slice->n_batch == 0) return;
     const RaySource rays = batch_rays(frame, slice_id, io_batch, io_hits);
-    trace_all(&scene, frame, &rays, slice->n_batch);
+    trace_all(&scene, frame, &rays, slice->n_batch, slice->depth == 1);
     clock_stage(&slice->cycles_closest, &since);
     u32 first_light = 0;
     do {
@@ -48,7 +48,7 @@ __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_norm
       clock_stage(&slice->cycles_shade, &since);
 #if KDRAY_HAS_LIGHTS
       const RaySource to_lights = shadow_rays(frame, slice_id, io_shadow_rays, io_occluded);
-      trace_all(&scene, frame, &to_lights, slice->n_shadow);
+      trace_all(&scene, frame, &to_lights, slice->n_shadow, false);
       clock_stage(&slice->cycles_shadow, &since);
       add_arrived(frame, slice_id, slice, io_shadow_rays, io_occluded, io_film);
       clock_stage(&slice->cycles_add, &since);

@@ -79,8 +79,25 @@ TEST_P(RendererTest, StatisticsHoldTheContract) {
   EXPECT_EQ(s.at("mode").at("name"), "pdprt");
   EXPECT_EQ(s.at("features").at("on"),
             nlohmann::json({"triangles", "spheres", "primitive numbers", "background"}));
+  EXPECT_EQ(s.at("tree").at("build"), "balanced");
   // CPUs: the wave, all stages in one. Others: admit, trace_closest, shade; nothing for lights.
   EXPECT_EQ(s.at("mode").at("programs"), s.at("device").at("kind") == "cpu" ? 1 : 3);
+}
+
+TEST_P(RendererTest, EveryBuildGivesTheSameHits) {
+  const Ray rays[] = {ray(0, 0, 5, 0, 0, -1), ray(3, -3, 5, 0, 0, -1), ray(0, 0, 0, 0, 0, -1),
+                      ray(0, 0, 5, 0, 1, 0)};
+  const std::vector<Hit> expected = renderer().trace(rays);
+  for (const auto& [quality, name] :
+       {std::pair{BuildQuality::fast, "fast"}, std::pair{BuildQuality::best, "best"}}) {
+    Renderer r(small_scene(), {.quality = quality}, {.device = GetParam()});
+    EXPECT_EQ(nlohmann::json::parse(r.statistics()).at("tree").at("build"), name);
+    const std::vector<Hit> hits = r.trace(rays);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(hits[i].t, expected[i].t) << name << " " << i;
+      EXPECT_EQ(hits[i].primitive, expected[i].primitive) << name << " " << i;
+    }
+  }
 }
 
 TEST_P(RendererTest, ClosestHitsAreInRayOrderAndInTheirUnits) {

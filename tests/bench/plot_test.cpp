@@ -7,6 +7,8 @@
 #include <regex>
 #include <string_view>
 
+#include "bench/xy_plot.h"
+
 namespace kdray::bench {
 namespace {
 
@@ -73,6 +75,41 @@ TEST(Plot, OfNothingIsStillAPlot) {
   EXPECT_EQ(fault_in(to_svg(Plot{})), "");
   EXPECT_EQ(fault_in(to_svg({"t", "", "u", {{"s", "#000000"}}, {{"p", {"g"}, {{std::nullopt}}}}})), "");
   EXPECT_EQ(fault_in(to_svg({"t", "", "u", {{"s", "#000000"}}, {{"p", {"g"}, {{Spread{0, 0, 0}}}}}})), "");
+}
+
+XyPlot small_xy_plot() {
+  const std::vector<Point> linear = {{0, 5, "first"}, {10, 50, ""}};
+  const std::vector<Point> beyond = {
+      {1, 0, "no logarithm"}, {2, std::numeric_limits<double>::infinity(), ""}, {3, 1e6, ""}};
+  return {"A & B",
+          "<sub>",
+          {{"one", "#111111"}, {"two", "#222222"}},
+          true,
+          {{"panel", {"x", false}, {"y", true}, {linear, beyond}}}};
+}
+
+TEST(XyPlot, IsWellFormed) {
+  EXPECT_EQ(fault_in(to_svg(small_xy_plot())), "");
+  EXPECT_EQ(fault_in(to_svg(XyPlot{})), "");
+  EXPECT_EQ(
+      fault_in(to_svg(XyPlot{"t", "", {{"s", "#000000"}}, false, {{"p", {"x", true}, {"y", false}, {{}}}}})),
+      "");
+  EXPECT_EQ(fault_in(to_svg(XyPlot{
+                "t", "", {{"s", "#000000"}}, true, {{"p", {"x", true}, {"y", true}, {{{7, 7, ""}}}}}})),
+            "");
+}
+
+TEST(XyPlot, ShowsEveryPointThatItsAxesHold) {
+  const std::string svg = to_svg(small_xy_plot());
+  EXPECT_EQ(count(svg, "fill=\"#111111\""), 3u);    // the legend and two points
+  EXPECT_EQ(count(svg, "stroke=\"#111111\""), 1u);  // joined by a line
+  EXPECT_EQ(count(svg, "fill=\"#222222\""), 2u);    // 0 and infinity have no logarithm
+  EXPECT_EQ(count(svg, ">first<"), 1u);
+  EXPECT_EQ(count(svg, ">no logarithm<"), 0u);
+  EXPECT_EQ(count(svg, "nan"), 0u);
+  XyPlot apart = small_xy_plot();
+  apart.joined = false;
+  EXPECT_EQ(count(to_svg(apart), "stroke=\"#111111\""), 0u);
 }
 
 }  // namespace

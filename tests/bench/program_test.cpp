@@ -44,6 +44,22 @@ TEST(BenchRays, WritesTableFiguresAndPlot) {
   EXPECT_NE(folder.get("report/rays.svg").find("kdray wide"), std::string::npos);
 }
 
+TEST(BenchRays, LeavesEmbreeOutWhenTold) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const auto scene = folder.put("small.nff", kSphereOnSquare);
+  const Outcome run =
+      kdray({"bench", "rays", scene.string(), "--rays", "64", "--repeat", "1", "--cores", "all", "--classes",
+             "primary", "--no-embree", "--report", folder.path().string()},
+            {.limit_seconds = 280});
+  ASSERT_TRUE(succeeds(run));
+  const Json json = Json::parse(folder.get("rays.json"));
+  EXPECT_TRUE(json["embree"].is_null());
+  for (const Json& contestant : json["runs"][0]["classes"][0]["contestants"])
+    EXPECT_EQ(contestant["family"], "kdray");
+  EXPECT_EQ(folder.get("rays.svg").find("Embree"), std::string::npos);
+}
+
 TEST(BenchFrames, WritesTableFiguresAndPlot) {
   KDRAY_NEED_DEVICE();
   const Folder folder;

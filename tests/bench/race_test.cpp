@@ -38,6 +38,12 @@ TEST(Race, WarmsUpThenTakesTurns) {
   EXPECT_EQ(outcomes[0].n_not_identical, 0u);
 }
 
+TEST(Race, WarmsUpOnceForOneRound) {
+  Recorder r;
+  race({"", false, std::vector<Ray>(2)}, kReference, {r.contestant(Family::kdray, "a", {{"", 1.0}})}, 1);
+  EXPECT_EQ(r.runs, (std::vector<std::string>{"a", "a"}));
+}
+
 TEST(Race, ComparesHits) {
   std::vector<Hit> other = kReference;
   other[1] = {5, 3, 0, 0};

@@ -19,6 +19,14 @@ TEST(Scenes, BoxesAndSpheres) {
   }
 }
 
+TEST(Scenes, ADisplacedSphereOfAMillion) {
+  const scene::Scene s = load_scene("displaced");
+  EXPECT_GE(s.triangles.size(), 1000000u);
+  EXPECT_LE(s.triangles.size(), 1010000u);
+  EXPECT_TRUE(s.camera && !s.lights.empty());
+  EXPECT_NO_THROW(scene::check_scene(s));
+}
+
 TEST(Scenes, OfTheGeneratorsByName) {
   const scene::Scene rings = load_scene("rings");
   EXPECT_EQ(rings.spheres.size(), 4200u);
@@ -28,6 +36,7 @@ TEST(Scenes, OfTheGeneratorsByName) {
 
 TEST(Scenes, AnotherNameIsAFile) {
   EXPECT_TRUE(test::fails([] { load_scene("nosuch"); }, "nosuch"));
+  EXPECT_TRUE(test::fails([] { load_scene("nosuch"); }, "boxes spheres displaced balls"));
 }
 
 }  // namespace

@@ -12,8 +12,9 @@
 namespace kdray::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"render",   "trace",   "info",       "devices",     "doctor",
-                                            "generate", "compare", "bench rays", "bench frames"};
+const std::vector<std::string> kCommands = {"render",       "trace",       "info",       "devices",
+                                            "doctor",       "generate",    "compare",    "bench rays",
+                                            "bench frames", "bench build", "bench depth"};
 
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file);

@@ -52,6 +52,28 @@ TEST(InfoCommand, TheTreesFiguresAgreeWithEachOther) {
   EXPECT_GT(info["memory"]["tree_bytes"], 8 * tree["nodes"].get<int>());
 }
 
+TEST(InfoCommand, MemoryIsThatOfItsArrays) {
+  const Folder folder;
+  const fs::path scene = folder / "b.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "3", "-o", scene})));
+  const Json info = Json::parse(kdray({"info", scene, "--json"}).out);
+  const Json& memory = info["memory"];
+  for (const char* const part : {"scene", "geometry", "tree", "flat", "wide"}) {
+    std::uint64_t sum = 0;
+    for (const Json& array : memory["arrays"][part]) sum += array.get<std::uint64_t>();
+    EXPECT_EQ(memory[std::string(part) + "_bytes"], sum) << part;
+    EXPECT_GT(sum, 0u) << part;
+  }
+  EXPECT_EQ(memory["final_bytes"], memory["flat_bytes"].get<int>() + memory["wide_bytes"].get<int>());
+  EXPECT_EQ(memory["arrays"]["flat"]["references"], 4 * info["tree"]["references"].get<int>());
+  EXPECT_EQ(memory["arrays"]["flat"]["nodes"], 8 * info["tree"]["nodes"].get<int>());
+  EXPECT_GT(memory["process_peak_bytes"], memory["final_bytes"]);
+  if (!memory["build_peak_bytes"].is_null()) {
+    EXPECT_GT(memory["build_peak_bytes"], 0);
+    EXPECT_LE(memory["build_peak_bytes"], memory["process_peak_bytes"]);
+  }
+}
+
 TEST(InfoCommand, TreeOptionsChangeTheTree) {
   const Folder folder;
   const fs::path scene = folder / "b.nff";
@@ -64,8 +86,14 @@ TEST(InfoCommand, TreeOptionsChangeTheTree) {
   EXPECT_EQ(depth({"--tree-depth", "0"}), 0);
   EXPECT_EQ(depth({"--tree-depth", "3"}), 3);
   EXPECT_GT(depth({}), 3);
+  for (const char* const quality : {"fast", "balanced", "best"}) {
+    EXPECT_GT(depth({"--build", quality}), 3);
+    EXPECT_EQ(Json::parse(kdray({"info", scene, "--json", "--build", quality}).out)["tree"]["build"],
+              quality);
+  }
+  EXPECT_TRUE(fails_with(kdray({"info", scene, "--build", "slow"}), 2, "fast, balanced, best"));
   // Nothing is worth a split when tests cost nothing beside nodes.
-  EXPECT_EQ(depth({"--cost-traverse", "1000000", "--cost-intersect", "0.000001", "--empty-bonus", "1"}), 0);
+  EXPECT_EQ(depth({"--cost-traverse", "1000000", "--cost-intersect", "0.000001"}), 0);
 }
 
 TEST(InfoCommand, TextHasThoseFiguresForPeople) {
@@ -73,8 +101,9 @@ TEST(InfoCommand, TextHasThoseFiguresForPeople) {
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
   const Outcome run = kdray({"info", scene});
   ASSERT_TRUE(succeeds(run));
-  for (const char* const text : {"3: 2 triangles, 1 spheres, 0 cones", "(-4, -4, 0) to (4, 4, 2)",
-                                 "40 degrees", "SAH cost", "materials", "memory"})
+  for (const char* const text :
+       {"3: 2 triangles, 1 spheres, 0 cones", "(-4, -4, 0) to (4, 4, 2)", "40 degrees", "SAH cost",
+        "materials", "memory", "built balanced", "on the device", "sphere blocks", "at most"})
     EXPECT_NE(run.out.find(text), std::string::npos) << text << " in " << run.out;
 }
 

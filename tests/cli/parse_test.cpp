@@ -54,6 +54,17 @@ TEST(Parse, ListsHoldEachNameOnce) {
     EXPECT_TRUE(fails([&] { parse_list("--aov", text, kNames); }, "normal", ErrorCode::usage)) << text;
 }
 
+TEST(Parse, BytesHaveAUnitAndALimit) {
+  EXPECT_EQ(parse_bytes("--cache-size", "0"), 0u);
+  EXPECT_EQ(parse_bytes("--cache-size", "4096"), 4096u);
+  EXPECT_EQ(parse_bytes("--cache-size", "3K"), 3072u);
+  EXPECT_EQ(parse_bytes("--cache-size", "500M"), std::uint64_t{500} << 20);
+  EXPECT_EQ(parse_bytes("--cache-size", "17179869183G"), std::uint64_t{17179869183} << 30);
+  for (const char* text :
+       {"", "K", "-1", "1.5G", "4 G", "4g", "4GB", "17179869184G", "18446744073709551616", "x"})
+    EXPECT_TRUE(fails([&] { parse_bytes("--cache-size", text); }, "--cache-size", ErrorCode::usage)) << text;
+}
+
 // Text of any kind is a value or a usage error, never anything else.
 TEST(Parse, AnyTextIsAValueOrAUsageError) {
   const unsigned seed = 20240611;

@@ -44,6 +44,7 @@ class Capture {
 [[noreturn]] void become_kdray(const std::vector<std::string>& arguments, const RunOptions& options, int out,
                                int err) {
   if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(127);
+  ::setenv("KDRAY_CACHE_DIR", "", 1);  // no test uses the cache of the user who runs it
   for (const auto& [name, value] : options.environment) ::setenv(name.c_str(), value.c_str(), 1);
   if (!options.stdout_file.empty())
     out = ::open(options.stdout_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);

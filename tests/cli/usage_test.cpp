@@ -85,7 +85,6 @@ TEST(Usage, ValuesThatAreNoneAreRefusedWithWhatIsAccepted) {
       {"--tree-depth", "-2", "from 0"},
       {"--cost-traverse", "x", "number"},
       {"--cost-intersect", "0", "from"},
-      {"--empty-bonus", "1.5", "0 to 1"},
       {"--device", "", "auto"},
   };
   for (const Refused& c : cases) {

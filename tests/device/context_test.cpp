@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#include "base/memory.h"
 #include "device/opencl_error.h"
 #include "support/device.h"
 
@@ -39,6 +45,34 @@ TEST_P(ContextTest, RefusesABufferLargerThanTheDeviceAllows) {
 TEST_P(ContextTest, AnEmptyBufferIsNoError) {
   const Context context(GetParam(), 1);
   EXPECT_NO_THROW((void)context.buffer(CL_MEM_READ_ONLY, 0, "nothing"));
+}
+
+// Where the device works in the host's memory, a buffer is the memory itself, and keeps it; elsewhere a copy of it.
+TEST_P(ContextTest, UploadedMemoryIsUsedAsItIsOrCopied) {
+  const Context context(GetParam(), 1);
+  for (const std::size_t n : {std::size_t{3}, kLargePages / 4}) {
+    auto values = std::make_shared<std::vector<std::uint32_t>>(n);
+    std::iota(values->begin(), values->end(), 7u);
+    const std::weak_ptr<void> watched = values;
+    const void* const data = values->data();
+    cl::Buffer buffer = context.upload(data, 4 * n, std::move(values), "a test");
+    std::vector<std::uint32_t> back(n);
+    context.queues().front().enqueueReadBuffer(buffer, CL_TRUE, 0, 4 * n, back.data());
+    EXPECT_EQ(back.front(), 7u);
+    EXPECT_EQ(back.back(), 6 + n);
+    EXPECT_EQ(watched.expired(), buffer.getInfo<CL_MEM_HOST_PTR>() != data);
+    if (context.info().kind == "cpu") {
+      EXPECT_FALSE(watched.expired());
+    }
+    context.queues().front().finish();
+    buffer = {};
+    EXPECT_TRUE(watched.expired());
+  }
+}
+
+TEST_P(ContextTest, NothingCanBeUploaded) {
+  const Context context(GetParam(), 1);
+  EXPECT_NO_THROW((void)context.upload(nullptr, 0, nullptr, "nothing"));
 }
 
 KDRAY_FOR_EACH_DEVICE(ContextTest);

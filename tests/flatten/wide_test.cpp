@@ -147,7 +147,7 @@ int nth_slot(const WideNode& node, unsigned octant, int n) {
   return static_cast<int>(node.order[octant] >> 3 * (7 - n) & 7u);
 }
 
-const std::vector<u32>& blocks_of(const WideForm& wide, int kind) {
+const Array<u32>& blocks_of(const WideForm& wide, int kind) {
   return kind == 0 ? wide.triangle_blocks : (kind == 1 ? wide.sphere_blocks : wide.cone_blocks);
 }
 
@@ -494,6 +494,7 @@ float normal_in_float(const layout::Triangle& t) {
 // Triangles of all shapes in a leaf: general ones, needles, ones without area but for rounding; at any place.
 FlatScene shapes_at_scale(Random& random, float scale, int n) {
   FlatScene flat;
+  flat.triangles = Array<layout::Triangle>(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     const vec3 place = static_cast<float>(i % 3) * 30.0f * test::random_vec3(random, -1, 1);
     const vec3 edge = test::random_vec3(random, -1, 1);
@@ -505,7 +506,7 @@ FlatScene shapes_at_scale(Random& random, float scale, int n) {
     const vec3 corner[3] = {place, place + edge, place + other};
     for (int v = 0; v < 3; ++v)
       for (int k = 0; k < 3; ++k) t.v[v][k] = scale * corner[v][k];
-    flat.triangles.push_back(t);
+    flat.triangles[static_cast<std::size_t>(i)] = t;
   }
   return flat;
 }
@@ -544,7 +545,7 @@ TEST(Wide, NormalBoundHoldsWhereProductsUnderflow) {
   }
   // The smallest that was found: |n|_1 is 2^-147 + 2^-148 in float.
   FlatScene flat;
-  flat.triangles.emplace_back();
+  flat.triangles = Array<layout::Triangle>::copy_of(std::vector<layout::Triangle>(1));
   const float corner[2][3] = {{2, 0, 2}, {2, 3, 3}};
   for (int v = 0; v < 2; ++v)
     for (int k = 0; k < 3; ++k) flat.triangles[0].v[v + 1][k] = 0x1p-76f * corner[v][k];

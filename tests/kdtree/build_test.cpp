@@ -10,23 +10,31 @@
 
 #include "kdray/error.h"
 #include "kdtree/check_tree.h"
+#include "kdtree/exact/subtree.h"
 #include "kdtree/statistics.h"
-#include "kdtree/subtree.h"
 
 namespace kdray::test {
 namespace {
 
 using kdtree::BuildConfig;
+using kdtree::Quality;
 using kdtree::Tree;
 
 int default_depth(std::size_t n) {
   return static_cast<int>(8 + 1.3 * std::log2(static_cast<double>(n)));
 }
 
-void check_tree(const scene::Geometry& g, const BuildConfig& config = {}) {
-  const Tree tree = kdtree::build(g, config);
-  check_shape(tree, g, config.max_depth >= 0 ? config.max_depth : default_depth(g.size()));
-  if (!testing::Test::HasFatalFailure()) check_complete(tree, g, 12, 99);
+constexpr Quality kQualities[] = {Quality::fast, Quality::balanced, Quality::best};
+
+// Trees of all builders.
+void check_tree(const scene::Geometry& g, BuildConfig config = {}) {
+  for (const Quality quality : kQualities) {
+    SCOPED_TRACE(testing::Message() << "quality " << static_cast<int>(quality));
+    config.quality = quality;
+    const Tree tree = kdtree::build(g, config);
+    check_shape(tree, g, config.max_depth >= 0 ? config.max_depth : default_depth(g.size()));
+    if (!testing::Test::HasFatalFailure()) check_complete(tree, g, 12, 99);
+  }
 }
 
 TEST(Build, EmptyGeometryIsOneEmptyLeaf) {
@@ -88,7 +96,10 @@ TEST(Build, AFloorGetsAFlatCell) {
     add_triangle(g, c, c + vec3(1, 1, 0), c + vec3(0, 1, 0));
   }
   add_triangle(g, {0, 0, 4}, {8, 0, 5}, {4, 5, 6});
-  const Tree tree = kdtree::build(g);
+  BuildConfig best;
+  best.quality = Quality::best;
+  best.tight_cells = false;
+  const Tree tree = kdtree::build(g, best);
   // Somewhere a plane at z = 0 parts the floor from the air above it.
   bool found = false;
   for (const kdtree::Node& n : tree.nodes) found |= !n.is_leaf() && n.axis == 2 && n.split == 0;
@@ -197,6 +208,7 @@ TEST(Build, TightCellsAreTheirContents) {
   const std::vector<kdtree::BoundedRef> refs{{{1, 2, 3}, 0, {2, 3, 4}}, {{0, 5, 3}, 1, {1, 6, 3}}};
   const kdtree::CellState state{{{-9, -9, -9}, {9, 9, 9}}, 3, 20};
   BuildConfig config;
+  config.tight_cells = false;
   EXPECT_EQ(kdtree::tightened(state, refs, config).cell.lo, state.cell.lo);
   config.tight_cells = true;
   const kdtree::CellState tight = kdtree::tightened(state, refs, config);
@@ -212,19 +224,24 @@ TEST(Build, ThreadsDoNotShow) {
   scene::Geometry g;
   add_triangles(g, random, 40000, 0.3f);
   add_spheres(g, random, 5000, 0.3f);
-  std::vector<Tree> trees;
-  for (const int threads : {1, 2, 5}) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    trees.push_back(kdtree::build(g));
+  for (const Quality quality : kQualities) {
+    SCOPED_TRACE(testing::Message() << "quality " << static_cast<int>(quality));
+    BuildConfig config;
+    config.quality = quality;
+    std::vector<Tree> trees;
+    for (const std::size_t threads : {1, 2, 5}) {
+      tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      trees.push_back(kdtree::build(g, config));
+    }
+    for (const Tree& t : trees) {
+      ASSERT_EQ(t.nodes.size(), trees[0].nodes.size());
+      ASSERT_EQ(t.refs, trees[0].refs);
+      ASSERT_EQ(std::memcmp(t.contents.data(), trees[0].contents.data(), t.contents.size() * sizeof(Box)), 0);
+      EXPECT_EQ(std::memcmp(t.nodes.data(), trees[0].nodes.data(), t.nodes.size() * sizeof(kdtree::Node)), 0);
+    }
+    check_shape(trees[0], g, default_depth(g.size()));
+    if (!HasFatalFailure()) check_complete(trees[0], g, 6, 5);
   }
-  for (const Tree& t : trees) {
-    ASSERT_EQ(t.nodes.size(), trees[0].nodes.size());
-    ASSERT_EQ(t.refs, trees[0].refs);
-    ASSERT_EQ(std::memcmp(t.contents.data(), trees[0].contents.data(), t.contents.size() * sizeof(Box)), 0);
-    EXPECT_EQ(std::memcmp(t.nodes.data(), trees[0].nodes.data(), t.nodes.size() * sizeof(kdtree::Node)), 0);
-  }
-  check_shape(trees[0], g, default_depth(g.size()));
-  if (!HasFatalFailure()) check_complete(trees[0], g, 6, 5);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "kdtree/check_tree.h"
 #include "kdtree/exact_clip.h"
+#include "kdtree/integer_case.h"
 #include "kdtree/rounding.h"
 #include "kdtree/shapes.h"
 
@@ -17,52 +18,6 @@ using kdtree::Bounds;
 
 // ---- triangles
 // -----------------------------------------------------------------------------------------------------
-
-struct IntegerCase {
-  std::array<Point, 3> triangle;
-  Point lo, hi;
-  int axis;
-  std::int64_t plane;
-};
-
-IntegerCase random_case(Random& random, int size) {
-  const auto whole = [&] { return static_cast<std::int64_t>(random() % (2 * size + 1)) - size; };
-  IntegerCase c;
-  for (Point& p : c.triangle) p = {whole(), whole(), whole()};
-  if (random() % 4 == 0) {  // axis-aligned
-    const int k = static_cast<int>(random() % 3);
-    c.triangle[1][k] = c.triangle[2][k] = c.triangle[0][k];
-  }
-  for (int k = 0; k < 3; ++k) {
-    const std::int64_t a = whole(), b = whole();
-    c.lo[k] = std::min(a, b), c.hi[k] = std::max(a, b);
-    if (random() % 2 == 0) c.lo[k] = -size, c.hi[k] = size;
-  }
-  c.axis = static_cast<int>(random() % 3);
-  const std::int64_t length = c.hi[c.axis] - c.lo[c.axis];
-  c.plane = c.lo[c.axis] + (length > 0 ? static_cast<std::int64_t>(random() % (length + 1)) : 0);
-  return c;
-}
-
-// Integer coordinates about an offset, times a power of two: still exact floats.
-float to_float(std::int64_t x, float offset, float scale) {
-  return (static_cast<float>(x) + offset) * scale;
-}
-
-Bounds to_bounds(const Point& lo, const Point& hi, float offset, float scale) {
-  Bounds b;
-  for (int k = 0; k < 3; ++k) {
-    b.lo[k] = to_float(lo[k], offset, scale);
-    b.hi[k] = to_float(hi[k], offset, scale);
-  }
-  return b;
-}
-
-// bound - f, exact in its sign: all of it has fewer than 64 bits.
-long double excess(float bound, const Fraction& f, float offset, float scale) {
-  const long double b = static_cast<long double>(bound) / scale - offset;
-  return (b * f.denominator - f.numerator) / f.denominator;
-}
 
 void check_part(const Bounds& found, const std::optional<ExactBounds>& exact, float offset, float scale,
                 int size) {

@@ -5,18 +5,26 @@
 
 #include "kdtree/build.h"
 #include "kdtree/check_tree.h"
-#include "kdtree/subtree.h"
+#include "kdtree/exact/subtree.h"
 
 namespace kdray::test {
 namespace {
 
-void check_hostile(const scene::Geometry& g) {
-  const kdtree::Tree tree = kdtree::build(g);
-  EXPECT_LE(static_cast<double>(tree.refs.size()), kdtree::reference_budget(g.size()));
+void check_hostile(const scene::Geometry& g, kdtree::Quality quality) {
+  SCOPED_TRACE(testing::Message() << "quality " << static_cast<int>(quality));
+  kdtree::BuildConfig config;
+  config.quality = quality;
+  const kdtree::Tree tree = kdtree::build(g, config);
+  EXPECT_LE(static_cast<double>(tree.refs.size()), kdtree::reference_budget(g.size(), quality));
   // Every leaf that holds something costs a reference; empty ones are cut off at most six times in a row.
   EXPECT_LE(tree.nodes.size(), 16 * (tree.refs.size() + 1));
   check_shape(tree, g, 64);
   if (!testing::Test::HasFatalFailure()) check_complete(tree, g, 7, 77);
+}
+
+void check_hostile(const scene::Geometry& g) {
+  for (const auto quality : {kdtree::Quality::fast, kdtree::Quality::balanced, kdtree::Quality::best})
+    check_hostile(g, quality);
 }
 
 TEST(Hostile, AllTheSame) {

@@ -125,6 +125,65 @@ TEST_P(ConeTest, RootsLieOnTheSurfaceAndNoneIsMissing) {
   EXPECT_GT(hits, 1500);
 }
 
+// Tips, needles, lines that graze, that run along the axis or come from far away.
+Case grazing_case(std::mt19937& random, int i) {
+  std::uniform_real_distribution<float> unit(-1, 1);
+  Case c = random_case(random, i);
+  if (i % 5 == 0) c.cone.base_radius *= 1e-3f, c.cone.slope *= 1e-3f;
+  const vec3 axis(c.cone.axis[0], c.cone.axis[1], c.cone.axis[2]);
+  const vec3 base(c.cone.base[0], c.cone.base[1], c.cone.base[2]);
+  const vec3 side = glm::normalize(glm::cross(axis, vec3(unit(random), unit(random), 1.5f)));
+  const float s = c.cone.height * 0.5f * (unit(random) + 1);
+  const vec3 touched = base + axis * s + side * (c.cone.base_radius + c.cone.slope * s);
+  const float tilt = std::pow(10.0f, -4 * std::abs(unit(random)));
+  const vec3 along =
+      glm::normalize(axis + tilt * (unit(random) * glm::cross(axis, side) + 0.1f * unit(random) * side));
+  set(c.origin, touched - along * (i % 3 == 0 ? 3e3f : 3.0f) * (1 + unit(random)));
+  set(c.direction, along);
+  return c;
+}
+
+TEST_P(ConeTest, NearnessKeepsEveryLineThatHits) {
+  const unsigned seed = 32;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::vector<Case> in;
+  for (int i = 0; i < 200000; ++i) in.push_back(i % 2 ? random_case(random, i) : grazing_case(random, i));
+  struct Answer {
+    int has_root, is_near;
+  };
+  const std::vector<Answer> out = test::run_kernel<Answer>(
+      GetParam(),
+      "#include \"intersect/cone.clh\"\n"
+      "typedef struct Case { Cone cone; float origin[3], direction[3]; } Case;\n"
+      "__kernel void test(__global const Case* in, __global int2* out, uint n) {\n"
+      "  const uint i = get_global_id(0);\n"
+      "  if (i >= n) return;\n"
+      "  __global const Cone* c = &in[i].cone;\n"
+      "  const float3 f = load3(in[i].origin) - load3(c->base), d = load3(in[i].direction), n3 = "
+      "load3(c->axis);\n"
+      "  const float a = dot3(d, d);\n"
+      "  const ConeRoots_float r = cone_test(f.x, f.y, f.z, d.x, d.y, d.z, a, 1 / a, n3.x, n3.y, n3.z,\n"
+      "                                      c->base_radius, c->height, c->slope);\n"
+      "  const float near = cone_nearness(f.x, f.y, f.z, d.x, d.y, d.z, a, 1 / a, n3.x, n3.y, n3.z,\n"
+      "                                   c->base_radius, c->height, c->slope);\n"
+      "  out[i] = (int2)(!isnan(r.t0) || !isnan(r.t1), near >= 0);\n"
+      "}\n",
+      in);
+  int roots = 0, misses = 0, passed_by = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    if (out[i].has_root) {
+      ++roots;
+      EXPECT_TRUE(out[i].is_near) << i;
+    } else {
+      ++misses;
+      passed_by += !out[i].is_near;
+    }
+  }
+  EXPECT_GT(roots, 50000);
+  EXPECT_GT(passed_by, misses / 8);
+}
+
 KDRAY_FOR_EACH_DEVICE(ConeTest);
 
 }  // namespace

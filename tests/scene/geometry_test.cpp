@@ -12,7 +12,7 @@ using test::refusal;
 Scene triangle_scene(const std::vector<dvec3>& corners) {
   Scene s;
   s.materials.emplace_back();
-  s.vertices = corners;
+  s.vertices.assign(corners.begin(), corners.end());
   for (std::uint32_t i = 0; i + 2 < corners.size(); i += 3) {
     s.triangles.push_back({.vertex = {i, i + 1, i + 2}, .number = i / 3});
   }
@@ -108,6 +108,35 @@ TEST(MakeGeometry, DropsAndCountsTrianglesWithoutArea) {
 
 // One ulp off a line is area enough: only what is exactly flat goes, or else watertight meshes would get
 // holes.
+TEST(MakeGeometry, KeepsTheOrderAroundDroppedTrianglesOfALargeScene) {
+  // More than are made at a time; flat ones singly, in rows, and none for long stretches.
+  constexpr std::uint32_t kMany = 70000;
+  std::mt19937 random(9);
+  Scene s;
+  s.materials.emplace_back();
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < kMany; ++i) {
+    const bool flat = i < 20000 ? random() % 3 == 0 : i > 40000 && i < 62000;
+    const auto first = static_cast<std::uint32_t>(s.vertices.size());
+    const double x = i;
+    for (const dvec3& p : {dvec3(x, 0, 0), dvec3(x + 1, 0, 0), dvec3(x, flat ? 0 : 1, 0)})
+      s.vertices.push_back(p);
+    s.triangles.push_back({.vertex = {first, first + 1, first + 2}, .number = i});
+    if (!flat) kept.push_back(i);
+  }
+  const Geometry g = make_geometry(s);
+  EXPECT_EQ(g.dropped_degenerate, kMany - kept.size());
+  ASSERT_EQ(g.triangles.size(), kept.size());
+  Box bounds;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    ASSERT_EQ(g.triangles[i].source, kept[i]);
+    ASSERT_EQ(dvec3(g.triangles[i].vertex[1]) + g.center, dvec3(kept[i] + 1.0, 0, 0));
+    bounds.grow(bounds_of(g.triangles[i]));
+  }
+  EXPECT_EQ(g.bounds.lo, bounds.lo);
+  EXPECT_EQ(g.bounds.hi, bounds.hi);
+}
+
 TEST(MakeGeometry, DecidesFlatnessExactly) {
   const double x = 1 + 0x1p-23;
   for (const double third : {std::nextafter(3.0f, 0.0f) * 1.0, 3.0, std::nextafter(3.0f, 4.0f) * 1.0}) {

@@ -9,16 +9,22 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kdray/error.h"
 
 namespace kdray {
 
+// For kdray's own rooms.
 namespace scene {
-struct Scene;  // the full model, for kdray's own rooms
+struct Scene;
+}
+namespace prepare {
+struct Prepared;
 }
 
 // A scene read from a file (formats: see docs/scenes.md).
@@ -33,17 +39,65 @@ class Scene {
   std::uint32_t primitives() const;
   const std::vector<std::string>& warnings() const;  // what the loader left out or changed, one line each
   const scene::Scene& model() const;
+  double load_seconds() const { return load_seconds_; }
 
  private:
   std::unique_ptr<scene::Scene> model_;
+  double load_seconds_ = 0;
 };
 
+// How much time goes into the tree (docs/design/kdtree.md). A choice changes times and memory, never a hit.
+enum class BuildQuality { fast, balanced, best };
+
 struct TreeOptions {
+  BuildQuality quality = BuildQuality::balanced;
   int max_depth = -1;  // -1: 8 + 1.3*log2(N)
   double cost_traverse = 1.0;
-  double cost_intersect =
-      3.0;  // of one test: of a primitive, or of a block of them where the tree is built for blocks
-  double empty_bonus = 0.6;
+  double cost_intersect = 2.0;  // of one test: of a block of primitives
+  std::uint64_t memory_bytes =
+      0;  // the most that the scene may take when it is traced; the tree gets coarser; 0: no limit
+};
+
+// A scene ready to be traced: its tree built, all in the form that a device uses. It keeps nothing of the Scene that it does
+// not need; copies share what they hold.
+class PreparedScene {
+ public:
+  explicit PreparedScene(const Scene& scene, const TreeOptions& tree = {});
+  explicit PreparedScene(prepare::Prepared&& prepared);
+
+  const std::vector<std::string>& warnings() const;
+  const scene::Scene& settings() const;  // the scene without its primitives
+  const prepare::Prepared& prepared() const { return *prepared_; }
+
+ private:
+  std::shared_ptr<const prepare::Prepared> prepared_;
+};
+
+// Prepared scenes kept in a folder between runs (docs/design/cache.md). Several processes and threads may use one at once.
+struct CacheOptions {
+  std::filesystem::path folder = {};  // made when something is to be kept; empty: there is no cache
+  std::uint64_t max_bytes = std::uint64_t{4} << 30;  // of all scenes; the least recently used go first
+  double min_seconds = 0.05;                         // what took less to load and build is not kept
+};
+
+class SceneCache {
+ public:
+  explicit SceneCache(CacheOptions options) : options_(std::move(options)) {}
+
+  // $KDRAY_CACHE_DIR, $XDG_CACHE_HOME/kdray/scenes or ~/.cache/kdray/scenes; empty where there is no home, or where
+  // KDRAY_CACHE_DIR is set to nothing.
+  static std::filesystem::path default_folder();
+
+  // The scene as it was kept, if no file that it was made of and no option has changed since. An entry that is damaged
+  // counts as none.
+  std::optional<PreparedScene> find(const std::filesystem::path& file, const TreeOptions& tree = {}) const;
+
+  // Whether it was kept: not a scene that comes from no file, is larger than a quarter of max_bytes, or took less than
+  // min_seconds. Throws ErrorCode::input when the folder can't be written.
+  bool keep(const PreparedScene& scene) const;
+
+ private:
+  CacheOptions options_;
 };
 
 struct DeviceOptions {
@@ -103,6 +157,7 @@ struct Hit {
 class Renderer {
  public:
   explicit Renderer(const Scene& scene, const TreeOptions& tree = {}, const DeviceOptions& device = {});
+  explicit Renderer(const PreparedScene& scene, const DeviceOptions& device = {});
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
   ~Renderer();
@@ -121,6 +176,10 @@ class Renderer {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Opens the device that a Renderer of these options will use, which takes a while and can be done beside the loading of a
+// scene, by another thread. It stays open until the process ends. Throws what the Renderer would.
+void open_device(const DeviceOptions& device);
 
 struct DeviceInfo {
   int number = 0;

@@ -1,0 +1,25 @@
+#include "cache/key.h"
+
+#include <fmt/format.h>
+
+#include "fingerprint.h"
+#include "layout/base.layout.h"
+#include "scene/read_file.h"
+
+namespace kdray::cache {
+
+Hash key_of(const std::filesystem::path& file, const Hash& content, const TreeOptions& options) {
+  // All of them: an option that is added fails to compile here.
+  const auto& [quality, max_depth, cost_traverse, cost_intersect, memory_bytes] = options;
+  // The ending decides how bytes are read; numbers are written so that no bit is lost.
+  const std::string text = fmt::format(
+      "kdray {}, code {}, compiler {}, layout {}, words of {} bytes\n{} {}\n{}\nquality {}, depth {}, costs "
+      "{:a} {:a}, "
+      "memory {}",
+      KDRAY_VERSION, KDRAY_FINGERPRINT, __VERSION__, KDRAY_LAYOUT_VERSION, sizeof(void*),
+      scene::format_of(file), file.extension().string(), in_hex(content), static_cast<int>(quality),
+      max_depth, cost_traverse, cost_intersect, memory_bytes);
+  return hash_of(text);
+}
+
+}  // namespace kdray::cache

@@ -1,0 +1,40 @@
+// What    The way to a prepared scene that render and trace share: from the cache, or read and built, while the device is being
+//         opened beside it.
+// Errors  kdray::Error; but a cache that can't be written costs no picture: a warning where it was asked for by name.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "cli/options.h"
+#include "kdray/kdray.h"
+
+namespace kdray::cli {
+
+class OpenedScene {
+ public:
+  // `check` sees the scene's settings before any tree is built. Prints the scene's warnings, unless `quiet`.
+  OpenedScene(const std::string& file, const TreeOptions& tree, const DeviceOptions& device,
+              const CacheChoice& cache, bool quiet,
+              const std::function<void(const scene::Scene&)>& check = {});
+
+  const PreparedScene& scene() const { return *scene_; }
+
+  // Puts a scene that was not found into the cache; after the picture is out, which it would only delay.
+  void keep();
+
+  const std::string& cache() const { return outcome_; }  // "hit", "miss" or "off"
+  double load_seconds() const { return load_seconds_; }
+  double cache_seconds() const { return cache_seconds_; }  // to look the scene up, and to keep it
+
+ private:
+  CacheChoice choice_;
+  SceneCache cache_;
+  bool quiet_;
+  std::string outcome_ = "off";
+  double load_seconds_ = 0, cache_seconds_ = 0;
+  std::optional<PreparedScene> scene_;
+};
+
+}  // namespace kdray::cli

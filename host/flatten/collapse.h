@@ -1,0 +1,61 @@
+// What    Binary nodes collapsed into nodes of up to eight children: which nodes become children of which, in what order for
+//         each octant of directions, and where leaves' blocks go. Bounds and blocks are not here: they are written once, when
+//         all places are known (wide.cpp).
+// Shape   Of the nodes on the way down, the one whose contents have the largest surface is opened first, until eight
+//         children are found; empty leaves are dropped. A leaf of several kinds of primitives becomes a child for each.
+// Source  Dammertz, Hanika, Keller, EGSR 2008; Wald, Benthin, Boulos, RT 2008.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kdtree/tree.h"
+#include "layout/wide.layout.h"
+
+namespace kdray::flatten {
+
+inline constexpr std::uint32_t kWidth = 8;
+
+// A subtree of the binary tree, whose nodes are [node, end).
+struct Subtree {
+  std::uint32_t node = 0, end = 0;
+  std::uint32_t size() const { return end - node; }
+};
+
+// Entries that a walk stacks below a node, for rays of each octant.
+using StackNeeds = std::array<std::uint16_t, 8>;
+
+struct CollapsedNode {
+  std::uint32_t n = 0;                       // children
+  std::array<std::uint32_t, kWidth> item{};  // the binary node that each is
+  std::array<layout::u32, kWidth> child{};   // as in layout::WideNode, with places relative to the part
+  std::array<layout::u32, kWidth> order{};   // as in layout::WideNode
+};
+
+// The collapsed form of a subtree.
+struct CollapsedPart {
+  // A child that is the root of another part: its number in `cuts`.
+  static constexpr layout::u32 kCut = 1u << 30;
+
+  std::vector<CollapsedNode> nodes;  // [0] is the root; children behind their parents
+  std::vector<Subtree> cuts;         // where other parts begin
+  std::array<std::size_t, 3> n_blocks{};
+};
+
+// `cut_at`: subtrees of at most so many nodes, other than the root, are left to other parts; 0: none is.
+// `only_kind`: the one kind of primitives that the tree holds, or kAnyKind.
+inline constexpr std::uint32_t kAnyKind = ~0u;
+CollapsedPart collapse(const kdtree::Tree& tree, const Subtree& root, std::uint32_t block,
+                       std::uint32_t only_kind, std::uint32_t cut_at);
+
+// For a walk that pushes all children of a node, then pops the nearest; `cuts` are those of the parts cut off.
+StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>& cuts);
+
+// A leaf's references of one kind. Within a leaf references ascend, so kinds follow each other.
+struct LeafRun {
+  std::uint32_t first = 0, n = 0;
+};
+LeafRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind);
+
+}  // namespace kdray::flatten

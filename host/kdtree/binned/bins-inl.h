@@ -1,0 +1,99 @@
+// What    Counting references into bins, and the best plane between two bins.
+#if defined(KDRAY_BINNED_BINS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef KDRAY_BINNED_BINS_INL_H
+#undef KDRAY_BINNED_BINS_INL_H
+#else
+#define KDRAY_BINNED_BINS_INL_H
+#endif
+
+#include "kdtree/binned/bin_grid.h"
+#include "kdtree/binned/cost-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace kdray::kdtree::binned::HWY_NAMESPACE {
+
+// The bins in which a reference begins and ends, counted from the two sides.
+struct BinPair {
+  alignas(16) std::int32_t begin[4], end[4];
+};
+
+HWY_ATTR inline void find_bins(const BoundedRef& r, const BinGrid& grid, BinPair& bins) {
+  const hn::Full128<float> d;
+  const hn::Full128<std::int32_t> di;
+  const auto scale = hn::Load(d, grid.scale.data());
+  const auto begin = hn::Mul(hn::Sub(hn::Load(d, r.lo.data()), hn::Load(d, grid.lo.data())), scale);
+  const auto end = hn::Mul(hn::Sub(hn::Load(d, grid.hi.data()), hn::Load(d, r.hi.data())), scale);
+  const auto none = hn::Zero(d), last = hn::Set(d, static_cast<float>(kBins - 1));
+  hn::Store(hn::ConvertTo(di, hn::Min(hn::Max(begin, none), last)), di, bins.begin);
+  hn::Store(hn::ConvertTo(di, hn::Min(hn::Max(end, none), last)), di, bins.end);
+}
+
+HWY_ATTR inline void add_bins(const BinPair& bins, BinCounts& counts) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    ++counts.begins[k][static_cast<std::size_t>(bins.begin[k])];
+    ++counts.ends[k][static_cast<std::size_t>(bins.end[k])];
+  }
+}
+
+// Two sets of counts: neighbours often fall into one bin, and a count that was just written is slow to be read again.
+HWY_ATTR inline void count_bins(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride,
+                                BinCounts& counts) {
+  BinCounts odd;
+  BinPair first, second;
+  std::size_t i = 0;
+  for (; i + stride < refs.size(); i += 2 * stride) {
+    find_bins(refs[i], grid, first);
+    find_bins(refs[i + stride], grid, second);
+    add_bins(first, counts);
+    add_bins(second, odd);
+  }
+  if (i < refs.size()) {
+    find_bins(refs[i], grid, first);
+    add_bins(first, counts);
+  }
+  counts.add(odd);
+}
+
+// References below and above the plane in front of each bin.
+struct SideCounts {
+  alignas(64) std::array<float, kBins> below, above;
+};
+
+inline SideCounts side_counts(const BinCounts& counts, std::size_t axis, std::size_t stride) {
+  SideCounts sides;
+  std::uint32_t below = 0, above = 0;
+  sides.below[0] = sides.above[0] = 0;
+  for (std::size_t b = 1; b < kBins; ++b) {
+    below += counts.begins[axis][b - 1];
+    above += counts.ends[axis][b - 1];
+    sides.below[b] = static_cast<float>(below * stride);
+    sides.above[kBins - b] = static_cast<float>(above * stride);
+  }
+  return sides;
+}
+
+HWY_ATTR inline Best best_between_bins(const BinCounts& counts, const BinGrid& grid, const Bounds& contents,
+                                       std::size_t stride, const BuildConfig& config) {
+  const Floats d;
+  Best best;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    const PlaneCosts costs(config, contents, axis);
+    if (!costs.usable() || grid.scale[k] == 0) continue;
+    const SideCounts sides = side_counts(counts, k, stride);
+    BestOfAxis best_here;
+    for (std::size_t b = 0; b < kBins; b += hn::Lanes(d)) {
+      // As BinGrid::plane. The plane in front of the first bin is not inside.
+      const V share = hn::Mul(hn::Iota(d, static_cast<float>(b)), hn::Set(d, 1.0f / kBins));
+      const V plane = hn::Add(hn::Set(d, grid.lo[k]), hn::Mul(hn::Set(d, grid.hi[k] - grid.lo[k]), share));
+      best_here.offer(costs(plane, hn::Load(d, &sides.below[b]), hn::Load(d, &sides.above[b])), plane);
+    }
+    best_here.offer_to(best, axis);
+  }
+  return best;
+}
+
+}  // namespace kdray::kdtree::binned::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

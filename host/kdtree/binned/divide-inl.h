@@ -1,0 +1,95 @@
+// What    Hands a cell's references to the two sides of a plane, without branches: each is written to all three places, and
+//         one of the places moves on.
+// Shape   A reference that ends at the plane or lies in it is below, one that begins there is above: at most one side gets
+//         it. What straddles is clipped into both.
+#if defined(KDRAY_BINNED_DIVIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef KDRAY_BINNED_DIVIDE_INL_H
+#undef KDRAY_BINNED_DIVIDE_INL_H
+#else
+#define KDRAY_BINNED_DIVIDE_INL_H
+#endif
+
+#include "kdtree/binned/clip-inl.h"
+#include "kdtree/clip.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace kdray::kdtree::binned::HWY_NAMESPACE {
+
+HWY_ATTR inline Bounds hull_of_refs(std::span<const BoundedRef> refs) {
+  const hn::Full128<float> d;
+  auto lo = hn::Set(d, std::numeric_limits<float>::infinity());
+  auto hi = hn::Neg(lo);
+  for (const BoundedRef& r : refs) {
+    lo = hn::Min(lo, hn::Load(d, r.lo.data()));
+    hi = hn::Max(hi, hn::Load(d, r.hi.data()));
+  }
+  alignas(16) std::array<float, 4> l, h;
+  hn::Store(lo, d, l.data());
+  hn::Store(hi, d, h.data());
+  return {{l[0], l[1], l[2]}, {h[0], h[1], h[2]}};
+}
+
+struct Sorted {
+  std::size_t n_below = 0, n_above = 0, n_straddling = 0;
+};
+
+// `above` may be where the references are; each place has room for all and one more.
+HWY_ATTR inline Sorted sort_sides(const BoundedRef* refs, std::size_t n, const Plane& plane,
+                                  BoundedRef* below, BoundedRef* above, BoundedRef* straddling) {
+  const hn::Full128<float> d;
+  const auto k = static_cast<std::size_t>(plane.axis);
+  Sorted sorted;
+  for (std::size_t i = 0; i < n; ++i) {
+    // As numbers: a branch here would be mispredicted for every other reference.
+    const std::size_t ends = refs[i].hi[k] <= plane.position ? 1 : 0;
+    const std::size_t begins = (refs[i].lo[k] >= plane.position ? 1 : 0) & (ends ^ 1);
+    const auto lo = hn::Load(d, refs[i].lo.data()), hi = hn::Load(d, refs[i].hi.data());
+    BoundedRef *const b = below + sorted.n_below, *const a = above + sorted.n_above,
+                      *const s = straddling + sorted.n_straddling;
+    for (BoundedRef* to : {b, a, s}) {
+      hn::Store(lo, d, to->lo.data());
+      hn::Store(hi, d, to->hi.data());
+    }
+    sorted.n_below += ends;
+    sorted.n_above += begins;
+    sorted.n_straddling += 1 - ends - begins;
+  }
+  return sorted;
+}
+
+// Puts both parts of a straddling reference of any kind behind the others.
+inline void clip_one(const scene::Geometry& geometry, const BuildConfig& config, const BoundedRef& r,
+                     const Plane& plane, BoundedRef* below_refs, BoundedRef* above_refs, Divided& sides) {
+  const Bounds known = r.bounds();
+  const SplitBounds parts = config.clip ? clip_to_sides(geometry, r, known, plane.axis, plane.position)
+                                        : SplitBounds{below(known, plane.axis, plane.position),
+                                                      above(known, plane.axis, plane.position)};
+  if (!parts.below.empty()) below_refs[sides.n_below++] = with_bounds(r, parts.below);
+  if (!parts.above.empty()) above_refs[sides.n_above++] = with_bounds(r, parts.above);
+}
+
+// Moves the triangles to the front; their number.
+inline std::size_t triangles_first(std::span<BoundedRef> refs) {
+  const auto others = std::partition(refs.begin(), refs.end(), [](const BoundedRef& r) {
+    return ref_kind(r.ref) == scene::PrimitiveKind::triangle;
+  });
+  return static_cast<std::size_t>(others - refs.begin());
+}
+
+HWY_ATTR inline void clip_straddling(const scene::Geometry& geometry, const BuildConfig& config,
+                                     std::span<BoundedRef> refs, const Plane& plane, BoundedRef* below,
+                                     BoundedRef* above, Divided& sides) {
+  std::size_t n_triangles = 0;
+  if (config.clip) {
+    const bool mixed = !geometry.spheres.empty() || !geometry.cones.empty();
+    n_triangles = mixed ? triangles_first(refs) : refs.size();
+    clip_triangles(geometry, refs.first(n_triangles), plane, below, above, sides);
+  }
+  for (const BoundedRef& r : refs.subspan(n_triangles))
+    clip_one(geometry, config, r, plane, below, above, sides);
+}
+
+}  // namespace kdray::kdtree::binned::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

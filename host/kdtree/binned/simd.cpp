@@ -1,0 +1,79 @@
+#include "kdtree/binned/simd.h"
+
+// Instruction sets that would add nothing here. The fallback for any machine is Highway's emulation of 128 bits, which it
+// avoids with g++ before 12.3 for a fault in products of 16-bit integers (GCC bug 106322); there are none here.
+#define HWY_BROKEN_EMU128 0
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kdtree/binned/simd.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+#include "kdtree/binned/subtree-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace kdray::kdtree::binned::HWY_NAMESPACE {
+
+HWY_ATTR void Count(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride,
+                    BinCounts& counts) {
+  count_bins(refs, grid, stride, counts);
+}
+
+HWY_ATTR Plane BestPlane(const BinCounts& counts, const BinGrid& grid, const Bounds& contents, std::size_t n,
+                         const BuildConfig& config) {
+  return cheaper_than_leaf(best_between_bins(counts, grid, contents, sample_stride(n), config), n, config);
+}
+
+HWY_ATTR Divided Divide(const scene::Geometry& geometry, const BuildConfig& config,
+                        std::span<const BoundedRef> refs, const Plane& plane, BoundedRef* below,
+                        BoundedRef* above, Workspace& workspace) {
+  std::vector<BoundedRef>& straddlers = workspace.straddlers;
+  if (straddlers.size() < refs.size() + 1) straddlers.resize(refs.size() + 1);
+  const Sorted sorted = sort_sides(refs.data(), refs.size(), plane, below, above, straddlers.data());
+  Divided sides{sorted.n_below, sorted.n_above};
+  clip_straddling(geometry, config, {straddlers.data(), sorted.n_straddling}, plane, below, above, sides);
+  return sides;
+}
+
+HWY_ATTR Bounds Hull(std::span<const BoundedRef> refs) {
+  return hull_of_refs(refs);
+}
+
+HWY_ATTR void BuildSubtree(const scene::Geometry& geometry, const BuildConfig& config, int max_depth,
+                           std::size_t n, const Cell& cell, Workspace& workspace) {
+  workspace.fragment.clear();
+  SubtreeBuilder(geometry, config, max_depth, workspace).build(0, n, cell);
+}
+
+}  // namespace kdray::kdtree::binned::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace kdray::kdtree::binned {
+
+HWY_EXPORT(Count);
+HWY_EXPORT(BestPlane);
+HWY_EXPORT(Divide);
+HWY_EXPORT(Hull);
+HWY_EXPORT(BuildSubtree);
+
+void count(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride, BinCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(Count)(refs, grid, stride, counts);
+}
+Plane best_plane(const BinCounts& counts, const BinGrid& grid, const Bounds& contents, std::size_t n,
+                 const BuildConfig& config) {
+  return HWY_DYNAMIC_DISPATCH(BestPlane)(counts, grid, contents, n, config);
+}
+Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::span<const BoundedRef> refs,
+               const Plane& plane, BoundedRef* below, BoundedRef* above, Workspace& workspace) {
+  return HWY_DYNAMIC_DISPATCH(Divide)(geometry, config, refs, plane, below, above, workspace);
+}
+Bounds fast_hull_of(std::span<const BoundedRef> refs) {
+  return HWY_DYNAMIC_DISPATCH(Hull)(refs);
+}
+void build_subtree(const scene::Geometry& geometry, const BuildConfig& config, int max_depth, std::size_t n,
+                   const Cell& cell, Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(BuildSubtree)(geometry, config, max_depth, n, cell, workspace);
+}
+
+}  // namespace kdray::kdtree::binned
+#endif

@@ -1,0 +1,230 @@
+#include "kdtree/binned/top.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "kdtree/binned/simd.h"
+#include "kdtree/binned/slab.h"
+#include "kdtree/budget.h"
+
+namespace kdray::kdtree::binned {
+
+namespace {
+
+// Cells of so many references, of n in all, are built in one thread: enough of them for any number of threads, each small
+// enough for a core's cache.
+std::size_t subtree_refs(std::size_t n) {
+  return std::clamp<std::size_t>(n / 32, 2048, 32768);
+}
+
+// A cell of the top, and where its node goes.
+struct TopCell {
+  TopNode* node;
+  Cell cell;
+  std::size_t n = 0;
+  std::vector<Piece> pieces;
+};
+
+// Pieces of one cell, about kTaskRefs references in all, and what comes of them.
+struct Task {
+  std::size_t cell, first_piece, end_piece;
+  BinCounts counts;
+  Piece below, above;
+  Bounds below_hull, above_hull;
+};
+
+class TopBuilder {
+ public:
+  TopBuilder(const scene::Geometry& geometry, const BuildConfig& config, int max_depth)
+      : geometry_(geometry),
+        config_(config),
+        max_depth_(max_depth),
+        subtree_refs_(subtree_refs(geometry.size())) {}
+
+  std::unique_ptr<TopNode> run(Bounds& bounds) {
+    auto root = std::make_unique<TopNode>();
+    std::vector<TopCell> level;
+    place(whole_scene(*root), level);
+    bounds = (level.empty() ? subtrees_ : level).front().cell.contents;
+    while (!level.empty()) level = next_level(std::move(level));
+    build_subtrees();
+    return root;
+  }
+
+ private:
+  TopCell whole_scene(TopNode& root) {
+    const std::size_t n = geometry_.size(), n_pieces = (n + kTaskRefs - 1) / kTaskRefs;
+    TopCell cell{&root, {no_bounds(), 0, reference_budget(n, config_.quality)}, n, {}};
+    cell.pieces.resize(n_pieces);
+    std::vector<Bounds> hulls(n_pieces);
+    tbb::parallel_for(std::size_t{0}, n_pieces, [&](std::size_t i) {
+      Piece& piece = cell.pieces[i];
+      piece.slab = slabs_.take();
+      piece.first = piece.slab->below.data();
+      piece.n = std::min(kTaskRefs, n - i * kTaskRefs);
+      for (std::size_t k = 0; k < piece.n; ++k) piece.first[k] = reference(i * kTaskRefs + k);
+      hulls[i] = fast_hull_of(piece.refs());
+    });
+    for (const Bounds& h : hulls) cell.cell.contents = hull(cell.cell.contents, h);
+    return cell;
+  }
+
+  // The i-th of all primitives.
+  BoundedRef reference(std::size_t i) const {
+    const auto make = [&](scene::PrimitiveKind kind, const auto& primitives, std::size_t k) {
+      const Bounds b = bounds_from(scene::bounds_of(primitives[k]));
+      return BoundedRef{b.lo, make_ref(kind, static_cast<std::uint32_t>(k)), b.hi};
+    };
+    if (i < geometry_.triangles.size()) return make(scene::PrimitiveKind::triangle, geometry_.triangles, i);
+    i -= geometry_.triangles.size();
+    if (i < geometry_.spheres.size()) return make(scene::PrimitiveKind::sphere, geometry_.spheres, i);
+    return make(scene::PrimitiveKind::cone, geometry_.cones, i - geometry_.spheres.size());
+  }
+
+  // Large cells go to the next level, small ones are subtrees.
+  void place(TopCell&& cell, std::vector<TopCell>& level) {
+    const bool small = cell.n <= subtree_refs_ || cell.cell.depth >= max_depth_;
+    (small ? subtrees_ : level).push_back(std::move(cell));
+  }
+
+  std::vector<TopCell> next_level(std::vector<TopCell>&& level) {
+    std::vector<BinGrid> grids;
+    for (const TopCell& c : level) grids.push_back(make_bin_grid(c.cell.contents));
+    std::vector<Task> tasks = tasks_of(level);
+    for_tasks(tasks, [&](Task& t) {
+      for (std::size_t p = t.first_piece; p < t.end_piece; ++p)
+        count(level[t.cell].pieces[p].refs(), grids[t.cell], sample_stride(level[t.cell].n), t.counts);
+    });
+    const std::vector<Plane> planes = choose_planes(level, grids, tasks);
+    for_tasks(tasks, [&](Task& t) {
+      if (planes[t.cell].found()) divide_task(level[t.cell], planes[t.cell], t);
+    });
+    return children(std::move(level), planes, tasks);
+  }
+
+  static std::vector<Task> tasks_of(const std::vector<TopCell>& level) {
+    std::vector<Task> tasks;
+    for (std::size_t c = 0; c < level.size(); ++c) {
+      const std::vector<Piece>& pieces = level[c].pieces;
+      for (std::size_t p = 0; p < pieces.size();) {
+        const std::size_t first = p;
+        for (std::size_t n = 0; p < pieces.size() && n + pieces[p].n <= kTaskRefs; ++p) n += pieces[p].n;
+        tasks.push_back({c, first, p, {}, {}, {}, no_bounds(), no_bounds()});
+      }
+    }
+    return tasks;
+  }
+
+  template <class Work>
+  static void for_tasks(std::vector<Task>& tasks, const Work& work) {
+    tbb::parallel_for(
+        std::size_t{0}, tasks.size(), [&](std::size_t i) { work(tasks[i]); }, tbb::simple_partitioner());
+  }
+
+  std::vector<Plane> choose_planes(const std::vector<TopCell>& level, const std::vector<BinGrid>& grids,
+                                   const std::vector<Task>& tasks) const {
+    std::vector<BinCounts> counts(level.size());
+    for (const Task& t : tasks) counts[t.cell].add(t.counts);
+    std::vector<Plane> planes(level.size());
+    for (std::size_t c = 0; c < level.size(); ++c)
+      planes[c] = best_plane(counts[c], grids[c], level[c].cell.contents, level[c].n, config_);
+    return planes;
+  }
+
+  void divide_task(const TopCell& cell, const Plane& plane, Task& t) {
+    const std::shared_ptr<Slab> slab = slabs_.take();
+    t.below = {slab, slab->below.data(), 0};
+    t.above = {slab, slab->above.data(), 0};
+    for (std::size_t p = t.first_piece; p < t.end_piece; ++p) {
+      const Divided sides = divide(geometry_, config_, cell.pieces[p].refs(), plane,
+                                   t.below.first + t.below.n, t.above.first + t.above.n, workspaces_.local());
+      t.below.n += sides.n_below;
+      t.above.n += sides.n_above;
+    }
+    t.below_hull = fast_hull_of(t.below.refs());
+    t.above_hull = fast_hull_of(t.above.refs());
+  }
+
+  std::vector<TopCell> children(std::vector<TopCell>&& level, const std::vector<Plane>& planes,
+                                std::vector<Task>& tasks) {
+    std::vector<TopCell> next;
+    std::size_t t = 0;
+    for (std::size_t c = 0; c < level.size(); ++c) {
+      TopCell below{nullptr, {no_bounds(), level[c].cell.depth + 1, 0}, 0, {}};
+      TopCell above = below;
+      for (; t < tasks.size() && tasks[t].cell == c; ++t) {
+        take(std::move(tasks[t].below), tasks[t].below_hull, below);
+        take(std::move(tasks[t].above), tasks[t].above_hull, above);
+      }
+      if (!planes[c].found() || !fits_budget(level[c].cell.budget, below.n, above.n)) {
+        subtrees_.push_back(std::move(level[c]));
+        continue;
+      }
+      const Shares shares = share(level[c].cell.budget, below.n, above.n);
+      below.cell.budget = shares.below;
+      above.cell.budget = shares.above;
+      split(*level[c].node, planes[c], below, above);
+      place(std::move(below), next);
+      place(std::move(above), next);
+    }
+    return next;
+  }
+
+  static void take(Piece&& piece, const Bounds& bounds, TopCell& cell) {
+    if (piece.n == 0) return;
+    cell.n += piece.n;
+    cell.cell.contents = hull(cell.cell.contents, bounds);
+    cell.pieces.push_back(std::move(piece));
+  }
+
+  static void split(TopNode& node, const Plane& plane, TopCell& below, TopCell& above) {
+    node.axis = plane.axis;
+    node.position = plane.position;
+    node.below = std::make_unique<TopNode>();
+    node.above = std::make_unique<TopNode>();
+    below.node = node.below.get();
+    above.node = node.above.get();
+  }
+
+  // The largest first, so that no thread is left alone with one at the end.
+  void build_subtrees() {
+    std::stable_sort(subtrees_.begin(), subtrees_.end(),
+                     [](const TopCell& a, const TopCell& b) { return a.n > b.n; });
+    std::atomic<std::size_t> next{0};
+    tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(), [&](int) {
+      for (std::size_t i; (i = next++) < subtrees_.size();) build_one(subtrees_[i]);
+    });
+  }
+
+  void build_one(TopCell& top) {
+    Workspace& workspace = workspaces_.local();
+    std::vector<BoundedRef>& stack = workspace.stack;
+    if (stack.size() < top.n + 1) stack.resize(top.n + 1);
+    auto to = stack.begin();
+    for (const Piece& piece : top.pieces) to = std::copy_n(piece.first, piece.n, to);
+    top.pieces.clear();
+    build_subtree(geometry_, config_, max_depth_, top.n, top.cell, workspace);
+    top.node->fragment = workspace.fragment;
+  }
+
+  const scene::Geometry& geometry_;
+  const BuildConfig& config_;
+  const int max_depth_;
+  const std::size_t subtree_refs_;
+  SlabPool slabs_;
+  std::vector<TopCell> subtrees_;
+  tbb::enumerable_thread_specific<Workspace> workspaces_;
+};
+
+}  // namespace
+
+std::unique_ptr<TopNode> build_binned(const scene::Geometry& geometry, const BuildConfig& config,
+                                      int max_depth, Bounds& bounds) {
+  return TopBuilder(geometry, config, max_depth).run(bounds);
+}
+
+}  // namespace kdray::kdtree::binned

@@ -1,0 +1,25 @@
+// What    A finished subtree, before it is put in its place in the tree.
+// Shape   Nodes in depth-first preorder; indices are relative to the fragment.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kdtree/reference.h"
+#include "kdtree/tree.h"
+
+namespace kdray::kdtree {
+
+struct Fragment {
+  std::vector<Node> nodes;
+  std::vector<Ref> refs;
+  std::vector<Box> contents;  // of each node
+  int max_depth = 0;
+
+  void clear();
+};
+
+// Appends a leaf; returns `contents`, the hull of what it holds.
+Box append_leaf(std::span<const BoundedRef> refs, const Bounds& contents, int depth, Fragment& out);
+
+}  // namespace kdray::kdtree

@@ -1,0 +1,131 @@
+#include "prepare/prepared.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/timer.h"
+#include "flatten/features.h"
+
+namespace kdray::prepare {
+
+namespace {
+
+kdtree::Quality quality_of(BuildQuality quality) {
+  switch (quality) {
+    case BuildQuality::fast:
+      return kdtree::Quality::fast;
+    case BuildQuality::best:
+      return kdtree::Quality::best;
+    default:
+      return kdtree::Quality::balanced;
+  }
+}
+
+}  // namespace
+
+kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
+  kdtree::BuildConfig config;
+  config.quality = quality_of(o.quality);
+  config.max_depth = o.max_depth;
+  config.cost_traverse = o.cost_traverse;
+  config.cost_intersect = o.cost_intersect;
+  return kdtree::suited(config, n_primitives);
+}
+
+namespace {
+
+// The scene is taken apart into all its members, so that one that is added can't be forgotten.
+scene::Scene settings_of(const scene::Scene& scene) {
+  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, camera, background,
+               ambient, settings, warnings, files] = scene;
+  return {.name = name,
+          .vertices = {},
+          .normals = {},
+          .triangles = {},
+          .spheres = {},
+          .cones = {},
+          .materials = materials,
+          .lights = lights,
+          .camera = camera,
+          .background = background,
+          .ambient = ambient,
+          .settings = settings,
+          .warnings = warnings,
+          .files = files};
+}
+
+}  // namespace
+
+namespace {
+
+constexpr double kCoarsest = 256;
+
+std::string megabytes(std::uint64_t bytes) {
+  return fmt::format("{:.1f}M", static_cast<double>(bytes) / (1 << 20));
+}
+
+// Dearer inner nodes make larger leaves: fewer nodes, and fewer copies of primitives that lie in several.
+Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geometry,
+                        kdtree::BuildConfig config, std::uint64_t most_bytes) {
+  config.cost_traverse = std::max(config.cost_traverse, 1.0);
+  const double asked = config.cost_traverse;
+  for (double coarser = 1;; coarser *= 2) {
+    config.cost_traverse = asked * coarser;
+    Prepared made = prepare(scene, geometry, config);
+    if (made.bytes() <= most_bytes) {
+      if (coarser > 1)
+        made.settings.warnings.push_back(
+            fmt::format("the tree is coarser, so that the scene takes {} (--memory {}): tracing is slower",
+                        megabytes(made.bytes()), megabytes(most_bytes)));
+      return made;
+    }
+    if (coarser >= kCoarsest)
+      throw Error(ErrorCode::out_of_memory,
+                  fmt::format("the scene takes {} at least; --memory {} is too little for it",
+                              megabytes(made.bytes()), megabytes(most_bytes)));
+  }
+}
+
+}  // namespace
+
+Prepared prepare(const scene::Scene& scene, const TreeOptions& options) {
+  const Timer timer;
+  const scene::Geometry geometry = scene::make_geometry(scene);
+  const kdtree::BuildConfig config = config_of(options, geometry.size());
+  const double seconds = timer.seconds();
+  Prepared made = options.memory_bytes > 0 ? prepare_within(scene, geometry, config, options.memory_bytes)
+                                           : prepare(scene, geometry, config);
+  made.tree_options = options;
+  made.seconds.build += seconds;
+  return made;
+}
+
+Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
+                 const kdtree::BuildConfig& config) {
+  Prepared made;
+  made.settings = settings_of(scene);
+
+  Timer step;
+  const kdtree::Tree tree = kdtree::build(geometry, config);
+  made.seconds.build = step.seconds();
+
+  step.restart();
+  made.flat = flatten::flatten(scene, geometry, tree);
+  made.wide = flatten::make_wide(tree, made.flat, flatten::choose_block(tree));
+  made.seconds.flatten = step.seconds();
+
+  made.geometry.center = geometry.center;
+  made.geometry.bounds = tree.bounds;
+  made.geometry.dropped_degenerate = geometry.dropped_degenerate;
+  made.counts = {scene.primitive_count(), geometry.triangles.size(), geometry.spheres.size(),
+                 geometry.cones.size()};
+  made.features = flatten::features_of(scene, geometry);
+  made.tree_depth = tree.max_depth;
+  made.tree_nodes = tree.nodes.size();
+  made.tree = kdtree::measure(tree, geometry, config);
+  return made;
+}
+
+}  // namespace kdray::prepare

@@ -1,0 +1,53 @@
+// What    A scene ready to be traced: all that a renderer keeps of it. The rest of the scene may go once it is made.
+// Shape   Plain values and arrays that a CPU device uses as they are; the scene cache (host/cache) keeps them in a file.
+#pragma once
+
+#include <cstdint>
+
+#include "flatten/flatten.h"
+#include "flatten/wide.h"
+#include "kdray/kdray.h"
+#include "kdtree/build.h"
+#include "kdtree/statistics.h"
+#include "scene/geometry.h"
+#include "scene/scene.h"
+
+namespace kdray::prepare {
+
+struct Counts {
+  std::uint64_t primitives = 0;                         // of the file, degenerate ones too
+  std::uint64_t triangles = 0, spheres = 0, cones = 0;  // that can be hit
+};
+
+// Wall time.
+struct Seconds {
+  double load = 0, build = 0, flatten = 0;
+  double total() const { return load + build + flatten; }
+};
+
+struct Prepared {
+  scene::Scene settings;     // the scene but for its primitives, vertices and normals
+  scene::Geometry geometry;  // centre and bounds (the root's cell: what rays are clipped to); no primitives
+  Counts counts;
+  std::uint32_t features = 0;
+  int tree_depth = 0;  // of the deepest leaf: it sizes the kernels' stacks
+  std::uint64_t tree_nodes = 0;
+  kdtree::Statistics tree;
+  flatten::FlatScene flat;
+  flatten::WideForm wide;
+  TreeOptions tree_options;  // that it was made with
+  Seconds seconds;           // that it took to make
+
+  std::size_t bytes() const { return flat.bytes() + wide.bytes(); }
+};
+
+// What the tree of a scene of n primitives is built with.
+kdtree::BuildConfig config_of(const TreeOptions& options, std::size_t n_primitives);
+
+Prepared prepare(const scene::Scene& scene, const TreeOptions& options);
+
+// The same with a tree of any kind; `geometry` is the scene's. Its tree_options are left at their defaults.
+Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
+                 const kdtree::BuildConfig& config);
+
+}  // namespace kdray::prepare
