@@ -100,11 +100,7 @@ class SceneBench {
     }
   }
 
-  DeviceOptions device() const {
-    DeviceOptions device;
-    device.device = options_.device;
-    return device;
-  }
+  DeviceOptions device() const { return {.device = options_.device}; }
 
   const BuildOptions& options_;
   std::string name_;

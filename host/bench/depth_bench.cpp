@@ -91,11 +91,7 @@ class SceneBench {
     return seconds;
   }
 
-  DeviceOptions device() const {
-    DeviceOptions device;
-    device.device = options_.device;
-    return device;
-  }
+  DeviceOptions device() const { return {.device = options_.device}; }
 
   const DepthOptions& options_;
   std::string name_;

@@ -4,10 +4,12 @@
 #include "flatten/wide.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -92,15 +94,16 @@ const std::vector<Subject>& subjects() {
     std::vector<Subject> made;
     for (const NamedGeometry& g : geometries())
       for (const int leaf_block : {1, 8})
-        for (const bool tight : {false, true}) {
+        for (const bool loose : {false, true}) {
           kdtree::BuildConfig config;
           config.block = leaf_block;
-          config.tight_cells = tight;
+          config.quality = loose ? kdtree::Quality::best : kdtree::Quality::balanced;
+          config.tight_cells = !loose;  // loose cells: some are empty, some flat
           const kdtree::Tree tree = kdtree::build(g.geometry, config);
           const FlatScene flat = flat_of(g.geometry, tree);
           for (const int block : {4, 8})
             made.push_back({std::string(g.name) + ", leaves for blocks of " + std::to_string(leaf_block) +
-                                (tight ? ", tight" : "") + ", in blocks of " + std::to_string(block),
+                                (loose ? ", loose" : "") + ", in blocks of " + std::to_string(block),
                             tree, flat, make_wide(tree, flat, block)});
         }
     return made;
@@ -269,6 +272,39 @@ TEST(Wide, SlotsWithoutChildHaveBoundsThatNoRayMeets) {
           ASSERT_EQ(node.bounds[axis][1][slot], -kInfinity);
         }
   });
+}
+
+TEST(Wide, LooseCellsHaveEmptyOnesToSkip) {
+  std::size_t n_empty = 0;
+  for (const Subject& s : subjects())
+    if (s.name.find("loose") != std::string::npos)
+      for (const kdtree::Node& node : s.tree.nodes) n_empty += node.is_leaf() && node.right == 0 ? 1 : 0;
+  EXPECT_GT(n_empty, 1000u);
+}
+
+template <class T>
+void expect_same_bytes(const Array<T>& a, const Array<T>& b) {
+  ASSERT_EQ(a.bytes(), b.bytes());
+  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
+}
+
+// Large enough to be collapsed in many parts.
+TEST(Wide, ThreadsDoNotShow) {
+  Random random(kSeed);
+  const scene::Geometry g = test::mixed_geometry(random, 8000, 0.3f);
+  const kdtree::Tree tree = kdtree::build(g, {});
+  const FlatScene flat = flat_of(g, tree);
+  ASSERT_GT(tree.nodes.size(), 4096u);
+  const auto made_by = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return make_wide(tree, flat, 4);
+  };
+  const WideForm one = made_by(1), four = made_by(4);
+  EXPECT_EQ(one.stack_size, four.stack_size);
+  expect_same_bytes(one.nodes, four.nodes);
+  expect_same_bytes(one.triangle_blocks, four.triangle_blocks);
+  expect_same_bytes(one.sphere_blocks, four.sphere_blocks);
+  expect_same_bytes(one.cone_blocks, four.cone_blocks);
 }
 
 // ---- Blocks
