@@ -90,6 +90,7 @@ struct Renderer::Impl {
   std::unique_ptr<wavefront::SceneBuffers> buffers;
   std::unique_ptr<wavefront::Programs> programs;
   api::Json statistics;
+  std::string timeline;  // of the last frame, where it was asked for
 };
 
 Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_options)
@@ -169,6 +170,7 @@ void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& fr
 
 Picture Renderer::Impl::render(const RenderOptions& options) {
   const RenderOptions o = flatten::resolved(options, scene.settings.settings);
+  if (o.mode == Mode::odprt) throw Error(ErrorCode::usage, "odprt is not there yet");
   const layout::Frame frame = flatten::make_frame(scene.settings, scene.geometry, o);
   const std::uint32_t used = scene.features | flatten::features_of_samples(o.samples);
   const pdprt::Result result =
@@ -223,6 +225,9 @@ Picture Renderer::render(const RenderOptions& options) {
 }
 std::vector<Hit> Renderer::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal) {
   return impl_->trace(rays, any_hit, repeat, traversal);
+}
+std::string Renderer::timeline() const {
+  return impl_->timeline;
 }
 std::string Renderer::statistics() const {
   return impl_->statistics.dump(2);

@@ -3,6 +3,7 @@
 //         whole or not at all, the statistics after it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
@@ -34,7 +35,7 @@ constexpr int kSideMax = 65536;
 constexpr long long kPixelsMax = 1ll << 28;  // 16384 x 16384; memory.h refuses what this machine can't hold
 
 struct Options {
-  std::string scene, output, stats;
+  std::string scene, output, stats, timeline;
   bool quiet = false;
   bool gamma_given = false, bits_given = false;
   CacheChoice cache;
@@ -89,17 +90,52 @@ void add_file_options(CLI::App& app, Options& o) {
   app.add_flag("-q,--quiet", o.quiet, "Say nothing unless something is wrong");
 }
 
-void add_schedule_options(CLI::App& app, Options& o) {
-  static constexpr std::array<std::string_view, 2> kModes = {"auto", "pdprt"};
-  add_text(app, "--mode", "NAME", "How the work is divided: auto, pdprt (the pixels are divided)",
-           [](const std::string& text) { parse_choice("--mode", text, kModes); })
-      ->group("Device");
+// Adds an option that takes one of an enumeration's names, in the order of its values.
+template <class Choice, std::size_t kN>
+void add_choice(CLI::App& app, const std::string& option, const std::string& help,
+                const std::array<std::string_view, kN>& names, Choice& choice) {
+  add_text(app, option, "NAME", help, [option, &names, &choice](const std::string& text) {
+    parse_choice(option, text, names);
+    choice = static_cast<Choice>(std::find(names.begin(), names.end(), text) - names.begin());
+  })->group("Division");
+}
+
+void add_division_options(CLI::App& app, Options& o) {
+  static constexpr std::array<std::string_view, 3> kModes = {"auto", "pdprt", "odprt"};
+  static constexpr std::array<std::string_view, 3> kDivisions = {"bag", "contiguous", "interleaved"};
+  static constexpr std::array<std::string_view, 3> kBalances = {"sah", "pilot", "dynamic"};
+  const std::string group = "Division";
+  add_choice(app, "--mode", "What queues divide among them: pdprt the pixels, odprt the scene; auto chooses",
+             kModes, o.render.mode);
+  add_choice(app, "--division", "How pdprt's queues come by tiles: bag (default), contiguous, interleaved",
+             kDivisions, o.render.division);
+  add_choice(app, "--balance", "What odprt's subtrees are dealt out by: sah, pilot (default), dynamic",
+             kBalances, o.render.balance);
   add_text(app, "--tile", "WxH", "Size of the tiles the picture is divided into (default: chosen)",
            [&o](const std::string& text) {
              const Size size = parse_size("--tile", text, kSideMax, kPixelsMax);
              o.render.tile_width = size.width, o.render.tile_height = size.height;
            })
-      ->group("Device");
+      ->group(group);
+  add_int(app, "--ray-buffer", "Rays in a buffer between two of odprt's queues, per slice (default: chosen)",
+          1, 1 << 20, o.render.ray_buffer)
+      ->group(group);
+  add_text(app, "--device-memory", "BYTES",
+           "The most that a device may hold, as in 500M: odprt's subtrees come and go",
+           [&o](const std::string& text) { o.render.device_memory = parse_bytes("--device-memory", text); })
+      ->group(group);
+  add_path(app, "--trace", "Write what each queue did when, for Perfetto (Chrome trace format)", o.timeline)
+      ->group(group);
+  add_text(app, "--inject-fault", "Q@N", "For tests: the Nth launch on queue Q fails (Q@N,Q@N,...)",
+           [&o](const std::string& text) { o.device.faults = text; })
+      ->group(group);
+}
+
+void check_timeline(const Options& o) {
+  check_text_output(o.timeline);
+  check_apart("SCENE", o.scene, "--trace", o.timeline);
+  check_apart("--output", o.output, "--trace", o.timeline);
+  check_apart("--stats", o.stats, "--trace", o.timeline);
 }
 
 void check_files(Options& o) {
@@ -109,6 +145,7 @@ void check_files(Options& o) {
   check_apart("SCENE", o.scene, "--output", o.output);
   check_apart("SCENE", o.scene, "--stats", o.stats);
   check_apart("--output", o.output, "--stats", o.stats);
+  if (!o.timeline.empty()) check_timeline(o);
   if (ending_of(o.output) == ".exr" && !o.quiet) {
     if (o.gamma_given) say("--gamma has no effect: an EXR holds linear values");
     if (o.bits_given) say("--bits has no effect: an EXR holds floats");
@@ -143,6 +180,7 @@ film::Written write(Picture&& picture, const Options& o) {
 Picture render(Renderer& renderer, const Options& o) {
   Progress progress(o.quiet);
   RenderOptions options = o.render;
+  options.timeline = !o.timeline.empty();
   options.progress = [&progress](double share) { progress.update(share); };
   return renderer.render(options);
 }
@@ -167,6 +205,7 @@ int run(Options& o) {
   stats["cache"] = scene.cache();
   for (const auto& file : written.files) stats["files"].push_back(file.string());
   if (!o.stats.empty()) write_stats(o.stats, stats);
+  if (!o.timeline.empty()) write_text(o.timeline, renderer.timeline() + "\n");
   if (!o.quiet) print_render_summary(stats, written.nan_values);
   return 0;
 }
@@ -182,7 +221,7 @@ Command add_render(CLI::App& kdray) {
       ->type_name("");
   add_file_options(*app, *o);
   add_picture_options(*app, *o);
-  add_schedule_options(*app, *o);
+  add_division_options(*app, *o);
   add_device_options(*app, o->device, o->render.traversal);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);

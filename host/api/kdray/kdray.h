@@ -101,10 +101,13 @@ class SceneCache {
 };
 
 struct DeviceOptions {
-  std::string device = "auto";  // "auto", "cpu", "gpu", a number from `kdray devices`, or a part of a name
-  int queues = 1;               // one per sub-device of equal size when > 1
-  int work_group = 0;           // local size of the per-ray kernels; 0: chosen for the device
-  int compute_units = 0;        // that many of the device's, as a sub-device; 0: all of them
+  // "auto", "cpu", "gpu", a number from `kdray devices`, or a part of a name; several with commas between them
+  std::string device = "auto";
+  int queues = 1;         // one per sub-device of equal size when > 1; dealt out over several devices
+  int work_group = 0;     // local size of the per-ray kernels; 0: chosen for the device
+  int compute_units = 0;  // that many of the device's, as a sub-device; 0: all of them
+  // For tests: "1@5,0@9" makes the fifth launch on queue 1 and the ninth on queue 0 fail as if the device had.
+  std::string faults = {};
 };
 
 // How rays find their way through the tree. A choice changes time, never a hit (docs/design/traversal.md).
@@ -114,6 +117,19 @@ enum class Traversal {
   wide,       // the wide tree, one ray per work-item
   packet,     // the wide tree, 16 coherent rays to a vector, several packets in flight
   batch       // the wide tree, many independent rays in flight
+};
+
+// How a frame is divided among the queues (docs/modes.md). A choice changes time and memory, never the picture.
+enum class Mode {
+  automatic,  // what fits and is measured to be the fastest
+  pdprt,      // the pixels are divided: every queue sees the whole scene
+  odprt       // the scene is divided: a queue holds some of its subtrees, and rays travel
+};
+enum class Division { bag, contiguous, interleaved };  // PDPRT: how queues come by their tiles
+enum class Balance {                                   // ODPRT: what a queue's subtrees are chosen by
+  sah,                                                 // their expected cost for random rays
+  pilot,                                               // the cost measured in a small frame
+  dynamic  // like pilot, and moved between a Renderer's frames by what the last one measured
 };
 
 enum class PixelGrid { centers, corners };  // corners: the outermost rays go through the picture's edges
@@ -126,6 +142,13 @@ struct RenderOptions {
   PixelGrid grid = PixelGrid::centers;
   int tile_width = 0, tile_height = 0;  // 0: chosen
   Traversal traversal = Traversal::automatic;
+  Mode mode = Mode::automatic;
+  Division division = Division::bag;
+  Balance balance = Balance::pilot;
+  int ray_buffer = 0;  // ODPRT: rays that a buffer between two queues holds for each slice; 0: chosen
+  std::uint64_t device_memory =
+      0;                  // ODPRT: the most that a device may hold; subtrees come and go; 0: no limit
+  bool timeline = false;  // keep what Renderer::timeline() tells
   std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost"
   std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1
 };
@@ -168,6 +191,9 @@ class Renderer {
   // A ray with NaN or infinite origin, or a direction that is not finite or 0, is refused (ErrorCode::input).
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit = false, int repeat = 1,
                          Traversal traversal = Traversal::automatic);
+
+  // What the queues did in the last frame, one row each: JSON in the Chrome trace format. RenderOptions::timeline asks for it.
+  std::string timeline() const;
 
   // JSON: seconds, rays, tree, memory, features, device, mode of what has been done so far (DESIGN.md section 2).
   std::string statistics() const;

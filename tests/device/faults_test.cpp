@@ -1,0 +1,42 @@
+// What    Faults on purpose: the launches that are named fail, and no other.
+#include "device/faults.h"
+
+#include <gtest/gtest.h>
+
+#include "device/opencl.h"
+#include "kdray/error.h"
+
+namespace kdray::test {
+namespace {
+
+using device::Faults;
+
+TEST(Faults, NamedLaunchesFail) {
+  Faults faults("1@2,0@1,1@3");
+  EXPECT_THROW(faults.launch(0), cl::Error);
+  EXPECT_NO_THROW(faults.launch(0));
+  EXPECT_NO_THROW(faults.launch(1));
+  EXPECT_THROW(faults.launch(1), cl::Error);
+  EXPECT_THROW(faults.launch(1), cl::Error);
+  EXPECT_NO_THROW(faults.launch(1));
+  EXPECT_NO_THROW(faults.launch(7));
+}
+
+TEST(Faults, NoneByDefault) {
+  Faults faults;
+  for (int i = 0; i < 10; ++i) EXPECT_NO_THROW(faults.launch(0));
+}
+
+TEST(Faults, WhatNamesNoFaultIsRefused) {
+  for (const char* const text : {"1", "@", "1@", "@1", "1@0", "a@1", "1@2x", "1@1,,2@2", "-1@2"}) {
+    try {
+      Faults faults(text);
+      ADD_FAILURE() << text;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::usage) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kdray::test
