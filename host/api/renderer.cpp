@@ -1,13 +1,16 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/timer.h"
+#include "device/faults.h"
 #include "flatten/features.h"
 #include "flatten/frame.h"
 #include "kdray/kdray.h"
 #include "pdprt/render.h"
 #include "prepare/prepared.h"
 #include "statistics.h"
+#include "timeline/timeline.h"
 #include "wavefront/channels.h"
 #include "wavefront/query.h"
 
@@ -38,9 +41,9 @@ void check(const DeviceOptions& o) {
   if (o.compute_units < 0) throw Error(ErrorCode::usage, "the number of compute units may not be negative");
 }
 
-device::Context open(const DeviceOptions& o) {
+std::vector<device::Context> open(const DeviceOptions& o) {
   check(o);
-  return device::Context(o.device, o.queues, o.compute_units);
+  return device::open_contexts(o.device, o.queues, o.compute_units);
 }
 
 std::size_t work_group_of(const DeviceOptions& o, const device::Context& context) {
@@ -62,8 +65,33 @@ double mrays_per_s(std::uint64_t rays, double seconds) {
   return seconds > 0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0;
 }
 
+const char* division_name(Division division) {
+  switch (division) {
+    case Division::contiguous:
+      return "contiguous";
+    case Division::interleaved:
+      return "interleaved";
+    default:
+      return "bag";
+  }
+}
+
+// A device with the scene on it.
+struct Device {
+  Device(const device::Context& opened, const DeviceOptions& o, const prepare::Prepared& scene)
+      : context(opened),
+        work_group(work_group_of(o, context)),
+        buffers(context, scene.flat, scene.wide),
+        programs(context, scene.tree_depth, scene.wide) {}
+
+  device::Context context;
+  std::size_t work_group;
+  wavefront::SceneBuffers buffers;
+  wavefront::Programs programs;
+};
+
 Picture to_picture(const film::Image& image, std::vector<film::Channel> channels) {
-  Picture picture{image.width, image.height, {}, {}};
+  Picture picture{image.width, image.height, {}, {}, {}};
   static_assert(sizeof(vec3) == 3 * sizeof(float));
   if (!image.pixels.empty()) {
     const float* const first = &image.pixels.front().x;
@@ -80,69 +108,111 @@ struct Renderer::Impl {
 
   Picture render(const RenderOptions& options);
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal);
-  wavefront::Schedule schedule_for(const layout::Frame& frame, const RenderOptions& options) const;
-  void record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t features,
-              Traversal traversal);
 
-  prepare::Prepared scene;  // but for its arrays, which are on the device
-  device::Context context;
-  std::size_t work_group;
-  std::unique_ptr<wavefront::SceneBuffers> buffers;
-  std::unique_ptr<wavefront::Programs> programs;
+  Device& first() { return *devices.front(); }
+  double build_seconds() const;
+  void choose_tiles(wavefront::Schedule& schedule, const layout::Frame& frame, const RenderOptions& options) const;
+  wavefront::Schedule schedule_for(const Device& device, const layout::Frame& frame,
+                                   const RenderOptions& options) const;
+  pdprt::Result render_pdprt(const layout::Frame& frame, std::uint32_t features, const RenderOptions& options,
+                             timeline::Timeline* timeline);
+  void record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t features,
+              const RenderOptions& options);
+
+  prepare::Prepared scene;  // but for its arrays, which are on the devices
+  std::vector<std::unique_ptr<Device>> devices;  // queries and channels take the first
+  device::Faults faults;
+  std::uint32_t n_units = 0;  // compute units of all devices
+  struct {
+    std::uint32_t width = 0, height = 0;
+    pdprt::TileCost cost;
+  } last_frame;
   api::Json statistics;
   std::string timeline;  // of the last frame, where it was asked for
 };
 
 Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_options)
-    : scene(prepared.prepared()),
-      context(open(device_options)),
-      work_group(work_group_of(device_options, context)) {
+    : scene(prepared.prepared()), faults(device_options.faults) {
+  const std::vector<device::Context> contexts = open(device_options);
   const Timer timer;
-  buffers = std::make_unique<wavefront::SceneBuffers>(context, scene.flat, scene.wide);
+  for (const device::Context& context : contexts) {
+    devices.push_back(std::make_unique<Device>(context, device_options, scene));
+    n_units += context.info().compute_units;
+  }
   statistics["seconds"] = {{"build", scene.seconds.build},
                            {"flatten", scene.seconds.flatten},
                            {"upload", timer.seconds()},
                            {"compile", 0.0}};
-  programs = std::make_unique<wavefront::Programs>(context, scene.tree_depth, scene.wide);
   statistics["scene"] = api::scene_json(scene);
   statistics["tree"] = api::tree_json(scene);
   statistics["memory"] = {{"scene_bytes", scene.bytes()}};
-  statistics["device"] = api::device_json(context.info());
+  statistics["device"] = api::device_json(first().context.info());
   statistics["features"] = api::features_json(scene.features);
   scene.flat = {};
   scene.wide = {};
 }
 
-// Slices enough to keep every lane of a launch busy, but no more than the picture has tiles.
-wavefront::Schedule Renderer::Impl::schedule_for(const layout::Frame& frame,
-                                                 const RenderOptions& options) const {
-  wavefront::Schedule schedule;
-  if (options.tile_width > 0) schedule.tile_width = static_cast<std::uint32_t>(options.tile_width);
-  if (options.tile_height > 0) schedule.tile_height = static_cast<std::uint32_t>(options.tile_height);
+double Renderer::Impl::build_seconds() const {
+  double seconds = 0;
+  for (const auto& device : devices) seconds += device->programs.build_seconds();
+  return seconds;
+}
+
+// What was asked for, else by what the last frame of this size told.
+void Renderer::Impl::choose_tiles(wavefront::Schedule& schedule, const layout::Frame& frame,
+                                  const RenderOptions& options) const {
+  std::optional<pdprt::TileCost> measured;
+  if (last_frame.width == frame.width && last_frame.height == frame.height && last_frame.cost.total > 0)
+    measured = last_frame.cost;
+  const std::uint32_t side = pdprt::choose_tile_side(frame.width, frame.height, n_units, measured);
+  schedule.tile_width = options.tile_width > 0 ? static_cast<std::uint32_t>(options.tile_width) : side;
+  schedule.tile_height = options.tile_height > 0 ? static_cast<std::uint32_t>(options.tile_height) : side;
   // A slice counts the samples of its tile in 32 bits.
   const double tile_samples = static_cast<double>(std::min(schedule.tile_width, frame.width)) *
                               std::min(schedule.tile_height, frame.height) * frame.n_samples;
   if (tile_samples > 0xffffffff)
     throw Error(ErrorCode::usage, "a tile holds over 2^32 samples; take smaller tiles (--tile)");
-  schedule.work_group = work_group;
+}
+
+wavefront::Schedule Renderer::Impl::schedule_for(const Device& device, const layout::Frame& frame,
+                                                 const RenderOptions& options) const {
+  wavefront::Schedule schedule;
+  choose_tiles(schedule, frame, options);
+  schedule.work_group = device.work_group;
   const std::uint64_t tiles_x = (frame.width + schedule.tile_width - 1) / schedule.tile_width;
   const std::uint64_t tiles_y = (frame.height + schedule.tile_height - 1) / schedule.tile_height;
-  // Enough slices that the last ones to end leave no core idle for long; each has a pool and streams of its own.
-  const std::uint64_t slices = std::max<std::uint64_t>(schedule.n_slices, 16 * context.info().compute_units);
+  // Enough slices that the last ones to end leave no core idle for long, but no more than the picture has tiles; each has
+  // a pool and streams of its own.
+  std::uint64_t slices = std::max<std::uint64_t>(schedule.n_slices, 16 * device.context.info().compute_units);
+  if (const char* e = getenv("X_SLICES")) slices = atoi(e);
+  if (const char* e = getenv("X_WAVES")) schedule.fused_waves = atoi(e);
   schedule.n_slices = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(tiles_x * tiles_y, 1, slices));
   schedule.traversal = options.traversal;
-  schedule.fused = context.info().kind == "cpu";
+  schedule.fused = device.context.info().kind == "cpu";
   return schedule;
 }
 
+pdprt::Result Renderer::Impl::render_pdprt(const layout::Frame& frame, std::uint32_t features,
+                                           const RenderOptions& options, timeline::Timeline* kept) {
+  std::vector<pdprt::Device> places;
+  for (const auto& d : devices)
+    places.push_back({&d->context, &d->buffers, &d->programs, schedule_for(*d, frame, options)});
+  return pdprt::render(places, {.frame = frame,
+                                .features = features,
+                                .division = options.division,
+                                .progress = options.progress,
+                                .faults = &faults,
+                                .timeline = kept});
+}
+
 void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t used,
-                            Traversal traversal) {
+                            const RenderOptions& options) {
   api::Json& seconds = statistics["seconds"];
   const auto stage = [&](const char* name) {
     const auto found = result.stage_seconds.find(name);
     return found == result.stage_seconds.end() ? 0.0 : found->second;
   };
-  seconds["compile"] = programs->build_seconds();
+  seconds["compile"] = build_seconds();
   seconds["render"] = result.render_seconds;
   seconds["trace"] = stage("trace_closest") + stage("trace_shadow");
   seconds["shade"] = stage("shade");
@@ -150,46 +220,60 @@ void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& fr
   seconds["add"] = stage("add");
   statistics["rays"] = api::rays_json(result.counters);
   statistics["mrays_per_s"] = mrays_per_s(result.counters.total(), result.render_seconds);
-  statistics["memory"]["frame_bytes"] = result.device_bytes;
   statistics["features"] = api::features_json(used);
-  statistics["mode"] = {{"name", "pdprt"},
-                        {"queues", context.queues().size()},
-                        {"sub_devices", context.n_sub_devices()},
-                        {"traversal", traversal_name(traversal)},
-                        {"precision", "float"},
-                        {"work_group", work_group},
-                        {"programs", programs->n_built()},
-                        {"waves", result.counters.waves},
-                        {"bands", result.n_bands}};
   statistics["frame"] = {{"width", frame.width},
                          {"height", frame.height},
                          {"samples", frame.n_samples},
                          {"depth", frame.max_depth},
                          {"spawn_threshold", frame.spawn_threshold}};
+  std::size_t sub_devices = 0, programs = 0;
+  api::Json names = api::Json::array();
+  for (const auto& d : devices) {
+    sub_devices += d->context.n_sub_devices();
+    programs += d->programs.n_built();
+    names.push_back(d->context.info().name);
+  }
+  api::Json mode = api::pdprt_json(result);
+  mode["why"] = options.mode == Mode::pdprt ? "asked for" : "the scene is on every device";
+  mode["devices"] = std::move(names);
+  mode["sub_devices"] = sub_devices;
+  mode["division"] = division_name(options.division);
+  mode["traversal"] = traversal_name(options.traversal);
+  mode["precision"] = "float";
+  mode["work_group"] = first().work_group;
+  mode["programs"] = programs;
+  statistics["mode"] = std::move(mode);
+  statistics["memory"].update(api::pdprt_memory_json(result, scene.bytes()));
 }
 
+// How the frame is divided among the queues: each way renders it and records what it did.
 Picture Renderer::Impl::render(const RenderOptions& options) {
   const RenderOptions o = flatten::resolved(options, scene.settings.settings);
   if (o.mode == Mode::odprt) throw Error(ErrorCode::usage, "odprt is not there yet");
   const layout::Frame frame = flatten::make_frame(scene.settings, scene.geometry, o);
   const std::uint32_t used = scene.features | flatten::features_of_samples(o.samples);
-  const pdprt::Result result =
-      pdprt::render(context, *buffers, *programs, frame, schedule_for(frame, o), used, o.progress);
-  record(result, frame, used, options.traversal);
-  return to_picture(result.image,
-                    wavefront::render_channels(context, *buffers, *programs, frame, used, o.channels));
+  timeline::Timeline kept;
+  timeline::Timeline* const wanted = o.timeline ? &kept : nullptr;
+  const pdprt::Result result = render_pdprt(frame, used, o, wanted);
+  last_frame = {frame.width, frame.height, result.tile_cost};
+  record(result, frame, used, o);
+  timeline = wanted ? kept.json() : std::string();
+  Picture picture = to_picture(result.image, wavefront::render_channels(first().context, first().buffers,
+                                                                        first().programs, frame, used, o.channels));
+  picture.warnings = api::warnings_of(result);
+  return picture;
 }
 
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat,
                                        Traversal wanted) {
   // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
   const Traversal traversal =
-      wanted == Traversal::automatic && context.info().kind != "cpu" ? Traversal::wide : wanted;
+      wanted == Traversal::automatic && first().context.info().kind != "cpu" ? Traversal::wide : wanted;
   wavefront::QueryResult result =
-      wavefront::trace_query(context, *buffers, *programs, scene.geometry, scene.features, work_group,
-                             traversal, rays, any_hit, repeat);
+      wavefront::trace_query(first().context, first().buffers, first().programs, scene.geometry, scene.features,
+                             first().work_group, traversal, rays, any_hit, repeat);
   const double seconds = median(result.seconds);
-  statistics["seconds"]["compile"] = programs->build_seconds();
+  statistics["seconds"]["compile"] = build_seconds();
   statistics["seconds"]["trace"] = seconds;
   statistics["rays"] = {{"total", rays.size()}};
   statistics["mrays_per_s"] = mrays_per_s(rays.size(), seconds);
@@ -197,7 +281,7 @@ std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, 
                         {"queues", 1},
                         {"traversal", traversal_name(traversal)},
                         {"precision", "float"},
-                        {"work_group", work_group},
+                        {"work_group", first().work_group},
                         {"repeat", result.seconds.size()}};
   return std::move(result.hits);
 }
@@ -234,8 +318,7 @@ std::string Renderer::statistics() const {
 }
 
 void open_device(const DeviceOptions& options) {
-  const device::Context context = open(options);
-  work_group_of(options, context);
+  for (const device::Context& context : open(options)) work_group_of(options, context);
 }
 
 }  // namespace kdray

@@ -1,0 +1,120 @@
+#include "pdprt/queue.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "device/opencl_error.h"
+#include "wavefront/develop.h"
+
+namespace kdray::pdprt {
+
+namespace {
+
+constexpr double kAheadSeconds = 0.012;
+
+layout::Frame scheduled(layout::Frame frame, const wavefront::Schedule& schedule, std::uint32_t features) {
+  schedule.apply(frame, features);
+  return frame;
+}
+
+struct Rows {
+  std::size_t first, end;
+};
+
+// The picture's rows that the tiles cover.
+Rows rows_of(std::span<const layout::u32> tiles, const layout::Frame& frame) {
+  std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
+  for (const layout::u32 tile : tiles) {
+    first = std::min<std::size_t>(first, KDRAY_TILE_ROW(tile));
+    last = std::max<std::size_t>(last, KDRAY_TILE_ROW(tile));
+  }
+  return {first * frame.tile_height,
+          std::min<std::size_t>((last + 1) * frame.tile_height, frame.height)};
+}
+
+}  // namespace
+
+Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& queue, const Task& task,
+             std::size_t max_tiles, std::size_t max_pixels)
+    : number_(number),
+      frame_(scheduled(task.frame, device.schedule, task.features)),
+      n_slices_(device.schedule.n_slices),
+      compute_units_(device::checked("asking for the queue's device", [&] {
+        return queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+      })),
+      wavefront_(*device.context, queue, *device.scene, *device.programs, frame_, device.schedule, task.features,
+                 max_tiles, max_pixels) {
+  wavefront::Watch watch;
+  if (task.faults) watch.before = [faults = task.faults, number] { faults->launch(number); };
+  if (task.timeline) {
+    device::checked("comparing clocks", [&] { clock_.emplace(device.context->get(), queue); });
+    watch.after = [this, timeline = task.timeline](const wavefront::LaunchDone& done) {
+      timeline->add(static_cast<int>(number_), "launch", timeline->seconds_at(clock_->on_host(done.start)),
+                    timeline->seconds_at(clock_->on_host(done.end)),
+                    {{"waves", static_cast<double>(done.waves)},
+                     {"tiles", static_cast<double>(done.tiles)},
+                     {"rays", static_cast<double>(done.rays)}});
+    };
+  }
+  wavefront_.watch(std::move(watch));
+}
+
+std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wavefront::Progress& progress,
+                                                        Shared& shared) {
+  if (tiles.left()) return std::nullopt;
+  shared.tiles_done += progress.taken - n_told_;
+  n_told_ = progress.taken;
+  const double busy = progress.busy_seconds - busy_before_;
+  // Before any is measured: one for each slice.
+  const double wanted = progress.taken > 0 && busy > 0 ? kAheadSeconds / busy * progress.taken : n_slices_;
+  const std::size_t ahead = tiles.taken(number_).size() - progress.taken;
+  if (static_cast<double>(ahead) >= wanted) return std::span<const layout::u32>();
+  return tiles.take(number_, std::max<std::size_t>(static_cast<std::size_t>(wanted) - ahead, 1));
+}
+
+void Queue::serve(Tiles& tiles, std::size_t first_pixel, Shared& shared) {
+  while (tiles.wait(number_)) {
+    n_told_ = 0;
+    busy_before_ = wavefront_.busy_seconds();
+    wavefront_.begin(first_pixel);
+    const auto feed = [&](const wavefront::Progress& progress) { return more(tiles, progress, shared); };
+    if (!wavefront_.render(feed)) return;
+    deliver(tiles.taken(number_), shared);
+    tiles.done(number_);
+  }
+}
+
+void Queue::deliver(std::span<const layout::u32> tiles, Shared& shared) {
+  if (tiles.empty()) return;  // another queue was faster
+  note_costs(tiles, shared);
+  const Rows rows = rows_of(tiles, frame_);
+  // Last: what it adds to the counters counts.
+  wavefront_.finish(rows.first, rows.end, [&](const wavefront::FilmRows& film) {
+    wavefront::develop_tiles(film.sums, film.first_pixel, frame_, tiles, shared.image.pixels);
+  });
+  n_tiles_ += tiles.size();
+  n_told_ = 0;
+}
+
+// The list's device time, shared out by the cycles that were charged to its tiles.
+void Queue::note_costs(std::span<const layout::u32> tiles, Shared& shared) {
+  const std::vector<layout::u64> cycles = wavefront_.tile_cycles();
+  const double sum = std::accumulate(cycles.begin(), cycles.end(), 0.0);
+  if (sum == 0) return;
+  const double seconds = (wavefront_.busy_seconds() - busy_before_) * compute_units_;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const double cost = static_cast<double>(cycles[i]) * (seconds / sum);
+    tile_cost_.costliest = std::max(tile_cost_.costliest, cost);
+    if (!shared.tile_seconds.empty())
+      shared.tile_seconds[KDRAY_TILE_ROW(tiles[i]) * frame_.n_tiles_x + KDRAY_TILE_COLUMN(tiles[i])] = cost;
+  }
+  tile_cost_.total += seconds;
+}
+
+void Queue::withdraw(Shared& shared) {
+  shared.tiles_done -= n_told_;
+  n_told_ = 0;
+}
+
+}  // namespace kdray::pdprt
