@@ -110,6 +110,7 @@ struct Renderer::Impl {
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal);
 
   Device& first() { return *devices.front(); }
+  std::size_t n_queues() const;  // of all devices
   double build_seconds() const;
   void choose_tiles(wavefront::Schedule& schedule, const layout::Frame& frame, const RenderOptions& options) const;
   wavefront::Schedule schedule_for(const Device& device, const layout::Frame& frame,
@@ -152,6 +153,12 @@ Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_
   scene.wide = {};
 }
 
+std::size_t Renderer::Impl::n_queues() const {
+  std::size_t n = 0;
+  for (const auto& device : devices) n += device->context.queues().size();
+  return n;
+}
+
 double Renderer::Impl::build_seconds() const {
   double seconds = 0;
   for (const auto& device : devices) seconds += device->programs.build_seconds();
@@ -179,16 +186,22 @@ wavefront::Schedule Renderer::Impl::schedule_for(const Device& device, const lay
   wavefront::Schedule schedule;
   choose_tiles(schedule, frame, options);
   schedule.work_group = device.work_group;
-  const std::uint64_t tiles_x = (frame.width + schedule.tile_width - 1) / schedule.tile_width;
-  const std::uint64_t tiles_y = (frame.height + schedule.tile_height - 1) / schedule.tile_height;
-  // Enough slices that the last ones to end leave no core idle for long, but no more than the picture has tiles; each has
-  // a pool and streams of its own.
-  std::uint64_t slices = std::max<std::uint64_t>(schedule.n_slices, 16 * device.context.info().compute_units);
-  if (const char* e = getenv("X_SLICES")) slices = atoi(e);
-  if (const char* e = getenv("X_WAVES")) schedule.fused_waves = atoi(e);
-  schedule.n_slices = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(tiles_x * tiles_y, 1, slices));
   schedule.traversal = options.traversal;
   schedule.fused = device.context.info().kind == "cpu";
+  // Enough slices that the last ones to end leave no core idle for long; each has a pool and streams of its own.
+  const auto n_parts = static_cast<std::uint32_t>(device.context.n_sub_devices());
+  const std::uint32_t units = (device.context.info().compute_units + n_parts - 1) / n_parts;  // of a queue
+  if (n_queues() == 1) {
+    schedule.n_slices = std::max(schedule.n_slices, 16 * units);
+  } else if (schedule.fused) {
+    // Launches of few slices, so that what a queue must have ahead of it (pdprt/queue.h) is little. On one core slices only
+    // take turns: the fewer, the longer each goes on without running dry.
+    schedule.n_slices = units == 1 ? 2 : 8 * units;
+  }
+  const std::uint64_t tiles_x = (frame.width + schedule.tile_width - 1) / schedule.tile_width;
+  const std::uint64_t tiles_y = (frame.height + schedule.tile_height - 1) / schedule.tile_height;
+  // No more than the picture has tiles.
+  schedule.n_slices = static_cast<std::uint32_t>(std::min<std::uint64_t>(tiles_x * tiles_y, schedule.n_slices));
   return schedule;
 }
 

@@ -11,11 +11,19 @@ namespace kdray::pdprt {
 
 namespace {
 
-constexpr double kAheadSeconds = 0.012;
+// One is running, one is queued, and both are to find as many rays as they can trace: a slice that runs dry traces its
+// last rays in batches that aren't full.
+constexpr double kLaunchesAhead = 3;
 
 layout::Frame scheduled(layout::Frame frame, const wavefront::Schedule& schedule, std::uint32_t features) {
   schedule.apply(frame, features);
   return frame;
+}
+
+// Of a tile, when none has been rendered: as if each eye ray spawned one.
+double guessed_waves(const layout::Frame& frame) {
+  const double samples = static_cast<double>(frame.tile_width) * frame.tile_height * frame.n_samples;
+  return 2 * samples / frame.batch_size;
 }
 
 struct Rows {
@@ -39,7 +47,8 @@ Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& q
              std::size_t max_tiles, std::size_t max_pixels)
     : number_(number),
       frame_(scheduled(task.frame, device.schedule, task.features)),
-      n_slices_(device.schedule.n_slices),
+      waves_per_launch_(device.schedule.n_slices * (device.schedule.fused ? device.schedule.fused_waves : 1.0)),
+      waves_per_tile_(guessed_waves(frame_)),
       compute_units_(device::checked("asking for the queue's device", [&] {
         return queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
       })),
@@ -65,12 +74,15 @@ std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wave
   if (tiles.left()) return std::nullopt;
   shared.tiles_done += progress.taken - n_told_;
   n_told_ = progress.taken;
-  const double busy = progress.busy_seconds - busy_before_;
-  // Before any is measured: one for each slice.
-  const double wanted = progress.taken > 0 && busy > 0 ? kAheadSeconds / busy * progress.taken : n_slices_;
   const std::size_t ahead = tiles.taken(number_).size() - progress.taken;
-  if (static_cast<double>(ahead) >= wanted) return std::span<const layout::u32>();
-  return tiles.take(number_, std::max<std::size_t>(static_cast<std::size_t>(wanted) - ahead, 1));
+  // Nothing is known of this list's tiles: a launch at a time.
+  if (progress.taken == 0) return tiles.take(number_, tiles_of(1) + ahead, ahead);
+  waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
+  return tiles.take(number_, tiles_of(kLaunchesAhead), ahead);
+}
+
+std::size_t Queue::tiles_of(double launches) const {
+  return static_cast<std::size_t>(launches * waves_per_launch_ / waves_per_tile_) + 1;
 }
 
 void Queue::serve(Tiles& tiles, std::size_t first_pixel, Shared& shared) {

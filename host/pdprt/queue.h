@@ -1,6 +1,6 @@
 // What    One of PDPRT's queues: takes tiles, keeps the device supplied with them, and puts them into the picture.
-// Shape   A queue has tiles for some milliseconds ahead, by what its tiles have taken so far: enough that its slices don't run
-//         dry between two launches, and little enough that others don't wait for it at the end.
+// Shape   A queue has tiles for a few launches ahead, by the waves that its tiles have taken so far: enough that its slices
+//         don't run dry, and little enough that others don't wait for it at the end.
 // Threads One serves a queue; queues share Tiles and the picture, of which each writes its own tiles.
 #pragma once
 
@@ -42,12 +42,14 @@ class Queue {
  private:
   std::optional<std::span<const layout::u32>> more(Tiles& tiles, const wavefront::Progress& progress,
                                                    Shared& shared);
+  std::size_t tiles_of(double launches) const;
   void deliver(std::span<const layout::u32> tiles, Shared& shared);
   void note_costs(std::span<const layout::u32> tiles, Shared& shared);
 
   std::size_t number_;
   layout::Frame frame_;
-  std::uint32_t n_slices_, compute_units_;
+  double waves_per_launch_, waves_per_tile_;  // the latter as measured so far
+  std::uint32_t compute_units_;
   std::optional<device::Clock> clock_;
   wavefront::Wavefront wavefront_;
   // Of the present list.

@@ -152,7 +152,9 @@ void Frame::wait(Tiles& tiles) {
 }
 
 void Frame::render_band(const Band& band) {
-  Tiles tiles(tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows), task_.division, places_.size());
+  // One queue takes all at once.
+  const Division division = places_.size() == 1 ? Division::contiguous : task_.division;
+  Tiles tiles(tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows), division, places_.size());
   const std::size_t first_pixel = std::size_t{band.first_row} * frame_.tile_height * frame_.width;
   n_running_ = n_working();
   {

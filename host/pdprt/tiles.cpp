@@ -37,7 +37,7 @@ Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_qu
   }
 }
 
-std::span<const layout::u32> Tiles::take(std::size_t queue, std::size_t wanted) {
+std::span<const layout::u32> Tiles::take(std::size_t queue, std::size_t wanted, std::size_t ahead) {
   const std::lock_guard lock(mutex_);
   std::vector<layout::u32>& taken = taken_[queue];
   const std::size_t first = taken.size();
@@ -46,7 +46,8 @@ std::span<const layout::u32> Tiles::take(std::size_t queue, std::size_t wanted) 
     shares_[queue].clear();
   } else {
     const std::size_t rest = bag_.size() - next_;
-    const std::size_t n = std::min({rest, wanted, std::max<std::size_t>(rest / (kLargestPart * n_queues_), 1)});
+    const std::size_t fair = std::min(wanted, std::max<std::size_t>(rest / (kLargestPart * n_queues_), 1));
+    const std::size_t n = std::min(rest, fair - std::min(fair, ahead));
     append(taken, std::span(bag_).subspan(next_, n));
     next_ += n;
   }

@@ -21,10 +21,10 @@ class Tiles {
   // `curve`: entries in the order of the curve.
   Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues);
 
-  // The next entries for the queue: its share as a whole; else about `wanted` (at least one) from the bag, fewer as that
-  // empties, so that all come to their end together. None when there are none for it now. The span is valid until the
-  // queue's next done() or give_back().
-  std::span<const layout::u32> take(std::size_t queue, std::size_t wanted);
+  // The next entries for the queue: its share as a whole; else from the bag, so many that it has `wanted` with the `ahead`
+  // that it has now, but fewer as the bag empties, so that all come to their end together. Perhaps none. The span is
+  // valid until the queue's next done() or give_back().
+  std::span<const layout::u32> take(std::size_t queue, std::size_t wanted, std::size_t ahead = 0);
 
   // What the queue took since its last done().
   std::span<const layout::u32> taken(std::size_t queue) const { return taken_[queue]; }

@@ -285,7 +285,7 @@ Progress Wavefront::wait_for(Launch& launch) {
   n_taken_ = taken;
   list_counters_ = sum;
   const auto busy = [&](const layout::Slice& slice) { return at_work(slice, launch.listed); };
-  return {launch.listed, taken, busy_seconds_,
+  return {launch.listed, taken, sum.waves,
           std::any_of(launch.slices.begin(), launch.slices.end(), busy)};
 }
 

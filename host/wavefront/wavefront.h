@@ -52,7 +52,7 @@ struct Counters {
 // How far a queue is with its list, by its last report.
 struct Progress {
   std::uint32_t listed = 0, taken = 0;  // tiles in the list, and of them those that no slice has still to begin or end
-  double busy_seconds = 0;              // device time so far
+  std::uint64_t waves = 0;              // that this took
   bool at_work = false;                 // a slice has rays or tiles left
 };
 
