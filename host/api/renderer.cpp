@@ -121,6 +121,7 @@ struct Renderer::Impl {
               const RenderOptions& options);
 
   prepare::Prepared scene;  // but for its arrays, which are on the devices
+  std::size_t scene_bytes;  // of those, on each device
   std::vector<std::unique_ptr<Device>> devices;  // queries and channels take the first
   device::Faults faults;
   std::uint32_t n_units = 0;  // compute units of all devices
@@ -133,7 +134,7 @@ struct Renderer::Impl {
 };
 
 Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_options)
-    : scene(prepared.prepared()), faults(device_options.faults) {
+    : scene(prepared.prepared()), scene_bytes(scene.bytes()), faults(device_options.faults) {
   const std::vector<device::Context> contexts = open(device_options);
   const Timer timer;
   for (const device::Context& context : contexts) {
@@ -146,7 +147,7 @@ Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_
                            {"compile", 0.0}};
   statistics["scene"] = api::scene_json(scene);
   statistics["tree"] = api::tree_json(scene);
-  statistics["memory"] = {{"scene_bytes", scene.bytes()}};
+  statistics["memory"] = {{"scene_bytes", scene_bytes}};
   statistics["device"] = api::device_json(first().context.info());
   statistics["features"] = api::features_json(scene.features);
   scene.flat = {};
@@ -256,7 +257,7 @@ void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& fr
   mode["work_group"] = first().work_group;
   mode["programs"] = programs;
   statistics["mode"] = std::move(mode);
-  statistics["memory"].update(api::pdprt_memory_json(result, scene.bytes()));
+  statistics["memory"].update(api::pdprt_memory_json(result, scene_bytes));
 }
 
 // How the frame is divided among the queues: each way renders it and records what it did.
