@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "base/timer.h"
@@ -90,6 +91,19 @@ struct Device {
   wavefront::Programs programs;
 };
 
+// A frame that is to be rendered, whatever the mode.
+struct Job {
+  RenderOptions options;  // resolved
+  layout::Frame frame;
+  std::uint32_t features;
+  timeline::Timeline* timeline;  // null: not wanted
+};
+
+struct Drawn {
+  film::Image image;
+  std::vector<std::string> warnings;
+};
+
 Picture to_picture(const film::Image& image, std::vector<film::Channel> channels) {
   Picture picture{image.width, image.height, {}, {}, {}};
   static_assert(sizeof(vec3) == 3 * sizeof(float));
@@ -112,23 +126,22 @@ struct Renderer::Impl {
   Device& first() { return *devices.front(); }
   std::size_t n_queues() const;  // of all devices
   double build_seconds() const;
-  void choose_tiles(wavefront::Schedule& schedule, const layout::Frame& frame, const RenderOptions& options) const;
-  wavefront::Schedule schedule_for(const Device& device, const layout::Frame& frame,
-                                   const RenderOptions& options) const;
-  pdprt::Result render_pdprt(const layout::Frame& frame, std::uint32_t features, const RenderOptions& options,
-                             timeline::Timeline* timeline);
-  void record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t features,
-              const RenderOptions& options);
+  void choose_tiles(wavefront::Schedule& schedule, const Job& job) const;
+  wavefront::Schedule schedule_for(const Device& device, const Job& job) const;
+  Drawn draw_pdprt(const Job& job);
+  void record_frame(const Job& job, const wavefront::Counters& counters,
+                    const std::map<std::string, double>& stage_seconds, double render_seconds);
+  void record_mode(const Job& job, api::Json mode, const std::string& why);
 
-  prepare::Prepared scene;  // but for its arrays, which are on the devices
-  std::size_t scene_bytes;  // of those, on each device
+  prepare::Prepared scene;                       // but for its arrays, which are on the devices
+  std::size_t scene_bytes;                       // of those, on each device
   std::vector<std::unique_ptr<Device>> devices;  // queries and channels take the first
   device::Faults faults;
   std::uint32_t n_units = 0;  // compute units of all devices
   struct {
     std::uint32_t width = 0, height = 0;
     pdprt::TileCost cost;
-  } last_frame;
+  } last_frame;  // what its tiles cost
   api::Json statistics;
   std::string timeline;  // of the last frame, where it was asked for
 };
@@ -167,14 +180,16 @@ double Renderer::Impl::build_seconds() const {
 }
 
 // What was asked for, else by what the last frame of this size told.
-void Renderer::Impl::choose_tiles(wavefront::Schedule& schedule, const layout::Frame& frame,
-                                  const RenderOptions& options) const {
+void Renderer::Impl::choose_tiles(wavefront::Schedule& schedule, const Job& job) const {
+  const layout::Frame& frame = job.frame;
+  const RenderOptions& o = job.options;
   std::optional<pdprt::TileCost> measured;
   if (last_frame.width == frame.width && last_frame.height == frame.height && last_frame.cost.total > 0)
     measured = last_frame.cost;
-  const std::uint32_t side = pdprt::choose_tile_side(frame.width, frame.height, n_units, measured);
-  schedule.tile_width = options.tile_width > 0 ? static_cast<std::uint32_t>(options.tile_width) : side;
-  schedule.tile_height = options.tile_height > 0 ? static_cast<std::uint32_t>(options.tile_height) : side;
+  const std::uint32_t units = std::max(n_units, static_cast<std::uint32_t>(n_queues()));
+  const std::uint32_t side = pdprt::choose_tile_side(frame.width, frame.height, units, measured);
+  schedule.tile_width = o.tile_width > 0 ? static_cast<std::uint32_t>(o.tile_width) : side;
+  schedule.tile_height = o.tile_height > 0 ? static_cast<std::uint32_t>(o.tile_height) : side;
   // A slice counts the samples of its tile in 32 bits.
   const double tile_samples = static_cast<double>(std::min(schedule.tile_width, frame.width)) *
                               std::min(schedule.tile_height, frame.height) * frame.n_samples;
@@ -182,64 +197,76 @@ void Renderer::Impl::choose_tiles(wavefront::Schedule& schedule, const layout::F
     throw Error(ErrorCode::usage, "a tile holds over 2^32 samples; take smaller tiles (--tile)");
 }
 
-wavefront::Schedule Renderer::Impl::schedule_for(const Device& device, const layout::Frame& frame,
-                                                 const RenderOptions& options) const {
+wavefront::Schedule Renderer::Impl::schedule_for(const Device& device, const Job& job) const {
   wavefront::Schedule schedule;
-  choose_tiles(schedule, frame, options);
+  choose_tiles(schedule, job);
   schedule.work_group = device.work_group;
-  schedule.traversal = options.traversal;
+  schedule.traversal = job.options.traversal;
   schedule.fused = device.context.info().kind == "cpu";
   // Enough slices that the last ones to end leave no core idle for long; each has a pool and streams of its own.
   const auto n_parts = static_cast<std::uint32_t>(device.context.n_sub_devices());
   const std::uint32_t units = (device.context.info().compute_units + n_parts - 1) / n_parts;  // of a queue
-  if (n_queues() == 1) {
-    schedule.n_slices = std::max(schedule.n_slices, 16 * units);
-  } else if (schedule.fused) {
-    // Launches of few slices, so that what a queue must have ahead of it (pdprt/queue.h) is little. On one core slices only
-    // take turns: the fewer, the longer each goes on without running dry.
-    schedule.n_slices = units == 1 ? 2 : 8 * units;
+  schedule.n_slices = std::max(schedule.n_slices, 16 * units);
+  if (schedule.fused && n_queues() > 1) {
+    // Launches that do less, so that what a queue must have ahead of it (pdprt/queue.h) is little. On one core slices
+    // would only take turns.
+    schedule.n_slices = units == 1 ? 1 : 16 * units;
+    schedule.fused_waves = units == 1 ? 128 : 32;
   }
-  const std::uint64_t tiles_x = (frame.width + schedule.tile_width - 1) / schedule.tile_width;
-  const std::uint64_t tiles_y = (frame.height + schedule.tile_height - 1) / schedule.tile_height;
+  const std::uint64_t tiles_x = (job.frame.width + schedule.tile_width - 1) / schedule.tile_width;
+  const std::uint64_t tiles_y = (job.frame.height + schedule.tile_height - 1) / schedule.tile_height;
   // No more than the picture has tiles.
-  schedule.n_slices = static_cast<std::uint32_t>(std::min<std::uint64_t>(tiles_x * tiles_y, schedule.n_slices));
+  schedule.n_slices =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(tiles_x * tiles_y, schedule.n_slices));
   return schedule;
 }
 
-pdprt::Result Renderer::Impl::render_pdprt(const layout::Frame& frame, std::uint32_t features,
-                                           const RenderOptions& options, timeline::Timeline* kept) {
+Drawn Renderer::Impl::draw_pdprt(const Job& job) {
   std::vector<pdprt::Device> places;
   for (const auto& d : devices)
-    places.push_back({&d->context, &d->buffers, &d->programs, schedule_for(*d, frame, options)});
-  return pdprt::render(places, {.frame = frame,
-                                .features = features,
-                                .division = options.division,
-                                .progress = options.progress,
-                                .faults = &faults,
-                                .timeline = kept});
+    places.push_back({&d->context, &d->buffers, &d->programs, schedule_for(*d, job)});
+  pdprt::Result result = pdprt::render(places, {.frame = job.frame,
+                                                .features = job.features,
+                                                .division = job.options.division,
+                                                .progress = job.options.progress,
+                                                .faults = &faults,
+                                                .timeline = job.timeline});
+  last_frame = {job.frame.width, job.frame.height, result.tile_cost};
+  record_frame(job, result.counters, result.stage_seconds, result.render_seconds);
+  api::Json mode = api::pdprt_json(result);
+  mode["division"] = division_name(job.options.division);
+  record_mode(job, std::move(mode),
+              job.options.mode == Mode::pdprt ? "asked for" : "the scene is whole on every device");
+  statistics["memory"].update(api::pdprt_memory_json(result, scene_bytes));
+  return {std::move(result.image), api::warnings_of(result)};
 }
 
-void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t used,
-                            const RenderOptions& options) {
+// What all modes tell of a frame.
+void Renderer::Impl::record_frame(const Job& job, const wavefront::Counters& counters,
+                                  const std::map<std::string, double>& stage_seconds, double render_seconds) {
   api::Json& seconds = statistics["seconds"];
   const auto stage = [&](const char* name) {
-    const auto found = result.stage_seconds.find(name);
-    return found == result.stage_seconds.end() ? 0.0 : found->second;
+    const auto found = stage_seconds.find(name);
+    return found == stage_seconds.end() ? 0.0 : found->second;
   };
   seconds["compile"] = build_seconds();
-  seconds["render"] = result.render_seconds;
+  seconds["render"] = render_seconds;
   seconds["trace"] = stage("trace_closest") + stage("trace_shadow");
   seconds["shade"] = stage("shade");
   seconds["admit"] = stage("admit");
   seconds["add"] = stage("add");
-  statistics["rays"] = api::rays_json(result.counters);
-  statistics["mrays_per_s"] = mrays_per_s(result.counters.total(), result.render_seconds);
-  statistics["features"] = api::features_json(used);
-  statistics["frame"] = {{"width", frame.width},
-                         {"height", frame.height},
-                         {"samples", frame.n_samples},
-                         {"depth", frame.max_depth},
-                         {"spawn_threshold", frame.spawn_threshold}};
+  statistics["rays"] = api::rays_json(counters);
+  statistics["mrays_per_s"] = mrays_per_s(counters.total(), render_seconds);
+  statistics["features"] = api::features_json(job.features);
+  statistics["frame"] = {{"width", job.frame.width},
+                         {"height", job.frame.height},
+                         {"samples", job.frame.n_samples},
+                         {"depth", job.frame.max_depth},
+                         {"spawn_threshold", job.frame.spawn_threshold}};
+}
+
+// `mode`: what is the mode's own.
+void Renderer::Impl::record_mode(const Job& job, api::Json mode, const std::string& why) {
   std::size_t sub_devices = 0, programs = 0;
   api::Json names = api::Json::array();
   for (const auto& d : devices) {
@@ -247,34 +274,30 @@ void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& fr
     programs += d->programs.n_built();
     names.push_back(d->context.info().name);
   }
-  api::Json mode = api::pdprt_json(result);
-  mode["why"] = options.mode == Mode::pdprt ? "asked for" : "the scene is on every device";
+  mode["why"] = why;
   mode["devices"] = std::move(names);
   mode["sub_devices"] = sub_devices;
-  mode["division"] = division_name(options.division);
-  mode["traversal"] = traversal_name(options.traversal);
+  mode["traversal"] = traversal_name(job.options.traversal);
   mode["precision"] = "float";
   mode["work_group"] = first().work_group;
   mode["programs"] = programs;
   statistics["mode"] = std::move(mode);
-  statistics["memory"].update(api::pdprt_memory_json(result, scene_bytes));
 }
 
-// How the frame is divided among the queues: each way renders it and records what it did.
 Picture Renderer::Impl::render(const RenderOptions& options) {
   const RenderOptions o = flatten::resolved(options, scene.settings.settings);
   if (o.mode == Mode::odprt) throw Error(ErrorCode::usage, "odprt is not there yet");
-  const layout::Frame frame = flatten::make_frame(scene.settings, scene.geometry, o);
-  const std::uint32_t used = scene.features | flatten::features_of_samples(o.samples);
   timeline::Timeline kept;
-  timeline::Timeline* const wanted = o.timeline ? &kept : nullptr;
-  const pdprt::Result result = render_pdprt(frame, used, o, wanted);
-  last_frame = {frame.width, frame.height, result.tile_cost};
-  record(result, frame, used, o);
-  timeline = wanted ? kept.json() : std::string();
-  Picture picture = to_picture(result.image, wavefront::render_channels(first().context, first().buffers,
-                                                                        first().programs, frame, used, o.channels));
-  picture.warnings = api::warnings_of(result);
+  const Job job{.options = o,
+                .frame = flatten::make_frame(scene.settings, scene.geometry, o),
+                .features = scene.features | flatten::features_of_samples(o.samples),
+                .timeline = o.timeline ? &kept : nullptr};
+  Drawn drawn = draw_pdprt(job);
+  timeline = o.timeline ? kept.json() : std::string();
+  Picture picture =
+      to_picture(drawn.image, wavefront::render_channels(first().context, first().buffers, first().programs,
+                                                         job.frame, job.features, o.channels));
+  picture.warnings = std::move(drawn.warnings);
   return picture;
 }
 
@@ -284,8 +307,8 @@ std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, 
   const Traversal traversal =
       wanted == Traversal::automatic && first().context.info().kind != "cpu" ? Traversal::wide : wanted;
   wavefront::QueryResult result =
-      wavefront::trace_query(first().context, first().buffers, first().programs, scene.geometry, scene.features,
-                             first().work_group, traversal, rays, any_hit, repeat);
+      wavefront::trace_query(first().context, first().buffers, first().programs, scene.geometry,
+                             scene.features, first().work_group, traversal, rays, any_hit, repeat);
   const double seconds = median(result.seconds);
   statistics["seconds"]["compile"] = build_seconds();
   statistics["seconds"]["trace"] = seconds;

@@ -70,12 +70,8 @@ namespace {
 
 Json queue_json(std::size_t number, const pdprt::QueueResult& queue, double seconds) {
   const double idle = seconds > 0 ? std::clamp(1 - queue.busy_seconds / seconds, 0.0, 1.0) : 0.0;
-  return {{"queue", number},
-          {"device", queue.device},
-          {"busy_seconds", queue.busy_seconds},
-          {"idle_share", idle},
-          {"rays", queue.rays},
-          {"tiles", queue.tiles}};
+  return {{"queue", number},    {"device", queue.device}, {"busy_seconds", queue.busy_seconds},
+          {"idle_share", idle}, {"rays", queue.rays},     {"tiles", queue.tiles}};
 }
 
 }  // namespace
@@ -113,8 +109,9 @@ std::vector<std::string> warnings_of(const pdprt::Result& result) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < result.queues.size(); ++i)
     if (const pdprt::QueueResult& queue = result.queues[i]; !queue.failure.empty())
-      warnings.push_back(fmt::format("queue {} ({}) failed: {}; the other queues rendered the {} tiles it had taken",
-                                     i, queue.device, queue.failure, queue.tiles_lost));
+      warnings.push_back(
+          fmt::format("queue {} ({}) failed: {}; the other queues rendered the {} tiles it had taken", i,
+                      queue.device, queue.failure, queue.tiles_lost));
   return warnings;
 }
 

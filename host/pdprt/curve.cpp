@@ -9,12 +9,24 @@ namespace {
 struct Step {
   int x, y;
 };
-Step operator+(Step a, Step b) { return {a.x + b.x, a.y + b.y}; }
-Step operator-(Step a, Step b) { return {a.x - b.x, a.y - b.y}; }
-Step operator-(Step a) { return {-a.x, -a.y}; }
-Step half(Step a) { return {a.x >> 1, a.y >> 1}; }  // rounded down, negative ones too
-int length(Step a) { return std::abs(a.x + a.y); }  // of a step along an axis
-Step unit(Step a) { return {(a.x > 0) - (a.x < 0), (a.y > 0) - (a.y < 0)}; }
+Step operator+(Step a, Step b) {
+  return {a.x + b.x, a.y + b.y};
+}
+Step operator-(Step a, Step b) {
+  return {a.x - b.x, a.y - b.y};
+}
+Step operator-(Step a) {
+  return {-a.x, -a.y};
+}
+Step half(Step a) {
+  return {a.x >> 1, a.y >> 1};
+}  // rounded down, negative ones too
+int length(Step a) {
+  return std::abs(a.x + a.y);
+}  // of a step along an axis
+Step unit(Step a) {
+  return {(a.x > 0) - (a.x < 0), (a.y > 0) - (a.y < 0)};
+}
 
 class Curve {
  public:
@@ -48,7 +60,8 @@ class Curve {
 
   void run(Step at, Step along) {
     for (int i = length(along); i > 0; --i, at = at + unit(along))
-      tiles_.push_back(KDRAY_TILE(static_cast<layout::u32>(at.x), first_row_ + static_cast<layout::u32>(at.y)));
+      tiles_.push_back(
+          KDRAY_TILE(static_cast<layout::u32>(at.x), first_row_ + static_cast<layout::u32>(at.y)));
   }
 
   std::uint32_t first_row_;

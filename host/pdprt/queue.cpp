@@ -11,9 +11,8 @@ namespace kdray::pdprt {
 
 namespace {
 
-// One is running, one is queued, and both are to find as many rays as they can trace: a slice that runs dry traces its
-// last rays in batches that aren't full.
-constexpr double kLaunchesAhead = 3;
+// Shorter launches than this are not worth their report.
+constexpr double kShortestSeconds = 0.0003;
 
 layout::Frame scheduled(layout::Frame frame, const wavefront::Schedule& schedule, std::uint32_t features) {
   schedule.apply(frame, features);
@@ -37,8 +36,7 @@ Rows rows_of(std::span<const layout::u32> tiles, const layout::Frame& frame) {
     first = std::min<std::size_t>(first, KDRAY_TILE_ROW(tile));
     last = std::max<std::size_t>(last, KDRAY_TILE_ROW(tile));
   }
-  return {first * frame.tile_height,
-          std::min<std::size_t>((last + 1) * frame.tile_height, frame.height)};
+  return {first * frame.tile_height, std::min<std::size_t>((last + 1) * frame.tile_height, frame.height)};
 }
 
 }  // namespace
@@ -47,13 +45,14 @@ Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& q
              std::size_t max_tiles, std::size_t max_pixels)
     : number_(number),
       frame_(scheduled(task.frame, device.schedule, task.features)),
-      waves_per_launch_(device.schedule.n_slices * (device.schedule.fused ? device.schedule.fused_waves : 1.0)),
+      waves_per_launch_(device.schedule.n_slices *
+                        (device.schedule.fused ? device.schedule.fused_waves : 1.0)),
       waves_per_tile_(guessed_waves(frame_)),
-      compute_units_(device::checked("asking for the queue's device", [&] {
-        return queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
-      })),
-      wavefront_(*device.context, queue, *device.scene, *device.programs, frame_, device.schedule, task.features,
-                 max_tiles, max_pixels) {
+      compute_units_(device::checked(
+          "asking for the queue's device",
+          [&] { return queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(); })),
+      wavefront_(*device.context, queue, *device.scene, *device.programs, frame_, device.schedule,
+                 task.features, max_tiles, max_pixels) {
   wavefront::Watch watch;
   if (task.faults) watch.before = [faults = task.faults, number] { faults->launch(number); };
   if (task.timeline) {
@@ -76,13 +75,18 @@ std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wave
   n_told_ = progress.taken;
   const std::size_t ahead = tiles.taken(number_).size() - progress.taken;
   // Nothing is known of this list's tiles: a launch at a time.
-  if (progress.taken == 0) return tiles.take(number_, tiles_of(1) + ahead, ahead);
+  if (progress.taken == 0) return tiles.take(number_, {.most = tiles_of_launch()});
   waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
-  return tiles.take(number_, tiles_of(kLaunchesAhead), ahead);
+  const double tiles_per_second = progress.taken / (wavefront_.busy_seconds() - busy_before_);
+  // The launch that is running takes as much as it can of what there is. The one to be queued is to find all it can take,
+  // and more: a slice that runs dry traces its last rays in batches that aren't full.
+  return tiles.take(number_, {.most = 2 * tiles_of_launch(),
+                              .least = static_cast<std::size_t>(kShortestSeconds * tiles_per_second) + 1,
+                              .ahead = ahead - std::min(ahead, tiles_of_launch())});
 }
 
-std::size_t Queue::tiles_of(double launches) const {
-  return static_cast<std::size_t>(launches * waves_per_launch_ / waves_per_tile_) + 1;
+std::size_t Queue::tiles_of_launch() const {
+  return static_cast<std::size_t>(waves_per_launch_ / waves_per_tile_) + 1;
 }
 
 void Queue::serve(Tiles& tiles, std::size_t first_pixel, Shared& shared) {

@@ -36,13 +36,13 @@ class Queue {
   void withdraw(Shared& shared);
 
   const wavefront::Wavefront& wavefront() const { return wavefront_; }
-  std::uint64_t tiles() const { return n_tiles_; }         // in the picture
+  std::uint64_t tiles() const { return n_tiles_; }  // in the picture
   const TileCost& tile_cost() const { return tile_cost_; }
 
  private:
   std::optional<std::span<const layout::u32>> more(Tiles& tiles, const wavefront::Progress& progress,
                                                    Shared& shared);
-  std::size_t tiles_of(double launches) const;
+  std::size_t tiles_of_launch() const;
   void deliver(std::span<const layout::u32> tiles, Shared& shared);
   void note_costs(std::span<const layout::u32> tiles, Shared& shared);
 

@@ -43,7 +43,8 @@ class Frame {
     QueueResult result;
   };
 
-  void open(const Device& device, std::size_t number_of_device, std::size_t max_tiles, std::size_t max_pixels);
+  void open(const Device& device, std::size_t number_of_device, std::size_t max_tiles,
+            std::size_t max_pixels);
   void render_band(const Band& band);
   void run(std::size_t number, Tiles& tiles, std::size_t first_pixel);
   void fail(std::size_t number, const Error& error);
@@ -71,7 +72,8 @@ Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), f
   if (task.timeline) shared_.tile_seconds.resize(frame_.n_tiles);
   const std::size_t max_tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
   const std::size_t max_pixels =
-      std::min<std::size_t>(std::size_t{bands_.front().n_rows} * frame_.tile_height, frame_.height) * frame_.width;
+      std::min<std::size_t>(std::size_t{bands_.front().n_rows} * frame_.tile_height, frame_.height) *
+      frame_.width;
   std::size_t most = 0;
   for (const Device& device : devices) most = std::max(most, device.context->queues().size());
   for (std::size_t i = 0; i < most; ++i)  // in turn, as they were dealt out

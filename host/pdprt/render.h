@@ -36,7 +36,7 @@ struct Task {
   Division division = Division::bag;
   std::function<void(double)> progress = {};  // called from render()'s thread with the share done
   device::Faults* faults = nullptr;
-  timeline::Timeline* timeline = nullptr;            // also asks for Result::tile_seconds
+  timeline::Timeline* timeline = nullptr;               // also asks for Result::tile_seconds
   std::size_t max_film_bytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
 };
 

@@ -6,8 +6,8 @@ namespace kdray::pdprt {
 
 namespace {
 
-// Of what is in the bag, divided by the queues: the last to come find so little that none keeps the others waiting.
-constexpr std::size_t kLargestPart = 2;
+// That the bag is for each queue: the last to come find so little that none keeps the others waiting.
+constexpr std::size_t kPartsPerQueue = 4;
 
 std::vector<std::vector<layout::u32>> deal(const std::vector<layout::u32>& curve, Division division,
                                            std::size_t n_queues) {
@@ -37,7 +37,7 @@ Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_qu
   }
 }
 
-std::span<const layout::u32> Tiles::take(std::size_t queue, std::size_t wanted, std::size_t ahead) {
+std::span<const layout::u32> Tiles::take(std::size_t queue, const Wanted& wanted) {
   const std::lock_guard lock(mutex_);
   std::vector<layout::u32>& taken = taken_[queue];
   const std::size_t first = taken.size();
@@ -46,8 +46,9 @@ std::span<const layout::u32> Tiles::take(std::size_t queue, std::size_t wanted, 
     shares_[queue].clear();
   } else {
     const std::size_t rest = bag_.size() - next_;
-    const std::size_t fair = std::min(wanted, std::max<std::size_t>(rest / (kLargestPart * n_queues_), 1));
-    const std::size_t n = std::min(rest, fair - std::min(fair, ahead));
+    const std::size_t part = std::max(rest / (kPartsPerQueue * n_queues_), wanted.least);
+    const std::size_t in_all = std::min(part, wanted.most);
+    const std::size_t n = std::min(rest, in_all - std::min(in_all, wanted.ahead));
     append(taken, std::span(bag_).subspan(next_, n));
     next_ += n;
   }

@@ -16,15 +16,20 @@
 
 namespace kdray::pdprt {
 
+// What a queue wants from the bag: a part of what is left there, so that all come to their end together, but no more than
+// `most` and no less than `least`; all of that together with the `ahead` that it has.
+struct Wanted {
+  std::size_t most = 1, least = 1, ahead = 0;
+};
+
 class Tiles {
  public:
   // `curve`: entries in the order of the curve.
   Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues);
 
-  // The next entries for the queue: its share as a whole; else from the bag, so many that it has `wanted` with the `ahead`
-  // that it has now, but fewer as the bag empties, so that all come to their end together. Perhaps none. The span is
-  // valid until the queue's next done() or give_back().
-  std::span<const layout::u32> take(std::size_t queue, std::size_t wanted, std::size_t ahead = 0);
+  // The next entries for the queue: its share as a whole; else from the bag, up to what is wanted. Perhaps none. The span
+  // is valid until the queue's next done() or give_back().
+  std::span<const layout::u32> take(std::size_t queue, const Wanted& wanted);
 
   // What the queue took since its last done().
   std::span<const layout::u32> taken(std::size_t queue) const { return taken_[queue]; }

@@ -62,7 +62,8 @@ void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, c
   const Developer developed(frame.n_samples);
   const auto develop_run = [&](const Run& run) {
     const std::size_t x = std::size_t{run.first_column} * frame.tile_width;
-    const std::size_t end_x = std::min<std::size_t>(std::size_t{run.end_column} * frame.tile_width, frame.width);
+    const std::size_t end_x =
+        std::min<std::size_t>(std::size_t{run.end_column} * frame.tile_width, frame.width);
     const std::size_t end_y =
         std::min<std::size_t>((std::size_t{run.row} + 1) * frame.tile_height, frame.height);
     for (std::size_t y = std::size_t{run.row} * frame.tile_height; y < end_y; ++y) {

@@ -240,7 +240,8 @@ void Wavefront::begin(std::size_t first_pixel) {
   for (Launch& launch : launches_) launch.slices.resize(schedule_.n_slices);
   device::checked("beginning a list of tiles", [&] {
     queue_.enqueueWriteBuffer(frame_buffer_, CL_TRUE, 0, sizeof frame_, &frame_);
-    queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices.size() * sizeof(layout::Slice), slices.data());
+    queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
+                              slices.data());
   });
 }
 
@@ -285,8 +286,7 @@ Progress Wavefront::wait_for(Launch& launch) {
   n_taken_ = taken;
   list_counters_ = sum;
   const auto busy = [&](const layout::Slice& slice) { return at_work(slice, launch.listed); };
-  return {launch.listed, taken, sum.waves,
-          std::any_of(launch.slices.begin(), launch.slices.end(), busy)};
+  return {launch.listed, taken, sum.waves, std::any_of(launch.slices.begin(), launch.slices.end(), busy)};
 }
 
 bool Wavefront::go_on(Launch& next, const Feed& feed, const Progress& progress) {
@@ -324,8 +324,8 @@ void Wavefront::finish(std::size_t first_row, std::size_t end_row,
     constexpr std::size_t kPixel = 3 * sizeof(layout::i64);
     const std::size_t first_pixel = first_row * frame_.width;
     const std::size_t n_pixels = (end_row - first_row) * frame_.width;
-    void* const sums = queue_.enqueueMapBuffer(film_, CL_TRUE, CL_MAP_READ,
-                                               (first_pixel - frame_.first_pixel) * kPixel, n_pixels * kPixel);
+    void* const sums = queue_.enqueueMapBuffer(
+        film_, CL_TRUE, CL_MAP_READ, (first_pixel - frame_.first_pixel) * kPixel, n_pixels * kPixel);
     take_film({{static_cast<const layout::i64*>(sums), n_pixels * 3}, first_pixel});
     queue_.enqueueUnmapMemObject(film_, sums);
   });

@@ -51,9 +51,10 @@ struct Counters {
 
 // How far a queue is with its list, by its last report.
 struct Progress {
-  std::uint32_t listed = 0, taken = 0;  // tiles in the list, and of them those that no slice has still to begin or end
-  std::uint64_t waves = 0;              // that this took
-  bool at_work = false;                 // a slice has rays or tiles left
+  std::uint32_t listed = 0,
+                taken = 0;  // tiles in the list, and of them those that no slice has still to begin or end
+  std::uint64_t waves = 0;  // that this took
+  bool at_work = false;     // a slice has rays or tiles left
 };
 
 // A launch (all stages of a wave, or many waves fused) that has ended: when on the device's clock, what it did.
@@ -147,10 +148,11 @@ class Wavefront {
   Watch watch_;
   Launch launches_[2];
   std::size_t device_bytes_ = 0;
-  cl::Buffer frame_buffer_, slice_buffer_, list_, tile_cycles_, pool_, batch_, hits_, shadow_rays_, occluded_, film_;
+  cl::Buffer frame_buffer_, slice_buffer_, list_, tile_cycles_, pool_, batch_, hits_, shadow_rays_, occluded_,
+      film_;
   // Either the wave or the others are there.
   std::optional<Stage> wave_, admit_, trace_closest_, shade_, trace_shadow_, add_;
-  cl_uint list_argument_ = 0;     // of the wave, or of admit: the list's length
+  cl_uint list_argument_ = 0;  // of the wave, or of admit: the list's length
   // Of the present list, as of the last report (n_listed_: as of the last launch).
   std::uint32_t n_listed_ = 0, n_taken_ = 0;
   Counters list_counters_;

@@ -145,9 +145,10 @@ TEST(RenderCommand, SeveralDevicesShareAFrame) {
   if (kdray({"render", scene, "-o", folder / "a.exr", "--device", "1"}, two).code == 3)
     GTEST_SKIP() << "PoCL gives no second device";
   for (const char* const queues : {"1", "3", "8"}) {
-    ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "b.exr", "--device", "0,1", "--queues", queues,
-                                "--division", "interleaved", "--tile", "4x4", "--stats", folder / "s.json"},
-                               two)));
+    ASSERT_TRUE(
+        succeeds(kdray({"render", scene, "-o", folder / "b.exr", "--device", "0,1", "--queues", queues,
+                        "--division", "interleaved", "--tile", "4x4", "--stats", folder / "s.json"},
+                       two)));
     EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr"));
     const Json mode = Json::parse(folder.get("s.json"))["mode"];
     EXPECT_EQ(mode["queues"], std::max(std::stoi(queues), 2));
@@ -165,10 +166,9 @@ TEST(RenderCommand, AQueueThatFailsCostsAWarningAndNothingElse) {
   const Folder folder;
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
   ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.exr", "-q"})));
-  const std::vector<std::string> arguments = {"render",     scene,   "-o",          folder / "b.exr",
-                                              "--queues",   "2",     "--division",  "contiguous",
-                                              "--tile",     "4x4",   "--inject-fault", "1@1",
-                                              "--stats",    folder / "s.json"};
+  const std::vector<std::string> arguments = {
+      "render",     scene,    "-o",  folder / "b.exr", "--queues", "2",       "--division",
+      "contiguous", "--tile", "4x4", "--inject-fault", "1@1",      "--stats", folder / "s.json"};
   const Outcome run = kdray(arguments);
   ASSERT_TRUE(succeeds(run));
   EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr"));
@@ -195,9 +195,9 @@ TEST(RenderCommand, TheTimelineHasARowForEachQueue) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
-  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.png", "--queues", "2", "--division",
-                              "interleaved", "--tile", "8x8", "--trace", folder / "t.json", "--stats",
-                              folder / "s.json", "-q"})));
+  ASSERT_TRUE(
+      succeeds(kdray({"render", scene, "-o", folder / "a.png", "--queues", "2", "--division", "interleaved",
+                      "--tile", "8x8", "--trace", folder / "t.json", "--stats", folder / "s.json", "-q"})));
   const Json stats = Json::parse(folder.get("s.json"));
   std::map<int, std::string> rows;
   std::map<int, double> tiles;

@@ -9,8 +9,12 @@
 namespace kdray::pdprt {
 namespace {
 
-int column(layout::u32 tile) { return static_cast<int>(KDRAY_TILE_COLUMN(tile)); }
-int row(layout::u32 tile) { return static_cast<int>(KDRAY_TILE_ROW(tile)); }
+int column(layout::u32 tile) {
+  return static_cast<int>(KDRAY_TILE_COLUMN(tile));
+}
+int row(layout::u32 tile) {
+  return static_cast<int>(KDRAY_TILE_ROW(tile));
+}
 
 TEST(Curve, VisitsEveryTileOnceAndNeighboursInTurn) {
   for (std::uint32_t columns = 1; columns <= 40; ++columns) {

@@ -22,7 +22,8 @@ using test::expect_same;
 using test::Hall;
 
 constexpr Division kDivisions[] = {Division::bag, Division::contiguous, Division::interleaved};
-const wavefront::Schedule kSmall{.tile_width = 8, .tile_height = 4, .batch_size = 64, .n_slices = 3, .fused_waves = 2};
+const wavefront::Schedule kSmall{
+    .tile_width = 8, .tile_height = 4, .batch_size = 64, .n_slices = 3, .fused_waves = 2};
 
 std::uint64_t tiles_of(const Result& result) {
   return std::accumulate(result.queues.begin(), result.queues.end(), std::uint64_t{0},
@@ -55,8 +56,8 @@ TEST_P(RenderTest, EveryDivisionAndNumberOfQueues) {
   for (const int n_queues : {1, 2, 3, 8}) {
     for (const Division division : kDivisions) {
       for (const auto& [width, height] : {std::pair{8u, 4u}, {1u, 43u}, {32u, 32u}}) {
-        SCOPED_TRACE(fmt::format("{} queues, division {}, tiles {}x{}", n_queues, static_cast<int>(division), width,
-                                 height));
+        SCOPED_TRACE(fmt::format("{} queues, division {}, tiles {}x{}", n_queues, static_cast<int>(division),
+                                 width, height));
         wavefront::Schedule schedule = kSmall;
         schedule.tile_width = width;
         schedule.tile_height = height;
@@ -113,8 +114,8 @@ TEST_P(RenderTest, AQueueThatFailsIsReplaced) {
     for (const int n_queues : {2, 3}) {
       for (int queue = 0; queue < n_queues; ++queue) {
         for (const int launch : {1, 2, 3}) {
-          SCOPED_TRACE(fmt::format("division {}, queue {} of {}, launch {}", static_cast<int>(division), queue,
-                                   n_queues, launch));
+          SCOPED_TRACE(fmt::format("division {}, queue {} of {}, launch {}", static_cast<int>(division),
+                                   queue, n_queues, launch));
           device::Faults faults(fmt::format("{}@{}", queue, launch));
           Task task = hall.task();
           task.division = division;
