@@ -110,6 +110,7 @@ void Queue::deliver(std::span<const layout::u32> tiles, Shared& shared) {
     wavefront::develop_tiles(film.sums, film.first_pixel, frame_, tiles, shared.image.pixels);
   });
   n_tiles_ += tiles.size();
+  shared.tiles_done += tiles.size() - n_told_;
   n_told_ = 0;
 }
 

@@ -208,7 +208,9 @@ Result Frame::render() {
   if (n_working() == 0) std::rethrow_exception(last_failure_);
   const Timer timer;
   for (const Band& band : bands_) render_band(band);
-  return collect(timer.seconds());
+  const double seconds = timer.seconds();
+  if (task_.progress) task_.progress(1.0);
+  return collect(seconds);
 }
 
 }  // namespace
