@@ -1,5 +1,7 @@
 #include "odprt_mode.h"
 
+#include <fmt/format.h>
+
 #include <numeric>
 
 #include "layout/rays.layout.h"
@@ -36,6 +38,7 @@ std::uint64_t moved(const odprt::ExchangeCounts& exchange, std::size_t queue, bo
 Json queue_json(const odprt::Result& r, std::size_t q) {
   const odprt::QueueReport& queue = r.queues[q];
   return {{"queue", queue.number},
+          {"device", queue.device},
           {"busy_seconds", queue.busy_seconds},
           {"idle_share", r.render_seconds > 0 ? 1 - queue.busy_seconds / r.render_seconds : 0.0},
           {"rays", queue.traced},
@@ -69,12 +72,13 @@ Json exchange_json(const odprt::Result& r) {
 
 }  // namespace
 
-Traversal odprt_traversal(Traversal wanted) {
+Traversal odprt_traversal(Traversal wanted, bool on_cpus) {
   if (wanted == Traversal::binary)
     throw Error(
         ErrorCode::usage,
         "odprt divides the wide form of the tree; take another --traversal than binary, or --mode pdprt");
-  return wanted;
+  // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
+  return wanted == Traversal::automatic && !on_cpus ? Traversal::wide : wanted;
 }
 
 Json odprt_mode_json(const odprt::Result& r, const RenderOptions& options, std::size_t bytes_of_whole) {
@@ -102,6 +106,14 @@ Json odprt_memory_json(const odprt::Result& r) {
   for (const odprt::QueueReport& q : r.queues)
     queues.push_back({{"geometry_bytes", q.geometry_bytes}, {"work_bytes", q.work_bytes}});
   return queues;
+}
+
+std::vector<std::string> warnings_of(const odprt::Result& r) {
+  std::vector<std::string> warnings;
+  for (const odprt::Quarantined& q : r.quarantined)
+    warnings.push_back(
+        fmt::format("queue {} failed: {}; its subtrees went to the other queues", q.queue, q.what));
+  return warnings;
 }
 
 }  // namespace kdray::api

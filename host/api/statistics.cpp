@@ -1,5 +1,9 @@
 #include "statistics.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "flatten/features.h"
 #include "prepare/quality.h"
 
@@ -60,6 +64,55 @@ Json rays_json(const wavefront::Counters& c) {
             {"light_of_no_weight", c.skipped_unlit},
             {"below_min_weight", c.skipped_weight},
             {"too_deep", c.skipped_depth}}}};
+}
+
+namespace {
+
+Json queue_json(std::size_t number, const pdprt::QueueResult& queue, double seconds) {
+  const double idle = seconds > 0 ? std::clamp(1 - queue.busy_seconds / seconds, 0.0, 1.0) : 0.0;
+  return {{"queue", number},    {"device", queue.device}, {"busy_seconds", queue.busy_seconds},
+          {"idle_share", idle}, {"rays", queue.rays},     {"tiles", queue.tiles}};
+}
+
+}  // namespace
+
+Json pdprt_json(const pdprt::Result& result) {
+  Json mode = {{"name", "pdprt"},
+               {"queues", result.queues.size()},
+               {"tile", {result.tile_width, result.tile_height}},
+               {"tiles", result.n_tiles},
+               {"bands", result.n_bands},
+               {"launches", result.counters.launches},
+               {"waves", result.counters.waves},
+               {"quarantined", Json::array()},
+               {"per_queue", Json::array()}};
+  for (std::size_t i = 0; i < result.queues.size(); ++i) {
+    const pdprt::QueueResult& queue = result.queues[i];
+    mode["per_queue"].push_back(queue_json(i, queue, result.render_seconds));
+    if (!queue.failure.empty()) mode["quarantined"].push_back({{"queue", i}, {"what", queue.failure}});
+  }
+  if (!result.tile_seconds.empty()) mode["tile_seconds"] = result.tile_seconds;
+  return mode;
+}
+
+Json pdprt_memory_json(const pdprt::Result& result, std::size_t scene_bytes) {
+  std::size_t frame_bytes = 0;
+  Json per_queue = Json::array();
+  for (const pdprt::QueueResult& queue : result.queues) {
+    frame_bytes += queue.device_bytes;
+    per_queue.push_back({{"geometry_bytes", scene_bytes}, {"work_bytes", queue.device_bytes}});
+  }
+  return {{"frame_bytes", frame_bytes}, {"per_queue", std::move(per_queue)}};
+}
+
+std::vector<std::string> warnings_of(const pdprt::Result& result) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < result.queues.size(); ++i)
+    if (const pdprt::QueueResult& queue = result.queues[i]; !queue.failure.empty())
+      warnings.push_back(
+          fmt::format("queue {} ({}) failed: {}; the other queues rendered the {} tiles it had taken", i,
+                      queue.device, queue.failure, queue.tiles_lost));
+  return warnings;
 }
 
 }  // namespace kdray::api

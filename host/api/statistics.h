@@ -18,4 +18,11 @@ Json device_json(const DeviceInfo& info);
 Json features_json(std::uint32_t mask);
 Json rays_json(const wavefront::Counters& counters);
 
+// What is a mode's own: its queues and what it divided among them.
+Json pdprt_json(const pdprt::Result& result);
+Json pdprt_memory_json(const pdprt::Result& result, std::size_t scene_bytes);
+
+// One line for each queue that failed.
+std::vector<std::string> warnings_of(const pdprt::Result& result);
+
 }  // namespace kdray::api

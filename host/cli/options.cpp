@@ -88,7 +88,8 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
 void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal) {
   const std::string group = "Device";
   static constexpr std::array<std::string_view, 1> kPrecisions = {"float"};
-  add_text(app, "--device", "SPEC", "auto, cpu, gpu, a number from 'kdray devices', or a part of a name",
+  add_text(app, "--device", "SPEC",
+           "auto, cpu, gpu, a number from 'kdray devices', or a part of a name; several with commas",
            [&device](const std::string& text) {
              if (text.empty())
                throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");

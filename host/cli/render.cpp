@@ -192,6 +192,8 @@ int run(Options& o) {
                     [&o](const scene::Scene& asked) { check_memory(o.render, asked.settings); });
   Renderer renderer(scene.scene(), o.device);
   Picture picture = render(renderer, o);
+  if (!o.quiet)
+    for (const std::string& warning : picture.warnings) say(warning);
   OwnSeconds seconds;
   const Timer step;
   const film::Written written = write(std::move(picture), o);

@@ -51,6 +51,16 @@ Opened open(const cl::Device& device, int n_queues, cl_uint units) {
   return opened;
 }
 
+std::vector<std::string> split(const std::string& specs) {
+  std::vector<std::string> parts;
+  for (std::size_t first = 0; first <= specs.size();) {
+    const std::size_t comma = std::min(specs.find(',', first), specs.size());
+    parts.push_back(specs.substr(first, comma - first));
+    first = comma + 1;
+  }
+  return parts;
+}
+
 // Never destroyed, on purpose: see the header.
 const Opened& opened_before_or_now(const FoundDevice& found, int n_queues) {
   static std::mutex mutex;
@@ -148,6 +158,19 @@ cl::Buffer Context::upload_copy(const void* data, std::size_t bytes, const std::
 bool Context::works_in_host_memory() const {
   return found_.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU &&
          found_.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
+}
+
+std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units) {
+  const std::vector<std::string> parts = split(specs);
+  const int n = static_cast<int>(parts.size());
+  std::vector<Context> contexts;
+  for (int i = 0; i < n; ++i) {
+    if (n > 1 && parts[static_cast<std::size_t>(i)].empty())
+      throw Error(ErrorCode::usage, fmt::format("the list of devices '{}' has an empty name in it", specs));
+    const int queues = n_queues / n + (i < n_queues % n ? 1 : 0);
+    contexts.emplace_back(parts[static_cast<std::size_t>(i)], std::max(queues, 1), compute_units);
+  }
+  return contexts;
 }
 
 }  // namespace kdray::device

@@ -64,4 +64,8 @@ class Context {
   Simd simd_ = Simd::portable;
 };
 
+// A context on each of the devices of `specs` (choose_device's, with commas between them), and `n_queues` queues in all:
+// dealt out in turn, at least one for each. `compute_units`: of each device.
+std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units = 0);
+
 }  // namespace kdray::device

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "device/opencl_error.h"
+#include "wavefront/curve.h"
 
 namespace kdray::odprt {
 
@@ -27,12 +28,13 @@ void check(const Worker& worker) {
                           sum.invalid, sum.pool_overflow, n_lost, sum.nan));
 }
 
-std::uint32_t tiles_left(const Worker& worker) {
-  std::uint32_t n = 0;
-  for (const layout::Slice& slice : worker.slices())
-    if (slice.tile < slice.end_tile)
-      n += (slice.end_tile - slice.tile + slice.tile_stride - 1) / slice.tile_stride;
-  return n;
+// Every n-th tile of the band along the curve, from the i-th on.
+std::vector<layout::u32> tiles_of(const Band& band, const layout::Frame& frame, std::size_t i,
+                                  std::size_t n) {
+  const std::vector<layout::u32> curve = wavefront::tile_curve(frame.n_tiles_x, band.first_row, band.n_rows);
+  std::vector<layout::u32> tiles;
+  for (; i < curve.size(); i += n) tiles.push_back(curve[i]);
+  return tiles;
 }
 
 std::uint64_t sum_of(std::span<const layout::Traffic> traffic, layout::u32 layout::Traffic::*count) {
@@ -51,14 +53,13 @@ BandRun::BandRun(const Request& request, Crew& crew)
 
 void BandRun::run(const Band& band, const std::function<void(double)>& progress) {
   n_serving_ = crew_.workers.size();
-  for (std::size_t q = 0; q < crew_.workers.size(); ++q) tiles_left_[q] = band.end_tile - band.first_tile;
   std::vector<std::jthread> threads;
   for (std::size_t q = 0; q < crew_.workers.size(); ++q)
     threads.emplace_back([this, q, &band] {
       try {
-        crew_.workers[q]->begin(band.first_pixel, band.n_pixels, band.first_tile, band.end_tile,
-                                static_cast<std::uint32_t>(q),
-                                static_cast<std::uint32_t>(crew_.workers.size()));
+        const std::vector<layout::u32> tiles = tiles_of(band, request_.frame, q, crew_.workers.size());
+        tiles_left_[q] = static_cast<std::uint32_t>(tiles.size());
+        crew_.workers[q]->begin(band.first_pixel, band.n_pixels, tiles);
         take_turns(q);
       } catch (...) {
         exchange_.fail(q, std::current_exception());
@@ -77,7 +78,7 @@ void BandRun::run(const Band& band, const std::function<void(double)>& progress)
 
 void BandRun::wait(const Band& band, const std::function<void(double)>& progress) {
   using namespace std::chrono_literals;
-  const double n_tiles = std::max(band.end_tile - band.first_tile, 1u);
+  const double n_tiles = std::max(band.n_rows * request_.frame.n_tiles_x, 1u);
   while (const std::size_t serving = n_serving_) {
     if (!progress) {
       n_serving_.wait(serving);
@@ -109,10 +110,10 @@ void BandRun::take_turn(std::size_t queue, const Turn& turn, QueueState& state, 
   if (pending.n > 0) worker.receive(pending);
   turn.outbox ? launch(queue, turn, state) : worker.finish();
   check(worker);
-  state.has_tiles = worker.has_tiles();
+  tiles_left_[queue] = worker.tiles_left();
+  state.has_tiles = tiles_left_[queue] > 0;
   state.has_rays = worker.n_waiting() + pending.n > 0;
   state.progressed = state.progressed || !turn.letters.empty();
-  tiles_left_[queue] = tiles_left(worker);
   if (request_.timeline && turn.outbox) {
     double n_out = 0;
     for (std::uint32_t part = 0; part < crew_.owner.size(); ++part)

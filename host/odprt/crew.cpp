@@ -16,15 +16,17 @@ std::size_t largest_part(const Division& division) {
 
 void add_worker(const Request& request, const Provision& provision, const Division& division, const Cut& cut,
                 const Queue& queue, Crew& crew) {
-  crew.workers.push_back(std::make_unique<Worker>(
-      *queue.context, queue.queue, *queue.programs, provision.frame, provision.plan, request.features,
-      request.traversal, division.directory, provision.largest_band, largest_part(division)));
+  crew.workers.push_back(
+      std::make_unique<Worker>(*queue.context, queue.queue, *queue.programs, provision.frame, provision.plan,
+                               request.features, request.traversal, division.directory,
+                               provision.largest_band, provision.frame.n_tiles, largest_part(division)));
   crew.stores.push_back(std::make_unique<PartStore>(*queue.context, division, cut, provision.most_geometry));
   crew.outboxes.emplace_back();
   for (std::size_t i = 0; i < provision.n_outboxes; ++i)
     crew.outboxes.back().push_back(std::make_unique<Outbox>(*queue.context, provision.plan.outbox));
   QueueReport report;
   report.number = queue.number;
+  report.device = queue.context->info().name;
   report.work_bytes =
       crew.workers.back()->bytes() + provision.n_outboxes * crew.outboxes.back().front()->bytes();
   crew.reports.push_back(report);

@@ -1,5 +1,7 @@
 #include "odprt/frame.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/timer.h"
@@ -102,6 +104,10 @@ Result render_frame(const Request& request, const Provision& provision, const Di
   Crew crew = make_crew(request, provision, division, cut);
   if (request.census_every > 0) result.visits.resize(cut.subtrees.size());
   load_parts(crew, provision);
+  if (request.timeline)
+    for (const QueueReport& report : crew.reports)
+      request.timeline->name_row(static_cast<int>(report.number),
+                                 fmt::format("queue {}: {}", report.number, report.device));
   const Timer timer;
   for (std::size_t i = 0; i < provision.bands.size(); ++i) {
     BandRun run(request, crew);

@@ -9,11 +9,12 @@ namespace kdray::odprt {
 
 namespace {
 
-constexpr std::uint32_t kSlices = 16, kWaves = 16;
-// Where parts come and go, buffers are small, and many rays wait in the host's memory.
-constexpr std::uint32_t kStreamedSlices = 16, kStreamedBatch = 256, kStreamedPool = 4 * kStreamedBatch;
-constexpr std::uint32_t kStreamedRays = 1u << 20;  // of a depth
-constexpr std::uint32_t kStreamedOutbox = 4096;    // rays of a slice, for all parts
+constexpr std::uint32_t kBatch = 512;                     // large batches keep packets full
+constexpr std::uint32_t kWaves = 16, kLaunchWaves = 128;  // of a slice in a launch, and of all slices
+// Of all slices together: rays of a depth that may be alive, and those that an outbox holds for a part.
+constexpr std::uint32_t kRays = 1u << 15, kOutboxRays = 1u << 13;
+// Where parts come and go: rays that may wait in the host's memory, in a queue's pool, and in the outbox for all parts.
+constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 
 // Words per field of a stream of n rays (kernels/layout/rays.layout.h).
 std::uint32_t capacity_for(std::uint32_t n) {
@@ -26,51 +27,48 @@ std::uint32_t spawned(std::uint32_t features) {
   return features & KDRAY_FEATURE_REFLECT ? 1 : 0;
 }
 
-// Large batches keep packets full; several queues share what may be alive.
-std::uint32_t batch_for(std::uint32_t n_queues) {
-  return n_queues <= 2 ? 512 : n_queues <= 4 ? 256 : 128;
+// Of a level: enough that no queue waits for what others hold, or a few of the buffers that were asked for.
+std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uint32_t n_slices) {
+  if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least);
+  const std::uint32_t in_work = kBatch * (std::min(least, 4u) * r.n_queues + 2);
+  return std::max({(r.streamed ? kStreamedRays : kRays) / n_slices, in_work, 2 * least});
 }
 
-// Of a level: enough that no queue waits for what others hold, or a few of the buffers that were asked for.
-std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t batch, std::uint32_t least,
-                             std::uint32_t n_slices) {
-  if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least);
-  if (r.streamed) return std::max(kStreamedRays / n_slices, 4 * batch * least);
-  return batch * (std::max(least, 1u) * r.n_queues + 2);
+// Rays for one part and slice.
+std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {
+  if (r.ray_buffer > 0) return r.ray_buffer;
+  return r.streamed ? std::max(kStreamedOutbox / (r.n_parts * n_slices), kBatch / 4)
+                    : std::max(kOutboxRays / n_slices, 2 * kBatch);
 }
 
 }  // namespace
 
 Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   Plan plan;
-  plan.n_slices = std::clamp<std::uint32_t>(frame.n_tiles, 1, r.streamed ? kStreamedSlices : kSlices);
-  plan.n_waves = kWaves;
+  plan.n_slices = std::clamp<std::uint32_t>(frame.n_tiles, 1, r.n_slices);
+  plan.n_waves = std::max(kWaves, kLaunchWaves / plan.n_slices);
   const bool lights = (r.features & KDRAY_FEATURE_LIGHTS) != 0;
-  const std::uint32_t batch = r.streamed ? kStreamedBatch : batch_for(r.n_queues),
-                      n_lights = lights ? frame.n_lights : 0;
-  frame.batch_size = batch;
-  frame.batch_capacity = capacity_for(batch);
+  const std::uint32_t n_lights = lights ? frame.n_lights : 0;
+  frame.batch_size = kBatch;
+  frame.batch_capacity = capacity_for(kBatch);
   frame.light_batch = std::min<std::uint32_t>(n_lights, KDRAY_MAX_LIGHT_BATCH);
   frame.shadow_capacity = std::max(frame.light_batch, 1u) * frame.batch_capacity;
 
   plan.least.assign(frame.max_depth + 1, std::max(spawned(r.features), 1u));
   plan.least[0] = n_lights;
-  // A shadow ray is short-lived, and there may be one for every light: lights count as far as they are few.
   for (const std::uint32_t least : plan.least)
-    plan.capacity.push_back(
-        std::max(level_capacity(r, batch, std::min(least, 4u), plan.n_slices), 2 * least));
+    plan.capacity.push_back(level_capacity(r, least, plan.n_slices));
   const std::uint32_t largest = *std::max_element(plan.capacity.begin() + 1, plan.capacity.end());
-  frame.pool_size = r.streamed ? std::min(kStreamedPool, largest) : largest;
+  const std::uint32_t streamed = std::max(kStreamedPool / plan.n_slices, 2 * kBatch);
+  frame.pool_size = r.streamed ? std::min(streamed, largest) : largest;
   frame.pool_capacity = capacity_for(frame.pool_size);
-  plan.shadow_pool = r.streamed ? std::min(kStreamedPool, plan.capacity[0]) : plan.capacity[0];
+  plan.shadow_pool = r.streamed ? std::min(streamed, plan.capacity[0]) : plan.capacity[0];
 
   OutboxShape& out = plan.outbox;
   out.n_parts = r.n_parts;
   out.n_slices = plan.n_slices;
-  const std::uint32_t chosen =
-      r.streamed ? std::max(kStreamedOutbox / r.n_parts, 2 * KDRAY_LANES) : 2 * batch;
-  out.rays = r.ray_buffer > 0 ? r.ray_buffer : chosen;
-  out.shadow = lights ? std::max(out.rays * (r.ray_buffer > 0 ? 1 : std::min(n_lights, 2u)), n_lights) : 1;
+  out.rays = outbox_rays(r, plan.n_slices);
+  out.shadow = lights ? std::max(r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights) : 1;
   out.ray_capacity = capacity_for(out.rays);
   out.shadow_capacity = capacity_for(out.shadow);
   return plan;

@@ -22,6 +22,7 @@ struct Plan {
 struct PlanRequest {
   std::uint32_t features = 0;
   std::uint32_t n_parts = 1, n_queues = 1;
+  std::uint32_t n_slices = 16;   // of each queue
   std::uint32_t ray_buffer = 0;  // rays in the outbox for one part and slice; 0: chosen
   bool streamed = false;         // parts come and go: rays wait in the host's memory, and there may be many
 };

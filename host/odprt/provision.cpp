@@ -26,8 +26,7 @@ std::vector<Band> bands_of(const layout::Frame& frame, std::size_t most_film_byt
     const std::uint32_t end = std::min(row + per_band, rows);
     const std::size_t y = std::size_t{row} * frame.tile_height;
     const std::size_t end_y = std::min<std::size_t>(std::size_t{end} * frame.tile_height, frame.height);
-    bands.push_back(
-        {row * frame.n_tiles_x, end * frame.n_tiles_x, y * frame.width, (end_y - y) * frame.width});
+    bands.push_back({row, end - row, y * frame.width, (end_y - y) * frame.width});
   }
   return bands;
 }
@@ -49,6 +48,7 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
   p.plan = make_plan(p.frame, {.features = request.features,
                                .n_parts = n_parts,
                                .n_queues = static_cast<std::uint32_t>(request.queues.size()),
+                               .n_slices = request.n_slices,
                                .ray_buffer = request.ray_buffer,
                                .streamed = streamed});
   p.bands = bands_of(p.frame, film_bytes);

@@ -12,8 +12,9 @@
 
 namespace kdray::odprt {
 
+// Rows of tiles whose pixels a queue's film holds at one time.
 struct Band {
-  std::uint32_t first_tile = 0, end_tile = 0;
+  std::uint32_t first_row = 0, n_rows = 0;  // of tiles
   std::size_t first_pixel = 0, n_pixels = 0;
 };
 

@@ -35,6 +35,7 @@ struct Request {
   std::uint32_t features = 0;
   Traversal traversal = Traversal::automatic;
   Balance balance = Balance::sah;
+  std::uint32_t n_slices = 16;  // of each queue: enough for all of its compute units
   std::uint32_t ray_buffer = 0;
   std::uint64_t device_memory = 0;
   std::uint32_t census_every = 0;  // visits to subtrees are counted in one wave of so many
@@ -45,6 +46,7 @@ struct Request {
 
 struct QueueReport {
   std::size_t number = 0;
+  std::string device;
   double busy_seconds = 0;
   std::uint64_t launches = 0, waves = 0, traced = 0;  // traced: rays that the queue has looked for a hit of
   std::uint32_t n_parts = 0, n_subtrees = 0;

@@ -37,7 +37,8 @@ cl::Buffer Worker::make_stream(std::size_t n_streams, std::size_t n_fields, std:
 
 Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
                const layout::Frame& frame, const Plan& plan, std::uint32_t features, Traversal traversal,
-               std::span<const layout::PartCell> directory, std::size_t band_pixels, std::size_t max_subtrees)
+               std::span<const layout::PartCell> directory, std::size_t band_pixels, std::size_t band_tiles,
+               std::size_t max_subtrees)
     : context_(context),
       queue_(std::move(queue)),
       frame_(frame),
@@ -49,6 +50,7 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       frame_buffer_(make(sizeof(layout::Frame), "the frame")),
       travel_buffer_(make(sizeof(layout::Travel), "the division")),
       cells_(make(directory.size_bytes(), "the directory")),
+      tiles_(make(band_tiles * sizeof(layout::u32), "the list of tiles")),
       slice_buffer_(make(plan.n_slices * sizeof(layout::Slice), "the slices")),
       grant_buffer_(make(plan.n_slices * sizeof(layout::Grant), "the slices' grants")),
       traffic_buffer_(make(plan.n_slices * sizeof(layout::Traffic), "the slices' accounts")),
@@ -89,18 +91,18 @@ Worker::~Worker() {
   }
 }
 
-void Worker::begin(std::size_t first_pixel, std::size_t n_pixels, std::uint32_t first_tile,
-                   std::uint32_t end_tile, std::uint32_t i, std::uint32_t n) {
+void Worker::begin(std::size_t first_pixel, std::size_t n_pixels, std::span<const layout::u32> tiles) {
   frame_.first_pixel = static_cast<layout::u32>(first_pixel);
   band_pixels_ = n_pixels;
+  n_tiles_ = static_cast<std::uint32_t>(tiles.size());
   std::fill(slices_.begin(), slices_.end(), layout::Slice{});
   std::fill(traffic_.begin(), traffic_.end(), layout::Traffic{});
   for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
-    slices_[s].tile = first_tile + i * plan_.n_slices + s;
-    slices_[s].end_tile = end_tile;
-    slices_[s].tile_stride = plan_.n_slices * n;
+    slices_[s].tile = s;
+    slices_[s].tile_stride = plan_.n_slices;
   }
   queue_.enqueueWriteBuffer(frame_buffer_, CL_FALSE, 0, sizeof frame_, &frame_);
+  if (!tiles.empty()) queue_.enqueueWriteBuffer(tiles_, CL_FALSE, 0, tiles.size_bytes(), tiles.data());
   queue_.enqueueWriteBuffer(slice_buffer_, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
                             slices_.data());
   queue_.enqueueWriteBuffer(traffic_buffer_, CL_FALSE, 0, traffic_.size() * sizeof(layout::Traffic),
@@ -120,12 +122,12 @@ void Worker::serve(const LoadedPart& part, std::uint32_t census_every) {
   queue_.enqueueWriteBuffer(travel_buffer_, CL_TRUE, 0, sizeof travel_, &travel_);
   wave_.set_arguments(part.scene.set_tree_arguments(wave_.kernel()), part.scene.normals, part.scene.materials,
                       part.scene.lights, frame_buffer_, travel_buffer_, cells_, part.subtrees,
-                      cl_uint{plan_.n_waves}, slice_buffer_, grant_buffer_, traffic_buffer_, pool_, batch_,
-                      hits_, shadow_rays_, occluded_, shadow_pool_, film_);
+                      cl_uint{plan_.n_waves}, tiles_, cl_uint{0}, slice_buffer_, grant_buffer_,
+                      traffic_buffer_, pool_, batch_, hits_, shadow_rays_, occluded_, shadow_pool_, film_);
 }
 
 void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
-  begin(0, 0, 0, 0, 0, 1);
+  begin(0, 0, {});
   serve(part, 0);
   std::fill(outbox.n().begin(), outbox.n().end(), 0);
   queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
@@ -179,9 +181,10 @@ std::uint64_t Worker::receive(Mail& mail) {
 }
 
 void Worker::launch(std::span<const layout::Grant> grants, Outbox& outbox) {
-  constexpr cl_uint kOutboxArguments = kGeometryArguments + 18;
+  constexpr cl_uint kTilesArgument = kGeometryArguments + 9, kOutboxArguments = kGeometryArguments + 20;
   queue_.enqueueWriteBuffer(grant_buffer_, CL_FALSE, 0, grants.size_bytes(), grants.data());
   queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
+  wave_.set_arguments(kTilesArgument, cl_uint{n_tiles_});
   wave_.set_arguments(kOutboxArguments, outbox.rays(), outbox.shadow_rays(), outbox.counts(), visit_buffer_);
   wave_.launch(queue_, plan_.n_slices, 1);
   queue_.enqueueReadBuffer(outbox.counts(), CL_FALSE, 0, outbox.n().size() * sizeof(layout::u32),
@@ -257,9 +260,11 @@ void Worker::add_cycles(std::map<std::string, double>& cycles) const {
     cycles["route"] += static_cast<double>(traffic.cycles_route);
 }
 
-bool Worker::has_tiles() const {
-  return std::any_of(slices_.begin(), slices_.end(),
-                     [](const layout::Slice& slice) { return slice.tile < slice.end_tile; });
+std::uint32_t Worker::tiles_left() const {
+  std::uint32_t n = 0;
+  for (const layout::Slice& slice : slices_)
+    if (slice.tile < n_tiles_) n += (n_tiles_ - slice.tile + slice.tile_stride - 1) / slice.tile_stride;
+  return n;
 }
 
 std::uint64_t Worker::n_waiting() const {

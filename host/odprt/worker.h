@@ -37,16 +37,15 @@ class Worker {
  public:
   Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
          const layout::Frame& frame, const Plan& plan, std::uint32_t features, Traversal traversal,
-         std::span<const layout::PartCell> directory, std::size_t band_pixels, std::size_t max_subtrees);
+         std::span<const layout::PartCell> directory, std::size_t band_pixels, std::size_t band_tiles,
+         std::size_t max_subtrees);
   ~Worker();
   Worker(const Worker&) = delete;
 
   const device::Context& context() const { return context_; }
 
-  // Clears the film for a band of the tiles [first, end), of which every `n`-th row of slices is this worker's, from the
-  // `i`-th on.
-  void begin(std::size_t first_pixel, std::size_t n_pixels, std::uint32_t first_tile, std::uint32_t end_tile,
-             std::uint32_t i, std::uint32_t n);
+  // Clears the film for a band, and takes up the tiles whose eye rays it is to make (KDRAY_TILE entries).
+  void begin(std::size_t first_pixel, std::size_t n_pixels, std::span<const layout::u32> tiles);
 
   // `census_every`: visits to the part's subtrees are counted in one wave of so many; 0: in none.
   void serve(const LoadedPart& part, std::uint32_t census_every);
@@ -70,8 +69,8 @@ class Worker {
   // As the last launch left them.
   std::span<const layout::Slice> slices() const { return slices_; }
   std::span<const layout::Traffic> traffic() const { return traffic_; }
-  bool has_tiles() const;
-  std::uint64_t n_waiting() const;  // rays in the pools
+  std::uint32_t tiles_left() const;  // not begun
+  std::uint64_t n_waiting() const;   // rays in the pools
   std::vector<std::uint64_t> visits() const;
 
   // The film's sums of the band, three for each pixel, until unmap_film().
@@ -100,11 +99,12 @@ class Worker {
   layout::Travel travel_{};
   std::size_t bytes_ = 0, band_pixels_ = 0;
   bool film_is_clear_ = true;
+  std::uint32_t n_tiles_ = 0;
   std::vector<layout::Slice> slices_;
   std::vector<layout::Traffic> traffic_;
   std::vector<layout::u32> visits_;
-  cl::Buffer frame_buffer_, travel_buffer_, cells_, slice_buffer_, grant_buffer_, traffic_buffer_, pool_,
-      batch_, hits_, shadow_rays_, occluded_, shadow_pool_, film_, visit_buffer_;
+  cl::Buffer frame_buffer_, travel_buffer_, cells_, tiles_, slice_buffer_, grant_buffer_, traffic_buffer_,
+      pool_, batch_, hits_, shadow_rays_, occluded_, shadow_pool_, film_, visit_buffer_;
   void* mapped_film_ = nullptr;
   Outbox inbox_;  // of one part: rays from the host's memory
   wavefront::Stage wave_, receive_;

@@ -1,125 +1,222 @@
 #include "pdprt/render.h"
 
-#include <atomic>
-#include <condition_variable>
+#include <algorithm>
+#include <chrono>
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "base/timer.h"
-#include "pdprt/tiles.h"
-#include "wavefront/develop.h"
+#include "wavefront/curve.h"
+#include "pdprt/queue.h"
 
 namespace kdray::pdprt {
 
 namespace {
 
-constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
-
-// What the queues' threads share.
-struct Frame {
-  Bag bag;
-  film::Image image;  // bands are disjoint: each queue writes its own
-  int samples;
-  std::mutex wait_mutex;
-  std::condition_variable changed;
-  std::uint32_t n_running = 0;
-  std::atomic<std::uint32_t> tiles_done{0};
-  std::atomic<bool> failed{false};
-  std::exception_ptr failure;
+// Whole rows of tiles that the queues render together.
+struct Band {
+  std::uint32_t first_row, n_rows;  // of tiles
 };
 
-// Serves one queue until the bag is empty or another queue has failed.
-void serve(Frame& shared, wavefront::Wavefront& queue) {
-  const auto tiles_done = [&](std::uint32_t n) {
-    shared.tiles_done += n;
-    shared.changed.notify_one();
+std::vector<Band> bands_of(const layout::Frame& frame, std::size_t max_film_bytes) {
+  const std::uint32_t n_rows = frame.n_tiles / frame.n_tiles_x;
+  const std::size_t row_bytes = std::size_t{frame.tile_height} * frame.width * 3 * sizeof(layout::i64);
+  const auto fitting =
+      static_cast<std::uint32_t>(std::clamp<std::size_t>(max_film_bytes / row_bytes, 1, n_rows));
+  std::vector<Band> bands;
+  for (std::uint32_t row = 0; row < n_rows; row += fitting)
+    bands.push_back({row, std::min(fitting, n_rows - row)});
+  return bands;
+}
+
+class Frame {
+ public:
+  Frame(std::span<const Device> devices, const Task& task);
+  Result render();
+
+ private:
+  struct Place {  // of a queue, whether it works or not
+    std::unique_ptr<Queue> queue;
+    QueueResult result;
   };
-  while (!shared.failed) {
-    const std::optional<Band> band = shared.bag.take();
-    if (!band) return;
-    const std::span pixels = std::span(shared.image.pixels).subspan(band->first_pixel, band->n_pixels);
-    queue.render_tiles(
-        band->first_tile, band->end_tile, band->first_pixel, band->n_pixels, tiles_done,
-        [&](std::span<const layout::i64> sums) { wavefront::develop(sums, shared.samples, pixels); });
-  }
+
+  void open(const Device& device, std::size_t number_of_device, std::size_t max_tiles,
+            std::size_t max_pixels);
+  void render_band(const Band& band);
+  void run(std::size_t number, Tiles& tiles, std::size_t first_pixel);
+  void fail(std::size_t number, const Error& error);
+  void wait(Tiles& tiles);
+  std::size_t n_working() const;
+  Result collect(double seconds);
+
+  const Task& task_;
+  layout::Frame frame_;
+  std::vector<Band> bands_;
+  Shared shared_;
+  std::vector<Place> places_;
+  std::exception_ptr last_failure_;  // of a queue
+  std::mutex mutex_;                 // of the following
+  std::condition_variable changed_;
+  std::size_t n_running_ = 0;
+  std::exception_ptr fault_;  // of kdray: ends the frame
+};
+
+Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), frame_(task.frame) {
+  devices.front().schedule.apply(frame_, task.features);
+  bands_ = bands_of(frame_, task.max_film_bytes);
+  shared_.image = {static_cast<int>(frame_.width), static_cast<int>(frame_.height),
+                   std::vector<vec3>(std::size_t{frame_.width} * frame_.height)};
+  if (task.timeline) shared_.tile_seconds.resize(frame_.n_tiles);
+  const std::size_t max_tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
+  const std::size_t max_pixels =
+      std::min<std::size_t>(std::size_t{bands_.front().n_rows} * frame_.tile_height, frame_.height) *
+      frame_.width;
+  std::size_t most = 0;
+  for (const Device& device : devices) most = std::max(most, device.context->queues().size());
+  for (std::size_t i = 0; i < most; ++i)  // in turn, as they were dealt out
+    for (const Device& device : devices)
+      if (i < device.context->queues().size()) open(device, i, max_tiles, max_pixels);
 }
 
-void run_queue(Frame& shared, wavefront::Wavefront& queue) {
+void Frame::open(const Device& device, std::size_t number_of_device, std::size_t max_tiles,
+                 std::size_t max_pixels) {
+  const std::size_t number = places_.size();
+  Place& place = places_.emplace_back();
+  place.result.device = device.context->info().name;
+  if (task_.timeline)
+    task_.timeline->name_row(static_cast<int>(number),
+                             "queue " + std::to_string(number) + ": " + place.result.device);
   try {
-    serve(shared, queue);
-  } catch (...) {
-    const std::lock_guard lock(shared.wait_mutex);
-    if (!shared.failed.exchange(true)) shared.failure = std::current_exception();
+    place.queue = std::make_unique<Queue>(number, device, device.context->queues()[number_of_device], task_,
+                                          max_tiles, max_pixels);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal) throw;
+    fail(number, error);
   }
-  const std::lock_guard lock(shared.wait_mutex);
-  --shared.n_running;
-  shared.changed.notify_one();
 }
 
-// Reports progress from the calling thread until every queue is done.
-void wait(Frame& shared, std::uint32_t n_tiles, const std::function<void(double)>& progress) {
+// From a handler of `error`.
+void Frame::fail(std::size_t number, const Error& error) {
+  places_[number].result.failure = error.what();
+  last_failure_ = std::current_exception();
+}
+
+std::size_t Frame::n_working() const {
+  return static_cast<std::size_t>(std::count_if(places_.begin(), places_.end(), [](const Place& place) {
+    return place.queue && place.result.failure.empty();
+  }));
+}
+
+// On a thread of the queue's own.
+void Frame::run(std::size_t number, Tiles& tiles, std::size_t first_pixel) {
+  Place& place = places_[number];
+  try {
+    place.queue->serve(tiles, first_pixel, shared_);
+  } catch (const Error& error) {
+    const std::lock_guard lock(mutex_);
+    if (error.code() == ErrorCode::internal) {
+      fault_ = std::current_exception();
+      tiles.leave();
+    } else {
+      fail(number, error);
+      place.queue->withdraw(shared_);
+      place.result.tiles_lost = tiles.give_back(number);
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    fault_ = std::current_exception();
+    tiles.leave();
+  }
+  const std::lock_guard lock(mutex_);
+  --n_running_;
+  changed_.notify_one();
+}
+
+// Reports progress from the calling thread until every queue's thread has ended.
+void Frame::wait(Tiles& tiles) {
   using namespace std::chrono_literals;
-  std::unique_lock lock(shared.wait_mutex);
-  while (shared.n_running > 0) {
-    shared.changed.wait_for(lock, 100ms);
-    if (!progress) continue;
+  std::unique_lock lock(mutex_);
+  while (n_running_ > 0) {
+    changed_.wait_for(lock, 100ms);
+    if (!task_.progress) continue;
     lock.unlock();
-    progress(static_cast<double>(shared.tiles_done) / n_tiles);
+    try {
+      task_.progress(static_cast<double>(shared_.tiles_done) / frame_.n_tiles);
+    } catch (...) {
+      tiles.leave();
+      throw;
+    }
     lock.lock();
   }
 }
 
-}  // namespace
-
-Result render(const device::Context& context, const wavefront::SceneBuffers& scene,
-              wavefront::Programs& programs, layout::Frame frame, const wavefront::Schedule& schedule,
-              std::uint32_t features, const std::function<void(double)>& progress) {
-  schedule.apply(frame, features);
-  const std::size_t n_queues = context.queues().size();
-  const std::uint32_t rows = rows_per_band(frame, n_queues, kMaxFilmBytes);
-  Frame shared{.bag = Bag(frame, rows),
-               .image = {static_cast<int>(frame.width), static_cast<int>(frame.height),
-                         std::vector<vec3>(std::size_t{frame.width} * frame.height)},
-               .samples = static_cast<int>(frame.n_samples),
-               .wait_mutex = {},
-               .changed = {},
-               .n_running = static_cast<std::uint32_t>(n_queues),
-               .tiles_done = 0,
-               .failed = false,
-               .failure = nullptr};
-  std::vector<std::unique_ptr<wavefront::Wavefront>> queues;
-  for (const cl::CommandQueue& queue : context.queues())
-    queues.push_back(std::make_unique<wavefront::Wavefront>(context, queue, scene, programs, frame, schedule,
-                                                            features, shared.bag.largest_band_pixels()));
-
-  Result result;
-  const Timer timer;
+void Frame::render_band(const Band& band) {
+  // One queue takes all at once.
+  const Division division = places_.size() == 1 ? Division::contiguous : task_.division;
+  Tiles tiles(wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows), division, places_.size());
+  const std::size_t first_pixel = std::size_t{band.first_row} * frame_.tile_height * frame_.width;
+  n_running_ = n_working();
   {
     std::vector<std::jthread> threads;
-    for (const auto& queue : queues) threads.emplace_back([&shared, &queue] { run_queue(shared, *queue); });
-    try {
-      wait(shared, frame.n_tiles, progress);
-    } catch (...) {
-      shared.failed = true;  // the caller's progress threw: no more bands
-      throw;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (places_[i].result.failure.empty())
+        threads.emplace_back([this, i, &tiles, first_pixel] { run(i, tiles, first_pixel); });
+      else
+        tiles.give_back(i);
     }
+    wait(tiles);
   }
-  if (shared.failure) std::rethrow_exception(shared.failure);
-  result.render_seconds = timer.seconds();
-  result.image = std::move(shared.image);
-  for (const auto& queue : queues) {
-    result.counters.add(queue->counters());
-    for (const auto& [stage, seconds] : queue->stage_seconds()) result.stage_seconds[stage] += seconds;
-    result.device_bytes += queue->device_bytes();
+  if (fault_) std::rethrow_exception(fault_);
+  if (n_working() == 0) std::rethrow_exception(last_failure_);
+}
+
+Result Frame::collect(double seconds) {
+  Result result;
+  result.render_seconds = seconds;
+  result.image = std::move(shared_.image);
+  result.tile_width = frame_.tile_width;
+  result.tile_height = frame_.tile_height;
+  result.n_tiles = frame_.n_tiles;
+  result.n_bands = static_cast<std::uint32_t>(bands_.size());
+  result.tile_cost.tile_pixels = std::uint64_t{frame_.tile_width} * frame_.tile_height;
+  for (Place& place : places_) {
+    if (place.queue) {
+      const wavefront::Wavefront& wavefront = place.queue->wavefront();
+      result.counters.add(wavefront.counters());
+      for (const auto& [stage, time] : wavefront.stage_seconds()) result.stage_seconds[stage] += time;
+      place.result.busy_seconds = wavefront.busy_seconds();
+      place.result.rays = wavefront.counters().total();
+      place.result.tiles = place.queue->tiles();
+      place.result.device_bytes = wavefront.device_bytes();
+      result.tile_cost.costliest = std::max(result.tile_cost.costliest, place.queue->tile_cost().costliest);
+      result.tile_cost.total += place.queue->tile_cost().total;
+    }
+    result.queues.push_back(std::move(place.result));
   }
-  const std::uint32_t tile_rows = frame.n_tiles / frame.n_tiles_x;
-  result.n_bands = (tile_rows + rows - 1) / rows;
+  for (const Band& band : bands_)
+    if (!shared_.tile_seconds.empty() && result.tile_cost.total > 0)
+      for (const layout::u32 tile : wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows))
+        result.tile_seconds.push_back(
+            shared_.tile_seconds[KDRAY_TILE_ROW(tile) * frame_.n_tiles_x + KDRAY_TILE_COLUMN(tile)]);
   return result;
+}
+
+Result Frame::render() {
+  if (n_working() == 0) std::rethrow_exception(last_failure_);
+  const Timer timer;
+  for (const Band& band : bands_) render_band(band);
+  const double seconds = timer.seconds();
+  if (task_.progress) task_.progress(1.0);
+  return collect(seconds);
+}
+
+}  // namespace
+
+Result render(std::span<const Device> devices, const Task& task) {
+  return Frame(devices, task).render();
 }
 
 }  // namespace kdray::pdprt

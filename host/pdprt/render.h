@@ -1,28 +1,65 @@
-// What    PDPRT: renders a frame with its pixels divided among the context's queues, each of which sees the whole scene.
+// What    PDPRT: renders a frame with its pixels divided among the queues of any number of devices, each of which sees the
+//         whole scene.
+// Shape   The tiles of a band (the whole frame, unless its film is too large for a queue) along a curve; a thread for each
+//         queue takes tiles (tiles.h), keeps its queue's list filled, and puts the queue's tiles into the picture. Each queue
+//         has a film of its own; the one that took a tile last owns it.
+// Errors  A queue whose device fails is left alone from then on: the others render the tiles that it has not delivered.
+//         The error of the last queue, when all fail; a fault of kdray's own (ErrorCode::internal) ends the frame.
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: pixel-distributed, bag of tasks.
 #pragma once
 
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "device/faults.h"
 #include "film/image.h"
+#include "pdprt/tile_size.h"
+#include "timeline/timeline.h"
 #include "wavefront/wavefront.h"
 
 namespace kdray::pdprt {
+
+// The queues of one context, and what they share. All devices' schedules have the same tiles.
+struct Device {
+  const device::Context* context;
+  const wavefront::SceneBuffers* scene;
+  wavefront::Programs* programs;
+  wavefront::Schedule schedule;
+};
+
+struct Task {
+  layout::Frame frame;  // without a schedule (flatten::make_frame)
+  std::uint32_t features = 0;
+  Division division = Division::bag;
+  std::function<void(double)> progress = {};  // called from render()'s thread with the share done
+  device::Faults* faults = nullptr;
+  timeline::Timeline* timeline = nullptr;               // also asks for Result::tile_seconds
+  std::size_t max_film_bytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
+};
+
+struct QueueResult {
+  std::string device;
+  double busy_seconds = 0;
+  std::uint64_t rays = 0, tiles = 0;  // that are in the picture
+  std::size_t device_bytes = 0;       // without the scene
+  std::string failure;                // empty: none
+  std::uint64_t tiles_lost = 0;       // that it had taken when it failed
+};
 
 struct Result {
   film::Image image;
   wavefront::Counters counters;
   std::map<std::string, double> stage_seconds;  // device time, added over the queues
   double render_seconds = 0;                    // wall time from the first launch to the finished film
-  std::size_t device_bytes = 0;                 // of all queues, without the scene
-  std::uint32_t n_bands = 0;
+  std::vector<QueueResult> queues;
+  std::uint32_t tile_width = 0, tile_height = 0, n_tiles = 0, n_bands = 0;
+  TileCost tile_cost;                // no total: it was not measured
+  std::vector<double> tile_seconds;  // of a compute unit, in the order of the curve, band after band
 };
 
-// `frame` comes without a schedule (flatten::make_frame); `progress` is called from this thread with the share done.
-Result render(const device::Context& context, const wavefront::SceneBuffers& scene,
-              wavefront::Programs& programs, layout::Frame frame, const wavefront::Schedule& schedule,
-              std::uint32_t features, const std::function<void(double)>& progress);
+Result render(std::span<const Device> devices, const Task& task);
 
 }  // namespace kdray::pdprt

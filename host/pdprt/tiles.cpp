@@ -6,43 +6,88 @@ namespace kdray::pdprt {
 
 namespace {
 
-constexpr std::uint32_t kBandsPerQueue = 8;
+// That the bag is for each queue: the last to come find so little that none keeps the others waiting.
+constexpr std::size_t kPartsPerQueue = 4;
 
-std::uint32_t tile_rows(const layout::Frame& frame) {
-  return frame.n_tiles / frame.n_tiles_x;
+std::vector<std::vector<layout::u32>> deal(const std::vector<layout::u32>& curve, Division division,
+                                           std::size_t n_queues) {
+  std::vector<std::vector<layout::u32>> shares(n_queues);
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const std::size_t queue = division == Division::interleaved ? i % n_queues : i * n_queues / curve.size();
+    shares[queue].push_back(curve[i]);
+  }
+  return shares;
+}
+
+void append(std::vector<layout::u32>& to, std::span<const layout::u32> from) {
+  to.insert(to.end(), from.begin(), from.end());
 }
 
 }  // namespace
 
-Bag::Bag(const layout::Frame& frame, std::uint32_t rows_per_band)
-    : frame_(frame), n_rows_(tile_rows(frame)), rows_per_band_(rows_per_band) {}
-
-Band Bag::band(std::uint32_t row) const {
-  const std::uint32_t end_row = std::min(row + rows_per_band_, n_rows_);
-  const std::size_t first_y = std::size_t{row} * frame_.tile_height;
-  const std::size_t end_y = std::min<std::size_t>(std::size_t{end_row} * frame_.tile_height, frame_.height);
-  return {row * frame_.n_tiles_x, end_row * frame_.n_tiles_x, first_y * frame_.width,
-          (end_y - first_y) * frame_.width};
+Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues)
+    : taken_(n_queues), n_undone_(curve.size()), n_queues_(n_queues) {
+  // What is taken must not move: the device may still be reading it.
+  for (auto& tiles : taken_) tiles.reserve(curve.size());
+  if (division == Division::bag) {
+    shares_.resize(n_queues);
+    bag_ = std::move(curve);
+  } else {
+    shares_ = deal(curve, division, n_queues);
+  }
 }
 
-std::optional<Band> Bag::take() {
-  const std::uint32_t row = next_row_.fetch_add(rows_per_band_);
-  if (row >= n_rows_) return std::nullopt;
-  return band(row);
+std::span<const layout::u32> Tiles::take(std::size_t queue, const Wanted& wanted) {
+  const std::lock_guard lock(mutex_);
+  std::vector<layout::u32>& taken = taken_[queue];
+  const std::size_t first = taken.size();
+  if (!shares_[queue].empty()) {
+    append(taken, shares_[queue]);
+    shares_[queue].clear();
+  } else {
+    const std::size_t rest = bag_.size() - next_;
+    const std::size_t part = std::max(rest / (kPartsPerQueue * n_queues_), wanted.least);
+    const std::size_t in_all = std::min(part, wanted.most);
+    const std::size_t n = std::min(rest, in_all - std::min(in_all, wanted.ahead));
+    append(taken, std::span(bag_).subspan(next_, n));
+    next_ += n;
+  }
+  return std::span(taken).subspan(first);
 }
 
-std::size_t Bag::largest_band_pixels() const {
-  return band(0).n_pixels;
+void Tiles::done(std::size_t queue) {
+  const std::lock_guard lock(mutex_);
+  n_undone_ -= taken_[queue].size();
+  taken_[queue].clear();
+  if (n_undone_ == 0) changed_.notify_all();
 }
 
-std::uint32_t rows_per_band(const layout::Frame& frame, std::size_t n_queues, std::size_t max_film_bytes) {
-  const std::uint32_t rows = tile_rows(frame);
-  const std::size_t row_bytes = std::size_t{frame.tile_height} * frame.width * 3 * sizeof(layout::i64);
-  const auto fitting =
-      static_cast<std::uint32_t>(std::clamp<std::size_t>(max_film_bytes / row_bytes, 1, rows));
-  if (n_queues == 1) return fitting;
-  const auto share = static_cast<std::uint32_t>(rows / (n_queues * kBandsPerQueue));
-  return std::clamp<std::uint32_t>(share, 1, fitting);
+std::size_t Tiles::give_back(std::size_t queue) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t n_taken = taken_[queue].size();
+  append(bag_, taken_[queue]);
+  append(bag_, shares_[queue]);
+  taken_[queue].clear();
+  shares_[queue].clear();
+  changed_.notify_all();
+  return n_taken;
+}
+
+bool Tiles::wait(std::size_t queue) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return left_ || n_undone_ == 0 || has_some(queue); });
+  return !left_ && n_undone_ > 0;
+}
+
+void Tiles::leave() {
+  const std::lock_guard lock(mutex_);
+  left_ = true;
+  changed_.notify_all();
+}
+
+bool Tiles::left() const {
+  const std::lock_guard lock(mutex_);
+  return left_;
 }
 
 }  // namespace kdray::pdprt

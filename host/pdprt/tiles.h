@@ -1,39 +1,61 @@
-// What    How PDPRT divides the pixels: tiles in bands of whole tile rows; bands go to queues from a bag of tasks.
+// What    Who renders which tile: shares dealt out beforehand, or a bag from which whoever is free takes; and who has taken
+//         what, so that the tiles of a queue that fails are rendered by the others.
+// Shape   A tile is first in a queue's share or in the bag, then with the queue that took it, then done. What a queue that
+//         failed had goes into the bag, from which all take when their own share has come to an end.
+// Threads Any number; a queue's calls come from one thread at a time.
 #pragma once
 
-#include <atomic>
+#include <condition_variable>
 #include <cstdint>
-#include <optional>
+#include <mutex>
+#include <span>
+#include <vector>
 
+#include "kdray/kdray.h"
 #include "layout/frame.layout.h"
 
 namespace kdray::pdprt {
 
-// A band of whole rows of tiles, and the pixels they cover.
-struct Band {
-  std::uint32_t first_tile, end_tile;
-  std::size_t first_pixel, n_pixels;
+// What a queue wants from the bag: a part of what is left there, so that all come to their end together, but no more than
+// `most` and no less than `least`; all of that together with the `ahead` that it has.
+struct Wanted {
+  std::size_t most = 1, least = 1, ahead = 0;
 };
 
-// Hands each band to whoever asks next; any number of threads.
-class Bag {
+class Tiles {
  public:
-  // `rows_per_band` rows of tiles of the frame (its schedule applied) to a band.
-  Bag(const layout::Frame& frame, std::uint32_t rows_per_band);
+  // `curve`: entries in the order of the curve.
+  Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues);
 
-  std::optional<Band> take();
-  std::size_t largest_band_pixels() const;
+  // The next entries for the queue: its share as a whole; else from the bag, up to what is wanted. Perhaps none. The span
+  // is valid until the queue's next done() or give_back().
+  std::span<const layout::u32> take(std::size_t queue, const Wanted& wanted);
+
+  // What the queue took since its last done().
+  std::span<const layout::u32> taken(std::size_t queue) const { return taken_[queue]; }
+
+  // What the queue took is in the picture.
+  void done(std::size_t queue);
+
+  // The queue has failed: what it took or would have got is for the others. How many tiles it had taken.
+  std::size_t give_back(std::size_t queue);
+
+  // Waits until there are tiles for the queue (true), or will never be (false): all are done, or leave() was called.
+  bool wait(std::size_t queue);
+
+  void leave();
+  bool left() const;
 
  private:
-  Band band(std::uint32_t row) const;
+  bool has_some(std::size_t queue) const { return !shares_[queue].empty() || next_ < bag_.size(); }
 
-  const layout::Frame frame_;
-  std::uint32_t n_rows_, rows_per_band_;
-  std::atomic<std::uint32_t> next_row_{0};
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::vector<layout::u32>> shares_, taken_;  // per queue
+  std::vector<layout::u32> bag_;
+  std::size_t next_ = 0;  // of the bag
+  std::size_t n_undone_, n_queues_;
+  bool left_ = false;
 };
-
-// Rows of tiles per band: all of them for one queue, else about eight bands a queue, so that a queue with cheap tiles
-// takes more of them; never more than a film of `max_film_bytes` holds.
-std::uint32_t rows_per_band(const layout::Frame& frame, std::size_t n_queues, std::size_t max_film_bytes);
 
 }  // namespace kdray::pdprt

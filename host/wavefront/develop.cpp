@@ -3,22 +3,77 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace kdray::wavefront {
 
 namespace {
 
 constexpr std::size_t kGrain = 1 << 15;  // pixels to a task: 1 MiB of sums and picture
 
+// Neighbouring tiles of one row.
+struct Run {
+  std::uint32_t row, first_column, end_column;
+};
+
+// Runs as long as can be: sums and picture are read and written in the order in which they lie.
+std::vector<Run> runs_of(std::span<const layout::u32> tiles) {
+  std::vector<layout::u32> sorted(tiles.begin(), tiles.end());
+  std::sort(sorted.begin(), sorted.end());  // by row, then by column
+  std::vector<Run> runs;
+  for (const layout::u32 tile : sorted) {
+    const std::uint32_t row = KDRAY_TILE_ROW(tile), column = KDRAY_TILE_COLUMN(tile);
+    if (!runs.empty() && runs.back().row == row && runs.back().end_column == column)
+      ++runs.back().end_column;
+    else
+      runs.push_back({row, column, column + 1});
+  }
+  return runs;
+}
+
+class Developer {
+ public:
+  explicit Developer(std::uint32_t samples)
+      : scale_(1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples)) {}
+
+  void operator()(std::span<const layout::i64> sums, std::span<vec3> pixels) const {
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      pixels[i] = {channel(sums[3 * i]), channel(sums[3 * i + 1]), channel(sums[3 * i + 2])};
+  }
+
+ private:
+  float channel(layout::i64 sum) const { return static_cast<float>(static_cast<double>(sum) * scale_); }
+
+  double scale_;
+};
+
 }  // namespace
 
 void develop(std::span<const layout::i64> sums, int samples, std::span<vec3> pixels) {
-  const double scale = 1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples);
-  const auto channel = [scale](layout::i64 sum) {
-    return static_cast<float>(static_cast<double>(sum) * scale);
-  };
+  const Developer developed(static_cast<std::uint32_t>(samples));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kGrain), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      pixels[i] = {channel(sums[3 * i]), channel(sums[3 * i + 1]), channel(sums[3 * i + 2])};
+    developed(sums.subspan(3 * range.begin(), 3 * range.size()), pixels.subspan(range.begin(), range.size()));
+  });
+}
+
+void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+                   std::span<const layout::u32> tiles, std::span<vec3> picture) {
+  const Developer developed(frame.n_samples);
+  const auto develop_run = [&](const Run& run) {
+    const std::size_t x = std::size_t{run.first_column} * frame.tile_width;
+    const std::size_t end_x =
+        std::min<std::size_t>(std::size_t{run.end_column} * frame.tile_width, frame.width);
+    const std::size_t end_y =
+        std::min<std::size_t>((std::size_t{run.row} + 1) * frame.tile_height, frame.height);
+    for (std::size_t y = std::size_t{run.row} * frame.tile_height; y < end_y; ++y) {
+      const std::size_t pixel = y * frame.width + x, n = end_x - x;
+      developed(sums.subspan(3 * (pixel - first_pixel), 3 * n), picture.subspan(pixel, n));
+    }
+  };
+  const std::vector<Run> runs = runs_of(tiles);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) develop_run(runs[i]);
   });
 }
 

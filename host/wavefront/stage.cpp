@@ -2,12 +2,13 @@
 
 namespace kdray::wavefront {
 
-void Stage::launch(cl::CommandQueue& queue, std::size_t items, std::size_t local) {
+cl::Event Stage::launch(cl::CommandQueue& queue, std::size_t items, std::size_t local) {
   const std::size_t groups = (items + local - 1) / local;
   cl::Event event;
   queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * local), cl::NDRange(local), nullptr,
                              &event);
-  launches_.push_back(std::move(event));
+  launches_.push_back(event);
+  return event;
 }
 
 double Stage::collect_seconds() {

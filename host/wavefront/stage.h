@@ -22,7 +22,7 @@ class Stage {
   }
 
   // Runs `items` work-items in groups of `local`; the launch is rounded up to whole groups (kernels check their bound).
-  void launch(cl::CommandQueue& queue, std::size_t items, std::size_t local);
+  cl::Event launch(cl::CommandQueue& queue, std::size_t items, std::size_t local);
 
   // Leaves the launches so far out of the time.
   void forget_launches() { launches_.clear(); }

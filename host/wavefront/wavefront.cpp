@@ -23,9 +23,15 @@ std::uint32_t capacity_for(std::uint32_t n) {
   return (n + 2 * KDRAY_LANES - 1) / KDRAY_LANES * KDRAY_LANES;
 }
 
-bool busy(const layout::Slice& slice) {
-  return slice.tile < slice.end_tile || slice.n_batch > 0 ||
+bool at_work(const layout::Slice& slice, std::uint32_t n_listed) {
+  return slice.tile < n_listed || slice.n_batch > 0 ||
          std::any_of(std::begin(slice.n_pool), std::end(slice.n_pool), [](layout::u32 n) { return n > 0; });
+}
+
+double seconds_of(const cl::Event& event, cl_profiling_info moment) {
+  cl_ulong nanoseconds = 0;
+  event.getProfilingInfo(moment, &nanoseconds);
+  return 1e-9 * static_cast<double>(nanoseconds);
 }
 
 void check(const Counters& sum) {
@@ -69,6 +75,7 @@ void Counters::add(const layout::Slice& s) {
   invalid += s.n_invalid;
   nan += s.n_nan;
   pool_overflow += s.n_pool_overflow;
+  waves += s.n_waves;
 }
 
 void Counters::add(const Counters& o) {
@@ -85,6 +92,7 @@ void Counters::add(const Counters& o) {
   nan += o.nan;
   pool_overflow += o.pool_overflow;
   waves += o.waves;
+  launches += o.launches;
 }
 
 cl::Buffer Wavefront::make(std::size_t bytes, const std::string& what) {
@@ -98,7 +106,7 @@ cl::Buffer Wavefront::make_stream(std::size_t n_fields, std::size_t capacity, co
 
 Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
                      Programs& programs, const layout::Frame& frame, const Schedule& schedule,
-                     std::uint32_t features, std::size_t band_pixels)
+                     std::uint32_t features, std::size_t max_tiles, std::size_t max_pixels)
     : context_(context),
       queue_(std::move(queue)),
       frame_(frame),
@@ -106,13 +114,15 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       features_(features),
       frame_buffer_(make(sizeof(layout::Frame), "the frame")),
       slice_buffer_(make(schedule.n_slices * sizeof(layout::Slice), "the slices")),
+      list_(make(max_tiles * sizeof(layout::u32), "the list of tiles")),
+      tile_cycles_(make(schedule.fused ? max_tiles * sizeof(layout::u64) : 0, "the tiles' cycles")),
       pool_(make_stream(frame.pool_size > 0 ? (frame.max_depth - 1) * KDRAY_POOL_FIELDS : 0,
                         frame.pool_capacity, "the ray pools")),
       batch_(make_stream(KDRAY_RAY_FIELDS, frame.batch_capacity, "the ray batches")),
       hits_(make_stream(KDRAY_HIT_FIELDS, frame.batch_capacity, "the hits")),
       shadow_rays_(make_stream(KDRAY_SHADOW_FIELDS, frame.shadow_capacity, "the shadow rays")),
       occluded_(make(std::size_t{schedule.n_slices} * frame.shadow_capacity, "the occlusion flags")),
-      film_(make(band_pixels * 3 * sizeof(layout::i64), "the film")) {
+      film_(make(max_pixels * 3 * sizeof(layout::i64), "the film")) {
   device::checked("setting up the kernels", [&] {
     schedule.fused ? make_wave(programs, scene) : make_stages(programs, scene);
     warm_up();
@@ -121,8 +131,8 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
 
 // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's time.
 void Wavefront::warm_up() {
-  begin(0, 0, 0);
-  launch_wave(reports_[0]);
+  begin(0);
+  launch(launches_[0]);
   queue_.finish();
   for (std::optional<Stage>* stage : {&wave_, &admit_, &trace_closest_, &shade_, &trace_shadow_, &add_})
     if (*stage) (*stage)->forget_launches();
@@ -130,17 +140,19 @@ void Wavefront::warm_up() {
 
 void Wavefront::make_wave(Programs& programs, const SceneBuffers& scene) {
   wave_.emplace("wave", programs.kernel("wave/wave.cl", "wave", features_, schedule_.traversal));
-  wave_->set_arguments(scene.set_tree_arguments(wave_->kernel()), scene.normals, scene.materials,
-                       scene.lights, frame_buffer_, cl_uint{schedule_.n_slices},
-                       cl_uint{schedule_.fused_waves}, slice_buffer_, pool_, batch_, hits_, shadow_rays_,
-                       occluded_, film_);
+  const cl_uint first = scene.set_tree_arguments(wave_->kernel());
+  list_argument_ = first + 8;
+  wave_->set_arguments(first, scene.normals, scene.materials, scene.lights, frame_buffer_,
+                       cl_uint{schedule_.n_slices}, cl_uint{schedule_.fused_waves}, slice_buffer_, list_,
+                       cl_uint{0}, tile_cycles_, pool_, batch_, hits_, shadow_rays_, occluded_, film_);
 }
 
 void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
   const cl_uint n = schedule_.n_slices;
   const Traversal walk = schedule_.traversal == Traversal::binary ? Traversal::binary : Traversal::wide;
   admit_.emplace("admit", programs.kernel("raygen/admit.cl", "admit", features_));
-  admit_->set_arguments(0, frame_buffer_, n, slice_buffer_, pool_, batch_, film_);
+  list_argument_ = 4;
+  admit_->set_arguments(0, frame_buffer_, n, slice_buffer_, list_, cl_uint{0}, pool_, batch_, film_);
   trace_closest_.emplace("trace_closest",
                          programs.kernel("traverse/trace_closest.cl", "trace_closest", features_, walk));
   trace_closest_->set_arguments(scene.set_tree_arguments(trace_closest_->kernel()), frame_buffer_, n,
@@ -159,116 +171,187 @@ void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
   add_->set_arguments(0, frame_buffer_, n, slice_buffer_, shadow_rays_, occluded_, film_);
 }
 
-// A report may still be on its way after an error.
 Wavefront::~Wavefront() {
+  settle();
+}
+
+// After an error a report, or tiles, may still be on their way.
+void Wavefront::settle() noexcept {
   try {
     queue_.finish();
   } catch (const cl::Error&) {  // nothing left to wait for
   }
 }
 
-void Wavefront::launch_per_slice(Stage& stage) {
-  stage.launch(queue_, schedule_.n_slices, 1);
+cl::Event Wavefront::launch_per_slice(Stage& stage) {
+  return stage.launch(queue_, schedule_.n_slices, 1);
 }
 
-void Wavefront::launch_per_ray(Stage& stage, std::size_t rays_of_slice) {
-  stage.launch(queue_, schedule_.n_slices * rays_of_slice, schedule_.work_group);
+cl::Event Wavefront::launch_per_ray(Stage& stage, std::size_t rays_of_slice) {
+  return stage.launch(queue_, schedule_.n_slices * rays_of_slice, schedule_.work_group);
 }
 
-void Wavefront::launch_lights() {
+// The event of the last.
+cl::Event Wavefront::launch_lights() {
   constexpr cl_uint kFirstLight = 8;  // shade's argument
   cl_uint first = 0;
+  cl::Event last;
   do {
     shade_->set_arguments(kFirstLight, first);
-    launch_per_slice(*shade_);
+    last = launch_per_slice(*shade_);
     if (frame_.light_batch > 0) {
       launch_per_ray(*trace_shadow_, std::size_t{frame_.batch_size} * frame_.light_batch);
-      launch_per_slice(*add_);
+      last = launch_per_slice(*add_);
     }
     first += frame_.light_batch;
   } while (frame_.light_batch > 0 && first < frame_.n_lights);
+  return last;
 }
 
-void Wavefront::launch_stages() {
-  launch_per_slice(*admit_);
+void Wavefront::launch_stages(Launch& launch) {
+  admit_->set_arguments(list_argument_, cl_uint{n_listed_});
+  launch.first = launch_per_slice(*admit_);
   launch_per_ray(*trace_closest_, frame_.batch_size);
-  launch_lights();
+  launch.last = launch_lights();
 }
 
-void Wavefront::launch_wave(Report& report) {
-  wave_ ? launch_per_slice(*wave_) : launch_stages();
-  queue_.enqueueReadBuffer(slice_buffer_, CL_FALSE, 0, report.slices.size() * sizeof(layout::Slice),
-                           report.slices.data(), nullptr, &report.arrived);
+void Wavefront::launch_wave(Launch& launch) {
+  wave_->set_arguments(list_argument_, cl_uint{n_listed_});
+  launch.first = launch.last = launch_per_slice(*wave_);
+}
+
+void Wavefront::launch(Launch& launch) {
+  launch.listed = n_listed_;
+  wave_ ? launch_wave(launch) : launch_stages(launch);
+  queue_.enqueueReadBuffer(slice_buffer_, CL_FALSE, 0, launch.slices.size() * sizeof(layout::Slice),
+                           launch.slices.data(), nullptr, &launch.arrived);
   queue_.flush();
 }
 
-// True as long as a slice has work.
-bool Wavefront::wait_for(Report& report) {
-  report.arrived.wait();
-  ++counters_.waves;
-  collect();
-  Counters sum;
-  for (const layout::Slice& slice : report.slices) sum.add(slice);
-  check(sum);
-  return std::any_of(report.slices.begin(), report.slices.end(), busy);
-}
-
-void Wavefront::begin(std::uint32_t first, std::uint32_t end, std::size_t first_pixel) {
+void Wavefront::begin(std::size_t first_pixel) {
   frame_.first_pixel = static_cast<layout::u32>(first_pixel);
+  n_listed_ = n_taken_ = 0;
+  list_counters_ = {};
   std::vector<layout::Slice> slices(schedule_.n_slices);
   for (std::uint32_t s = 0; s < schedule_.n_slices; ++s) {
-    slices[s].tile = first + s;
-    slices[s].end_tile = end;
+    slices[s].tile = s;
     slices[s].tile_stride = schedule_.n_slices;
   }
-  for (Report& report : reports_) report.slices.resize(schedule_.n_slices);
-  queue_.enqueueWriteBuffer(frame_buffer_, CL_TRUE, 0, sizeof frame_, &frame_);
-  queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices.size() * sizeof(layout::Slice), slices.data());
-}
-
-void Wavefront::hand_over_film(std::size_t n_pixels,
-                               const std::function<void(std::span<const layout::i64>)>& take_film) {
-  const std::size_t n_sums = n_pixels * 3;
-  void* sums = queue_.enqueueMapBuffer(film_, CL_TRUE, CL_MAP_READ, 0, n_sums * sizeof(layout::i64));
-  take_film({static_cast<const layout::i64*>(sums), n_sums});
-  queue_.enqueueUnmapMemObject(film_, sums);
-}
-
-void Wavefront::render_tiles(std::uint32_t first, std::uint32_t end, std::size_t first_pixel,
-                             std::size_t n_pixels, const std::function<void(std::uint32_t)>& tiles_done,
-                             const std::function<void(std::span<const layout::i64>)>& take_film) {
-  device::checked("rendering", [&] {
-    begin(first, end, first_pixel);
-    std::uint32_t done = 0;
-    std::size_t wave = 0;
-    bool working = true;
-    for (launch_wave(reports_[0]); working; ++wave) {
-      launch_wave(reports_[(wave + 1) % 2]);
-      const Report& report = reports_[wave % 2];
-      working = wait_for(reports_[wave % 2]);
-      std::uint32_t now = 0;
-      for (std::uint32_t s = 0; s < schedule_.n_slices; ++s)
-        now += (report.slices[s].tile - (first + s)) / schedule_.n_slices;
-      if (now > done) tiles_done(now - done);
-      done = now;
-    }
-    hand_over_film(n_pixels, take_film);  // waits for the last wave, which was empty
-    const Report& last = reports_[wave % 2];
-    for (const layout::Slice& slice : last.slices) counters_.add(slice);
-    collect();
-    if (wave_) share_out_seconds(last);
+  for (Launch& launch : launches_) launch.slices.resize(schedule_.n_slices);
+  device::checked("beginning a list of tiles", [&] {
+    queue_.enqueueWriteBuffer(frame_buffer_, CL_TRUE, 0, sizeof frame_, &frame_);
+    queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
+                              slices.data());
   });
 }
 
-// With every wave, so that a long frame doesn't keep an event per launch.
+// Puts what there is to do at the end of the list. The device may still be at work before it. False: leave.
+bool Wavefront::enlist(const Feed& feed, const Progress& progress) {
+  const auto more = feed(progress);
+  if (!more) return false;
+  if (more->empty()) return true;
+  const std::size_t first = n_listed_;
+  queue_.enqueueWriteBuffer(list_, CL_FALSE, first * sizeof(layout::u32), more->size_bytes(), more->data());
+  if (wave_)
+    queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, first * sizeof(layout::u64),
+                             more->size() * sizeof(layout::u64));
+  n_listed_ += static_cast<std::uint32_t>(more->size());
+  return true;
+}
+
+std::uint32_t Wavefront::tiles_taken(const Launch& launch) const {
+  std::uint32_t taken = 0;
+  for (std::uint32_t s = 0; s < schedule_.n_slices; ++s)
+    taken += (launch.slices[s].tile - s) / schedule_.n_slices;
+  return taken;
+}
+
+void Wavefront::tell_of(const Launch& launch, const Counters& sum, std::uint32_t tiles) {
+  const double start = seconds_of(launch.first, CL_PROFILING_COMMAND_START);
+  const double end = seconds_of(launch.last, CL_PROFILING_COMMAND_END);
+  busy_seconds_ += end - start;
+  if (watch_.after)
+    watch_.after({start, end, sum.waves - list_counters_.waves, tiles, sum.total() - list_counters_.total()});
+}
+
+Progress Wavefront::wait_for(Launch& launch) {
+  launch.arrived.wait();
+  collect();
+  Counters sum;
+  for (const layout::Slice& slice : launch.slices) sum.add(slice);
+  check(sum);
+  sum.launches = list_counters_.launches + 1;
+  const std::uint32_t taken = tiles_taken(launch);
+  tell_of(launch, sum, taken - n_taken_);
+  n_taken_ = taken;
+  list_counters_ = sum;
+  const auto busy = [&](const layout::Slice& slice) { return at_work(slice, launch.listed); };
+  return {launch.listed, taken, sum.waves, std::any_of(launch.slices.begin(), launch.slices.end(), busy)};
+}
+
+bool Wavefront::go_on(Launch& next, const Feed& feed, const Progress& progress) {
+  if (!enlist(feed, progress)) return false;
+  if (watch_.before) watch_.before();
+  launch(next);
+  return true;
+}
+
+bool Wavefront::render_list(const Feed& feed) {
+  Progress progress;
+  if (!go_on(launches_[0], feed, progress)) return false;
+  for (std::size_t n = 0;; ++n) {
+    if (!go_on(launches_[(n + 1) % 2], feed, progress)) return false;
+    progress = wait_for(launches_[n % 2]);
+    // The launch in flight finds nothing to do.
+    if (!progress.at_work && progress.listed == n_listed_) return true;
+  }
+}
+
+bool Wavefront::render(const Feed& feed) {
+  try {
+    const bool ended = device::checked("rendering", [&] { return render_list(feed); });
+    if (!ended) settle();
+    return ended;
+  } catch (...) {
+    settle();
+    throw;
+  }
+}
+
+void Wavefront::finish(std::size_t first_row, std::size_t end_row,
+                       const std::function<void(const FilmRows&)>& take_film) {
+  device::checked("reading the film", [&] {
+    constexpr std::size_t kPixel = 3 * sizeof(layout::i64);
+    const std::size_t first_pixel = first_row * frame_.width;
+    const std::size_t n_pixels = (end_row - first_row) * frame_.width;
+    void* const sums = queue_.enqueueMapBuffer(
+        film_, CL_TRUE, CL_MAP_READ, (first_pixel - frame_.first_pixel) * kPixel, n_pixels * kPixel);
+    take_film({{static_cast<const layout::i64*>(sums), n_pixels * 3}, first_pixel});
+    queue_.enqueueUnmapMemObject(film_, sums);
+  });
+  collect();
+  if (wave_) share_out_seconds();
+  counters_.add(list_counters_);
+}
+
+std::vector<layout::u64> Wavefront::tile_cycles() {
+  std::vector<layout::u64> cycles(wave_ ? n_listed_ : 0);
+  if (!cycles.empty())
+    device::checked("reading the tiles' cycles", [&] {
+      queue_.enqueueReadBuffer(tile_cycles_, CL_TRUE, 0, cycles.size() * sizeof(layout::u64), cycles.data());
+    });
+  return cycles;
+}
+
+// With every launch, so that a long frame doesn't keep an event per launch.
 void Wavefront::collect() {
   for (std::optional<Stage>* stage : {&wave_, &admit_, &trace_closest_, &shade_, &trace_shadow_, &add_})
     if (*stage) seconds_[(*stage)->name()] = (*stage)->collect_seconds();
 }
 
-// Divides the waves' time among their stages. The report is the band's last, with the cycles of all its waves.
-void Wavefront::share_out_seconds(const Report& report) {
-  for (const layout::Slice& s : report.slices) {
+// Divides the waves' time among their stages. Both reports are as good: the last launch found nothing to do.
+void Wavefront::share_out_seconds() {
+  for (const layout::Slice& s : launches_[0].slices) {
     cycles_["admit"] += static_cast<double>(s.cycles_admit);
     cycles_["trace_closest"] += static_cast<double>(s.cycles_closest);
     cycles_["shade"] += static_cast<double>(s.cycles_shade);

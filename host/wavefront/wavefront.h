@@ -1,11 +1,12 @@
-// What    Traces the tiles of a frame on one queue, wave by wave: admit, trace closest, shade, trace shadow, add; in one
+// What    Traces tiles of a frame on one queue, wave by wave: admit, trace closest, shade, trace shadow, add; in one
 //         launch for all stages (CPUs) or in one for each.
 // Shape   n_slices slices, each with a pool, a batch and shadow rays of its own (kernels/raygen/admit.clh has the bound on
-//         the pool). Slice s works through the tiles first + s, first + s + n_slices, ...; a wave serves all slices.
-//         The next wave is queued before the host looks at what the last one left: the device never waits for the host,
-//         and runs one empty wave at the end.
-// Errors  Counters are read after every wave: a full stack or pool, or a NaN, ends the render with ErrorCode::internal,
-//         since the picture would be wrong.
+//         the pool). The queue's work is a list of tiles on the device, which grows: slice s takes the entries s,
+//         s + n_slices, ... as far as it goes. A wave serves all slices.
+//         The next launch, and more tiles for it, are queued before the host looks at what the last one left: the device
+//         never waits for the host, and runs one empty launch at the end.
+// Errors  Counters are read after every launch: a full stack or pool, or a NaN, ends the render with ErrorCode::internal,
+//         since the picture would be wrong. Whatever OpenCL says leaves as another code.
 #pragma once
 
 #include <functional>
@@ -41,56 +42,102 @@ struct Counters {
   std::uint64_t primary = 0, primary_hit = 0, shadow = 0, reflected = 0, refracted = 0;
   std::uint64_t skipped_behind = 0, skipped_unlit = 0, skipped_weight = 0, skipped_depth = 0;
   std::uint64_t invalid = 0, nan = 0, pool_overflow = 0;
-  std::uint64_t waves = 0;
+  std::uint64_t waves = 0, launches = 0;  // waves: of one slice, with rays in them
 
   std::uint64_t total() const { return primary + shadow + reflected + refracted; }
   void add(const layout::Slice& slice);
   void add(const Counters& other);
 };
 
+// How far a queue is with its list, by its last report.
+struct Progress {
+  std::uint32_t listed = 0,
+                taken = 0;  // tiles in the list, and of them those that no slice has still to begin or end
+  std::uint64_t waves = 0;  // that this took
+  bool at_work = false;     // a slice has rays or tiles left
+};
+
+// A launch (all stages of a wave, or many waves fused) that has ended: when on the device's clock, what it did.
+struct LaunchDone {
+  double start = 0, end = 0;  // seconds
+  std::uint64_t waves = 0, tiles = 0, rays = 0;
+};
+
+// Who is to hear of launches; each may be empty.
+struct Watch {
+  std::function<void()> before;  // may throw, as a launch may
+  std::function<void(const LaunchDone&)> after;
+};
+
+// What a queue is to do next: entries to add to its list, none, or std::nullopt to leave everything at once.
+using Feed = std::function<std::optional<std::span<const layout::u32>>(const Progress&)>;
+
+// Sums of the picture's pixels from `first_pixel` on, three for each.
+struct FilmRows {
+  std::span<const layout::i64> sums;
+  std::size_t first_pixel;
+};
+
 class Wavefront {
  public:
-  // `frame` has the schedule applied; its film band is set per call of render_tiles.
+  // `frame` has the schedule applied; its film band is set by begin(). A list holds `max_tiles`, the film `max_pixels`.
   Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
             Programs& programs, const layout::Frame& frame, const Schedule& schedule, std::uint32_t features,
-            std::size_t band_pixels);
+            std::size_t max_tiles, std::size_t max_pixels);
 
   ~Wavefront();
 
-  // Renders the tiles [first, end) and hands the sums of the `n_pixels` pixels from `first_pixel` on to `take_film`.
-  // `tiles_done` hears how many tiles have been finished since it was last called.
-  void render_tiles(std::uint32_t first, std::uint32_t end, std::size_t first_pixel, std::size_t n_pixels,
-                    const std::function<void(std::uint32_t)>& tiles_done,
-                    const std::function<void(std::span<const layout::i64>)>& take_film);
+  void watch(Watch watch) { watch_ = std::move(watch); }
 
+  // An empty list. The film begins with this pixel of the picture.
+  void begin(std::size_t first_pixel);
+
+  // Renders what `feed` gives, which is asked before each launch, until there is nothing left to do. False: was told to
+  // leave.
+  bool render(const Feed& feed);
+
+  // Hands over the picture's rows [first_row, end_row) of the film; what was rendered since begin() counts from then on.
+  void finish(std::size_t first_row, std::size_t end_row,
+              const std::function<void(const FilmRows&)>& take_film);
+
+  // Cycles charged to each tile of the list, when it has been rendered; empty, or all 0, where the device doesn't count them.
+  std::vector<layout::u64> tile_cycles();
+
+  // Of the lists that were finished.
   const Counters& counters() const { return counters_; }
+  double busy_seconds() const { return busy_seconds_; }  // of all launches that have ended
   std::size_t device_bytes() const { return device_bytes_; }
   // Device seconds per stage. Of fused waves they are shares of the launches' time, by the cycles that each stage took;
   // empty where the device has no counter for them.
   const std::map<std::string, double>& stage_seconds() const { return seconds_; }
 
  private:
-  // What a wave left in the slices, on its way to the host.
-  struct Report {
+  // A launch, and what it left in the slices on its way to the host.
+  struct Launch {
     std::vector<layout::Slice> slices;
-    cl::Event arrived;
+    cl::Event first, last, arrived;
+    std::uint32_t listed = 0;
   };
 
   cl::Buffer make(std::size_t bytes, const std::string& what);
   cl::Buffer make_stream(std::size_t n_fields, std::size_t capacity, const std::string& what);
-  void launch_per_slice(Stage& stage);
-  void launch_per_ray(Stage& stage, std::size_t rays_of_slice);
+  cl::Event launch_per_slice(Stage& stage);
+  cl::Event launch_per_ray(Stage& stage, std::size_t rays_of_slice);
   void make_wave(Programs& programs, const SceneBuffers& scene);
   void make_stages(Programs& programs, const SceneBuffers& scene);
   void warm_up();
-  void begin(std::uint32_t first, std::uint32_t end, std::size_t first_pixel);
-  void launch_wave(Report& report);
-  void launch_stages();
-  void launch_lights();
-  void share_out_seconds(const Report& last);
-  bool wait_for(Report& report);
-  void hand_over_film(std::size_t n_pixels,
-                      const std::function<void(std::span<const layout::i64>)>& take_film);
+  bool enlist(const Feed& feed, const Progress& progress);
+  void launch(Launch& launch);
+  void launch_wave(Launch& launch);
+  void launch_stages(Launch& launch);
+  cl::Event launch_lights();
+  bool go_on(Launch& next, const Feed& feed, const Progress& progress);
+  bool render_list(const Feed& feed);
+  Progress wait_for(Launch& launch);
+  void settle() noexcept;
+  std::uint32_t tiles_taken(const Launch& launch) const;
+  void tell_of(const Launch& launch, const Counters& sum, std::uint32_t tiles);
+  void share_out_seconds();
   void collect();
 
   const device::Context& context_;
@@ -98,12 +145,19 @@ class Wavefront {
   layout::Frame frame_;
   Schedule schedule_;
   std::uint32_t features_;
-  Report reports_[2];
+  Watch watch_;
+  Launch launches_[2];
   std::size_t device_bytes_ = 0;
-  cl::Buffer frame_buffer_, slice_buffer_, pool_, batch_, hits_, shadow_rays_, occluded_, film_;
+  cl::Buffer frame_buffer_, slice_buffer_, list_, tile_cycles_, pool_, batch_, hits_, shadow_rays_, occluded_,
+      film_;
   // Either the wave or the others are there.
   std::optional<Stage> wave_, admit_, trace_closest_, shade_, trace_shadow_, add_;
+  cl_uint list_argument_ = 0;  // of the wave, or of admit: the list's length
+  // Of the present list, as of the last report (n_listed_: as of the last launch).
+  std::uint32_t n_listed_ = 0, n_taken_ = 0;
+  Counters list_counters_;
   Counters counters_;
+  double busy_seconds_ = 0;
   std::map<std::string, double> cycles_;  // of the stages of fused waves
   std::map<std::string, double> seconds_;
 };

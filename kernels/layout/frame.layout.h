@@ -49,17 +49,22 @@ typedef struct Frame {
 KDRAY_ASSERT_SIZE(Frame, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 
-// A slice works through the tiles first_tile, first_tile + tile_stride, ... below end_tile. One work-item at a time
+// An entry of a queue's list of tiles: the tile's column and row in the picture.
+#define KDRAY_TILE_COLUMN(entry) ((entry) & 0xffffu)
+#define KDRAY_TILE_ROW(entry) ((entry) >> 16)
+#define KDRAY_TILE(column, row) ((column) | (row) << 16)
+
+// Slice s works through the entries s, s + tile_stride, ... of its queue's list, which grows. One work-item at a time
 // owns it, so its counters need no atomics; the host adds them up.
 typedef struct Slice {
   u64 next_place;   // the next pixel of the tile, in the order of raygen/place.clh
   u32 next_sample;  // ... and its next sample
-  u32 tile;         // the tile in work; >= end_tile: none left
-  u32 end_tile;
+  u32 tile;         // the entry in work; not in the list yet: none left
   u32 tile_stride;
   u32 depth;  // of the batch in work; the eye rays have 1
   u32 n_batch;
   u32 n_shadow;
+  u32 n_waves;  // with rays in them
   u32 pad;
   u32 n_pool[KDRAY_MAX_DEPTH];  // rays of depth d that wait: n_pool[d - 1]
   u64 n_primary, n_primary_hit, n_shadow_rays, n_reflected, n_refracted;

@@ -76,10 +76,10 @@ inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32
 }
 
 // False when nothing could be done.
-inline bool run_wave(const Travels* t, __constant const Frame* frame, u32 slice_id, const Shaders* shaders,
+inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* frame, u32 slice_id, const Shaders* shaders,
                      const Census* census, const Streams* s) {
   u64 since = cycles();
-  const Account account = account_of(frame, t->slice, t->grant, t->traffic, &t->out);
+  const Account account = account_of(tiles, frame, t->slice, t->grant, t->traffic, &t->out);
   if (!has_room(&account, t->travel)) return false;
   const Work work = choose_work(&account);
   if (work.n == 0) return false;
@@ -108,8 +108,8 @@ inline void begin_account(__global Traffic* traffic) {
 __kernel void travel_wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
                           __global const Material* in_materials, __global const Light* in_lights,
                           __constant const Frame* frame, __constant const Travel* travel,
-                          __constant const PartCell* in_cells, __constant const PartCell* in_subtrees, u32 n_waves,
-                          __global Slice* io_slices, __global Grant* io_grants, __global Traffic* io_traffic, __global float* io_pool,
+                          __constant const PartCell* in_cells, __constant const PartCell* in_subtrees, u32 n_waves, __global const u32* in_tiles,
+                          u32 n_tiles, __global Slice* io_slices, __global Grant* io_grants, __global Traffic* io_traffic, __global float* io_pool,
                           __global float* io_batch, __global float* io_hits, __global float* io_shadow_rays,
                           __global uchar* io_occluded, __global float* io_shadow_pool, __global i64* io_film,
                           __global float* out_rays, __global float* out_shadow_rays, __global u32* out_counts,
@@ -127,11 +127,12 @@ __kernel void travel_wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* 
   const Shaders shaders = {{in_triangles, in_normals, in_spheres, in_cones}, in_materials, in_lights};
   const Streams streams = {io_pool, io_batch, io_hits, io_shadow_rays, io_shadow_pool, io_occluded, io_film};
   const Census census = {in_subtrees, travel->n_subtrees, out_visits + (size_t)slice_id * travel->n_subtrees};
+  const TileList tiles = {in_tiles, n_tiles};
   begin_account(t.traffic);
   u32 n = 0;
   for (; n < n_waves; ++n) {
     const bool counted = travel->n_subtrees > 0 && n % travel->census_every == 0;
-    if (!run_wave(&t, frame, slice_id, &shaders, counted ? &census : 0, &streams)) break;
+    if (!run_wave(&t, tiles, frame, slice_id, &shaders, counted ? &census : 0, &streams)) break;
   }
   t.traffic->n_waves = n;
 }

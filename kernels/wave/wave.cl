@@ -2,7 +2,8 @@
 // Shape   One work-item per slice. The same functions as the stages' own kernels, so that pictures are the same.
 // Why     A slice's streams stay in the cache of the core that works on it: stage by stage, over all slices, they go
 //         through the last cache or memory between any two stages. No core waits for others between stages.
-// Cost    io_slices tells the cycles that each stage took, where the device has a cycle counter.
+// Cost    io_slices tells the cycles that each stage took, where the device has a cycle counter, and io_tile_cycles those
+//         of each entry of the list: a wave is charged to the tile that its slice had come to.
 #include "film/add.clh"
 #include "raygen/admit.clh"
 #include "shade/shade.clh"
@@ -12,6 +13,7 @@
 __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
                    __global const Material* in_materials, __global const Light* in_lights,
                    __constant const Frame* frame, u32 n_slices, u32 n_waves, __global Slice* io_slices,
+                   __global const u32* in_tiles, u32 n_tiles, __global u64* io_tile_cycles,
                    __global float* io_pool, __global float* io_batch, __global float* io_hits,
                    __global float* io_shadow_rays, __global uchar* io_occluded, __global i64* io_film) {
   const u32 slice_id = (u32)get_global_id(0);
@@ -19,9 +21,13 @@ __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_norm
   __global Slice* slice = io_slices + slice_id;
   const SceneArrays scene = KDRAY_SCENE_ARRAYS;
   const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
+  const TileList list = {in_tiles, n_tiles};
   for (u32 k = 0; k < n_waves; ++k) {
     u64 since = cycles();
-    admit_batch(frame, slice_id, slice, io_pool, io_batch, io_film);
+    const u64 start = since;
+    // Behind the list's end a slice is still at work on what the last tile left in the pool.
+    const u32 tile = slice->tile < n_tiles ? slice->tile : slice->tile - slice->tile_stride;
+    admit_batch(frame, slice_id, slice, list, io_pool, io_batch, io_film);
     clock_stage(&slice->cycles_admit, &since);
     if (slice->n_batch == 0) return;
     const RaySource rays = batch_rays(frame, slice_id, io_batch, io_hits);
@@ -41,5 +47,6 @@ __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_norm
 #endif
       first_light += frame->light_batch;
     } while (KDRAY_HAS_LIGHTS && first_light < frame->n_lights);
+    io_tile_cycles[tile] += since - start;
   }
 }

@@ -1,6 +1,7 @@
 // What    kdray render through the real program: pictures, statistics, defaults, and what is refused.
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -119,7 +120,12 @@ TEST(RenderCommand, EveryScheduleGivesTheSameBytes) {
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
   ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.exr", "-q"})));
   const std::vector<std::vector<std::string>> schedules = {
-      {"--tile", "7x3"}, {"--work-group", "16"}, {"--mode", "pdprt", "--traversal", "binary"}};
+      {"--tile", "7x3"},
+      {"--work-group", "16"},
+      {"--mode", "pdprt", "--traversal", "binary"},
+      {"--queues", "3", "--division", "bag"},
+      {"--queues", "2", "--division", "contiguous"},
+      {"--queues", "8", "--division", "interleaved", "--tile", "5x5"}};
   for (std::vector<std::string> arguments : schedules) {
     for (const char* const more : {"render", "-q", "-o"}) arguments.push_back(more);
     std::rotate(arguments.begin(), arguments.end() - 3, arguments.end() - 2);  // "render" first
@@ -127,6 +133,92 @@ TEST(RenderCommand, EveryScheduleGivesTheSameBytes) {
     arguments.push_back(scene);
     ASSERT_TRUE(succeeds(kdray(arguments))) << arguments[1];
     EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr")) << arguments[1];
+  }
+}
+
+// PoCL makes as many devices as it is told to.
+TEST(RenderCommand, SeveralDevicesShareAFrame) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const RunOptions two = {.environment = {{"POCL_DEVICES", "pthread basic"}}};
+  if (kdray({"render", scene, "-o", folder / "a.exr", "--device", "1"}, two).code == 3)
+    GTEST_SKIP() << "PoCL gives no second device";
+  for (const char* const queues : {"1", "3", "8"}) {
+    ASSERT_TRUE(
+        succeeds(kdray({"render", scene, "-o", folder / "b.exr", "--device", "0,1", "--queues", queues,
+                        "--division", "interleaved", "--tile", "4x4", "--stats", folder / "s.json"},
+                       two)));
+    EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr"));
+    const Json mode = Json::parse(folder.get("s.json"))["mode"];
+    EXPECT_EQ(mode["queues"], std::max(std::stoi(queues), 2));
+    ASSERT_EQ(mode["devices"].size(), 2u);
+    EXPECT_NE(mode["devices"][0], mode["devices"][1]);
+    for (const Json& queue : mode["per_queue"]) {
+      EXPECT_EQ(queue["device"], mode["devices"][queue["queue"].get<std::size_t>() % 2]);
+      EXPECT_GT(queue["tiles"], 0);
+    }
+  }
+}
+
+TEST(RenderCommand, AQueueThatFailsCostsAWarningAndNothingElse) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.exr", "-q"})));
+  const std::vector<std::string> arguments = {
+      "render",     scene,    "-o",  folder / "b.exr", "--queues", "2",       "--division",
+      "contiguous", "--tile", "4x4", "--inject-fault", "1@1",      "--stats", folder / "s.json"};
+  const Outcome run = kdray(arguments);
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr"));
+  EXPECT_NE(run.err.find("queue 1"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("fault on purpose"), std::string::npos) << run.err;
+  const Json stats = Json::parse(folder.get("s.json"));
+  ASSERT_EQ(stats["mode"]["quarantined"].size(), 1u);
+  EXPECT_EQ(stats["mode"]["quarantined"][0]["queue"], 1);
+  EXPECT_EQ(stats["rays"]["primary"], 48 * 32);
+  EXPECT_EQ(stats["mode"]["per_queue"][0]["tiles"], stats["mode"]["tiles"]);
+}
+
+TEST(RenderCommand, WhenEveryQueueFailsThereIsNoPicture) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "-o", folder / "a.png", "--queues", "2", "--division",
+                                "contiguous", "--inject-fault", "0@1,1@2", "-q"}),
+                         3, "fault on purpose"));
+  EXPECT_EQ(folder.n_entries(), 1u);
+}
+
+TEST(RenderCommand, TheTimelineHasARowForEachQueue) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  ASSERT_TRUE(
+      succeeds(kdray({"render", scene, "-o", folder / "a.png", "--queues", "2", "--division", "interleaved",
+                      "--tile", "8x8", "--trace", folder / "t.json", "--stats", folder / "s.json", "-q"})));
+  const Json stats = Json::parse(folder.get("s.json"));
+  std::map<int, std::string> rows;
+  std::map<int, double> tiles;
+  const Json timeline = Json::parse(folder.get("t.json"));
+  for (const Json& event : timeline["traceEvents"]) {
+    const int row = event["tid"];
+    if (event["ph"] == "M") rows[row] = event["args"]["name"];
+    if (event["ph"] == "X") tiles[row] += event["args"]["tiles"].get<double>();
+  }
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].rfind("queue 0: ", 0), 0u) << rows[0];
+  EXPECT_EQ(tiles[0], 12);
+  EXPECT_EQ(tiles[1], 12);
+  const Json& mode = stats["mode"];
+  EXPECT_EQ(mode["tile"], Json({8, 8}));
+  if (mode.contains("tile_seconds")) {  // where the device counts cycles
+    EXPECT_EQ(mode["tile_seconds"].size(), 24u);
+  }
+  for (const Json& queue : stats["memory"]["per_queue"]) {
+    EXPECT_EQ(queue["geometry_bytes"], stats["memory"]["scene_bytes"]);
+    EXPECT_GT(queue["work_bytes"], 48 * 16 * 24);
   }
 }
 

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <numeric>
 #include <vector>
 
 #include "base/memory.h"
+#include "device/clock.h"
 #include "device/opencl_error.h"
 #include "support/device.h"
 
@@ -29,6 +31,52 @@ TEST_P(ContextTest, GivesAsManyQueuesAsAskedFor) {
   EXPECT_EQ(context.queues().size(), 3u);
   EXPECT_GE(context.n_sub_devices(), 1u);
   EXPECT_LE(context.n_sub_devices(), 3u);
+}
+
+TEST_P(ContextTest, QueuesAreDealtOutToSeveralDevices) {
+  const std::string twice = GetParam() + "," + GetParam();
+  const auto queues_of = [&](int n_queues) {
+    std::vector<std::size_t> queues;
+    for (const Context& context : open_contexts(twice, n_queues)) queues.push_back(context.queues().size());
+    return queues;
+  };
+  EXPECT_EQ(queues_of(1), (std::vector<std::size_t>{1, 1}));
+  EXPECT_EQ(queues_of(2), (std::vector<std::size_t>{1, 1}));
+  EXPECT_EQ(queues_of(5), (std::vector<std::size_t>{3, 2}));
+  EXPECT_EQ(open_contexts(GetParam(), 2).size(), 1u);
+}
+
+TEST_P(ContextTest, AHoleInTheListOfDevicesIsAnError) {
+  for (const std::string& specs : {GetParam() + ",", "," + GetParam(), GetParam() + ",," + GetParam()}) {
+    try {
+      (void)open_contexts(specs, 1);
+      FAIL() << specs;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage);
+    }
+  }
+}
+
+// What a command's times say lies between asking for it and seeing its end.
+TEST_P(ContextTest, AClockBringsTimesToTheHost) {
+  const Context context(GetParam(), 1);
+  cl::CommandQueue queue = context.queues().front();
+  const Clock clock(context.get(), queue);
+  const cl::Buffer buffer = context.buffer(CL_MEM_READ_WRITE, 1 << 20, "a test");
+  const std::vector<char> bytes(1 << 20);
+  for (int i = 0; i < 5; ++i) {
+    constexpr std::chrono::milliseconds kError{20};  // the machine may be busy with other things
+    cl::Event event;
+    const auto before = Clock::Host::now();
+    queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes.size(), bytes.data(), nullptr, &event);
+    const auto after = Clock::Host::now();
+    const auto moment = [&](auto time) { return clock.on_host(1e-9 * static_cast<double>(time)); };
+    const auto start = moment(event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+    const auto end = moment(event.getProfilingInfo<CL_PROFILING_COMMAND_END>());
+    EXPECT_GE(start, before - kError);
+    EXPECT_LE(start, end);
+    EXPECT_LE(end, after + kError);
+  }
 }
 
 TEST_P(ContextTest, RefusesABufferLargerThanTheDeviceAllows) {

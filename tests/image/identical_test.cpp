@@ -1,10 +1,11 @@
-// What    The same picture bit for bit whatever the tiles, the work-group, the number of queues and the run
-//         (DESIGN.md section 1).
+// What    The same picture bit for bit whatever the tiles, the work-group, the number of queues, how they divide the tiles,
+//         which of them fail, and the run (DESIGN.md section 1).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "image/render.h"
 #include "image/scenes.h"
@@ -51,6 +52,42 @@ TEST_P(Identical, WhateverTheSchedule) {
             << fmt::format("tiles {}x{}, work-group {}, queues {}", width, height, work_group, queues);
       }
     }
+  }
+}
+
+TEST_P(Identical, WhateverTheDivision) {
+  const Scene scene{GetParam().make()};
+  const Picture first = render(scene, {0, 0, 0, 1});
+  for (const int queues : {1, 2, 3, 8}) {
+    Renderer renderer(scene, {}, {.queues = queues});
+    for (const Division division : {Division::bag, Division::contiguous, Division::interleaved}) {
+      for (const int tile : {0, 4, 50}) {
+        RenderOptions options = exact_options(kWidth, kHeight);
+        options.division = division;
+        options.tile_width = options.tile_height = tile;
+        EXPECT_TRUE(same_bits(first.rgb, renderer.render(options).rgb))
+            << fmt::format("division {}, tiles {}, queues {}", static_cast<int>(division), tile, queues);
+      }
+    }
+  }
+}
+
+TEST_P(Identical, WhateverQueuesFail) {
+  const Scene scene{GetParam().make()};
+  const Picture first = render(scene, {0, 0, 0, 1});
+  for (const char* const faults : {"0@1", "1@1,2@2", "0@2,2@1"}) {
+    Renderer renderer(scene, {}, {.queues = 3, .faults = faults});
+    RenderOptions options = exact_options(kWidth, kHeight);
+    options.division = Division::interleaved;
+    const Picture picture = renderer.render(options);
+    const auto quarantined = statistics_of(renderer).at("mode").at("quarantined");
+    const auto n = static_cast<std::size_t>(std::count(faults, faults + std::strlen(faults), '@'));
+    EXPECT_TRUE(same_bits(first.rgb, picture.rgb)) << faults;
+    EXPECT_EQ(picture.warnings.size(), n);
+    EXPECT_EQ(quarantined.size(), n);
+    // The next frame tries all queues again.
+    EXPECT_TRUE(same_bits(first.rgb, renderer.render(options).rgb));
+    EXPECT_TRUE(statistics_of(renderer).at("mode").at("quarantined").empty());
   }
 }
 

@@ -21,7 +21,8 @@ double largest_cost(const Costs& costs, const std::vector<std::uint32_t>& parts,
   return *std::max_element(sums.begin(), sums.end());
 }
 
-std::uint64_t largest_bytes(const Bytes& bytes, const std::vector<std::uint32_t>& parts, std::uint32_t n_parts) {
+std::uint64_t largest_bytes(const Bytes& bytes, const std::vector<std::uint32_t>& parts,
+                            std::uint32_t n_parts) {
   Bytes sums(n_parts);
   for (std::size_t i = 0; i < bytes.size(); ++i) sums[parts[i]] += bytes[i];
   return *std::max_element(sums.begin(), sums.end());

@@ -40,7 +40,8 @@ struct Play {
     std::vector<layout::Traffic> traffic(kSlices);
     for (std::size_t s = 0; s < kSlices; ++s)
       for (std::uint32_t level = 0; level <= kDepth; ++level) {
-        const std::uint32_t ended = below(alive[s][level] + 1), made = below(grants[queue][s].rays[level] + 1);
+        const std::uint32_t ended = below(alive[s][level] + 1),
+                            made = below(grants[queue][s].rays[level] + 1);
         traffic[s].made[level] = made;
         traffic[s].ended[level] = ended;
         alive[s][level] += made - ended;

@@ -21,13 +21,16 @@ constexpr std::uint64_t kSeed = 23;
 constexpr std::size_t kRows[3] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
 
 std::uint32_t number_of(const flatten::FlatScene& scene, std::uint32_t kind, std::uint32_t index) {
-  return kind == 0 ? scene.triangles[index].number : kind == 1 ? scene.spheres[index].number : scene.cones[index].number;
+  return kind == 0   ? scene.triangles[index].number
+         : kind == 1 ? scene.spheres[index].number
+                     : scene.cones[index].number;
 }
 
 // A leaf by what a ray sees of it: its box, its kind, its words with numbers for indices.
 using Leaf = std::tuple<std::vector<float>, std::uint32_t, std::vector<layout::u32>>;
 
-Leaf leaf_of(const flatten::FlatScene& scene, const flatten::WideForm& form, layout::u32 word, const Box& box) {
+Leaf leaf_of(const flatten::FlatScene& scene, const flatten::WideForm& form, layout::u32 word,
+             const Box& box) {
   const std::uint32_t kind = word >> KDRAY_WIDE_KIND_SHIFT & 3u;
   const auto& blocks = kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
   const auto width = static_cast<std::size_t>(form.block);
@@ -140,10 +143,11 @@ TEST_F(Parts, NormalsFollowTheirTriangles) {
 }
 
 TEST_F(Parts, TheDirectoryEnclosesThem) {
-  for_all([](const std::string& name, const prepare::Prepared& scene, const odprt::Cut& cut, const auto& part_of,
-             const std::vector<odprt::Part>&) {
+  for_all([](const std::string& name, const prepare::Prepared& scene, const odprt::Cut& cut,
+             const auto& part_of, const std::vector<odprt::Part>&) {
     const auto cells = odprt::make_directory(scene.wide, cut, part_of);
-    EXPECT_TRUE(std::is_sorted(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.part < b.part; }));
+    EXPECT_TRUE(std::is_sorted(cells.begin(), cells.end(),
+                               [](const auto& a, const auto& b) { return a.part < b.part; }));
     EXPECT_LE(cells.size(), cut.subtrees.size());
     for (std::size_t i = 0; i < cut.subtrees.size(); ++i) {
       const Box& box = cut.subtrees[i].bounds;
@@ -174,7 +178,8 @@ TEST(Division, NoPartTakesMuchMoreThanItsShareOfTheBytes) {
   for (const std::uint32_t n : {2u, 4u, 8u}) {
     const odprt::Division division = odprt::divide(scene.flat, scene.wide, cut, costs, n, 0.15);
     for (const odprt::Part& part : division.parts)
-      EXPECT_LE(static_cast<double>(part.geometry_bytes()), (1.0 / n + 0.20) * static_cast<double>(whole)) << n;
+      EXPECT_LE(static_cast<double>(part.geometry_bytes()), (1.0 / n + 0.20) * static_cast<double>(whole))
+          << n;
   }
 }
 

@@ -21,7 +21,8 @@ inline std::vector<std::pair<std::string, prepare::Prepared>> prepared_scenes() 
   std::vector<std::pair<std::string, prepare::Prepared>> all;
   all.emplace_back("empty", prepare::prepare(scene::Scene(), TreeOptions()));
   all.emplace_back("one sphere", prepare::prepare(one_sphere(), TreeOptions()));
-  for (const NamedScene& s : small_scenes()) all.emplace_back(s.name, prepare::prepare(s.make(), TreeOptions()));
+  for (const NamedScene& s : small_scenes())
+    all.emplace_back(s.name, prepare::prepare(s.make(), TreeOptions()));
   return all;
 }
 

@@ -94,7 +94,8 @@ TEST(Provision, WorkersTakeWhatWasComputed) {
     const std::vector<double> costs(cut.subtrees.size(), 1.0);
     const odprt::Division division = odprt::divide(scene.flat, scene.wide, cut, costs, 1, 1);
     const odprt::Crew crew = odprt::make_crew(request, p, division, cut);
-    const auto computed = static_cast<double>(work_of(p)), taken = static_cast<double>(crew.reports[0].work_bytes);
+    const auto computed = static_cast<double>(work_of(p)),
+               taken = static_cast<double>(crew.reports[0].work_bytes);
     EXPECT_GE(taken, 0.98 * computed);
     EXPECT_LE(taken, computed + 65536) << "ray buffer " << ray_buffer;
   }

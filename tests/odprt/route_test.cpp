@@ -133,7 +133,8 @@ TEST(Route, TheFirstPartNotAskedYet) {
       ++n_found;
       ASSERT_LT(part, kParts);
       EXPECT_FALSE(was_asked(r, part));
-      ASSERT_FALSE(std::isnan(wide[part])) << "batch " << b << " ray " << k << " asks a part that it doesn't meet";
+      ASSERT_FALSE(std::isnan(wide[part]))
+          << "batch " << b << " ray " << k << " asks a part that it doesn't meet";
       EXPECT_LE(wide[part], nearest) << "batch " << b << " ray " << k << " passes over a nearer part";
     }
   EXPECT_GT(n_found, 500);

@@ -29,7 +29,8 @@ std::map<layout::u32, int> all_leaves(const flatten::WideForm& form) {
   std::map<layout::u32, int> leaves;
   for (const layout::WideNode& node : form.nodes)
     for (std::uint32_t slot = 0; slot < 8; ++slot)
-      if (!odprt::child_bounds(node, slot).empty() && (node.child[slot] & KDRAY_WIDE_LEAF)) ++leaves[node.child[slot]];
+      if (!odprt::child_bounds(node, slot).empty() && (node.child[slot] & KDRAY_WIDE_LEAF))
+        ++leaves[node.child[slot]];
   return leaves;
 }
 
@@ -40,7 +41,8 @@ double cost_of_whole(const flatten::WideForm& form) {
       const Box box = odprt::child_bounds(node, slot);
       if (box.empty()) continue;
       const bool leaf = node.child[slot] & KDRAY_WIDE_LEAF;
-      cost += static_cast<double>(box.area()) * (leaf ? 2.0 * odprt::leaf_blocks(form, node.child[slot]) : 1.0);
+      cost +=
+          static_cast<double>(box.area()) * (leaf ? 2.0 * odprt::leaf_blocks(form, node.child[slot]) : 1.0);
     }
   return cost;
 }

@@ -1,0 +1,137 @@
+#include "pdprt/queue.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "device/opencl_error.h"
+#include "wavefront/develop.h"
+
+namespace kdray::pdprt {
+
+namespace {
+
+// Shorter launches than this are not worth their report.
+constexpr double kShortestSeconds = 0.0003;
+
+layout::Frame scheduled(layout::Frame frame, const wavefront::Schedule& schedule, std::uint32_t features) {
+  schedule.apply(frame, features);
+  return frame;
+}
+
+// Of a tile, when none has been rendered: as if each eye ray spawned one.
+double guessed_waves(const layout::Frame& frame) {
+  const double samples = static_cast<double>(frame.tile_width) * frame.tile_height * frame.n_samples;
+  return 2 * samples / frame.batch_size;
+}
+
+struct Rows {
+  std::size_t first, end;
+};
+
+// The picture's rows that the tiles cover.
+Rows rows_of(std::span<const layout::u32> tiles, const layout::Frame& frame) {
+  std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
+  for (const layout::u32 tile : tiles) {
+    first = std::min<std::size_t>(first, KDRAY_TILE_ROW(tile));
+    last = std::max<std::size_t>(last, KDRAY_TILE_ROW(tile));
+  }
+  return {first * frame.tile_height, std::min<std::size_t>((last + 1) * frame.tile_height, frame.height)};
+}
+
+}  // namespace
+
+Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& queue, const Task& task,
+             std::size_t max_tiles, std::size_t max_pixels)
+    : number_(number),
+      frame_(scheduled(task.frame, device.schedule, task.features)),
+      waves_per_launch_(device.schedule.n_slices *
+                        (device.schedule.fused ? device.schedule.fused_waves : 1.0)),
+      waves_per_tile_(guessed_waves(frame_)),
+      compute_units_(device::checked(
+          "asking for the queue's device",
+          [&] { return queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(); })),
+      wavefront_(*device.context, queue, *device.scene, *device.programs, frame_, device.schedule,
+                 task.features, max_tiles, max_pixels) {
+  wavefront::Watch watch;
+  if (task.faults) watch.before = [faults = task.faults, number] { faults->launch(number); };
+  if (task.timeline) {
+    device::checked("comparing clocks", [&] { clock_.emplace(device.context->get(), queue); });
+    watch.after = [this, timeline = task.timeline](const wavefront::LaunchDone& done) {
+      timeline->add(static_cast<int>(number_), "launch", timeline->seconds_at(clock_->on_host(done.start)),
+                    timeline->seconds_at(clock_->on_host(done.end)),
+                    {{"waves", static_cast<double>(done.waves)},
+                     {"tiles", static_cast<double>(done.tiles)},
+                     {"rays", static_cast<double>(done.rays)}});
+    };
+  }
+  wavefront_.watch(std::move(watch));
+}
+
+std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wavefront::Progress& progress,
+                                                        Shared& shared) {
+  if (tiles.left()) return std::nullopt;
+  shared.tiles_done += progress.taken - n_told_;
+  n_told_ = progress.taken;
+  const std::size_t ahead = tiles.taken(number_).size() - progress.taken;
+  // Nothing is known of this list's tiles: a launch at a time.
+  if (progress.taken == 0) return tiles.take(number_, {.most = tiles_of_launch()});
+  waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
+  const double tiles_per_second = progress.taken / (wavefront_.busy_seconds() - busy_before_);
+  // The launch that is running takes as much as it can of what there is. The one to be queued is to find all it can take,
+  // and more: a slice that runs dry traces its last rays in batches that aren't full.
+  return tiles.take(number_, {.most = 2 * tiles_of_launch(),
+                              .least = static_cast<std::size_t>(kShortestSeconds * tiles_per_second) + 1,
+                              .ahead = ahead - std::min(ahead, tiles_of_launch())});
+}
+
+std::size_t Queue::tiles_of_launch() const {
+  return static_cast<std::size_t>(waves_per_launch_ / waves_per_tile_) + 1;
+}
+
+void Queue::serve(Tiles& tiles, std::size_t first_pixel, Shared& shared) {
+  while (tiles.wait(number_)) {
+    n_told_ = 0;
+    busy_before_ = wavefront_.busy_seconds();
+    wavefront_.begin(first_pixel);
+    const auto feed = [&](const wavefront::Progress& progress) { return more(tiles, progress, shared); };
+    if (!wavefront_.render(feed)) return;
+    deliver(tiles.taken(number_), shared);
+    tiles.done(number_);
+  }
+}
+
+void Queue::deliver(std::span<const layout::u32> tiles, Shared& shared) {
+  if (tiles.empty()) return;  // another queue was faster
+  note_costs(tiles, shared);
+  const Rows rows = rows_of(tiles, frame_);
+  // Last: what it adds to the counters counts.
+  wavefront_.finish(rows.first, rows.end, [&](const wavefront::FilmRows& film) {
+    wavefront::develop_tiles(film.sums, film.first_pixel, frame_, tiles, shared.image.pixels);
+  });
+  n_tiles_ += tiles.size();
+  shared.tiles_done += tiles.size() - n_told_;
+  n_told_ = 0;
+}
+
+// The list's device time, shared out by the cycles that were charged to its tiles.
+void Queue::note_costs(std::span<const layout::u32> tiles, Shared& shared) {
+  const std::vector<layout::u64> cycles = wavefront_.tile_cycles();
+  const double sum = std::accumulate(cycles.begin(), cycles.end(), 0.0);
+  if (sum == 0) return;
+  const double seconds = (wavefront_.busy_seconds() - busy_before_) * compute_units_;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const double cost = static_cast<double>(cycles[i]) * (seconds / sum);
+    tile_cost_.costliest = std::max(tile_cost_.costliest, cost);
+    if (!shared.tile_seconds.empty())
+      shared.tile_seconds[KDRAY_TILE_ROW(tiles[i]) * frame_.n_tiles_x + KDRAY_TILE_COLUMN(tiles[i])] = cost;
+  }
+  tile_cost_.total += seconds;
+}
+
+void Queue::withdraw(Shared& shared) {
+  shared.tiles_done -= n_told_;
+  n_told_ = 0;
+}
+
+}  // namespace kdray::pdprt

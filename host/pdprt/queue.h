@@ -1,0 +1,62 @@
+// What    One of PDPRT's queues: takes tiles, keeps the device supplied with them, and puts them into the picture.
+// Shape   A queue has tiles for a few launches ahead, by the waves that its tiles have taken so far: enough that its slices
+//         don't run dry, and little enough that others don't wait for it at the end.
+// Threads One serves a queue; queues share Tiles and the picture, of which each writes its own tiles.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "device/clock.h"
+#include "pdprt/render.h"
+#include "pdprt/tiles.h"
+
+namespace kdray::pdprt {
+
+// What the queues of a frame share.
+struct Shared {
+  film::Image image;
+  std::atomic<std::uint64_t> tiles_done{0};
+  std::vector<double> tile_seconds;  // by row and column of tiles; empty: not wanted
+};
+
+class Queue {
+ public:
+  // A list holds `max_tiles`, the film `max_pixels`. Throws kdray::Error when the device can't.
+  Queue(std::size_t number, const Device& device, const cl::CommandQueue& queue, const Task& task,
+        std::size_t max_tiles, std::size_t max_pixels);
+
+  // Renders tiles until all of them are in the picture, those of the other queues too, or someone has left. The film
+  // begins with `first_pixel`.
+  void serve(Tiles& tiles, std::size_t first_pixel, Shared& shared);
+
+  // Takes back what it has told Shared::tiles_done of tiles that it will not deliver.
+  void withdraw(Shared& shared);
+
+  const wavefront::Wavefront& wavefront() const { return wavefront_; }
+  std::uint64_t tiles() const { return n_tiles_; }  // in the picture
+  const TileCost& tile_cost() const { return tile_cost_; }
+
+ private:
+  std::optional<std::span<const layout::u32>> more(Tiles& tiles, const wavefront::Progress& progress,
+                                                   Shared& shared);
+  std::size_t tiles_of_launch() const;
+  void deliver(std::span<const layout::u32> tiles, Shared& shared);
+  void note_costs(std::span<const layout::u32> tiles, Shared& shared);
+
+  std::size_t number_;
+  layout::Frame frame_;
+  double waves_per_launch_, waves_per_tile_;  // the latter as measured so far
+  std::uint32_t compute_units_;
+  std::optional<device::Clock> clock_;
+  wavefront::Wavefront wavefront_;
+  // Of the present list.
+  std::uint64_t n_told_ = 0;  // of tiles_done
+  double busy_before_ = 0;
+  std::uint64_t n_tiles_ = 0;
+  TileCost tile_cost_;
+};
+
+}  // namespace kdray::pdprt

@@ -1,0 +1,21 @@
+// What    The size of tiles where none is asked for: small enough that the costliest one is a small part of what a compute
+//         unit has to do, since the last tile to be begun keeps the frame waiting; large otherwise, since rays of a tile
+//         are alike and share what they fetch.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace kdray::pdprt {
+
+// Of a frame that was rendered.
+struct TileCost {
+  std::uint64_t tile_pixels = 0;
+  double costliest = 0, total = 0;  // seconds of a compute unit
+};
+
+// A square tile's side. `n_units`: the compute units of all queues. `measured`: of the last frame of these sides.
+std::uint32_t choose_tile_side(std::uint32_t width, std::uint32_t height, std::uint32_t n_units,
+                               const std::optional<TileCost>& measured);
+
+}  // namespace kdray::pdprt
