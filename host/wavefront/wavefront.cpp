@@ -266,6 +266,12 @@ std::uint32_t Wavefront::tiles_taken(const Launch& launch) const {
   return taken;
 }
 
+std::uint32_t Wavefront::front(const Launch& launch) const {
+  std::uint32_t furthest = 0;
+  for (const layout::Slice& slice : launch.slices) furthest = std::max(furthest, slice.tile);
+  return std::min(furthest + 1 - schedule_.n_slices, launch.listed);  // slice s begins with entry s
+}
+
 void Wavefront::tell_of(const Launch& launch, const Counters& sum, std::uint32_t tiles) {
   const double start = seconds_of(launch.first, CL_PROFILING_COMMAND_START);
   const double end = seconds_of(launch.last, CL_PROFILING_COMMAND_END);
@@ -286,7 +292,8 @@ Progress Wavefront::wait_for(Launch& launch) {
   n_taken_ = taken;
   list_counters_ = sum;
   const auto busy = [&](const layout::Slice& slice) { return at_work(slice, launch.listed); };
-  return {launch.listed, taken, sum.waves, std::any_of(launch.slices.begin(), launch.slices.end(), busy)};
+  return {launch.listed, taken, front(launch), sum.waves,
+          std::any_of(launch.slices.begin(), launch.slices.end(), busy)};
 }
 
 bool Wavefront::go_on(Launch& next, const Feed& feed, const Progress& progress) {
@@ -302,8 +309,10 @@ bool Wavefront::render_list(const Feed& feed) {
   for (std::size_t n = 0;; ++n) {
     if (!go_on(launches_[(n + 1) % 2], feed, progress)) return false;
     progress = wait_for(launches_[n % 2]);
-    // The launch in flight finds nothing to do.
-    if (!progress.at_work && progress.listed == n_listed_) return true;
+    if (progress.at_work || progress.listed < n_listed_) continue;
+    // The launch in flight finds nothing to do; the frame may still have something.
+    if (!enlist(feed, progress)) return false;
+    if (progress.listed == n_listed_) return true;
   }
 }
 
