@@ -112,6 +112,7 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       frame_(frame),
       schedule_(schedule),
       features_(features),
+      max_tiles_(max_tiles),
       frame_buffer_(make(sizeof(layout::Frame), "the frame")),
       slice_buffer_(make(schedule.n_slices * sizeof(layout::Slice), "the slices")),
       list_(make(max_tiles * sizeof(layout::u32), "the list of tiles")),
@@ -239,6 +240,7 @@ void Wavefront::begin(std::size_t first_pixel) {
   }
   for (Launch& launch : launches_) launch.slices.resize(schedule_.n_slices);
   device::checked("beginning a list of tiles", [&] {
+    if (wave_) queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, 0, max_tiles_ * sizeof(layout::u64));
     queue_.enqueueWriteBuffer(frame_buffer_, CL_TRUE, 0, sizeof frame_, &frame_);
     queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
                               slices.data());
@@ -252,9 +254,6 @@ bool Wavefront::enlist(const Feed& feed, const Progress& progress) {
   if (more->empty()) return true;
   const std::size_t first = n_listed_;
   queue_.enqueueWriteBuffer(list_, CL_FALSE, first * sizeof(layout::u32), more->size_bytes(), more->data());
-  if (wave_)
-    queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, first * sizeof(layout::u64),
-                             more->size() * sizeof(layout::u64));
   n_listed_ += static_cast<std::uint32_t>(more->size());
   return true;
 }

@@ -148,6 +148,7 @@ class Wavefront {
   layout::Frame frame_;
   Schedule schedule_;
   std::uint32_t features_;
+  std::size_t max_tiles_;
   Watch watch_;
   Launch launches_[2];
   std::size_t device_bytes_ = 0;
