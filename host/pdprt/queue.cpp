@@ -45,8 +45,8 @@ Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& q
              std::size_t max_tiles, std::size_t max_pixels)
     : number_(number),
       frame_(scheduled(task.frame, device.schedule, task.features)),
-      waves_per_launch_(device.schedule.n_slices *
-                        (device.schedule.fused ? device.schedule.fused_waves : 1.0)),
+      n_slices_(device.schedule.n_slices),
+      waves_per_launch_(n_slices_ * (device.schedule.fused ? device.schedule.fused_waves : 1.0)),
       waves_per_tile_(guessed_waves(frame_)),
       compute_units_(device::checked(
           "asking for the queue's device",
@@ -73,16 +73,20 @@ std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wave
   if (tiles.left()) return std::nullopt;
   shared.tiles_done += progress.taken - n_told_;
   n_told_ = progress.taken;
-  const std::size_t ahead = tiles.taken(number_).size() - progress.taken;
-  // Nothing is known of this list's tiles: a launch at a time.
-  if (progress.taken == 0) return tiles.take(number_, {.most = tiles_of_launch()});
-  waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
-  const double tiles_per_second = progress.taken / (wavefront_.busy_seconds() - busy_before_);
+  const std::size_t ahead = tiles.taken(number_).size() - progress.front;
+  const bool measured = progress.taken > 0;
+  if (measured) waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
   // The launch that is running takes as much as it can of what there is. The one to be queued is to find all it can take,
-  // and more: a slice that runs dry traces its last rays in batches that aren't full.
-  return tiles.take(number_, {.most = 2 * tiles_of_launch(),
-                              .least = static_cast<std::size_t>(kShortestSeconds * tiles_per_second) + 1,
+  // and more, when that is known: a slice that runs dry traces its last rays in batches that aren't full.
+  return tiles.take(number_, {.most = (measured ? 2 : 1) * tiles_of_launch() + n_slices_ - 1,
+                              .least = shortest_launch(progress),
                               .ahead = ahead - std::min(ahead, tiles_of_launch())});
+}
+
+// In tiles, by the time that they have taken so far.
+std::size_t Queue::shortest_launch(const wavefront::Progress& progress) const {
+  const double busy = wavefront_.busy_seconds() - busy_before_;
+  return busy > 0 ? static_cast<std::size_t>(kShortestSeconds / busy * progress.taken) + 1 : 1;
 }
 
 std::size_t Queue::tiles_of_launch() const {

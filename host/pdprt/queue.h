@@ -43,11 +43,13 @@ class Queue {
   std::optional<std::span<const layout::u32>> more(Tiles& tiles, const wavefront::Progress& progress,
                                                    Shared& shared);
   std::size_t tiles_of_launch() const;
+  std::size_t shortest_launch(const wavefront::Progress& progress) const;
   void deliver(std::span<const layout::u32> tiles, Shared& shared);
   void note_costs(std::span<const layout::u32> tiles, Shared& shared);
 
   std::size_t number_;
   layout::Frame frame_;
+  std::uint32_t n_slices_;
   double waves_per_launch_, waves_per_tile_;  // the latter as measured so far
   std::uint32_t compute_units_;
   std::optional<device::Clock> clock_;

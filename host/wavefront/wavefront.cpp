@@ -112,6 +112,7 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       frame_(frame),
       schedule_(schedule),
       features_(features),
+      max_tiles_(max_tiles),
       frame_buffer_(make(sizeof(layout::Frame), "the frame")),
       slice_buffer_(make(schedule.n_slices * sizeof(layout::Slice), "the slices")),
       list_(make(max_tiles * sizeof(layout::u32), "the list of tiles")),
@@ -239,6 +240,7 @@ void Wavefront::begin(std::size_t first_pixel) {
   }
   for (Launch& launch : launches_) launch.slices.resize(schedule_.n_slices);
   device::checked("beginning a list of tiles", [&] {
+    if (wave_) queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, 0, max_tiles_ * sizeof(layout::u64));
     queue_.enqueueWriteBuffer(frame_buffer_, CL_TRUE, 0, sizeof frame_, &frame_);
     queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
                               slices.data());
@@ -252,9 +254,6 @@ bool Wavefront::enlist(const Feed& feed, const Progress& progress) {
   if (more->empty()) return true;
   const std::size_t first = n_listed_;
   queue_.enqueueWriteBuffer(list_, CL_FALSE, first * sizeof(layout::u32), more->size_bytes(), more->data());
-  if (wave_)
-    queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, first * sizeof(layout::u64),
-                             more->size() * sizeof(layout::u64));
   n_listed_ += static_cast<std::uint32_t>(more->size());
   return true;
 }
@@ -264,6 +263,12 @@ std::uint32_t Wavefront::tiles_taken(const Launch& launch) const {
   for (std::uint32_t s = 0; s < schedule_.n_slices; ++s)
     taken += (launch.slices[s].tile - s) / schedule_.n_slices;
   return taken;
+}
+
+std::uint32_t Wavefront::front(const Launch& launch) const {
+  std::uint32_t furthest = 0;
+  for (const layout::Slice& slice : launch.slices) furthest = std::max(furthest, slice.tile);
+  return std::min(furthest + 1 - schedule_.n_slices, launch.listed);  // slice s begins with entry s
 }
 
 void Wavefront::tell_of(const Launch& launch, const Counters& sum, std::uint32_t tiles) {
@@ -286,7 +291,8 @@ Progress Wavefront::wait_for(Launch& launch) {
   n_taken_ = taken;
   list_counters_ = sum;
   const auto busy = [&](const layout::Slice& slice) { return at_work(slice, launch.listed); };
-  return {launch.listed, taken, sum.waves, std::any_of(launch.slices.begin(), launch.slices.end(), busy)};
+  return {launch.listed, taken, front(launch), sum.waves,
+          std::any_of(launch.slices.begin(), launch.slices.end(), busy)};
 }
 
 bool Wavefront::go_on(Launch& next, const Feed& feed, const Progress& progress) {
@@ -302,8 +308,10 @@ bool Wavefront::render_list(const Feed& feed) {
   for (std::size_t n = 0;; ++n) {
     if (!go_on(launches_[(n + 1) % 2], feed, progress)) return false;
     progress = wait_for(launches_[n % 2]);
-    // The launch in flight finds nothing to do.
-    if (!progress.at_work && progress.listed == n_listed_) return true;
+    if (progress.at_work || progress.listed < n_listed_) continue;
+    // The launch in flight finds nothing to do; the frame may still have something.
+    if (!enlist(feed, progress)) return false;
+    if (progress.listed == n_listed_) return true;
   }
 }
 

@@ -51,8 +51,10 @@ struct Counters {
 
 // How far a queue is with its list, by its last report.
 struct Progress {
-  std::uint32_t listed = 0,
-                taken = 0;  // tiles in the list, and of them those that no slice has still to begin or end
+  std::uint32_t listed = 0;  // tiles in the list
+  std::uint32_t taken = 0;   // of them those whose eye rays have all been traced
+  std::uint32_t front =
+      0;  // how far into the list the slice that is furthest has come, less a tile for each other slice
   std::uint64_t waves = 0;  // that this took
   bool at_work = false;     // a slice has rays or tiles left
 };
@@ -136,6 +138,7 @@ class Wavefront {
   Progress wait_for(Launch& launch);
   void settle() noexcept;
   std::uint32_t tiles_taken(const Launch& launch) const;
+  std::uint32_t front(const Launch& launch) const;
   void tell_of(const Launch& launch, const Counters& sum, std::uint32_t tiles);
   void share_out_seconds();
   void collect();
@@ -145,6 +148,7 @@ class Wavefront {
   layout::Frame frame_;
   Schedule schedule_;
   std::uint32_t features_;
+  std::size_t max_tiles_;
   Watch watch_;
   Launch launches_[2];
   std::size_t device_bytes_ = 0;
