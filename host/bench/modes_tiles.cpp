@@ -1,0 +1,73 @@
+#include "bench/modes_tiles.h"
+
+#include <algorithm>
+#include <queue>
+
+namespace kdray::bench {
+
+namespace {
+
+struct Request {
+  double time;
+  std::uint32_t queue;
+  bool operator>(const Request& other) const {
+    return time != other.time ? time > other.time : queue > other.queue;
+  }
+};
+
+}  // namespace
+
+double contiguous_seconds(std::span<const double> tiles, std::uint32_t n_queues) {
+  double longest = 0;
+  for (std::uint64_t q = 0; q < n_queues; ++q) {
+    double taken = 0;
+    for (std::size_t i = q * tiles.size() / n_queues; i < (q + 1) * tiles.size() / n_queues; ++i)
+      taken += tiles[i];
+    longest = std::max(longest, taken);
+  }
+  return longest;
+}
+
+double interleaved_seconds(std::span<const double> tiles, std::uint32_t n_queues) {
+  std::vector<double> taken(n_queues);
+  for (std::size_t i = 0; i < tiles.size(); ++i) taken[i % n_queues] += tiles[i];
+  return *std::max_element(taken.begin(), taken.end());
+}
+
+double bag_seconds(std::span<const double> tiles, std::uint32_t n_queues, const BagLink& link) {
+  std::priority_queue<Request, std::vector<Request>, std::greater<>> requests;
+  for (std::uint32_t q = 0; q < n_queues; ++q) requests.push({0, q});
+  std::vector<double> busy_until(n_queues);
+  double bag_free = 0, end = 0;
+  for (const double seconds : tiles) {
+    const Request request = requests.top();
+    requests.pop();
+    bag_free = std::max(bag_free, request.time + link.latency) + link.service;
+    double& until = busy_until[request.queue];
+    const double start = std::max(bag_free + link.latency, until);
+    until = start + seconds;
+    end = std::max(end, until);
+    requests.push({start, request.queue});
+  }
+  return end;
+}
+
+TileGrid TileGrid::coarser() const {
+  TileGrid out{(columns + 1) / 2, (rows + 1) / 2, {}};
+  out.seconds.resize(std::size_t{out.columns} * out.rows);
+  for (std::uint32_t y = 0; y < rows; ++y)
+    for (std::uint32_t x = 0; x < columns; ++x)
+      out.seconds[std::size_t{y / 2} * out.columns + x / 2] += seconds[std::size_t{y} * columns + x];
+  return out;
+}
+
+TileGrid grid_for(TileGrid grid, std::uint32_t n_queues, std::uint32_t least) {
+  while (grid.columns > 1 && grid.rows > 1) {
+    TileGrid coarser = grid.coarser();
+    if (coarser.seconds.size() < std::size_t{least} * n_queues) break;
+    grid = std::move(coarser);
+  }
+  return grid;
+}
+
+}  // namespace kdray::bench
