@@ -1,7 +1,6 @@
 #include "bench/modes_cut.h"
 
 #include <algorithm>
-#include <array>
 #include <queue>
 
 namespace kdray::bench {
@@ -74,67 +73,49 @@ struct Cheaper {
   }
 };
 
-}  // namespace
-
-Cut::Cut(const flatten::WideForm& form, std::size_t n_wanted)
-    : piece_of_node_(form.nodes.size(), kInside), piece_of_slot_(kSlots * form.nodes.size(), kInside) {
-  if (form.nodes.empty()) return;
-  const Sums sums(form);
-  std::vector<u32> opened;  // nodes, in the order of their opening
+// Which nodes are opened.
+std::vector<bool> opened(const flatten::WideForm& form, const Sums& sums, std::size_t n_wanted) {
   std::vector<bool> is_open(form.nodes.size());
   std::priority_queue<Waiting, std::vector<Waiting>, Cheaper> waiting;
   waiting.push({sums.nodes[0].cost, 0});
-  std::size_t n = 1;
-  while (n < n_wanted && !waiting.empty()) {
+  for (std::size_t n = 1; n < n_wanted && !waiting.empty();) {
     const u32 node = waiting.top().node;
     waiting.pop();
     is_open[node] = true;
-    opened.push_back(node);
-    const std::size_t n_before = n--;
+    --n;
     for (u32 slot = 0; slot < kSlots; ++slot) {
       if (box_of(form.nodes[node], slot).empty()) continue;
       const Piece below = sums.at(form, node, slot);
       if (!is_leaf(below.child)) waiting.push({below.cost, below.child});
       ++n;
     }
-    openings_.push_back({0, 0, n_before});
   }
-  // Number the pieces along the tree; the first and the last of an opened node's are noted on the way.
-  std::vector<std::array<u32, 2>> range(form.nodes.size());
-  const auto number = [&](const auto& self, const Piece& piece, u32 parent, u32 slot) -> void {
-    const auto first = static_cast<u32>(pieces_.size());
-    if (is_leaf(piece.child)) {
-      piece_of_slot_[std::size_t{kSlots} * parent + slot] = first;
-      pieces_.push_back(piece);
-    } else if (!is_open[piece.child]) {
-      piece_of_node_[piece.child] = first;
-      pieces_.push_back(piece);
-    } else {
-      const layout::WideNode& node = form.nodes[piece.child];
-      for (u32 nearer = 0; nearer < kSlots; ++nearer) {
-        const u32 child_slot = slot_at(node, 0, nearer);
-        if (!box_of(node, child_slot).empty())
-          self(self, sums.at(form, piece.child, child_slot), piece.child, child_slot);
-      }
-      range[piece.child] = {first, static_cast<u32>(pieces_.size())};
-    }
-  };
-  number(number, sums.nodes[0], 0, 0);
-  for (std::size_t i = 0; i < opened.size(); ++i) {
-    openings_[i].first_piece = range[opened[i]][0];
-    openings_[i].n_pieces = range[opened[i]][1] - range[opened[i]][0];
-  }
+  return is_open;
 }
 
-std::vector<std::uint32_t> Cut::coarser(std::size_t n_wanted) const {
-  // Openings that the coarser cut does without join their pieces again, the last ones first.
-  std::vector<bool> joins_left(pieces_.size(), false);
-  for (const Opening& o : openings_)
-    if (o.n_before >= n_wanted)
-      for (u32 i = 1; i < o.n_pieces; ++i) joins_left[o.first_piece + i] = true;
-  std::vector<std::uint32_t> group(pieces_.size());
-  for (std::size_t i = 1; i < group.size(); ++i) group[i] = group[i - 1] + (joins_left[i] ? 0 : 1);
-  return group;
+}  // namespace
+
+Cut::Cut(const flatten::WideForm& form, std::size_t n_wanted)
+    : piece_of_node_(form.nodes.size(), kDirectory), piece_of_slot_(kSlots * form.nodes.size(), kDirectory) {
+  if (form.nodes.empty()) return;
+  const Sums sums(form);
+  const std::vector<bool> is_open = opened(form, sums, n_wanted);
+  const auto number = [&](const auto& self, const Piece& piece, std::uint32_t& place) -> void {
+    if (is_leaf(piece.child) || !is_open[piece.child]) {
+      place = static_cast<u32>(pieces_.size());
+      pieces_.push_back(piece);
+      return;
+    }
+    const layout::WideNode& node = form.nodes[piece.child];
+    for (u32 nearer = 0; nearer < kSlots; ++nearer) {
+      const u32 slot = slot_at(node, 0, nearer);
+      if (box_of(node, slot).empty()) continue;
+      const u32 child = node.child[slot];
+      self(self, sums.at(form, piece.child, slot),
+           is_leaf(child) ? piece_of_slot_[std::size_t{kSlots} * piece.child + slot] : piece_of_node_[child]);
+    }
+  };
+  number(number, sums.nodes[0], piece_of_node_[0]);
 }
 
 std::uint32_t blocks_of_leaf(const flatten::WideForm& form, layout::u32 child) {

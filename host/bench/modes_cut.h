@@ -2,8 +2,7 @@
 //         queues that are not there.
 // Shape   Beginning with the root, the subtree of the largest expected cost is opened, its children take its place, until
 //         there are enough or nothing is left to open: leaves stay whole. Pieces are in the tree's own order (near to far for
-//         rays along +x +y +z), in which neighbours are near each other. A coarser cut is the same one stopped earlier: each
-//         of its pieces is a run of the finer one's.
+//         rays along +x +y +z), in which neighbours are near each other. What lies above them is the directory.
 // Units   An expected cost is surface area times what a walk does there: a visit of a node counts 1, a test of a block 2
 //         (TreeOptions' own weights).
 #pragma once
@@ -25,6 +24,9 @@ struct Piece {
   std::size_t bytes = 0;  // of its nodes and blocks
 };
 
+// The directory, as the number of a piece.
+inline constexpr std::uint32_t kDirectory = ~0u;
+
 class Cut {
  public:
   // Into at least n_wanted pieces, where the tree has as many.
@@ -32,12 +34,8 @@ class Cut {
 
   const std::vector<Piece>& pieces() const { return pieces_; }
 
-  // For each piece the number of the coarser cut's piece that it belongs to; they ascend from 0 in steps of 0 or 1.
-  std::vector<std::uint32_t> coarser(std::size_t n_wanted) const;
-
-  // For each node of the form: the number of the piece whose root it is, or kInside.
-  static constexpr std::uint32_t kInside = ~0u;
-  const std::vector<std::uint32_t>& piece_of_node() const { return piece_of_node_; }
+  // The piece whose root a node is; for nodes above and below such ones kDirectory.
+  std::uint32_t piece_of_node(std::uint32_t node) const { return piece_of_node_[node]; }
 
   // The piece that a leaf is, which hangs in this slot of an opened node.
   std::uint32_t piece_of_leaf(std::uint32_t node, std::uint32_t slot) const {
@@ -45,13 +43,7 @@ class Cut {
   }
 
  private:
-  struct Opening {
-    std::uint32_t first_piece, n_pieces;  // what it became in the finest cut
-    std::size_t n_before;                 // pieces in all
-  };
-
   std::vector<Piece> pieces_;
-  std::vector<Opening> openings_;
   std::vector<std::uint32_t> piece_of_node_, piece_of_slot_;
 };
 

@@ -22,12 +22,6 @@ constexpr int kTile = 8;                      // pixels of the measured tiles' s
 constexpr std::uint32_t kTilesPerQueue = 16;  // at least, as long as there are any
 constexpr std::array kKinds = {"primary", "shadow", "reflected", "refracted"};  // by LifeKind
 
-// The lives of a sample, and where they go in the finest cut.
-struct Sample {
-  std::vector<LifeRay> lives;
-  Paths paths;
-};
-
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
@@ -57,37 +51,27 @@ class Prophet {
     statistics_ = Json::parse(renderer_.statistics());
     const Json& mode = statistics_.at("mode");
     if (!mode.contains("tile_seconds") || !mode.at("tile_seconds").is_array()) return;
-    tiles_.seconds = mode.at("tile_seconds").get<std::vector<double>>();
-    const Json tile = mode.value("tile", Json::array({kTile, kTile}));
-    const auto width = tile.at(0).get<std::uint32_t>(), height = tile.at(1).get<std::uint32_t>();
-    const Json& picture = statistics_.at("frame");
-    tiles_.columns = (picture.at("width").get<std::uint32_t>() + width - 1) / width;
-    tiles_.rows = (picture.at("height").get<std::uint32_t>() + height - 1) / height;
-    const double all = sum(tiles_.seconds);
-    if (tiles_.seconds.size() != std::size_t{tiles_.columns} * tiles_.rows || !(all > 0)) {
-      tiles_ = {};
+    tiles_ = mode.at("tile_seconds").get<std::vector<double>>();
+    const double all = sum(tiles_);
+    if (!(all > 0)) {
+      tiles_.clear();
       return;
     }
-    model_.tile_width = static_cast<int>(width), model_.tile_height = static_cast<int>(height);
+    const Json tile = mode.value("tile", Json::array({kTile, kTile}));
+    model_.tile_width = tile.at(0), model_.tile_height = tile.at(1);
     model_.tiles_over_sequential = all / input_.sequential_seconds;
-    for (double& seconds : tiles_.seconds) seconds *= input_.sequential_seconds / all;
+    for (double& seconds : tiles_) seconds *= input_.sequential_seconds / all;
   }
 
   void predict_pdprt() {
-    if (tiles_.seconds.empty()) return;
+    if (tiles_.empty()) return;
     const BagLink link{options_.latency_us * 1e-6, options_.service_us * 1e-6};
     for (const int queues : input_.queues) {
       const auto n = static_cast<std::uint32_t>(queues);
-      const TileGrid grid = grid_for(tiles_, n, kTilesPerQueue);
-      const auto width = model_.tile_width *
-                         static_cast<int>(std::lround(static_cast<double>(tiles_.columns) / grid.columns));
-      const auto put = [&](const char* scheme, double seconds) {
-        Prediction& p = add(scheme, queues, seconds);
-        p.tile_width = width, p.tile_height = width * model_.tile_height / model_.tile_width;
-      };
-      put("pdprt contiguous", contiguous_seconds(grid.seconds, n));
-      put("pdprt interleaved", interleaved_seconds(grid.seconds, n));
-      put("pdprt bag", bag_seconds(grid.seconds, n, link));
+      const std::vector<double> tiles = joined(tiles_, n, kTilesPerQueue);
+      add("pdprt contiguous", queues, contiguous_seconds(tiles, n)).tiles = tiles.size();
+      add("pdprt interleaved", queues, interleaved_seconds(tiles, n)).tiles = tiles.size();
+      add("pdprt bag", queues, bag_seconds(tiles, n, link)).tiles = tiles.size();
     }
   }
 
@@ -100,25 +84,24 @@ class Prophet {
   }
 
   void predict_odprt() {
-    const auto most = static_cast<std::size_t>(*std::max_element(input_.queues.begin(), input_.queues.end()));
-    const flatten::WideForm& form = input_.prepared.wide;
-    const Cut cut(form, pieces_for(most));
-    const Sample pilot = take_sample(cut, options_.sample / 4), sample = take_sample(cut, options_.sample);
-    const double eye_rays =
-        static_cast<double>(std::count_if(sample.lives.begin(), sample.lives.end(), [](const LifeRay& l) {
-          return l.depth == 1 && l.kind == LifeKind::primary;
-        }));
-    model_.rays_per_sample = static_cast<double>(frame_.width) * frame_.height / std::max(1.0, eye_rays);
+    const std::vector<LifeRay> pilot = take_sample(options_.sample / 4), lives = take_sample(options_.sample);
+    const auto n_eye_rays = std::count_if(lives.begin(), lives.end(),
+                                          [](const LifeRay& life) { return life.parent == kNoParent; });
+    model_.rays_per_sample =
+        static_cast<double>(frame_.width) * frame_.height / static_cast<double>(n_eye_rays);
     model_.odprt_overhead = input_.odprt_overhead.value_or(1);
     model_.overhead_measured = input_.odprt_overhead.has_value();
-    compare_rays(sample);
-    calibrate(sample);
-    const std::vector<double> pilot_costs = costs_of_pieces(pilot.paths, cut.pieces().size());
-    std::vector<double> expected_costs;
-    for (const Piece& piece : cut.pieces()) expected_costs.push_back(piece.cost);
+    compare_rays(lives);
     for (const int queues : input_.queues) {
-      predict_odprt(cut, sample, expected_costs, "odprt sah", queues);
-      predict_odprt(cut, sample, pilot_costs, "odprt pilot", queues);
+      const Cut cut(input_.prepared.wide, pieces_for(static_cast<std::size_t>(queues)));
+      const Paths paths = paths_of(cut, lives);
+      calibrate(paths);
+      std::vector<double> expected;
+      for (const Piece& piece : cut.pieces()) expected.push_back(piece.cost);
+      predict_odprt("odprt sah", queues, cut, lives, paths, expected);
+      predict_odprt(
+          "odprt pilot", queues, cut, lives, paths,
+          costs_of_pieces(paths_of(cut, pilot), pilot, cut.pieces().size(), ray_seconds_ / cost_seconds_));
     }
   }
 
@@ -126,98 +109,90 @@ class Prophet {
     return queues * static_cast<std::size_t>(options_.pieces_per_queue);
   }
 
-  Sample take_sample(const Cut& cut, int n) {
+  std::vector<LifeRay> take_sample(int n) {
     const double aspect = static_cast<double>(frame_.width) / frame_.height;
     LifeOptions options;
     options.width = std::clamp(static_cast<int>(std::sqrt(n * aspect)), 1, frame_.width);
     options.height = std::clamp(static_cast<int>(std::sqrt(n / aspect)), 1, frame_.height);
     options.depth = frame_.depth;
     options.least_weight = statistics_.at("frame").value("spawn_threshold", 0.0);
-    Sample sample;
-    sample.lives =
-        make_lives(input_.scene, options, [&](std::span<const Ray> rays) { return renderer_.trace(rays); });
-    sample.paths = find_paths(input_.prepared.wide, cut, sample.lives, input_.prepared.geometry.center);
-    return sample;
+    return make_lives(input_.scene, options,
+                      [&](std::span<const Ray> rays) { return renderer_.trace(rays); });
   }
 
-  void compare_rays(const Sample& sample) {
+  Paths paths_of(const Cut& cut, const std::vector<LifeRay>& lives) const {
+    return find_paths(input_.prepared.wide, cut, lives, input_.prepared.geometry.center);
+  }
+
+  void compare_rays(const std::vector<LifeRay>& lives) {
     for (const char* const kind : kKinds)
       model_.rays.push_back({kind, 0, statistics_.at("rays").value(kind, 0.0)});
-    for (const LifeRay& life : sample.lives)
+    for (const LifeRay& life : lives)
       model_.rays[static_cast<std::size_t>(life.kind)].sampled += model_.rays_per_sample;
   }
 
   // Shares one core's seconds out: what it traced by the walks' costs, the rest by rays.
-  void calibrate(const Sample& sample) {
+  void calibrate(const Paths& paths) {
     double cost = 0;
-    for (const PieceVisit& v : sample.paths.visits) cost += v.cost;
+    for (const PieceVisit& v : paths.visits) cost += v.cost;
     const Json& seconds = statistics_.at("seconds");
     const double trace = seconds.value("trace", 0.0);
     double all = trace;
     for (const char* const stage : {"shade", "admit", "add"}) all += seconds.value(stage, 0.0);
-    const double share = all > 0 ? trace / all : 1;
+    const double share = all > 0 && trace > 0 ? trace / all : 1;
     const double total = input_.sequential_seconds / model_.rays_per_sample;
-    const auto n_rays = static_cast<double>(sample.lives.size());
-    cost_seconds_ = cost > 0 ? share * total / cost : 0;
-    ray_seconds_ = n_rays > 0 ? (1 - share) * total / n_rays : 0;
+    cost_seconds_ = share * total / std::max(cost, 1.0);
+    ray_seconds_ = (1 - share) * total / static_cast<double>(paths.n_rays());
   }
 
-  void predict_odprt(const Cut& cut, const Sample& sample, const std::vector<double>& costs,
-                     const std::string& scheme, int queues) {
+  void predict_odprt(const std::string& scheme, int queues, const Cut& cut, const std::vector<LifeRay>& lives,
+                     const Paths& paths, const std::vector<double>& costs) {
     const auto n = static_cast<std::uint32_t>(queues);
-    const std::vector<std::uint32_t> group = cut.coarser(pieces_for(n));
-    std::vector<double> of_group(group.empty() ? 0 : group.back() + 1);
-    for (std::size_t i = 0; i < group.size(); ++i) of_group[group[i]] += costs[i];
-    const std::vector<std::uint32_t> queue_of_group = deal(of_group, n);
-    std::vector<std::uint32_t> queue_of(group.size());
-    std::vector<double> bytes(n);
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      queue_of[i] = queue_of_group[group[i]];
-      bytes[queue_of[i]] += static_cast<double>(cut.pieces()[i].bytes);
-    }
-    const Traffic traffic = traffic_of(sample, queue_of, n);
+    const std::vector<std::uint32_t> queue_of = deal(costs, n);
+    const Traffic traffic = traffic_of(lives, paths, queue_of, n);
     const Network network{options_.gigabytes_per_second * 1e9, options_.latency_us * 1e-6,
                           options_.bytes_per_ray};
     const Outcome outcome = simulate(traffic, n, network);
     Prediction& p = add(scheme, queues, outcome.seconds);
-    p.pieces = static_cast<int>(of_group.size());
-    p.balance = outcome.busiest > 0
-                    ? input_.sequential_seconds * model_.odprt_overhead / (queues * outcome.busiest)
-                    : 0;
+    p.pieces = cut.pieces().size();
+    p.balance = outcome.busiest > 0 ? input_.sequential_seconds / (queues * outcome.busiest) : 0;
     p.port_seconds = outcome.busiest_port;
     p.critical_path = outcome.critical_path;
     p.rays_sent = outcome.rays_sent, p.bytes_sent = outcome.rays_sent * options_.bytes_per_ray;
-    const auto whole = static_cast<double>(input_.prepared.wide.bytes());
-    p.largest_geometry = whole > 0 ? *std::max_element(bytes.begin(), bytes.end()) / whole : 0;
+    p.largest_geometry = largest_share(cut, queue_of, n);
     if (queues <= kMatrixMost) p.exchange = exchange_matrix(traffic, n);
   }
 
-  // Every ray's way from queue to queue. One that passes no piece is dealt with where it begins: eye rays are dealt out.
-  Traffic traffic_of(const Sample& sample, const std::vector<std::uint32_t>& queue_of,
-                     std::uint32_t n_queues) const {
+  // Of the wide tree, that one queue holds.
+  double largest_share(const Cut& cut, const std::vector<std::uint32_t>& queue_of, std::uint32_t n) const {
+    std::vector<double> bytes(n);
+    for (std::size_t i = 0; i < queue_of.size(); ++i)
+      bytes[queue_of[i]] += static_cast<double>(cut.pieces()[i].bytes);
+    const auto whole = static_cast<double>(input_.prepared.wide.bytes());
+    return whole > 0 ? *std::max_element(bytes.begin(), bytes.end()) / whole : 0;
+  }
+
+  // Every ray's way from queue to queue. Eye rays are dealt out evenly to begin with; the directory is walked by whoever has
+  // the ray, and where it ends it is shaded.
+  Traffic traffic_of(const std::vector<LifeRay>& lives, const Paths& paths,
+                     const std::vector<std::uint32_t>& queue_of, std::uint32_t n_queues) const {
     Traffic traffic;
     traffic.rays_per_journey = model_.rays_per_sample;
-    traffic.journeys.resize(sample.lives.size());
+    traffic.journeys.resize(lives.size());
     const double factor = model_.rays_per_sample * model_.odprt_overhead;
-    for (std::size_t i = 0; i < sample.lives.size(); ++i) {
-      const LifeRay& life = sample.lives[i];
-      Journey& journey = traffic.journeys[i];
-      journey.depth = life.depth;
-      for (const PieceVisit& v : sample.paths.of(i)) {
-        const std::uint32_t queue = queue_of[v.piece];
-        if (journey.hops.empty() || journey.hops.back().queue != queue) journey.hops.push_back({queue, 0});
-        journey.hops.back().seconds += factor * cost_seconds_ * v.cost;
-      }
+    for (std::uint32_t i = 0; i < lives.size(); ++i) {
+      const LifeRay& life = lives[i];
+      std::vector<Hop>& hops = traffic.journeys[i].hops;
+      traffic.journeys[i].depth = life.depth;
       const bool from_eye = life.parent == kNoParent;
-      if (journey.hops.empty())
-        journey.hops.push_back({from_eye ? static_cast<std::uint32_t>(i) % n_queues
-                                         : traffic.journeys[life.parent].hops.back().queue,
-                                0});
-      journey.hops.back().seconds += factor * ray_seconds_;
-      if (from_eye)
-        traffic.first.push_back(static_cast<std::uint32_t>(i));
-      else
-        traffic.journeys[life.parent].next.push_back(static_cast<std::uint32_t>(i));
+      hops.push_back({from_eye ? i % n_queues : traffic.journeys[life.parent].hops.back().queue, 0});
+      for (const PieceVisit& v : paths.of(i)) {
+        const std::uint32_t queue = v.piece == kDirectory ? hops.back().queue : queue_of[v.piece];
+        if (hops.back().queue != queue) hops.push_back({queue, 0});
+        hops.back().seconds += factor * cost_seconds_ * v.cost;
+      }
+      hops.back().seconds += factor * ray_seconds_;
+      (from_eye ? traffic.first : traffic.journeys[life.parent].next).push_back(i);
     }
     return traffic;
   }
@@ -226,8 +201,8 @@ class Prophet {
   Renderer& renderer_;
   RenderOptions frame_;
   const ModelOptions& options_;
-  Json statistics_;  // of the frame in small tiles
-  TileGrid tiles_;
+  Json statistics_;            // of the frame in small tiles
+  std::vector<double> tiles_;  // seconds, along the curve that they come in
   double cost_seconds_ = 0, ray_seconds_ = 0;
   Model model_;
 };

@@ -25,7 +25,7 @@ struct ModelOptions {
   double latency_us = 2;
   double service_us = 0.2;  // that a bag of tiles needs for a request
   double bytes_per_ray = 64;
-  int pieces_per_queue = 4;
+  int pieces_per_queue = 16;
   int sample = 1 << 16;  // eye rays; the pilot sample has a quarter as many
 };
 
@@ -43,7 +43,7 @@ struct Prediction {
   double seconds = 0;
   double efficiency = 0;  // sequential seconds over queues times seconds
   // PDPRT
-  int tile_width = 0, tile_height = 0;
+  std::size_t tiles = 0;
   // ODPRT
   int pieces = 0;
   double balance = 0;        // mean work of a queue over the largest: the efficiency without a network

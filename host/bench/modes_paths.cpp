@@ -39,8 +39,7 @@ class Walk {
   Walk(const flatten::WideForm& form, const Cut& cut, Paths& paths) : form_(form), cut_(cut), paths_(paths) {}
 
   void run(const Line& line) {
-    above_ = 0;
-    visit(line, 0, cut_.piece_of_node()[0]);
+    visit(line, 0, cut_.piece_of_node(0));
     paths_.first.push_back(paths_.visits.size());
   }
 
@@ -53,29 +52,23 @@ class Walk {
       if (!(node.bounds[0][0][slot] <= node.bounds[0][1][slot]) || !line.meets(node, slot)) continue;
       const u32 child = node.child[slot];
       if ((child & KDRAY_WIDE_LEAF) != 0) {
-        count(piece == Cut::kInside ? cut_.piece_of_leaf(index, slot) : piece,
+        count(piece == kDirectory ? cut_.piece_of_leaf(index, slot) : piece,
               kBlockCost * blocks_of_leaf(form_, child));
       } else {
-        visit(line, child, piece == Cut::kInside ? cut_.piece_of_node()[child] : piece);
+        visit(line, child, piece == kDirectory ? cut_.piece_of_node(child) : piece);
       }
     }
   }
 
   void count(u32 piece, double cost) {
-    if (piece == Cut::kInside) {
-      above_ += cost;
-      return;
-    }
     const bool there = paths_.visits.size() > paths_.first.back() && paths_.visits.back().piece == piece;
     if (!there) paths_.visits.push_back({piece, 0});
-    paths_.visits.back().cost += static_cast<float>(cost + above_);
-    above_ = 0;
+    paths_.visits.back().cost += static_cast<float>(cost);
   }
 
   const flatten::WideForm& form_;
   const Cut& cut_;
   Paths& paths_;
-  double above_ = 0;  // what the walk cost on the way to the next piece
 };
 
 }  // namespace
@@ -93,9 +86,18 @@ Paths find_paths(const flatten::WideForm& form, const Cut& cut, std::span<const 
   return paths;
 }
 
-std::vector<double> costs_of_pieces(const Paths& paths, std::size_t n_pieces) {
+std::vector<double> costs_of_pieces(const Paths& paths, std::span<const LifeRay> lives, std::size_t n_pieces,
+                                    double ray_cost) {
   std::vector<double> costs(n_pieces);
-  for (const PieceVisit& v : paths.visits) costs[v.piece] += v.cost;
+  std::vector<std::uint32_t> end(lives.size(), kDirectory);  // the piece where each ray ends
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    if (lives[i].parent != kNoParent) end[i] = end[lives[i].parent];
+    for (const PieceVisit& v : paths.of(i)) {
+      if (v.piece != kDirectory) end[i] = v.piece;
+      if (end[i] != kDirectory) costs[end[i]] += v.cost;
+    }
+    if (end[i] != kDirectory) costs[end[i]] += ray_cost;
+  }
   return costs;
 }
 

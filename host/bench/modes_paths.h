@@ -1,6 +1,6 @@
 // What    Which pieces of a cut each ray passes on its way to its end, in order, and what it costs there.
 // Shape   A walk of the whole wide tree from near to far, as a device does it; since it is known where a ray ends, no primitive
-//         is tested. What the walk costs above the pieces counts for the piece that it leads to.
+//         is tested. Between two pieces there may be a stay in the directory.
 // Units   modes_cut.h's: a visit of a node 1, a test of a block 2.
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace kdray::bench {
 
 struct PieceVisit {
-  std::uint32_t piece = 0;
+  std::uint32_t piece = 0;  // or kDirectory
   float cost = 0;
 };
 
@@ -30,7 +30,9 @@ struct Paths {
 Paths find_paths(const flatten::WideForm& form, const Cut& cut, std::span<const LifeRay> lives,
                  const dvec3& center);
 
-// What each piece costs over all rays.
-std::vector<double> costs_of_pieces(const Paths& paths, std::size_t n_pieces);
+// What the owner of each piece has to do for all rays: the walks in it, those through the directory from it on, and `ray_cost`
+// for each ray that ends in it. A ray that meets no piece belongs to the one where its parent ended.
+std::vector<double> costs_of_pieces(const Paths& paths, std::span<const LifeRay> lives, std::size_t n_pieces,
+                                    double ray_cost);
 
 }  // namespace kdray::bench

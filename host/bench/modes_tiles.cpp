@@ -52,22 +52,14 @@ double bag_seconds(std::span<const double> tiles, std::uint32_t n_queues, const 
   return end;
 }
 
-TileGrid TileGrid::coarser() const {
-  TileGrid out{(columns + 1) / 2, (rows + 1) / 2, {}};
-  out.seconds.resize(std::size_t{out.columns} * out.rows);
-  for (std::uint32_t y = 0; y < rows; ++y)
-    for (std::uint32_t x = 0; x < columns; ++x)
-      out.seconds[std::size_t{y / 2} * out.columns + x / 2] += seconds[std::size_t{y} * columns + x];
-  return out;
-}
-
-TileGrid grid_for(TileGrid grid, std::uint32_t n_queues, std::uint32_t least) {
-  while (grid.columns > 1 && grid.rows > 1) {
-    TileGrid coarser = grid.coarser();
-    if (coarser.seconds.size() < std::size_t{least} * n_queues) break;
-    grid = std::move(coarser);
+std::vector<double> joined(std::vector<double> tiles, std::uint32_t n_queues, std::uint32_t least) {
+  while (tiles.size() > 1) {
+    std::vector<double> larger((tiles.size() + 3) / 4);
+    if (larger.size() < std::size_t{least} * n_queues) break;
+    for (std::size_t i = 0; i < tiles.size(); ++i) larger[i / 4] += tiles[i];
+    tiles = std::move(larger);
   }
-  return grid;
+  return tiles;
 }
 
 }  // namespace kdray::bench

@@ -19,16 +19,8 @@ double contiguous_seconds(std::span<const double> tiles, std::uint32_t n_queues)
 double interleaved_seconds(std::span<const double> tiles, std::uint32_t n_queues);
 double bag_seconds(std::span<const double> tiles, std::uint32_t n_queues, const BagLink& link);
 
-// Tiles in rows.
-struct TileGrid {
-  std::uint32_t columns = 0, rows = 0;
-  std::vector<double> seconds;
-
-  // Four neighbours to a tile.
-  TileGrid coarser() const;
-};
-
-// The grid made coarser as long as each of the queues still has `least` tiles.
-TileGrid grid_for(TileGrid grid, std::uint32_t n_queues, std::uint32_t least);
+// Larger tiles: four that follow each other to one, as they lie together along the curve that tiles come in; as long as each
+// of the queues still has `least` of them.
+std::vector<double> joined(std::vector<double> tiles, std::uint32_t n_queues, std::uint32_t least);
 
 }  // namespace kdray::bench

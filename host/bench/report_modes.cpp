@@ -125,7 +125,7 @@ Json json_of(const ModesRun& run, const ModesRow& row) {
 Json json_of(const Prediction& p) {
   Json json = {
       {"scheme", p.scheme}, {"queues", p.queues}, {"seconds", p.seconds}, {"efficiency", p.efficiency}};
-  if (p.tile_width > 0) json["tile"] = {p.tile_width, p.tile_height};
+  if (p.tiles > 0) json["tiles"] = p.tiles;
   if (p.pieces > 0) {
     json["pieces"] = p.pieces;
     json["balance"] = p.balance;
