@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -18,8 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kTile = 8;                      // pixels of the measured tiles' sides
-constexpr std::uint32_t kTilesPerQueue = 16;  // at least, as long as there are any
+constexpr int kTile = 8;  // pixels of the measured tiles' sides
 constexpr std::array kKinds = {"primary", "shadow", "reflected", "refracted"};  // by LifeKind
 
 double sum(const std::vector<double>& values) {
@@ -66,13 +66,26 @@ class Prophet {
   void predict_pdprt() {
     if (tiles_.empty()) return;
     const BagLink link{options_.latency_us * 1e-6, options_.service_us * 1e-6};
+    const std::vector<std::vector<double>> sizes = tile_sizes(tiles_);
     for (const int queues : input_.queues) {
       const auto n = static_cast<std::uint32_t>(queues);
-      const std::vector<double> tiles = joined(tiles_, n, kTilesPerQueue);
-      add("pdprt contiguous", queues, contiguous_seconds(tiles, n)).tiles = tiles.size();
-      add("pdprt interleaved", queues, interleaved_seconds(tiles, n)).tiles = tiles.size();
-      add("pdprt bag", queues, bag_seconds(tiles, n, link)).tiles = tiles.size();
+      add_best("pdprt contiguous", queues, sizes,
+               [&](const auto& tiles) { return contiguous_seconds(tiles, n); });
+      add_best("pdprt interleaved", queues, sizes,
+               [&](const auto& tiles) { return interleaved_seconds(tiles, n); });
+      add_best("pdprt bag", queues, sizes, [&](const auto& tiles) { return bag_seconds(tiles, n, link); });
     }
+  }
+
+  // In tiles of the size that takes the least time.
+  template <class Simulate>
+  void add_best(const char* scheme, int queues, const std::vector<std::vector<double>>& sizes,
+                const Simulate& seconds_of) {
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t n_tiles = 0;
+    for (const std::vector<double>& tiles : sizes)
+      if (const double seconds = seconds_of(tiles); seconds < least) least = seconds, n_tiles = tiles.size();
+    add(scheme, queues, least).tiles = n_tiles;
   }
 
   Prediction& add(const std::string& scheme, int queues, double seconds) {

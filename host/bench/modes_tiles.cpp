@@ -9,9 +9,10 @@ namespace {
 
 struct Request {
   double time;
+  std::size_t number;
   std::uint32_t queue;
   bool operator>(const Request& other) const {
-    return time != other.time ? time > other.time : queue > other.queue;
+    return time != other.time ? time > other.time : number > other.number;
   }
 };
 
@@ -36,9 +37,11 @@ double interleaved_seconds(std::span<const double> tiles, std::uint32_t n_queues
 
 double bag_seconds(std::span<const double> tiles, std::uint32_t n_queues, const BagLink& link) {
   std::priority_queue<Request, std::vector<Request>, std::greater<>> requests;
-  for (std::uint32_t q = 0; q < n_queues; ++q) requests.push({0, q});
+  for (std::uint32_t q = 0; q < n_queues; ++q) requests.push({0, q, q});
   std::vector<double> busy_until(n_queues);
+  const double way = 2 * link.latency + link.service;
   double bag_free = 0, end = 0;
+  std::size_t n_requests = n_queues;
   for (const double seconds : tiles) {
     const Request request = requests.top();
     requests.pop();
@@ -47,19 +50,20 @@ double bag_seconds(std::span<const double> tiles, std::uint32_t n_queues, const 
     const double start = std::max(bag_free + link.latency, until);
     until = start + seconds;
     end = std::max(end, until);
-    requests.push({start, request.queue});
+    requests.push({std::max(start, until - way), n_requests++, request.queue});
   }
   return end;
 }
 
-std::vector<double> joined(std::vector<double> tiles, std::uint32_t n_queues, std::uint32_t least) {
-  while (tiles.size() > 1) {
-    std::vector<double> larger((tiles.size() + 3) / 4);
-    if (larger.size() < std::size_t{least} * n_queues) break;
-    for (std::size_t i = 0; i < tiles.size(); ++i) larger[i / 4] += tiles[i];
-    tiles = std::move(larger);
+std::vector<std::vector<double>> tile_sizes(std::vector<double> tiles) {
+  std::vector<std::vector<double>> sizes{std::move(tiles)};
+  while (sizes.back().size() > 1) {
+    const std::vector<double>& smaller = sizes.back();
+    std::vector<double> larger((smaller.size() + 3) / 4);
+    for (std::size_t i = 0; i < smaller.size(); ++i) larger[i / 4] += smaller[i];
+    sizes.push_back(std::move(larger));
   }
-  return tiles;
+  return sizes;
 }
 
 }  // namespace kdray::bench
