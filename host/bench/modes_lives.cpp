@@ -57,7 +57,7 @@ class Making {
       const std::size_t end = lives_.size();
       const std::vector<Hit> hits = run_to_ends(first, end);
       for (std::size_t i = first; i < end; ++i)
-        if (lives_[i].hit && lives_[i].kind != LifeKind::shadow) shade(i, hits[i - first]);
+        if (is_shaded(lives_[i])) shade(i, hits[i - first]);
       first = end;
     }
     return std::move(lives_);

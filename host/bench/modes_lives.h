@@ -25,6 +25,11 @@ struct LifeRay {
   bool hit = false;
 };
 
+// Whether what it meets is shaded there.
+inline bool is_shaded(const LifeRay& life) {
+  return life.hit && life.kind != LifeKind::shadow;
+}
+
 struct LifeOptions {
   int width = 128, height = 128;  // eye rays across and down
   int depth = 5;

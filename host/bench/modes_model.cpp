@@ -108,13 +108,13 @@ class Prophet {
     for (const int queues : input_.queues) {
       const Cut cut(input_.prepared.wide, pieces_for(static_cast<std::size_t>(queues)));
       const Paths paths = paths_of(cut, lives);
-      calibrate(paths);
+      calibrate(paths, lives);
       std::vector<double> expected;
       for (const Piece& piece : cut.pieces()) expected.push_back(piece.cost);
       predict_odprt("odprt sah", queues, cut, lives, paths, expected);
       predict_odprt(
           "odprt pilot", queues, cut, lives, paths,
-          costs_of_pieces(paths_of(cut, pilot), pilot, cut.pieces().size(), ray_seconds_ / cost_seconds_));
+          costs_of_pieces(paths_of(cut, pilot), pilot, cut.pieces().size(), shade_seconds_ / cost_seconds_));
     }
   }
 
@@ -144,8 +144,8 @@ class Prophet {
       model_.rays[static_cast<std::size_t>(life.kind)].sampled += model_.rays_per_sample;
   }
 
-  // Shares one core's seconds out: what it traced by the walks' costs, the rest by rays.
-  void calibrate(const Paths& paths) {
+  // Shares one core's seconds out: what it traced by the walks' costs, the rest by the hits that it shaded.
+  void calibrate(const Paths& paths, const std::vector<LifeRay>& lives) {
     double cost = 0;
     for (const PieceVisit& v : paths.visits) cost += v.cost;
     const Json& seconds = statistics_.at("seconds");
@@ -155,7 +155,8 @@ class Prophet {
     const double share = all > 0 && trace > 0 ? trace / all : 1;
     const double total = input_.sequential_seconds / model_.rays_per_sample;
     cost_seconds_ = share * total / std::max(cost, 1.0);
-    ray_seconds_ = (1 - share) * total / static_cast<double>(paths.n_rays());
+    const auto n_shaded = std::count_if(lives.begin(), lives.end(), is_shaded);
+    shade_seconds_ = (1 - share) * total / static_cast<double>(std::max<std::ptrdiff_t>(n_shaded, 1));
   }
 
   void predict_odprt(const std::string& scheme, int queues, const Cut& cut, const std::vector<LifeRay>& lives,
@@ -204,7 +205,7 @@ class Prophet {
         if (hops.back().queue != queue) hops.push_back({queue, 0});
         hops.back().seconds += factor * cost_seconds_ * v.cost;
       }
-      hops.back().seconds += factor * ray_seconds_;
+      if (is_shaded(life)) hops.back().seconds += factor * shade_seconds_;
       (from_eye ? traffic.first : traffic.journeys[life.parent].next).push_back(i);
     }
     return traffic;
@@ -216,7 +217,7 @@ class Prophet {
   const ModelOptions& options_;
   Json statistics_;            // of the frame in small tiles
   std::vector<double> tiles_;  // seconds, along the curve that they come in
-  double cost_seconds_ = 0, ray_seconds_ = 0;
+  double cost_seconds_ = 0, shade_seconds_ = 0;
   Model model_;
 };
 

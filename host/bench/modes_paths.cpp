@@ -87,7 +87,7 @@ Paths find_paths(const flatten::WideForm& form, const Cut& cut, std::span<const 
 }
 
 std::vector<double> costs_of_pieces(const Paths& paths, std::span<const LifeRay> lives, std::size_t n_pieces,
-                                    double ray_cost) {
+                                    double shade_cost) {
   std::vector<double> costs(n_pieces);
   std::vector<std::uint32_t> end(lives.size(), kDirectory);  // the piece where each ray ends
   for (std::size_t i = 0; i < lives.size(); ++i) {
@@ -96,7 +96,7 @@ std::vector<double> costs_of_pieces(const Paths& paths, std::span<const LifeRay>
       if (v.piece != kDirectory) end[i] = v.piece;
       if (end[i] != kDirectory) costs[end[i]] += v.cost;
     }
-    if (end[i] != kDirectory) costs[end[i]] += ray_cost;
+    if (end[i] != kDirectory && is_shaded(lives[i])) costs[end[i]] += shade_cost;
   }
   return costs;
 }

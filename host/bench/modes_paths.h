@@ -30,9 +30,9 @@ struct Paths {
 Paths find_paths(const flatten::WideForm& form, const Cut& cut, std::span<const LifeRay> lives,
                  const dvec3& center);
 
-// What the owner of each piece has to do for all rays: the walks in it, those through the directory from it on, and `ray_cost`
-// for each ray that ends in it. A ray that meets no piece belongs to the one where its parent ended.
+// What the owner of each piece has to do for all rays: the walks in it, those through the directory from it on, and `shade_cost`
+// for each hit that is shaded. A ray that meets no piece belongs to the one where its parent ended.
 std::vector<double> costs_of_pieces(const Paths& paths, std::span<const LifeRay> lives, std::size_t n_pieces,
-                                    double ray_cost);
+                                    double shade_cost);
 
 }  // namespace kdray::bench

@@ -65,6 +65,14 @@ std::string failures_of(const ModesRun& run) {
   return out;
 }
 
+// The fewest queues within 1% of the shortest time; nullptr where there is no prediction.
+const Prediction* fastest(const Model& model, const std::string& scheme) {
+  const Prediction* best = nullptr;
+  for (const Prediction& p : model.predictions)
+    if (p.scheme == scheme && (best == nullptr || p.seconds < 0.99 * best->seconds)) best = &p;
+  return best;
+}
+
 std::string model_table(const ModesRun& run, const ModelOptions& options) {
   const Model& model = *run.model;
   std::string out = fmt::format(
@@ -97,6 +105,12 @@ std::string model_table(const ModesRun& run, const ModelOptions& options) {
     out += fmt::format("  checked: {:<18}{:>3} queue{} predicted {:.4f} s, measured {:.4f} s, {:+.1f}%\n",
                        c.scheme, c.queues, c.queues == 1 ? ": " : "s:", c.predicted, c.measured,
                        100 * c.error());
+  out += "  at the most:";
+  for (const char* const scheme : {"pdprt bag", "odprt pilot"})
+    if (const Prediction* const p = fastest(model, scheme))
+      out += fmt::format(" {} {:.1f} times one core, on {} queues;", scheme, p->efficiency * p->queues,
+                         p->queues);
+  out.back() = '\n';
   if (model.tile_width == 0) out += "  no PDPRT predictions: the statistics have no tile_seconds\n";
   out += fmt::format("  ODPRT's own overhead, on one queue: {:.3f}{}\n", model.odprt_overhead,
                      model.overhead_measured ? ", measured" : ", assumed: not measured");
@@ -269,7 +283,7 @@ XyPlot plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
   for (const Scheme& scheme : schemes()) plot.series.push_back({scheme.name, color_of(scheme.name)});
   for (const ModesRun& run : runs) {
     XyPanel panel{fmt::format("{}, {} cores", short_name(run.scene), run.cores),
-                  {"queues", true},
+                  {"queues", false},
                   {"times one core's speed", false},
                   {}};
     for (const Scheme& scheme : schemes()) {

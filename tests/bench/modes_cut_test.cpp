@@ -151,8 +151,10 @@ TEST(CostsOfPieces, BelongToWhereRaysAreAndEnd) {
   paths.visits = {{kDirectory, 1}, {0, 2}, {kDirectory, 4}, {1, 8}, {kDirectory, 16}};
   paths.first = {0, 4, 5};
   std::vector<LifeRay> lives(2);
+  lives[0].hit = true;
   lives[1].parent = 0;  // meets no piece: belongs to where its parent ended
-  EXPECT_EQ(costs_of_pieces(paths, lives, 2, 100), (std::vector<double>{6, 224}));
+  lives[1].hit = true, lives[1].kind = LifeKind::shadow;
+  EXPECT_EQ(costs_of_pieces(paths, lives, 2, 100), (std::vector<double>{6, 124}));
 }
 
 }  // namespace
