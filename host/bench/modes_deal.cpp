@@ -1,44 +1,48 @@
 #include "bench/modes_deal.h"
 
-#include <algorithm>
 #include <numeric>
 
 namespace kdray::bench {
 
 namespace {
 
-// Fills runs up to the limit; the last queue takes what is left.
-std::vector<std::uint32_t> fill(std::span<const double> costs, std::uint32_t n_queues, double limit) {
+struct Limits {
+  double cost, bytes;
+};
+
+// Fills runs up to the limits; empty when there are too few queues for that.
+std::vector<std::uint32_t> fill(std::span<const double> costs, std::span<const double> bytes,
+                                std::uint32_t n_queues, const Limits& limits) {
   std::vector<std::uint32_t> queue_of(costs.size());
   std::uint32_t queue = 0;
-  double held = 0;
+  Limits held{0, 0};
   for (std::size_t i = 0; i < costs.size(); ++i) {
-    if (held > 0 && held + costs[i] > limit && queue + 1 < n_queues) ++queue, held = 0;
+    if (costs[i] > limits.cost || bytes[i] > limits.bytes) return {};
+    if (held.cost + costs[i] > limits.cost || held.bytes + bytes[i] > limits.bytes) {
+      if (++queue == n_queues) return {};
+      held = {0, 0};
+    }
     queue_of[i] = queue;
-    held += costs[i];
+    held = {held.cost + costs[i], held.bytes + bytes[i]};
   }
   return queue_of;
 }
 
-double largest_run(std::span<const double> costs, std::span<const std::uint32_t> queue_of) {
-  double largest = 0, held = 0;
-  for (std::size_t i = 0; i < costs.size(); ++i) {
-    held = i > 0 && queue_of[i] == queue_of[i - 1] ? held + costs[i] : costs[i];
-    largest = std::max(largest, held);
-  }
-  return largest;
-}
-
 }  // namespace
 
-std::vector<std::uint32_t> deal(std::span<const double> costs, std::uint32_t n_queues) {
+std::vector<std::uint32_t> deal(std::span<const double> costs, std::span<const double> bytes,
+                                std::uint32_t n_queues, double most_bytes) {
+  if (costs.empty()) return {};
   const double all = std::accumulate(costs.begin(), costs.end(), 0.0);
-  double low = all / n_queues, high = all;
-  for (int step = 0; step < 60 && high - low > 1e-12 * all; ++step) {
+  std::vector<std::uint32_t> best = fill(costs, bytes, n_queues, {all, most_bytes});
+  while (best.empty()) best = fill(costs, bytes, n_queues, {all, most_bytes = 1.125 * most_bytes + 1});
+  for (double low = all / n_queues * (1 - 1e-12), high = all; high - low > 1e-12 * all;) {
     const double limit = 0.5 * (low + high);
-    (largest_run(costs, fill(costs, n_queues, limit)) <= limit ? high : low) = limit;
+    std::vector<std::uint32_t> found = fill(costs, bytes, n_queues, {limit, most_bytes});
+    (found.empty() ? low : high) = limit;
+    if (!found.empty()) best = std::move(found);
   }
-  return fill(costs, n_queues, high);
+  return best;
 }
 
 }  // namespace kdray::bench

@@ -19,11 +19,20 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kTile = 8;  // pixels of the measured tiles' sides
+constexpr int kTile = 8;                // pixels of the measured tiles' sides
+constexpr double kGeometrySlack = 0.2;  // of the scene, that a queue may hold beyond its share
 constexpr std::array kKinds = {"primary", "shadow", "reflected", "refracted"};  // by LifeKind
 
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// Of the queue that holds the most.
+double largest_sum(const std::vector<double>& values, const std::vector<std::uint32_t>& queue_of,
+                   std::uint32_t n_queues) {
+  std::vector<double> sums(n_queues);
+  for (std::size_t i = 0; i < values.size(); ++i) sums[queue_of[i]] += values[i];
+  return *std::max_element(sums.begin(), sums.end());
 }
 
 class Prophet {
@@ -140,8 +149,8 @@ class Prophet {
   void compare_rays(const std::vector<LifeRay>& lives) {
     for (const char* const kind : kKinds)
       model_.rays.push_back({kind, 0, statistics_.at("rays").value(kind, 0.0)});
-    for (const LifeRay& life : lives)
-      model_.rays[static_cast<std::size_t>(life.kind)].sampled += model_.rays_per_sample;
+    for (const LifeRay& life : lives) ++model_.rays[static_cast<std::size_t>(life.kind)].sampled;
+    for (SampledRays& rays : model_.rays) rays.sampled *= model_.rays_per_sample;
   }
 
   // Shares one core's seconds out: what it traced by the walks' costs, the rest by the hits that it shaded.
@@ -162,7 +171,11 @@ class Prophet {
   void predict_odprt(const std::string& scheme, int queues, const Cut& cut, const std::vector<LifeRay>& lives,
                      const Paths& paths, const std::vector<double>& costs) {
     const auto n = static_cast<std::uint32_t>(queues);
-    const std::vector<std::uint32_t> queue_of = deal(costs, n);
+    std::vector<double> bytes;
+    for (const Piece& piece : cut.pieces()) bytes.push_back(static_cast<double>(piece.bytes));
+    const auto whole = static_cast<double>(input_.prepared.wide.bytes());
+    const std::vector<std::uint32_t> queue_of =
+        deal(costs, bytes, n, whole * (1.0 / queues + kGeometrySlack));
     const Traffic traffic = traffic_of(lives, paths, queue_of, n);
     const Network network{options_.gigabytes_per_second * 1e9, options_.latency_us * 1e-6,
                           options_.bytes_per_ray};
@@ -173,17 +186,8 @@ class Prophet {
     p.port_seconds = outcome.busiest_port;
     p.critical_path = outcome.critical_path;
     p.rays_sent = outcome.rays_sent, p.bytes_sent = outcome.rays_sent * options_.bytes_per_ray;
-    p.largest_geometry = largest_share(cut, queue_of, n);
+    p.largest_geometry = largest_sum(bytes, queue_of, n) / std::max(whole, 1.0);
     if (queues <= kMatrixMost) p.exchange = exchange_matrix(traffic, n);
-  }
-
-  // Of the wide tree, that one queue holds.
-  double largest_share(const Cut& cut, const std::vector<std::uint32_t>& queue_of, std::uint32_t n) const {
-    std::vector<double> bytes(n);
-    for (std::size_t i = 0; i < queue_of.size(); ++i)
-      bytes[queue_of[i]] += static_cast<double>(cut.pieces()[i].bytes);
-    const auto whole = static_cast<double>(input_.prepared.wide.bytes());
-    return whole > 0 ? *std::max_element(bytes.begin(), bytes.end()) / whole : 0;
   }
 
   // Every ray's way from queue to queue. Eye rays are dealt out evenly to begin with; the directory is walked by whoever has

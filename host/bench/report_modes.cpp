@@ -299,14 +299,13 @@ XyPlot plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
 
 XyPlot model_plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
   const ModelOptions& m = options.model_options;
-  XyPlot plot{
-      "Simulation: efficiency of one core to a queue",
-      fmt::format(
-          "predicted for links of {:g} GB/s and {:g} us; grey: measured, where queues don't share cores",
-          m.gigabytes_per_second, m.latency_us),
-      {},
-      true,
-      {}};
+  XyPlot plot{"Simulation: efficiency of one core to a queue",
+              fmt::format("predicted for links of {:g} GB/s and {:g} us; black and grey: measured, where "
+                          "queues don't share cores",
+                          m.gigabytes_per_second, m.latency_us),
+              {},
+              true,
+              {}};
   for (const std::string& scheme : kPredicted)
     plot.series.push_back({scheme + ", simulated", color_of(scheme)});
   plot.series.push_back({"pdprt bag, measured", "#333333"});

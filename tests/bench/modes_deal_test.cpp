@@ -10,6 +10,11 @@
 namespace kdray::bench {
 namespace {
 
+// Without a limit on bytes.
+std::vector<std::uint32_t> deal(const std::vector<double>& costs, std::uint32_t n) {
+  return bench::deal(costs, std::vector<double>(costs.size(), 1.0), n, 1e9);
+}
+
 double largest(const std::vector<double>& costs, const std::vector<std::uint32_t>& queue_of,
                std::uint32_t n) {
   std::vector<double> sums(n);
@@ -47,7 +52,18 @@ TEST(Deal, QueuesAreLeftOver) {
 
 TEST(Deal, NothingCostsNothing) {
   EXPECT_EQ(deal(std::vector<double>(3, 0.0), 2).size(), 3u);
-  EXPECT_TRUE(deal({}, 2).empty());
+  EXPECT_TRUE(deal(std::vector<double>{}, 2).empty());
+}
+
+TEST(Deal, NoQueueHoldsMoreThanItMay) {
+  const std::vector<double> costs{9, 1, 1, 1, 1, 1}, bytes(6, 10.0);
+  EXPECT_EQ(bench::deal(costs, bytes, 2, 60), (std::vector<std::uint32_t>{0, 1, 1, 1, 1, 1}));
+  EXPECT_EQ(bench::deal(costs, bytes, 2, 40), (std::vector<std::uint32_t>{0, 0, 1, 1, 1, 1}));
+}
+
+TEST(Deal, RaisesALimitThatCannotBeKept) {
+  const std::vector<double> ones(4, 1.0);
+  EXPECT_EQ(bench::deal(ones, std::vector<double>(4, 10.0), 2, 1), (std::vector<std::uint32_t>{0, 0, 1, 1}));
 }
 
 TEST(Deal, IsTheBestOfAllDivisions) {
