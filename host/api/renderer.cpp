@@ -5,6 +5,7 @@
 #include "flatten/features.h"
 #include "flatten/frame.h"
 #include "kdray/kdray.h"
+#include "odprt_mode.h"
 #include "pdprt/render.h"
 #include "prepare/prepared.h"
 #include "statistics.h"
@@ -79,24 +80,30 @@ struct Renderer::Impl {
   Impl(const PreparedScene& scene, const DeviceOptions& device);
 
   Picture render(const RenderOptions& options);
+  Picture render_odprt(layout::Frame frame, const RenderOptions& options, std::uint32_t features);
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal);
   wavefront::Schedule schedule_for(const layout::Frame& frame, const RenderOptions& options) const;
+  void record_odprt(const odprt::Result& result, const layout::Frame& frame, const RenderOptions& options,
+                    std::uint32_t features);
   void record(const pdprt::Result& result, const layout::Frame& frame, std::uint32_t features,
               Traversal traversal);
 
   prepare::Prepared scene;  // but for its arrays, which are on the device
   device::Context context;
+  const DeviceOptions device_options;
   std::size_t work_group;
   std::unique_ptr<wavefront::SceneBuffers> buffers;
   std::unique_ptr<wavefront::Programs> programs;
+  std::unique_ptr<odprt::DividedScene> divided;
   api::Json statistics;
   std::string timeline;  // of the last frame, where it was asked for
 };
 
-Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_options)
+Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& options)
     : scene(prepared.prepared()),
-      context(open(device_options)),
-      work_group(work_group_of(device_options, context)) {
+      context(open(options)),
+      device_options(options),
+      work_group(work_group_of(options, context)) {
   const Timer timer;
   buffers = std::make_unique<wavefront::SceneBuffers>(context, scene.flat, scene.wide);
   statistics["seconds"] = {{"build", scene.seconds.build},
@@ -109,8 +116,6 @@ Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_
   statistics["memory"] = {{"scene_bytes", scene.bytes()}};
   statistics["device"] = api::device_json(context.info());
   statistics["features"] = api::features_json(scene.features);
-  scene.flat = {};
-  scene.wide = {};
 }
 
 // Slices enough to keep every lane of a launch busy, but no more than the picture has tiles.
@@ -170,14 +175,55 @@ void Renderer::Impl::record(const pdprt::Result& result, const layout::Frame& fr
 
 Picture Renderer::Impl::render(const RenderOptions& options) {
   const RenderOptions o = flatten::resolved(options, scene.settings.settings);
-  if (o.mode == Mode::odprt) throw Error(ErrorCode::usage, "odprt is not there yet");
   const layout::Frame frame = flatten::make_frame(scene.settings, scene.geometry, o);
   const std::uint32_t used = scene.features | flatten::features_of_samples(o.samples);
+  if (o.mode == Mode::odprt) return render_odprt(frame, o, used);
   const pdprt::Result result =
       pdprt::render(context, *buffers, *programs, frame, schedule_for(frame, o), used, o.progress);
   record(result, frame, used, options.traversal);
   return to_picture(result.image,
                     wavefront::render_channels(context, *buffers, *programs, frame, used, o.channels));
+}
+
+void Renderer::Impl::record_odprt(const odprt::Result& result, const layout::Frame& frame,
+                                  const RenderOptions& options, std::uint32_t used) {
+  api::Json& seconds = statistics["seconds"];
+  for (const auto& [stage, time] : result.stage_seconds) seconds[stage] = time;
+  seconds["compile"] = programs->build_seconds();
+  seconds["render"] = result.render_seconds;
+  seconds["divide"] = result.divide_seconds;
+  statistics["rays"] = api::rays_json(result.counters);
+  statistics["mrays_per_s"] = mrays_per_s(result.counters.total(), result.render_seconds);
+  statistics["memory"]["per_queue"] = api::odprt_memory_json(result);
+  statistics["features"] = api::features_json(used);
+  statistics["mode"] = api::odprt_mode_json(result, options, divided->geometry_bytes());
+  statistics["mode"]["queues"] = context.queues().size();
+  statistics["mode"]["traversal"] = traversal_name(options.traversal);
+  statistics["frame"] = {{"width", frame.width}, {"height", frame.height}};
+}
+
+Picture Renderer::Impl::render_odprt(layout::Frame frame, const RenderOptions& o, std::uint32_t used) {
+  const wavefront::Schedule schedule = schedule_for(frame, o);
+  schedule.apply(frame, used);
+  if (!divided) divided = std::make_unique<odprt::DividedScene>(scene.flat, scene.wide);
+  timeline::Timeline rows;
+  device::Faults faults(device_options.faults);
+  odprt::Request request;
+  for (const cl::CommandQueue& queue : context.queues())
+    request.queues.push_back({&context, queue, programs.get(), request.queues.size()});
+  request.frame = frame;
+  request.features = used;
+  request.traversal = api::odprt_traversal(o.traversal);
+  request.balance = o.balance;
+  request.ray_buffer = static_cast<std::uint32_t>(o.ray_buffer);
+  request.device_memory = o.device_memory;
+  request.timeline = o.timeline ? &rows : nullptr;
+  request.faults = &faults;
+  request.progress = o.progress;
+  odprt::Result result = divided->render(request);
+  timeline = o.timeline ? rows.json() : "";
+  record_odprt(result, frame, o, used);
+  return to_picture(result.image, {});
 }
 
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat,

@@ -118,6 +118,10 @@ cl::Buffer Context::upload(const void* data, std::size_t bytes, std::shared_ptr<
     return checked("sharing " + what, [&] {
       return buffer_over(opened_->context, CL_MEM_READ_ONLY, data, bytes, std::move(owner));
     });
+  return upload_copy(data, bytes, what);
+}
+
+cl::Buffer Context::upload_copy(const void* data, std::size_t bytes, const std::string& what) const {
   cl::Buffer copy = buffer(CL_MEM_READ_ONLY, bytes, what);
   if (bytes > 0)
     checked("uploading " + what, [&] { queues().front().enqueueWriteBuffer(copy, CL_TRUE, 0, bytes, data); });

@@ -50,6 +50,8 @@ class Context {
   // keeps as long as the buffer lives; elsewhere a copy.
   cl::Buffer upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,
                     const std::string& what) const;
+  // A copy everywhere.
+  cl::Buffer upload_copy(const void* data, std::size_t bytes, const std::string& what) const;
 
  private:
   bool works_in_host_memory() const;

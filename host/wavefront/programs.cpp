@@ -28,7 +28,8 @@ std::uint32_t bits_read_by(const std::string& file) {
   if (file == "film/add.cl") return 0;
   if (file == "film/channels.cl") return kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
   if (file == "shade/shade.cl") return kShading;
-  if (file == "wave/wave.cl") return kShading | KDRAY_FEATURE_SUPERSAMPLE;
+  if (file == "wave/wave.cl" || file == "odprt/wave.cl") return kShading | KDRAY_FEATURE_SUPERSAMPLE;
+  if (file == "odprt/receive.cl") return 0;
   return kGeometry;
 }
 

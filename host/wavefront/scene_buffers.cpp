@@ -4,27 +4,40 @@ namespace kdray::wavefront {
 
 namespace {
 
-template <class T>
-cl::Buffer upload(const device::Context& context, const Array<T>& items, const std::string& what) {
-  return context.upload(items.data(), items.bytes(), items.owner(), what);
-}
+class Upload {
+ public:
+  Upload(const device::Context& context, Placement placement) : context_(context), placement_(placement) {}
+
+  template <class T>
+  cl::Buffer operator()(const Array<T>& items, const std::string& what) const {
+    return placement_ == Placement::copied
+               ? context_.upload_copy(items.data(), items.bytes(), what)
+               : context_.upload(items.data(), items.bytes(), items.owner(), what);
+  }
+
+ private:
+  const device::Context& context_;
+  const Placement placement_;
+};
 
 }  // namespace
 
 SceneBuffers::SceneBuffers(const device::Context& context, const flatten::FlatScene& flat,
-                           const flatten::WideForm& wide)
-    : nodes(upload(context, flat.nodes, "the kd-tree's nodes")),
-      refs(upload(context, flat.refs, "the kd-tree's references")),
-      triangles(upload(context, flat.triangles, "the triangles")),
-      normals(upload(context, flat.normals, "the vertex normals")),
-      spheres(upload(context, flat.spheres, "the spheres")),
-      cones(upload(context, flat.cones, "the cones")),
-      materials(upload(context, flat.materials, "the materials")),
-      lights(upload(context, flat.lights, "the lights")),
-      wide_nodes(upload(context, wide.nodes, "the wide tree's nodes")),
-      triangle_blocks(upload(context, wide.triangle_blocks, "the leaves' triangles")),
-      sphere_blocks(upload(context, wide.sphere_blocks, "the leaves' spheres")),
-      cone_blocks(upload(context, wide.cone_blocks, "the leaves' cones")) {}
+                           const flatten::WideForm& wide, Placement placement) {
+  const Upload upload(context, placement);
+  nodes = upload(flat.nodes, "the kd-tree's nodes");
+  refs = upload(flat.refs, "the kd-tree's references");
+  triangles = upload(flat.triangles, "the triangles");
+  normals = upload(flat.normals, "the vertex normals");
+  spheres = upload(flat.spheres, "the spheres");
+  cones = upload(flat.cones, "the cones");
+  materials = upload(flat.materials, "the materials");
+  lights = upload(flat.lights, "the lights");
+  wide_nodes = upload(wide.nodes, "the wide tree's nodes");
+  triangle_blocks = upload(wide.triangle_blocks, "the leaves' triangles");
+  sphere_blocks = upload(wide.sphere_blocks, "the leaves' spheres");
+  cone_blocks = upload(wide.cone_blocks, "the leaves' cones");
+}
 
 cl_uint SceneBuffers::set_tree_arguments(cl::Kernel& kernel) const {
   cl_uint index = 0;

@@ -9,6 +9,11 @@
 
 #define KDRAY_LANES 16u  // rays to a vector
 
+// 1: the kernels of ODPRT, whose rays carry what another queue needs to go on with them.
+#ifndef KDRAY_ODPRT
+#define KDRAY_ODPRT 0
+#endif
+
 // The traced fields: the ray origin + t*direction with t_min < t < t_max.
 #define KDRAY_RAY_ORIGIN 0u  // x y z
 #define KDRAY_RAY_DIRECTION \
@@ -18,20 +23,42 @@
 // A batch: a ray that will add `weight` times what it finds to its pixel. All rays of a batch have one depth (Slice).
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
+// ODPRT: the best hit so far, whose t is the float below t_max.
+#define KDRAY_RAY_NUMBER 12u   // u32: of its primitive, in file order
+#define KDRAY_RAY_FINDER 13u   // u32: the part that holds it, or KDRAY_NO_PART; on its way, depth << 8 above that
+#define KDRAY_RAY_VISITED 14u  // two u32: a bit for each part that was asked
+#define KDRAY_TRAVEL_RAY_FIELDS 16u
+#if KDRAY_ODPRT
+#define KDRAY_RAY_FIELDS KDRAY_TRAVEL_RAY_FIELDS
+#else
 #define KDRAY_RAY_FIELDS 12u
+#endif
 
 // Shadow rays: each adds `contribution` to its pixel unless something lies inside of its interval.
 #define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS
 #define KDRAY_SHADOW_CONTRIBUTION 9u  // red green blue
 #define KDRAY_SHADOW_PIXEL 12u        // u32
+#define KDRAY_SHADOW_VISITED 13u      // ODPRT: as KDRAY_RAY_VISITED
+#define KDRAY_TRAVEL_SHADOW_FIELDS 15u
+#if KDRAY_ODPRT
+#define KDRAY_SHADOW_FIELDS KDRAY_TRAVEL_SHADOW_FIELDS
+#else
 #define KDRAY_SHADOW_FIELDS 13u
+#endif
 
-// Pooled rays wait for their batch; they begin at t = 0 and have no end.
+// Pooled rays wait for their batch; they begin at t = 0 and have no end. Those of ODPRT may have come from elsewhere, and are
+// kept as they are in a batch.
 #define KDRAY_POOL_ORIGIN 0u
 #define KDRAY_POOL_DIRECTION 3u
+#if KDRAY_ODPRT
+#define KDRAY_POOL_WEIGHT KDRAY_RAY_WEIGHT
+#define KDRAY_POOL_PIXEL KDRAY_RAY_PIXEL
+#define KDRAY_POOL_FIELDS KDRAY_RAY_FIELDS
+#else
 #define KDRAY_POOL_WEIGHT 6u
 #define KDRAY_POOL_PIXEL 9u
 #define KDRAY_POOL_FIELDS 10u
+#endif
 
 // Hits of a batch, with the batch's capacity.
 #define KDRAY_HIT_T 0u

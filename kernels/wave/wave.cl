@@ -7,21 +7,7 @@
 #include "raygen/admit.clh"
 #include "shade/shade.clh"
 #include "traverse/trace_slice.clh"
-
-inline u64 cycles(void) {
-#if defined(__x86_64__)
-  return __builtin_readcyclecounter();
-#else
-  return 0;
-#endif
-}
-
-// Adds the cycles since `*since` to a stage.
-inline void clock_stage(__global u64* stage, u64* since) {
-  const u64 now = cycles();
-  *stage += now - *since;
-  *since = now;
-}
+#include "wave/clock.clh"
 
 __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
                    __global const Material* in_materials, __global const Light* in_lights,

@@ -1,0 +1,166 @@
+#include "odprt/band.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <thread>
+
+#include "base/error.h"
+#include "device/opencl_error.h"
+
+namespace kdray::odprt {
+
+namespace {
+
+void check(const Worker& worker) {
+  wavefront::Counters sum;
+  for (const layout::Slice& slice : worker.slices()) sum.add(slice);
+  const auto n_lost = std::accumulate(worker.traffic().begin(), worker.traffic().end(), std::uint64_t{0},
+                                      [](std::uint64_t n, const layout::Traffic& t) { return n + t.n_lost; });
+  if (sum.invalid + sum.nan + sum.pool_overflow + n_lost == 0) return;
+  throw Error(ErrorCode::internal,
+              fmt::format("{} rays overflowed the traversal's stack, {} the ray pool, {} lost their hit, and "
+                          "{} contributions were not "
+                          "numbers; this is a fault of kdray, please report it with the scene",
+                          sum.invalid, sum.pool_overflow, n_lost, sum.nan));
+}
+
+std::uint32_t tiles_left(const Worker& worker) {
+  std::uint32_t n = 0;
+  for (const layout::Slice& slice : worker.slices())
+    if (slice.tile < slice.end_tile)
+      n += (slice.end_tile - slice.tile + slice.tile_stride - 1) / slice.tile_stride;
+  return n;
+}
+
+std::uint64_t sum_of(std::span<const layout::Traffic> traffic, layout::u32 layout::Traffic::*count) {
+  std::uint64_t sum = 0;
+  for (const layout::Traffic& t : traffic) sum += t.*count;
+  return sum;
+}
+
+}  // namespace
+
+BandRun::BandRun(const Request& request, Crew& crew)
+    : request_(request),
+      crew_(crew),
+      exchange_(crew.plan, crew.owner, crew.direct, crew.outboxes),
+      tiles_left_(crew.workers.size()) {}
+
+void BandRun::run(const Band& band, const std::function<void(double)>& progress) {
+  n_serving_ = crew_.workers.size();
+  for (std::size_t q = 0; q < crew_.workers.size(); ++q) tiles_left_[q] = band.end_tile - band.first_tile;
+  std::vector<std::jthread> threads;
+  for (std::size_t q = 0; q < crew_.workers.size(); ++q)
+    threads.emplace_back([this, q, &band] {
+      try {
+        crew_.workers[q]->begin(band.first_pixel, band.n_pixels, band.first_tile, band.end_tile,
+                                static_cast<std::uint32_t>(q),
+                                static_cast<std::uint32_t>(crew_.workers.size()));
+        take_turns(q);
+      } catch (...) {
+        exchange_.fail(q, std::current_exception());
+      }
+      --n_serving_;
+      n_serving_.notify_one();
+    });
+  try {
+    wait(band, progress);
+  } catch (...) {
+    // The caller's progress threw: nobody goes on.
+    exchange_.fail(crew_.workers.size(), std::current_exception());
+    throw;
+  }
+}
+
+void BandRun::wait(const Band& band, const std::function<void(double)>& progress) {
+  using namespace std::chrono_literals;
+  const double n_tiles = std::max(band.end_tile - band.first_tile, 1u);
+  while (const std::size_t serving = n_serving_) {
+    if (!progress) {
+      n_serving_.wait(serving);
+      continue;
+    }
+    std::this_thread::sleep_for(20ms);
+    double left = 0;
+    for (const auto& n : tiles_left_) left += n;
+    progress(std::clamp(1 - left / n_tiles, 0.0, 1.0));
+  }
+}
+
+void BandRun::take_turns(std::size_t queue) {
+  QueueState state;
+  const auto first = std::find(crew_.owner.begin(), crew_.owner.end(), queue);
+  state.part = static_cast<std::uint32_t>(first - crew_.owner.begin());
+  crew_.workers[queue]->serve(crew_.stores[queue]->get(state.part), request_.census_every);
+  Mail pending(crew_.plan.n_slices);
+  while (const std::optional<Turn> turn = exchange_.next_turn(queue, state))
+    take_turn(queue, *turn, state, pending);
+}
+
+void BandRun::take_turn(std::size_t queue, const Turn& turn, QueueState& state, Mail& pending) {
+  Worker& worker = *crew_.workers[queue];
+  if (turn.part != state.part) change_part(queue, turn.part, state, pending);
+  const double start = request_.timeline ? request_.timeline->now() : 0;
+  for (const Letter& letter : turn.letters) worker.receive(*letter.outbox, turn.part);
+  exchange_.take_mail(turn.part, pending);
+  if (pending.n > 0) worker.receive(pending);
+  turn.outbox ? launch(queue, turn, state) : worker.finish();
+  check(worker);
+  state.has_tiles = worker.has_tiles();
+  state.has_rays = worker.n_waiting() + pending.n > 0;
+  state.progressed = state.progressed || !turn.letters.empty();
+  tiles_left_[queue] = tiles_left(worker);
+  if (request_.timeline && turn.outbox) {
+    double n_out = 0;
+    for (std::uint32_t part = 0; part < crew_.owner.size(); ++part)
+      n_out += static_cast<double>(turn.outbox->rays_for(part) + turn.outbox->shadow_rays_for(part));
+    request_.timeline->add(
+        static_cast<int>(request_.queues[queue].number), fmt::format("part {}", turn.part), start,
+        request_.timeline->now(),
+        {{"waves", static_cast<double>(sum_of(worker.traffic(), &layout::Traffic::n_waves))},
+         {"rays", static_cast<double>(sum_of(worker.traffic(), &layout::Traffic::n_traced))},
+         {"messages", static_cast<double>(turn.letters.size())},
+         {"rays_out", n_out}});
+  }
+  hand_over(queue, turn, state);
+}
+
+// The rays of the part that is left go back to its mail, and so do those that the pools hold.
+void BandRun::change_part(std::size_t queue, std::uint32_t part, QueueState& state, Mail& pending) {
+  Worker& worker = *crew_.workers[queue];
+  worker.stash(pending);
+  exchange_.put_mail(state.part, pending);
+  worker.serve(crew_.stores[queue]->get(part), 0);
+  state.part = part;
+}
+
+void BandRun::launch(std::size_t queue, const Turn& turn, QueueState& state) {
+  Worker& worker = *crew_.workers[queue];
+  if (request_.faults) request_.faults->launch(request_.queues[queue].number);
+  worker.launch(turn.grants, *turn.outbox);
+  QueueReport& report = crew_.reports[queue];
+  const std::uint64_t n_waves = sum_of(worker.traffic(), &layout::Traffic::n_waves);
+  ++report.launches;
+  report.waves += n_waves;
+  report.traced += sum_of(worker.traffic(), &layout::Traffic::n_traced);
+  state.progressed = n_waves > 0;
+}
+
+void BandRun::hand_over(std::size_t queue, const Turn& turn, const QueueState& state) {
+  Worker& worker = *crew_.workers[queue];
+  std::vector<Mail> sent(crew_.owner.size(), Mail(0));
+  if (turn.outbox)
+    for (std::uint32_t part = 0; part < crew_.owner.size(); ++part) {
+      if (exchange_.direct(queue, part) ||
+          turn.outbox->rays_for(part) + turn.outbox->shadow_rays_for(part) == 0)
+        continue;
+      sent[part] = Mail(crew_.plan.n_slices);
+      worker.copy_out(*turn.outbox, part, sent[part]);
+    }
+  exchange_.end_turn(queue, turn, worker.traffic(), state, sent);
+}
+
+}  // namespace kdray::odprt

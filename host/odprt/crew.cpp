@@ -1,0 +1,61 @@
+#include "odprt/crew.h"
+
+#include <algorithm>
+
+#include "device/opencl_error.h"
+
+namespace kdray::odprt {
+
+namespace {
+
+std::size_t largest_part(const Division& division) {
+  std::vector<std::size_t> counts(division.parts.size());
+  for (const std::uint32_t part : division.part_of) ++counts[part];
+  return *std::max_element(counts.begin(), counts.end());
+}
+
+void add_worker(const Request& request, const Provision& provision, const Division& division, const Cut& cut,
+                const Queue& queue, Crew& crew) {
+  crew.workers.push_back(std::make_unique<Worker>(
+      *queue.context, queue.queue, *queue.programs, provision.frame, provision.plan, request.features,
+      request.traversal, division.directory, provision.largest_band, largest_part(division)));
+  crew.stores.push_back(std::make_unique<PartStore>(*queue.context, division, cut, provision.most_geometry));
+  crew.outboxes.emplace_back();
+  for (std::size_t i = 0; i < provision.n_outboxes; ++i)
+    crew.outboxes.back().push_back(std::make_unique<Outbox>(*queue.context, provision.plan.outbox));
+  QueueReport report;
+  report.number = queue.number;
+  report.work_bytes =
+      crew.workers.back()->bytes() + provision.n_outboxes * crew.outboxes.back().front()->bytes();
+  crew.reports.push_back(report);
+}
+
+}  // namespace
+
+Crew make_crew(const Request& request, const Provision& provision, const Division& division, const Cut& cut) {
+  Crew crew;
+  crew.plan = provision.plan;
+  device::checked("setting up the queues", [&] {
+    for (const Queue& queue : request.queues) add_worker(request, provision, division, cut, queue, crew);
+  });
+  for (std::uint32_t part = 0; part < provision.n_parts; ++part)
+    crew.owner.push_back(part % request.queues.size());
+  crew.direct.resize(crew.workers.size());
+  for (std::size_t q = 0; q < crew.workers.size(); ++q)
+    for (std::uint32_t part = 0; part < provision.n_parts; ++part)
+      crew.direct[q].push_back(!provision.streamed &&
+                               request.queues[q].context == request.queues[crew.owner[part]].context);
+  return crew;
+}
+
+void load_parts(Crew& crew, const Provision& provision) {
+  if (provision.streamed) return;
+  device::checked("loading the parts of the scene", [&] {
+    for (std::uint32_t part = 0; part < crew.owner.size(); ++part) {
+      const std::size_t q = crew.owner[part];
+      crew.workers[q]->warm_up(crew.stores[q]->get(part), *crew.outboxes[q].front());
+    }
+  });
+}
+
+}  // namespace kdray::odprt

@@ -1,0 +1,17 @@
+// What    Deals subtrees out to parts: neighbours in the tree's order stay together, so that a ray meets few parts and few
+//         primitives lie in several.
+// Shape   Each part gets a run of subtrees. The largest part's cost is the least that can be had where no part takes more than
+//         `most_bytes`, if that is possible at all; else the bound is raised until it is.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kdray::odprt {
+
+// The part of each subtree; parts may stay empty. Costs are at least 0.
+std::vector<std::uint32_t> deal(std::span<const double> costs, std::span<const std::uint64_t> bytes,
+                                std::uint32_t n_parts, std::uint64_t most_bytes);
+
+}  // namespace kdray::odprt

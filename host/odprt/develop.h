@@ -1,0 +1,14 @@
+// What    The films of several queues -> linear RGB: the sums of each pixel added up, then divided by its samples.
+#pragma once
+
+#include <span>
+
+#include "layout/frame.layout.h"
+#include "math/vec.h"
+
+namespace kdray::odprt {
+
+// Three sums for each pixel in every film. Adding saturates, as the kernels' does.
+void develop(std::span<const std::span<const layout::i64>> films, int samples, std::span<vec3> pixels);
+
+}  // namespace kdray::odprt

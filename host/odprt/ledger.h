@@ -1,0 +1,48 @@
+// What    How many rays are alive, for each slice and depth, over all queues; and how many each queue may make.
+// Shape   Level 0 is shadow rays on their way, level d rays of depth d. A level has a capacity for each slice; before a launch a
+//         queue is granted a share of what is left of it, and gives back what it didn't use.
+// Why     (1) A level's rays never exceed its capacity, so every queue's pool can hold all of them, and receiving can't fail.
+//         (2) Some queue can always go on: rays of the greatest depth that is alive make rays of a depth of which none is, so all of
+//         its capacity can be granted; what other queues hold of it comes back when their launches end. Shadow rays
+//         make nothing. So the deepest rays go, then those above.
+//         (3) When every count is 0 and no queue has tiles left, the frame is done: nothing is on its way, since a ray is counted
+//         from where it is made to where it ends.
+// Threads The caller locks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "layout/odprt.layout.h"
+
+namespace kdray::odprt {
+
+class Ledger {
+ public:
+  // `least` is what a grant at a level has at least, as far as that is left: what one ray may make.
+  Ledger(std::size_t n_slices, std::vector<std::uint32_t> capacity, std::vector<std::uint32_t> least,
+         std::size_t n_queues);
+
+  // What the slices may make in the queue's next launch.
+  void grant(std::size_t queue, std::span<layout::Grant> grants);
+
+  // Takes over what the launch made and ended, and takes its grants back.
+  void settle(std::size_t queue, std::span<const layout::Traffic> traffic);
+
+  std::uint64_t alive() const { return alive_total_; }
+
+  // What has been granted or given back so often; a queue that had nothing to do need not look again before it changes.
+  std::uint64_t version() const { return version_; }
+
+ private:
+  std::size_t at(std::size_t slice, std::size_t level) const { return slice * capacity_.size() + level; }
+
+  std::vector<std::uint32_t> capacity_, least_;   // by level
+  std::vector<std::uint32_t> alive_, granted_;    // by slice and level
+  std::vector<std::vector<std::uint32_t>> held_;  // by queue: its part of granted_
+  std::size_t n_holding_ = 0;
+  std::uint64_t alive_total_ = 0, version_ = 0;
+};
+
+}  // namespace kdray::odprt

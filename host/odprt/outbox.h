@@ -1,0 +1,50 @@
+// What    What a queue's launch sends: rays packed by the part and the slice that they go to, in buffers on the device
+//         (kernels/odprt/send.clh), with their counts.
+// Shape   A queue has several, so that it can go on while others still read the last one. Receivers whose context is the same read
+//         the buffers themselves; for others, and for parts that nobody serves at the moment, the rays are copied (mail.h).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "device/context.h"
+#include "layout/odprt.layout.h"
+
+namespace kdray::odprt {
+
+// Rays for each part and slice, and the words per field that they take.
+struct OutboxShape {
+  std::uint32_t n_parts = 0, n_slices = 0;
+  std::uint32_t rays = 0, ray_capacity = 0, shadow = 0, shadow_capacity = 0;
+
+  std::size_t n_places() const { return std::size_t{n_parts} * n_slices; }
+};
+
+class Outbox {
+ public:
+  Outbox(const device::Context& context, const OutboxShape& shape);
+
+  const OutboxShape& shape() const { return shape_; }
+  const cl::Buffer& rays() const { return rays_; }
+  const cl::Buffer& shadow_rays() const { return shadow_rays_; }
+  const cl::Buffer& counts() const { return counts_; }
+  std::size_t bytes() const;
+
+  // The counts as the last launch left them, read by the queue that sends: rays, then shadow rays, by part and slice.
+  std::vector<layout::u32>& n() { return n_; }
+  std::uint64_t rays_for(std::uint32_t part) const { return sum(part); }
+  std::uint64_t shadow_rays_for(std::uint32_t part) const { return sum(shape_.n_parts + part); }
+
+  // Receivers that haven't read it yet; it is written to again when there are none.
+  std::atomic<int> n_readers{0};
+
+ private:
+  std::uint64_t sum(std::uint32_t row) const;
+
+  OutboxShape shape_;
+  cl::Buffer rays_, shadow_rays_, counts_;
+  std::vector<layout::u32> n_;
+};
+
+}  // namespace kdray::odprt

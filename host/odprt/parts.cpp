@@ -1,0 +1,344 @@
+#include "odprt/parts.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+
+#include "layout/primitives.layout.h"
+#include "layout/wide.layout.h"
+
+namespace kdray::odprt {
+
+namespace {
+
+constexpr std::uint32_t kKinds = 3;
+constexpr std::size_t kRows[kKinds] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
+
+const Array<layout::u32>& blocks_of(const flatten::WideForm& form, std::uint32_t kind) {
+  return kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
+}
+Array<layout::u32>& blocks_of(flatten::WideForm& form, std::uint32_t kind) {
+  return kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
+}
+
+// For each primitive a bit for every part that holds it.
+struct Holders {
+  std::array<std::vector<std::uint64_t>, kKinds> of;
+
+  explicit Holders(const flatten::FlatScene& scene) {
+    of[0].resize(scene.triangles.size());
+    of[1].resize(scene.spheres.size());
+    of[2].resize(scene.cones.size());
+  }
+  void add(std::uint32_t kind, std::uint32_t index, std::uint64_t part) {
+    std::atomic_ref(of[kind][index]).fetch_or(part, std::memory_order_relaxed);
+  }
+};
+
+struct Sizes {
+  std::size_t nodes = 0;
+  std::array<std::size_t, kKinds> blocks{};
+};
+
+// Goes through what a part keeps of the tree.
+class PartWalk {
+ public:
+  PartWalk(const flatten::WideForm& form, const Cut& cut, std::span<const std::uint32_t> part_of,
+           std::uint32_t part)
+      : form_(form), cut_(cut), part_of_(part_of), part_(part), holds_(cut.top.size()) {
+    // Opened nodes come behind those that they were opened from.
+    for (std::size_t i = cut.top.size(); i-- > 0;)
+      for (const std::int32_t below : cut.top[i].below) holds_[i] = holds_[i] || holds(below);
+  }
+
+  // What becomes of an opened node's child.
+  bool holds(std::int32_t below) const {
+    if (below == Opened::kEmpty) return false;
+    return below >= 0 ? holds_[static_cast<std::size_t>(below)]
+                      : part_of_[static_cast<std::size_t>(-1 - below)] == part_;
+  }
+
+  const flatten::WideForm& form() const { return form_; }
+  const Cut& cut() const { return cut_; }
+  std::uint32_t part() const { return part_; }
+
+ private:
+  const flatten::WideForm& form_;
+  const Cut& cut_;
+  std::span<const std::uint32_t> part_of_;
+  std::uint32_t part_;
+  std::vector<char> holds_;
+};
+
+bool is_empty(const layout::WideNode& node, std::uint32_t slot) {
+  return child_bounds(node, slot).empty();
+}
+
+// First pass: how much there is, and who holds which primitives.
+class Counting {
+ public:
+  Counting(const PartWalk& walk, Holders& holders) : walk_(walk), holders_(holders) { count_opened(0); }
+
+  const Sizes& sizes() const { return sizes_; }
+
+ private:
+  void count_opened(std::size_t i) {
+    const Opened& opened = walk_.cut().top[i];
+    const layout::WideNode& node = walk_.form().nodes[opened.node];
+    ++sizes_.nodes;
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
+      if (!walk_.holds(opened.below[slot])) continue;
+      if (opened.below[slot] >= 0)
+        count_opened(static_cast<std::size_t>(opened.below[slot]));
+      else
+        count_child(node.child[slot]);
+    }
+  }
+
+  void count_child(layout::u32 child) {
+    if (child & KDRAY_WIDE_LEAF) {
+      count_leaf(child);
+      return;
+    }
+    ++sizes_.nodes;
+    const layout::WideNode& node = walk_.form().nodes[child];
+    for (std::uint32_t slot = 0; slot < 8; ++slot)
+      if (!is_empty(node, slot)) count_child(node.child[slot]);
+  }
+
+  void count_leaf(layout::u32 leaf) {
+    const std::uint32_t kind = leaf >> KDRAY_WIDE_KIND_SHIFT & 3u, n = leaf_blocks(walk_.form(), leaf);
+    const auto width = static_cast<std::size_t>(walk_.form().block);
+    const layout::u32* words = blocks_of(walk_.form(), kind).data() +
+                               (leaf & KDRAY_WIDE_FIRST_MASK) * kRows[kind] * width +
+                               (kRows[kind] - 1) * width;
+    for (std::uint32_t b = 0; b < n; ++b, words += kRows[kind] * width)
+      for (std::size_t lane = 0; lane < width; ++lane) {
+        holders_.add(kind, words[lane] & ~KDRAY_WIDE_LAST, std::uint64_t{1} << walk_.part());
+        if (words[lane] & KDRAY_WIDE_LAST) break;  // the last primitive; empty lanes follow
+      }
+    sizes_.blocks[kind] += n;
+  }
+
+  const PartWalk& walk_;
+  Holders& holders_;
+  Sizes sizes_;
+};
+
+// The primitives of a part by kind, and the place that each of the scene's has there.
+struct Numbering {
+  std::array<std::vector<std::uint32_t>, kKinds> members;
+  std::array<std::vector<std::uint32_t>, kKinds> place;  // of members only
+  std::uint32_t n_shared = 0;
+};
+
+Numbering number(const Holders& holders, const flatten::FlatScene& scene, std::uint32_t part) {
+  Numbering n;
+  const std::uint64_t bit = std::uint64_t{1} << part;
+  for (std::uint32_t kind = 0; kind < kKinds; ++kind) {
+    const std::vector<std::uint64_t>& of = holders.of[kind];
+    std::vector<std::uint32_t> own;
+    for (std::uint32_t i = 0; i < of.size(); ++i)
+      if (of[i] & bit) (std::has_single_bit(of[i]) ? own : n.members[kind]).push_back(i);
+    if (kind == 0) {
+      n.n_shared = static_cast<std::uint32_t>(n.members[0].size());
+      std::sort(n.members[0].begin(), n.members[0].end(), [&](std::uint32_t a, std::uint32_t b) {
+        return scene.triangles[a].number < scene.triangles[b].number;
+      });
+    }
+    n.members[kind].insert(n.members[kind].end(), own.begin(), own.end());
+    n.place[kind].resize(of.size());
+    for (std::uint32_t i = 0; i < n.members[kind].size(); ++i) n.place[kind][n.members[kind][i]] = i;
+  }
+  return n;
+}
+
+// Second pass: copies nodes and blocks, with the children's and the primitives' new places.
+class Copying {
+ public:
+  Copying(const PartWalk& walk, const Sizes& sizes, const Numbering& numbering, flatten::WideForm& out)
+      : walk_(walk), numbering_(numbering), out_(out) {
+    const auto width = static_cast<std::size_t>(walk.form().block);
+    out.block = walk.form().block;
+    out.stack_size = walk.form().stack_size;  // a part's is no larger than the whole's
+    out.nodes = Array<layout::WideNode>(sizes.nodes);
+    for (std::uint32_t kind = 0; kind < kKinds; ++kind)
+      blocks_of(out, kind) = Array<layout::u32>(sizes.blocks[kind] * kRows[kind] * width);
+    n_nodes_ = 1;
+    copy_opened(0, 0);
+  }
+
+ private:
+  static void clear_slot(layout::WideNode& node, std::uint32_t slot) {
+    const Box none;
+    for (int axis = 0; axis < 3; ++axis) {
+      node.bounds[axis][0][slot] = none.lo[axis];
+      node.bounds[axis][1][slot] = none.hi[axis];
+    }
+    node.child[slot] = 0;
+  }
+
+  // Inner children of a node get neighbouring places, as flatten/collapse gives them.
+  void copy_opened(std::size_t i, std::size_t place) {
+    const Opened& opened = walk_.cut().top[i];
+    layout::WideNode node = walk_.form().nodes[opened.node];
+    std::array<std::size_t, 8> places{};
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
+      if (!walk_.holds(opened.below[slot])) {
+        clear_slot(node, slot);
+      } else if (opened.below[slot] >= 0 || !(node.child[slot] & KDRAY_WIDE_LEAF)) {
+        places[slot] = n_nodes_++;
+      }
+    }
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
+      if (!walk_.holds(opened.below[slot])) continue;
+      if (opened.below[slot] >= 0) {
+        copy_opened(static_cast<std::size_t>(opened.below[slot]), places[slot]);
+        node.child[slot] = static_cast<layout::u32>(places[slot]);
+      } else {
+        node.child[slot] = copy_child(node.child[slot], places[slot]);
+      }
+    }
+    out_.nodes[place] = node;
+  }
+
+  layout::u32 copy_child(layout::u32 child, std::size_t place) {
+    if (child & KDRAY_WIDE_LEAF) return copy_leaf(child);
+    layout::WideNode node = walk_.form().nodes[child];
+    std::array<std::size_t, 8> places{};
+    for (std::uint32_t slot = 0; slot < 8; ++slot)
+      if (!is_empty(node, slot) && !(node.child[slot] & KDRAY_WIDE_LEAF)) places[slot] = n_nodes_++;
+    for (std::uint32_t slot = 0; slot < 8; ++slot)
+      if (!is_empty(node, slot)) node.child[slot] = copy_child(node.child[slot], places[slot]);
+    out_.nodes[place] = node;
+    return static_cast<layout::u32>(place);
+  }
+
+  layout::u32 copy_leaf(layout::u32 leaf) {
+    const std::uint32_t kind = leaf >> KDRAY_WIDE_KIND_SHIFT & 3u, n = leaf_blocks(walk_.form(), leaf);
+    const auto width = static_cast<std::size_t>(walk_.form().block);
+    const std::size_t words = kRows[kind] * width;
+    const layout::u32* from = blocks_of(walk_.form(), kind).data() + (leaf & KDRAY_WIDE_FIRST_MASK) * words;
+    layout::u32* to = blocks_of(out_, kind).data() + n_blocks_[kind] * words;
+    std::copy(from, from + n * words, to);
+    for (std::uint32_t b = 0; b < n; ++b)
+      rename(to + b * words + (kRows[kind] - 1) * width, width, numbering_.place[kind]);
+    const auto first = static_cast<layout::u32>(n_blocks_[kind]);
+    n_blocks_[kind] += n;
+    return (leaf & ~KDRAY_WIDE_FIRST_MASK) | first;
+  }
+
+  static void rename(layout::u32* indices, std::size_t width, const std::vector<std::uint32_t>& place) {
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      const layout::u32 last = indices[lane] & KDRAY_WIDE_LAST;
+      indices[lane] = place[indices[lane] & ~KDRAY_WIDE_LAST] | last;
+      if (last) break;
+    }
+  }
+
+  const PartWalk& walk_;
+  const Numbering& numbering_;
+  flatten::WideForm& out_;
+  std::size_t n_nodes_ = 0;
+  std::array<std::size_t, kKinds> n_blocks_{};
+};
+
+template <class T>
+Array<T> select(const Array<T>& all, const std::vector<std::uint32_t>& members) {
+  Array<T> some(members.size());
+  for (std::size_t i = 0; i < members.size(); ++i) some[i] = all[members[i]];
+  return some;
+}
+
+flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numbering& n) {
+  flatten::FlatScene flat;
+  flat.triangles = select(scene.triangles, n.members[0]);
+  flat.spheres = select(scene.spheres, n.members[1]);
+  flat.cones = select(scene.cones, n.members[2]);
+  flat.materials = scene.materials;
+  flat.lights = scene.lights;
+  std::vector<std::uint32_t> normals;
+  for (layout::Triangle& t : flat.triangles) {
+    if (t.normals == KDRAY_NO_NORMALS) continue;
+    normals.push_back(t.normals);
+    t.normals = static_cast<layout::u32>(normals.size() - 1);
+  }
+  flat.normals = select(scene.normals, normals);
+  return flat;
+}
+
+constexpr std::uint32_t kSeveral = ~0u;
+
+// The part that holds all below an opened node, or kSeveral.
+std::uint32_t sole_part(const Cut& cut, std::span<const std::uint32_t> part_of, std::int32_t below) {
+  if (below < 0) return part_of[static_cast<std::size_t>(-1 - below)];
+  std::uint32_t sole = kSeveral;
+  bool first = true;
+  for (const std::int32_t b : cut.top[static_cast<std::size_t>(below)].below) {
+    if (b == Opened::kEmpty) continue;
+    const std::uint32_t part = sole_part(cut, part_of, b);
+    if (part == kSeveral || (!first && part != sole)) return kSeveral;
+    sole = part;
+    first = false;
+  }
+  return sole;
+}
+
+void add_cells(const flatten::WideForm& form, const Cut& cut, std::span<const std::uint32_t> part_of,
+               std::size_t i, std::vector<layout::PartCell>& cells) {
+  const Opened& opened = cut.top[i];
+  const layout::WideNode& node = form.nodes[opened.node];
+  for (std::uint32_t slot = 0; slot < 8; ++slot) {
+    const std::int32_t below = opened.below[slot];
+    if (below == Opened::kEmpty) continue;
+    const std::uint32_t part = sole_part(cut, part_of, below);
+    if (part == kSeveral) {
+      add_cells(form, cut, part_of, static_cast<std::size_t>(below), cells);
+      continue;
+    }
+    const Box box = child_bounds(node, slot);
+    cells.push_back({{box.lo.x, box.lo.y, box.lo.z}, part, {box.hi.x, box.hi.y, box.hi.z}, 0});
+  }
+}
+
+}  // namespace
+
+std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideForm& wide) {
+  return flat.triangles.bytes() + flat.normals.bytes() + flat.spheres.bytes() + flat.cones.bytes() +
+         wide.bytes();
+}
+
+std::size_t Part::geometry_bytes() const {
+  return odprt::geometry_bytes(flat, wide);
+}
+
+std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
+                             std::span<const std::uint32_t> part_of, std::uint32_t n_parts) {
+  Holders holders(scene);
+  std::vector<Sizes> sizes(n_parts);
+  tbb::parallel_for(0u, n_parts, [&](std::uint32_t part) {
+    sizes[part] = Counting(PartWalk(form, cut, part_of, part), holders).sizes();
+  });
+  std::vector<Part> parts(n_parts);
+  tbb::parallel_for(0u, n_parts, [&](std::uint32_t part) {
+    const Numbering numbering = number(holders, scene, part);
+    parts[part].flat = select_primitives(scene, numbering);
+    parts[part].n_shared = numbering.n_shared;
+    Copying(PartWalk(form, cut, part_of, part), sizes[part], numbering, parts[part].wide);
+  });
+  return parts;
+}
+
+std::vector<layout::PartCell> make_directory(const flatten::WideForm& form, const Cut& cut,
+                                             std::span<const std::uint32_t> part_of) {
+  std::vector<layout::PartCell> cells;
+  if (!cut.top.empty()) add_cells(form, cut, part_of, 0, cells);
+  std::stable_sort(cells.begin(), cells.end(),
+                   [](const layout::PartCell& a, const layout::PartCell& b) { return a.part < b.part; });
+  return cells;
+}
+
+}  // namespace kdray::odprt

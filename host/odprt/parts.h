@@ -1,0 +1,39 @@
+// What    The parts of a divided scene: each holds the wide tree's top as far as it leads to its own subtrees, those subtrees, and
+//         the primitives in them; and the directory that tells rays which parts they meet.
+// Shape   A primitive that lies in subtrees of several parts is in all of those. A part's triangles begin with such ones, ordered
+//         by number, so that a shadow ray from elsewhere can name the one that it left. Materials and lights are everywhere.
+// Why     The whole form's stack, blocks and boxes stay what they are, so one program serves the whole and every part, and a
+//         ray meets in the parts what it would meet in the whole.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "flatten/flatten.h"
+#include "flatten/wide.h"
+#include "layout/odprt.layout.h"
+#include "odprt/subtrees.h"
+
+namespace kdray::odprt {
+
+struct Part {
+  flatten::FlatScene flat;  // without a binary tree
+  flatten::WideForm wide;
+  std::uint32_t n_shared = 0;  // triangles that other parts hold too
+
+  // Of what there is of the scene's geometry: the same everywhere, materials and lights are no part of it.
+  std::size_t geometry_bytes() const;
+};
+
+std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideForm& wide);
+
+// `part_of` has the part of each subtree.
+std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
+                             std::span<const std::uint32_t> part_of, std::uint32_t n_parts);
+
+// The bounds of what the parts hold, in as few cells as the tree has for them, in the order of parts.
+std::vector<layout::PartCell> make_directory(const flatten::WideForm& form, const Cut& cut,
+                                             std::span<const std::uint32_t> part_of);
+
+}  // namespace kdray::odprt

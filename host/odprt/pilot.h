@@ -1,0 +1,16 @@
+// What    A small frame of the whole scene on one queue, which counts how many rays come to each subtree: what the subtrees' costs
+//         are estimated by before the scene is divided.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "odprt/division.h"
+#include "odprt/render.h"
+
+namespace kdray::odprt {
+
+// `whole` has one part. The visits of each subtree.
+std::vector<std::uint64_t> run_pilot(const Request& request, const Division& whole, const Cut& cut);
+
+}  // namespace kdray::odprt

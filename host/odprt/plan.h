@@ -1,0 +1,36 @@
+// What    How large the pools and buffers of ODPRT's queues are. A choice changes time and memory, never the picture.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "layout/frame.layout.h"
+#include "odprt/outbox.h"
+
+namespace kdray::odprt {
+
+struct Plan {
+  std::uint32_t n_slices = 0;
+  std::uint32_t n_waves = 0;            // of a slice in one launch, at most
+  std::vector<std::uint32_t> capacity;  // of the ledger's levels
+  std::vector<std::uint32_t> least;     // what one ray may make: the least that a grant is good for
+  std::uint32_t shadow_pool = 0;        // shadow rays from elsewhere that a slice can hold
+  OutboxShape outbox;
+};
+
+// What is asked of a plan.
+struct PlanRequest {
+  std::uint32_t features = 0;
+  std::uint32_t n_parts = 1, n_queues = 1;
+  std::uint32_t ray_buffer = 0;  // rays in the outbox for one part and slice; 0: chosen
+  bool streamed = false;         // parts come and go: rays wait in the host's memory, and there may be many
+};
+
+// `frame` has tiles; its batch, pool and shadow sizes are set.
+Plan make_plan(layout::Frame& frame, const PlanRequest& request);
+
+// What a worker takes beside geometry, with `n_outboxes` outboxes.
+std::size_t work_bytes(const layout::Frame& frame, const Plan& plan, std::size_t band_pixels,
+                       std::size_t n_outboxes);
+
+}  // namespace kdray::odprt

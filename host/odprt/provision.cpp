@@ -1,0 +1,110 @@
+#include "odprt/provision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.h"
+
+namespace kdray::odprt {
+
+namespace {
+
+constexpr std::size_t kOutboxes = 3;
+constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // of a queue; larger pictures go in bands
+constexpr double kSpareGeometry = 1.3;   // primitives that lie in several parts, and parts of unequal size
+constexpr std::size_t kPartsAtOnce = 2;  // of those that a queue may hold: while one goes, another is there
+
+std::vector<Band> bands_of(const layout::Frame& frame, std::size_t most_film_bytes) {
+  const std::uint32_t rows = frame.n_tiles / frame.n_tiles_x;
+  const std::size_t row_bytes = std::size_t{frame.tile_height} * frame.width * 3 * sizeof(layout::i64);
+  const auto per_band =
+      static_cast<std::uint32_t>(std::clamp<std::size_t>(most_film_bytes / row_bytes, 1, rows));
+  std::vector<Band> bands;
+  for (std::uint32_t row = 0; row < rows; row += per_band) {
+    const std::uint32_t end = std::min(row + per_band, rows);
+    const std::size_t y = std::size_t{row} * frame.tile_height;
+    const std::size_t end_y = std::min<std::size_t>(std::size_t{end} * frame.tile_height, frame.height);
+    bands.push_back(
+        {row * frame.n_tiles_x, end * frame.n_tiles_x, y * frame.width, (end_y - y) * frame.width});
+  }
+  return bands;
+}
+
+// Queues on the device that has most of them.
+std::size_t queues_on_a_device(const Request& request) {
+  std::map<const device::Context*, std::size_t> counts;
+  std::size_t most = 1;
+  for (const Queue& queue : request.queues) most = std::max(most, ++counts[queue.context]);
+  return most;
+}
+
+Provision provide_for(const Request& request, std::uint32_t n_parts, bool streamed, std::size_t film_bytes) {
+  Provision p;
+  p.frame = request.frame;
+  p.n_parts = n_parts;
+  p.streamed = streamed;
+  p.n_outboxes = streamed ? 1 : kOutboxes;  // what is sent is copied at once
+  p.plan = make_plan(p.frame, {.features = request.features,
+                               .n_parts = n_parts,
+                               .n_queues = static_cast<std::uint32_t>(request.queues.size()),
+                               .ray_buffer = request.ray_buffer,
+                               .streamed = streamed});
+  p.bands = bands_of(p.frame, film_bytes);
+  for (const Band& band : p.bands) p.largest_band = std::max(p.largest_band, band.n_pixels);
+  return p;
+}
+
+std::size_t work_of(const Provision& p) {
+  return work_bytes(p.frame, p.plan, p.largest_band, p.n_outboxes);
+}
+
+Error too_little(const Request& request, std::size_t needed) {
+  return Error(
+      ErrorCode::out_of_memory,
+      fmt::format("--device-memory {} is too little for this scene: it takes {}M at least; take more, or a "
+                  "smaller picture",
+                  request.device_memory, (needed >> 20) + 1));
+}
+
+// The film gets an eighth of a queue's memory, its other buffers what they take, the parts the rest.
+Provision provide_streamed(const Request& request, std::size_t geometry_bytes, std::size_t of_queue) {
+  auto n_parts = static_cast<std::uint32_t>(std::max<std::size_t>(request.queues.size(), 2));
+  for (;;) {
+    Provision p = provide_for(request, n_parts, true, of_queue / 8);
+    const std::size_t work = work_of(p);
+    const double geometry = kSpareGeometry * static_cast<double>(geometry_bytes);
+    if (work < of_queue && geometry / n_parts * kPartsAtOnce <= static_cast<double>(of_queue - work)) {
+      p.most_geometry = of_queue - work;
+      return p;
+    }
+    if (n_parts == KDRAY_MAX_PARTS) {
+      const std::size_t least = work + static_cast<std::size_t>(geometry / KDRAY_MAX_PARTS * kPartsAtOnce);
+      throw too_little(request, least * queues_on_a_device(request));
+    }
+    n_parts = std::min<std::uint32_t>(n_parts + std::max(n_parts / 2, 1u), KDRAY_MAX_PARTS);
+  }
+}
+
+}  // namespace
+
+Provision provide(const Request& request, std::size_t geometry_bytes) {
+  const auto n_queues = static_cast<std::uint32_t>(request.queues.size());
+  Provision all = provide_for(request, n_queues, false, kMaxFilmBytes);
+  if (request.device_memory == 0) return all;
+  const std::size_t of_queue = request.device_memory / queues_on_a_device(request);
+  const double share = kSpareGeometry * static_cast<double>(geometry_bytes) / n_queues;
+  if (static_cast<double>(work_of(all)) + share <= static_cast<double>(of_queue)) return all;
+  return provide_streamed(request, geometry_bytes, of_queue);
+}
+
+void check_fits(const Provision& provision, const Division& division, const Request& request) {
+  if (!provision.streamed) return;
+  std::size_t largest = 0;
+  for (const Part& part : division.parts) largest = std::max(largest, part.geometry_bytes());
+  if (largest <= provision.most_geometry) return;
+  throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));
+}
+
+}  // namespace kdray::odprt

@@ -1,0 +1,38 @@
+// What    What a frame gets of the devices' memory: pools and buffers, the picture's bands, the number of parts, and how many bytes
+//         of geometry a queue may hold at one time.
+// Errors  ErrorCode::out_of_memory when a limit can't be kept, with the least that would do.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "odprt/division.h"
+#include "odprt/plan.h"
+#include "odprt/render.h"
+
+namespace kdray::odprt {
+
+struct Band {
+  std::uint32_t first_tile = 0, end_tile = 0;
+  std::size_t first_pixel = 0, n_pixels = 0;
+};
+
+struct Provision {
+  layout::Frame frame;  // with the plan's sizes
+  Plan plan;
+  std::uint32_t n_parts = 0;
+  std::size_t n_outboxes = 0;     // of a queue
+  bool streamed = false;          // parts come and go
+  std::size_t most_geometry = 0;  // of a queue, when streamed
+  std::vector<Band> bands;
+  std::size_t largest_band = 0;  // pixels
+};
+
+// As many parts as queues where that fits; more of them, which come and go, where the request has a limit that is too little
+// for it.
+Provision provide(const Request& request, std::size_t geometry_bytes);
+
+// Throws when a part is larger than what a queue may hold.
+void check_fits(const Provision& provision, const Division& division, const Request& request);
+
+}  // namespace kdray::odprt

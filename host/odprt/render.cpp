@@ -1,0 +1,125 @@
+#include "odprt/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/timer.h"
+#include "odprt/frame.h"
+#include "odprt/pilot.h"
+
+namespace kdray::odprt {
+
+namespace {
+
+constexpr std::size_t kSubtreesPerPart = 16, kLeastSubtrees = 64, kMostSubtrees = 512;
+constexpr double kSpare = 0.15;       // of the geometry, that a part may take beyond its equal share
+constexpr double kUnbalanced = 1.05;  // the busiest queue against the mean, from which on subtrees are moved
+constexpr std::uint32_t kCensusEvery = 16;
+
+std::size_t subtrees_for(std::size_t n_parts) {
+  return std::clamp(kSubtreesPerPart * n_parts, kLeastSubtrees, kMostSubtrees);
+}
+
+}  // namespace
+
+DividedScene::DividedScene(flatten::FlatScene flat, flatten::WideForm wide)
+    : flat_(std::move(flat)), wide_(std::move(wide)) {
+  flat_.nodes = {};  // parts have no binary tree
+  flat_.refs = {};
+}
+
+void DividedScene::cut_for(std::uint32_t n_parts) {
+  const std::size_t n = subtrees_for(n_parts);
+  if (n <= n_asked_) return;
+  cut_ = odprt::cut(flat_, wide_, n);
+  n_asked_ = n;
+  costs_.clear();
+  for (const Subtree& subtree : cut_.subtrees) costs_.push_back(subtree.cost);
+  measured_ = false;
+  division_.reset();
+}
+
+void DividedScene::divide_into(std::uint32_t n_parts) {
+  if (division_ && division_->parts.size() == n_parts) return;
+  division_ = divide(flat_, wide_, cut_, costs_, n_parts, kSpare);
+}
+
+void DividedScene::measure_costs(const Request& request) {
+  if (request.balance == Balance::sah || measured_) return;
+  const Division whole = divide(flat_, wide_, cut_, costs_, 1, 1);
+  weigh(run_pilot(request, whole, cut_));
+}
+
+// A subtree costs as much as rays came to it, times what one is expected to cost there.
+void DividedScene::weigh(std::span<const std::uint64_t> visits) {
+  double sum = 0;
+  std::vector<double> costs(cut_.subtrees.size());
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    sum += costs[i] = static_cast<double>(visits[i]) * cut_.subtrees[i].visit;
+  if (sum == 0) return;  // no ray met anything
+  costs_ = std::move(costs);
+  measured_ = true;
+  division_.reset();
+}
+
+// What the last frame showed: visits, and how long each queue took for its part's.
+void DividedScene::learn(const Result& result) {
+  if (result.visits.size() != costs_.size() || !division_) return;
+  std::vector<double> costs(costs_.size()), of_part(division_->parts.size());
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    costs[i] = static_cast<double>(result.visits[i]) * cut_.subtrees[i].visit;
+    of_part[division_->part_of[i]] += costs[i];
+  }
+  double busiest = 0, all = 0;
+  for (const QueueReport& queue : result.queues) {
+    busiest = std::max(busiest, queue.busy_seconds);
+    all += queue.busy_seconds;
+  }
+  // Not worth its while where queues are about as busy.
+  if (all == 0 || busiest * static_cast<double>(result.queues.size()) < kUnbalanced * all) return;
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const std::uint32_t part = division_->part_of[i];
+    if (of_part[part] > 0) costs[i] *= result.queues[part].busy_seconds / of_part[part];
+  }
+  costs_ = std::move(costs);
+  division_.reset();
+}
+
+Result DividedScene::render_once(const Request& request) {
+  const Timer timer;
+  cut_for(static_cast<std::uint32_t>(request.queues.size()));
+  const Provision provision = provide(request, geometry_bytes());
+  cut_for(provision.n_parts);
+  if (!provision.streamed) measure_costs(request);
+  divide_into(provision.n_parts);
+  check_fits(provision, *division_, request);
+  const double seconds = timer.seconds();
+  Result result = render_frame(request, provision, *division_, cut_);
+  result.divide_seconds = seconds;
+  return result;
+}
+
+Result DividedScene::render(const Request& asked) {
+  Request request = asked;
+  if (request.queues.size() > KDRAY_MAX_PARTS)
+    throw Error(ErrorCode::usage,
+                fmt::format("odprt takes {} queues at most; take fewer (--queues)", KDRAY_MAX_PARTS));
+  if (request.balance == Balance::dynamic) request.census_every = kCensusEvery;
+  std::vector<Quarantined> quarantined;
+  for (;;) {
+    try {
+      Result result = render_once(request);
+      result.quarantined = std::move(quarantined);
+      if (request.balance == Balance::dynamic) learn(result);
+      return result;
+    } catch (const QueueFailure& failure) {
+      quarantined.push_back({request.queues[failure.queue].number, failure.what()});
+      request.queues.erase(request.queues.begin() + static_cast<std::ptrdiff_t>(failure.queue));
+      if (request.queues.empty()) std::rethrow_exception(failure.error);
+    }
+  }
+}
+
+}  // namespace kdray::odprt

@@ -1,0 +1,100 @@
+// What    ODPRT: renders a frame with the scene divided among queues: each holds some subtrees, and rays travel between them.
+// Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed parallel ray tracing.
+// Errors  A queue whose device fails is left out from then on: its subtrees go to the others, and the band of the picture that was
+//         in work is begun anew. The error itself when no queue is left.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/faults.h"
+#include "film/image.h"
+#include "kdray/kdray.h"
+#include "odprt/division.h"
+#include "odprt/exchange.h"
+#include "timeline/timeline.h"
+#include "wavefront/programs.h"
+#include "wavefront/wavefront.h"
+
+namespace kdray::odprt {
+
+struct Queue {
+  const device::Context* context = nullptr;
+  cl::CommandQueue queue;
+  wavefront::Programs* programs = nullptr;
+  std::size_t number = 0;  // among all queues, also those that are left out
+};
+
+struct Request {
+  std::vector<Queue> queues;
+  layout::Frame frame;  // with tiles
+  std::uint32_t features = 0;
+  Traversal traversal = Traversal::automatic;
+  Balance balance = Balance::sah;
+  std::uint32_t ray_buffer = 0;
+  std::uint64_t device_memory = 0;
+  std::uint32_t census_every = 0;  // visits to subtrees are counted in one wave of so many
+  timeline::Timeline* timeline = nullptr;
+  device::Faults* faults = nullptr;
+  std::function<void(double)> progress;
+};
+
+struct QueueReport {
+  std::size_t number = 0;
+  double busy_seconds = 0;
+  std::uint64_t launches = 0, waves = 0, traced = 0;  // traced: rays that the queue has looked for a hit of
+  std::uint32_t n_parts = 0, n_subtrees = 0;
+  std::uint64_t n_loads = 0;                       // of parts
+  std::size_t geometry_bytes = 0, work_bytes = 0;  // geometry: the most at one time
+  double cost_share = 0;                           // of the expected cost
+};
+
+struct Quarantined {
+  std::size_t queue = 0;
+  std::string what;
+};
+
+struct Result {
+  film::Image image;
+  wavefront::Counters counters;
+  std::map<std::string, double> stage_seconds;
+  double render_seconds = 0, divide_seconds = 0;
+  std::vector<QueueReport> queues;
+  ExchangeCounts exchange{0};
+  std::vector<std::uint64_t> visits;  // of each subtree, where counted
+  std::vector<Quarantined> quarantined;
+  std::uint32_t n_bands = 0, n_parts = 0, n_cells = 0;
+};
+
+// A scene that frames are rendered of, and what has been learned about its costs.
+class DividedScene {
+ public:
+  DividedScene(flatten::FlatScene flat, flatten::WideForm wide);
+
+  Result render(const Request& request);
+
+  const Cut& cut() const { return cut_; }
+  std::size_t geometry_bytes() const { return odprt::geometry_bytes(flat_, wide_); }
+
+ private:
+  void cut_for(std::uint32_t n_parts);
+  void divide_into(std::uint32_t n_parts);
+  void measure_costs(const Request& request);
+  void weigh(std::span<const std::uint64_t> visits);
+  void learn(const Result& result);
+  Result render_once(const Request& request);
+
+  flatten::FlatScene flat_;
+  flatten::WideForm wide_;
+  std::size_t n_asked_ = 0;  // subtrees that the cut was to have
+  Cut cut_;
+  std::vector<double> costs_;  // of the subtrees, as they are dealt out by
+  bool measured_ = false;      // costs_ come from rays
+  std::optional<Division> division_;
+};
+
+}  // namespace kdray::odprt

@@ -1,0 +1,181 @@
+#include "odprt/subtrees.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <list>
+#include <queue>
+
+#include "layout/primitives.layout.h"
+
+namespace kdray::odprt {
+
+namespace {
+
+// The heuristic's units: a node costs 1, a block of primitives 2 (host/kdtree).
+constexpr double kNodeCost = 1, kBlockCost = 2;
+constexpr std::uint32_t kRows[] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
+constexpr std::uint64_t kPrimitiveBytes[] = {sizeof(layout::Triangle), sizeof(layout::Sphere),
+                                             sizeof(layout::Cone)};
+
+std::uint32_t kind_of(layout::u32 leaf) {
+  return leaf >> KDRAY_WIDE_KIND_SHIFT & 3u;
+}
+
+const Array<layout::u32>& blocks_of_kind(const flatten::WideForm& form, std::uint32_t kind) {
+  return kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
+}
+
+// What a subtree takes: surface times cost, and bytes.
+struct Load {
+  double cost = 0;
+  std::uint64_t bytes = 0;
+
+  void add(const Load& o) {
+    cost += o.cost;
+    bytes += o.bytes;
+  }
+};
+
+class Loads {
+ public:
+  Loads(const flatten::FlatScene& scene, const flatten::WideForm& form)
+      : form_(form), nodes_(form.nodes.size()) {
+    // A smooth triangle has its normals beside it.
+    const std::uint64_t normals =
+        scene.triangles.empty() ? 0 : scene.normals.bytes() / scene.triangles.size();
+    for (std::uint32_t kind = 0; kind < 3; ++kind) primitive_bytes_[kind] = kPrimitiveBytes[kind];
+    primitive_bytes_[0] += normals;
+    tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t i) { nodes_[i] = own(form_.nodes[i]); });
+    // Children come behind their parents.
+    for (std::size_t i = nodes_.size(); i-- > 0;)
+      for (std::uint32_t slot = 0; slot < 8; ++slot) {
+        const layout::u32 child = form_.nodes[i].child[slot];
+        if (!child_bounds(form_.nodes[i], slot).empty() && !(child & KDRAY_WIDE_LEAF))
+          nodes_[i].add(nodes_[child]);
+      }
+  }
+
+  Load of(layout::u32 child, const Box& bounds) const {
+    if (child & KDRAY_WIDE_LEAF) return of_leaf(child, bounds);
+    Load load = nodes_[child];
+    load.cost += kNodeCost * static_cast<double>(bounds.area());
+    return load;
+  }
+
+ private:
+  Load of_leaf(layout::u32 leaf, const Box& bounds) const {
+    const std::uint32_t kind = kind_of(leaf), n = leaf_blocks(form_, leaf);
+    const auto lanes = n * static_cast<std::uint64_t>(form_.block);
+    return {kBlockCost * n * static_cast<double>(bounds.area()),
+            lanes * (kRows[kind] * sizeof(float) + primitive_bytes_[kind])};
+  }
+
+  // A node's leaves, and that it costs something to come to its inner children.
+  Load own(const layout::WideNode& node) const {
+    Load load{0, sizeof(layout::WideNode)};
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
+      const Box bounds = child_bounds(node, slot);
+      if (bounds.empty()) continue;
+      if (node.child[slot] & KDRAY_WIDE_LEAF)
+        load.add(of_leaf(node.child[slot], bounds));
+      else
+        load.cost += kNodeCost * static_cast<double>(bounds.area());
+    }
+    return load;
+  }
+
+  const flatten::WideForm& form_;
+  std::vector<Load> nodes_;
+  std::array<std::uint64_t, 3> primitive_bytes_{};
+};
+
+class Cutter {
+ public:
+  Cutter(const flatten::FlatScene& scene, const flatten::WideForm& form) : form_(form), loads_(scene, form) {}
+
+  Cut run(std::size_t n) {
+    open(subtrees_.end(), 0);
+    while (subtrees_.size() < n && !open_.empty()) {
+      const Place place = open_.top().second;
+      open_.pop();
+      const Item item = *place;
+      const auto index = static_cast<std::int32_t>(cut_.top.size());
+      cut_.top[item.parent].below[item.slot] = index;
+      open(subtrees_.erase(place), item.subtree.child);
+    }
+    for (const Item& item : subtrees_) {
+      cut_.top[item.parent].below[item.slot] = -1 - static_cast<std::int32_t>(cut_.subtrees.size());
+      cut_.subtrees.push_back(item.subtree);
+    }
+    return std::move(cut_);
+  }
+
+ private:
+  struct Item {
+    Subtree subtree;
+    std::uint32_t parent, slot;  // in cut_.top
+  };
+  using Place = std::list<Item>::iterator;
+
+  // Puts a node's children before `place`, in the tree's order: front to back for rays with positive directions.
+  void open(Place place, std::uint32_t index) {
+    const layout::WideNode& node = form_.nodes[index];
+    const auto parent = static_cast<std::uint32_t>(cut_.top.size());
+    cut_.top.push_back({index, {}});
+    cut_.top.back().below.fill(Opened::kEmpty);
+    for (std::uint32_t k = 8; k-- > 0;) {
+      const std::uint32_t slot = node.order[0] >> (3 * k) & 7u;
+      const Box bounds = child_bounds(node, slot);
+      if (bounds.empty()) continue;
+      const Place child = subtrees_.insert(place, {subtree(node.child[slot], bounds), parent, slot});
+      if (!(node.child[slot] & KDRAY_WIDE_LEAF)) open_.emplace(child->subtree.cost, child);
+    }
+  }
+
+  Subtree subtree(layout::u32 child, const Box& bounds) const {
+    const Load load = loads_.of(child, bounds);
+    const auto area = static_cast<double>(bounds.area());
+    return {bounds, load.cost, area > 0 ? load.cost / area : kNodeCost, load.bytes, child};
+  }
+
+  struct Cheaper {
+    template <class T>
+    bool operator()(const T& a, const T& b) const {
+      return a.first < b.first;
+    }
+  };
+
+  const flatten::WideForm& form_;
+  const Loads loads_;
+  std::list<Item> subtrees_;
+  std::priority_queue<std::pair<double, Place>, std::vector<std::pair<double, Place>>, Cheaper> open_;
+  Cut cut_;
+};
+
+}  // namespace
+
+std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf) {
+  const std::uint32_t kind = kind_of(leaf);
+  const std::size_t words = kRows[kind] * static_cast<std::size_t>(form.block);
+  const layout::u32* block = blocks_of_kind(form, kind).data() + (leaf & KDRAY_WIDE_FIRST_MASK) * words;
+  std::uint32_t n = 1;
+  for (; !(block[words - 1] & KDRAY_WIDE_LAST); block += words) ++n;
+  return n;
+}
+
+Box child_bounds(const layout::WideNode& node, std::uint32_t slot) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lo[axis] = node.bounds[axis][0][slot];
+    box.hi[axis] = node.bounds[axis][1][slot];
+  }
+  return box;
+}
+
+Cut cut(const flatten::FlatScene& scene, const flatten::WideForm& form, std::size_t n) {
+  if (form.nodes.empty()) return {};
+  return Cutter(scene, form).run(n);
+}
+
+}  // namespace kdray::odprt

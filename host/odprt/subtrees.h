@@ -1,0 +1,47 @@
+// What    Cuts the wide form of a scene into subtrees of about equal expected cost: what ODPRT deals out to queues.
+// Shape   The costliest subtree is opened until there are enough. Subtrees come in the kd-tree's own order, so that neighbours
+//         in the list are neighbours in space; their cells are disjoint.
+// Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed. Costs: the surface-area heuristic.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "flatten/wide.h"
+#include "math/box.h"
+
+namespace kdray::odprt {
+
+struct Subtree {
+  Box bounds;               // of its contents
+  double cost = 0;          // expected: nodes and blocks that a ray through the scene's bounds meets in it
+  double visit = 0;         // expected cost of a ray that meets the subtree's own bounds
+  std::uint64_t bytes = 0;  // of its nodes, blocks and primitives
+  layout::u32 child = 0;    // the wide node's word: a node or a leaf
+};
+
+// An opened node of the wide tree, and what became of its children.
+struct Opened {
+  static constexpr std::int32_t kEmpty = INT32_MIN;
+
+  std::uint32_t node = 0;
+  // Per slot: the number of an opened node; -1 - the number of a subtree; or kEmpty.
+  std::array<std::int32_t, 8> below{};
+};
+
+struct Cut {
+  std::vector<Opened> top;        // [0] is the root
+  std::vector<Subtree> subtrees;  // in the order of the tree
+};
+
+// At least `n` subtrees, if the tree has as many that can be told apart.
+Cut cut(const flatten::FlatScene& scene, const flatten::WideForm& form, std::size_t n);
+
+// A leaf's blocks.
+std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf);
+
+// Bounds of a node's child.
+Box child_bounds(const layout::WideNode& node, std::uint32_t slot);
+
+}  // namespace kdray::odprt

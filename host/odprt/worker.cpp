@@ -1,0 +1,287 @@
+#include "odprt/worker.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "layout/features.h"
+#include "layout/rays.layout.h"
+
+namespace kdray::odprt {
+
+namespace {
+
+OutboxShape inbox_shape(OutboxShape shape) {
+  shape.n_parts = 1;
+  return shape;
+}
+
+constexpr cl_uint kGeometryArguments = 9;  // KDRAY_SCENE_PARAMETERS
+
+}  // namespace
+
+cl::Buffer Worker::make(std::size_t bytes, const std::string& what) {
+  bytes_ += bytes;
+  return context_.buffer(CL_MEM_READ_WRITE, bytes, what);
+}
+
+cl::Buffer Worker::make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
+                               const std::string& what) {
+  return make(n_streams * n_fields * capacity * sizeof(float), what);
+}
+
+Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
+               const layout::Frame& frame, const Plan& plan, std::uint32_t features, Traversal traversal,
+               std::span<const layout::PartCell> directory, std::size_t band_pixels, std::size_t max_subtrees)
+    : context_(context),
+      queue_(std::move(queue)),
+      frame_(frame),
+      plan_(plan),
+      band_pixels_(band_pixels),
+      slices_(plan.n_slices),
+      traffic_(plan.n_slices),
+      visits_(plan.n_slices * max_subtrees),
+      frame_buffer_(make(sizeof(layout::Frame), "the frame")),
+      travel_buffer_(make(sizeof(layout::Travel), "the division")),
+      cells_(make(directory.size_bytes(), "the directory")),
+      slice_buffer_(make(plan.n_slices * sizeof(layout::Slice), "the slices")),
+      grant_buffer_(make(plan.n_slices * sizeof(layout::Grant), "the slices' grants")),
+      traffic_buffer_(make(plan.n_slices * sizeof(layout::Traffic), "the slices' accounts")),
+      pool_(make_stream(std::size_t{plan.n_slices} * frame.max_depth, KDRAY_TRAVEL_RAY_FIELDS,
+                        frame.pool_capacity, "the ray pools")),
+      batch_(make_stream(plan.n_slices, KDRAY_TRAVEL_RAY_FIELDS, frame.batch_capacity, "the ray batches")),
+      hits_(make_stream(plan.n_slices, KDRAY_HIT_FIELDS, frame.batch_capacity, "the hits")),
+      shadow_rays_(
+          make_stream(plan.n_slices, KDRAY_TRAVEL_SHADOW_FIELDS, frame.shadow_capacity, "the shadow rays")),
+      occluded_(make(std::size_t{plan.n_slices} * frame.shadow_capacity, "the occlusion flags")),
+      shadow_pool_(make_stream(plan.n_slices, KDRAY_TRAVEL_SHADOW_FIELDS, plan.shadow_pool + 2 * KDRAY_LANES,
+                               "the waiting shadow rays")),
+      film_(make(band_pixels * 3 * sizeof(layout::i64), "the film")),
+      visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
+      inbox_(context, inbox_shape(plan.outbox)),
+      wave_("wave",
+            programs.kernel("odprt/wave.cl", "travel_wave", features | KDRAY_FEATURE_NUMBERS, traversal)),
+      receive_("receive", programs.kernel("odprt/receive.cl", "receive", 0)) {
+  bytes_ += inbox_.bytes();
+  if (!directory.empty())
+    queue_.enqueueWriteBuffer(cells_, CL_TRUE, 0, directory.size_bytes(), directory.data());
+  travel_.n_parts = plan.outbox.n_parts;
+  travel_.n_cells = static_cast<layout::u32>(directory.size());
+  travel_.n_slices = plan.n_slices;
+  travel_.out_rays = plan.outbox.rays;
+  travel_.out_ray_capacity = plan.outbox.ray_capacity;
+  travel_.out_shadow = plan.outbox.shadow;
+  travel_.out_shadow_capacity = plan.outbox.shadow_capacity;
+  travel_.shadow_pool = plan.shadow_pool;
+  travel_.shadow_pool_capacity = plan.shadow_pool + 2 * KDRAY_LANES;
+}
+
+// A command may still be running after an error.
+Worker::~Worker() {
+  try {
+    queue_.finish();
+  } catch (const cl::Error&) {  // nothing left to wait for
+  }
+}
+
+void Worker::begin(std::size_t first_pixel, std::size_t n_pixels, std::uint32_t first_tile,
+                   std::uint32_t end_tile, std::uint32_t i, std::uint32_t n) {
+  frame_.first_pixel = static_cast<layout::u32>(first_pixel);
+  band_pixels_ = n_pixels;
+  std::fill(slices_.begin(), slices_.end(), layout::Slice{});
+  std::fill(traffic_.begin(), traffic_.end(), layout::Traffic{});
+  for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
+    slices_[s].tile = first_tile + i * plan_.n_slices + s;
+    slices_[s].end_tile = end_tile;
+    slices_[s].tile_stride = plan_.n_slices * n;
+  }
+  queue_.enqueueWriteBuffer(frame_buffer_, CL_FALSE, 0, sizeof frame_, &frame_);
+  queue_.enqueueWriteBuffer(slice_buffer_, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
+                            slices_.data());
+  queue_.enqueueWriteBuffer(traffic_buffer_, CL_FALSE, 0, traffic_.size() * sizeof(layout::Traffic),
+                            traffic_.data());
+  if (n_pixels > 0) queue_.enqueueFillBuffer(film_, cl_long{0}, 0, n_pixels * 3 * sizeof(layout::i64));
+  if (!visits_.empty())
+    queue_.enqueueFillBuffer(visit_buffer_, cl_uint{0}, 0, visits_.size() * sizeof(layout::u32));
+  queue_.finish();
+}
+
+void Worker::serve(const LoadedPart& part, std::uint32_t census_every) {
+  travel_.part = part.number;
+  travel_.n_shared = part.n_shared;
+  travel_.n_subtrees = census_every > 0 ? part.n_subtrees : 0;
+  travel_.census_every = std::max(census_every, 1u);
+  queue_.enqueueWriteBuffer(travel_buffer_, CL_TRUE, 0, sizeof travel_, &travel_);
+  wave_.set_arguments(part.scene.set_tree_arguments(wave_.kernel()), part.scene.normals, part.scene.materials,
+                      part.scene.lights, frame_buffer_, travel_buffer_, cells_, part.subtrees,
+                      cl_uint{plan_.n_waves}, slice_buffer_, grant_buffer_, traffic_buffer_, pool_, batch_,
+                      hits_, shadow_rays_, occluded_, shadow_pool_, film_);
+}
+
+void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
+  begin(0, 0, 0, 0, 0, 1);
+  serve(part, 0);
+  std::fill(outbox.n().begin(), outbox.n().end(), 0);
+  queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
+  receive(outbox, part.number);
+  const std::vector<layout::Grant> grants(plan_.n_slices);
+  launch(grants, outbox);
+  wave_.forget_launches();
+  receive_.forget_launches();
+}
+
+void Worker::receive(const Outbox& outbox, std::uint32_t part) {
+  receive_.set_arguments(0, frame_buffer_, travel_buffer_, cl_uint{part}, cl_uint{outbox.shape().n_parts},
+                         outbox.rays(), outbox.shadow_rays(), outbox.counts(), slice_buffer_, traffic_buffer_,
+                         pool_, shadow_pool_);
+  receive_.launch(queue_, plan_.n_slices, 1);
+}
+
+std::uint64_t Worker::receive(Mail& mail) {
+  const OutboxShape& shape = inbox_.shape();
+  auto* rays = static_cast<float*>(queue_.enqueueMapBuffer(
+      inbox_.rays(), CL_TRUE, CL_MAP_WRITE, 0,
+      shape.n_places() * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity * sizeof(float)));
+  auto* shadow_rays = static_cast<float*>(queue_.enqueueMapBuffer(
+      inbox_.shadow_rays(), CL_TRUE, CL_MAP_WRITE, 0,
+      shape.n_places() * KDRAY_TRAVEL_SHADOW_FIELDS * shape.shadow_capacity * sizeof(float)));
+  std::uint64_t total = 0;
+  for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
+    const auto fullest =
+        *std::max_element(std::begin(slices_[s].n_pool), std::begin(slices_[s].n_pool) + frame_.max_depth);
+    const std::size_t n =
+        std::min<std::size_t>({mail.rays[s].size(), shape.rays, frame_.pool_size - fullest});
+    const std::size_t n_shadow = std::min<std::size_t>(
+        {mail.shadow_rays[s].size(), shape.shadow, plan_.shadow_pool - traffic_[s].n_shadow_pool});
+    mail.rays[s].take(rays + std::size_t{s} * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity,
+                      shape.ray_capacity, 0, n);
+    mail.shadow_rays[s].take(
+        shadow_rays + std::size_t{s} * KDRAY_TRAVEL_SHADOW_FIELDS * shape.shadow_capacity,
+        shape.shadow_capacity, 0, n_shadow);
+    inbox_.n()[s] = static_cast<layout::u32>(n);
+    inbox_.n()[plan_.n_slices + s] = static_cast<layout::u32>(n_shadow);
+    total += n + n_shadow;
+  }
+  queue_.enqueueUnmapMemObject(inbox_.rays(), rays);
+  queue_.enqueueUnmapMemObject(inbox_.shadow_rays(), shadow_rays);
+  mail.n -= total;
+  if (total == 0) return 0;
+  queue_.enqueueWriteBuffer(inbox_.counts(), CL_FALSE, 0, inbox_.n().size() * sizeof(layout::u32),
+                            inbox_.n().data());
+  receive(inbox_, 0);
+  return total;
+}
+
+void Worker::launch(std::span<const layout::Grant> grants, Outbox& outbox) {
+  constexpr cl_uint kOutboxArguments = kGeometryArguments + 18;
+  queue_.enqueueWriteBuffer(grant_buffer_, CL_FALSE, 0, grants.size_bytes(), grants.data());
+  queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
+  wave_.set_arguments(kOutboxArguments, outbox.rays(), outbox.shadow_rays(), outbox.counts(), visit_buffer_);
+  wave_.launch(queue_, plan_.n_slices, 1);
+  queue_.enqueueReadBuffer(outbox.counts(), CL_FALSE, 0, outbox.n().size() * sizeof(layout::u32),
+                           outbox.n().data());
+  finish();
+}
+
+void Worker::finish() {
+  queue_.enqueueReadBuffer(slice_buffer_, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
+                           slices_.data());
+  queue_.enqueueReadBuffer(traffic_buffer_, CL_TRUE, 0, traffic_.size() * sizeof(layout::Traffic),
+                           traffic_.data());
+  wave_.collect_seconds();
+  receive_.collect_seconds();
+}
+
+void Worker::stash(Mail& mail) {
+  const std::size_t pool_words = std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * frame_.pool_capacity;
+  std::vector<float> words(pool_words);
+  std::vector<float> shadow_words(KDRAY_TRAVEL_SHADOW_FIELDS * std::size_t{travel_.shadow_pool_capacity});
+  for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
+    for (std::uint32_t depth = 1; depth <= frame_.max_depth; ++depth) {
+      layout::u32& n = slices_[s].n_pool[depth - 1];
+      if (n == 0) continue;
+      const std::size_t number = std::size_t{s} * frame_.max_depth + (depth - 1);
+      queue_.enqueueReadBuffer(pool_, CL_TRUE, number * pool_words * sizeof(float),
+                               pool_words * sizeof(float), words.data());
+      mail.put_pooled_rays(s, words.data(), frame_.pool_capacity, n, depth);
+      n = 0;
+    }
+    layout::u32& n = traffic_[s].n_shadow_pool;
+    if (n == 0) continue;
+    queue_.enqueueReadBuffer(shadow_pool_, CL_TRUE, s * shadow_words.size() * sizeof(float),
+                             shadow_words.size() * sizeof(float), shadow_words.data());
+    mail.put_shadow_rays(s, shadow_words.data(), travel_.shadow_pool_capacity, n);
+    n = 0;
+  }
+  queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices_.size() * sizeof(layout::Slice),
+                            slices_.data());
+  queue_.enqueueWriteBuffer(traffic_buffer_, CL_TRUE, 0, traffic_.size() * sizeof(layout::Traffic),
+                            traffic_.data());
+}
+
+void Worker::copy_out(Outbox& outbox, std::uint32_t part, Mail& mail) {
+  const OutboxShape& shape = outbox.shape();
+  const std::size_t ray_words = std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * shape.ray_capacity;
+  const std::size_t shadow_words = std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * shape.shadow_capacity;
+  const std::size_t first = std::size_t{part} * shape.n_slices;
+  const auto map = [&](const cl::Buffer& buffer, std::size_t words) {
+    return static_cast<float*>(queue_.enqueueMapBuffer(
+        buffer, CL_TRUE, CL_MAP_READ, first * words * sizeof(float), shape.n_slices * words * sizeof(float)));
+  };
+  float* const rays = map(outbox.rays(), ray_words);
+  float* const shadow_rays = map(outbox.shadow_rays(), shadow_words);
+  for (std::uint32_t s = 0; s < shape.n_slices; ++s) {
+    mail.put_rays(s, rays + s * ray_words, shape.ray_capacity, outbox.n()[first + s]);
+    mail.put_shadow_rays(s, shadow_rays + s * shadow_words, shape.shadow_capacity,
+                         outbox.n()[shape.n_places() + first + s]);
+  }
+  queue_.enqueueUnmapMemObject(outbox.rays(), rays);
+  queue_.enqueueUnmapMemObject(outbox.shadow_rays(), shadow_rays);
+}
+
+void Worker::add_cycles(std::map<std::string, double>& cycles) const {
+  for (const layout::Slice& slice : slices_) {
+    cycles["admit"] += static_cast<double>(slice.cycles_admit);
+    cycles["trace_closest"] += static_cast<double>(slice.cycles_closest);
+    cycles["shade"] += static_cast<double>(slice.cycles_shade);
+    cycles["trace_shadow"] += static_cast<double>(slice.cycles_shadow);
+    cycles["add"] += static_cast<double>(slice.cycles_add);
+  }
+  for (const layout::Traffic& traffic : traffic_)
+    cycles["route"] += static_cast<double>(traffic.cycles_route);
+}
+
+bool Worker::has_tiles() const {
+  return std::any_of(slices_.begin(), slices_.end(),
+                     [](const layout::Slice& slice) { return slice.tile < slice.end_tile; });
+}
+
+std::uint64_t Worker::n_waiting() const {
+  std::uint64_t n = 0;
+  for (std::size_t s = 0; s < slices_.size(); ++s)
+    n = std::accumulate(std::begin(slices_[s].n_pool), std::end(slices_[s].n_pool),
+                        n + traffic_[s].n_shadow_pool);
+  return n;
+}
+
+std::vector<std::uint64_t> Worker::visits() const {
+  const std::size_t n = travel_.n_subtrees;
+  std::vector<std::uint64_t> sums(n);
+  std::vector<layout::u32> counts(n * plan_.n_slices);
+  if (n == 0) return sums;
+  queue_.enqueueReadBuffer(visit_buffer_, CL_TRUE, 0, counts.size() * sizeof(layout::u32), counts.data());
+  for (std::size_t i = 0; i < counts.size(); ++i) sums[i % n] += counts[i];
+  return sums;
+}
+
+std::span<const layout::i64> Worker::map_film() {
+  const std::size_t n = band_pixels_ * 3;
+  mapped_film_ = queue_.enqueueMapBuffer(film_, CL_TRUE, CL_MAP_READ, 0, n * sizeof(layout::i64));
+  return {static_cast<const layout::i64*>(mapped_film_), n};
+}
+
+void Worker::unmap_film() {
+  queue_.enqueueUnmapMemObject(film_, mapped_film_);
+  mapped_film_ = nullptr;
+}
+
+}  // namespace kdray::odprt

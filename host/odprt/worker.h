@@ -1,0 +1,111 @@
+// What    One queue of ODPRT on its device: its slices' pools and streams, its film, and the part of the scene that it serves at the
+//         moment. It does what it is told; who sends what to whom is decided in exchange.h.
+// Shape   Slice s of every worker handles the rays of the pixels whose tiles are slice s's in the list of the worker that makes
+//         their eye rays: within a worker no two slices touch one pixel. Each worker has a film of all the band's pixels;
+//         their sums add up to the picture.
+// Errors  cl::Error and kdray::Error of the device; counters are handed out for the caller to check.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/context.h"
+#include "layout/frame.layout.h"
+#include "layout/odprt.layout.h"
+#include "odprt/mail.h"
+#include "odprt/outbox.h"
+#include "odprt/plan.h"
+#include "wavefront/programs.h"
+#include "wavefront/scene_buffers.h"
+#include "wavefront/stage.h"
+
+namespace kdray::odprt {
+
+// A part on a device.
+struct LoadedPart {
+  std::uint32_t number = 0, n_shared = 0;
+  wavefront::SceneBuffers scene;
+  std::size_t bytes = 0;  // of its geometry
+  cl::Buffer subtrees;    // a cell for each, for the census
+  std::uint32_t n_subtrees = 0;
+};
+
+class Worker {
+ public:
+  Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
+         const layout::Frame& frame, const Plan& plan, std::uint32_t features, Traversal traversal,
+         std::span<const layout::PartCell> directory, std::size_t band_pixels, std::size_t max_subtrees);
+  ~Worker();
+  Worker(const Worker&) = delete;
+
+  const device::Context& context() const { return context_; }
+
+  // Clears the film for a band of the tiles [first, end), of which every `n`-th row of slices is this worker's, from the
+  // `i`-th on.
+  void begin(std::size_t first_pixel, std::size_t n_pixels, std::uint32_t first_tile, std::uint32_t end_tile,
+             std::uint32_t i, std::uint32_t n);
+
+  // `census_every`: visits to the part's subtrees are counted in one wave of so many; 0: in none.
+  void serve(const LoadedPart& part, std::uint32_t census_every);
+
+  // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's time.
+  void warm_up(const LoadedPart& part, Outbox& outbox);
+
+  // Takes the rays that an outbox of this context has for a part into the pools.
+  void receive(const Outbox& outbox, std::uint32_t part);
+  // Takes as many of the rays in the mail as there is room for; returns how many.
+  std::uint64_t receive(Mail& mail);
+
+  // One launch: up to n_waves waves of each slice. What it sends is in `outbox`, whose counts are read back.
+  void launch(std::span<const layout::Grant> grants, Outbox& outbox);
+  // Waits for what has been received without a launch.
+  void finish();
+
+  // Takes everything that waits out of the pools.
+  void stash(Mail& mail);
+
+  // As the last launch left them.
+  std::span<const layout::Slice> slices() const { return slices_; }
+  std::span<const layout::Traffic> traffic() const { return traffic_; }
+  bool has_tiles() const;
+  std::uint64_t n_waiting() const;  // rays in the pools
+  std::vector<std::uint64_t> visits() const;
+
+  // The film's sums of the band, three for each pixel, until unmap_film().
+  std::span<const layout::i64> map_film();
+  void unmap_film();
+
+  // Copies what an outbox of this queue has for a part.
+  void copy_out(Outbox& outbox, std::uint32_t part, Mail& mail);
+
+  void add_cycles(std::map<std::string, double>& cycles) const;  // of the stages, in the band
+
+  std::size_t bytes() const { return bytes_; }
+  double busy_seconds() { return wave_.collect_seconds() + receive_.collect_seconds(); }
+
+ private:
+  cl::Buffer make(std::size_t bytes, const std::string& what);
+  cl::Buffer make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
+                         const std::string& what);
+  void write_travel();
+
+  const device::Context& context_;
+  cl::CommandQueue queue_;
+  layout::Frame frame_;
+  const Plan plan_;
+  layout::Travel travel_{};
+  std::size_t bytes_ = 0, band_pixels_ = 0;
+  std::vector<layout::Slice> slices_;
+  std::vector<layout::Traffic> traffic_;
+  std::vector<layout::u32> visits_;
+  cl::Buffer frame_buffer_, travel_buffer_, cells_, slice_buffer_, grant_buffer_, traffic_buffer_, pool_,
+      batch_, hits_, shadow_rays_, occluded_, shadow_pool_, film_, visit_buffer_;
+  void* mapped_film_ = nullptr;
+  Outbox inbox_;  // of one part: rays from the host's memory
+  wavefront::Stage wave_, receive_;
+};
+
+}  // namespace kdray::odprt

@@ -1,0 +1,58 @@
+// What    ODPRT: what a queue knows of the division of the scene, and what a slice keeps account of.
+// Shape   The scene is divided into parts; a ray carries a bit for each part that has been asked for its hit, in two words.
+#ifndef KDRAY_LAYOUT_ODPRT_H
+#define KDRAY_LAYOUT_ODPRT_H
+#include "layout/base.layout.h"
+#include "layout/frame.layout.h"
+
+#define KDRAY_MAX_PARTS 64
+#define KDRAY_NO_PART 255u
+
+KDRAY_LAYOUT_BEGIN
+// Bounds of some of a part's contents. A part's cells follow each other.
+typedef struct PartCell {
+  float lo[3];
+  u32 part;
+  float hi[3];
+  u32 pad;
+} PartCell;
+KDRAY_ASSERT_SIZE(PartCell, 32)
+
+// A queue that serves a part.
+typedef struct Travel {
+  u32 part;                     // whose geometry is at hand
+  u32 n_parts;
+  u32 n_cells;                  // of the directory
+  u32 n_slices;
+  u32 out_rays;                 // rays for one part and slice that the outbox holds
+  u32 out_ray_capacity;         // words per field of those
+  u32 out_shadow;               // the same of shadow rays
+  u32 out_shadow_capacity;
+  u32 shadow_pool;              // shadow rays from elsewhere that a slice can hold
+  u32 shadow_pool_capacity;
+  u32 n_shared;                 // triangles that other parts hold too: the first ones, by number
+  u32 n_subtrees;               // whose visitors are to be counted; 0: none are
+  u32 census_every;             // ... in one wave of so many
+  u32 pad[3];
+} Travel;
+KDRAY_ASSERT_SIZE(Travel, 64)
+
+// What a slice may make in a launch: [0] shadow rays that leave the part where they begin, [d] rays of depth d.
+typedef struct Grant {
+  u32 rays[KDRAY_MAX_DEPTH + 1];
+} Grant;
+KDRAY_ASSERT_SIZE(Grant, 260)
+
+// A slice's account of a launch, in the same order.
+typedef struct Traffic {
+  u32 made[KDRAY_MAX_DEPTH + 1];
+  u32 ended[KDRAY_MAX_DEPTH + 1];  // wherever they were made
+  u32 n_shadow_pool;               // shadow rays from elsewhere that wait; stays from launch to launch
+  u32 n_waves;
+  u32 n_lost;  // rays that the part which found their hit didn't find again: a broken rule
+  u32 n_traced;  // rays of both kinds
+  u64 cycles_route;
+} Traffic;
+KDRAY_ASSERT_SIZE(Traffic, 544)
+KDRAY_LAYOUT_END
+#endif

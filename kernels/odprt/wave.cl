@@ -1,0 +1,137 @@
+// What    Some waves of ODPRT in one launch: a work-item takes its slice through them, tracing rays in its part of the scene, and
+//         puts those that go on elsewhere into the outbox.
+// Shape   One work-item per slice. The same stages as wave/wave.cl, and two more: rays are routed before and after their trace.
+//         It ends when a slice has done n_waves, has nothing left that it may do, or has no room for a batch in the outbox.
+// Errors  as the stages'; all counted in the slice and its traffic, which the host reads after each launch.
+#define KDRAY_ODPRT 1
+#include "film/add.clh"
+#include "odprt/admit.clh"
+#include "odprt/census.clh"
+#include "odprt/rays.clh"
+#include "odprt/shadow.clh"
+#include "shade/shade.clh"
+#include "traverse/trace_slice.clh"
+#include "wave/clock.clh"
+
+// A slice's streams.
+typedef struct Streams {
+  __global float *pool, *batch, *hits, *shadow_rays, *shadow_pool;
+  __global uchar* occluded;
+  __global i64* film;
+} Streams;
+
+typedef struct Shaders {
+  SurfaceArrays surfaces;
+  __global const Material* materials;
+  __global const Light* lights;
+} Shaders;
+
+#if KDRAY_HAS_LIGHTS
+inline void trace_shadow_rays(const Travels* t, __constant const Frame* frame, u32 slice_id, const Census* census,
+                              const Streams* s, bool made_here, u64* since) {
+  const RaySource source = shadow_rays(frame, slice_id, s->shadow_rays, s->occluded);
+  trace_all(t->scene, frame, &source, t->slice->n_shadow, false);
+  t->traffic->n_traced += t->slice->n_shadow;
+  clock_stage(&t->slice->cycles_shadow, since);
+  if (census) count_visits(census, frame->world_max, source.rays, source.rays, true, t->slice->n_shadow);
+  settle_shadow_rays(t, frame, source.rays, source.occluded, made_here, s->film);
+  clock_stage(&t->slice->cycles_add, since);
+}
+#endif
+
+inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32 slice_id, const Shaders* shaders,
+                            const Census* census, const Streams* s, u64* since) {
+  u32 first_light = 0;
+  do {
+    const u32 before = t->slice->n_pool[t->slice->depth];
+    shade_batch(&shaders->surfaces, shaders->materials, shaders->lights, frame, slice_id, first_light, t->slice,
+                s->batch, s->hits, s->pool, s->shadow_rays, s->film);
+    const u32 made = t->slice->depth < frame->max_depth ? t->slice->n_pool[t->slice->depth] - before : 0;
+    if (made > 0) {
+      t->traffic->made[t->slice->depth + 1] += made;
+      t->grant->rays[t->slice->depth + 1] -= made;
+    }
+    clock_stage(&t->slice->cycles_shade, since);
+#if KDRAY_HAS_LIGHTS
+    trace_shadow_rays(t, frame, slice_id, census, s, true, since);
+#endif
+    first_light += frame->light_batch;
+  } while (KDRAY_HAS_LIGHTS && first_light < frame->n_lights);
+}
+
+inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32 slice_id, const Shaders* shaders,
+                            const Census* census, const Streams* s, bool eye, u64* since) {
+  const RaySource rays = batch_rays(frame, slice_id, s->batch, s->hits);
+  const Stream batch = stream_of(s->batch, slice_id, KDRAY_RAY_FIELDS, frame->batch_capacity);
+  const ConstStream hits = const_stream_of(s->hits, slice_id, KDRAY_HIT_FIELDS, frame->batch_capacity);
+  send_fresh_rays(t, rays.rays, batch);
+  clock_stage(&t->traffic->cycles_route, since);
+  trace_all(t->scene, frame, &rays, t->slice->n_batch, eye);
+  t->traffic->n_traced += t->slice->n_batch;
+  clock_stage(&t->slice->cycles_closest, since);
+  if (census) count_visits(census, frame->world_max, rays.rays, hits, false, t->slice->n_batch);
+  settle_rays(t, rays.rays, batch, hits, rays.hits);
+  clock_stage(&t->traffic->cycles_route, since);
+  shade_and_light(t, frame, slice_id, shaders, census, s, since);
+}
+
+// False when nothing could be done.
+inline bool run_wave(const Travels* t, __constant const Frame* frame, u32 slice_id, const Shaders* shaders,
+                     const Census* census, const Streams* s) {
+  u64 since = cycles();
+  const Account account = account_of(frame, t->slice, t->grant, t->traffic, &t->out);
+  if (!has_room(&account, t->travel)) return false;
+  const Work work = choose_work(&account);
+  if (work.n == 0) return false;
+  if (work.depth == 0) {
+#if KDRAY_HAS_LIGHTS
+    admit_shadow_rays(
+        t, work.n, const_stream_of(s->shadow_pool, slice_id, KDRAY_SHADOW_FIELDS, t->travel->shadow_pool_capacity),
+        stream_of(s->shadow_rays, slice_id, KDRAY_SHADOW_FIELDS, frame->shadow_capacity));
+    clock_stage(&t->slice->cycles_admit, &since);
+    trace_shadow_rays(t, frame, slice_id, census, s, false, &since);
+#endif
+    return true;
+  }
+  admit_rays(&account, &work, slice_id, s->pool,
+             stream_of(s->batch, slice_id, KDRAY_RAY_FIELDS, frame->batch_capacity), s->film);
+  clock_stage(&t->slice->cycles_admit, &since);
+  trace_and_shade(t, frame, slice_id, shaders, census, s, work.eye, &since);
+  return true;
+}
+
+inline void begin_account(__global Traffic* traffic) {
+  for (u32 level = 0; level <= KDRAY_MAX_DEPTH; ++level) traffic->made[level] = traffic->ended[level] = 0;
+  traffic->n_lost = traffic->n_traced = 0;
+}
+
+__kernel void travel_wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
+                          __global const Material* in_materials, __global const Light* in_lights,
+                          __constant const Frame* frame, __constant const Travel* travel,
+                          __constant const PartCell* in_cells, __constant const PartCell* in_subtrees, u32 n_waves,
+                          __global Slice* io_slices, __global Grant* io_grants, __global Traffic* io_traffic, __global float* io_pool,
+                          __global float* io_batch, __global float* io_hits, __global float* io_shadow_rays,
+                          __global uchar* io_occluded, __global float* io_shadow_pool, __global i64* io_film,
+                          __global float* out_rays, __global float* out_shadow_rays, __global u32* out_counts,
+                          __global u32* out_visits) {
+  const u32 slice_id = (u32)get_global_id(0);
+  if (slice_id >= travel->n_slices) return;
+  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
+  const Travels t = {&scene,
+                     {in_cells, travel->n_cells, frame->world_max},
+                     {travel, slice_id, out_rays, out_shadow_rays, out_counts},
+                     travel,
+                     io_slices + slice_id,
+                     io_grants + slice_id,
+                     io_traffic + slice_id};
+  const Shaders shaders = {{in_triangles, in_normals, in_spheres, in_cones}, in_materials, in_lights};
+  const Streams streams = {io_pool, io_batch, io_hits, io_shadow_rays, io_shadow_pool, io_occluded, io_film};
+  const Census census = {in_subtrees, travel->n_subtrees, out_visits + (size_t)slice_id * travel->n_subtrees};
+  begin_account(t.traffic);
+  u32 n = 0;
+  for (; n < n_waves; ++n) {
+    const bool counted = travel->n_subtrees > 0 && n % travel->census_every == 0;
+    if (!run_wave(&t, frame, slice_id, &shaders, counted ? &census : 0, &streams)) break;
+  }
+  t.traffic->n_waves = n;
+}
