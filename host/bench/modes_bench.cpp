@@ -49,10 +49,11 @@ double sum(const std::vector<double>& values) {
 // A row being measured.
 class Runner {
  public:
-  Runner(const PreparedScene& scene, const Scheme& scheme, int queues, const DeviceOptions& device)
+  Runner(const PreparedScene& scene, const Scheme& scheme, int queues, int cores, const DeviceOptions& device)
       : scene_(scene), scheme_(scheme), device_(device) {
     row_.scheme = scheme.name;
-    row_.queues = row_.sub_devices = queues;
+    row_.queues = queues;
+    row_.sub_devices = std::min(queues, cores);
   }
 
   // A frame; the first one's picture becomes `first`.
@@ -87,8 +88,8 @@ class Runner {
 
   void record(const Json& statistics) {
     row_.rounds.push_back(statistics.at("seconds").at("render"));
-    row_.sub_devices = std::min(
-        row_.queues, static_cast<int>(number_at(statistics, "/mode/sub_devices").value_or(row_.queues)));
+    if (const auto n = number_at(statistics, "/mode/sub_devices"))
+      row_.sub_devices = std::min(row_.queues, static_cast<int>(*n));
     const auto idle = numbers_of(statistics, "/mode/per_queue", "idle_share");
     if (!idle.empty()) idle_.push_back(sum(idle) / static_cast<double>(idle.size()));
     const auto busy = numbers_of(statistics, "/mode/per_queue", "busy_seconds");
@@ -97,9 +98,9 @@ class Runner {
     row_.bytes_exchanged = number_at(statistics, "/mode/exchange/bytes_total");
     row_.geometry_bytes = largest(numbers_of(statistics, "/memory/per_queue", "geometry_bytes"));
     row_.work_bytes = largest(numbers_of(statistics, "/memory/per_queue", "work_bytes"));
-    const auto scene_bytes = number_at(statistics, "/memory/scene_bytes");
-    if (row_.geometry_bytes && scene_bytes.value_or(0) > 0)
-      row_.geometry_share = *row_.geometry_bytes / *scene_bytes;
+    auto whole = number_at(statistics, "/mode/whole_geometry_bytes");  // ODPRT has no use for the binary tree
+    if (!whole) whole = number_at(statistics, "/memory/scene_bytes");
+    if (row_.geometry_bytes && whole.value_or(0) > 0) row_.geometry_share = *row_.geometry_bytes / *whole;
   }
 
   const PreparedScene& scene_;
@@ -152,7 +153,8 @@ class SceneBench {
   }
 
   void add(const Scheme& scheme, int queues) {
-    runners_.emplace_back(prepared_, scheme, queues, device(queues, scheme.whole_device));
+    runners_.emplace_back(prepared_, scheme, queues, divisible_ ? run_.cores : queues,
+                          device(queues, scheme.whole_device));
   }
 
   void predict() {

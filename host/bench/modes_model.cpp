@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "bench/modes_cut.h"
-#include "bench/modes_deal.h"
 #include "bench/modes_events.h"
 #include "bench/modes_lives.h"
 #include "bench/modes_paths.h"
 #include "bench/modes_tiles.h"
+#include "odprt/deal.h"
+#include "odprt/subtrees.h"
 
 namespace kdray::bench {
 
@@ -19,8 +19,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kTile = 8;                // pixels of the measured tiles' sides
-constexpr double kGeometrySlack = 0.2;  // of the scene, that a queue may hold beyond its share
+constexpr int kTile = 8;  // pixels of the measured tiles' sides
+// As host/odprt has them.
+constexpr std::size_t kLeastSubtrees = 64;
+constexpr double kSpareGeometry = 0.15;  // of the scene, that a queue may hold beyond its share
 constexpr std::array kKinds = {"primary", "shadow", "reflected", "refracted"};  // by LifeKind
 
 double sum(const std::vector<double>& values) {
@@ -28,10 +30,10 @@ double sum(const std::vector<double>& values) {
 }
 
 // Of the queue that holds the most.
-double largest_sum(const std::vector<double>& values, const std::vector<std::uint32_t>& queue_of,
+double largest_sum(const std::vector<std::uint64_t>& values, const std::vector<std::uint32_t>& queue_of,
                    std::uint32_t n_queues) {
   std::vector<double> sums(n_queues);
-  for (std::size_t i = 0; i < values.size(); ++i) sums[queue_of[i]] += values[i];
+  for (std::size_t i = 0; i < values.size(); ++i) sums[queue_of[i]] += static_cast<double>(values[i]);
   return *std::max_element(sums.begin(), sums.end());
 }
 
@@ -115,20 +117,21 @@ class Prophet {
     model_.overhead_measured = input_.odprt_overhead.has_value();
     compare_rays(lives);
     for (const int queues : input_.queues) {
-      const Cut cut(input_.prepared.wide, pieces_for(static_cast<std::size_t>(queues)));
+      const odprt::Cut cut = odprt::cut(input_.prepared.flat, input_.prepared.wide,
+                                        n_subtrees(static_cast<std::size_t>(queues)));
       const Paths paths = paths_of(cut, lives);
       calibrate(paths, lives);
       std::vector<double> expected;
-      for (const Piece& piece : cut.pieces()) expected.push_back(piece.cost);
+      for (const odprt::Subtree& subtree : cut.subtrees) expected.push_back(subtree.cost);
       predict_odprt("odprt sah", queues, cut, lives, paths, expected);
-      predict_odprt(
-          "odprt pilot", queues, cut, lives, paths,
-          costs_of_pieces(paths_of(cut, pilot), pilot, cut.pieces().size(), shade_seconds_ / cost_seconds_));
+      predict_odprt("odprt pilot", queues, cut, lives, paths,
+                    costs_of_subtrees(paths_of(cut, pilot), pilot, cut.subtrees.size(),
+                                      shade_seconds_ / cost_seconds_));
     }
   }
 
-  std::size_t pieces_for(std::size_t queues) const {
-    return queues * static_cast<std::size_t>(options_.pieces_per_queue);
+  std::size_t n_subtrees(std::size_t queues) const {
+    return std::max(kLeastSubtrees, queues * static_cast<std::size_t>(options_.subtrees_per_queue));
   }
 
   std::vector<LifeRay> take_sample(int n) {
@@ -142,7 +145,7 @@ class Prophet {
                       [&](std::span<const Ray> rays) { return renderer_.trace(rays); });
   }
 
-  Paths paths_of(const Cut& cut, const std::vector<LifeRay>& lives) const {
+  Paths paths_of(const odprt::Cut& cut, const std::vector<LifeRay>& lives) const {
     return find_paths(input_.prepared.wide, cut, lives, input_.prepared.geometry.center);
   }
 
@@ -156,7 +159,7 @@ class Prophet {
   // Shares one core's seconds out: what it traced by the walks' costs, the rest by the hits that it shaded.
   void calibrate(const Paths& paths, const std::vector<LifeRay>& lives) {
     double cost = 0;
-    for (const PieceVisit& v : paths.visits) cost += v.cost;
+    for (const SubtreeVisit& v : paths.visits) cost += v.cost;
     const Json& seconds = statistics_.at("seconds");
     const double trace = seconds.value("trace", 0.0);
     double all = trace;
@@ -168,20 +171,21 @@ class Prophet {
     shade_seconds_ = (1 - share) * total / static_cast<double>(std::max<std::ptrdiff_t>(n_shaded, 1));
   }
 
-  void predict_odprt(const std::string& scheme, int queues, const Cut& cut, const std::vector<LifeRay>& lives,
-                     const Paths& paths, const std::vector<double>& costs) {
+  void predict_odprt(const std::string& scheme, int queues, const odprt::Cut& cut,
+                     const std::vector<LifeRay>& lives, const Paths& paths,
+                     const std::vector<double>& costs) {
     const auto n = static_cast<std::uint32_t>(queues);
-    std::vector<double> bytes;
-    for (const Piece& piece : cut.pieces()) bytes.push_back(static_cast<double>(piece.bytes));
-    const auto whole = static_cast<double>(input_.prepared.wide.bytes());
+    std::vector<std::uint64_t> bytes;
+    for (const odprt::Subtree& subtree : cut.subtrees) bytes.push_back(subtree.bytes);
+    const auto whole = static_cast<double>(std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0}));
     const std::vector<std::uint32_t> queue_of =
-        deal(costs, bytes, n, whole * (1.0 / queues + kGeometrySlack));
+        odprt::deal(costs, bytes, n, static_cast<std::uint64_t>(whole * (1.0 / queues + kSpareGeometry)));
     const Traffic traffic = traffic_of(lives, paths, queue_of, n);
     const Network network{options_.gigabytes_per_second * 1e9, options_.latency_us * 1e-6,
                           options_.bytes_per_ray};
     const Outcome outcome = simulate(traffic, n, network);
     Prediction& p = add(scheme, queues, outcome.seconds);
-    p.pieces = cut.pieces().size();
+    p.subtrees = cut.subtrees.size();
     p.balance = outcome.busiest > 0 ? input_.sequential_seconds / (queues * outcome.busiest) : 0;
     p.port_seconds = outcome.busiest_port;
     p.critical_path = outcome.critical_path;
@@ -204,8 +208,8 @@ class Prophet {
       traffic.journeys[i].depth = life.depth;
       const bool from_eye = life.parent == kNoParent;
       hops.push_back({from_eye ? i % n_queues : traffic.journeys[life.parent].hops.back().queue, 0});
-      for (const PieceVisit& v : paths.of(i)) {
-        const std::uint32_t queue = v.piece == kDirectory ? hops.back().queue : queue_of[v.piece];
+      for (const SubtreeVisit& v : paths.of(i)) {
+        const std::uint32_t queue = v.subtree == kDirectory ? hops.back().queue : queue_of[v.subtree];
         if (hops.back().queue != queue) hops.push_back({queue, 0});
         hops.back().seconds += factor * cost_seconds_ * v.cost;
       }

@@ -1,8 +1,8 @@
 // What    A model of both modes: from the measured costs of a scene's tiles and from a sample of its rays it predicts, by
 //         simulation, what 1 to 10,000 queues of one core each would take for the frame over a stated network.
-// Shape   PDPRT: the tiles' seconds through modes_tiles.h. ODPRT: the wide tree cut into pieces (modes_cut.h), dealt to queues by
-//         the cost of a pilot sample (modes_deal.h), the lives of a larger sample (modes_lives.h) sent along the pieces they
-//         pass (modes_paths.h) through modes_events.h. Both are scaled to one core's measured time.
+// Shape   PDPRT: the tiles' seconds through modes_tiles.h. ODPRT: the wide tree cut into subtrees and dealt to queues as
+//         host/odprt does it, by the cost of a pilot sample; the lives of a larger sample (modes_lives.h) sent along the
+//         subtrees they pass (modes_paths.h) through modes_events.h. Both are scaled to one core's measured time.
 // Why     docs/bench.md has the assumptions and the limits.
 #pragma once
 
@@ -25,7 +25,7 @@ struct ModelOptions {
   double latency_us = 2;
   double service_us = 0.2;  // that a bag of tiles needs for a request
   double bytes_per_ray = 64;
-  int pieces_per_queue = 16;
+  int subtrees_per_queue = 16;
   int sample = 1 << 16;  // eye rays; the pilot sample has a quarter as many
 };
 
@@ -50,7 +50,7 @@ struct Prediction {
   double port_seconds = 0;   // that the busiest port is carrying
   double critical_path = 0;  // seconds
   double rays_sent = 0, bytes_sent = 0;
-  double largest_geometry = 0;        // share of the wide tree that a queue holds
+  double largest_geometry = 0;        // share of the geometry that a queue holds
   std::vector<double> exchange = {};  // rays from each to each, up to kMatrixMost queues
 };
 

@@ -1,12 +1,17 @@
 #include "bench/modes_paths.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "flatten/collapse.h"
 
 namespace kdray::bench {
 
 namespace {
 
 using layout::u32;
+
+constexpr double kVisitCost = 1, kBlockCost = 2;
 
 // A ray about the scene's centre.
 struct Line {
@@ -34,66 +39,79 @@ struct Line {
   }
 };
 
+// The slots of a node from near to far, for rays of an octant.
+u32 slot_at(const layout::WideNode& node, u32 octant, u32 nearer) {
+  return node.order[octant] >> (3 * (flatten::kWidth - 1 - nearer)) & 7u;
+}
+
 class Walk {
  public:
-  Walk(const flatten::WideForm& form, const Cut& cut, Paths& paths) : form_(form), cut_(cut), paths_(paths) {}
+  Walk(const flatten::WideForm& form, const odprt::Cut& cut, Paths& paths)
+      : form_(form), cut_(cut), paths_(paths) {}
 
   void run(const Line& line) {
-    visit(line, 0, cut_.piece_of_node(0));
+    if (!cut_.top.empty()) visit_opened(line, cut_.top.front());
     paths_.first.push_back(paths_.visits.size());
   }
 
  private:
-  void visit(const Line& line, u32 index, u32 piece) {
-    count(piece, kVisitCost);
-    const layout::WideNode& node = form_.nodes[index];
-    for (u32 nearer = 0; nearer < 8; ++nearer) {
+  template <class Enter>
+  void for_each_met(const Line& line, const layout::WideNode& node, const Enter& enter) {
+    for (u32 nearer = 0; nearer < flatten::kWidth; ++nearer) {
       const u32 slot = slot_at(node, line.octant, nearer);
-      if (!(node.bounds[0][0][slot] <= node.bounds[0][1][slot]) || !line.meets(node, slot)) continue;
-      const u32 child = node.child[slot];
-      if ((child & KDRAY_WIDE_LEAF) != 0) {
-        count(piece == kDirectory ? cut_.piece_of_leaf(index, slot) : piece,
-              kBlockCost * blocks_of_leaf(form_, child));
-      } else {
-        visit(line, child, piece == kDirectory ? cut_.piece_of_node(child) : piece);
-      }
+      const bool empty = !(node.bounds[0][0][slot] <= node.bounds[0][1][slot]);
+      if (!empty && line.meets(node, slot)) enter(slot);
     }
   }
 
-  void count(u32 piece, double cost) {
-    const bool there = paths_.visits.size() > paths_.first.back() && paths_.visits.back().piece == piece;
-    if (!there) paths_.visits.push_back({piece, 0});
+  void visit_opened(const Line& line, const odprt::Opened& opened) {
+    count(kDirectory, kVisitCost);
+    const layout::WideNode& node = form_.nodes[opened.node];
+    for_each_met(line, node, [&](u32 slot) {
+      const std::int32_t below = opened.below[slot];
+      if (below >= 0)
+        visit_opened(line, cut_.top[static_cast<std::size_t>(below)]);
+      else
+        visit(line, node.child[slot], static_cast<u32>(-1 - below));
+    });
+  }
+
+  void visit(const Line& line, u32 child, u32 subtree) {
+    if ((child & KDRAY_WIDE_LEAF) != 0) return count(subtree, kBlockCost * odprt::leaf_blocks(form_, child));
+    count(subtree, kVisitCost);
+    const layout::WideNode& node = form_.nodes[child];
+    for_each_met(line, node, [&](u32 slot) { visit(line, node.child[slot], subtree); });
+  }
+
+  void count(u32 subtree, double cost) {
+    const bool there = paths_.visits.size() > paths_.first.back() && paths_.visits.back().subtree == subtree;
+    if (!there) paths_.visits.push_back({subtree, 0});
     paths_.visits.back().cost += static_cast<float>(cost);
   }
 
   const flatten::WideForm& form_;
-  const Cut& cut_;
+  const odprt::Cut& cut_;
   Paths& paths_;
 };
 
 }  // namespace
 
-Paths find_paths(const flatten::WideForm& form, const Cut& cut, std::span<const LifeRay> lives,
+Paths find_paths(const flatten::WideForm& form, const odprt::Cut& cut, std::span<const LifeRay> lives,
                  const dvec3& center) {
   Paths paths;
   Walk walk(form, cut, paths);
-  for (const LifeRay& life : lives) {
-    if (form.nodes.empty())
-      paths.first.push_back(0);
-    else
-      walk.run(Line(life.ray, center));
-  }
+  for (const LifeRay& life : lives) walk.run(Line(life.ray, center));
   return paths;
 }
 
-std::vector<double> costs_of_pieces(const Paths& paths, std::span<const LifeRay> lives, std::size_t n_pieces,
-                                    double shade_cost) {
-  std::vector<double> costs(n_pieces);
-  std::vector<std::uint32_t> end(lives.size(), kDirectory);  // the piece where each ray ends
+std::vector<double> costs_of_subtrees(const Paths& paths, std::span<const LifeRay> lives,
+                                      std::size_t n_subtrees, double shade_cost) {
+  std::vector<double> costs(n_subtrees);
+  std::vector<std::uint32_t> end(lives.size(), kDirectory);  // the subtree where each ray ends
   for (std::size_t i = 0; i < lives.size(); ++i) {
     if (lives[i].parent != kNoParent) end[i] = end[lives[i].parent];
-    for (const PieceVisit& v : paths.of(i)) {
-      if (v.piece != kDirectory) end[i] = v.piece;
+    for (const SubtreeVisit& v : paths.of(i)) {
+      if (v.subtree != kDirectory) end[i] = v.subtree;
       if (end[i] != kDirectory) costs[end[i]] += v.cost;
     }
     if (end[i] != kDirectory && is_shaded(lives[i])) costs[end[i]] += shade_cost;

@@ -102,8 +102,8 @@ std::string model_table(const ModesRun& run, const ModelOptions& options) {
     out += "\n";
   }
   for (const Check& c : checks_of(run))
-    out += fmt::format("  checked: {:<18}{:>3} queue{} predicted {:.4f} s, measured {:.4f} s, {:+.1f}%\n",
-                       c.scheme, c.queues, c.queues == 1 ? ": " : "s:", c.predicted, c.measured,
+    out += fmt::format("  checked: {:<18}{:>3} queue{} {} predicted {:.4g}, measured {:.4g}, {:+.1f}%\n",
+                       c.scheme, c.queues, c.queues == 1 ? ": " : "s:", c.what, c.predicted, c.measured,
                        100 * c.error());
   out += "  at the most:";
   for (const char* const scheme : {"pdprt bag", "odprt pilot"})
@@ -140,8 +140,8 @@ Json json_of(const Prediction& p) {
   Json json = {
       {"scheme", p.scheme}, {"queues", p.queues}, {"seconds", p.seconds}, {"efficiency", p.efficiency}};
   if (p.tiles > 0) json["tiles"] = p.tiles;
-  if (p.pieces > 0) {
-    json["pieces"] = p.pieces;
+  if (p.subtrees > 0) {
+    json["subtrees"] = p.subtrees;
     json["balance"] = p.balance;
     json["port_seconds"] = p.port_seconds;
     json["critical_path_seconds"] = p.critical_path;
@@ -177,8 +177,9 @@ Json model_json(const ModesRun& run) {
   for (const Check& c : checks_of(run))
     json["checks"].push_back({{"scheme", c.scheme},
                               {"queues", c.queues},
-                              {"predicted_seconds", c.predicted},
-                              {"measured_seconds", c.measured},
+                              {"what", c.what},
+                              {"predicted", c.predicted},
+                              {"measured", c.measured},
                               {"error", c.error()}});
   for (const Prediction& p : model.predictions) json["predictions"].push_back(json_of(p));
   return json;
@@ -209,9 +210,14 @@ std::string subtitle(std::span<const ModesRun> runs, const ModesOptions& options
 std::vector<Check> checks_of(const ModesRun& run) {
   std::vector<Check> checks;
   if (!run.model) return checks;
-  for (const Prediction& p : run.model->predictions)
-    if (const ModesRow* const row = run.find(p.scheme, p.queues); row != nullptr && row->queues <= run.cores)
-      checks.push_back({p.scheme, p.queues, p.seconds, row->seconds.median});
+  for (const Prediction& p : run.model->predictions) {
+    const ModesRow* const row = run.find(p.scheme, p.queues);
+    if (row == nullptr) continue;
+    if (row->queues <= run.cores)
+      checks.push_back({p.scheme, "seconds", p.queues, p.seconds, row->seconds.median});
+    if (p.rays_sent > 0 && row->rays_exchanged.value_or(0) > 0)
+      checks.push_back({p.scheme, "rays sent", p.queues, p.rays_sent, *row->rays_exchanged});
+  }
   return checks;
 }
 
@@ -268,7 +274,7 @@ Json json_of(std::span<const ModesRun> runs, const ModesOptions& options) {
                  {"latency_us", m.latency_us},
                  {"service_us", m.service_us},
                  {"bytes_per_ray", m.bytes_per_ray},
-                 {"pieces_per_queue", m.pieces_per_queue}}},
+                 {"subtrees_per_queue", m.subtrees_per_queue}}},
                {"runs", Json::array()}};
   for (const int queues : queues_of(runs))
     for (const std::string& balance : kBalances)

@@ -11,11 +11,11 @@ namespace kdray::bench {
 // How much faster the thesis found PDPRT than ODPRT.
 inline constexpr double kThesisLeast = 0.55, kThesisMost = 0.64;
 
-// What was predicted beside what was measured, where every queue has a core.
+// What was predicted beside what was measured: seconds, where every queue has a core; of ODPRT rays that were sent, always.
 struct Check {
-  std::string scheme;
+  std::string scheme, what;
   int queues = 1;
-  double predicted = 0, measured = 0;  // seconds
+  double predicted = 0, measured = 0;
   double error() const { return predicted / measured - 1; }
 };
 std::vector<Check> checks_of(const ModesRun& run);
