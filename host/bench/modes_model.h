@@ -45,7 +45,7 @@ struct Prediction {
   // PDPRT
   std::size_t tiles = 0;
   // ODPRT
-  int pieces = 0;
+  std::size_t subtrees = 0;
   double balance = 0;        // mean work of a queue over the largest: the efficiency without a network
   double port_seconds = 0;   // that the busiest port is carrying
   double critical_path = 0;  // seconds
