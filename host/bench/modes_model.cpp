@@ -10,6 +10,7 @@
 #include "bench/modes_lives.h"
 #include "bench/modes_paths.h"
 #include "bench/modes_tiles.h"
+#include "bench/modes_traffic.h"
 #include "odprt/deal.h"
 #include "odprt/subtrees.h"
 
@@ -116,18 +117,23 @@ class Prophet {
     model_.odprt_overhead = input_.odprt_overhead.value_or(1);
     model_.overhead_measured = input_.odprt_overhead.has_value();
     compare_rays(lives);
+    calibrate(lives);
     for (const int queues : input_.queues) {
       const odprt::Cut cut = odprt::cut(input_.prepared.flat, input_.prepared.wide,
                                         n_subtrees(static_cast<std::size_t>(queues)));
-      const Paths paths = paths_of(cut, lives);
-      calibrate(paths, lives);
       std::vector<double> expected;
       for (const odprt::Subtree& subtree : cut.subtrees) expected.push_back(subtree.cost);
-      predict_odprt("odprt sah", queues, cut, lives, paths, expected);
-      predict_odprt("odprt pilot", queues, cut, lives, paths,
-                    costs_of_subtrees(paths_of(cut, pilot), pilot, cut.subtrees.size(),
-                                      shade_seconds_ / cost_seconds_));
+      predict_odprt("odprt sah", queues, cut, lives, expected);
+      predict_odprt("odprt pilot", queues, cut, lives, measured_costs(cut, pilot));
     }
+  }
+
+  // Of each subtree, over the pilot sample.
+  std::vector<double> measured_costs(const odprt::Cut& cut, const std::vector<LifeRay>& pilot) const {
+    std::vector<std::uint32_t> itself(cut.subtrees.size());
+    std::iota(itself.begin(), itself.end(), 0u);
+    return costs_of_owners(paths_of(cut, itself, pilot), pilot, itself.size(),
+                           rates_.seconds_of_shade / rates_.seconds_of_cost);
   }
 
   std::size_t n_subtrees(std::size_t queues) const {
@@ -145,8 +151,9 @@ class Prophet {
                       [&](std::span<const Ray> rays) { return renderer_.trace(rays); });
   }
 
-  Paths paths_of(const odprt::Cut& cut, const std::vector<LifeRay>& lives) const {
-    return find_paths(input_.prepared.wide, cut, lives, input_.prepared.geometry.center);
+  Paths paths_of(const odprt::Cut& cut, const std::vector<std::uint32_t>& owner_of,
+                 const std::vector<LifeRay>& lives) const {
+    return find_paths(input_.prepared.wide, cut, owner_of, lives, input_.prepared.geometry.center);
   }
 
   void compare_rays(const std::vector<LifeRay>& lives) {
@@ -156,31 +163,37 @@ class Prophet {
     for (SampledRays& rays : model_.rays) rays.sampled *= model_.rays_per_sample;
   }
 
-  // Shares one core's seconds out: what it traced by the walks' costs, the rest by the hits that it shaded.
-  void calibrate(const Paths& paths, const std::vector<LifeRay>& lives) {
+  // Shares one core's seconds out: what it traced by the walks' costs, which are the same in every cut, the rest by the hits
+  // that it shaded.
+  void calibrate(const std::vector<LifeRay>& lives) {
+    const odprt::Cut cut = odprt::cut(input_.prepared.flat, input_.prepared.wide, 1);
     double cost = 0;
-    for (const SubtreeVisit& v : paths.visits) cost += v.cost;
+    for (const Visit& v : paths_of(cut, std::vector<std::uint32_t>(cut.subtrees.size()), lives).visits)
+      cost += v.cost;
     const Json& seconds = statistics_.at("seconds");
     const double trace = seconds.value("trace", 0.0);
     double all = trace;
     for (const char* const stage : {"shade", "admit", "add"}) all += seconds.value(stage, 0.0);
     const double share = all > 0 && trace > 0 ? trace / all : 1;
     const double total = input_.sequential_seconds / model_.rays_per_sample;
-    cost_seconds_ = share * total / std::max(cost, 1.0);
+    rates_.seconds_of_cost = share * total / std::max(cost, 1.0);
     const auto n_shaded = std::count_if(lives.begin(), lives.end(), is_shaded);
-    shade_seconds_ = (1 - share) * total / static_cast<double>(std::max<std::ptrdiff_t>(n_shaded, 1));
+    rates_.seconds_of_shade =
+        (1 - share) * total / static_cast<double>(std::max<std::ptrdiff_t>(n_shaded, 1));
   }
 
   void predict_odprt(const std::string& scheme, int queues, const odprt::Cut& cut,
-                     const std::vector<LifeRay>& lives, const Paths& paths,
-                     const std::vector<double>& costs) {
+                     const std::vector<LifeRay>& lives, const std::vector<double>& costs) {
     const auto n = static_cast<std::uint32_t>(queues);
     std::vector<std::uint64_t> bytes;
     for (const odprt::Subtree& subtree : cut.subtrees) bytes.push_back(subtree.bytes);
     const auto whole = static_cast<double>(std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0}));
     const std::vector<std::uint32_t> queue_of =
         odprt::deal(costs, bytes, n, static_cast<std::uint64_t>(whole * (1.0 / queues + kSpareGeometry)));
-    const Traffic traffic = traffic_of(lives, paths, queue_of, n);
+    const Rates rates{rates_.seconds_of_cost * model_.odprt_overhead,
+                      rates_.seconds_of_shade * model_.odprt_overhead};
+    const Traffic traffic =
+        make_traffic(lives, paths_of(cut, queue_of, lives), n, rates, model_.rays_per_sample);
     const Network network{options_.gigabytes_per_second * 1e9, options_.latency_us * 1e-6,
                           options_.bytes_per_ray};
     const Outcome outcome = simulate(traffic, n, network);
@@ -194,38 +207,13 @@ class Prophet {
     if (queues <= kMatrixMost) p.exchange = exchange_matrix(traffic, n);
   }
 
-  // Every ray's way from queue to queue. Eye rays are dealt out evenly to begin with; the directory is walked by whoever has
-  // the ray, and where it ends it is shaded.
-  Traffic traffic_of(const std::vector<LifeRay>& lives, const Paths& paths,
-                     const std::vector<std::uint32_t>& queue_of, std::uint32_t n_queues) const {
-    Traffic traffic;
-    traffic.rays_per_journey = model_.rays_per_sample;
-    traffic.journeys.resize(lives.size());
-    const double factor = model_.rays_per_sample * model_.odprt_overhead;
-    for (std::uint32_t i = 0; i < lives.size(); ++i) {
-      const LifeRay& life = lives[i];
-      std::vector<Hop>& hops = traffic.journeys[i].hops;
-      traffic.journeys[i].depth = life.depth;
-      const bool from_eye = life.parent == kNoParent;
-      hops.push_back({from_eye ? i % n_queues : traffic.journeys[life.parent].hops.back().queue, 0});
-      for (const SubtreeVisit& v : paths.of(i)) {
-        const std::uint32_t queue = v.subtree == kDirectory ? hops.back().queue : queue_of[v.subtree];
-        if (hops.back().queue != queue) hops.push_back({queue, 0});
-        hops.back().seconds += factor * cost_seconds_ * v.cost;
-      }
-      if (is_shaded(life)) hops.back().seconds += factor * shade_seconds_;
-      (from_eye ? traffic.first : traffic.journeys[life.parent].next).push_back(i);
-    }
-    return traffic;
-  }
-
   const ModelInput& input_;
   Renderer& renderer_;
   RenderOptions frame_;
   const ModelOptions& options_;
   Json statistics_;            // of the frame in small tiles
   std::vector<double> tiles_;  // seconds, along the curve that they come in
-  double cost_seconds_ = 0, shade_seconds_ = 0;
+  Rates rates_;                // without ODPRT's own overhead
   Model model_;
 };
 

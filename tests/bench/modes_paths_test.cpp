@@ -38,19 +38,26 @@ odprt::Cut cut_ball(std::size_t n) {
   return odprt::cut(ball().flat, ball().wide, n);
 }
 
+// Every subtree an owner of its own.
+Paths paths_of(const odprt::Cut& cut, std::span<const LifeRay> lives) {
+  std::vector<std::uint32_t> itself(cut.subtrees.size());
+  std::iota(itself.begin(), itself.end(), 0u);
+  return find_paths(ball().wide, cut, itself, lives, ball().geometry.center);
+}
+
 double sum_of(const Paths& paths) {
   double sum = 0;
-  for (const SubtreeVisit& v : paths.visits) sum += v.cost;
+  for (const Visit& v : paths.visits) sum += v.cost;
   return sum;
 }
 
 TEST(PathsOfRays, CostTheSameWhateverTheCut) {
   const std::vector<LifeRay> lives = random_lives(500);
-  const double whole = sum_of(find_paths(ball().wide, cut_ball(1), lives, ball().geometry.center));
+  const double whole = sum_of(paths_of(cut_ball(1), lives));
   EXPECT_GT(whole, 500);  // each visits the root at least
   for (const std::size_t n : {2u, 30u, 1000u}) {
     const odprt::Cut cut = cut_ball(n);
-    EXPECT_NEAR(sum_of(find_paths(ball().wide, cut, lives, ball().geometry.center)), whole, 1e-6 * whole);
+    EXPECT_NEAR(sum_of(paths_of(cut, lives)), whole, 1e-6 * whole);
   }
 }
 
@@ -58,11 +65,11 @@ TEST(PathsOfRays, CostTheSameWhateverTheCut) {
 TEST(PathsOfRays, GoFromNearToFar) {
   const odprt::Cut cut = cut_ball(40);
   for (const LifeRay& life : random_lives(300)) {
-    const Paths paths = find_paths(ball().wide, cut, std::span(&life, 1), ball().geometry.center);
+    const Paths paths = paths_of(cut, std::span(&life, 1));
     double before = -std::numeric_limits<double>::infinity();
-    for (const SubtreeVisit& v : paths.of(0)) {
-      if (v.subtree == kDirectory) continue;
-      const Box& box = cut.subtrees[v.subtree].bounds;
+    for (const Visit& v : paths.of(0)) {
+      if (v.owner == kDirectory) continue;
+      const Box& box = cut.subtrees[v.owner].bounds;
       double enter = 0, leave = std::numeric_limits<double>::infinity();
       for (int k = 0; k < 3; ++k) {
         const double origin = life.ray.origin[k] - ball().geometry.center[k], along = life.ray.direction[k];
@@ -82,25 +89,37 @@ TEST(PathsOfRays, EndWhereTheRayEnds) {
   life.ray.origin[0] = -3, life.ray.origin[1] = 0.1f, life.ray.origin[2] = 0.05f;
   life.ray.direction[0] = 1;
   life.ray.t_max = std::numeric_limits<float>::infinity();
-  const Paths through = find_paths(ball().wide, cut, std::span(&life, 1), ball().geometry.center);
+  const Paths through = paths_of(cut, std::span(&life, 1));
   life.ray.t_max = 3;  // the middle: one side only
-  const Paths half = find_paths(ball().wide, cut, std::span(&life, 1), ball().geometry.center);
+  const Paths half = paths_of(cut, std::span(&life, 1));
   life.ray.t_max = 1;  // outside
-  const Paths none = find_paths(ball().wide, cut, std::span(&life, 1), ball().geometry.center);
+  const Paths none = paths_of(cut, std::span(&life, 1));
   EXPECT_GT(through.visits.size(), half.visits.size());
   EXPECT_GT(half.visits.size(), none.visits.size());
-  for (const SubtreeVisit& v : none.visits) EXPECT_EQ(v.subtree, kDirectory);
+  for (const Visit& v : none.visits) EXPECT_EQ(v.owner, kDirectory);
 }
 
-TEST(CostsOfSubtrees, BelongToWhereRaysAreAndEnd) {
+TEST(PathsOfRays, OfOneOwnerAreOneStay) {
+  const odprt::Cut cut = cut_ball(40);
+  const std::vector<LifeRay> lives = random_lives(100);
+  const Paths paths = find_paths(ball().wide, cut, std::vector<std::uint32_t>(cut.subtrees.size(), 7), lives,
+                                 ball().geometry.center);
+  ASSERT_EQ(paths.n_rays(), 100u);
+  for (std::size_t i = 0; i < paths.n_rays(); ++i) {
+    ASSERT_EQ(paths.of(i).size(), 1u);
+    EXPECT_EQ(paths.of(i)[0].owner, 7u);
+  }
+}
+
+TEST(CostsOfOwners, BelongToWhereRaysAreAndEnd) {
   Paths paths;
   paths.visits = {{kDirectory, 1}, {0, 2}, {kDirectory, 4}, {1, 8}, {kDirectory, 16}};
   paths.first = {0, 4, 5};
   std::vector<LifeRay> lives(2);
   lives[0].hit = true;
-  lives[1].parent = 0;  // meets no subtree: belongs to where its parent ended
+  lives[1].parent = 0;  // meets nothing: belongs to where its parent ended
   lives[1].hit = true, lives[1].kind = LifeKind::shadow;
-  EXPECT_EQ(costs_of_subtrees(paths, lives, 2, 100), (std::vector<double>{6, 124}));
+  EXPECT_EQ(costs_of_owners(paths, lives, 2, 100), (std::vector<double>{6, 124}));
 }
 
 }  // namespace
