@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <new>
@@ -40,6 +41,16 @@ void prefer_large_pages(void* memory, std::size_t bytes) {
 
 std::shared_ptr<void> allocate(std::size_t bytes) {
   return {allocate_pages(bytes), [](void* p) { std::free(p); }};
+}
+
+std::shared_ptr<void> allocate_zeroed(std::size_t bytes) {
+  const std::size_t whole = rounded_up(std::max<std::size_t>(bytes, 1), kPage) + kPage;
+  void* const memory = mmap(nullptr, whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) throw std::bad_alloc();
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  auto* const aligned = static_cast<char*>(memory) + (rounded_up(address, kPage) - address);
+  if (bytes >= kLargePages) madvise(aligned, rounded_up(bytes, kPage), MADV_HUGEPAGE);
+  return {aligned, [memory, whole](void*) { munmap(memory, whole); }};
 }
 
 }  // namespace kdray

@@ -16,6 +16,9 @@ inline constexpr std::size_t kLargePages = std::size_t{4} << 20;
 
 std::shared_ptr<void> allocate(std::size_t bytes);
 
+// Zeroes; a page that nobody touches takes nothing and costs nothing.
+std::shared_ptr<void> allocate_zeroed(std::size_t bytes);
+
 // Asks for large pages where memory of another allocator is large, before it is touched.
 void prefer_large_pages(void* memory, std::size_t bytes);
 

@@ -46,6 +46,9 @@ class Context {
   // of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
   cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
+  // A buffer of zeroes. Where the device works in the host's memory, pages that nobody touches are never made.
+  cl::Buffer zeroed_buffer(std::size_t bytes, const std::string& what) const;
+
   // A buffer for reading of what lies at `data`: that memory itself where the device works in the host's, which `owner` then
   // keeps as long as the buffer lives; elsewhere a copy.
   cl::Buffer upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,

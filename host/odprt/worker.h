@@ -88,6 +88,7 @@ class Worker {
 
  private:
   cl::Buffer make(std::size_t bytes, const std::string& what);
+  cl::Buffer make_film(std::size_t n_pixels);
   cl::Buffer make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
                          const std::string& what);
   void write_travel();
@@ -98,6 +99,7 @@ class Worker {
   const Plan plan_;
   layout::Travel travel_{};
   std::size_t bytes_ = 0, band_pixels_ = 0;
+  bool film_is_clear_ = true;
   std::vector<layout::Slice> slices_;
   std::vector<layout::Traffic> traffic_;
   std::vector<layout::u32> visits_;

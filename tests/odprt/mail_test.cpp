@@ -1,0 +1,80 @@
+// What    Mail: rays come out as they were put in, by slice, and their number and depth are known.
+#include "odprt/mail.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <set>
+
+namespace kdray::test {
+namespace {
+
+using odprt::Mail;
+
+constexpr std::size_t kCapacity = 48;
+
+// Ray i has i + 100*field in each field, and its depth above the finder.
+std::vector<float> stream(std::uint32_t n_fields, std::uint32_t depth) {
+  std::vector<float> words(n_fields * kCapacity);
+  for (std::uint32_t f = 0; f < n_fields; ++f)
+    for (std::size_t i = 0; i < kCapacity; ++i) words[f * kCapacity + i] = static_cast<float>(i + 100 * f);
+  for (std::size_t i = 0; i < kCapacity; ++i)
+    words[KDRAY_RAY_FINDER * kCapacity + i] = std::bit_cast<float>(KDRAY_NO_PART | depth << 8);
+  return words;
+}
+
+TEST(Mail, RaysComeOutAsTheyWentIn) {
+  Mail mail(2);
+  const std::vector<float> rays = stream(KDRAY_TRAVEL_RAY_FIELDS, 3);
+  mail.put_rays(1, rays.data(), kCapacity, 20);
+  mail.put_shadow_rays(1, stream(KDRAY_TRAVEL_SHADOW_FIELDS, 0).data(), kCapacity, 7);
+  EXPECT_EQ(mail.n, 27u);
+  EXPECT_EQ(mail.deepest, 3u);
+  EXPECT_EQ(mail.rays[0].size(), 0u);
+  std::vector<float> out(KDRAY_TRAVEL_RAY_FIELDS * kCapacity);
+  std::multiset<float> first_fields;
+  while (mail.rays[1].size() > 0) {
+    const std::size_t n = std::min<std::size_t>(mail.rays[1].size(), 6);
+    mail.rays[1].take(out.data(), kCapacity, 2, n);
+    for (std::size_t i = 2; i < 2 + n; ++i) {
+      first_fields.insert(out[i]);
+      for (std::uint32_t f = 1; f < KDRAY_TRAVEL_RAY_FIELDS; ++f)
+        if (f != KDRAY_RAY_FINDER) {
+          EXPECT_EQ(out[f * kCapacity + i], out[i] + 100 * f);
+        }
+    }
+  }
+  std::multiset<float> expected;
+  for (int i = 0; i < 20; ++i) expected.insert(static_cast<float>(i));
+  EXPECT_EQ(first_fields, expected);
+}
+
+TEST(Mail, PooledRaysGetTheirDepth) {
+  Mail mail(1);
+  std::vector<float> pool = stream(KDRAY_TRAVEL_RAY_FIELDS, 0);
+  mail.put_pooled_rays(0, pool.data(), kCapacity, 5, 4);
+  EXPECT_EQ(mail.deepest, 4u);
+  std::vector<float> out(KDRAY_TRAVEL_RAY_FIELDS * kCapacity);
+  mail.rays[0].take(out.data(), kCapacity, 0, 5);
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(out[KDRAY_RAY_FINDER * kCapacity + i]), KDRAY_NO_PART | 4u << 8);
+}
+
+TEST(Mail, TakingAllMovesAndEmpties) {
+  Mail a(2), b(2);
+  const std::vector<float> rays = stream(KDRAY_TRAVEL_RAY_FIELDS, 2);
+  a.put_rays(0, rays.data(), kCapacity, 3);
+  b.put_rays(0, rays.data(), kCapacity, 4);
+  b.put_rays(1, rays.data(), kCapacity, 5);
+  a.take_all(b);
+  EXPECT_EQ(a.n, 12u);
+  EXPECT_EQ(a.rays[0].size(), 7u);
+  EXPECT_EQ(a.rays[1].size(), 5u);
+  EXPECT_EQ(a.deepest, 2u);
+  EXPECT_EQ(b.n, 0u);
+  EXPECT_EQ(b.deepest, 0u);
+  EXPECT_EQ(b.rays[0].size() + b.rays[1].size(), 0u);
+}
+
+}  // namespace
+}  // namespace kdray::test

@@ -1,0 +1,182 @@
+// What    The parts of a divided scene: together they hold every leaf of the whole, each once, with the same boxes and the same
+//         numbers in their blocks; primitives that lie in several parts are known to; the directory encloses what the
+//         parts hold.
+#include "odprt/parts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+#include <tuple>
+
+#include "odprt/division.h"
+#include "odprt/prepared_scenes.h"
+
+namespace kdray::test {
+namespace {
+
+constexpr std::uint64_t kSeed = 23;
+constexpr std::size_t kRows[3] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
+
+std::uint32_t number_of(const flatten::FlatScene& scene, std::uint32_t kind, std::uint32_t index) {
+  return kind == 0 ? scene.triangles[index].number : kind == 1 ? scene.spheres[index].number : scene.cones[index].number;
+}
+
+// A leaf by what a ray sees of it: its box, its kind, its words with numbers for indices.
+using Leaf = std::tuple<std::vector<float>, std::uint32_t, std::vector<layout::u32>>;
+
+Leaf leaf_of(const flatten::FlatScene& scene, const flatten::WideForm& form, layout::u32 word, const Box& box) {
+  const std::uint32_t kind = word >> KDRAY_WIDE_KIND_SHIFT & 3u;
+  const auto& blocks = kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
+  const auto width = static_cast<std::size_t>(form.block);
+  const std::size_t words = kRows[kind] * width;
+  const layout::u32* const first = blocks.data() + (word & KDRAY_WIDE_FIRST_MASK) * words;
+  std::vector<layout::u32> all(first, first + odprt::leaf_blocks(form, word) * words);
+  for (std::size_t b = 0; b < all.size(); b += words)
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      layout::u32& index = all[b + (kRows[kind] - 1) * width + lane];
+      const layout::u32 last = index & KDRAY_WIDE_LAST;
+      index = number_of(scene, kind, index & ~KDRAY_WIDE_LAST) | last;
+      if (last) break;
+    }
+  return {{box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z}, kind, all};
+}
+
+// Every leaf that a walk from the root can come to.
+std::vector<Leaf> leaves_of(const flatten::FlatScene& scene, const flatten::WideForm& form) {
+  std::vector<Leaf> leaves;
+  if (form.nodes.empty()) return leaves;
+  std::vector<layout::u32> stack{0};
+  while (!stack.empty()) {
+    const layout::WideNode& node = form.nodes[stack.back()];
+    stack.pop_back();
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
+      const Box box = odprt::child_bounds(node, slot);
+      if (box.empty()) continue;
+      if (node.child[slot] & KDRAY_WIDE_LEAF)
+        leaves.push_back(leaf_of(scene, form, node.child[slot], box));
+      else
+        stack.push_back(node.child[slot]);
+    }
+  }
+  std::sort(leaves.begin(), leaves.end());
+  return leaves;
+}
+
+// Any part for each subtree: not only runs of neighbours.
+std::vector<std::uint32_t> random_parts(std::size_t n, std::uint32_t n_parts, std::mt19937_64& random) {
+  std::vector<std::uint32_t> parts(n);
+  for (std::uint32_t& part : parts) part = static_cast<std::uint32_t>(random() % n_parts);
+  return parts;
+}
+
+class Parts : public testing::Test {
+ protected:
+  // Calls check(name, scene, cut, part_of, parts) for all scenes, cut into few and many subtrees.
+  template <class Check>
+  void for_all(const Check& check) {
+    std::mt19937_64 random(kSeed);
+    for (const auto& [name, scene] : prepared_scenes())
+      for (const std::uint32_t n_parts : {2u, 5u, 64u}) {
+        const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 4 * n_parts);
+        const auto part_of = random_parts(cut.subtrees.size(), n_parts, random);
+        check(name, scene, cut, part_of, odprt::make_parts(scene.flat, scene.wide, cut, part_of, n_parts));
+      }
+  }
+};
+
+TEST_F(Parts, HoldEveryLeafOnce) {
+  for_all([](const std::string& name, const prepare::Prepared& scene, const odprt::Cut&, const auto&,
+             const std::vector<odprt::Part>& parts) {
+    std::vector<Leaf> leaves;
+    for (const odprt::Part& part : parts) {
+      const std::vector<Leaf> own = leaves_of(part.flat, part.wide);
+      leaves.insert(leaves.end(), own.begin(), own.end());
+    }
+    std::sort(leaves.begin(), leaves.end());
+    // Many leaves: compared whole, told by their number.
+    EXPECT_TRUE(leaves == leaves_of(scene.flat, scene.wide)) << name << ": " << leaves.size() << " leaves";
+  });
+}
+
+TEST_F(Parts, SharedTrianglesComeFirstByNumber) {
+  int n_shared = 0;
+  for_all([&](const std::string& name, const prepare::Prepared&, const odprt::Cut&, const auto&,
+              const std::vector<odprt::Part>& parts) {
+    std::map<std::uint32_t, int> holders;
+    for (const odprt::Part& part : parts)
+      for (const layout::Triangle& t : part.flat.triangles) ++holders[t.number];
+    for (const odprt::Part& part : parts) {
+      for (std::size_t i = 0; i < part.flat.triangles.size(); ++i) {
+        const std::uint32_t number = part.flat.triangles[i].number;
+        EXPECT_EQ(holders[number] > 1, i < part.n_shared) << name;
+        if (i > 0 && i < part.n_shared) {
+          EXPECT_LT(part.flat.triangles[i - 1].number, number) << name;
+        }
+      }
+      n_shared += static_cast<int>(part.n_shared);
+    }
+  });
+  EXPECT_GT(n_shared, 10);
+}
+
+TEST_F(Parts, NormalsFollowTheirTriangles) {
+  for_all([](const std::string& name, const prepare::Prepared& scene, const odprt::Cut&, const auto&,
+             const std::vector<odprt::Part>& parts) {
+    std::map<std::uint32_t, layout::Triangle> whole;
+    for (const layout::Triangle& t : scene.flat.triangles) whole[t.number] = t;
+    for (const odprt::Part& part : parts)
+      for (const layout::Triangle& t : part.flat.triangles) {
+        const layout::Triangle& same = whole.at(t.number);
+        EXPECT_EQ(t.material, same.material);
+        ASSERT_EQ(t.normals == KDRAY_NO_NORMALS, same.normals == KDRAY_NO_NORMALS);
+        if (t.normals == KDRAY_NO_NORMALS) continue;
+        const layout::VertexNormals &a = part.flat.normals[t.normals], &b = scene.flat.normals[same.normals];
+        EXPECT_TRUE(std::equal(&a.n[0][0], &a.n[0][0] + 9, &b.n[0][0])) << name;
+      }
+  });
+}
+
+TEST_F(Parts, TheDirectoryEnclosesThem) {
+  for_all([](const std::string& name, const prepare::Prepared& scene, const odprt::Cut& cut, const auto& part_of,
+             const std::vector<odprt::Part>&) {
+    const auto cells = odprt::make_directory(scene.wide, cut, part_of);
+    EXPECT_TRUE(std::is_sorted(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.part < b.part; }));
+    EXPECT_LE(cells.size(), cut.subtrees.size());
+    for (std::size_t i = 0; i < cut.subtrees.size(); ++i) {
+      const Box& box = cut.subtrees[i].bounds;
+      const bool enclosed = std::any_of(cells.begin(), cells.end(), [&](const layout::PartCell& c) {
+        return c.part == part_of[i] &&
+               Box{{c.lo[0], c.lo[1], c.lo[2]}, {c.hi[0], c.hi[1], c.hi[2]}}.contains(box);
+      });
+      EXPECT_TRUE(enclosed) << name << " subtree " << i;
+    }
+  });
+}
+
+TEST(Division, OnePartIsTheSceneItself) {
+  const prepare::Prepared scene = prepare::prepare(smooth_meshes(), TreeOptions());
+  const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 64);
+  const std::vector<double> costs(cut.subtrees.size(), 1.0);
+  const odprt::Division whole = odprt::divide(scene.flat, scene.wide, cut, costs, 1, 0.1);
+  ASSERT_EQ(whole.parts.size(), 1u);
+  EXPECT_EQ(whole.parts[0].wide.nodes.data(), scene.wide.nodes.data()) << "copied";
+}
+
+TEST(Division, NoPartTakesMuchMoreThanItsShareOfTheBytes) {
+  const prepare::Prepared scene = prepare::prepare(smooth_meshes(), TreeOptions());
+  const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 256);
+  std::vector<double> costs(cut.subtrees.size(), 0.0);
+  costs[0] = 1;  // all the cost in one place
+  const std::size_t whole = odprt::geometry_bytes(scene.flat, scene.wide);
+  for (const std::uint32_t n : {2u, 4u, 8u}) {
+    const odprt::Division division = odprt::divide(scene.flat, scene.wide, cut, costs, n, 0.15);
+    for (const odprt::Part& part : division.parts)
+      EXPECT_LE(static_cast<double>(part.geometry_bytes()), (1.0 / n + 0.20) * static_cast<double>(whole)) << n;
+  }
+}
+
+}  // namespace
+}  // namespace kdray::test
