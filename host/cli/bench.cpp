@@ -15,6 +15,7 @@
 #include "bench/rays_bench.h"
 #include "bench/report.h"
 #include "cli/bench_build.h"
+#include "cli/bench_modes.h"
 #include "cli/bench_report.h"
 #include "cli/command.h"
 #include "cli/message.h"
@@ -121,14 +122,16 @@ Command add_bench(CLI::App& kdray) {
       kdray.add_subcommand("bench", "Measure rays or frames, beside Embree and POV-Ray where they are");
   app->require_subcommand(0, 1);
   const Command rays = add_rays(*app), frames = add_frames(*app), build = add_bench_build(*app),
-                depth = add_bench_depth(*app);
-  return {app, [rays, frames, build, depth] {
+                depth = add_bench_depth(*app), modes = add_bench_modes(*app);
+  return {app, [rays, frames, build, depth, modes] {
             if (rays.app->parsed()) return rays.run();
             if (frames.app->parsed()) return frames.run();
             if (build.app->parsed()) return build.run();
             if (depth.app->parsed()) return depth.run();
-            throw Error(ErrorCode::usage,
-                        "what to bench is missing: rays, frames, build, depth; see 'kdray bench --help'");
+            if (modes.app->parsed()) return modes.run();
+            throw Error(
+                ErrorCode::usage,
+                "what to bench is missing: rays, frames, build, depth, modes; see 'kdray bench --help'");
           }};
 }
 

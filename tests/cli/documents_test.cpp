@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<std::string> kCommands = {"render",       "trace",       "info",       "devices",
                                             "doctor",       "generate",    "compare",    "bench rays",
-                                            "bench frames", "bench build", "bench depth"};
+                                            "bench frames", "bench build", "bench depth", "bench modes"};
 
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file);

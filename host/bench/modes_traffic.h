@@ -1,0 +1,24 @@
+// What    The journeys of a sample's rays from queue to queue, for modes_events.h, by the rules of ODPRT (kernels/odprt).
+// Shape   Eye rays begin on queues in turn, others where their parent ended. A ray asks the queues whose cells it enters, in the
+//         order in which it first does, each once: for all that it holds on the ray's way. A shadow ray ends with the first that
+//         finds something in its way; another ray asks all that it enters before its hit, then goes back to the one
+//         that found it, where it is shaded. The directory is walked by whoever has the ray.
+// Limits  A queue that is asked doesn't know a hit that another will find, and may walk on behind it: that is left out.
+#pragma once
+
+#include "bench/modes_events.h"
+#include "bench/modes_paths.h"
+
+namespace kdray::bench {
+
+// Of a single ray.
+struct Rates {
+  double seconds_of_cost = 0;   // of a path's unit
+  double seconds_of_shade = 0;  // of a hit
+};
+
+// `paths`: of the lives, by queues.
+Traffic make_traffic(std::span<const LifeRay> lives, const Paths& paths, std::uint32_t n_queues,
+                     const Rates& rates, double rays_per_journey);
+
+}  // namespace kdray::bench
