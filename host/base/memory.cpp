@@ -2,7 +2,6 @@
 
 #include <sys/mman.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <new>
@@ -39,18 +38,22 @@ void prefer_large_pages(void* memory, std::size_t bytes) {
   madvise(static_cast<char*>(memory) + before, (bytes - before) / kPage * kPage, MADV_HUGEPAGE);
 }
 
-std::shared_ptr<void> allocate(std::size_t bytes) {
-  return {allocate_pages(bytes), [](void* p) { std::free(p); }};
+void make_pages(void* memory, std::size_t bytes) {
+#ifdef MADV_POPULATE_WRITE
+  constexpr std::size_t kSmallPage = 4096;
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  const std::size_t before = rounded_up(address, kSmallPage) - address;
+  if (bytes < before + kSmallPage) return;
+  // Where the system doesn't know the request, they are made when they are touched.
+  madvise(static_cast<char*>(memory) + before, (bytes - before) / kSmallPage * kSmallPage,
+          MADV_POPULATE_WRITE);
+#else
+  (void)memory, (void)bytes;
+#endif
 }
 
-std::shared_ptr<void> allocate_zeroed(std::size_t bytes) {
-  const std::size_t whole = rounded_up(std::max<std::size_t>(bytes, 1), kPage) + kPage;
-  void* const memory = mmap(nullptr, whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (memory == MAP_FAILED) throw std::bad_alloc();
-  const auto address = reinterpret_cast<std::uintptr_t>(memory);
-  auto* const aligned = static_cast<char*>(memory) + (rounded_up(address, kPage) - address);
-  if (bytes >= kLargePages) madvise(aligned, rounded_up(bytes, kPage), MADV_HUGEPAGE);
-  return {aligned, [memory, whole](void*) { munmap(memory, whole); }};
+std::shared_ptr<void> allocate(std::size_t bytes) {
+  return {allocate_pages(bytes), [](void* p) { std::free(p); }};
 }
 
 }  // namespace kdray

@@ -16,11 +16,12 @@ inline constexpr std::size_t kLargePages = std::size_t{4} << 20;
 
 std::shared_ptr<void> allocate(std::size_t bytes);
 
-// Zeroes; a page that nobody touches takes nothing and costs nothing.
-std::shared_ptr<void> allocate_zeroed(std::size_t bytes);
-
 // Asks for large pages where memory of another allocator is large, before it is touched.
 void prefer_large_pages(void* memory, std::size_t bytes);
+
+// Has the pages made that lie wholly within, which are about to be written for the first time: by another thread, while this one
+// has something else to do. What they hold stays or becomes 0.
+void make_pages(void* memory, std::size_t bytes);
 
 // The same for one owner, to be given to std::free.
 void* allocate_pages(std::size_t bytes);

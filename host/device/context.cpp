@@ -120,21 +120,16 @@ cl::Buffer Context::buffer(cl_mem_flags flags, std::size_t bytes, const std::str
   });
 }
 
-cl::Buffer Context::zeroed_buffer(std::size_t bytes, const std::string& what) const {
-  const bool in_host_memory = bytes > 0 && bytes <= found_.info.max_allocation &&
+cl::Buffer Context::buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what,
+                                       std::future<void>& made) const {
+  const bool in_host_memory = bytes >= kLargePages && bytes <= found_.info.max_allocation &&
                               checked("asking", [&] { return works_in_host_memory(); });
-  if (in_host_memory)
-    return checked("allocating " + what, [&] {
-      const std::shared_ptr<void> memory = allocate_zeroed(bytes);
-      return buffer_over(opened_->context, CL_MEM_READ_WRITE, memory.get(), bytes, memory);
-    });
-  cl::Buffer zeroed = buffer(CL_MEM_READ_WRITE, bytes, what);
-  if (bytes > 0)
-    checked("clearing " + what, [&] {
-      queues().front().enqueueFillBuffer(zeroed, cl_uchar{0}, 0, bytes);
-      queues().front().finish();
-    });
-  return zeroed;
+  if (!in_host_memory) return buffer(flags, bytes, what);
+  return checked("allocating " + what, [&] {
+    const std::shared_ptr<void> memory = allocate(bytes);
+    made = std::async(std::launch::async, [memory, bytes] { make_pages(memory.get(), bytes); });
+    return buffer_over(opened_->context, flags, memory.get(), bytes, memory);
+  });
 }
 
 cl::Buffer Context::upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,

@@ -6,6 +6,7 @@
 // Errors  Queues beyond what the device can be divided into share its parts in turn.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,8 +47,10 @@ class Context {
   // of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
   cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // A buffer of zeroes. Where the device works in the host's memory, pages that nobody touches are never made.
-  cl::Buffer zeroed_buffer(std::size_t bytes, const std::string& what) const;
+  // The same, and its pages are made in the background where it lies in the host's memory: `made` ends when they are. (Or
+  // it is no future at all.)
+  cl::Buffer buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what,
+                                std::future<void>& made) const;
 
   // A buffer for reading of what lies at `data`: that memory itself where the device works in the host's, which `owner` then
   // keeps as long as the buffer lives; elsewhere a copy.

@@ -43,16 +43,87 @@ std::vector<std::uint32_t> balanced(std::span<const double> costs, std::span<con
   return best;
 }
 
+// One run for each part; the bytes' bound is raised until it can be kept.
+std::vector<std::uint32_t> in_runs(std::span<const double> costs, std::span<const std::uint64_t> bytes,
+                                   std::uint32_t n_parts, std::uint64_t most_bytes) {
+  for (;; most_bytes += most_bytes / 8 + 1) {
+    std::vector<std::uint32_t> parts = balanced(costs, bytes, n_parts, most_bytes);
+    if (!parts.empty()) return parts;
+  }
+}
+
+struct Load {
+  double cost = 0;
+  std::uint64_t bytes = 0;
+};
+
+std::vector<Load> loads_of(std::span<const double> costs, std::span<const std::uint64_t> bytes,
+                           std::span<const std::uint32_t> parts, std::size_t n_parts) {
+  std::vector<Load> loads(n_parts);
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    loads[parts[i]].cost += costs[i];
+    loads[parts[i]].bytes += bytes[i];
+  }
+  return loads;
+}
+
+double largest_cost(std::span<const Load> loads) {
+  return std::max_element(loads.begin(), loads.end(),
+                          [](const Load& a, const Load& b) { return a.cost < b.cost; })
+      ->cost;
+}
+
+// Cuts into runs of about equal cost and gives them, the costliest first, each to the part that has least so far and room for
+// it; empty where one has no room anywhere.
+std::vector<std::uint32_t> in_several_runs(std::span<const double> costs,
+                                           std::span<const std::uint64_t> bytes, std::uint32_t n_parts,
+                                           std::uint64_t most_bytes, std::uint32_t runs_per_part) {
+  const std::uint32_t n_runs = n_parts * runs_per_part;
+  const std::vector<std::uint32_t> run_of = in_runs(costs, bytes, n_runs, most_bytes / 2);
+  const std::vector<Load> runs = loads_of(costs, bytes, run_of, n_runs);
+  std::vector<std::uint32_t> order(n_runs), part_of(n_runs);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return runs[a].cost > runs[b].cost; });
+  std::vector<Load> parts(n_parts);
+  for (const std::uint32_t run : order) {
+    std::uint32_t best = n_parts;
+    for (std::uint32_t part = 0; part < n_parts; ++part)
+      if (parts[part].bytes + runs[run].bytes <= most_bytes &&
+          (best == n_parts || parts[part].cost < parts[best].cost))
+        best = part;
+    if (best == n_parts) return {};
+    parts[best].cost += runs[run].cost;
+    parts[best].bytes += runs[run].bytes;
+    part_of[run] = best;
+  }
+  std::vector<std::uint32_t> dealt(costs.size());
+  for (std::size_t i = 0; i < costs.size(); ++i) dealt[i] = part_of[run_of[i]];
+  return dealt;
+}
+
+constexpr double kEven = 1.05;  // the largest part against the mean
+constexpr std::uint32_t kMostRuns = 16;
+
 }  // namespace
 
 std::vector<std::uint32_t> deal(std::span<const double> costs, std::span<const std::uint64_t> bytes,
                                 std::uint32_t n_parts, std::uint64_t most_bytes) {
   if (costs.empty()) return {};
   most_bytes = std::max<std::uint64_t>(most_bytes, 1);
-  for (;; most_bytes += most_bytes / 8 + 1) {
-    std::vector<std::uint32_t> parts = balanced(costs, bytes, n_parts, most_bytes);
-    if (!parts.empty()) return parts;
+  std::vector<std::uint32_t> best = in_runs(costs, bytes, n_parts, most_bytes);
+  const double even = std::accumulate(costs.begin(), costs.end(), 0.0) / n_parts * kEven;
+  double least = largest_cost(loads_of(costs, bytes, best, n_parts));
+  for (std::uint32_t runs = 2; runs <= kMostRuns && least > even; runs *= 2) {
+    std::vector<std::uint32_t> parts = in_several_runs(costs, bytes, n_parts, most_bytes, runs);
+    if (parts.empty()) continue;
+    // More runs are more rays that travel: they must be worth it.
+    const double largest = largest_cost(loads_of(costs, bytes, parts, n_parts));
+    if (largest > 0.95 * least) continue;
+    least = largest;
+    best = std::move(parts);
   }
+  return best;
 }
 
 }  // namespace kdray::odprt

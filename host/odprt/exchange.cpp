@@ -50,7 +50,7 @@ std::optional<std::uint32_t> Exchange::choose_part(std::size_t queue, const Queu
 std::optional<Turn> Exchange::next_turn(std::size_t queue, const QueueState& state) {
   std::unique_lock lock(mutex_);
   for (;; changed_.wait(lock)) {
-    if (failure_ || done()) return std::nullopt;
+    if (!failures_.empty() || done()) return std::nullopt;
     const std::optional<std::uint32_t> part = choose_part(queue, state);
     if (!part) continue;
     Turn turn;
@@ -108,7 +108,7 @@ void Exchange::end_turn(std::size_t queue, const Turn& turn, std::span<const lay
 
 void Exchange::fail(std::size_t queue, std::exception_ptr error) {
   const std::lock_guard lock(mutex_);
-  if (!failure_) failure_ = error, failed_queue_ = queue;
+  failures_.emplace(queue, std::move(error));
   changed_.notify_all();
 }
 

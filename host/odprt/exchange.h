@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -72,9 +73,9 @@ class Exchange {
   void end_turn(std::size_t queue, const Turn& turn, std::span<const layout::Traffic> traffic,
                 const QueueState& state, std::vector<Mail>& sent);
 
+  // A queue leaves, and so do all others at their next turn.
   void fail(std::size_t queue, std::exception_ptr error);
-  std::exception_ptr failure() const { return failure_; }
-  std::size_t failed_queue() const { return failed_queue_; }
+  const std::map<std::size_t, std::exception_ptr>& failures() const { return failures_; }  // by queue
 
   bool direct(std::size_t queue, std::uint32_t part) const { return direct_[queue][part]; }
   const ExchangeCounts& counts() const { return counts_; }
@@ -96,8 +97,7 @@ class Exchange {
   std::vector<char> has_tiles_, running_;     // by queue
   std::vector<std::uint64_t> seen_version_;   // of the ledger, by queue, when it last launched
   ExchangeCounts counts_;
-  std::exception_ptr failure_;
-  std::size_t failed_queue_ = 0;
+  std::map<std::size_t, std::exception_ptr> failures_;
 };
 
 }  // namespace kdray::odprt

@@ -13,17 +13,23 @@ namespace kdray::odprt {
 
 namespace {
 
-// Throws QueueFailure for what a device said, anything else as it is.
-[[noreturn]] void rethrow(std::size_t queue, std::exception_ptr error) {
+// What a device said of a queue; anything else is thrown.
+QueueFailure failure_of(std::size_t queue, std::exception_ptr error) {
   try {
     std::rethrow_exception(error);
   } catch (const cl::Error& e) {
     const Error translated = device::translate(e, "rendering");
-    throw QueueFailure(queue, std::make_exception_ptr(translated), translated.what());
+    return {queue, std::make_exception_ptr(translated), translated.what()};
   } catch (const Error& e) {
     if (e.code() != ErrorCode::no_device && e.code() != ErrorCode::out_of_memory) throw;
-    throw QueueFailure(queue, error, e.what());
+    return {queue, error, e.what()};
   }
+}
+
+void check(const Exchange& exchange) {
+  std::vector<QueueFailure> failures;
+  for (const auto& [queue, error] : exchange.failures()) failures.push_back(failure_of(queue, error));
+  if (!failures.empty()) throw QueueFailures(std::move(failures));
 }
 
 void take_film(Crew& crew, const Band& band, const layout::Frame& frame, film::Image& image) {
@@ -32,7 +38,7 @@ void take_film(Crew& crew, const Band& band, const layout::Frame& frame, film::I
     try {
       films.push_back(crew.workers[q]->map_film());
     } catch (...) {
-      rethrow(q, std::current_exception());
+      throw QueueFailures({failure_of(q, std::current_exception())});
     }
   }
   develop(films, static_cast<int>(frame.n_samples),
@@ -115,8 +121,7 @@ Result render_frame(const Request& request, const Provision& provision, const Di
       request.progress((static_cast<double>(i) + share) / static_cast<double>(provision.bands.size()));
     };
     run.run(provision.bands[i], request.progress ? progress : std::function<void(double)>());
-    if (const std::exception_ptr failure = run.exchange().failure())
-      rethrow(run.exchange().failed_queue(), failure);
+    check(run.exchange());
     take_film(crew, provision.bands[i], provision.frame, result.image);
     add_band(crew, run.exchange(), result);
     if (request.census_every > 0) add_visits(crew, division, result);

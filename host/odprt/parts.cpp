@@ -270,6 +270,10 @@ flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numb
   return flat;
 }
 
+layout::PartCell cell_of(std::uint32_t part, const Box& box) {
+  return {{box.lo.x, box.lo.y, box.lo.z}, part, {box.hi.x, box.hi.y, box.hi.z}, 0};
+}
+
 constexpr std::uint32_t kSeveral = ~0u;
 
 // The part that holds all below an opened node, or kSeveral.
@@ -299,8 +303,16 @@ void add_cells(const flatten::WideForm& form, const Cut& cut, std::span<const st
       add_cells(form, cut, part_of, static_cast<std::size_t>(below), cells);
       continue;
     }
-    const Box box = child_bounds(node, slot);
-    cells.push_back({{box.lo.x, box.lo.y, box.lo.z}, part, {box.hi.x, box.hi.y, box.hi.z}, 0});
+    cells.push_back(cell_of(part, child_bounds(node, slot)));
+  }
+}
+
+void count_cells(std::vector<layout::PartCell>& cells) {
+  for (std::size_t first = 0; first < cells.size();) {
+    std::size_t end = first;
+    while (end < cells.size() && cells[end].part == cells[first].part) ++end;
+    cells[first].n_of_part = static_cast<layout::u32>(end - first);
+    first = end;
   }
 }
 
@@ -338,6 +350,7 @@ std::vector<layout::PartCell> make_directory(const flatten::WideForm& form, cons
   if (!cut.top.empty()) add_cells(form, cut, part_of, 0, cells);
   std::stable_sort(cells.begin(), cells.end(),
                    [](const layout::PartCell& a, const layout::PartCell& b) { return a.part < b.part; });
+  count_cells(cells);
   return cells;
 }
 

@@ -34,11 +34,25 @@ std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uin
   return std::max({(r.streamed ? kStreamedRays : kRays) / n_slices, in_work, 2 * least});
 }
 
+constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
+constexpr std::size_t kSentBytes =
+    kRayBytes + 2 * KDRAY_TRAVEL_SHADOW_FIELDS * sizeof(float);  // with shadow rays
+constexpr std::size_t kShare = 8;  // of memory that is short: an eighth for the pool, and one for the outbox
+
 // Rays for one part and slice.
 std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {
   if (r.ray_buffer > 0) return r.ray_buffer;
-  return r.streamed ? std::max(kStreamedOutbox / (r.n_parts * n_slices), kBatch / 4)
-                    : std::max(kOutboxRays / n_slices, 2 * kBatch);
+  if (!r.streamed) return std::max(kOutboxRays / n_slices, 2 * kBatch);
+  const std::uint32_t n_places = r.n_parts * n_slices;
+  return static_cast<std::uint32_t>(
+      std::clamp<std::size_t>(r.memory / kShare / kSentBytes / n_places, KDRAY_LANES,
+                              std::max(kStreamedOutbox / n_places, kBatch / 4)));
+}
+
+// Rays of one depth that a slice's pool holds, where that is less than what may be alive.
+std::uint32_t streamed_pool(const PlanRequest& r, std::uint32_t n_slices, std::uint32_t max_depth) {
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(
+      r.memory / kShare / kRayBytes / max_depth / n_slices, 2 * kBatch, kStreamedPool));
 }
 
 }  // namespace
@@ -59,7 +73,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   for (const std::uint32_t least : plan.least)
     plan.capacity.push_back(level_capacity(r, least, plan.n_slices));
   const std::uint32_t largest = *std::max_element(plan.capacity.begin() + 1, plan.capacity.end());
-  const std::uint32_t streamed = std::max(kStreamedPool / plan.n_slices, 2 * kBatch);
+  const std::uint32_t streamed = streamed_pool(r, plan.n_slices, frame.max_depth);
   frame.pool_size = r.streamed ? std::min(streamed, largest) : largest;
   frame.pool_capacity = capacity_for(frame.pool_size);
   plan.shadow_pool = r.streamed ? std::min(streamed, plan.capacity[0]) : plan.capacity[0];
@@ -69,8 +83,9 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   out.n_slices = plan.n_slices;
   out.rays = outbox_rays(r, plan.n_slices);
   out.shadow = lights ? std::max(r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights) : 1;
-  out.ray_capacity = capacity_for(out.rays);
-  out.shadow_capacity = capacity_for(out.shadow);
+  // Where there is one part nothing is ever sent.
+  out.ray_capacity = capacity_for(r.n_parts > 1 ? out.rays : 0);
+  out.shadow_capacity = capacity_for(r.n_parts > 1 ? out.shadow : 0);
   return plan;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "base/error.h"
 
@@ -39,7 +40,9 @@ std::size_t queues_on_a_device(const Request& request) {
   return most;
 }
 
-Provision provide_for(const Request& request, std::uint32_t n_parts, bool streamed, std::size_t film_bytes) {
+// `of_queue`: a queue's memory, when streamed.
+Provision provide_for(const Request& request, std::uint32_t n_parts, bool streamed, std::size_t film_bytes,
+                      std::size_t of_queue = 0) {
   Provision p;
   p.frame = request.frame;
   p.n_parts = n_parts;
@@ -48,8 +51,10 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
   p.plan = make_plan(p.frame, {.features = request.features,
                                .n_parts = n_parts,
                                .n_queues = static_cast<std::uint32_t>(request.queues.size()),
-                               .n_slices = request.n_slices,
+                               // Of memory that is short: no more slices than there are compute units, about.
+                               .n_slices = streamed ? (request.n_slices + 15) / 16 : request.n_slices,
                                .ray_buffer = request.ray_buffer,
+                               .memory = of_queue,
                                .streamed = streamed});
   p.bands = bands_of(p.frame, film_bytes);
   for (const Band& band : p.bands) p.largest_band = std::max(p.largest_band, band.n_pixels);
@@ -68,23 +73,28 @@ Error too_little(const Request& request, std::size_t needed) {
                   request.device_memory, (needed >> 20) + 1));
 }
 
-// The film gets an eighth of a queue's memory, its other buffers what they take, the parts the rest.
-Provision provide_streamed(const Request& request, std::size_t geometry_bytes, std::size_t of_queue) {
+// The film gets an eighth of a queue's memory, its other buffers what they take, the parts the rest. Nothing, when that is too
+// little for any number of parts.
+std::optional<Provision> try_streamed(const Request& request, std::size_t geometry_bytes,
+                                      std::size_t of_queue) {
+  const double geometry = kSpareGeometry * kPartsAtOnce * static_cast<double>(geometry_bytes);
   auto n_parts = static_cast<std::uint32_t>(std::max<std::size_t>(request.queues.size(), 2));
   for (;;) {
-    Provision p = provide_for(request, n_parts, true, of_queue / 8);
+    Provision p = provide_for(request, n_parts, true, of_queue / 8, of_queue);
     const std::size_t work = work_of(p);
-    const double geometry = kSpareGeometry * static_cast<double>(geometry_bytes);
-    if (work < of_queue && geometry / n_parts * kPartsAtOnce <= static_cast<double>(of_queue - work)) {
+    if (work < of_queue && geometry / n_parts <= static_cast<double>(of_queue - work)) {
       p.most_geometry = of_queue - work;
       return p;
     }
-    if (n_parts == KDRAY_MAX_PARTS) {
-      const std::size_t least = work + static_cast<std::size_t>(geometry / KDRAY_MAX_PARTS * kPartsAtOnce);
-      throw too_little(request, least * queues_on_a_device(request));
-    }
+    if (n_parts == KDRAY_MAX_PARTS) return std::nullopt;
     n_parts = std::min<std::uint32_t>(n_parts + std::max(n_parts / 2, 1u), KDRAY_MAX_PARTS);
   }
+}
+
+Provision provide_streamed(const Request& request, std::size_t geometry_bytes, std::size_t of_queue) {
+  if (std::optional<Provision> p = try_streamed(request, geometry_bytes, of_queue)) return *std::move(p);
+  while (!try_streamed(request, geometry_bytes, of_queue)) of_queue += of_queue / 16 + 4096;
+  throw too_little(request, of_queue * queues_on_a_device(request));
 }
 
 }  // namespace

@@ -114,10 +114,13 @@ Result DividedScene::render(const Request& asked) {
       result.quarantined = std::move(quarantined);
       if (request.balance == Balance::dynamic) learn(result);
       return result;
-    } catch (const QueueFailure& failure) {
-      quarantined.push_back({request.queues[failure.queue].number, failure.what()});
-      request.queues.erase(request.queues.begin() + static_cast<std::ptrdiff_t>(failure.queue));
-      if (request.queues.empty()) std::rethrow_exception(failure.error);
+    } catch (const QueueFailures& e) {
+      // The last first, so that the places of the others stay.
+      for (auto failure = e.failures.rbegin(); failure != e.failures.rend(); ++failure) {
+        quarantined.push_back({request.queues[failure->queue].number, failure->what});
+        request.queues.erase(request.queues.begin() + static_cast<std::ptrdiff_t>(failure->queue));
+      }
+      if (request.queues.empty()) std::rethrow_exception(e.failures.front().error);
     }
   }
 }

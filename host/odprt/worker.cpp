@@ -24,12 +24,6 @@ cl::Buffer Worker::make(std::size_t bytes, const std::string& what) {
   return context_.buffer(CL_MEM_READ_WRITE, bytes, what);
 }
 
-cl::Buffer Worker::make_film(std::size_t n_pixels) {
-  const std::size_t bytes = n_pixels * 3 * sizeof(layout::i64);
-  bytes_ += bytes;
-  return context_.zeroed_buffer(bytes, "the film");
-}
-
 cl::Buffer Worker::make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
                                const std::string& what) {
   return make(n_streams * n_fields * capacity * sizeof(float), what);
@@ -63,13 +57,14 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       occluded_(make(std::size_t{plan.n_slices} * frame.shadow_capacity, "the occlusion flags")),
       shadow_pool_(make_stream(plan.n_slices, KDRAY_TRAVEL_SHADOW_FIELDS, plan.shadow_pool + 2 * KDRAY_LANES,
                                "the waiting shadow rays")),
-      film_(make_film(band_pixels)),
+      film_(context.buffer_made_beside(CL_MEM_READ_WRITE, band_pixels * 3 * sizeof(layout::i64), "the film",
+                                       film_made_)),
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
       inbox_(context, inbox_shape(plan.outbox)),
       wave_("wave",
             programs.kernel("odprt/wave.cl", "travel_wave", features | KDRAY_FEATURE_NUMBERS, traversal)),
       receive_("receive", programs.kernel("odprt/receive.cl", "receive", 0)) {
-  bytes_ += inbox_.bytes();
+  bytes_ += inbox_.bytes() + band_pixels * 3 * sizeof(layout::i64);
   if (!directory.empty())
     queue_.enqueueWriteBuffer(cells_, CL_TRUE, 0, directory.size_bytes(), directory.data());
   travel_.n_parts = plan.outbox.n_parts;
@@ -107,8 +102,8 @@ void Worker::begin(std::size_t first_pixel, std::size_t n_pixels, std::span<cons
                             slices_.data());
   queue_.enqueueWriteBuffer(traffic_buffer_, CL_FALSE, 0, traffic_.size() * sizeof(layout::Traffic),
                             traffic_.data());
-  if (!film_is_clear_) queue_.enqueueFillBuffer(film_, cl_long{0}, 0, n_pixels * 3 * sizeof(layout::i64));
-  film_is_clear_ = n_pixels == 0;
+  if (n_pixels > 0 && film_made_.valid()) film_made_.get();
+  if (n_pixels > 0) queue_.enqueueFillBuffer(film_, cl_long{0}, 0, n_pixels * 3 * sizeof(layout::i64));
   if (!visits_.empty())
     queue_.enqueueFillBuffer(visit_buffer_, cl_uint{0}, 0, visits_.size() * sizeof(layout::u32));
   queue_.finish();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
 #include <map>
 #include <span>
 #include <string>
@@ -87,7 +88,6 @@ class Worker {
 
  private:
   cl::Buffer make(std::size_t bytes, const std::string& what);
-  cl::Buffer make_film(std::size_t n_pixels);
   cl::Buffer make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
                          const std::string& what);
   void write_travel();
@@ -98,11 +98,11 @@ class Worker {
   const Plan plan_;
   layout::Travel travel_{};
   std::size_t bytes_ = 0, band_pixels_ = 0;
-  bool film_is_clear_ = true;
   std::uint32_t n_tiles_ = 0;
   std::vector<layout::Slice> slices_;
   std::vector<layout::Traffic> traffic_;
   std::vector<layout::u32> visits_;
+  std::future<void> film_made_;
   cl::Buffer frame_buffer_, travel_buffer_, cells_, tiles_, slice_buffer_, grant_buffer_, traffic_buffer_,
       pool_, batch_, hits_, shadow_rays_, occluded_, shadow_pool_, film_, visit_buffer_;
   void* mapped_film_ = nullptr;

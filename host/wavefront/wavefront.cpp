@@ -123,10 +123,13 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       hits_(make_stream(KDRAY_HIT_FIELDS, frame.batch_capacity, "the hits")),
       shadow_rays_(make_stream(KDRAY_SHADOW_FIELDS, frame.shadow_capacity, "the shadow rays")),
       occluded_(make(std::size_t{schedule.n_slices} * frame.shadow_capacity, "the occlusion flags")),
-      film_(make(max_pixels * 3 * sizeof(layout::i64), "the film")) {
+      film_(context.buffer_made_beside(CL_MEM_READ_WRITE, max_pixels * 3 * sizeof(layout::i64), "the film",
+                                       film_made_)) {
+  device_bytes_ += max_pixels * 3 * sizeof(layout::i64);
   device::checked("setting up the kernels", [&] {
     schedule.fused ? make_wave(programs, scene) : make_stages(programs, scene);
     warm_up();
+    if (film_made_.valid()) film_made_.get();
   });
 }
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <map>
 #include <optional>
 #include <span>
@@ -152,6 +153,7 @@ class Wavefront {
   Watch watch_;
   Launch launches_[2];
   std::size_t device_bytes_ = 0;
+  std::future<void> film_made_;
   cl::Buffer frame_buffer_, slice_buffer_, list_, tile_cycles_, pool_, batch_, hits_, shadow_rays_, occluded_,
       film_;
   // Either the wave or the others are there.

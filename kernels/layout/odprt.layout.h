@@ -14,7 +14,7 @@ typedef struct PartCell {
   float lo[3];
   u32 part;
   float hi[3];
-  u32 pad;
+  u32 n_of_part;  // the first of a part's cells: how many those are
 } PartCell;
 KDRAY_ASSERT_SIZE(PartCell, 32)
 

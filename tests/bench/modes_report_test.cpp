@@ -43,7 +43,7 @@ TEST(ModesRun, MeansAreGeometricAndOverWhatIsThere) {
 }
 
 TEST(ModesRun, PicturesAreHeldAgainstEachOtherBitByBit) {
-  Picture a{2, 1, {0, 0, 0, 1, 1, 1}, {}};
+  Picture a{2, 1, {0, 0, 0, 1, 1, 1}, {}, {}};
   Picture b = a;
   EXPECT_EQ(differing_pixels(a, b), 0u);
   b.rgb[3] = 1.0000001f;

@@ -1,4 +1,5 @@
-// What    Dealing subtrees out: runs of neighbours, none lost, the largest as small as it can be (against all ways there are).
+// What    Dealing subtrees out: none lost, the largest part at most as large as the best of all ways to give each part one run of
+//         neighbours, bytes kept to; and several runs where one won't do.
 #include "odprt/deal.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +49,7 @@ double best_of_all(const Costs& costs, const Bytes& bytes, std::uint32_t n_parts
 
 TEST(Deal, TheLargestPartIsAsSmallAsCanBe) {
   std::mt19937_64 random(kSeed);
-  int limited = 0;
+  int limited = 0, scattered = 0;
   for (int round = 0; round < 300; ++round) {
     const std::size_t n = 1 + random() % 9;
     const auto n_parts = static_cast<std::uint32_t>(1 + random() % 4);
@@ -60,20 +61,37 @@ TEST(Deal, TheLargestPartIsAsSmallAsCanBe) {
     const std::uint64_t most = round % 2 ? all : all / n_parts + 20;
     const auto parts = odprt::deal(costs, bytes, n_parts, most);
     ASSERT_EQ(parts.size(), n);
-    EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end())) << "not runs";
-    EXPECT_LT(parts.back(), n_parts);
+    EXPECT_LT(*std::max_element(parts.begin(), parts.end()), n_parts);
     const double best = best_of_all(costs, bytes, n_parts, most);
     if (best == std::numeric_limits<double>::infinity()) continue;  // the bytes can't be kept to
     limited += most < all;
     EXPECT_LE(largest_bytes(bytes, parts, n_parts), most);
-    EXPECT_NEAR(largest_cost(costs, parts, n_parts), best, 1e-9 * (1 + best)) << "round " << round;
+    const double largest = largest_cost(costs, parts, n_parts);
+    EXPECT_LE(largest, best * (1 + 1e-9)) << "round " << round;
+    if (std::is_sorted(parts.begin(), parts.end())) {
+      EXPECT_NEAR(largest, best, 1e-9 * (1 + best)) << "round " << round;
+    } else {
+      ++scattered;
+    }
   }
   EXPECT_GT(limited, 50);
+  EXPECT_GT(scattered, 10);
+  EXPECT_LT(scattered, 250);
 }
 
 TEST(Deal, ALimitThatCannotBeKeptIsRaised) {
   const auto parts = odprt::deal(Costs{1, 1, 1}, Bytes{100, 100, 100}, 2, 10);
   EXPECT_LE(largest_bytes({100, 100, 100}, parts, 2), 230u);
+}
+
+TEST(Deal, CostsAndBytesInDifferentPlacesAreDealtInSeveralRuns) {
+  // All the cost in the first quarter, all the bytes spread: one run each would leave a part idle.
+  Costs costs(64, 0.01);
+  std::fill(costs.begin(), costs.begin() + 16, 1.0);
+  const Bytes bytes(64, 10);
+  const auto parts = odprt::deal(costs, bytes, 2, 650 * 64 / 100);
+  EXPECT_LE(largest_bytes(bytes, parts, 2), 650u * 64 / 100);
+  EXPECT_LE(largest_cost(costs, parts, 2), 1.06 * std::accumulate(costs.begin(), costs.end(), 0.0) / 2);
 }
 
 TEST(Deal, NothingAndCostsOfNothing) {

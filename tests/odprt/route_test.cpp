@@ -51,7 +51,7 @@ __kernel void test(__constant const Batch* in, __global Answer* out, uint n) {
   const Float3x16 o = {vload16(0, f[0]), vload16(0, f[1]), vload16(0, f[2])};
   const Float3x16 d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
   const Visited visited = {vload16(0, v[0]), vload16(0, v[1])};
-  vstore16(next_part(&directory, o, d, vload16(0, f[6]), vload16(0, f[7]), visited), 0, out[i].part);
+  vstore16(next_part(&directory, (int16)(-1), o, d, vload16(0, f[6]), vload16(0, f[7]), visited), 0, out[i].part);
 }
 )";
 
@@ -64,8 +64,11 @@ Batch random_batch(std::mt19937_64& random) {
       cell.lo[k] = std::round(place(random));
       cell.hi[k] = cell.lo[k] + (random() % 5 == 0 ? 0.0f : size(random));
     }
-    cell.part = static_cast<layout::u32>(i * kParts / kCells);
+    cell.part = static_cast<layout::u32>(i * kParts / kCells / 3 * 3);  // one to three cells each
   }
+  for (std::size_t i = 0; i < kCells; ++i)
+    for (std::size_t k = i; k < kCells && batch.cells[k].part == batch.cells[i].part; ++k)
+      ++batch.cells[i].n_of_part;
   for (RouteRay& r : batch.rays) {
     for (int k = 0; k < 3; ++k) {
       r.o[k] = random() % 4 == 0 ? std::round(place(random)) : place(random);
