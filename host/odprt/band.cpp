@@ -158,14 +158,18 @@ void BandRun::launch(std::size_t queue, const Turn& turn, QueueState& state) {
 void BandRun::hand_over(std::size_t queue, const Turn& turn, const QueueState& state) {
   Worker& worker = *crew_.workers[queue];
   std::vector<Mail> sent(crew_.owner.size(), Mail(0));
+  bool any = false;
   if (turn.outbox)
     for (std::uint32_t part = 0; part < crew_.owner.size(); ++part) {
       if (exchange_.direct(queue, part) ||
           turn.outbox->rays_for(part) + turn.outbox->shadow_rays_for(part) == 0)
         continue;
       sent[part] = Mail(crew_.plan.n_slices);
-      worker.copy_out(*turn.outbox, part, sent[part]);
+      any = true;
     }
+  if (any)
+    worker.copy_out(*turn.outbox,
+                    [&](std::uint32_t part) { return sent[part].rays.empty() ? nullptr : &sent[part]; });
   exchange_.end_turn(queue, turn, worker.traffic(), state, sent);
 }
 

@@ -33,6 +33,7 @@ class Outbox {
 
   // The counts as the last launch left them, read by the queue that sends: rays, then shadow rays, by part and slice.
   std::vector<layout::u32>& n() { return n_; }
+  const std::vector<layout::u32>& n() const { return n_; }
   std::uint64_t rays_for(std::uint32_t part) const { return sum(part); }
   std::uint64_t shadow_rays_for(std::uint32_t part) const { return sum(shape_.n_parts + part); }
 

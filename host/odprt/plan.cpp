@@ -37,7 +37,7 @@ std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uin
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
 constexpr std::size_t kSentBytes =
     kRayBytes + 2 * KDRAY_TRAVEL_SHADOW_FIELDS * sizeof(float);  // with shadow rays
-constexpr std::size_t kShare = 8;  // of memory that is short: an eighth for the pool, and one for the outbox
+constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;  // of memory that is short: that part of it
 
 // Rays for one part and slice.
 std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {
@@ -45,14 +45,14 @@ std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {
   if (!r.streamed) return std::max(kOutboxRays / n_slices, 2 * kBatch);
   const std::uint32_t n_places = r.n_parts * n_slices;
   return static_cast<std::uint32_t>(
-      std::clamp<std::size_t>(r.memory / kShare / kSentBytes / n_places, KDRAY_LANES,
+      std::clamp<std::size_t>(r.memory / kOutboxShare / kSentBytes / n_places, KDRAY_LANES,
                               std::max(kStreamedOutbox / n_places, kBatch / 4)));
 }
 
 // Rays of one depth that a slice's pool holds, where that is less than what may be alive.
 std::uint32_t streamed_pool(const PlanRequest& r, std::uint32_t n_slices, std::uint32_t max_depth) {
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(
-      r.memory / kShare / kRayBytes / max_depth / n_slices, 2 * kBatch, kStreamedPool));
+      r.memory / kPoolShare / kRayBytes / max_depth / n_slices, 2 * kBatch, kStreamedPool));
 }
 
 }  // namespace
@@ -86,6 +86,13 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   // Where there is one part nothing is ever sent.
   out.ray_capacity = capacity_for(r.n_parts > 1 ? out.rays : 0);
   out.shadow_capacity = capacity_for(r.n_parts > 1 ? out.shadow : 0);
+  OutboxShape& in = plan.inbox;
+  in.n_parts = 1;
+  in.n_slices = plan.n_slices;
+  in.rays = frame.pool_size;
+  in.shadow = plan.shadow_pool;
+  in.ray_capacity = capacity_for(r.n_parts > 1 ? in.rays : 0);
+  in.shadow_capacity = capacity_for(r.n_parts > 1 ? in.shadow : 0);
   return plan;
 }
 
@@ -95,10 +102,12 @@ std::size_t work_bytes(const layout::Frame& frame, const Plan& plan, std::size_t
                             std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * (plan.shadow_pool + 2 * KDRAY_LANES);
   const std::size_t streams = std::size_t{KDRAY_TRAVEL_RAY_FIELDS + KDRAY_HIT_FIELDS} * frame.batch_capacity +
                               std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS + 1} * frame.shadow_capacity;
-  const std::size_t boxes = std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * plan.outbox.ray_capacity +
-                            std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * plan.outbox.shadow_capacity;
-  return plan.n_slices * sizeof(float) * (pools + streams + boxes * (n_outboxes * plan.outbox.n_parts + 1)) +
-         band_pixels * 3 * sizeof(layout::i64);
+  const auto words = [](const OutboxShape& box) {
+    return std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * box.ray_capacity +
+           std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * box.shadow_capacity;
+  };
+  const std::size_t boxes = words(plan.outbox) * n_outboxes * plan.outbox.n_parts + words(plan.inbox);
+  return plan.n_slices * sizeof(float) * (pools + streams + boxes) + band_pixels * 3 * sizeof(layout::i64);
 }
 
 }  // namespace kdray::odprt

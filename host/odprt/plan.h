@@ -16,6 +16,7 @@ struct Plan {
   std::vector<std::uint32_t> least;     // what one ray may make: the least that a grant is good for
   std::uint32_t shadow_pool = 0;        // shadow rays from elsewhere that a slice can hold
   OutboxShape outbox;
+  OutboxShape inbox;  // of one part: rays from the host's memory
 };
 
 // What is asked of a plan.

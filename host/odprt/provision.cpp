@@ -14,8 +14,10 @@ namespace {
 
 constexpr std::size_t kOutboxes = 3;
 constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // of a queue; larger pictures go in bands
-constexpr double kSpareGeometry = 1.3;   // primitives that lie in several parts, and parts of unequal size
-constexpr std::size_t kPartsAtOnce = 2;  // of those that a queue may hold: while one goes, another is there
+constexpr double kSpareGeometry = 1.3;  // primitives that lie in several parts, and parts of unequal size
+// Of memory that is short. Each band goes through all parts, so the film is worth more than room for larger parts; and the more
+// parts there are, the more cells every ray is tested against, so there is room for one at a time only.
+constexpr std::size_t kFilmEighths = 3;
 
 std::vector<Band> bands_of(const layout::Frame& frame, std::size_t most_film_bytes) {
   const std::uint32_t rows = frame.n_tiles / frame.n_tiles_x;
@@ -73,14 +75,14 @@ Error too_little(const Request& request, std::size_t needed) {
                   request.device_memory, (needed >> 20) + 1));
 }
 
-// The film gets an eighth of a queue's memory, its other buffers what they take, the parts the rest. Nothing, when that is too
-// little for any number of parts.
+// The film gets a part of a queue's memory, its other buffers what they take, the parts the rest. Nothing, when that is too little
+// for any number of parts.
 std::optional<Provision> try_streamed(const Request& request, std::size_t geometry_bytes,
                                       std::size_t of_queue) {
-  const double geometry = kSpareGeometry * kPartsAtOnce * static_cast<double>(geometry_bytes);
+  const double geometry = kSpareGeometry * static_cast<double>(geometry_bytes);
   auto n_parts = static_cast<std::uint32_t>(std::max<std::size_t>(request.queues.size(), 2));
   for (;;) {
-    Provision p = provide_for(request, n_parts, true, of_queue / 8, of_queue);
+    Provision p = provide_for(request, n_parts, true, of_queue / 8 * kFilmEighths, of_queue);
     const std::size_t work = work_of(p);
     if (work < of_queue && geometry / n_parts <= static_cast<double>(of_queue - work)) {
       p.most_geometry = of_queue - work;

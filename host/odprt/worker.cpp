@@ -10,11 +10,6 @@ namespace kdray::odprt {
 
 namespace {
 
-OutboxShape inbox_shape(OutboxShape shape) {
-  shape.n_parts = 1;
-  return shape;
-}
-
 constexpr cl_uint kGeometryArguments = 9;  // KDRAY_SCENE_PARAMETERS
 
 }  // namespace
@@ -60,7 +55,7 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       film_(context.buffer_made_beside(CL_MEM_READ_WRITE, band_pixels * 3 * sizeof(layout::i64), "the film",
                                        film_made_)),
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
-      inbox_(context, inbox_shape(plan.outbox)),
+      inbox_(context, plan.inbox),
       wave_("wave",
             programs.kernel("odprt/wave.cl", "travel_wave", features | KDRAY_FEATURE_NUMBERS, traversal)),
       receive_("receive", programs.kernel("odprt/receive.cl", "receive", 0)) {
@@ -135,6 +130,7 @@ void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
 
 void Worker::receive(const Outbox& outbox, std::uint32_t part) {
   receive_.set_arguments(0, frame_buffer_, travel_buffer_, cl_uint{part}, cl_uint{outbox.shape().n_parts},
+                         cl_uint{outbox.shape().ray_capacity}, cl_uint{outbox.shape().shadow_capacity},
                          outbox.rays(), outbox.shadow_rays(), outbox.counts(), slice_buffer_, traffic_buffer_,
                          pool_, shadow_pool_);
   receive_.launch(queue_, plan_.n_slices, 1);
@@ -223,21 +219,25 @@ void Worker::stash(Mail& mail) {
                             traffic_.data());
 }
 
-void Worker::copy_out(Outbox& outbox, std::uint32_t part, Mail& mail) {
+void Worker::copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of) {
   const OutboxShape& shape = outbox.shape();
   const std::size_t ray_words = std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * shape.ray_capacity;
   const std::size_t shadow_words = std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * shape.shadow_capacity;
-  const std::size_t first = std::size_t{part} * shape.n_slices;
   const auto map = [&](const cl::Buffer& buffer, std::size_t words) {
-    return static_cast<float*>(queue_.enqueueMapBuffer(
-        buffer, CL_TRUE, CL_MAP_READ, first * words * sizeof(float), shape.n_slices * words * sizeof(float)));
+    return static_cast<float*>(
+        queue_.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_READ, 0, shape.n_places() * words * sizeof(float)));
   };
   float* const rays = map(outbox.rays(), ray_words);
   float* const shadow_rays = map(outbox.shadow_rays(), shadow_words);
-  for (std::uint32_t s = 0; s < shape.n_slices; ++s) {
-    mail.put_rays(s, rays + s * ray_words, shape.ray_capacity, outbox.n()[first + s]);
-    mail.put_shadow_rays(s, shadow_rays + s * shadow_words, shape.shadow_capacity,
-                         outbox.n()[shape.n_places() + first + s]);
+  for (std::uint32_t part = 0; part < shape.n_parts; ++part) {
+    Mail* const mail = mail_of(part);
+    if (mail == nullptr) continue;
+    for (std::uint32_t s = 0; s < shape.n_slices; ++s) {
+      const std::size_t place = std::size_t{part} * shape.n_slices + s;
+      mail->put_rays(s, rays + place * ray_words, shape.ray_capacity, outbox.n()[place]);
+      mail->put_shadow_rays(s, shadow_rays + place * shadow_words, shape.shadow_capacity,
+                            outbox.n()[shape.n_places() + place]);
+    }
   }
   queue_.enqueueUnmapMemObject(outbox.rays(), rays);
   queue_.enqueueUnmapMemObject(outbox.shadow_rays(), shadow_rays);

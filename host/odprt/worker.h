@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <map>
 #include <span>
@@ -78,8 +79,8 @@ class Worker {
   std::span<const layout::i64> map_film();
   void unmap_film();
 
-  // Copies what an outbox of this queue has for a part.
-  void copy_out(Outbox& outbox, std::uint32_t part, Mail& mail);
+  // Copies what an outbox of this queue has for each part to its mail; nullptr: nothing.
+  void copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of);
 
   void add_cycles(std::map<std::string, double>& cycles) const;  // of the stages, in the band
 

@@ -1,5 +1,5 @@
 // What    Takes rays that another queue has sent into the slices' pools. One work-item per slice.
-// Shape   `place` of `n_places` parts in the outbox of the sender (odprt/send.clh), with the capacities of `travel`.
+// Shape   `place` of `n_places` parts in the outbox of the sender (odprt/send.clh), whose streams have these capacities.
 // Cost    reads and writes 64 B per ray, 60 B per shadow ray.
 // Errors  A pool that is full counts what finds no place (n_pool_overflow): a broken bound, which the host acts on.
 #define KDRAY_ODPRT 1
@@ -38,15 +38,16 @@ inline void receive_shadow_rays(__constant const Travel* travel, ConstStream fro
 }
 
 __kernel void receive(__constant const Frame* frame, __constant const Travel* travel, u32 place, u32 n_places,
+                      u32 ray_capacity, u32 shadow_capacity,
                       __global const float* in_rays, __global const float* in_shadow_rays,
                       __global const u32* in_counts, __global Slice* io_slices, __global Traffic* io_traffic,
                       __global float* io_pool, __global float* io_shadow_pool) {
   const u32 s = (u32)get_global_id(0);
   if (s >= travel->n_slices) return;
   const u32 from = place * travel->n_slices + s;
-  receive_rays(frame, const_stream_of(in_rays, from, KDRAY_RAY_FIELDS, travel->out_ray_capacity), in_counts[from], s,
+  receive_rays(frame, const_stream_of(in_rays, from, KDRAY_RAY_FIELDS, ray_capacity), in_counts[from], s,
                io_slices + s, io_pool);
-  receive_shadow_rays(travel, const_stream_of(in_shadow_rays, from, KDRAY_SHADOW_FIELDS, travel->out_shadow_capacity),
+  receive_shadow_rays(travel, const_stream_of(in_shadow_rays, from, KDRAY_SHADOW_FIELDS, shadow_capacity),
                       in_counts[n_places * travel->n_slices + from], io_slices + s, io_traffic + s,
                       stream_of(io_shadow_pool, s, KDRAY_SHADOW_FIELDS, travel->shadow_pool_capacity));
 }

@@ -161,6 +161,50 @@ TEST(RenderCommand, SeveralDevicesShareAFrame) {
   }
 }
 
+// Rays go from one device to the other by the host's memory.
+TEST(RenderCommand, SeveralDevicesShareAScene) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const RunOptions two = {.environment = {{"POCL_DEVICES", "pthread basic"}}};
+  if (kdray({"render", scene, "-o", folder / "a.exr", "--device", "1"}, two).code == 3)
+    GTEST_SKIP() << "PoCL gives no second device";
+  for (const char* const queues : {"2", "5"}) {
+    ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "b.exr", "--device", "0,1", "--queues",
+                                queues, "--mode", "odprt", "--tile", "4x4", "--stats", folder / "s.json"},
+                               two)));
+    EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr"));
+    const Json mode = Json::parse(folder.get("s.json"))["mode"];
+    EXPECT_EQ(mode["name"], "odprt");
+    EXPECT_EQ(mode["per_queue"].size(), std::stoul(queues));
+    EXPECT_GT(mode["exchange"]["rays_total"], 0);
+  }
+}
+
+TEST(RenderCommand, OdprtTellsOfItsQueues) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.exr", "-q"})));
+  ASSERT_TRUE(succeeds(
+      kdray({"render", scene, "-o", folder / "b.exr", "--mode", "odprt", "--queues", "2", "--balance", "sah",
+             "--tile", "8x8", "--trace", folder / "t.json", "--stats", folder / "s.json", "-q"})));
+  EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr"));
+  const Json stats = Json::parse(folder.get("s.json")), timeline = Json::parse(folder.get("t.json"));
+  std::map<int, double> rays, ends;
+  for (const Json& event : timeline["traceEvents"]) {
+    if (event["ph"] != "X") continue;
+    const int row = event["tid"];
+    rays[row] += event["args"]["rays"].get<double>();
+    EXPECT_GE(event["ts"].get<double>(), ends[row]) << "launches of a queue overlap";
+    ends[row] = event["ts"].get<double>() + event["dur"].get<double>();
+  }
+  for (const Json& queue : stats["mode"]["per_queue"])
+    EXPECT_EQ(queue["rays"].get<double>(), rays[queue["queue"].get<int>()]);
+  EXPECT_EQ(stats["rays"]["primary"], 48 * 32);
+  EXPECT_TRUE(stats["seconds"].contains("divide"));
+}
+
 TEST(RenderCommand, AQueueThatFailsCostsAWarningAndNothingElse) {
   KDRAY_NEED_DEVICE();
   const Folder folder;

@@ -71,7 +71,7 @@ TEST(Usage, ValuesThatAreNoneAreRefusedWithWhatIsAccepted) {
       {"--samples", "adaptive", "whole"},
       {"--samples", "0", "from 1"},
       {"--grid", "edges", "corners"},
-      {"--mode", "odprt", "auto, pdprt"},
+      {"--mode", "both", "auto, pdprt, odprt"},
       {"--queues", "0", "from 1"},
       {"--traversal", "octree", "auto, binary, wide, packet, batch"},
       {"--precision", "double", "float"},
