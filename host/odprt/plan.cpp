@@ -37,7 +37,7 @@ std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uin
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
 constexpr std::size_t kSentBytes =
     kRayBytes + 2 * KDRAY_TRAVEL_SHADOW_FIELDS * sizeof(float);  // with shadow rays
-constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;  // of memory that is short: that part of it
+constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;         // of memory that is short: that part of it
 
 // Rays for one part and slice.
 std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {

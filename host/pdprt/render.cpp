@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/timer.h"
-#include "wavefront/curve.h"
 #include "pdprt/queue.h"
+#include "wavefront/curve.h"
 
 namespace kdray::pdprt {
 

@@ -50,7 +50,7 @@ KDRAY_ASSERT_SIZE(Frame, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 
 // An entry of a queue's list of tiles: the tile's column and row in the picture.
-#define KDRAY_TILE_COLUMN(entry) ((entry) & 0xffffu)
+#define KDRAY_TILE_COLUMN(entry) ((entry)&0xffffu)
 #define KDRAY_TILE_ROW(entry) ((entry) >> 16)
 #define KDRAY_TILE(column, row) ((column) | (row) << 16)
 

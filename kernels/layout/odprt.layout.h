@@ -20,19 +20,19 @@ KDRAY_ASSERT_SIZE(PartCell, 32)
 
 // A queue that serves a part.
 typedef struct Travel {
-  u32 part;                     // whose geometry is at hand
+  u32 part;  // whose geometry is at hand
   u32 n_parts;
-  u32 n_cells;                  // of the directory
+  u32 n_cells;  // of the directory
   u32 n_slices;
-  u32 out_rays;                 // rays for one part and slice that the outbox holds
-  u32 out_ray_capacity;         // words per field of those
-  u32 out_shadow;               // the same of shadow rays
+  u32 out_rays;          // rays for one part and slice that the outbox holds
+  u32 out_ray_capacity;  // words per field of those
+  u32 out_shadow;        // the same of shadow rays
   u32 out_shadow_capacity;
-  u32 shadow_pool;              // shadow rays from elsewhere that a slice can hold
+  u32 shadow_pool;  // shadow rays from elsewhere that a slice can hold
   u32 shadow_pool_capacity;
-  u32 n_shared;                 // triangles that other parts hold too: the first ones, by number
-  u32 n_subtrees;               // whose visitors are to be counted; 0: none are
-  u32 census_every;             // ... in one wave of so many
+  u32 n_shared;      // triangles that other parts hold too: the first ones, by number
+  u32 n_subtrees;    // whose visitors are to be counted; 0: none are
+  u32 census_every;  // ... in one wave of so many
   u32 pad[3];
 } Travel;
 KDRAY_ASSERT_SIZE(Travel, 64)
@@ -49,7 +49,7 @@ typedef struct Traffic {
   u32 ended[KDRAY_MAX_DEPTH + 1];  // wherever they were made
   u32 n_shadow_pool;               // shadow rays from elsewhere that wait; stays from launch to launch
   u32 n_waves;
-  u32 n_lost;  // rays that the part which found their hit didn't find again: a broken rule
+  u32 n_lost;    // rays that the part which found their hit didn't find again: a broken rule
   u32 n_traced;  // rays of both kinds
   u64 cycles_route;
 } Traffic;

@@ -24,8 +24,9 @@
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
 // ODPRT: the best hit so far, whose t is the float below t_max.
-#define KDRAY_RAY_NUMBER 12u   // u32: of its primitive, in file order
-#define KDRAY_RAY_FINDER 13u   // u32: the part that holds it, or KDRAY_NO_PART; on its way, depth << 8 above that
+#define KDRAY_RAY_NUMBER 12u  // u32: of its primitive, in file order
+#define KDRAY_RAY_FINDER \
+  13u  // u32: the part that holds it, or KDRAY_NO_PART; on its way, depth << 8 above that
 #define KDRAY_RAY_VISITED 14u  // two u32: a bit for each part that was asked
 #define KDRAY_TRAVEL_RAY_FIELDS 16u
 #if KDRAY_ODPRT

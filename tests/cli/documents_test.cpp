@@ -12,8 +12,8 @@
 namespace kdray::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"render",       "trace",       "info",       "devices",
-                                            "doctor",       "generate",    "compare",    "bench rays",
+const std::vector<std::string> kCommands = {"render",       "trace",       "info",        "devices",
+                                            "doctor",       "generate",    "compare",     "bench rays",
                                             "bench frames", "bench build", "bench depth", "bench modes"};
 
 std::string text_of(const std::filesystem::path& file) {

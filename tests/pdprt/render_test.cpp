@@ -11,8 +11,8 @@
 
 #include "kdray/error.h"
 #include "layout/features.h"
-#include "wavefront/curve.h"
 #include "support/device.h"
+#include "wavefront/curve.h"
 #include "wavefront/hall_of_mirrors.h"
 
 namespace kdray::pdprt {

@@ -162,7 +162,8 @@ struct Picture {
   int width = 0, height = 0;
   std::vector<float> rgb;  // linear, 3 * width * height, from the top left
   std::vector<Channel> channels;
-  std::vector<std::string> warnings;  // what went wrong on the way, one line each: the picture is right all the same
+  std::vector<std::string>
+      warnings;  // what went wrong on the way, one line each: the picture is right all the same
 };
 
 struct Ray {
