@@ -270,6 +270,10 @@ flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numb
   return flat;
 }
 
+Box box_of(const layout::PartCell& cell) {
+  return {{cell.lo[0], cell.lo[1], cell.lo[2]}, {cell.hi[0], cell.hi[1], cell.hi[2]}};
+}
+
 layout::PartCell cell_of(std::uint32_t part, const Box& box) {
   return {{box.lo.x, box.lo.y, box.lo.z}, part, {box.hi.x, box.hi.y, box.hi.z}, 0};
 }
@@ -307,13 +311,22 @@ void add_cells(const flatten::WideForm& form, const Cut& cut, std::span<const st
   }
 }
 
-void count_cells(std::vector<layout::PartCell>& cells) {
+// Puts each part's bounds before its cells, where those are several.
+std::vector<layout::PartCell> with_bounds(const std::vector<layout::PartCell>& cells) {
+  std::vector<layout::PartCell> all;
   for (std::size_t first = 0; first < cells.size();) {
     std::size_t end = first;
-    while (end < cells.size() && cells[end].part == cells[first].part) ++end;
-    cells[first].n_of_part = static_cast<layout::u32>(end - first);
+    Box bounds;
+    for (; end < cells.size() && cells[end].part == cells[first].part; ++end) bounds.grow(box_of(cells[end]));
+    if (end - first > 1) {
+      all.push_back(cell_of(cells[first].part, bounds));
+      all.back().n_cells = static_cast<layout::u32>(end - first);
+    }
+    all.insert(all.end(), cells.begin() + static_cast<std::ptrdiff_t>(first),
+               cells.begin() + static_cast<std::ptrdiff_t>(end));
     first = end;
   }
+  return all;
 }
 
 }  // namespace
@@ -350,8 +363,7 @@ std::vector<layout::PartCell> make_directory(const flatten::WideForm& form, cons
   if (!cut.top.empty()) add_cells(form, cut, part_of, 0, cells);
   std::stable_sort(cells.begin(), cells.end(),
                    [](const layout::PartCell& a, const layout::PartCell& b) { return a.part < b.part; });
-  count_cells(cells);
-  return cells;
+  return with_bounds(cells);
 }
 
 }  // namespace kdray::odprt

@@ -32,7 +32,8 @@ std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideFo
 std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
                              std::span<const std::uint32_t> part_of, std::uint32_t n_parts);
 
-// The bounds of what the parts hold, in as few cells as the tree has for them, in the order of parts.
+// The bounds of what the parts hold, in the order of parts: of all that a part holds, and behind that in as few cells as the tree
+// has for it.
 std::vector<layout::PartCell> make_directory(const flatten::WideForm& form, const Cut& cut,
                                              std::span<const std::uint32_t> part_of);
 

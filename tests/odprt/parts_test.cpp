@@ -68,6 +68,10 @@ std::vector<Leaf> leaves_of(const flatten::FlatScene& scene, const flatten::Wide
   return leaves;
 }
 
+Box box_of(const layout::PartCell& c) {
+  return {{c.lo[0], c.lo[1], c.lo[2]}, {c.hi[0], c.hi[1], c.hi[2]}};
+}
+
 // Any part for each subtree: not only runs of neighbours.
 std::vector<std::uint32_t> random_parts(std::size_t n, std::uint32_t n_parts, std::mt19937_64& random) {
   std::vector<std::uint32_t> parts(n);
@@ -148,12 +152,17 @@ TEST_F(Parts, TheDirectoryEnclosesThem) {
     const auto cells = odprt::make_directory(scene.wide, cut, part_of);
     EXPECT_TRUE(std::is_sorted(cells.begin(), cells.end(),
                                [](const auto& a, const auto& b) { return a.part < b.part; }));
-    EXPECT_LE(cells.size(), cut.subtrees.size());
+    EXPECT_LE(cells.size(), 2 * cut.subtrees.size());
+    for (std::size_t i = 0; i < cells.size(); i += 1 + cells[i].n_cells)
+      for (std::size_t k = i + 1; k <= i + cells[i].n_cells; ++k) {
+        EXPECT_EQ(cells[k].part, cells[i].part);
+        EXPECT_EQ(cells[k].n_cells, 0u);
+        EXPECT_TRUE(box_of(cells[i]).contains(box_of(cells[k]))) << name;
+      }
     for (std::size_t i = 0; i < cut.subtrees.size(); ++i) {
       const Box& box = cut.subtrees[i].bounds;
       const bool enclosed = std::any_of(cells.begin(), cells.end(), [&](const layout::PartCell& c) {
-        return c.part == part_of[i] &&
-               Box{{c.lo[0], c.lo[1], c.lo[2]}, {c.hi[0], c.hi[1], c.hi[2]}}.contains(box);
+        return c.n_cells == 0 && c.part == part_of[i] && box_of(c).contains(box);
       });
       EXPECT_TRUE(enclosed) << name << " subtree " << i;
     }

@@ -55,6 +55,22 @@ __kernel void test(__constant const Batch* in, __global Answer* out, uint n) {
 }
 )";
 
+// Makes the first cell of each part that has several their bounds.
+void put_bounds_first(layout::PartCell (&cells)[kCells]) {
+  for (std::size_t first = 0; first < kCells;) {
+    std::size_t end = first + 1;
+    for (; end < kCells && cells[end].part == cells[first].part; ++end)
+      for (int k = 0; k < 3; ++k) {
+        cells[first].lo[k] =
+            end == first + 1 ? cells[end].lo[k] : std::min(cells[first].lo[k], cells[end].lo[k]);
+        cells[first].hi[k] =
+            end == first + 1 ? cells[end].hi[k] : std::max(cells[first].hi[k], cells[end].hi[k]);
+      }
+    cells[first].n_cells = static_cast<layout::u32>(end - first - 1);
+    first = end;
+  }
+}
+
 Batch random_batch(std::mt19937_64& random) {
   std::uniform_real_distribution<float> place(-8, 8), size(0, 4);
   Batch batch{};
@@ -66,9 +82,7 @@ Batch random_batch(std::mt19937_64& random) {
     }
     cell.part = static_cast<layout::u32>(i * kParts / kCells / 3 * 3);  // one to three cells each
   }
-  for (std::size_t i = 0; i < kCells; ++i)
-    for (std::size_t k = i; k < kCells && batch.cells[k].part == batch.cells[i].part; ++k)
-      ++batch.cells[i].n_of_part;
+  put_bounds_first(batch.cells);
   for (RouteRay& r : batch.rays) {
     for (int k = 0; k < 3; ++k) {
       r.o[k] = random() % 4 == 0 ? std::round(place(random)) : place(random);
@@ -108,6 +122,7 @@ std::array<double, kParts> entries(const Batch& batch, const RouteRay& r, double
   std::array<double, kParts> first;
   first.fill(NAN);
   for (const layout::PartCell& cell : batch.cells) {
+    if (cell.n_cells > 0) continue;  // a part's bounds
     const double t = entry(r, cell, widen);
     if (!was_asked(r, cell.part) && !std::isnan(t) && !(first[cell.part] <= t)) first[cell.part] = t;
   }
