@@ -78,9 +78,9 @@ Error too_little(const Request& request, std::size_t needed) {
 // The film gets a part of a queue's memory, its other buffers what they take, the parts the rest. Nothing, when that is too little
 // for any number of parts.
 std::optional<Provision> try_streamed(const Request& request, std::size_t geometry_bytes,
-                                      std::size_t of_queue) {
+                                      std::size_t of_queue, std::uint32_t least_parts) {
   const double geometry = kSpareGeometry * static_cast<double>(geometry_bytes);
-  auto n_parts = static_cast<std::uint32_t>(std::max<std::size_t>(request.queues.size(), 2));
+  auto n_parts = static_cast<std::uint32_t>(std::max<std::size_t>({request.queues.size(), 2, least_parts}));
   for (;;) {
     Provision p = provide_for(request, n_parts, true, of_queue / 8 * kFilmEighths, of_queue);
     const std::size_t work = work_of(p);
@@ -93,29 +93,32 @@ std::optional<Provision> try_streamed(const Request& request, std::size_t geomet
   }
 }
 
-Provision provide_streamed(const Request& request, std::size_t geometry_bytes, std::size_t of_queue) {
-  if (std::optional<Provision> p = try_streamed(request, geometry_bytes, of_queue)) return *std::move(p);
-  while (!try_streamed(request, geometry_bytes, of_queue)) of_queue += of_queue / 16 + 4096;
+Provision provide_streamed(const Request& request, std::size_t geometry_bytes, std::size_t of_queue,
+                           std::uint32_t least_parts) {
+  if (std::optional<Provision> p = try_streamed(request, geometry_bytes, of_queue, least_parts))
+    return *std::move(p);
+  while (!try_streamed(request, geometry_bytes, of_queue, least_parts)) of_queue += of_queue / 16 + 4096;
   throw too_little(request, of_queue * queues_on_a_device(request));
 }
 
 }  // namespace
 
-Provision provide(const Request& request, std::size_t geometry_bytes) {
+Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts) {
   const auto n_queues = static_cast<std::uint32_t>(request.queues.size());
   Provision all = provide_for(request, n_queues, false, kMaxFilmBytes);
   if (request.device_memory == 0) return all;
   const std::size_t of_queue = request.device_memory / queues_on_a_device(request);
   const double share = kSpareGeometry * static_cast<double>(geometry_bytes) / n_queues;
   if (static_cast<double>(work_of(all)) + share <= static_cast<double>(of_queue)) return all;
-  return provide_streamed(request, geometry_bytes, of_queue);
+  return provide_streamed(request, geometry_bytes, of_queue, least_parts);
 }
 
-void check_fits(const Provision& provision, const Division& division, const Request& request) {
-  if (!provision.streamed) return;
+bool fits(const Provision& provision, const Division& division, const Request& request) {
+  if (!provision.streamed) return true;
   std::size_t largest = 0;
   for (const Part& part : division.parts) largest = std::max(largest, part.geometry_bytes());
-  if (largest <= provision.most_geometry) return;
+  if (largest <= provision.most_geometry) return true;
+  if (provision.n_parts < KDRAY_MAX_PARTS) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));
 }
 

@@ -29,11 +29,11 @@ struct Provision {
   std::size_t largest_band = 0;  // pixels
 };
 
-// As many parts as queues where that fits; more of them, which come and go, where the request has a limit that is too little
-// for it.
-Provision provide(const Request& request, std::size_t geometry_bytes);
+// As many parts as queues where that fits; more of them, which come and go, where the request has a limit that is too little for
+// it; then at least `least_parts`.
+Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts = 0);
 
-// Throws when a part is larger than what a queue may hold.
-void check_fits(const Provision& provision, const Division& division, const Request& request);
+// Whether every part is one that a queue may hold. Throws when one is not and there are as many parts as there can be.
+bool fits(const Provision& provision, const Division& division, const Request& request);
 
 }  // namespace kdray::odprt

@@ -87,14 +87,22 @@ void DividedScene::learn(const Result& result) {
   division_.reset();
 }
 
+// Parts are of unequal size: where one turns out too large, there are to be more of them.
+Provision DividedScene::divide_for(const Request& request) {
+  for (std::uint32_t least_parts = 0;;) {
+    Provision provision = provide(request, geometry_bytes(), least_parts);
+    cut_for(provision.n_parts);
+    if (!provision.streamed) measure_costs(request);
+    divide_into(provision.n_parts);
+    if (fits(provision, *division_, request)) return provision;
+    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, KDRAY_MAX_PARTS);
+  }
+}
+
 Result DividedScene::render_once(const Request& request) {
   const Timer timer;
   cut_for(static_cast<std::uint32_t>(request.queues.size()));
-  const Provision provision = provide(request, geometry_bytes());
-  cut_for(provision.n_parts);
-  if (!provision.streamed) measure_costs(request);
-  divide_into(provision.n_parts);
-  check_fits(provision, *division_, request);
+  const Provision provision = divide_for(request);
   const double seconds = timer.seconds();
   Result result = render_frame(request, provision, *division_, cut_);
   result.divide_seconds = seconds;

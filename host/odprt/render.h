@@ -72,6 +72,8 @@ struct Result {
   std::uint32_t n_bands = 0, n_parts = 0, n_cells = 0;
 };
 
+struct Provision;
+
 // A scene that frames are rendered of, and what has been learned about its costs.
 class DividedScene {
  public:
@@ -88,6 +90,7 @@ class DividedScene {
   void measure_costs(const Request& request);
   void weigh(std::span<const std::uint64_t> visits);
   void learn(const Result& result);
+  Provision divide_for(const Request& request);
   Result render_once(const Request& request);
 
   flatten::FlatScene flat_;

@@ -99,7 +99,11 @@ TEST(CacheOption, QuicklyMadeScenesAreNotKept) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
-  EXPECT_EQ(render(folder, scene, {"--cache", folder / "cache"}).stats["cache"], "miss");
+  const auto stats = render(folder, scene, {"--cache", folder / "cache"}).stats;
+  EXPECT_EQ(stats["cache"], "miss");
+  double seconds = 0;
+  for (const char* const step : {"load", "build", "flatten"}) seconds += stats["seconds"][step].get<double>();
+  if (seconds >= 0.05) GTEST_SKIP() << "a busy machine: it took " << seconds << " s";
   EXPECT_FALSE(exists(folder / "cache"));
 }
 
