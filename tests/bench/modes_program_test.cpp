@@ -1,4 +1,5 @@
 // What    kdray bench modes as a user runs it, on a scene of three primitives: exit codes, the report's keys. No time is asserted.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -47,7 +48,10 @@ TEST(BenchModes, WritesTablesFiguresAndPlots) {
   for (const Json& p : model["predictions"]) {
     expect_keys(p, {"scheme", "queues", "seconds", "efficiency"});
     EXPECT_GT(p["efficiency"], 0);
-    EXPECT_LT(p["efficiency"], 1.000001);
+    // ODPRT's own overhead is measured, and noise may have it below 1.
+    const bool odprt = p["scheme"].get<std::string>().rfind("odprt", 0) == 0;
+    const double overhead = odprt ? std::min(model["odprt_overhead"].get<double>(), 1.0) : 1.0;
+    EXPECT_LT(p["efficiency"].get<double>(), 1.000001 / overhead) << p["scheme"];
     to_the_end |= p["queues"] == 10000;
   }
   EXPECT_TRUE(to_the_end);
