@@ -22,4 +22,5 @@ if(NOT embree_FOUND)
 endif()
 if(KDRAY_TESTS)
   find_package(GTest REQUIRED)         # libgtest-dev, libgmock-dev
+  pkg_check_modules(gmpxx REQUIRED IMPORTED_TARGET gmpxx)  # libgmp-dev: the stress suite's exact arithmetic
 endif()

@@ -1,15 +1,19 @@
 #include "device/context.h"
 #include "kdray/kdray.h"
+#include "open_devices.h"
 
 namespace kdray {
 
 namespace {
 
 // What only an opened device can tell: the form of its vectors, and whether it computes rightly at all.
-DeviceInfo opened(const DeviceInfo& listed) {
+DeviceInfo opened(const DeviceInfo& listed, const DeviceOptions& options) {
   if (!listed.usable) return listed;
   try {
-    return device::Context(std::to_string(listed.number), 1).info();
+    DeviceOptions one = options;
+    one.device = std::to_string(listed.number);
+    one.queues = 1;
+    return api::open_devices(one).front().info();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::no_device) throw;
     DeviceInfo info = listed;
@@ -21,9 +25,10 @@ DeviceInfo opened(const DeviceInfo& listed) {
 
 }  // namespace
 
-std::vector<DeviceInfo> devices() {
+std::vector<DeviceInfo> devices(const DeviceOptions& options) {
   std::vector<DeviceInfo> infos;
-  for (const device::FoundDevice& found : device::find_devices()) infos.push_back(opened(found.info));
+  for (const device::FoundDevice& found : device::find_devices())
+    infos.push_back(opened(found.info, options));
   return infos;
 }
 

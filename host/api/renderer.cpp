@@ -5,16 +5,22 @@
 #include <map>
 #include <optional>
 
+#include "base/median.h"
 #include "base/timer.h"
 #include "device/faults.h"
+#include "flatten/core.h"
 #include "flatten/features.h"
 #include "flatten/frame.h"
 #include "kdray/kdray.h"
+#include "layout/features.h"
 #include "odprt_mode.h"
+#include "open_devices.h"
 #include "pdprt/render.h"
+#include "precision.h"
 #include "prepare/prepared.h"
 #include "statistics.h"
 #include "timeline/timeline.h"
+#include "tuning.h"
 #include "wavefront/channels.h"
 #include "wavefront/query.h"
 
@@ -39,17 +45,6 @@ const char* traversal_name(Traversal traversal) {
   }
 }
 
-void check(const DeviceOptions& o) {
-  if (o.queues < 1 || o.queues > 1024) throw Error(ErrorCode::usage, "the number of queues may be 1 to 1024");
-  if (o.work_group < 0) throw Error(ErrorCode::usage, "the work-group size may not be negative");
-  if (o.compute_units < 0) throw Error(ErrorCode::usage, "the number of compute units may not be negative");
-}
-
-std::vector<device::Context> open(const DeviceOptions& o) {
-  check(o);
-  return device::open_contexts(o.device, o.queues, o.compute_units);
-}
-
 std::size_t work_group_of(const DeviceOptions& o, const device::Context& context) {
   const std::size_t largest = context.max_work_group();
   if (static_cast<std::size_t>(o.work_group) > largest)
@@ -59,10 +54,8 @@ std::size_t work_group_of(const DeviceOptions& o, const device::Context& context
                           : std::min<std::size_t>(kDefaultWorkGroup, largest);
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+bool runs_globally(const DeviceOptions& o, const device::Context& context) {
+  return o.schedule == Schedule::automatic ? context.info().kind != "cpu" : o.schedule == Schedule::global;
 }
 
 double mrays_per_s(std::uint64_t rays, double seconds) {
@@ -86,7 +79,9 @@ class Device {
   Device(const device::Context& opened, const DeviceOptions& o, const prepare::Prepared& scene)
       : context(opened),
         work_group(work_group_of(o, context)),
-        programs(context, scene.tree_depth, scene.wide),
+        global(runs_globally(o, context)),
+        programs(context, scene.tree_depth, scene.wide, o.build_options),
+        asked_work_group_(o.work_group),
         scene_(scene) {}
 
   const wavefront::SceneBuffers& buffers() {
@@ -100,10 +95,22 @@ class Device {
 
   device::Context context;
   std::size_t work_group;
+  bool global;  // Schedule::global, asked for or by the kind of device
   wavefront::Programs programs;
   double upload_seconds = 0;
+  api::Tuned tuned;
+
+  void use(const api::Tuned& settings) {
+    tuned = settings;
+    programs.use(tuned.settings);
+    const std::size_t own = tuned.settings.work_group > 0
+                                ? static_cast<std::size_t>(tuned.settings.work_group)
+                                : kDefaultWorkGroup;
+    if (asked_work_group_ == 0) work_group = std::min(own, context.max_work_group());
+  }
 
  private:
+  int asked_work_group_;  // 0: chosen
   const prepare::Prepared& scene_;
   std::optional<wavefront::SceneBuffers> buffers_;
 };
@@ -134,6 +141,7 @@ struct Chosen {
 
 struct Drawn {
   film::Image image;
+  std::optional<adaptive::Report> samples;
   std::vector<std::string> warnings;
 };
 
@@ -154,17 +162,24 @@ struct Renderer::Impl {
   Impl(const PreparedScene& scene, const DeviceOptions& device);
 
   Picture render(const RenderOptions& options);
-  std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal);
+  std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal,
+                         Precision precision);
 
   Device& first() { return *devices.front(); }
+  void tune(const Tuning& tuning);
   std::size_t n_queues() const;  // of all devices
   double build_seconds() const;
   double upload_seconds() const;
+  void use_core(Job& job);
   void choose_tiles(wavefront::Schedule& schedule, const Job& job) const;
   wavefront::Schedule schedule_for(const Device& device, const Job& job) const;
+  const Device* too_small_for_an_array() const;
+  std::optional<std::size_t> pdprt_film_bytes(const Device& device, const Job& job) const;
+  std::size_t pdprt_film_bytes(const Job& job) const;
   Chosen choose_mode(const Job& job) const;
   Drawn draw_pdprt(const Job& job, const std::string& why);
   Drawn draw_odprt(Job& job, const std::string& why);
+  std::vector<film::Channel> channels(const Job& job, Drawn& drawn);
   void record_frame(const Job& job, const wavefront::Counters& counters,
                     const std::map<std::string, double>& stage_seconds, double render_seconds);
   void record_mode(const Job& job, api::Json mode, const std::string& why);
@@ -180,15 +195,19 @@ struct Renderer::Impl {
     pdprt::TileCost cost;
   } last_frame;  // what its tiles cost
   Speeds speeds;
+  std::optional<flatten::Core> core;
   api::Json statistics;
   std::string timeline;  // of the last frame, where it was asked for
 };
 
 Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_options)
     : scene(prepared.prepared()), scene_bytes(scene.bytes()), faults(device_options.faults) {
-  const std::vector<device::Context> contexts = open(device_options);
+  const std::vector<device::Context> contexts = api::open_devices(device_options);
+  const tune::Database tunings = api::read_tunings(device_options);
   for (const device::Context& context : contexts) {
     devices.push_back(std::make_unique<Device>(context, device_options, scene));
+    Device& made = *devices.back();
+    made.use(api::tuned_for(context, made.global, scene.features, tunings, device_options.tunings.string()));
     n_units += context.info().compute_units;
   }
   statistics["seconds"] = {
@@ -197,7 +216,15 @@ Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_
   statistics["tree"] = api::tree_json(scene);
   statistics["memory"] = {{"scene_bytes", scene_bytes}};
   statistics["device"] = api::device_json(first().context.info());
+  statistics["device"]["tuning"] = api::tuning_json(first().tuned);
   statistics["features"] = api::features_json(scene.features);
+}
+
+void Renderer::Impl::tune(const Tuning& tuning) {
+  for (const auto& d : devices)
+    d->use({tune::merged(tune::shipped(d->context.info().kind), tuning), d->tuned.key, "given"});
+  last_frame = {};
+  statistics["device"]["tuning"] = api::tuning_json(first().tuned);
 }
 
 std::size_t Renderer::Impl::n_queues() const {
@@ -226,7 +253,9 @@ void Renderer::Impl::choose_tiles(wavefront::Schedule& schedule, const Job& job)
   if (last_frame.width == frame.width && last_frame.height == frame.height && last_frame.cost.total > 0)
     measured = last_frame.cost;
   const std::uint32_t units = std::max(n_units, static_cast<std::uint32_t>(n_queues()));
-  const std::uint32_t side = pdprt::choose_tile_side(frame.width, frame.height, units, measured);
+  const int tuned = devices.front()->tuned.settings.tile;  // tiles are the frame's, whatever the device
+  const std::uint32_t largest = tuned > 0 ? static_cast<std::uint32_t>(tuned) : pdprt::kLargestTile;
+  const std::uint32_t side = pdprt::choose_tile_side(frame.width, frame.height, units, measured, largest);
   schedule.tile_width = o.tile_width > 0 ? static_cast<std::uint32_t>(o.tile_width) : side;
   schedule.tile_height = o.tile_height > 0 ? static_cast<std::uint32_t>(o.tile_height) : side;
   // A slice counts the samples of its tile in 32 bits.
@@ -240,8 +269,9 @@ wavefront::Schedule Renderer::Impl::schedule_for(const Device& device, const Job
   wavefront::Schedule schedule;
   choose_tiles(schedule, job);
   schedule.work_group = device.work_group;
-  schedule.traversal = job.options.traversal;
-  schedule.fused = device.context.info().kind == "cpu";
+  schedule.traversal = api::traversal_in(job.options.precision, job.options.traversal, device.context.info());
+  schedule.precision = job.options.precision;
+  schedule.fused = !device.global;
   // Enough slices that the last ones to end leave no core idle for long; each has a pool and streams of its own.
   const auto n_parts = static_cast<std::uint32_t>(device.context.n_sub_devices());
   const std::uint32_t units = (device.context.info().compute_units + n_parts - 1) / n_parts;  // of a queue
@@ -252,22 +282,78 @@ wavefront::Schedule Renderer::Impl::schedule_for(const Device& device, const Job
     schedule.n_slices = units == 1 ? 1 : 16 * units;
     schedule.fused_waves = units == 1 ? 128 : 32;
   }
+  const Tuning& tuned = device.tuned.settings;
+  if (tuned.batch > 0) schedule.batch_size = static_cast<std::uint32_t>(tuned.batch);
+  // Found with a single queue. Several need the rule above.
+  if (n_queues() == 1 && tuned.slices > 0)
+    schedule.n_slices = static_cast<std::uint32_t>(tuned.slices) * units;
+  if (n_queues() == 1 && tuned.waves > 0) schedule.fused_waves = static_cast<std::uint32_t>(tuned.waves);
   const std::uint64_t tiles_x = (job.frame.width + schedule.tile_width - 1) / schedule.tile_width;
   const std::uint64_t tiles_y = (job.frame.height + schedule.tile_height - 1) / schedule.tile_height;
   // No more than the picture has tiles.
   schedule.n_slices =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(tiles_x * tiles_y, schedule.n_slices));
+  schedule.fit(job.frame, job.features, device.context.info().max_allocation);
   return schedule;
+}
+
+// The device that can't hold one of the scene's arrays in one piece, if there is one.
+const Device* Renderer::Impl::too_small_for_an_array() const {
+  for (const auto& d : devices)
+    if (scene.largest_array() > d->context.info().max_allocation) return d.get();
+  return nullptr;
+}
+
+// What a queue on the device may have for its film in PDPRT: all that scene and streams leave of --device-memory. Nothing
+// where that is less than a row of tiles, or a round of samples, takes.
+std::optional<std::size_t> Renderer::Impl::pdprt_film_bytes(const Device& device, const Job& job) const {
+  constexpr std::size_t kPlace = 3 * sizeof(layout::i64), kListed = 2 * sizeof(layout::u32);
+  const wavefront::Schedule schedule = schedule_for(device, job);
+  layout::Frame frame = job.frame;
+  schedule.apply(frame, job.features);
+  const bool adaptive = job.options.adaptive_target > 0;
+  const std::size_t row = std::size_t{frame.tile_height} * frame.width;
+  const std::size_t least = (adaptive ? std::max(row, pdprt::kLeastSamples) : row) * kPlace;
+  const std::size_t n_queues = device.context.queues().size();
+  const std::size_t taken = scene_bytes + n_queues * schedule.stream_bytes(frame);
+  if (taken > job.options.device_memory) return std::nullopt;
+  std::size_t left = (job.options.device_memory - taken) / n_queues;
+  if (adaptive) left = left / (kPlace + kListed) * kPlace;
+  return left < least ? std::nullopt : std::optional(left);
+}
+
+// Of a queue on any device, for Mode::pdprt. Throws where --device-memory leaves too little.
+std::size_t Renderer::Impl::pdprt_film_bytes(const Job& job) const {
+  std::size_t bytes = pdprt::Task().max_film_bytes;
+  for (const auto& d : devices) {
+    bytes = std::min<std::size_t>(bytes, d->context.info().max_allocation);
+    if (job.options.device_memory == 0) continue;
+    const std::optional<std::size_t> left = pdprt_film_bytes(*d, job);
+    if (!left)
+      throw Error(
+          ErrorCode::out_of_memory,
+          fmt::format("--device-memory {} is too little for pdprt, which has the whole scene ({}M) on "
+                      "every device; take more, or --mode odprt",
+                      job.options.device_memory, (scene_bytes >> 20) + 1));
+    bytes = std::min(bytes, *left);
+  }
+  return bytes;
 }
 
 // By what fits; by what was measured, where this Renderer has rendered such a frame in both modes.
 Chosen Renderer::Impl::choose_mode(const Job& job) const {
   if (job.options.mode != Mode::automatic) return {job.options.mode, "asked for"};
+  if (job.options.precision == Precision::float64) return {Mode::pdprt, "double precision has no other"};
   const auto megabytes = [](std::uint64_t bytes) { return fmt::format("{}M", (bytes >> 20) + 1); };
   const std::string scene_takes = fmt::format("the scene takes {}", megabytes(scene_bytes));
-  if (job.options.device_memory > 0 && scene_bytes > job.options.device_memory)
-    return {Mode::odprt,
-            fmt::format("{}, more than --device-memory {}", scene_takes, job.options.device_memory)};
+  const auto too_small = [&](const auto& d) { return !pdprt_film_bytes(*d, job); };
+  if (job.options.device_memory > 0 && std::ranges::any_of(devices, too_small))
+    return {Mode::odprt, fmt::format("{}, with a frame's rays and film more than --device-memory {}",
+                                     scene_takes, job.options.device_memory)};
+  if (const Device* d = too_small_for_an_array(); d != nullptr && job.options.channels.empty())
+    return {Mode::odprt, fmt::format("an array of the scene takes {}, {} gives {} in one piece",
+                                     megabytes(scene.largest_array()), d->context.info().name,
+                                     megabytes(d->context.info().max_allocation))};
   for (const auto& d : devices)
     if (scene_bytes > d->context.info().global_memory)
       return {Mode::odprt, fmt::format("{}, {} has {}", scene_takes, d->context.info().name,
@@ -293,11 +379,17 @@ Drawn Renderer::Impl::draw_odprt(Job& job, const std::string& why) {
   }
   request.frame = job.frame;
   request.features = job.features;
-  request.traversal = api::odprt_traversal(o.traversal, first().context.info().kind == "cpu");
+  request.adaptive_target = o.adaptive_target;
+  request.traversal = api::odprt_traversal(o.traversal, !first().global);
   request.balance = o.balance;
   request.n_slices = schedule.n_slices;
   request.ray_buffer = static_cast<std::uint32_t>(o.ray_buffer);
   request.device_memory = o.device_memory;
+  // Parts that fit into one piece of memory with all that goes with them have no array that doesn't.
+  if (const Device* small = too_small_for_an_array(); small != nullptr) {
+    const std::uint64_t piece = small->context.info().max_allocation;
+    request.device_memory = o.device_memory > 0 ? std::min(o.device_memory, piece) : piece;
+  }
   request.timeline = job.timeline;
   request.faults = &faults;
   request.progress = o.progress;
@@ -312,27 +404,34 @@ Drawn Renderer::Impl::draw_odprt(Job& job, const std::string& why) {
   mode["tiles"] = job.frame.n_tiles;
   record_mode(job, std::move(mode), why);
   statistics["memory"]["per_queue"] = api::odprt_memory_json(result);
-  return {std::move(result.image), api::warnings_of(result)};
+  return {std::move(result.image), std::move(result.samples), api::warnings_of(result)};
 }
 
 Drawn Renderer::Impl::draw_pdprt(const Job& job, const std::string& why) {
   std::vector<pdprt::Device> places;
+  const std::size_t film_bytes = pdprt_film_bytes(job);
   for (const auto& d : devices)
     places.push_back({&d->context, &d->buffers(), &d->programs, schedule_for(*d, job)});
+  const auto batch = [](const pdprt::Device& place) { return place.schedule.batch_size; };
+  const std::uint32_t smallest = batch(*std::ranges::min_element(places, {}, batch));
+  for (pdprt::Device& place : places) place.schedule.batch_size = smallest;  // the frame has it
   pdprt::Result result = pdprt::render(places, {.frame = job.frame,
                                                 .features = job.features,
+                                                .adaptive_target = job.options.adaptive_target,
                                                 .division = job.options.division,
                                                 .progress = job.options.progress,
                                                 .faults = &faults,
-                                                .timeline = job.timeline});
+                                                .timeline = job.timeline,
+                                                .max_film_bytes = film_bytes});
   last_frame = {job.frame.width, job.frame.height, result.tile_cost};
   speeds.take(job.frame).pdprt = mrays_per_s(result.counters.total(), result.render_seconds);
   record_frame(job, result.counters, result.stage_seconds, result.render_seconds);
   api::Json mode = api::pdprt_json(result);
   mode["division"] = division_name(job.options.division);
+  mode["schedule"] = first().global ? "global" : "slices";
   record_mode(job, std::move(mode), why);
   statistics["memory"].update(api::pdprt_memory_json(result, scene_bytes));
-  return {std::move(result.image), api::warnings_of(result)};
+  return {std::move(result.image), std::move(result.samples), api::warnings_of(result)};
 }
 
 // What all modes tell of a frame.
@@ -372,38 +471,70 @@ void Renderer::Impl::record_mode(const Job& job, api::Json mode, const std::stri
   mode["why"] = why;
   mode["devices"] = std::move(names);
   mode["sub_devices"] = sub_devices;
-  mode["traversal"] = traversal_name(job.options.traversal);
-  mode["precision"] = "float";
+  mode["traversal"] =
+      traversal_name(api::traversal_in(job.options.precision, job.options.traversal, first().context.info()));
+  mode["precision"] = api::name_of(job.options.precision);
   mode["work_group"] = first().work_group;
   mode["programs"] = programs;
+  mode["programs_known"] = devices.size() * wavefront::Programs::n_known();
   statistics["mode"] = std::move(mode);
+}
+
+// Looked for once, with the first frame.
+void Renderer::Impl::use_core(Job& job) {
+  constexpr std::uint32_t kTraces = KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT;
+  if (!(job.features & kTraces) || job.frame.keep_weightless) return;
+  if (!core) core = flatten::core_of(scene.flat);
+  core->apply(job.frame, scene.flat.lights);
+  if (core->has_faces) job.features |= KDRAY_FEATURE_FACES;
 }
 
 Picture Renderer::Impl::render(const RenderOptions& options) {
   const RenderOptions o = flatten::resolved(options, scene.settings.settings);
+  api::check_division(o);
   timeline::Timeline kept;
-  Job job{.options = o,
-          .frame = flatten::make_frame(scene.settings, scene.geometry, o),
-          .features = scene.features | flatten::features_of_samples(o.samples),
-          .timeline = o.timeline ? &kept : nullptr};
+  Job job{
+      .options = o,
+      .frame = flatten::make_frame(scene.settings, scene.geometry, o),
+      .features = scene.features | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | o.keep,
+      .timeline = o.timeline ? &kept : nullptr};
+  use_core(job);
   const Chosen chosen = choose_mode(job);
   Drawn drawn = chosen.mode == Mode::odprt ? draw_odprt(job, chosen.why) : draw_pdprt(job, chosen.why);
   timeline = o.timeline ? kept.json() : std::string();
-  Picture picture =
-      to_picture(drawn.image, wavefront::render_channels(first().context, first().buffers(), first().programs,
-                                                         job.frame, job.features, o.channels));
+  statistics["samples"] = api::samples_json(job.frame, drawn.samples ? &*drawn.samples : nullptr);
+  Picture picture = to_picture(drawn.image, channels(job, drawn));
   picture.warnings = std::move(drawn.warnings);
   return picture;
 }
 
-std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat,
-                                       Traversal wanted) {
+// The samples' own counts come last.
+std::vector<film::Channel> Renderer::Impl::channels(const Job& job, Drawn& drawn) {
+  std::vector<std::string> names = job.options.channels;
+  const auto samples = std::find(names.begin(), names.end(), "samples");
+  const bool counted = samples != names.end();
+  if (counted) names.erase(samples);
+  std::vector<film::Channel> channels;
+  if (!names.empty())
+    channels = wavefront::render_channels(first().context, first().buffers(), first().programs, job.frame,
+                                          job.features, job.options.precision, names);
+  if (counted)
+    channels.push_back({"samples", drawn.samples
+                                       ? std::move(drawn.samples->counts)
+                                       : std::vector<float>(drawn.image.pixels.size(),
+                                                            static_cast<float>(job.frame.n_samples))});
+  return channels;
+}
+
+std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
+                                       Precision precision) {
+  Traversal traversal = api::traversal_in(precision, wanted, first().context.info());
   // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
-  const Traversal traversal =
-      wanted == Traversal::automatic && first().context.info().kind != "cpu" ? Traversal::wide : wanted;
+  if (traversal == Traversal::automatic && first().global) traversal = Traversal::wide;
   wavefront::QueryResult result =
       wavefront::trace_query(first().context, first().buffers(), first().programs, scene.geometry,
-                             scene.features, first().work_group, traversal, rays, any_hit, repeat);
+                             scene.features, first().work_group, traversal, precision, rays, any_hit, repeat,
+                             first().global ? wavefront::kBoundedLaunch : wavefront::kRaysPerChunk);
   const double seconds = median(result.seconds);
   statistics["seconds"]["compile"] = build_seconds();
   statistics["seconds"]["upload"] = upload_seconds();
@@ -413,7 +544,7 @@ std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, 
   statistics["mode"] = {{"name", "query"},
                         {"queues", 1},
                         {"traversal", traversal_name(traversal)},
-                        {"precision", "float"},
+                        {"precision", api::name_of(precision)},
                         {"work_group", first().work_group},
                         {"repeat", result.seconds.size()}};
   return std::move(result.hits);
@@ -440,8 +571,12 @@ Renderer::~Renderer() = default;
 Picture Renderer::render(const RenderOptions& options) {
   return impl_->render(options);
 }
-std::vector<Hit> Renderer::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal) {
-  return impl_->trace(rays, any_hit, repeat, traversal);
+std::vector<Hit> Renderer::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal,
+                                 Precision precision) {
+  return impl_->trace(rays, any_hit, repeat, traversal, precision);
+}
+void Renderer::tune(const Tuning& tuning) {
+  impl_->tune(tuning);
 }
 std::string Renderer::timeline() const {
   return impl_->timeline;
@@ -451,7 +586,7 @@ std::string Renderer::statistics() const {
 }
 
 void open_device(const DeviceOptions& options) {
-  for (const device::Context& context : open(options)) work_group_of(options, context);
+  for (const device::Context& context : api::open_devices(options)) work_group_of(options, context);
 }
 
 }  // namespace kdray

@@ -44,7 +44,8 @@ Json device_json(const DeviceInfo& info) {
           {"compute_units", info.compute_units},
           {"global_memory", info.global_memory},
           {"max_allocation", info.max_allocation},
-          {"vectors", info.vectors}};
+          {"vectors", info.vectors},
+          {"double_precision", info.double_precision}};
 }
 
 Json features_json(std::uint32_t mask) {
@@ -62,8 +63,29 @@ Json rays_json(const wavefront::Counters& c) {
           {"skipped",
            {{"light_behind", c.skipped_behind},
             {"light_of_no_weight", c.skipped_unlit},
+            {"light_in_the_open", c.skipped_open},
+            {"of_the_background", c.skipped_background},
             {"below_min_weight", c.skipped_weight},
             {"too_deep", c.skipped_depth}}}};
+}
+
+Json samples_json(const layout::Frame& frame, const adaptive::Report* adaptive) {
+  const auto pixels = static_cast<double>(std::size_t{frame.width} * frame.height);
+  if (!adaptive)
+    return {{"mode", "uniform"},
+            {"total", std::uint64_t{frame.width} * frame.height * frame.n_samples},
+            {"per_pixel", frame.n_samples}};
+  Json by_count = Json::object();
+  for (int level = 0; level < adaptive::kLevels; ++level)
+    by_count[std::to_string(adaptive::samples_of(level))] = adaptive->pixels[static_cast<std::size_t>(level)];
+  return {{"mode", "adaptive"},
+          {"total", adaptive->samples},
+          {"per_pixel", static_cast<double>(adaptive->samples) / pixels},
+          {"rounds", adaptive->rounds},
+          {"target", adaptive->target},
+          {"estimated_rmse", adaptive->estimated_rmse},
+          {"stopped", adaptive->met ? "target" : "cap"},
+          {"pixels", std::move(by_count)}};
 }
 
 namespace {

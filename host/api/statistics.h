@@ -18,6 +18,9 @@ Json device_json(const DeviceInfo& info);
 Json features_json(std::uint32_t mask);
 Json rays_json(const wavefront::Counters& counters);
 
+// `adaptive`: null where all pixels have the frame's samples.
+Json samples_json(const layout::Frame& frame, const adaptive::Report* adaptive);
+
 // What is a mode's own: its queues and what it divided among them.
 Json pdprt_json(const pdprt::Result& result);
 Json pdprt_memory_json(const pdprt::Result& result, std::size_t scene_bytes);

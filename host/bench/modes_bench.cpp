@@ -71,6 +71,16 @@ class Runner {
     }
   }
 
+  // A frame that doesn't count, since keeping its timeline takes time.
+  void keep_timeline(RenderOptions options) {
+    options.timeline = true;
+    std::optional<Picture> none;
+    run_round(options, false, none);
+    if (renderer_) row_.timeline = renderer_->timeline();
+  }
+
+  int queues() const { return row_.queues; }
+
   ModesRow row() const {
     ModesRow row = row_;
     row.seconds = spread_of(row.rounds);
@@ -133,6 +143,8 @@ class SceneBench {
     std::optional<Picture> first;
     for (int round = -1; round < options_.repeat; ++round)
       for (Runner& runner : runners_) runner.run_round(frame(), round >= 0, first);
+    for (Runner& runner : runners_)
+      if (runner.queues() > 1 && runner.queues() == most_queues_with_cores()) runner.keep_timeline(frame());
     for (const Runner& runner : runners_) run_.rows.push_back(runner.row());
     runners_.clear();
     if (options_.model) predict();
@@ -150,6 +162,13 @@ class SceneBench {
     RenderOptions o;
     o.width = options_.width, o.height = options_.height, o.depth = options_.depth;
     return o;
+  }
+
+  int most_queues_with_cores() const {
+    int most = 0;
+    for (const int queues : options_.queues)
+      if (queues <= run_.cores) most = std::max(most, queues);
+    return most;
   }
 
   void add(const Scheme& scheme, int queues) {

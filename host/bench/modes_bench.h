@@ -54,6 +54,7 @@ struct ModesRow {
   std::optional<double> geometry_bytes = {}, work_bytes = {};  // of the queue that holds the most
   std::optional<double> geometry_share = {};                   // of the whole scene
   std::size_t differing_pixels = 0;  // against the scene's first picture, over all rounds
+  std::string timeline = {};         // of a frame after the rounds, for the most queues that have a core each
 
   bool shares_cores() const { return sub_devices < queues; }
 };

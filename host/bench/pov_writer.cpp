@@ -47,9 +47,20 @@ void write_light(std::ostream& out, const scene::Light& light) {
   if (light.kind == scene::LightKind::directional) {
     fmt::print(out, "light_source {{ {} rgb {} parallel point_at <0,0,0> }}\n",
                vector(-1e6 * light.direction), vector(light.color));
+  } else if (const vec3& a = light.attenuation; a.x > 0 && a.z > 0) {
+    // POV-Ray's lights fade by 2 / (1 + (d / fade_distance)^2).
+    fmt::print(out, "light_source {{ {} rgb {} fade_distance {:.9g} fade_power 2 }}\n",
+               vector(light.position), vector(light.color / (2 * a.x)), std::sqrt(a.x / a.z));
   } else {
     fmt::print(out, "light_source {{ {} rgb {} }}\n", vector(light.position), vector(light.color));
   }
+}
+
+bool has_words_for(const scene::Light& light) {
+  if (light.kind == scene::LightKind::directional) return true;
+  const vec3& a = light.attenuation;
+  const bool fades = a.z > 0 && a.x > 0 && a.y == 0, stays = a == vec3(1, 0, 0);
+  return light.kind == scene::LightKind::point && std::isinf(light.range) && (fades || stays);
 }
 
 std::string material(std::uint32_t number) {
@@ -79,6 +90,12 @@ void write_meshes(std::ostream& out, const scene::Scene& scene) {
 }
 
 }  // namespace
+
+bool pov_has_words_for(const scene::Scene& scene) {
+  const auto glows = [](const scene::Material& m) { return largest(m.emission) > 0; };
+  return std::all_of(scene.lights.begin(), scene.lights.end(), has_words_for) &&
+         std::none_of(scene.materials.begin(), scene.materials.end(), glows);
+}
 
 void write_pov(std::ostream& out, const scene::Scene& scene, double aspect, int depth, double min_weight) {
   fmt::print(out,

@@ -2,7 +2,7 @@
 // Shape   Spheres, open cones, one mesh of all triangles (smooth ones with their normals); materials as pigment and
 //         finish: ambient, diffuse, phong = (R.V)^shine, reflection, filter for what passes, ior. POV-Ray itself works
 //         the way DESIGN.md's model does, but its shadows of transparent objects are filtered, not black.
-// Errors  What POV-Ray has no word for is left out: attenuation, spots, emission.
+// Errors  What POV-Ray has no word for is left out: attenuation but by the distance's square, ranges, spots, emission.
 #pragma once
 
 #include <iosfwd>
@@ -10,6 +10,9 @@
 #include "scene/scene.h"
 
 namespace kdray::bench {
+
+// Whether nothing would be left out.
+bool pov_has_words_for(const scene::Scene& scene);
 
 // `depth` as kdray counts it: the eye ray is 1. Rays of less weight than `min_weight` are not followed.
 void write_pov(std::ostream& out, const scene::Scene& scene, double aspect, int depth, double min_weight);

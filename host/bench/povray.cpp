@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "bench/pov_writer.h"
+#include "film/read.h"
 
 extern char** environ;
 
@@ -91,10 +92,28 @@ Povray::~Povray() {
 }
 
 double Povray::trace_seconds(int threads) const {
+  return run_with(threads, {"-A", "-F"});
+}
+
+// As EXR: a PNG would cut off what is brighter than white, before anyone can take a mean.
+Povray::Traced Povray::trace(int threads, const std::vector<std::string>& flags) const {
+  const std::filesystem::path file = folder_ / "picture.exr";
+  std::vector<std::string> all = flags;
+  all.insert(all.end(), {"+FE", "+O" + file.string()});
+  const double seconds = run_with(threads, all);
+  return {seconds, film::read_picture(file, {})};
+}
+
+double Povray::run_with(int threads, const std::vector<std::string>& flags) const {
   const std::filesystem::path log = folder_ / "log";
-  const int code = run({"povray", "+I" + (folder_ / "scene.pov").string(), fmt::format("+W{}", width_),
-                        fmt::format("+H{}", height_), "-A", "-D", "-F", fmt::format("+WT{}", threads)},
-                       log);
+  std::vector<std::string> arguments = {"povray",
+                                        "+I" + (folder_ / "scene.pov").string(),
+                                        fmt::format("+W{}", width_),
+                                        fmt::format("+H{}", height_),
+                                        "-D",
+                                        fmt::format("+WT{}", threads)};
+  arguments.insert(arguments.end(), flags.begin(), flags.end());
+  const int code = run(arguments, log);
   const std::string output = text_of(log);
   const double seconds = trace_time_in(output);
   if (code != 0 || seconds < 0) throw Error(ErrorCode::internal, "povray failed: " + last_line(output));

@@ -1,11 +1,13 @@
-// What    POV-Ray as a program beside kdray: how long it takes for a picture.
-// Shape   Its own "Trace Time": after parsing and building, no antialiasing, no display, no picture file.
+// What    POV-Ray as a program beside kdray: how long it takes for a picture, and the picture.
+// Shape   Its own "Trace Time": after parsing and building, no display. For times alone, no antialiasing and no file.
 // Errors  Without povray on the path there is none. One that fails is an Error that quotes its last words.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "film/image.h"
 #include "scene/scene.h"
 
 namespace kdray::bench {
@@ -22,7 +24,16 @@ class Povray {
 
   double trace_seconds(int threads) const;
 
+  struct Traced {
+    double seconds = 0;
+    film::Image image;  // linear, as it is: values above 1 too
+  };
+  // With antialiasing as `flags` have it: "+AM2", "+A0.1", ...
+  Traced trace(int threads, const std::vector<std::string>& flags) const;
+
  private:
+  double run_with(int threads, const std::vector<std::string>& flags) const;
+
   std::filesystem::path folder_;
   int width_, height_;
 };

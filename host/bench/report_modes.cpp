@@ -16,11 +16,6 @@ const std::vector<std::string> kBalances = {"odprt sah", "odprt pilot", "odprt d
 const std::vector<std::string> kPredicted = {"pdprt contiguous", "pdprt interleaved", "pdprt bag",
                                              "odprt sah", "odprt pilot"};
 
-std::string short_name(const std::string& scene) {
-  const std::string file = std::filesystem::path(scene).filename().string();
-  return file.substr(0, file.find('.'));
-}
-
 const char* color_of(const std::string& scheme) {
   static const std::map<std::string, const char*> kColors = {
       {"pdprt contiguous", "#9cc9ea"}, {"pdprt interleaved", "#4e9bd4"}, {"pdprt bag", "#1f5f91"},
@@ -206,6 +201,11 @@ std::string subtitle(std::span<const ModesRun> runs, const ModesOptions& options
 }
 
 }  // namespace
+
+std::string short_name(const std::string& scene) {
+  const std::string file = std::filesystem::path(scene).filename().string();
+  return file.substr(0, file.find('.'));
+}
 
 std::vector<Check> checks_of(const ModesRun& run) {
   std::vector<Check> checks;

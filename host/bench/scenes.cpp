@@ -24,7 +24,7 @@ scene::Scene displaced() {
 }
 
 [[noreturn]] void fail_unknown(const std::string& name) {
-  std::string known = "boxes spheres displaced";
+  std::string known = "boxes spheres displaced lamps";
   for (const generate::Generator& g : generate::generators()) known.append(" ").append(g.name);
   throw input_error(name, 0, "neither a file nor a built-in scene", "built in are " + known);
 }
@@ -34,6 +34,7 @@ scene::Scene displaced() {
 scene::Scene load_scene(const std::string& name_or_file) {
   if (name_or_file == "boxes") return boxes();
   if (name_or_file == "spheres") return spheres();
+  if (name_or_file == "lamps") return lamps();
   if (name_or_file == "displaced") return displaced();
   for (const generate::Generator& g : generate::generators()) {
     if (g.name != name_or_file) continue;

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
+#include "base/median.h"
+
 namespace kdray::bench {
 
 Spread spread_of(std::vector<double> values) {
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  const double median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-  return {median, values.front(), values.back()};
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return {median(values), *least, *most};
 }
 
 Spread mrays_per_s(std::size_t n_rays, const Spread& seconds) {

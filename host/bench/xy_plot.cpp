@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "bench/svg.h"
+#include "bench/xy_scale.h"
 
 namespace kdray::bench {
 
@@ -15,47 +14,6 @@ namespace {
 constexpr double kLeft = 72, kRight = 130;  // the right has room for the last point's label
 constexpr double kHead = 62, kLegendLine = 20;
 constexpr double kPanel = 330, kTitle = 34, kFoot = 56;
-
-// Values along an axis, in pixels.
-class Scale {
- public:
-  Scale(const Axis& axis, const std::vector<double>& values, double from, double to)
-      : log_(axis.logarithmic), from_(from), to_(to) {
-    for (const double v : values)
-      if (shows(v)) lo_ = std::min(lo_, at(v)), hi_ = std::max(hi_, at(v));
-    if (lo_ > hi_) lo_ = 0, hi_ = 1;
-    if (log_) {
-      lo_ = std::floor(lo_ * 3) / 3, hi_ = std::ceil(hi_ * 3) / 3;  // about 1, 2, 5, 10
-    } else {
-      lo_ = std::min(lo_, 0.0), hi_ += 0.05 * (hi_ - lo_);
-    }
-    if (hi_ == lo_) hi_ = lo_ + 1;
-  }
-
-  bool shows(double v) const { return std::isfinite(v) && (!log_ || v > 0); }
-  double pixel(double v) const { return from_ + (at(v) - lo_) / (hi_ - lo_) * (to_ - from_); }
-
-  std::vector<double> ticks() const {
-    std::vector<double> found;
-    if (log_) {
-      for (int power = static_cast<int>(std::floor(lo_)); power <= hi_; ++power)
-        for (const double factor : {1.0, 2.0, 5.0})
-          if (const double v = factor * std::pow(10, power); at(v) >= lo_ - 1e-9 && at(v) <= hi_ + 1e-9)
-            found.push_back(v);
-    } else {
-      const double step = svg::step_for(hi_ - lo_);
-      for (double v = std::ceil(lo_ / step) * step; v <= hi_ * (1 + 1e-9); v += step) found.push_back(v);
-    }
-    return found;
-  }
-
- private:
-  double at(double v) const { return log_ ? std::log10(v) : v; }
-
-  bool log_;
-  double from_, to_;
-  double lo_ = std::numeric_limits<double>::infinity(), hi_ = -std::numeric_limits<double>::infinity();
-};
 
 std::vector<double> all_of(const XyPanel& panel, double Point::*coordinate) {
   std::vector<double> values;
@@ -100,8 +58,8 @@ class Drawing {
 
   std::string panel(const XyPanel& p, double top) const {
     const double bottom = top + kPanel - kFoot, right = width_ - kRight;
-    const Scale x(p.x, all_of(p, &Point::x), kLeft, right);
-    const Scale y(p.y, all_of(p, &Point::y), bottom, top + kTitle);
+    const Scale x(p.x.logarithmic, all_of(p, &Point::x), kLeft, right);
+    const Scale y(p.y.logarithmic, all_of(p, &Point::y), bottom, top + kTitle);
     std::string out = svg::text(kLeft, top + 18, 13, "start", p.title, " font-weight=\"bold\"");
     for (const double v : y.ticks())
       out += svg::line(kLeft, y.pixel(v), right, y.pixel(v), "#dddddd") +

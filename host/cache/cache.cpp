@@ -1,11 +1,12 @@
 #include "cache/cache.h"
 
 #include <algorithm>
+#include <string_view>
 #include <system_error>
 
+#include "base/cache_folder.h"
 #include "base/error.h"
 #include "cache/entry.h"
-#include "cache/folder.h"
 #include "cache/key.h"
 #include "cache/mapped_file.h"
 
@@ -16,6 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 using scene::FileRead;
+
+constexpr std::string_view kEnding = ".scene";
 
 std::optional<Hash> content_of(const fs::path& file) {
   const std::optional<MappedFile> mapped = map_file(file);
@@ -62,14 +65,14 @@ std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path&
   const std::optional<Hash> content = content_of(scene);
   if (!content) return std::nullopt;
   const Hash key = key_of(scene, *content, tree);
-  const fs::path file = entry_file(cache.folder, key);
+  const fs::path file = entry_file(cache.folder, key, kEnding);
   std::optional<prepare::Prepared> found = read_entry(file, key);
   if (!found || found->settings.files.empty() || !says_the_same(found->settings, scene) ||
       !all_as_they_were(found->settings.files, scene.parent_path()))
     return std::nullopt;
   found->settings.name = scene.string();
   found->tree_options = tree;
-  touch(file);
+  touch_entry(file);
   return found;
 }
 
@@ -83,8 +86,8 @@ bool keep(const CacheOptions& cache, const prepare::Prepared& prepared) {
   prepare::Prepared kept = prepared;
   kept.settings.files = from_folder(files, scene.parent_path());
   make_folder(cache.folder);
-  write_entry(entry_file(cache.folder, key), key, kept);
-  shrink(cache.folder, cache.max_bytes);
+  write_entry(entry_file(cache.folder, key, kEnding), key, kept);
+  shrink_folder(cache.folder, kEnding, cache.max_bytes);
   return true;
 }
 

@@ -111,8 +111,8 @@ void get(const Json& from, prepare::Counts& c) {
 }  // namespace
 
 std::string to_bytes(const prepare::Prepared& p) {
-  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, camera, background,
-               ambient, settings, warnings, files] = p.settings;
+  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, unlit, camera,
+               background, ambient, settings, warnings, files] = p.settings;
   const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, tree_options,
                seconds] = p;
   const Json facts = {{"name", name},

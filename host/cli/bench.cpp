@@ -14,6 +14,8 @@
 #include "bench/rays.h"
 #include "bench/rays_bench.h"
 #include "bench/report.h"
+#include "cli/bench_ablation.h"
+#include "cli/bench_accuracy.h"
 #include "cli/bench_build.h"
 #include "cli/bench_modes.h"
 #include "cli/bench_report.h"
@@ -104,11 +106,7 @@ Command add_frames(CLI::App& bench) {
   const auto c = std::make_shared<FramesCommand>();
   bench::FramesOptions& o = c->options;
   add_scenes(*app, o.scenes, "balls gears mount rings teapot tetra tree");
-  add_text(*app, "--size", "WxH", "Pixels across and down (default 1024x1024)",
-           [&o](const std::string& text) {
-             const Size size = parse_size("--size", text, kSideMax, kRaysMax);
-             o.width = size.width, o.height = size.height;
-           });
+  add_size(*app, "Pixels across and down (default 1024x1024)", kSideMax, kRaysMax, o.width, o.height);
   add_int(*app, "--depth", "Deepest ray; the eye ray is 1 (default 5)", 1, 64, o.depth);
   add_int(*app, "--repeat", "Rounds to take the median of (default 7)", 1, kRepeatMax, o.repeat);
   add_report(*app, c->report);
@@ -122,16 +120,20 @@ Command add_bench(CLI::App& kdray) {
       kdray.add_subcommand("bench", "Measure rays or frames, beside Embree and POV-Ray where they are");
   app->require_subcommand(0, 1);
   const Command rays = add_rays(*app), frames = add_frames(*app), build = add_bench_build(*app),
-                depth = add_bench_depth(*app), modes = add_bench_modes(*app);
-  return {app, [rays, frames, build, depth, modes] {
+                depth = add_bench_depth(*app), modes = add_bench_modes(*app),
+                accuracy = add_bench_accuracy(*app), ablation = add_bench_ablation(*app);
+  return {app, [rays, frames, build, depth, modes, accuracy, ablation] {
             if (rays.app->parsed()) return rays.run();
             if (frames.app->parsed()) return frames.run();
             if (build.app->parsed()) return build.run();
             if (depth.app->parsed()) return depth.run();
             if (modes.app->parsed()) return modes.run();
+            if (accuracy.app->parsed()) return accuracy.run();
+            if (ablation.app->parsed()) return ablation.run();
             throw Error(
                 ErrorCode::usage,
-                "what to bench is missing: rays, frames, build, depth, modes; see 'kdray bench --help'");
+                "what to bench is missing: rays, frames, build, depth, modes, accuracy, ablation; see 'kdray "
+                "bench --help'");
           }};
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "base/write_file.h"
+#include "bench/modes_timeline.h"
 #include "bench/report_modes.h"
 #include "cli/bench_report.h"
 #include "cli/message.h"
@@ -53,6 +54,8 @@ int run(const ModesCommand& c) {
   print_table(bench::summary_of(runs));
   write_report(c.report, "modes", bench::json_of(runs, c.options), to_svg(bench::plot_of(runs, c.options)));
   write_plot(c.report, "modes_time.svg", to_svg(bench::time_plot_of(runs, c.options)));
+  if (const std::string svg = bench::timeline_svg(runs, c.options); !svg.empty())
+    write_plot(c.report, "modes_timeline.svg", svg);
   if (c.options.model) write_plot(c.report, "modes_model.svg", to_svg(bench::model_plot_of(runs, c.options)));
   if (const std::size_t n = bench::count_differing_pixels(runs); n > 0)
     throw Error(ErrorCode::internal, fmt::format("{} pixels are not the bits of the first picture", n));
@@ -69,11 +72,7 @@ Command add_bench_modes(CLI::App& bench) {
   add_scenes(*app, o.scenes, "balls gears mount rings teapot tetra tree");
   add_text(*app, "--queues", "LIST", "Numbers of queues (default 1,2,4,8)",
            [&o](const std::string& text) { o.queues = parse_queues(text); });
-  add_text(*app, "--size", "WxH", "Pixels across and down (default 1024x1024)",
-           [&o](const std::string& text) {
-             const Size size = parse_size("--size", text, kSideMax, kPixelsMax);
-             o.width = size.width, o.height = size.height;
-           });
+  add_size(*app, "Pixels across and down (default 1024x1024)", kSideMax, kPixelsMax, o.width, o.height);
   add_int(*app, "--depth", "Deepest ray; the eye ray is 1 (default 5)", 1, 64, o.depth);
   add_int(*app, "--repeat", "Rounds to take the median of (default 7)", 1, kRepeatMax, o.repeat);
   add_real(*app, "--bandwidth", "GB/s", "Of a link between queues, for the model (default 10)", 1e-6, 1e9,

@@ -21,6 +21,8 @@ Command add_devices(CLI::App& kdray);
 Command add_doctor(CLI::App& kdray);
 Command add_generate(CLI::App& kdray);
 Command add_compare(CLI::App& kdray);
+Command add_verify(CLI::App& kdray);
+Command add_tune(CLI::App& kdray);
 Command add_bench(CLI::App& kdray);
 
 }  // namespace kdray::cli

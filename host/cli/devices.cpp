@@ -22,7 +22,9 @@ std::string as_text(const std::vector<DeviceInfo>& devices) {
                         bytes_in_words(d.global_memory), bytes_in_words(d.max_allocation));
     text +=
         fmt::format("   {}, {}, driver {}\n", one_line(d.platform), one_line(d.version), one_line(d.driver));
-    if (d.usable) text += fmt::format("   vectors: {}\n", d.vectors);
+    if (d.usable)
+      text +=
+          fmt::format("   vectors: {}; double precision: {}\n", d.vectors, d.double_precision ? "yes" : "no");
     if (!d.usable) text += fmt::format("   not usable: {}\n", one_line(d.why_not));
   }
   return text;
@@ -41,13 +43,16 @@ std::string as_json(const std::vector<DeviceInfo>& devices) {
                     {"global_memory", d.global_memory},
                     {"max_allocation", d.max_allocation},
                     {"vectors", d.vectors},
+                    {"double_precision", d.double_precision},
                     {"usable", d.usable},
                     {"why_not", d.why_not}});
   return list.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 int run(bool json) {
-  const std::vector<DeviceInfo> all = devices();
+  DeviceOptions options;
+  options.programs = default_program_folder();
+  const std::vector<DeviceInfo> all = devices(options);
   print(json ? as_json(all) : as_text(all));
   for (const DeviceInfo& d : all)
     if (d.usable) return 0;

@@ -19,8 +19,8 @@ std::uint64_t bytes_of(const Values& v) {
 // The structs are taken apart into all their arrays, so that one that is added can't be forgotten.
 
 Json scene_arrays(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, camera, background,
-               ambient, settings, warnings, files] = scene;
+  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, unlit, camera,
+               background, ambient, settings, warnings, files] = scene;
   return {{"vertices", bytes_of(vertices)},   {"normals", bytes_of(normals)},
           {"triangles", bytes_of(triangles)}, {"spheres", bytes_of(spheres)},
           {"cones", bytes_of(cones)},         {"materials", bytes_of(materials)},

@@ -44,9 +44,9 @@ int parse_and_run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(kExitCodes);  // the commands inherit it
   app.get_formatter()->column_width(24);
-  const std::vector<Command> commands = {add_render(app),  add_trace(app),  add_info(app),
-                                         add_devices(app), add_doctor(app), add_generate(app),
-                                         add_compare(app), add_bench(app)};
+  const std::vector<Command> commands = {
+      add_render(app),   add_trace(app),   add_info(app),   add_devices(app), add_doctor(app),
+      add_generate(app), add_compare(app), add_verify(app), add_tune(app),    add_bench(app)};
   check_command_name(argc, argv, commands);
   try {
     app.parse(argc, argv);

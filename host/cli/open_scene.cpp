@@ -1,5 +1,6 @@
 #include "cli/open_scene.h"
 
+#include <filesystem>
 #include <future>
 
 #include "base/timer.h"
@@ -21,13 +22,31 @@ CacheOptions options_of(const CacheChoice& choice) {
   return options;
 }
 
+// With programs in a folder beside the scenes.
+DeviceOptions with_cache(DeviceOptions device, const CacheChoice& choice) {
+  if (!choice.off)
+    device.programs =
+        choice.folder.empty() ? default_program_folder() : std::filesystem::path(choice.folder) / "programs";
+  return device;
+}
+
 }  // namespace
 
 OpenedScene::OpenedScene(const std::string& file, const TreeOptions& tree, const DeviceOptions& device,
                          const CacheChoice& choice, bool quiet,
                          const std::function<void(const scene::Scene&)>& check)
-    : choice_(choice), cache_(options_of(choice)), quiet_(quiet) {
-  std::future<void> device_opened = std::async(std::launch::async, [&device] { open_device(device); });
+    : choice_(choice),
+      cache_(options_of(choice)),
+      quiet_(quiet),
+      notice_(notice_on_stderr(quiet)),
+      device_(with_cache(device, choice)) {
+  device_.building = [this](bool begins) { notice_.tell(begins); };
+  // The device is opened twice: here, and by the Renderer.
+  device_.left_out = [this](const std::string& why) {
+    if (!quiet_ && left_out_.insert(why).second) say(why);
+  };
+  if (!quiet) device_.tunings_ignored = [](const std::string& why) { say(why); };
+  std::future<void> device_opened = std::async(std::launch::async, [this] { open_device(device_); });
   const auto tell = [&](const scene::Scene& settings) {
     if (!quiet)
       for (const std::string& warning : settings.warnings) say(warning);
@@ -45,13 +64,25 @@ OpenedScene::OpenedScene(const std::string& file, const TreeOptions& tree, const
     tell(scene_->settings());
     return;
   }
-  const Scene read = Scene::load(file);
+  const Scene read = [&] {
+    try {
+      return Scene::load(file);
+    } catch (...) {
+      notice_.mute();  // the device is waited for, but what it does is of no interest any more
+      throw;
+    }
+  }();
   load_seconds_ = read.load_seconds();
   tell(read.model());  // without a device there is no use in building a tree
   scene_.emplace(read, tree);
 }
 
 void OpenedScene::keep() {
+  keep_scene();
+  keep_programs(device_);
+}
+
+void OpenedScene::keep_scene() {
   if (outcome_ != kMiss) return;
   const Timer timer;
   try {

@@ -1,12 +1,14 @@
-// What    The way to a prepared scene that render and trace share: from the cache, or read and built, while the device is being
-//         opened beside it.
+// What    The way to a prepared scene and an open device that render and trace share: the scene from the cache, or read and built,
+//         while the device is being opened beside it.
 // Errors  kdray::Error; but a cache that can't be written costs no picture: a warning where it was asked for by name.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 
+#include "cli/build_notice.h"
 #include "cli/options.h"
 #include "kdray/kdray.h"
 
@@ -21,7 +23,10 @@ class OpenedScene {
 
   const PreparedScene& scene() const { return *scene_; }
 
-  // Puts a scene that was not found into the cache; after the picture is out, which it would only delay.
+  // What the Renderer is to be made with.
+  const DeviceOptions& device() const { return device_; }
+
+  // Puts a scene and programs that were not found into the cache; after the picture is out, which it would only delay.
   void keep();
 
   const std::string& cache() const { return outcome_; }  // "hit", "miss" or "off"
@@ -29,9 +34,14 @@ class OpenedScene {
   double cache_seconds() const { return cache_seconds_; }  // to look the scene up, and to keep it
 
  private:
+  void keep_scene();
+
   CacheChoice choice_;
   SceneCache cache_;
   bool quiet_;
+  BuildNotice notice_;
+  std::set<std::string> left_out_;  // devices, as they were told of
+  DeviceOptions device_;
   std::string outcome_ = "off";
   double load_seconds_ = 0, cache_seconds_ = 0;
   std::optional<PreparedScene> scene_;

@@ -6,6 +6,7 @@
 
 #include "cli/parse.h"
 #include "prepare/quality.h"
+#include "tune/database.h"
 
 namespace kdray::cli {
 
@@ -13,6 +14,8 @@ namespace {
 
 // In the order of Traversal.
 constexpr std::array<std::string_view, 5> kTraversals = {"auto", "binary", "wide", "packet", "batch"};
+constexpr std::array<std::string_view, 3> kSchedules = {"auto", "slices",
+                                                        "global"};  // in the order of Schedule
 
 // "-o,--output" -> "--output", for messages.
 std::string long_name(const std::string& name) {
@@ -38,6 +41,15 @@ CLI::Option* add_real(CLI::App& app, const std::string& name, const std::string&
   return add_text(app, name, shape, help,
                   [option = long_name(name), lo, hi, &value](const std::string& text) {
                     value = parse_real(option, text, lo, hi);
+                  });
+}
+
+CLI::Option* add_size(CLI::App& app, const std::string& help, int side_max, long long pixels_max, int& width,
+                      int& height) {
+  return add_text(app, "--size", "WxH", help,
+                  [side_max, pixels_max, &width, &height](const std::string& text) {
+                    const Size size = parse_size("--size", text, side_max, pixels_max);
+                    width = size.width, height = size.height;
                   });
 }
 
@@ -85,9 +97,14 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
       ->group(group);
 }
 
-void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal) {
+void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal, Precision& precision) {
   const std::string group = "Device";
-  static constexpr std::array<std::string_view, 1> kPrecisions = {"float"};
+  device.tunings = tune::default_file();
+  app.add_flag_callback(
+         "--no-tuning", [&device] { device.tunings.clear(); },
+         "Leave aside what 'kdray tune' found; take what kdray ships with")
+      ->group(group);
+  static constexpr std::array<std::string_view, 2> kPrecisions = {"float", "double"};
   add_text(app, "--device", "SPEC",
            "auto, cpu, gpu, a number from 'kdray devices', or a part of a name; several with commas",
            [&device](const std::string& text) {
@@ -110,9 +127,21 @@ void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& travers
              traversal = static_cast<Traversal>(name - kTraversals.begin());
            })
       ->group(group);
-  add_text(app, "--precision", "NAME", "Arithmetic of the kernels: float", [](const std::string& text) {
-    parse_choice("--precision", text, kPrecisions);
-  })->group(group);
+  add_text(app, "--schedule", "NAME",
+           "Launches: slices (all stages in one, for CPUs), global (one for each, a ray per work-item), auto",
+           [&device](const std::string& text) {
+             parse_choice("--schedule", text, kSchedules);
+             const auto name = std::find(kSchedules.begin(), kSchedules.end(), text);
+             device.schedule = static_cast<Schedule>(name - kSchedules.begin());
+           })
+      ->group(group);
+  add_text(app, "--precision", "NAME",
+           "Arithmetic of the kernels: float (default), double (slow, as a reference)",
+           [&precision](const std::string& text) {
+             const bool in_double = parse_choice("--precision", text, kPrecisions) == "double";
+             precision = in_double ? Precision::float64 : Precision::float32;
+           })
+      ->group(group);
 }
 
 }  // namespace kdray::cli

@@ -18,6 +18,9 @@ CLI::Option* add_int(CLI::App& app, const std::string& name, const std::string& 
                      int& value);
 CLI::Option* add_real(CLI::App& app, const std::string& name, const std::string& shape,
                       const std::string& help, double lo, double hi, double& value);
+// --size WxH
+CLI::Option* add_size(CLI::App& app, const std::string& help, int side_max, long long pixels_max, int& width,
+                      int& height);
 CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string& help, std::string& value);
 
 // Where prepared scenes are kept.
@@ -35,7 +38,7 @@ CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality);
 // --build --tree-depth --cost-traverse --cost-intersect
 void add_tree_options(CLI::App& app, TreeOptions& tree);
 
-// --device --queues --work-group --traversal --precision
-void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal);
+// --device --queues --work-group --traversal --schedule --precision --no-tuning
+void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal, Precision& precision);
 
 }  // namespace kdray::cli

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kdray/kdray.h"
+
 namespace kdray::cli {
 
 namespace {
@@ -67,6 +69,23 @@ Size parse_size(std::string_view option, std::string_view text, int side_max, lo
   if (static_cast<long long>(size.width) * size.height > pixels_max)
     throw usage_error(option, text, fmt::format("no more than {} pixels in all", pixels_max));
   return size;
+}
+
+Samples parse_samples(std::string_view option, std::string_view text) {
+  constexpr std::string_view kAdaptive = "adaptive";
+  constexpr int kMost = 65536;
+  constexpr double kLeast = 1e-6, kLargest = 1e6;
+  Samples samples;
+  if (text == kAdaptive) return {0, kDefaultAdaptiveTarget};
+  if (text.starts_with("adaptive:") && whole_number(text.substr(kAdaptive.size() + 1), samples.target) &&
+      samples.target >= kLeast && samples.target <= kLargest)
+    return samples;
+  if (whole_number(text, samples.number) && samples.number >= 1 && samples.number <= kMost)
+    return {samples.number, 0};
+  throw usage_error(
+      option, text,
+      fmt::format("a whole number from 1 to {}, adaptive, or adaptive:TARGET with an RMSE of {} or more",
+                  kMost, kLeast));
 }
 
 film::Transfer parse_gamma(std::string_view option, std::string_view text) {

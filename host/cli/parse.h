@@ -29,6 +29,13 @@ std::uint64_t parse_bytes(std::string_view option, std::string_view text);
 // "640x480"; each side from 1 to `side_max`, and no more than `pixels_max` pixels.
 Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max);
 
+// "16", "adaptive", "adaptive:0.01".
+struct Samples {
+  int number = 0;     // 0: adaptive
+  double target = 0;  // of adaptive sampling
+};
+Samples parse_samples(std::string_view option, std::string_view text);
+
 // "srgb", or the exponent G of v^(1/G).
 film::Transfer parse_gamma(std::string_view option, std::string_view text);
 

@@ -46,18 +46,21 @@ struct Options {
 };
 
 void add_picture_options(CLI::App& app, Options& o) {
-  add_text(app, "--size", "WxH", "Pixels across and down (default: the scene's, or 1024x1024)",
-           [&o](const std::string& text) {
-             const Size size = parse_size("--size", text, kSideMax, kPixelsMax);
-             o.render.width = size.width, o.render.height = size.height;
-           });
+  add_size(app, "Pixels across and down (default: the scene's, or 1024x1024)", kSideMax, kPixelsMax,
+           o.render.width, o.render.height);
   add_int(app, "--depth", "Deepest ray; the eye ray is 1 (default: the scene's, or 5)", 1, 64,
           o.render.depth);
   add_real(app, "--min-weight", "W",
            "Rays of less weight are not traced (default: what can't change an 8-bit picture); 0: trace all",
            0, 1, o.render.min_weight);
-  add_int(app, "--samples", "Rays per pixel, stratified (default: the scene's, or 1)", 1, 65536,
-          o.render.samples);
+  add_text(app, "--samples", "N|adaptive[:TARGET]",
+           "Rays per pixel, stratified (default: the scene's, or 1); or as many where they are needed as an "
+           "RMSE of "
+           "TARGET takes (default 0.0075)",
+           [&o](const std::string& text) {
+             const Samples samples = parse_samples("--samples", text);
+             o.render.samples = samples.number, o.render.adaptive_target = samples.target;
+           });
   static constexpr std::array<std::string_view, 2> kGrids = {"centers", "corners"};
   add_text(app, "--grid", "NAME",
            "centers: rays through the pixels' centers; corners: the outermost rays go through the picture's "
@@ -71,7 +74,8 @@ void add_picture_options(CLI::App& app, Options& o) {
 
 void add_file_options(CLI::App& app, Options& o) {
   static constexpr std::array<std::string_view, 2> kBits = {"8", "16"};
-  static constexpr std::array<std::string_view, 4> kChannels = {"depth", "normal", "primitive", "cost"};
+  static constexpr std::array<std::string_view, 5> kChannels = {"depth", "normal", "primitive", "cost",
+                                                                "samples"};
   add_path(app, "-o,--output", "The picture, .png or .exr (default: the scene's name with .png, here)",
            o.output);
   add_text(app, "--gamma", "G", "PNG's transfer curve: srgb (default) or v^(1/G)",
@@ -84,7 +88,7 @@ void add_file_options(CLI::App& app, Options& o) {
     o.bits_given = true;
   });
   add_text(app, "--aov", "LIST",
-           "More channels, in the EXR or as files beside the PNG: depth,normal,primitive,cost",
+           "More channels, in the EXR or as files beside the PNG: depth,normal,primitive,cost,samples",
            [&o](const std::string& text) { o.render.channels = parse_list("--aov", text, kChannels); });
   add_path(app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o.stats);
   app.add_flag("-q,--quiet", o.quiet, "Say nothing unless something is wrong");
@@ -190,7 +194,7 @@ int run(Options& o) {
   check_files(o);
   OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet,
                     [&o](const scene::Scene& asked) { check_memory(o.render, asked.settings); });
-  Renderer renderer(scene.scene(), o.device);
+  Renderer renderer(scene.scene(), scene.device());
   Picture picture = render(renderer, o);
   if (!o.quiet)
     for (const std::string& warning : picture.warnings) say(warning);
@@ -224,7 +228,7 @@ Command add_render(CLI::App& kdray) {
   add_file_options(*app, *o);
   add_picture_options(*app, *o);
   add_division_options(*app, *o);
-  add_device_options(*app, o->device, o->render.traversal);
+  add_device_options(*app, o->device, o->render.traversal, o->render.precision);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};

@@ -25,6 +25,7 @@ struct Options {
   bool any_hit = false, quiet = false;
   int repeat = 1;
   Traversal traversal = Traversal::automatic;
+  Precision precision = Precision::float32;
   CacheChoice cache;
   TreeOptions tree;
   DeviceOptions device;
@@ -48,8 +49,8 @@ int run(const Options& o) {
   const double read_rays = step.seconds();
 
   OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet);
-  Renderer renderer(scene.scene(), o.device);
-  const std::vector<Hit> hits = renderer.trace(rays, o.any_hit, o.repeat, o.traversal);
+  Renderer renderer(scene.scene(), scene.device());
+  const std::vector<Hit> hits = renderer.trace(rays, o.any_hit, o.repeat, o.traversal, o.precision);
   OwnSeconds seconds;
   step.restart();
   rays::write_hits(o.output, hits);
@@ -85,7 +86,7 @@ Command add_trace(CLI::App& kdray) {
   add_int(*app, "--repeat", "Trace that often and report the median time (default 1)", 1, 1000000, o->repeat);
   add_path(*app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o->stats);
   app->add_flag("-q,--quiet", o->quiet, "Say nothing unless something is wrong");
-  add_device_options(*app, o->device, o->traversal);
+  add_device_options(*app, o->device, o->traversal, o->precision);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};

@@ -25,6 +25,7 @@ Clock::Clock(const cl::Context& context, cl::CommandQueue queue) {
     const double after = host_seconds();
     if (after - before >= shortest) continue;
     shortest = after - before;
+    event.wait();  // a blocking call may end before its event is complete and has times (Intel's runtime)
     const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
     const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
     const double middle = 0.5e-9 * (static_cast<double>(start) + static_cast<double>(end));

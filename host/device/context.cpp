@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <tuple>
+#include <utility>
 
 #include "base/memory.h"
 #include "device/host_memory.h"
@@ -75,14 +76,20 @@ const Opened& opened_before_or_now(const FoundDevice& found, int n_queues) {
 
 }  // namespace
 
-Context::Context(const std::string& device_spec, int n_queues, int compute_units)
-    : found_(choose_device(device_spec)) {
+Context::Context(const std::string& device_spec, int n_queues, int compute_units, Builds builds)
+    : found_(choose_device(device_spec)), builds_(std::move(builds)) {
   if (compute_units > 0)
     found_.info.compute_units =
         std::min(found_.info.compute_units, static_cast<std::uint32_t>(compute_units));
   checked("opening " + found_.info.name, [&] { opened_ = &opened_before_or_now(found_, n_queues); });
-  simd_ = choose_simd(found_, *opened_);
+  simd_ = choose_simd(found_, *opened_, builds_);
   found_.info.vectors = in_words(simd_);
+}
+
+Context Context::without_cache() const {
+  Context copy = *this;
+  copy.builds_.cache = nullptr;
+  return copy;
 }
 
 std::size_t Context::max_work_group() const {
@@ -97,12 +104,12 @@ bool Context::rounds_division_correctly() const {
 }
 
 cl::Program Context::build(const std::string& file, const std::string& options) const {
-  return build_program(opened_->context, opened_->devices, file, options);
+  return build_program(opened_->context, opened_->devices, file, options, builds_);
 }
 
 cl::Program Context::build_text(const std::string& name, const std::string& text,
                                 const std::string& options) const {
-  return build_source(opened_->context, opened_->devices, name, expand_text(name, text), options);
+  return build_source(opened_->context, opened_->devices, name, expand_text(name, text), options, builds_);
 }
 
 cl::Buffer Context::buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const {
@@ -155,17 +162,53 @@ bool Context::works_in_host_memory() const {
          found_.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
 }
 
-std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units) {
+namespace {
+
+Context open_checked(const std::string& spec, int n_queues, const OpenOptions& o) {
+  Context context(spec, n_queues, o.compute_units, o.builds);
+  if (o.check) o.check(context);
+  return context;
+}
+
+// The best device that can be opened and passes.
+Context open_best(int n_queues, const OpenOptions& o) {
+  std::string why;
+  for (const int number : devices_by_preference()) {
+    try {
+      Context context = open_checked(std::to_string(number), n_queues, o);
+      if (!why.empty() && o.left_out) o.left_out(why);
+      return context;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::no_device) throw;
+      if (!why.empty() && o.left_out) o.left_out(why);
+      why = error.what();
+    }
+  }
+  if (!why.empty()) throw Error(ErrorCode::no_device, why);
+  return Context("auto", n_queues);  // throws, saying what there is
+}
+
+}  // namespace
+
+std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& options) {
   const std::vector<std::string> parts = split(specs);
   const int n = static_cast<int>(parts.size());
   std::vector<Context> contexts;
   for (int i = 0; i < n; ++i) {
-    if (n > 1 && parts[static_cast<std::size_t>(i)].empty())
+    const std::string& spec = parts[static_cast<std::size_t>(i)];
+    if (n > 1 && spec.empty())
       throw Error(ErrorCode::usage, fmt::format("the list of devices '{}' has an empty name in it", specs));
-    const int queues = n_queues / n + (i < n_queues % n ? 1 : 0);
-    contexts.emplace_back(parts[static_cast<std::size_t>(i)], std::max(queues, 1), compute_units);
+    const int queues = std::max(options.n_queues / n + (i < options.n_queues % n ? 1 : 0), 1);
+    contexts.push_back(is_auto(spec) ? open_best(queues, options) : open_checked(spec, queues, options));
   }
   return contexts;
+}
+
+std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units) {
+  OpenOptions options;
+  options.n_queues = n_queues;
+  options.compute_units = compute_units;
+  return open_contexts(specs, options);
 }
 
 }  // namespace kdray::device

@@ -6,11 +6,13 @@
 // Errors  Queues beyond what the device can be divided into share its parts in turn.
 #pragma once
 
+#include <functional>
 #include <future>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "device/builds.h"
 #include "device/opencl.h"
 #include "device/platform.h"
 #include "device/simd.h"
@@ -28,9 +30,11 @@ class Context {
  public:
   // `compute_units` > 0: a sub-device of that many of the device's units, or all where it has no more; throws
   // ErrorCode::no_device when it can't be divided.
-  Context(const std::string& device_spec, int n_queues, int compute_units = 0);
+  Context(const std::string& device_spec, int n_queues, int compute_units = 0, Builds builds = {});
 
   const DeviceInfo& info() const { return found_.info; }
+  const Builds& builds() const { return builds_; }
+  Context without_cache() const;       // the same, but what it builds is neither looked for nor kept
   Simd simd() const { return simd_; }  // the form of vectors that kernels are to be built with
   const Opened& opened() const { return *opened_; }
   const cl::Context& get() const { return opened_->context; }
@@ -63,12 +67,22 @@ class Context {
   bool works_in_host_memory() const;
 
   FoundDevice found_;
+  Builds builds_;
   const Opened* opened_;
   Simd simd_ = Simd::portable;
 };
 
-// A context on each of the devices of `specs` (choose_device's, with commas between them), and `n_queues` queues in all:
-// dealt out in turn, at least one for each. `compute_units`: of each device.
+struct OpenOptions {
+  int n_queues = 1;       // in all: dealt out in turn, at least one for each device
+  int compute_units = 0;  // of each device; 0: all
+  Builds builds = {};
+  std::function<void(const Context&)> check = {};  // throws ErrorCode::no_device for a device not to be used
+  std::function<void(const std::string&)> left_out = {};  // told why, where "auto" goes on to another device
+};
+
+// A context on each of the devices of `specs` (choose_device's, with commas between them). "auto" takes the next device where
+// one can't be opened or doesn't pass the check; a device that was asked for in another way throws what it threw.
+std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& options);
 std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units = 0);
 
 }  // namespace kdray::device

@@ -10,7 +10,9 @@ namespace kdray::device {
 namespace {
 
 Error bad(const std::string& specification) {
-  return Error(ErrorCode::usage, "'" + specification + "' names no faults; want QUEUE@LAUNCH, as in 1@5,0@9");
+  return Error(
+      ErrorCode::usage,
+      "'" + specification + "' names no faults; want QUEUE@LAUNCH, as in 1@5,0@9, or self-test@DEVICE");
 }
 
 // The number that `text` is, all of it.
@@ -28,11 +30,16 @@ Faults::Faults(const std::string& specification) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
     const std::string_view item = rest.substr(0, comma);
     const std::size_t at = item.find('@');
-    std::uint64_t queue = 0, launch = 0;
-    if (at == std::string_view::npos || !parse(item.substr(0, at), queue) ||
-        !parse(item.substr(at + 1), launch) || launch == 0)
+    std::uint64_t queue = 0, launch = 0, device = 0;
+    if (item.substr(0, at) == "self-test" && at != std::string_view::npos &&
+        parse(item.substr(at + 1), device)) {
+      failing_devices_.insert(device);
+    } else if (at == std::string_view::npos || !parse(item.substr(0, at), queue) ||
+               !parse(item.substr(at + 1), launch) || launch == 0) {
       throw bad(specification);
-    queues_[queue].failing.insert(launch);
+    } else {
+      queues_[queue].failing.insert(launch);
+    }
     rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
 }

@@ -52,6 +52,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int 
   info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   info.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   info.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  info.double_precision = device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() != 0;
   info.why_not = why_unusable(device);
   info.usable = info.why_not.empty();
   return info;
@@ -77,7 +78,25 @@ std::string list_of(const std::vector<FoundDevice>& devices) {
   return text;
 }
 
+std::vector<FoundDevice> by_preference(const std::vector<FoundDevice>& devices) {
+  std::vector<FoundDevice> ordered;
+  for (const char* kind : {"gpu", "cpu", "accelerator"})
+    for (const FoundDevice& d : devices)
+      if (d.info.usable && d.info.kind == kind) ordered.push_back(d);
+  return ordered;
+}
+
 }  // namespace
+
+bool is_auto(const std::string& spec) {
+  return spec.empty() || lower(spec) == "auto";
+}
+
+std::vector<int> devices_by_preference() {
+  std::vector<int> numbers;
+  for (const FoundDevice& d : by_preference(find_devices())) numbers.push_back(d.info.number);
+  return numbers;
+}
 
 std::vector<FoundDevice> find_devices() {
   std::vector<FoundDevice> found;
@@ -106,14 +125,12 @@ FoundDevice choose_device(const std::string& spec) {
     throw Error(ErrorCode::no_device,
                 "no OpenCL device found; install one (Debian: apt-get install pocl-opencl-icd), then see "
                 "`kdray doctor`");
-  const std::string wanted = lower(spec.empty() ? "auto" : spec);
-  if (wanted == "auto") {
-    for (const char* kind : {"gpu", "cpu", "accelerator"})
-      for (const FoundDevice& d : devices)
-        if (d.info.usable && d.info.kind == kind) return d;
+  if (is_auto(spec)) {
+    const std::vector<FoundDevice> ordered = by_preference(devices);
+    if (!ordered.empty()) return ordered.front();
   } else {
     for (const FoundDevice& d : devices)
-      if (d.info.usable && matches(d.info, wanted)) return d;
+      if (d.info.usable && matches(d.info, lower(spec))) return d;
   }
   throw Error(ErrorCode::no_device,
               fmt::format("no usable OpenCL device is called '{}'; there is {}", spec, list_of(devices)));

@@ -18,6 +18,12 @@ struct FoundDevice {
 // Every device of every platform, in the platforms' order; empty where there is none.
 std::vector<FoundDevice> find_devices();
 
+// Whether a spec leaves the choice to kdray: "auto" or empty.
+bool is_auto(const std::string& spec);
+
+// The numbers of the usable ones, as "auto" prefers them: GPUs, CPUs, others.
+std::vector<int> devices_by_preference();
+
 // spec: "auto" (a GPU if there is a usable one, else a CPU), "cpu", "gpu", a number, or a part of a device's or
 // platform's name. Throws ErrorCode::no_device, listing what there is.
 FoundDevice choose_device(const std::string& spec);

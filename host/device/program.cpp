@@ -9,6 +9,8 @@
 #include <sstream>
 
 #include "device/opencl_error.h"
+#include "device/program_cache.h"
+#include "device/program_key.h"
 #include "kernels.h"
 
 namespace kdray::device {
@@ -89,21 +91,40 @@ std::string expand_source(const std::string& file) {
   return expand_text(file, text_of(file));
 }
 
-cl::Program build_source(const cl::Context& context, const std::vector<cl::Device>& devices,
-                         const std::string& name, const std::string& source, const std::string& options) {
-  cl::Program program = checked("loading " + name, [&] { return cl::Program(context, source); });
+cl::Program try_build(const cl::Context& context, const std::vector<cl::Device>& devices,
+                      const std::string& source, const std::string& options, const Builds& builds,
+                      std::string& log) {
+  Hash key;
+  if (builds.cache) {
+    key = program_key(identity_of(devices.front()), source, options);
+    if (const auto found = builds.cache->find(context, devices, key, options)) return *found;
+  }
+  const AtWork at_work(builds);
+  cl::Program program(context, source);
   try {
     program.build(devices, options.c_str());
   } catch (const cl::Error& error) {
-    if (error.err() != CL_BUILD_PROGRAM_FAILURE) throw translate(error, "building " + name);
-    report_failed_build(name, options, source, program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(devices.front()));
+    if (error.err() != CL_BUILD_PROGRAM_FAILURE) throw;
+    log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(devices.front());
+    return {};
   }
+  if (builds.cache) builds.cache->built(key, program);
+  return program;
+}
+
+cl::Program build_source(const cl::Context& context, const std::vector<cl::Device>& devices,
+                         const std::string& name, const std::string& source, const std::string& options,
+                         const Builds& builds) {
+  std::string log;
+  cl::Program program =
+      checked("building " + name, [&] { return try_build(context, devices, source, options, builds, log); });
+  if (program() == nullptr) report_failed_build(name, options, source, log);
   return program;
 }
 
 cl::Program build_program(const cl::Context& context, const std::vector<cl::Device>& devices,
-                          const std::string& file, const std::string& options) {
-  return build_source(context, devices, file, expand_source(file), options);
+                          const std::string& file, const std::string& options, const Builds& builds) {
+  return build_source(context, devices, file, expand_source(file), options, builds);
 }
 
 }  // namespace kdray::device

@@ -35,11 +35,12 @@ bool processor_has_avx512() {
 }
 
 // The x86 form's kernel, or an empty one where the compiler refuses it: an answer, not an error, hence no report of it.
-cl::Kernel try_x86_build(const Opened& opened) {
+cl::Kernel try_x86_build(const Opened& opened, const Builds& builds) {
   try {
-    const cl::Program program(opened.context, expand_source(kFile));
-    program.build(opened.devices, options_for(Simd::x86).c_str());
-    return cl::Kernel(program, kKernel);
+    std::string log;
+    const cl::Program program =
+        try_build(opened.context, opened.devices, expand_source(kFile), options_for(Simd::x86), builds, log);
+    return program() == nullptr ? cl::Kernel() : cl::Kernel(program, kKernel);
   } catch (const cl::Error&) {
     return {};
   }
@@ -60,9 +61,9 @@ std::string asked_for() {
   return std::string(form);
 }
 
-void check_portable(const FoundDevice& found, const Opened& opened) {
+void check_portable(const FoundDevice& found, const Opened& opened, const Builds& builds) {
   const cl::Program program =
-      build_program(opened.context, opened.devices, kFile, options_for(Simd::portable));
+      build_program(opened.context, opened.devices, kFile, options_for(Simd::portable), builds);
   const std::string difference = checked("testing " + found.info.name,
                                          [&] { return difference_in(opened, cl::Kernel(program, kKernel)); });
   if (!difference.empty())
@@ -104,10 +105,10 @@ std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, cl::Kernel 
 // well build (a compiler can be told any target) and then kills the process, which no self-test survives. The processor
 // asked is the one this runs on, which is a CPU device's own; a GPU's or an accelerator's compiler need not be bothered
 // with builtins that aren't its own.
-std::string why_no_x86(const FoundDevice& found, const Opened& opened) {
+std::string why_no_x86(const FoundDevice& found, const Opened& opened, const Builds& builds) {
   if (!processor_has_avx512()) return "the processor has no AVX-512 (F, VL, DQ and BW)";
   if (found.info.kind != "cpu") return "the device is not a CPU";
-  const cl::Kernel kernel = try_x86_build(opened);
+  const cl::Kernel kernel = try_x86_build(opened, builds);
   if (kernel() == nullptr) return "the device's compiler refuses the AVX-512 builtins";
   try {
     const std::string difference = difference_in(opened, kernel);
@@ -117,26 +118,26 @@ std::string why_no_x86(const FoundDevice& found, const Opened& opened) {
   }
 }
 
-Simd probe_simd(const FoundDevice& found, const Opened& opened) {
+Simd probe_simd(const FoundDevice& found, const Opened& opened, const Builds& builds) {
   const std::string asked = asked_for();
   if (asked != "portable") {
-    const std::string why_not = why_no_x86(found, opened);
+    const std::string why_not = why_no_x86(found, opened, builds);
     if (why_not.empty()) return Simd::x86;
     if (asked == "x86")
       throw Error(ErrorCode::no_device,
                   fmt::format("KDRAY_SIMD=x86 can't be had on {}: {}; unset it", found.info.name, why_not));
   }
-  check_portable(found, opened);
+  check_portable(found, opened, builds);
   return Simd::portable;
 }
 
-Simd choose_simd(const FoundDevice& found, const Opened& opened) {
+Simd choose_simd(const FoundDevice& found, const Opened& opened, const Builds& builds) {
   static std::mutex mutex;
   static std::map<std::pair<int, std::string>, Simd> chosen;
   const std::lock_guard lock(mutex);
   const std::pair key{found.info.number, asked_for()};
   auto place = chosen.find(key);
-  if (place == chosen.end()) place = chosen.emplace(key, probe_simd(found, opened)).first;
+  if (place == chosen.end()) place = chosen.emplace(key, probe_simd(found, opened, builds)).first;
   return place->second;
 }
 

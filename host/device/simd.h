@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "device/builds.h"
 #include "device/platform.h"
 #include "layout/simd_test.layout.h"
 
@@ -21,13 +22,13 @@ const char* in_words(Simd form);      // "portable", "x86 AVX-512"
 std::string build_option(Simd form);  // "-DKDRAY_SIMD_X86=0"
 
 // The form for this device's kernels; remembered, since it takes a build and a launch to know.
-Simd choose_simd(const FoundDevice& found, const Opened& opened);
+Simd choose_simd(const FoundDevice& found, const Opened& opened, const Builds& builds = {});
 
 // The same, tried anew.
-Simd probe_simd(const FoundDevice& found, const Opened& opened);
+Simd probe_simd(const FoundDevice& found, const Opened& opened, const Builds& builds = {});
 
 // Why this device can't have the x86 form; empty when it can.
-std::string why_no_x86(const FoundDevice& found, const Opened& opened);
+std::string why_no_x86(const FoundDevice& found, const Opened& opened, const Builds& builds = {});
 
 // What the device answers to the cases, by the kernel of common/simd_test.cl. Throws cl::Error.
 std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, cl::Kernel kernel,

@@ -9,11 +9,7 @@ namespace kdray::flatten {
 
 namespace {
 
-struct Name {
-  std::uint32_t bit;
-  const char* name;
-};
-constexpr Name kNames[] = {
+constexpr Feature kFeatures[] = {
     {KDRAY_FEATURE_TRIANGLES, "triangles"},
     {KDRAY_FEATURE_SPHERES, "spheres"},
     {KDRAY_FEATURE_CONES, "cones"},
@@ -27,8 +23,10 @@ constexpr Name kNames[] = {
     {KDRAY_FEATURE_ATTENUATION, "attenuation"},
     {KDRAY_FEATURE_DIRECTIONAL, "directional"},
     {KDRAY_FEATURE_SPOT, "spot"},
+    {KDRAY_FEATURE_FACES, "faces"},
     {KDRAY_FEATURE_BACKGROUND, "background"},
     {KDRAY_FEATURE_SUPERSAMPLE, "supersampling"},
+    {KDRAY_FEATURE_ADAPTIVE, "adaptive sampling"},
 };
 
 std::uint32_t when(bool needed, std::uint32_t bit) {
@@ -99,13 +97,17 @@ std::uint32_t features_of(const scene::Scene& scene, const scene::Geometry& geom
   return mask;
 }
 
-std::uint32_t features_of_samples(int samples) {
-  return when(samples > 1, KDRAY_FEATURE_SUPERSAMPLE);
+std::uint32_t features_of_samples(int samples, bool adaptive) {
+  return when(samples > 1, KDRAY_FEATURE_SUPERSAMPLE) | when(adaptive, KDRAY_FEATURE_ADAPTIVE);
+}
+
+std::span<const Feature> features() {
+  return kFeatures;
 }
 
 FeatureNames feature_names(std::uint32_t mask) {
   FeatureNames names;
-  for (const Name& n : kNames) (mask & n.bit ? names.on : names.off).push_back(n.name);
+  for (const Feature& f : kFeatures) (mask & f.bit ? names.on : names.off).push_back(f.name);
   return names;
 }
 

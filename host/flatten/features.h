@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,14 @@ namespace kdray::flatten {
 std::uint32_t features_of(const scene::Scene& scene, const scene::Geometry& geometry);
 
 // What a render adds.
-std::uint32_t features_of_samples(int samples);
+std::uint32_t features_of_samples(int samples, bool adaptive = false);
+
+// A bit of the mask that a scene may do without.
+struct Feature {
+  std::uint32_t bit;
+  const char* name;
+};
+std::span<const Feature> features();
 
 struct FeatureNames {
   std::vector<std::string> on, off;

@@ -46,7 +46,7 @@ RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings
   o.width = pick(o.width, settings.width, kDefaultSize);
   o.height = pick(o.height, settings.height, kDefaultSize);
   o.depth = pick(o.depth, settings.depth, kDefaultDepth);
-  o.samples = pick(o.samples, settings.samples, 1);
+  o.samples = o.adaptive_target > 0 ? 1 : pick(o.samples, settings.samples, 1);
   if (!(o.min_weight >= 0)) o.min_weight = settings.min_weight.value_or(kDefaultMinWeight);
   check_range("the picture's width", o.width, 1, kMaxSide);
   check_range("the picture's height", o.height, 1, kMaxSide);

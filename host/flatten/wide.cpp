@@ -22,6 +22,7 @@ layout::u32 bits(float v) {
 // |n|_1 of the normal that the kernels compute in float, or more. With u = 2^-24, an edge is off by u of itself, a product of
 // two by 3u, a component by 3u of the products' sizes and u of itself: here and there together by less than 8u of `size` and
 // 4u of `sum`. What underflows is below 2^-140.
+// To it what sign_limit adds for the tilt (intersect/triangle.clh): at most 8 times the square of the edges' largest component.
 float normal_bound(const layout::Triangle& t) {
   float e[2][3];
   for (int k = 0; k < 3; ++k) {
@@ -35,13 +36,23 @@ float normal_bound(const layout::Triangle& t) {
     sum += std::abs(p - q);
     size += std::abs(p) + std::abs(q);
   }
-  return sum * (1 + 0x1p-20f) + (size * 0x1p-20f + 0x1p-140f);
+  float edge = 0;
+  for (const auto& components : e)
+    for (const float c : components) edge = std::max(edge, std::abs(c));
+  return (sum + 8 * edge * edge) * (1 + 0x1p-20f) + (size * 0x1p-20f + 0x1p-140f);
+}
+
+// Whether its plane lies across an axis: the kernels then take the distance from that plane alone (level_t).
+bool is_level(const layout::Triangle& t) {
+  for (int k = 0; k < 3; ++k)
+    if (t.v[0][k] == t.v[1][k] && t.v[1][k] == t.v[2][k]) return true;
+  return false;
 }
 
 // The rows of a primitive in its block, without the index.
 std::array<float, KDRAY_TRIANGLE_ROWS - 1> rows_of(const layout::Triangle& t) {
   return {t.v[0][0], t.v[0][1], t.v[0][2], t.v[1][0], t.v[1][1],
-          t.v[1][2], t.v[2][0], t.v[2][1], t.v[2][2], normal_bound(t)};
+          t.v[1][2], t.v[2][0], t.v[2][1], t.v[2][2], is_level(t) ? -normal_bound(t) : normal_bound(t)};
 }
 std::array<float, KDRAY_SPHERE_ROWS - 1> rows_of(const layout::Sphere& s) {
   return {s.center[0], s.center[1], s.center[2], s.radius};

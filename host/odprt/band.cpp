@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "device/opencl_error.h"
-#include "wavefront/curve.h"
 
 namespace kdray::odprt {
 
@@ -28,12 +27,10 @@ void check(const Worker& worker) {
                           sum.invalid, sum.pool_overflow, n_lost, sum.nan));
 }
 
-// Every n-th tile of the band, from the i-th on, in an order that goes all over the picture: whatever part of the scene a piece
+// Every n-th entry of the list, from the i-th on, in an order that goes all over the picture: whatever part of the scene a piece
 // of the picture shows, the queue that holds it has something to do all the time. (Along the curve half of the queues'
 // time was lost: all made eye rays for the same part.)
-std::vector<layout::u32> tiles_of(const Band& band, const layout::Frame& frame, std::size_t i,
-                                  std::size_t n) {
-  const std::vector<layout::u32> curve = wavefront::tile_curve(frame.n_tiles_x, band.first_row, band.n_rows);
+std::vector<layout::u32> share_of(const std::vector<layout::u32>& curve, std::size_t i, std::size_t n) {
   // Steps of the golden section, as far as they don't come to the same tile twice.
   auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(curve.size())) | 1u;
   while (std::gcd(step, curve.size()) != 1) step += 2;
@@ -56,15 +53,15 @@ BandRun::BandRun(const Request& request, Crew& crew)
       exchange_(crew.plan, crew.owner, crew.direct, crew.outboxes),
       tiles_left_(crew.workers.size()) {}
 
-void BandRun::run(const Band& band, const std::function<void(double)>& progress) {
+void BandRun::run(const BandWork& band, const std::function<void(double)>& progress) {
   n_serving_ = crew_.workers.size();
   std::vector<std::jthread> threads;
   for (std::size_t q = 0; q < crew_.workers.size(); ++q)
     threads.emplace_back([this, q, &band] {
       try {
-        const std::vector<layout::u32> tiles = tiles_of(band, request_.frame, q, crew_.workers.size());
+        const std::vector<layout::u32> tiles = share_of(band.list, q, crew_.workers.size());
         tiles_left_[q] = static_cast<std::uint32_t>(tiles.size());
-        crew_.workers[q]->begin(band.first_pixel, band.n_pixels, tiles);
+        crew_.workers[q]->begin({band.first_pixel, band.n_places, tiles, band.samples});
         take_turns(q);
       } catch (...) {
         exchange_.fail(q, std::current_exception());
@@ -81,9 +78,9 @@ void BandRun::run(const Band& band, const std::function<void(double)>& progress)
   }
 }
 
-void BandRun::wait(const Band& band, const std::function<void(double)>& progress) {
+void BandRun::wait(const BandWork& band, const std::function<void(double)>& progress) {
   using namespace std::chrono_literals;
-  const double n_tiles = std::max(band.n_rows * request_.frame.n_tiles_x, 1u);
+  const double n_tiles = static_cast<double>(std::max<std::size_t>(band.list.size(), 1));
   while (const std::size_t serving = n_serving_) {
     if (!progress) {
       n_serving_.wait(serving);

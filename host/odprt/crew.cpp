@@ -16,10 +16,9 @@ std::size_t largest_part(const Division& division) {
 
 void add_worker(const Request& request, const Provision& provision, const Division& division, const Cut& cut,
                 const Queue& queue, Crew& crew) {
-  crew.workers.push_back(
-      std::make_unique<Worker>(*queue.context, queue.queue, *queue.programs, provision.frame, provision.plan,
-                               request.features, request.traversal, division.directory,
-                               provision.largest_band, provision.frame.n_tiles, largest_part(division)));
+  crew.workers.push_back(std::make_unique<Worker>(
+      *queue.context, queue.queue, *queue.programs, provision.frame, provision.plan, request.features,
+      request.traversal, division.directory, provision.room, largest_part(division)));
   crew.stores.push_back(std::make_unique<PartStore>(*queue.context, division, cut, provision.most_geometry));
   crew.outboxes.emplace_back();
   for (std::size_t i = 0; i < provision.n_outboxes; ++i)

@@ -33,4 +33,10 @@ void develop(std::span<const std::span<const layout::i64>> films, int samples, s
   });
 }
 
+void add_up(std::span<const std::span<const layout::i64>> films, std::span<layout::i64> sums) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sums.size(), kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) sums[i] = sum_of(films, i);
+  });
+}
+
 }  // namespace kdray::odprt

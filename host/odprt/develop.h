@@ -11,4 +11,7 @@ namespace kdray::odprt {
 // Three sums for each pixel in every film. Adding saturates, as the kernels' does.
 void develop(std::span<const std::span<const layout::i64>> films, int samples, std::span<vec3> pixels);
 
+// The sums alone, added up.
+void add_up(std::span<const std::span<const layout::i64>> films, std::span<layout::i64> sums);
+
 }  // namespace kdray::odprt

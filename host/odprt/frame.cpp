@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 
+#include "adaptive/sampler.h"
 #include "base/timer.h"
 #include "device/opencl_error.h"
 #include "odprt/band.h"
 #include "odprt/develop.h"
+#include "wavefront/curve.h"
 
 namespace kdray::odprt {
 
@@ -32,7 +36,9 @@ void check(const Exchange& exchange) {
   if (!failures.empty()) throw QueueFailures(std::move(failures));
 }
 
-void take_film(Crew& crew, const Band& band, const layout::Frame& frame, film::Image& image) {
+using Films = std::span<const std::span<const layout::i64>>;
+
+void take_films(Crew& crew, const std::function<void(Films)>& take) {
   std::vector<std::span<const layout::i64>> films;
   for (std::size_t q = 0; q < crew.workers.size(); ++q) {
     try {
@@ -41,8 +47,7 @@ void take_film(Crew& crew, const Band& band, const layout::Frame& frame, film::I
       throw QueueFailures({failure_of(q, std::current_exception())});
     }
   }
-  develop(films, static_cast<int>(frame.n_samples),
-          std::span(image.pixels).subspan(band.first_pixel, band.n_pixels));
+  take(films);
   for (const auto& worker : crew.workers) worker->unmap_film();
 }
 
@@ -96,6 +101,92 @@ void finish(Crew& crew, const Division& division, Result& result) {
   share_out_seconds(crew, result);
 }
 
+// A frame in work.
+class FrameRun {
+ public:
+  FrameRun(const Request& request, const Provision& provision, const Division& division, Crew& crew,
+           Result& result)
+      : request_(request), provision_(provision), division_(division), crew_(crew), result_(result) {}
+
+  void render_uniform();
+  void render_adaptive();
+
+ private:
+  void render_bands(const std::function<void(const wavefront::Band&, Films)>& take);
+  void render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
+  void render(const BandWork& work, double from, double to, const std::function<void(Films)>& take);
+
+  const Request& request_;
+  const Provision& provision_;
+  const Division& division_;
+  Crew& crew_;
+  Result& result_;
+  double from_ = 0, to_ = 1;  // of the share done, that the round in work is
+};
+
+// `from`, `to`: of the round.
+void FrameRun::render(const BandWork& work, double from, double to, const std::function<void(Films)>& take) {
+  BandRun run(request_, crew_);
+  const auto progress = [&](double share) {
+    request_.progress(from_ + (to_ - from_) * (from + (to - from) * share));
+  };
+  run.run(work, request_.progress ? progress : std::function<void(double)>());
+  check(run.exchange());
+  take_films(crew_, take);
+  add_band(crew_, run.exchange(), result_);
+  if (request_.census_every > 0) add_visits(crew_, division_, result_);
+}
+
+void FrameRun::render_bands(const std::function<void(const wavefront::Band&, Films)>& take) {
+  const auto n_bands = static_cast<double>(provision_.bands.size());
+  double done = 0;
+  for (const wavefront::Band& band : provision_.bands) {
+    const BandWork work{wavefront::tile_curve(provision_.frame.n_tiles_x, band.first_row, band.n_rows),
+                        band.first_pixel, band.n_pixels};
+    render(work, done / n_bands, (done + 1) / n_bands, [&](Films films) { take(band, films); });
+    ++done;
+  }
+}
+
+void FrameRun::render_uniform() {
+  const auto samples = static_cast<int>(provision_.frame.n_samples);
+  render_bands([&](const wavefront::Band& band, Films films) {
+    develop(films, samples, std::span(result_.image.pixels).subspan(band.first_pixel, band.n_pixels));
+  });
+}
+
+// As many at a time as the queues have room for.
+void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
+  constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN;
+  const std::size_t n_runs = samples.size() / kWords, most = provision_.room.samples / KDRAY_SAMPLE_RUN;
+  const auto all = static_cast<double>(n_runs);
+  for (std::size_t first = 0; first < n_runs; first += most) {
+    const std::size_t n = std::min(most, n_runs - first), n_places = n * KDRAY_SAMPLE_RUN;
+    BandWork work{std::vector<layout::u32>(n), 0, n_places, samples.subspan(first * kWords, n * kWords)};
+    std::iota(work.list.begin(), work.list.end(), 0u);
+    render(work, static_cast<double>(first) / all, static_cast<double>(first + n) / all,
+           [&](Films films) { add_up(films, sums.subspan(3 * first * KDRAY_SAMPLE_RUN, 3 * n_places)); });
+  }
+}
+
+void FrameRun::render_adaptive() {
+  adaptive::Sampler sampler({provision_.frame.width, provision_.frame.height}, request_.adaptive_target);
+  to_ = 0.5;
+  render_bands([&](const wavefront::Band& band, Films films) {
+    add_up(films, sampler.first_sums().subspan(3 * band.first_pixel, 3 * band.n_pixels));
+  });
+  std::vector<layout::i64> sums;
+  for (auto samples = sampler.next(); !samples.empty(); samples = sampler.next()) {
+    from_ = to_;  // how many rounds there will be is not known
+    to_ = (1 + to_) / 2;
+    sums.resize(samples.size() / 2 * 3);
+    render_samples(samples, sums);
+    sampler.take(sums);
+  }
+  result_.image.pixels = sampler.picture();
+  result_.samples = sampler.report();
+}
+
 }  // namespace
 
 Result render_frame(const Request& request, const Provision& provision, const Division& division,
@@ -115,17 +206,8 @@ Result render_frame(const Request& request, const Provision& provision, const Di
       request.timeline->name_row(static_cast<int>(report.number),
                                  fmt::format("queue {}: {}", report.number, report.device));
   const Timer timer;
-  for (std::size_t i = 0; i < provision.bands.size(); ++i) {
-    BandRun run(request, crew);
-    const auto progress = [&](double share) {
-      request.progress((static_cast<double>(i) + share) / static_cast<double>(provision.bands.size()));
-    };
-    run.run(provision.bands[i], request.progress ? progress : std::function<void(double)>());
-    check(run.exchange());
-    take_film(crew, provision.bands[i], provision.frame, result.image);
-    add_band(crew, run.exchange(), result);
-    if (request.census_every > 0) add_visits(crew, division, result);
-  }
+  FrameRun run(request, provision, division, crew, result);
+  request.adaptive_target > 0 ? run.render_adaptive() : run.render_uniform();
   result.render_seconds = timer.seconds();
   device::checked("reading the queues' clocks", [&] { finish(crew, division, result); });
   return result;

@@ -29,6 +29,7 @@ std::vector<std::uint64_t> run_pilot(const Request& request, const Division& who
   pilot.queues.resize(1);
   pilot.n_slices = (request.n_slices + 3) / 4;  // its tiles are few
   pilot.frame = small_frame(request.frame);
+  pilot.adaptive_target = 0;
   pilot.census_every = 1;
   pilot.device_memory = 0;
   pilot.timeline = nullptr;

@@ -19,27 +19,19 @@ constexpr double kSpareGeometry = 1.3;  // primitives that lie in several parts,
 // parts there are, the more cells every ray is tested against, so there is room for one at a time only.
 constexpr std::size_t kFilmEighths = 3;
 
-std::vector<Band> bands_of(const layout::Frame& frame, std::size_t most_film_bytes) {
-  const std::uint32_t rows = frame.n_tiles / frame.n_tiles_x;
-  const std::size_t row_bytes = std::size_t{frame.tile_height} * frame.width * 3 * sizeof(layout::i64);
-  const auto per_band =
-      static_cast<std::uint32_t>(std::clamp<std::size_t>(most_film_bytes / row_bytes, 1, rows));
-  std::vector<Band> bands;
-  for (std::uint32_t row = 0; row < rows; row += per_band) {
-    const std::uint32_t end = std::min(row + per_band, rows);
-    const std::size_t y = std::size_t{row} * frame.tile_height;
-    const std::size_t end_y = std::min<std::size_t>(std::size_t{end} * frame.tile_height, frame.height);
-    bands.push_back({row, end - row, y * frame.width, (end_y - y) * frame.width});
-  }
-  return bands;
-}
-
 // Queues on the device that has most of them.
 std::size_t queues_on_a_device(const Request& request) {
   std::map<const device::Context*, std::size_t> counts;
   std::size_t most = 1;
   for (const Queue& queue : request.queues) most = std::max(most, ++counts[queue.context]);
   return most;
+}
+
+// As many samples of a round as the largest band has pixels.
+void add_samples(WorkRoom& room) {
+  const std::size_t n_runs = (room.places + KDRAY_SAMPLE_RUN - 1) / KDRAY_SAMPLE_RUN;
+  room.samples = room.places = n_runs * KDRAY_SAMPLE_RUN;
+  room.entries = std::max(room.entries, n_runs);
 }
 
 // `of_queue`: a queue's memory, when streamed.
@@ -58,13 +50,15 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
                                .ray_buffer = request.ray_buffer,
                                .memory = of_queue,
                                .streamed = streamed});
-  p.bands = bands_of(p.frame, film_bytes);
-  for (const Band& band : p.bands) p.largest_band = std::max(p.largest_band, band.n_pixels);
+  p.bands = wavefront::bands_of(p.frame, film_bytes);
+  for (const wavefront::Band& band : p.bands) p.room.places = std::max(p.room.places, band.n_pixels);
+  p.room.entries = p.frame.n_tiles;
+  if (request.adaptive_target > 0) add_samples(p.room);
   return p;
 }
 
 std::size_t work_of(const Provision& p) {
-  return work_bytes(p.frame, p.plan, p.largest_band, p.n_outboxes);
+  return work_bytes(p.frame, p.plan, p.room.places, p.n_outboxes) + 2 * sizeof(layout::u32) * p.room.samples;
 }
 
 Error too_little(const Request& request, std::size_t needed) {

@@ -9,14 +9,10 @@
 #include "odprt/division.h"
 #include "odprt/plan.h"
 #include "odprt/render.h"
+#include "odprt/worker.h"
+#include "wavefront/bands.h"
 
 namespace kdray::odprt {
-
-// Rows of tiles whose pixels a queue's film holds at one time.
-struct Band {
-  std::uint32_t first_row = 0, n_rows = 0;  // of tiles
-  std::size_t first_pixel = 0, n_pixels = 0;
-};
 
 struct Provision {
   layout::Frame frame;  // with the plan's sizes
@@ -25,8 +21,8 @@ struct Provision {
   std::size_t n_outboxes = 0;     // of a queue
   bool streamed = false;          // parts come and go
   std::size_t most_geometry = 0;  // of a queue, when streamed
-  std::vector<Band> bands;
-  std::size_t largest_band = 0;  // pixels
+  std::vector<wavefront::Band> bands;
+  WorkRoom room;  // of a queue: the largest band, or a round's samples
 };
 
 // As many parts as queues where that fits; more of them, which come and go, where the request has a limit that is too little for

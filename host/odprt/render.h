@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "adaptive/report.h"
 #include "device/faults.h"
 #include "film/image.h"
 #include "kdray/kdray.h"
@@ -34,6 +35,8 @@ struct Request {
   layout::Frame frame;  // with tiles
   std::uint32_t features = 0;
   Traversal traversal = Traversal::automatic;
+  double adaptive_target =
+      0;  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one
   Balance balance = Balance::sah;
   std::uint32_t n_slices = 16;  // of each queue: enough for all of its compute units
   std::uint32_t ray_buffer = 0;
@@ -62,6 +65,7 @@ struct Quarantined {
 
 struct Result {
   film::Image image;
+  std::optional<adaptive::Report> samples;  // of adaptive sampling
   wavefront::Counters counters;
   std::map<std::string, double> stage_seconds;
   double render_seconds = 0, divide_seconds = 0;

@@ -12,6 +12,11 @@ namespace {
 
 constexpr cl_uint kGeometryArguments = 9;  // KDRAY_SCENE_PARAMETERS
 
+// Entries, and behind them two words for each sample; what is read beyond the last is left out.
+std::size_t list_words(const WorkRoom& room) {
+  return room.entries + (room.samples > 0 ? 2 * room.samples + KDRAY_LANES : 0);
+}
+
 }  // namespace
 
 cl::Buffer Worker::make(std::size_t bytes, const std::string& what) {
@@ -26,20 +31,19 @@ cl::Buffer Worker::make_stream(std::size_t n_streams, std::size_t n_fields, std:
 
 Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
                const layout::Frame& frame, const Plan& plan, std::uint32_t features, Traversal traversal,
-               std::span<const layout::PartCell> directory, std::size_t band_pixels, std::size_t band_tiles,
-               std::size_t max_subtrees)
+               std::span<const layout::PartCell> directory, const WorkRoom& room, std::size_t max_subtrees)
     : context_(context),
       queue_(std::move(queue)),
       frame_(frame),
       plan_(plan),
-      band_pixels_(band_pixels),
+      room_(room),
       slices_(plan.n_slices),
       traffic_(plan.n_slices),
       visits_(plan.n_slices * max_subtrees),
       frame_buffer_(make(sizeof(layout::Frame), "the frame")),
       travel_buffer_(make(sizeof(layout::Travel), "the division")),
       cells_(make(directory.size_bytes(), "the directory")),
-      tiles_(make(band_tiles * sizeof(layout::u32), "the list of tiles")),
+      tiles_(make(list_words(room) * sizeof(layout::u32), "the list of tiles")),
       slice_buffer_(make(plan.n_slices * sizeof(layout::Slice), "the slices")),
       grant_buffer_(make(plan.n_slices * sizeof(layout::Grant), "the slices' grants")),
       traffic_buffer_(make(plan.n_slices * sizeof(layout::Traffic), "the slices' accounts")),
@@ -52,14 +56,14 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       occluded_(make(std::size_t{plan.n_slices} * frame.shadow_capacity, "the occlusion flags")),
       shadow_pool_(make_stream(plan.n_slices, KDRAY_TRAVEL_SHADOW_FIELDS, plan.shadow_pool + 2 * KDRAY_LANES,
                                "the waiting shadow rays")),
-      film_(context.buffer_made_beside(CL_MEM_READ_WRITE, band_pixels * 3 * sizeof(layout::i64), "the film",
+      film_(context.buffer_made_beside(CL_MEM_READ_WRITE, room.places * 3 * sizeof(layout::i64), "the film",
                                        film_made_)),
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
       inbox_(context, plan.inbox),
       wave_("wave",
             programs.kernel("odprt/wave.cl", "travel_wave", features | KDRAY_FEATURE_NUMBERS, traversal)),
       receive_("receive", programs.kernel("odprt/receive.cl", "receive", 0)) {
-  bytes_ += inbox_.bytes() + band_pixels * 3 * sizeof(layout::i64);
+  bytes_ += inbox_.bytes() + room.places * 3 * sizeof(layout::i64);
   if (!directory.empty())
     queue_.enqueueWriteBuffer(cells_, CL_TRUE, 0, directory.size_bytes(), directory.data());
   travel_.n_parts = plan.outbox.n_parts;
@@ -81,10 +85,11 @@ Worker::~Worker() {
   }
 }
 
-void Worker::begin(std::size_t first_pixel, std::size_t n_pixels, std::span<const layout::u32> tiles) {
-  frame_.first_pixel = static_cast<layout::u32>(first_pixel);
-  band_pixels_ = n_pixels;
-  n_tiles_ = static_cast<std::uint32_t>(tiles.size());
+void Worker::begin(const Work& work) {
+  frame_.first_pixel = static_cast<layout::u32>(work.first_pixel);
+  frame_.samples_at = work.samples.empty() ? 0 : static_cast<layout::u32>(room_.entries);
+  n_places_ = work.n_places;
+  n_tiles_ = static_cast<std::uint32_t>(work.list.size());
   std::fill(slices_.begin(), slices_.end(), layout::Slice{});
   std::fill(traffic_.begin(), traffic_.end(), layout::Traffic{});
   for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
@@ -92,13 +97,17 @@ void Worker::begin(std::size_t first_pixel, std::size_t n_pixels, std::span<cons
     slices_[s].tile_stride = plan_.n_slices;
   }
   queue_.enqueueWriteBuffer(frame_buffer_, CL_FALSE, 0, sizeof frame_, &frame_);
-  if (!tiles.empty()) queue_.enqueueWriteBuffer(tiles_, CL_FALSE, 0, tiles.size_bytes(), tiles.data());
+  if (!work.list.empty())
+    queue_.enqueueWriteBuffer(tiles_, CL_FALSE, 0, work.list.size_bytes(), work.list.data());
+  if (!work.samples.empty())
+    queue_.enqueueWriteBuffer(tiles_, CL_FALSE, room_.entries * sizeof(layout::u32),
+                              work.samples.size_bytes(), work.samples.data());
   queue_.enqueueWriteBuffer(slice_buffer_, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
                             slices_.data());
   queue_.enqueueWriteBuffer(traffic_buffer_, CL_FALSE, 0, traffic_.size() * sizeof(layout::Traffic),
                             traffic_.data());
-  if (n_pixels > 0 && film_made_.valid()) film_made_.get();
-  if (n_pixels > 0) queue_.enqueueFillBuffer(film_, cl_long{0}, 0, n_pixels * 3 * sizeof(layout::i64));
+  if (n_places_ > 0 && film_made_.valid()) film_made_.get();
+  if (n_places_ > 0) queue_.enqueueFillBuffer(film_, cl_long{0}, 0, n_places_ * 3 * sizeof(layout::i64));
   if (!visits_.empty())
     queue_.enqueueFillBuffer(visit_buffer_, cl_uint{0}, 0, visits_.size() * sizeof(layout::u32));
   queue_.finish();
@@ -117,7 +126,8 @@ void Worker::serve(const LoadedPart& part, std::uint32_t census_every) {
 }
 
 void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
-  begin(0, 0, {});
+  const device::AtWork compiling(context_.builds());
+  begin({});
   serve(part, 0);
   std::fill(outbox.n().begin(), outbox.n().end(), 0);
   queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
@@ -281,7 +291,7 @@ std::vector<std::uint64_t> Worker::visits() const {
 }
 
 std::span<const layout::i64> Worker::map_film() {
-  const std::size_t n = band_pixels_ * 3;
+  const std::size_t n = n_places_ * 3;
   mapped_film_ = queue_.enqueueMapBuffer(film_, CL_TRUE, CL_MAP_READ, 0, n * sizeof(layout::i64));
   return {static_cast<const layout::i64*>(mapped_film_), n};
 }

@@ -35,19 +35,30 @@ struct LoadedPart {
   std::uint32_t n_subtrees = 0;
 };
 
+// What is rendered between two clearings of the film: tiles of a band of the picture, or runs of samples (frame.layout.h).
+struct Work {
+  std::size_t first_pixel = 0, n_places = 0;  // of the film
+  std::span<const layout::u32> list;          // entries whose eye rays the worker is to make
+  std::span<const layout::u32> samples = {};  // empty: tiles
+};
+
+// The most of it that there is room for.
+struct WorkRoom {
+  std::size_t places = 0, entries = 0, samples = 0;
+};
+
 class Worker {
  public:
   Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
          const layout::Frame& frame, const Plan& plan, std::uint32_t features, Traversal traversal,
-         std::span<const layout::PartCell> directory, std::size_t band_pixels, std::size_t band_tiles,
-         std::size_t max_subtrees);
+         std::span<const layout::PartCell> directory, const WorkRoom& room, std::size_t max_subtrees);
   ~Worker();
   Worker(const Worker&) = delete;
 
   const device::Context& context() const { return context_; }
 
-  // Clears the film for a band, and takes up the tiles whose eye rays it is to make (KDRAY_TILE entries).
-  void begin(std::size_t first_pixel, std::size_t n_pixels, std::span<const layout::u32> tiles);
+  // Clears the film.
+  void begin(const Work& work);
 
   // `census_every`: visits to the part's subtrees are counted in one wave of so many; 0: in none.
   void serve(const LoadedPart& part, std::uint32_t census_every);
@@ -75,7 +86,7 @@ class Worker {
   std::uint64_t n_waiting() const;   // rays in the pools
   std::vector<std::uint64_t> visits() const;
 
-  // The film's sums of the band, three for each pixel, until unmap_film().
+  // The film's sums, three for each place, until unmap_film().
   std::span<const layout::i64> map_film();
   void unmap_film();
 
@@ -98,7 +109,8 @@ class Worker {
   layout::Frame frame_;
   const Plan plan_;
   layout::Travel travel_{};
-  std::size_t bytes_ = 0, band_pixels_ = 0;
+  WorkRoom room_;
+  std::size_t bytes_ = 0, n_places_ = 0;
   std::uint32_t n_tiles_ = 0;
   std::vector<layout::Slice> slices_;
   std::vector<layout::Traffic> traffic_;

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "device/opencl_error.h"
-#include "wavefront/develop.h"
 
 namespace kdray::pdprt {
 
@@ -25,24 +24,34 @@ double guessed_waves(const layout::Frame& frame) {
   return 2 * samples / frame.batch_size;
 }
 
-struct Rows {
-  std::size_t first, end;
+constexpr double kWavesOfRun = 2.0 * KDRAY_SAMPLE_RUN;  // times rays in a batch, guessed in the same way
+
+// Of the film.
+struct Extent {
+  std::size_t first, n;
 };
 
-// The picture's rows that the tiles cover.
-Rows rows_of(std::span<const layout::u32> tiles, const layout::Frame& frame) {
+// The rows of the picture that the tiles cover.
+Extent extent_of(std::span<const layout::u32> tiles, const layout::Frame& frame) {
   std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
   for (const layout::u32 tile : tiles) {
     first = std::min<std::size_t>(first, KDRAY_TILE_ROW(tile));
     last = std::max<std::size_t>(last, KDRAY_TILE_ROW(tile));
   }
-  return {first * frame.tile_height, std::min<std::size_t>((last + 1) * frame.tile_height, frame.height)};
+  const std::size_t first_row = first * frame.tile_height;
+  const std::size_t end_row = std::min<std::size_t>((last + 1) * frame.tile_height, frame.height);
+  return {first_row * frame.width, (end_row - first_row) * frame.width};
+}
+
+Extent extent_of_runs(std::span<const layout::u32> runs) {
+  const auto [first, last] = std::minmax_element(runs.begin(), runs.end());
+  return {std::size_t{*first} * KDRAY_SAMPLE_RUN, std::size_t{*last + 1 - *first} * KDRAY_SAMPLE_RUN};
 }
 
 }  // namespace
 
 Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& queue, const Task& task,
-             std::size_t max_tiles, std::size_t max_pixels)
+             const wavefront::Room& room)
     : number_(number),
       frame_(scheduled(task.frame, device.schedule, task.features)),
       n_slices_(device.schedule.n_slices),
@@ -52,7 +61,7 @@ Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& q
           "asking for the queue's device",
           [&] { return queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(); })),
       wavefront_(*device.context, queue, *device.scene, *device.programs, frame_, device.schedule,
-                 task.features, max_tiles, max_pixels) {
+                 task.features, room) {
   wavefront::Watch watch;
   if (task.faults) watch.before = [faults = task.faults, number] { faults->launch(number); };
   if (task.timeline) {
@@ -93,27 +102,27 @@ std::size_t Queue::tiles_of_launch() const {
   return static_cast<std::size_t>(waves_per_launch_ / waves_per_tile_) + 1;
 }
 
-void Queue::serve(Tiles& tiles, std::size_t first_pixel, Shared& shared) {
+void Queue::serve(Tiles& tiles, const Work& work, Shared& shared) {
+  waves_per_tile_ = work.samples.empty() ? guessed_waves(frame_) : kWavesOfRun / frame_.batch_size;
   while (tiles.wait(number_)) {
     n_told_ = 0;
     busy_before_ = wavefront_.busy_seconds();
-    wavefront_.begin(first_pixel);
+    work.samples.empty() ? wavefront_.begin(work.first_pixel) : wavefront_.begin_samples(work.samples);
     const auto feed = [&](const wavefront::Progress& progress) { return more(tiles, progress, shared); };
     if (!wavefront_.render(feed)) return;
-    deliver(tiles.taken(number_), shared);
+    deliver(tiles.taken(number_), work, shared);
     tiles.done(number_);
   }
 }
 
-void Queue::deliver(std::span<const layout::u32> tiles, Shared& shared) {
+void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared) {
   if (tiles.empty()) return;  // another queue was faster
-  note_costs(tiles, shared);
-  const Rows rows = rows_of(tiles, frame_);
+  if (work.samples.empty()) note_costs(tiles, shared);
+  const Extent extent = work.samples.empty() ? extent_of(tiles, frame_) : extent_of_runs(tiles);
   // Last: what it adds to the counters counts.
-  wavefront_.finish(rows.first, rows.end, [&](const wavefront::FilmRows& film) {
-    wavefront::develop_tiles(film.sums, film.first_pixel, frame_, tiles, shared.image.pixels);
-  });
-  n_tiles_ += tiles.size();
+  wavefront_.finish(extent.first, extent.n,
+                    [&](const wavefront::FilmSums& film) { shared.deliver(film, tiles); });
+  if (work.samples.empty()) n_tiles_ += tiles.size();
   shared.tiles_done += tiles.size() - n_told_;
   n_told_ = 0;
 }

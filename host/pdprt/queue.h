@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,22 +16,28 @@
 
 namespace kdray::pdprt {
 
+// What a list's tiles are: the picture's, of which the film begins with `first_pixel`, or runs of samples (frame.layout.h).
+struct Work {
+  std::size_t first_pixel = 0;
+  std::span<const layout::u32> samples = {};  // empty: tiles
+};
+
 // What the queues of a frame share.
 struct Shared {
-  film::Image image;
+  // Puts what a queue has of some tiles where it belongs; called by the queues' threads, each tile by one of them.
+  std::function<void(const wavefront::FilmSums&, std::span<const layout::u32> tiles)> deliver;
   std::atomic<std::uint64_t> tiles_done{0};
   std::vector<double> tile_seconds;  // by row and column of tiles; empty: not wanted
 };
 
 class Queue {
  public:
-  // A list holds `max_tiles`, the film `max_pixels`. Throws kdray::Error when the device can't.
+  // Throws kdray::Error when the device can't.
   Queue(std::size_t number, const Device& device, const cl::CommandQueue& queue, const Task& task,
-        std::size_t max_tiles, std::size_t max_pixels);
+        const wavefront::Room& room);
 
-  // Renders tiles until all of them are in the picture, those of the other queues too, or someone has left. The film
-  // begins with `first_pixel`.
-  void serve(Tiles& tiles, std::size_t first_pixel, Shared& shared);
+  // Renders tiles until all of them are in the picture, those of the other queues too, or someone has left.
+  void serve(Tiles& tiles, const Work& work, Shared& shared);
 
   // Takes back what it has told Shared::tiles_done of tiles that it will not deliver.
   void withdraw(Shared& shared);
@@ -44,7 +51,7 @@ class Queue {
                                                    Shared& shared);
   std::size_t tiles_of_launch() const;
   std::size_t shortest_launch(const wavefront::Progress& progress) const;
-  void deliver(std::span<const layout::u32> tiles, Shared& shared);
+  void deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared);
   void note_costs(std::span<const layout::u32> tiles, Shared& shared);
 
   std::size_t number_;

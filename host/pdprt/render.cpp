@@ -5,32 +5,20 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <thread>
 #include <utility>
 
+#include "adaptive/sampler.h"
 #include "base/timer.h"
 #include "pdprt/queue.h"
+#include "wavefront/bands.h"
 #include "wavefront/curve.h"
+#include "wavefront/develop.h"
 
 namespace kdray::pdprt {
 
 namespace {
-
-// Whole rows of tiles that the queues render together.
-struct Band {
-  std::uint32_t first_row, n_rows;  // of tiles
-};
-
-std::vector<Band> bands_of(const layout::Frame& frame, std::size_t max_film_bytes) {
-  const std::uint32_t n_rows = frame.n_tiles / frame.n_tiles_x;
-  const std::size_t row_bytes = std::size_t{frame.tile_height} * frame.width * 3 * sizeof(layout::i64);
-  const auto fitting =
-      static_cast<std::uint32_t>(std::clamp<std::size_t>(max_film_bytes / row_bytes, 1, n_rows));
-  std::vector<Band> bands;
-  for (std::uint32_t row = 0; row < n_rows; row += fitting)
-    bands.push_back({row, std::min(fitting, n_rows - row)});
-  return bands;
-}
 
 class Frame {
  public:
@@ -43,10 +31,13 @@ class Frame {
     QueueResult result;
   };
 
-  void open(const Device& device, std::size_t number_of_device, std::size_t max_tiles,
-            std::size_t max_pixels);
-  void render_band(const Band& band);
-  void run(std::size_t number, Tiles& tiles, std::size_t first_pixel);
+  void open(const Device& device, std::size_t number_of_device);
+  void render_uniform();
+  void render_adaptive();
+  void render_bands();
+  void render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
+  void render_list(std::vector<layout::u32> list, const Work& work);
+  void run(std::size_t number, Tiles& tiles, const Work& work);
   void fail(std::size_t number, const Error& error);
   void wait(Tiles& tiles);
   std::size_t n_working() const;
@@ -54,8 +45,13 @@ class Frame {
 
   const Task& task_;
   layout::Frame frame_;
-  std::vector<Band> bands_;
+  std::vector<wavefront::Band> bands_;
+  wavefront::Room room_;
+  film::Image image_;
+  std::optional<adaptive::Sampler> sampler_;  // adaptive sampling
   Shared shared_;
+  double progress_from_ = 0, progress_to_ = 1;  // of the share done: what the tiles of shared_.tiles_done are
+  std::uint64_t n_tiles_ = 0;                   // of them all
   std::vector<Place> places_;
   std::exception_ptr last_failure_;  // of a queue
   std::mutex mutex_;                 // of the following
@@ -66,23 +62,26 @@ class Frame {
 
 Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), frame_(task.frame) {
   devices.front().schedule.apply(frame_, task.features);
-  bands_ = bands_of(frame_, task.max_film_bytes);
-  shared_.image = {static_cast<int>(frame_.width), static_cast<int>(frame_.height),
-                   std::vector<vec3>(std::size_t{frame_.width} * frame_.height)};
+  bands_ = wavefront::bands_of(frame_, task.max_film_bytes);
+  const adaptive::Size size{frame_.width, frame_.height};
+  image_ = {static_cast<int>(size.width), static_cast<int>(size.height), {}};
+  if (task.adaptive_target > 0)
+    sampler_.emplace(size, task.adaptive_target);
+  else
+    image_.pixels.resize(size.pixels());
   if (task.timeline) shared_.tile_seconds.resize(frame_.n_tiles);
-  const std::size_t max_tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
-  const std::size_t max_pixels =
-      std::min<std::size_t>(std::size_t{bands_.front().n_rows} * frame_.tile_height, frame_.height) *
-      frame_.width;
+  room_.tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
+  room_.pixels = bands_.front().n_pixels;
+  if (task.adaptive_target > 0)
+    room_.samples = std::max(kLeastSamples, room_.pixels / KDRAY_SAMPLE_RUN * KDRAY_SAMPLE_RUN);
   std::size_t most = 0;
   for (const Device& device : devices) most = std::max(most, device.context->queues().size());
   for (std::size_t i = 0; i < most; ++i)  // in turn, as they were dealt out
     for (const Device& device : devices)
-      if (i < device.context->queues().size()) open(device, i, max_tiles, max_pixels);
+      if (i < device.context->queues().size()) open(device, i);
 }
 
-void Frame::open(const Device& device, std::size_t number_of_device, std::size_t max_tiles,
-                 std::size_t max_pixels) {
+void Frame::open(const Device& device, std::size_t number_of_device) {
   const std::size_t number = places_.size();
   Place& place = places_.emplace_back();
   place.result.device = device.context->info().name;
@@ -90,8 +89,8 @@ void Frame::open(const Device& device, std::size_t number_of_device, std::size_t
     task_.timeline->name_row(static_cast<int>(number),
                              "queue " + std::to_string(number) + ": " + place.result.device);
   try {
-    place.queue = std::make_unique<Queue>(number, device, device.context->queues()[number_of_device], task_,
-                                          max_tiles, max_pixels);
+    place.queue =
+        std::make_unique<Queue>(number, device, device.context->queues()[number_of_device], task_, room_);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal) throw;
     fail(number, error);
@@ -111,10 +110,10 @@ std::size_t Frame::n_working() const {
 }
 
 // On a thread of the queue's own.
-void Frame::run(std::size_t number, Tiles& tiles, std::size_t first_pixel) {
+void Frame::run(std::size_t number, Tiles& tiles, const Work& work) {
   Place& place = places_[number];
   try {
-    place.queue->serve(tiles, first_pixel, shared_);
+    place.queue->serve(tiles, work, shared_);
   } catch (const Error& error) {
     const std::lock_guard lock(mutex_);
     if (error.code() == ErrorCode::internal) {
@@ -144,7 +143,8 @@ void Frame::wait(Tiles& tiles) {
     if (!task_.progress) continue;
     lock.unlock();
     try {
-      task_.progress(static_cast<double>(shared_.tiles_done) / frame_.n_tiles);
+      const double share = static_cast<double>(shared_.tiles_done) / static_cast<double>(n_tiles_);
+      task_.progress(progress_from_ + share * (progress_to_ - progress_from_));
     } catch (...) {
       tiles.leave();
       throw;
@@ -153,17 +153,16 @@ void Frame::wait(Tiles& tiles) {
   }
 }
 
-void Frame::render_band(const Band& band) {
+void Frame::render_list(std::vector<layout::u32> list, const Work& work) {
   // One queue takes all at once.
   const Division division = places_.size() == 1 ? Division::contiguous : task_.division;
-  Tiles tiles(wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows), division, places_.size());
-  const std::size_t first_pixel = std::size_t{band.first_row} * frame_.tile_height * frame_.width;
+  Tiles tiles(std::move(list), division, places_.size());
   n_running_ = n_working();
   {
     std::vector<std::jthread> threads;
     for (std::size_t i = 0; i < places_.size(); ++i) {
       if (places_[i].result.failure.empty())
-        threads.emplace_back([this, i, &tiles, first_pixel] { run(i, tiles, first_pixel); });
+        threads.emplace_back([this, i, &tiles, &work] { run(i, tiles, work); });
       else
         tiles.give_back(i);
     }
@@ -173,10 +172,64 @@ void Frame::render_band(const Band& band) {
   if (n_working() == 0) std::rethrow_exception(last_failure_);
 }
 
+void Frame::render_bands() {
+  shared_.tiles_done = 0;
+  n_tiles_ = frame_.n_tiles;
+  for (const wavefront::Band& band : bands_)
+    render_list(wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows),
+                {.first_pixel = band.first_pixel});
+}
+
+void Frame::render_uniform() {
+  shared_.deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> tiles) {
+    wavefront::develop_tiles(film.sums, film.first, frame_, tiles, image_.pixels);
+  };
+  render_bands();
+}
+
+// Runs of samples, as many at a time as the queues have room for. Their sums are set, not added to: a queue may fail when it
+// has delivered some.
+void Frame::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
+  constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN, kSums = 3 * KDRAY_SAMPLE_RUN;
+  shared_.tiles_done = 0;
+  n_tiles_ = samples.size() / kWords;
+  const std::size_t most = room_.samples / KDRAY_SAMPLE_RUN;
+  for (std::size_t first = 0; first < n_tiles_; first += most) {
+    std::vector<layout::u32> runs(std::min<std::size_t>(most, n_tiles_ - first));
+    std::iota(runs.begin(), runs.end(), 0u);
+    shared_.deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> delivered) {
+      for (const layout::u32 run : delivered) {
+        const auto from = film.sums.subspan(run * kSums - 3 * film.first, kSums);
+        std::copy(from.begin(), from.end(), sums.subspan((first + run) * kSums).begin());
+      }
+    };
+    const std::size_t n = runs.size();
+    render_list(std::move(runs), {.samples = samples.subspan(first * kWords, n * kWords)});
+  }
+}
+
+void Frame::render_adaptive() {
+  shared_.deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> tiles) {
+    wavefront::copy_tiles(film.sums, film.first, frame_, tiles, sampler_->first_sums());
+  };
+  progress_to_ = 0.5;
+  render_bands();
+  std::vector<layout::i64> sums;
+  for (auto samples = sampler_->next(); !samples.empty(); samples = sampler_->next()) {
+    progress_from_ = progress_to_;  // how many rounds there will be is not known
+    progress_to_ = (1 + progress_to_) / 2;
+    sums.resize(samples.size() / 2 * 3);
+    render_samples(samples, sums);
+    sampler_->take(sums);
+  }
+  image_.pixels = sampler_->picture();
+}
+
 Result Frame::collect(double seconds) {
   Result result;
   result.render_seconds = seconds;
-  result.image = std::move(shared_.image);
+  result.image = std::move(image_);
+  if (sampler_) result.samples = sampler_->report();
   result.tile_width = frame_.tile_width;
   result.tile_height = frame_.tile_height;
   result.n_tiles = frame_.n_tiles;
@@ -196,7 +249,7 @@ Result Frame::collect(double seconds) {
     }
     result.queues.push_back(std::move(place.result));
   }
-  for (const Band& band : bands_)
+  for (const wavefront::Band& band : bands_)
     if (!shared_.tile_seconds.empty() && result.tile_cost.total > 0)
       for (const layout::u32 tile : wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows))
         result.tile_seconds.push_back(
@@ -207,7 +260,7 @@ Result Frame::collect(double seconds) {
 Result Frame::render() {
   if (n_working() == 0) std::rethrow_exception(last_failure_);
   const Timer timer;
-  for (const Band& band : bands_) render_band(band);
+  sampler_ ? render_adaptive() : render_uniform();
   const double seconds = timer.seconds();
   if (task_.progress) task_.progress(1.0);
   return collect(seconds);

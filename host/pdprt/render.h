@@ -10,10 +10,12 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "adaptive/report.h"
 #include "device/faults.h"
 #include "film/image.h"
 #include "pdprt/tile_size.h"
@@ -30,9 +32,15 @@ struct Device {
   wavefront::Schedule schedule;
 };
 
+// Samples of one round of adaptive sampling that a queue's film has room for at least, so that small pictures don't take many
+// lists for one.
+inline constexpr std::size_t kLeastSamples = std::size_t{1} << 18;
+
 struct Task {
   layout::Frame frame;  // without a schedule (flatten::make_frame)
   std::uint32_t features = 0;
+  double adaptive_target =
+      0;  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one
   Division division = Division::bag;
   std::function<void(double)> progress = {};  // called from render()'s thread with the share done
   device::Faults* faults = nullptr;
@@ -51,6 +59,7 @@ struct QueueResult {
 
 struct Result {
   film::Image image;
+  std::optional<adaptive::Report> samples;  // of adaptive sampling
   wavefront::Counters counters;
   std::map<std::string, double> stage_seconds;  // device time, added over the queues
   double render_seconds = 0;                    // wall time from the first launch to the finished film

@@ -6,7 +6,7 @@ namespace kdray::pdprt {
 
 namespace {
 
-constexpr std::uint32_t kLargest = 32, kSmallest = 8;
+constexpr std::uint32_t kSmallest = 8;
 constexpr std::uint64_t kTilesPerUnit = 64;  // at least
 constexpr double kLargestPart = 0.02;        // of a unit's time, for one tile
 
@@ -24,8 +24,8 @@ bool cheap_enough(const TileCost& cost, std::uint32_t side, std::uint32_t n_unit
 }  // namespace
 
 std::uint32_t choose_tile_side(std::uint32_t width, std::uint32_t height, std::uint32_t n_units,
-                               const std::optional<TileCost>& measured) {
-  std::uint32_t side = kLargest;
+                               const std::optional<TileCost>& measured, std::uint32_t largest) {
+  std::uint32_t side = largest;
   while (side > kSmallest && !(enough_tiles(width, height, side, n_units) &&
                                (!measured || cheap_enough(*measured, side, n_units))))
     side /= 2;

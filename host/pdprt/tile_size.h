@@ -14,8 +14,10 @@ struct TileCost {
   double costliest = 0, total = 0;  // seconds of a compute unit
 };
 
-// A square tile's side. `n_units`: the compute units of all queues. `measured`: of the last frame of these sides.
+constexpr std::uint32_t kLargestTile = 32;
+
+// A square tile's side, `largest` at most. `n_units`: the compute units of all queues. `measured`: of the last frame of these sides.
 std::uint32_t choose_tile_side(std::uint32_t width, std::uint32_t height, std::uint32_t n_units,
-                               const std::optional<TileCost>& measured);
+                               const std::optional<TileCost>& measured, std::uint32_t largest = kLargestTile);
 
 }  // namespace kdray::pdprt

@@ -38,8 +38,8 @@ namespace {
 
 // The scene is taken apart into all its members, so that one that is added can't be forgotten.
 scene::Scene settings_of(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, camera, background,
-               ambient, settings, warnings, files] = scene;
+  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, unlit, camera,
+               background, ambient, settings, warnings, files] = scene;
   return {.name = name,
           .vertices = {},
           .normals = {},
@@ -48,6 +48,7 @@ scene::Scene settings_of(const scene::Scene& scene) {
           .cones = {},
           .materials = materials,
           .lights = lights,
+          .unlit = unlit,
           .camera = camera,
           .background = background,
           .ambient = ambient,
@@ -89,6 +90,13 @@ Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geomet
 }
 
 }  // namespace
+
+std::size_t Prepared::largest_array() const {
+  return std::max({flat.nodes.bytes(), flat.refs.bytes(), flat.triangles.bytes(), flat.normals.bytes(),
+                   flat.spheres.bytes(), flat.cones.bytes(), flat.materials.bytes(), flat.lights.bytes(),
+                   wide.nodes.bytes(), wide.triangle_blocks.bytes(), wide.sphere_blocks.bytes(),
+                   wide.cone_blocks.bytes()});
+}
 
 Prepared prepare(const scene::Scene& scene, const TreeOptions& options) {
   const Timer timer;

@@ -39,6 +39,7 @@ struct Prepared {
   Seconds seconds;           // that it took to make
 
   std::size_t bytes() const { return flat.bytes() + wide.bytes(); }
+  std::size_t largest_array() const;  // what a device has to hold in one piece
 };
 
 // What the tree of a scene of n primitives is built with.

@@ -141,7 +141,7 @@ void frame_scene(Scene& scene) {
   if (!scene.camera) {
     scene.camera = box.empty() ? Camera{} : three_quarter_view(box, aspect_of(scene.settings));
   }
-  if (scene.lights.empty() && !box.empty()) add_lights(scene, box);
+  if (scene.lights.empty() && !scene.unlit && !box.empty()) add_lights(scene, box);
 }
 
 }  // namespace kdray::scene

@@ -111,6 +111,7 @@ Scene read_json(std::string_view text, const std::filesystem::path& file) {
   if (const auto render = root.find("render")) scene.settings = read_settings(*render);
   if (const auto lights = root.find("lights")) {
     for (const JsonNode& light : lights->elements()) scene.lights.push_back(read_light(light));
+    scene.unlit = scene.lights.empty();
   }
   NamedMaterials named;
   if (const auto materials = root.find("materials")) {

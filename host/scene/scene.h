@@ -94,6 +94,7 @@ struct Scene {
   std::vector<Cone> cones;
   std::vector<Material> materials;  // at least one when there is a primitive
   std::vector<Light> lights;
+  bool unlit = false;  // the file says that there are no lights; else frame_scene() adds some where none are
   std::optional<Camera> camera;  // loaders leave it empty when the file has none; frame_scene() fills it
   vec3 background{0};
   vec3 ambient{1};  // Camb

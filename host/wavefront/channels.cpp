@@ -34,8 +34,10 @@ std::vector<Plane> wanted_planes(std::span<const std::string> names) {
     for (const Plane& p : kPlaneTable)
       if (name == p.channel) planes.push_back(p);
     if (planes.size() == before)
-      throw Error(ErrorCode::usage,
-                  fmt::format("there is no channel '{}'; there are depth, normal, primitive and cost", name));
+      throw Error(
+          ErrorCode::usage,
+          fmt::format("there is no channel '{}'; there are depth, normal, primitive, cost and samples",
+                      name));
   }
   return planes;
 }
@@ -44,7 +46,8 @@ std::vector<Plane> wanted_planes(std::span<const std::string> names) {
 
 std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
                                            Programs& programs, const layout::Frame& frame,
-                                           std::uint32_t features, std::span<const std::string> names) {
+                                           std::uint32_t features, Precision precision,
+                                           std::span<const std::string> names) {
   const std::vector<Plane> planes = wanted_planes(names);
   const std::size_t n_pixels = std::size_t{frame.width} * frame.height;
   std::vector<film::Channel> channels;
@@ -54,7 +57,8 @@ std::vector<film::Channel> render_channels(const device::Context& context, const
   const std::size_t chunk = std::min(n_pixels, kPixelsPerLaunch);
   const cl::Buffer out = context.buffer(CL_MEM_WRITE_ONLY, chunk * kPlanes * sizeof(float), "the channels");
   const cl::Buffer frame_buffer = context.buffer(CL_MEM_READ_ONLY, sizeof frame, "the frame");
-  Stage stage("channels", programs.kernel("film/channels.cl", "channels", features | KDRAY_FEATURE_COST));
+  Stage stage("channels", programs.kernel("film/channels.cl", "channels", features | KDRAY_FEATURE_COST,
+                                          Traversal::binary, precision));
   cl::CommandQueue queue = context.queues().front();
   std::vector<float> values(chunk * kPlanes);
   device::checked("rendering the channels", [&] {

@@ -32,6 +32,24 @@ std::vector<Run> runs_of(std::span<const layout::u32> tiles) {
   return runs;
 }
 
+// Calls take(pixel, n) for the pixels of the tiles, row by row: n from the picture's pixel on.
+template <class Take>
+void for_each_row(const layout::Frame& frame, std::span<const layout::u32> tiles, const Take& take) {
+  const auto take_run = [&](const Run& run) {
+    const std::size_t x = std::size_t{run.first_column} * frame.tile_width;
+    const std::size_t end_x =
+        std::min<std::size_t>(std::size_t{run.end_column} * frame.tile_width, frame.width);
+    const std::size_t end_y =
+        std::min<std::size_t>((std::size_t{run.row} + 1) * frame.tile_height, frame.height);
+    for (std::size_t y = std::size_t{run.row} * frame.tile_height; y < end_y; ++y)
+      take(y * frame.width + x, end_x - x);
+  };
+  const std::vector<Run> runs = runs_of(tiles);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) take_run(runs[i]);
+  });
+}
+
 class Developer {
  public:
   explicit Developer(std::uint32_t samples)
@@ -60,20 +78,16 @@ void develop(std::span<const layout::i64> sums, int samples, std::span<vec3> pix
 void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
                    std::span<const layout::u32> tiles, std::span<vec3> picture) {
   const Developer developed(frame.n_samples);
-  const auto develop_run = [&](const Run& run) {
-    const std::size_t x = std::size_t{run.first_column} * frame.tile_width;
-    const std::size_t end_x =
-        std::min<std::size_t>(std::size_t{run.end_column} * frame.tile_width, frame.width);
-    const std::size_t end_y =
-        std::min<std::size_t>((std::size_t{run.row} + 1) * frame.tile_height, frame.height);
-    for (std::size_t y = std::size_t{run.row} * frame.tile_height; y < end_y; ++y) {
-      const std::size_t pixel = y * frame.width + x, n = end_x - x;
-      developed(sums.subspan(3 * (pixel - first_pixel), 3 * n), picture.subspan(pixel, n));
-    }
-  };
-  const std::vector<Run> runs = runs_of(tiles);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size()), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) develop_run(runs[i]);
+  for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
+    developed(sums.subspan(3 * (pixel - first_pixel), 3 * n), picture.subspan(pixel, n));
+  });
+}
+
+void copy_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+                std::span<const layout::u32> tiles, std::span<layout::i64> picture_sums) {
+  for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
+    const auto from = sums.subspan(3 * (pixel - first_pixel), 3 * n);
+    std::copy(from.begin(), from.end(), picture_sums.subspan(3 * pixel).begin());
   });
 }
 

@@ -17,4 +17,8 @@ void develop(std::span<const layout::i64> sums, int samples, std::span<vec3> pix
 void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
                    std::span<const layout::u32> tiles, std::span<vec3> picture);
 
+// The sums themselves, to where the picture's are: three for each pixel.
+void copy_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+                std::span<const layout::u32> tiles, std::span<layout::i64> picture_sums);
+
 }  // namespace kdray::wavefront

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "device/context.h"
 #include "flatten/wide.h"
@@ -14,26 +15,45 @@ namespace kdray::wavefront {
 
 class Programs {
  public:
-  // `tree_depth` sizes the binary walk's stack, the wide form its own walks' and their blocks.
-  Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide);
+  // `tree_depth` sizes the binary walk's stack, the wide form its own walks' and their blocks. `more_options`: for all builds.
+  Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
+           std::string more_options = {});
+
+  // The constants of the walks from now on; what was built with others is kept.
+  void use(const Tuning& tuning);
 
   // The kernel `name` of `file` ("traverse/trace_closest.cl"), built for the bits of `features` that the file reads.
   // A new kernel object each time: arguments are the caller's own.
   // `traversal` (never Traversal::automatic where a file is built for one walk) is for the files that walk the tree.
   cl::Kernel kernel(const std::string& file, const std::string& name, std::uint32_t features,
-                    Traversal traversal = Traversal::binary);
+                    Traversal traversal = Traversal::binary, Precision precision = Precision::float32);
+
+  struct Wanted {
+    std::string file;
+    std::uint32_t features;
+    Traversal traversal = Traversal::binary;
+    Precision precision = Precision::float32;
+  };
+  // Builds side by side what kernel() will be asked for, where it was not built before.
+  void build(const std::vector<Wanted>& wanted);
 
   double build_seconds() const { return build_seconds_; }
   std::size_t n_built() const { return programs_.size(); }
+  static std::size_t n_known();  // files that a program can be built of
 
  private:
-  std::string options_for(std::uint32_t features, Traversal traversal) const;
+  using Key =
+      std::tuple<std::string, std::uint32_t, Traversal, Precision, std::string>;  // the last: walk_options_
+
+  Key key_of(const Wanted& wanted) const;
+  std::string options_for(std::uint32_t features, Traversal traversal, Precision precision) const;
 
   const device::Context* context_;
+  std::string more_options_, walk_options_;
   int stack_size_, wide_stack_size_, block_;
   bool prefetch_;
   double build_seconds_ = 0;
-  std::map<std::tuple<std::string, std::uint32_t, Traversal>, cl::Program> programs_;
+  std::map<Key, cl::Program> programs_;
 };
 
 }  // namespace kdray::wavefront

@@ -17,8 +17,8 @@ namespace {
 
 static_assert(sizeof(Ray) == sizeof(layout::QueryRay) && sizeof(Hit) == sizeof(layout::QueryHit));
 
-constexpr std::size_t kRaysPerChunk = std::size_t{1} << 24;  // 512 MiB of rays
-constexpr std::int32_t kInvalid = -2;                        // KDRAY_QUERY_INVALID of query.clh
+constexpr cl_uint kCountArgument = 4;  // the number of rays, behind the tree's arguments
+constexpr std::int32_t kInvalid = -2;  // KDRAY_QUERY_INVALID of query.clh
 
 bool all_finite(const float (&v)[3]) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -49,20 +49,31 @@ float world_max(const Box& bounds) {
   return std::max({m.x, m.y, m.z});
 }
 
+// PoCL compiles a kernel for good at its first launch: here one of as many work-items that finds no rays, not in the time
+// of tracing.
+template <class Launch>
+void warm_up(const device::Context& context, Stage& stage, cl_uint first_argument, const Launch& launch) {
+  const device::AtWork compiling(context.builds());
+  stage.set_arguments(first_argument + kCountArgument, cl_uint{0});
+  launch();
+}
+
 }  // namespace
 
 QueryResult trace_query(const device::Context& context, const SceneBuffers& scene, Programs& programs,
                         const scene::Geometry& geometry, std::uint32_t features, std::size_t work_group,
-                        Traversal traversal, std::span<const Ray> rays, bool any_hit, int repeat) {
+                        Traversal traversal, Precision precision, std::span<const Ray> rays, bool any_hit,
+                        int repeat, std::size_t rays_per_launch) {
   check(rays);
   QueryResult result{std::vector<Hit>(rays.size()),
                      std::vector<double>(static_cast<std::size_t>(std::max(repeat, 1)))};
   if (rays.empty()) return result;
   const std::size_t chunk = std::min(
-      {rays.size(), kRaysPerChunk, static_cast<std::size_t>(context.info().max_allocation / sizeof(Ray))});
+      {rays.size(), rays_per_launch, static_cast<std::size_t>(context.info().max_allocation / sizeof(Ray))});
   const cl::Buffer ray_buffer = context.buffer(CL_MEM_READ_ONLY, chunk * sizeof(Ray), "the rays");
   const cl::Buffer hit_buffer = context.buffer(CL_MEM_WRITE_ONLY, chunk * sizeof(Hit), "the hits");
-  Stage stage("trace_query", programs.kernel("traverse/query.cl", "trace_query", features, traversal));
+  Stage stage("trace_query",
+              programs.kernel("traverse/query.cl", "trace_query", features, traversal, precision));
   const bool chunked = traversal != Traversal::binary && traversal != Traversal::wide;
   cl::CommandQueue queue = context.queues().front();
   device::checked("tracing rays", [&] {
@@ -76,14 +87,18 @@ QueryResult trace_query(const device::Context& context, const SceneBuffers& scen
       stage.set_arguments(first_argument, float4(geometry.bounds.lo), float4(geometry.bounds.hi),
                           float4(vec3(geometry.center)), world_max(geometry.bounds), static_cast<cl_uint>(n),
                           cl_uint{any_hit}, ray_buffer, hit_buffer);
+      const auto launch = [&] {
+        chunked ? stage.launch(queue, (n + KDRAY_CHUNK - 1) / KDRAY_CHUNK, 1)
+                : stage.launch(queue, n, work_group);
+        queue.finish();
+      };
+      if (first == 0) {
+        warm_up(context, stage, first_argument, launch);
+        stage.set_arguments(first_argument + kCountArgument, static_cast<cl_uint>(n));
+      }
       for (double& seconds : result.seconds) {
         const Timer timer;
-        if (chunked) {
-          stage.launch(queue, (n + KDRAY_CHUNK - 1) / KDRAY_CHUNK, 1);
-        } else {
-          stage.launch(queue, n, work_group);
-        }
-        queue.finish();
+        launch();
         seconds += timer.seconds();
       }
       queue.enqueueReadBuffer(hit_buffer, CL_TRUE, 0, n * sizeof(Hit), result.hits.data() + first);

@@ -13,6 +13,9 @@
 
 namespace kdray::wavefront {
 
+// Rays in one launch: 512 MiB of them; and for a GPU, whose watchdog may end what takes seconds.
+constexpr std::size_t kRaysPerChunk = std::size_t{1} << 24, kBoundedLaunch = std::size_t{1} << 20;
+
 struct QueryResult {
   std::vector<Hit> hits;
   std::vector<double> seconds;  // wall time of each repetition, rays already on the device
@@ -20,6 +23,7 @@ struct QueryResult {
 
 QueryResult trace_query(const device::Context& context, const SceneBuffers& scene, Programs& programs,
                         const scene::Geometry& geometry, std::uint32_t features, std::size_t work_group,
-                        Traversal traversal, std::span<const Ray> rays, bool any_hit, int repeat);
+                        Traversal traversal, Precision precision, std::span<const Ray> rays, bool any_hit,
+                        int repeat, std::size_t rays_per_launch = kRaysPerChunk);
 
 }  // namespace kdray::wavefront

@@ -28,6 +28,11 @@ bool at_work(const layout::Slice& slice, std::uint32_t n_listed) {
          std::any_of(std::begin(slice.n_pool), std::end(slice.n_pool), [](layout::u32 n) { return n > 0; });
 }
 
+// Entries, and behind them two words for each sample; what is read beyond the last is left out.
+std::size_t list_words(const Room& room) {
+  return room.tiles + (room.samples > 0 ? 2 * room.samples + KDRAY_LANES : 0);
+}
+
 double seconds_of(const cl::Event& event, cl_profiling_info moment) {
   cl_ulong nanoseconds = 0;
   event.getProfilingInfo(moment, &nanoseconds);
@@ -62,6 +67,36 @@ void Schedule::apply(layout::Frame& frame, std::uint32_t features) const {
   frame.shadow_capacity = frame.light_batch * frame.batch_capacity;
 }
 
+std::size_t Schedule::stream_bytes(const layout::Frame& frame) const {
+  const std::size_t word = precision == Precision::float64 ? sizeof(double) : sizeof(float);
+  const std::size_t pooled_depths = frame.pool_size > 0 ? frame.max_depth - 1 : 0;
+  const std::size_t words = pooled_depths * KDRAY_POOL_FIELDS * frame.pool_capacity +
+                            std::size_t{KDRAY_RAY_FIELDS + KDRAY_HIT_FIELDS} * frame.batch_capacity +
+                            std::size_t{KDRAY_SHADOW_FIELDS} * frame.shadow_capacity;
+  return n_slices * (sizeof(layout::Slice) + words * word + frame.shadow_capacity);
+}
+
+namespace {
+
+std::size_t largest_buffer_of_a_slice(const layout::Frame& frame) {
+  const std::size_t pooled_depths = frame.pool_size > 0 ? frame.max_depth - 1 : 0;
+  return std::max({sizeof(layout::Slice),
+                   pooled_depths * KDRAY_POOL_FIELDS * frame.pool_capacity * sizeof(float),
+                   std::size_t{KDRAY_RAY_FIELDS} * frame.batch_capacity * sizeof(float),
+                   std::size_t{KDRAY_SHADOW_FIELDS} * frame.shadow_capacity * sizeof(float)});
+}
+
+}  // namespace
+
+void Schedule::fit(layout::Frame frame, std::uint32_t features, std::size_t max_bytes) {
+  for (;; batch_size /= 2) {
+    apply(frame, features);
+    const std::size_t of_slice = largest_buffer_of_a_slice(frame);
+    n_slices = static_cast<std::uint32_t>(std::clamp<std::size_t>(max_bytes / of_slice, 1, n_slices));
+    if (of_slice <= max_bytes || batch_size == 1) return;
+  }
+}
+
 void Counters::add(const layout::Slice& s) {
   primary += s.n_primary;
   primary_hit += s.n_primary_hit;
@@ -70,6 +105,8 @@ void Counters::add(const layout::Slice& s) {
   refracted += s.n_refracted;
   skipped_behind += s.n_skipped_behind;
   skipped_unlit += s.n_skipped_unlit;
+  skipped_open += s.n_skipped_open;
+  skipped_background += s.n_skipped_background;
   skipped_weight += s.n_skipped_weight;
   skipped_depth += s.n_skipped_depth;
   invalid += s.n_invalid;
@@ -86,6 +123,8 @@ void Counters::add(const Counters& o) {
   refracted += o.refracted;
   skipped_behind += o.skipped_behind;
   skipped_unlit += o.skipped_unlit;
+  skipped_open += o.skipped_open;
+  skipped_background += o.skipped_background;
   skipped_weight += o.skipped_weight;
   skipped_depth += o.skipped_depth;
   invalid += o.invalid;
@@ -101,40 +140,49 @@ cl::Buffer Wavefront::make(std::size_t bytes, const std::string& what) {
 }
 
 cl::Buffer Wavefront::make_stream(std::size_t n_fields, std::size_t capacity, const std::string& what) {
-  return make(schedule_.n_slices * n_fields * capacity * sizeof(float), what);
+  const std::size_t word = schedule_.precision == Precision::float64 ? sizeof(double) : sizeof(float);
+  return make(schedule_.n_slices * n_fields * capacity * word, what);
 }
 
 Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
                      Programs& programs, const layout::Frame& frame, const Schedule& schedule,
-                     std::uint32_t features, std::size_t max_tiles, std::size_t max_pixels)
+                     std::uint32_t features, const Room& room)
     : context_(context),
       queue_(std::move(queue)),
       frame_(frame),
       schedule_(schedule),
       features_(features),
-      max_tiles_(max_tiles),
+      room_{std::max(room.tiles, room.samples / KDRAY_SAMPLE_RUN), std::max(room.pixels, room.samples),
+            room.samples},
       frame_buffer_(make(sizeof(layout::Frame), "the frame")),
       slice_buffer_(make(schedule.n_slices * sizeof(layout::Slice), "the slices")),
-      list_(make(max_tiles * sizeof(layout::u32), "the list of tiles")),
-      tile_cycles_(make(schedule.fused ? max_tiles * sizeof(layout::u64) : 0, "the tiles' cycles")),
+      list_(make(list_words(room_) * sizeof(layout::u32), "the list of tiles")),
+      tile_cycles_(make(schedule.fused ? room_.tiles * sizeof(layout::u64) : 0, "the tiles' cycles")),
       pool_(make_stream(frame.pool_size > 0 ? (frame.max_depth - 1) * KDRAY_POOL_FIELDS : 0,
                         frame.pool_capacity, "the ray pools")),
       batch_(make_stream(KDRAY_RAY_FIELDS, frame.batch_capacity, "the ray batches")),
       hits_(make_stream(KDRAY_HIT_FIELDS, frame.batch_capacity, "the hits")),
       shadow_rays_(make_stream(KDRAY_SHADOW_FIELDS, frame.shadow_capacity, "the shadow rays")),
       occluded_(make(std::size_t{schedule.n_slices} * frame.shadow_capacity, "the occlusion flags")),
-      film_(context.buffer_made_beside(CL_MEM_READ_WRITE, max_pixels * 3 * sizeof(layout::i64), "the film",
+      film_(context.buffer_made_beside(CL_MEM_READ_WRITE, room_.pixels * 3 * sizeof(layout::i64), "the film",
                                        film_made_)) {
-  device_bytes_ += max_pixels * 3 * sizeof(layout::i64);
+  device_bytes_ += room_.pixels * 3 * sizeof(layout::i64);
   device::checked("setting up the kernels", [&] {
+    if (schedule.fill) fill_streams(*schedule.fill);
     schedule.fused ? make_wave(programs, scene) : make_stages(programs, scene);
     warm_up();
     if (film_made_.valid()) film_made_.get();
   });
 }
 
+void Wavefront::fill_streams(cl_uint word) {
+  for (const cl::Buffer* buffer : {&pool_, &batch_, &hits_, &shadow_rays_, &occluded_, &film_})
+    queue_.enqueueFillBuffer(*buffer, word, 0, buffer->getInfo<CL_MEM_SIZE>() / sizeof word * sizeof word);
+}
+
 // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's time.
 void Wavefront::warm_up() {
+  const device::AtWork compiling(context_.builds());
   begin(0);
   launch(launches_[0]);
   queue_.finish();
@@ -143,7 +191,8 @@ void Wavefront::warm_up() {
 }
 
 void Wavefront::make_wave(Programs& programs, const SceneBuffers& scene) {
-  wave_.emplace("wave", programs.kernel("wave/wave.cl", "wave", features_, schedule_.traversal));
+  wave_.emplace("wave",
+                programs.kernel("wave/wave.cl", "wave", features_, schedule_.traversal, schedule_.precision));
   const cl_uint first = scene.set_tree_arguments(wave_->kernel());
   list_argument_ = first + 8;
   wave_->set_arguments(first, scene.normals, scene.materials, scene.lights, frame_buffer_,
@@ -154,24 +203,33 @@ void Wavefront::make_wave(Programs& programs, const SceneBuffers& scene) {
 void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
   const cl_uint n = schedule_.n_slices;
   const Traversal walk = schedule_.traversal == Traversal::binary ? Traversal::binary : Traversal::wide;
-  admit_.emplace("admit", programs.kernel("raygen/admit.cl", "admit", features_));
+  const auto kernel = [&](const char* file, const char* name, Traversal traversal) {
+    return programs.kernel(file, name, features_, traversal, schedule_.precision);
+  };
+  const bool lights = (features_ & KDRAY_FEATURE_LIGHTS) != 0;
+  std::vector<Programs::Wanted> wanted = {
+      {"raygen/admit.cl", features_, Traversal::binary, schedule_.precision},
+      {"traverse/trace_closest.cl", features_, walk, schedule_.precision},
+      {"shade/shade.cl", features_, Traversal::binary, schedule_.precision}};
+  if (lights) wanted.push_back({"traverse/trace_shadow.cl", features_, walk, schedule_.precision});
+  if (lights) wanted.push_back({"film/add.cl", features_, Traversal::binary, schedule_.precision});
+  programs.build(wanted);
+  admit_.emplace("admit", kernel("raygen/admit.cl", "admit", Traversal::binary));
   list_argument_ = 4;
   admit_->set_arguments(0, frame_buffer_, n, slice_buffer_, list_, cl_uint{0}, pool_, batch_, film_);
-  trace_closest_.emplace("trace_closest",
-                         programs.kernel("traverse/trace_closest.cl", "trace_closest", features_, walk));
+  trace_closest_.emplace("trace_closest", kernel("traverse/trace_closest.cl", "trace_closest", walk));
   trace_closest_->set_arguments(scene.set_tree_arguments(trace_closest_->kernel()), frame_buffer_, n,
                                 slice_buffer_, batch_, hits_);
-  shade_.emplace("shade", programs.kernel("shade/shade.cl", "shade", features_));
+  shade_.emplace("shade", kernel("shade/shade.cl", "shade", Traversal::binary));
   shade_->set_arguments(0, scene.triangles, scene.normals, scene.spheres, scene.cones, scene.materials,
                         scene.lights, frame_buffer_, n, cl_uint{0}, slice_buffer_, batch_, hits_, pool_,
                         shadow_rays_, film_);
   // Without lights these two are neither built nor launched.
-  if (!(features_ & KDRAY_FEATURE_LIGHTS)) return;
-  trace_shadow_.emplace("trace_shadow",
-                        programs.kernel("traverse/trace_shadow.cl", "trace_shadow", features_, walk));
+  if (!lights) return;
+  trace_shadow_.emplace("trace_shadow", kernel("traverse/trace_shadow.cl", "trace_shadow", walk));
   trace_shadow_->set_arguments(scene.set_tree_arguments(trace_shadow_->kernel()), frame_buffer_, n,
                                slice_buffer_, shadow_rays_, occluded_);
-  add_.emplace("add", programs.kernel("film/add.cl", "add", features_));
+  add_.emplace("add", kernel("film/add.cl", "add", Traversal::binary));
   add_->set_arguments(0, frame_buffer_, n, slice_buffer_, shadow_rays_, occluded_, film_);
 }
 
@@ -234,6 +292,21 @@ void Wavefront::launch(Launch& launch) {
 
 void Wavefront::begin(std::size_t first_pixel) {
   frame_.first_pixel = static_cast<layout::u32>(first_pixel);
+  frame_.samples_at = 0;
+  begin_list();
+}
+
+void Wavefront::begin_samples(std::span<const layout::u32> samples) {
+  frame_.first_pixel = 0;
+  frame_.samples_at = static_cast<layout::u32>(room_.tiles);
+  device::checked("writing the samples", [&] {
+    queue_.enqueueWriteBuffer(list_, CL_FALSE, room_.tiles * sizeof(layout::u32), samples.size_bytes(),
+                              samples.data());
+  });
+  begin_list();
+}
+
+void Wavefront::begin_list() {
   n_listed_ = n_taken_ = 0;
   list_counters_ = {};
   std::vector<layout::Slice> slices(schedule_.n_slices);
@@ -243,7 +316,7 @@ void Wavefront::begin(std::size_t first_pixel) {
   }
   for (Launch& launch : launches_) launch.slices.resize(schedule_.n_slices);
   device::checked("beginning a list of tiles", [&] {
-    if (wave_) queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, 0, max_tiles_ * sizeof(layout::u64));
+    if (wave_) queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, 0, room_.tiles * sizeof(layout::u64));
     queue_.enqueueWriteBuffer(frame_buffer_, CL_TRUE, 0, sizeof frame_, &frame_);
     queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
                               slices.data());
@@ -329,15 +402,13 @@ bool Wavefront::render(const Feed& feed) {
   }
 }
 
-void Wavefront::finish(std::size_t first_row, std::size_t end_row,
-                       const std::function<void(const FilmRows&)>& take_film) {
+void Wavefront::finish(std::size_t first, std::size_t n,
+                       const std::function<void(const FilmSums&)>& take_film) {
   device::checked("reading the film", [&] {
-    constexpr std::size_t kPixel = 3 * sizeof(layout::i64);
-    const std::size_t first_pixel = first_row * frame_.width;
-    const std::size_t n_pixels = (end_row - first_row) * frame_.width;
-    void* const sums = queue_.enqueueMapBuffer(
-        film_, CL_TRUE, CL_MAP_READ, (first_pixel - frame_.first_pixel) * kPixel, n_pixels * kPixel);
-    take_film({{static_cast<const layout::i64*>(sums), n_pixels * 3}, first_pixel});
+    constexpr std::size_t kPlace = 3 * sizeof(layout::i64);
+    void* const sums = queue_.enqueueMapBuffer(film_, CL_TRUE, CL_MAP_READ,
+                                               (first - frame_.first_pixel) * kPlace, n * kPlace);
+    take_film({{static_cast<const layout::i64*>(sums), n * 3}, first});
     queue_.enqueueUnmapMemObject(film_, sums);
   });
   collect();

@@ -34,14 +34,24 @@ struct Schedule {
   std::uint32_t fused_waves = 64;  // waves that such a launch takes a slice through
   std::size_t work_group = 64;     // local size of the stages that have one ray per work-item
   Traversal traversal = Traversal::automatic;  // not fused, all but binary walk the wide tree ray by ray
+  Precision precision = Precision::float32;    // float64: binary alone
+  std::optional<cl_uint> fill = {};  // for tests: what streams and film hold before they are written
+
+  // Of a queue's slices and their streams, in a frame that the schedule was applied to.
+  std::size_t stream_bytes(const layout::Frame& frame) const;
 
   // Writes tiles, batch, pool and light batch into the frame.
   void apply(layout::Frame& frame, std::uint32_t features) const;
+
+  // Fewer slices, and smaller batches where even one slice is too much, so that no buffer of a Wavefront for this frame (but
+  // the film) takes more than `max_bytes`: a device's limit for one allocation.
+  void fit(layout::Frame frame, std::uint32_t features, std::size_t max_bytes);
 };
 
 struct Counters {
   std::uint64_t primary = 0, primary_hit = 0, shadow = 0, reflected = 0, refracted = 0;
-  std::uint64_t skipped_behind = 0, skipped_unlit = 0, skipped_weight = 0, skipped_depth = 0;
+  std::uint64_t skipped_behind = 0, skipped_unlit = 0, skipped_open = 0, skipped_background = 0,
+                skipped_weight = 0, skipped_depth = 0;
   std::uint64_t invalid = 0, nan = 0, pool_overflow = 0;
   std::uint64_t waves = 0, launches = 0;  // waves: of one slice, with rays in them
 
@@ -75,18 +85,23 @@ struct Watch {
 // What a queue is to do next: entries to add to its list, none, or std::nullopt to leave everything at once.
 using Feed = std::function<std::optional<std::span<const layout::u32>>(const Progress&)>;
 
-// Sums of the picture's pixels from `first_pixel` on, three for each.
-struct FilmRows {
+// Sums of the film's places from `first` on, three for each: of the picture's pixels, or of samples.
+struct FilmSums {
   std::span<const layout::i64> sums;
-  std::size_t first_pixel;
+  std::size_t first;
+};
+
+// What a queue has room for: entries in a list, the film's pixels, samples of a round of adaptive sampling (whole runs).
+struct Room {
+  std::size_t tiles = 0, pixels = 0, samples = 0;
 };
 
 class Wavefront {
  public:
-  // `frame` has the schedule applied; its film band is set by begin(). A list holds `max_tiles`, the film `max_pixels`.
+  // `frame` has the schedule applied; its film band is set by begin().
   Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
             Programs& programs, const layout::Frame& frame, const Schedule& schedule, std::uint32_t features,
-            std::size_t max_tiles, std::size_t max_pixels);
+            const Room& room);
 
   ~Wavefront();
 
@@ -95,13 +110,16 @@ class Wavefront {
   // An empty list. The film begins with this pixel of the picture.
   void begin(std::size_t first_pixel);
 
+  // An empty list, of runs of these samples (frame.layout.h), whose places the film has.
+  void begin_samples(std::span<const layout::u32> samples);
+
   // Renders what `feed` gives, which is asked before each launch, until there is nothing left to do. False: was told to
   // leave.
   bool render(const Feed& feed);
 
-  // Hands over the picture's rows [first_row, end_row) of the film; what was rendered since begin() counts from then on.
-  void finish(std::size_t first_row, std::size_t end_row,
-              const std::function<void(const FilmRows&)>& take_film);
+  // Hands over `n` places of the film from the picture's pixel, or the sample, `first` on; what was rendered since begin()
+  // counts from then on.
+  void finish(std::size_t first, std::size_t n, const std::function<void(const FilmSums&)>& take_film);
 
   // Cycles charged to each tile of the list, when it has been rendered; empty, or all 0, where the device doesn't count them.
   std::vector<layout::u64> tile_cycles();
@@ -128,7 +146,9 @@ class Wavefront {
   cl::Event launch_per_ray(Stage& stage, std::size_t rays_of_slice);
   void make_wave(Programs& programs, const SceneBuffers& scene);
   void make_stages(Programs& programs, const SceneBuffers& scene);
+  void fill_streams(cl_uint word);
   void warm_up();
+  void begin_list();
   bool enlist(const Feed& feed, const Progress& progress);
   void launch(Launch& launch);
   void launch_wave(Launch& launch);
@@ -149,7 +169,7 @@ class Wavefront {
   layout::Frame frame_;
   Schedule schedule_;
   std::uint32_t features_;
-  std::size_t max_tiles_;
+  Room room_;
   Watch watch_;
   Launch launches_[2];
   std::size_t device_bytes_ = 0;

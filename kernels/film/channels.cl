@@ -7,12 +7,12 @@
 #include "shade/surface.clh"
 #include "traverse/closest.clh"
 
-// Sixteen floats in turn, by lane.
+// Sixteen numbers in turn, by lane.
 typedef struct Row {
-  float lane[KDRAY_LANES];
+  real lane[KDRAY_LANES];
 } Row;
 
-inline Row row_of(float16 v) {
+inline Row row_of(real16 v) {
   Row row;
   vstore16(v, 0, row.lane);
   return row;
@@ -26,17 +26,17 @@ __kernel void channels(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_
   const u32 n = min(n_pixels - first, KDRAY_LANES);
   const SceneArrays scene = KDRAY_SCENE_ARRAYS;
   const uint16 pixel = first_pixel + first + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  const Float2x16 middle = {(float16)(0.5f), (float16)(0.5f)};
-  const Float3x16 d = normalize3(eye_direction(frame, pixel % frame->width, pixel / frame->width, middle));
-  const float3 eye = load3_constant(frame->eye);
+  const Real2x16 middle = {(real16)(0.5f), (real16)(0.5f)};
+  const Real3x16 d = normalize3(eye_direction(frame, pixel % frame->width, pixel / frame->width, middle));
+  const real3 eye = load3_constant(frame->eye);
   const Row dx = row_of(d.x), dy = row_of(d.y), dz = row_of(d.z);
   const Row t_min = row_of(frame->hither / dot3(d, splat3(load3_constant(frame->forward))));
   Row t, u, v, number, cost;
-  uint refs[KDRAY_LANES];
+  word refs[KDRAY_LANES];
   for (u32 i = 0; i < KDRAY_LANES; ++i) {
     refs[i] = KDRAY_REF_MISS;
     if (i >= n) continue;
-    const TreeRay r = make_tree_ray(eye, (float3)(dx.lane[i], dy.lane[i], dz.lane[i]), t_min.lane[i],
+    const TreeRay r = make_tree_ray(eye, (real3)(dx.lane[i], dy.lane[i], dz.lane[i]), t_min.lane[i],
                                     INFINITY, frame->world_max);
     u32 steps = 0;
     const Hit hit =
@@ -46,20 +46,20 @@ __kernel void channels(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_
     u.lane[i] = hit.u;
     v.lane[i] = hit.v;
     refs[i] = found ? hit.ref : KDRAY_REF_MISS;
-    number.lane[i] = found ? (float)primitive_number(&scene, hit.ref) : -1.0f;
-    cost.lane[i] = (float)steps;
+    number.lane[i] = found ? (real)primitive_number(&scene, hit.ref) : -1.0f;
+    cost.lane[i] = (real)steps;
   }
   const Hits hits = {vload16(0, t.lane), vload16(0, refs), vload16(0, u.lane), vload16(0, v.lane)};
   const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
   const lanes16 hit = hits.ref != KDRAY_REF_MISS;
   Surface s;
   surfaces_at(&arrays, splat3(eye), d, &hits, hit, &s);
-  const Float3x16 normal = select3(hit, s.shading, zero3());
+  const Real3x16 normal = select3(hit, s.shading, zero3());
   const Row nx = row_of(normal.x), ny = row_of(normal.y), nz = row_of(normal.z);
   for (u32 i = 0; i < n; ++i) {
     __global float* out = out_channels + (size_t)(first + i) * 6;
     out[0] = t.lane[i];
-    store3(out + 1, (float3)(nx.lane[i], ny.lane[i], nz.lane[i]));
+    store3(out + 1, (real3)(nx.lane[i], ny.lane[i], nz.lane[i]));
     out[4] = number.lane[i];
     out[5] = cost.lane[i];
   }

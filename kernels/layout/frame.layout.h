@@ -44,15 +44,27 @@ typedef struct Frame {
   u32 shadow_capacity;  // words per field of a slice's shadow rays
   u32 first_pixel;      // the film buffer begins with this pixel
   u32 keep_weightless;  // 1: rays of no weight are traced too (--min-weight 0), as the SPD's ray counts have them
-  u32 pad[2];
+  u32 open_lights;      // bit i: light i is on the inner side of all faces
+  u32 samples_at;  // adaptive rounds: where the samples begin in the list's buffer, in words; 0: whole tiles
+  // The box of all but the triangles that lie in faces: planes that bound the scene along an axis, infinite where there are
+  // none (host/flatten/core.h).
+  float core_lo[3], core_hi[3];
+  float face_lo[3], face_hi[3];
 } Frame;
-KDRAY_ASSERT_SIZE(Frame, 192)
+KDRAY_ASSERT_SIZE(Frame, 240)
+KDRAY_ASSERT_OFFSET(Frame, core_lo, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 
 // An entry of a queue's list of tiles: the tile's column and row in the picture.
 #define KDRAY_TILE_COLUMN(entry) ((entry)&0xffffu)
 #define KDRAY_TILE_ROW(entry) ((entry) >> 16)
 #define KDRAY_TILE(column, row) ((column) | (row) << 16)
+
+// A round of adaptive sampling: the entries are the numbers of runs, each of so many samples, of which the buffer holds first
+// the pixels (column and row, as a tile's entry has them), then which of their pixel's sequence they are. Sample i adds to
+// place i of the film, which has room for the samples instead of the pixels: each sample's light is known by itself.
+#define KDRAY_SAMPLE_RUN 256u
+#define KDRAY_NO_SAMPLE 0xffffffffu  // for a pixel: what fills the last run up
 
 // Slice s works through the entries s, s + tile_stride, ... of its queue's list, which grows. One work-item at a time
 // owns it, so its counters need no atomics; the host adds them up.
@@ -68,16 +80,18 @@ typedef struct Slice {
   u32 pad;
   u32 n_pool[KDRAY_MAX_DEPTH];  // rays of depth d that wait: n_pool[d - 1]
   u64 n_primary, n_primary_hit, n_shadow_rays, n_reflected, n_refracted;
-  u64 n_skipped_behind;  // shadow rays to lights behind the surface
-  u64 n_skipped_unlit;   // ... to lights out of reach or outside their cone, or of no weight
-  u64 n_skipped_weight;  // secondary rays below the spawn threshold
-  u64 n_skipped_depth;   // secondary rays deeper than the limit
-  u64 n_invalid;         // rays whose traversal failed
-  u64 n_nan;             // contributions that were not numbers
-  u64 n_pool_overflow;   // spawned rays that found no place: a broken bound
+  u64 n_skipped_behind;      // shadow rays to lights behind the surface
+  u64 n_skipped_unlit;       // ... to lights out of reach or outside their cone, or of no weight
+  u64 n_skipped_open;        // ... that nothing can be in the way of
+  u64 n_skipped_background;  // secondary rays that surely meet nothing
+  u64 n_skipped_weight;      // secondary rays below the spawn threshold
+  u64 n_skipped_depth;       // secondary rays deeper than the limit
+  u64 n_invalid;             // rays whose traversal failed
+  u64 n_nan;                 // contributions that were not numbers
+  u64 n_pool_overflow;       // spawned rays that found no place: a broken bound
   u64 cycles_admit, cycles_closest, cycles_shade, cycles_shadow, cycles_add;  // wave.cl
 } Slice;
-KDRAY_ASSERT_SIZE(Slice, 432)
+KDRAY_ASSERT_SIZE(Slice, 448)
 KDRAY_ASSERT_OFFSET(Slice, n_primary, 296)
 KDRAY_LAYOUT_END
 #endif

@@ -1,8 +1,9 @@
 // What    Rays, hits and shadow rays as they lie in a slice's streams, and the rays and hits of `kdray trace`.
-// Shape   A stream is a structure of arrays of 32-bit words in one float buffer: field f of ray i of slice s lies at
-//         [(s*FIELDS + f)*capacity + i]. The capacity (frame.layout.h) leaves KDRAY_LANES words behind the last ray of
-//         each field, so that whole vectors may be read and written at every ray. Integers are stored by their bits.
-//         The traced fields come first and in the same order in every stream that is traced.
+// Shape   A stream is a structure of arrays of words in one buffer: floats, or doubles in a program of that precision
+//         (common/real.clh). Field f of ray i of slice s lies at [(s*FIELDS + f)*capacity + i]. The capacity (frame.layout.h)
+//         leaves KDRAY_LANES words behind the last ray of each field, so that whole vectors may be read and written at every
+//         ray. Integers are stored by their bits. The traced fields come first and in the same order in every stream that is
+//         traced.
 #ifndef KDRAY_LAYOUT_RAYS_H
 #define KDRAY_LAYOUT_RAYS_H
 #include "layout/base.layout.h"
@@ -74,14 +75,6 @@
 #define KDRAY_OCCLUSION_INVALID 2u  // the stack was too small
 
 KDRAY_LAYOUT_BEGIN
-// One hit, outside of streams.
-typedef struct Hit {
-  float t;
-  u32 ref;
-  float u, v;
-} Hit;
-KDRAY_ASSERT_SIZE(Hit, 16)
-
 // kdray::Ray and kdray::Hit of the public interface.
 typedef struct QueryRay {
   float origin[3];

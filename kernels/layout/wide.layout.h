@@ -18,7 +18,7 @@
 #define KDRAY_WIDE_LAST 0x80000000u
 
 // Rows of KDRAY_BLOCK words in a block.
-#define KDRAY_TRIANGLE_ROWS 11  // v[0..2] x y z; |n|_1, rounded up, of n = (v1 - v0) x (v2 - v0); index
+#define KDRAY_TRIANGLE_ROWS 11  // v[0..2] x y z; |n|_1 + 8|edge|^2 for sign_limit, < 0: across an axis; index
 #define KDRAY_SPHERE_ROWS 5     // center x y z, radius, index
 #define KDRAY_CONE_ROWS 10      // base x y z, axis x y z, base radius, height, slope, index
 

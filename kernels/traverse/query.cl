@@ -11,12 +11,12 @@
 #include "traverse/wide.clh"
 
 // The binary tree has its own ray and its own two forms.
-inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 i, float3 root_lo, float3 root_hi,
+inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 i, real3 root_lo, real3 root_hi,
                          float world_max) {
   RayIn in;
   fetch_ray(source, i, &in);
-  const float3 o = (float3)(in.origin[0], in.origin[1], in.origin[2]);
-  const float3 d = (float3)(in.direction[0], in.direction[1], in.direction[2]);
+  const real3 o = (real3)(in.origin[0], in.origin[1], in.origin[2]);
+  const real3 d = (real3)(in.direction[0], in.direction[1], in.direction[2]);
   const TreeRay r = make_tree_ray(o, d, in.t_min, in.t_max, world_max);
   if (source->any_hit) {
     const u32 found = find_any(scene, &r, root_lo, root_hi, KDRAY_REF_MISS);
@@ -35,7 +35,7 @@ __kernel void trace_query(KDRAY_SCENE_PARAMETERS, float4 root_lo, float4 root_hi
   const SceneArrays scene = KDRAY_SCENE_ARRAYS;
   const RaySource source = {&scene, in_rays, out_hits, {center.x, center.y, center.z}, any_hit};
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
-  if (item < n) query_binary(&scene, &source, item, root_lo.xyz, root_hi.xyz, world_max);
+  if (item < n) query_binary(&scene, &source, item, convert_real3(root_lo.xyz), convert_real3(root_hi.xyz), world_max);
 #elif KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_WIDE
   (void)root_lo, (void)root_hi;
   if (item >= n) return;

@@ -5,8 +5,8 @@
 #include "traverse/trace_slice.clh"
 
 __kernel void trace_closest(KDRAY_SCENE_PARAMETERS, __constant const Frame* frame, u32 n_slices,
-                            __global const Slice* in_slices, __global const float* in_batch,
-                            __global float* out_hits) {
+                            __global const Slice* in_slices, __global const real* in_batch,
+                            __global real* out_hits) {
   const u32 item = (u32)get_global_id(0);
   const u32 slice = item / frame->batch_size, i = item % frame->batch_size;
   if (slice >= n_slices || i >= in_slices[slice].n_batch) return;

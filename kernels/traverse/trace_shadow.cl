@@ -5,7 +5,7 @@
 #include "traverse/trace_slice.clh"
 
 __kernel void trace_shadow(KDRAY_SCENE_PARAMETERS, __constant const Frame* frame, u32 n_slices,
-                           __global const Slice* in_slices, __global const float* in_shadow_rays,
+                           __global const Slice* in_slices, __global const real* in_shadow_rays,
                            __global uchar* out_occluded) {
   const u32 item = (u32)get_global_id(0);
   const u32 per_slice = frame->batch_size * frame->light_batch;

@@ -14,8 +14,8 @@ __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_norm
                    __global const Material* in_materials, __global const Light* in_lights,
                    __constant const Frame* frame, u32 n_slices, u32 n_waves, __global Slice* io_slices,
                    __global const u32* in_tiles, u32 n_tiles, __global u64* io_tile_cycles,
-                   __global float* io_pool, __global float* io_batch, __global float* io_hits,
-                   __global float* io_shadow_rays, __global uchar* io_occluded, __global i64* io_film) {
+                   __global real* io_pool, __global real* io_batch, __global real* io_hits,
+                   __global real* io_shadow_rays, __global uchar* io_occluded, __global i64* io_film) {
   const u32 slice_id = (u32)get_global_id(0);
   if (slice_id >= n_slices) return;
   __global Slice* slice = io_slices + slice_id;

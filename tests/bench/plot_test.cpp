@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <regex>
 #include <string_view>
 
+#include "bench/label_layout.h"
+#include "bench/scatter_plot.h"
 #include "bench/xy_plot.h"
 
 namespace kdray::bench {
@@ -110,6 +113,76 @@ TEST(XyPlot, ShowsEveryPointThatItsAxesHold) {
   XyPlot apart = small_xy_plot();
   apart.joined = false;
   EXPECT_EQ(count(to_svg(apart), "stroke=\"#111111\""), 0u);
+}
+
+ScatterPlot crowded_plot() {
+  ScatterPlot plot{"A & B",
+                   "<sub>",
+                   "ms",
+                   "RMSE",
+                   {{"one", "#111111"}, {"two", "#abcdef", 1}},
+                   {{"first", "#333333"}, {"second", "#444444"}},
+                   {}};
+  ScatterPanel panel{"panel", {{}, {}}, 0.01, "floor"};
+  for (int i = 1; i <= 40; ++i)
+    panel.points[static_cast<std::size_t>(i % 2)].push_back(
+        {1 + 0.01 * i, 1 + 0.02 * (i % 7), "label " + std::to_string(i), i<4, i> 30});
+  plot.panels.push_back(panel);
+  return plot;
+}
+
+TEST(ScatterPlot, IsWellFormedWhateverItHolds) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNan = std::nan("");
+  EXPECT_EQ(fault_in(to_svg(crowded_plot())), "");
+  EXPECT_EQ(fault_in(to_svg(ScatterPlot{})), "");
+  ScatterPlot plot = crowded_plot();
+  plot.panels = {
+      {"nothing to show", {{{0, 1, "a"}, {1, 0, "b"}, {kNan, 1, "c"}, {1, kInfinity, "d"}}}, 0, ""},
+      {"one point", {{{5, 5, "alone", true}}}, 0, ""},
+      {"none at all", {}, 0, ""}};
+  const std::string svg = to_svg(plot);
+  EXPECT_EQ(fault_in(svg), "");
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+}
+
+TEST(ScatterPlot, ShowsEveryPointAndTheLabelsThatMatter) {
+  const std::string svg = to_svg(crowded_plot());
+  EXPECT_EQ(count(svg, "fill=\"#111111\"") + count(svg, "fill=\"#abcdef\""), 2u + 40);
+  EXPECT_EQ(count(svg, "font-weight=\"bold\">label"), 3u);  // those on a front
+  EXPECT_GT(count(svg, "stroke=\"#333333\""), 2u);
+}
+
+TEST(LabelLayout, PlacesLabelsApartAndBesideThePoints) {
+  const Box bounds{0, 0, 400, 300};
+  LabelLayout layout(bounds);
+  std::vector<Box> taken;
+  for (int i = 0; i < 20; ++i) {
+    const double x = 180 + 3 * i, y = 150 + 7 * (i % 3);
+    layout.add_point(x, y, 4);
+    taken.push_back({x - 4, y - 4, x + 4, y + 4});
+  }
+  std::size_t n_placed = 0;
+  for (int i = 0; i < 20; ++i) {
+    const auto place = layout.place(180 + 3 * i, 150 + 7 * (i % 3), 50, 12, 120);
+    if (!place) continue;
+    ++n_placed;
+    const Box& b = place->box;
+    for (const Box& other : taken) EXPECT_FALSE(overlap(b, other)) << i;
+    EXPECT_TRUE(b.x0 >= bounds.x0 && b.x1 <= bounds.x1 && b.y0 >= bounds.y0 && b.y1 <= bounds.y1) << i;
+    taken.push_back(b);
+  }
+  EXPECT_GE(n_placed, 10u);
+}
+
+TEST(LabelLayout, HasNoPlaceWhereThereIsNoRoom) {
+  LabelLayout layout({0, 0, 30, 30});
+  EXPECT_FALSE(layout.place(15, 15, 50, 12, 120));
+  EXPECT_FALSE(layout.place(15, 15, 10, 10, 5));
+  const auto place = LabelLayout({0, 0, 100, 30}).place(15, 15, 50, 12, 120);
+  ASSERT_TRUE(place);
+  EXPECT_FALSE(place->far);
+  EXPECT_GT(place->box.x0, 15);  // to the right where nothing is in the way
 }
 
 }  // namespace

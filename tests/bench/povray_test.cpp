@@ -44,6 +44,51 @@ TEST(Povray, TraceTimeIsReadFromItsOutput) {
   EXPECT_LT(trace_time_in(""), 0);
 }
 
+TEST(Povray, LightsThatFadeBecomeItsOwn) {
+  scene::Scene s = small_scene();
+  s.lights[0].attenuation = {2, 0, 8};
+  s.lights[0].color = {4, 8, 12};
+  std::ostringstream out;
+  write_pov(out, s, 1, 5, 0);
+  // 2 / (1 + (d / 0.5)^2) * (1, 2, 3) = (4, 8, 12) / (2 + 8 d^2)
+  EXPECT_NE(out.str().find("rgb <1,2,3> fade_distance 0.5 fade_power 2"), std::string::npos) << out.str();
+}
+
+TEST(Povray, KnowsWhatItHasNoWordsFor) {
+  EXPECT_TRUE(pov_has_words_for(small_scene()));
+  scene::Scene s = small_scene();
+  s.lights[0].attenuation = {1, 0, 0.5f};
+  EXPECT_TRUE(pov_has_words_for(s));
+  s.lights[0].attenuation = {1, 0.5f, 0};
+  EXPECT_FALSE(pov_has_words_for(s));
+  s = small_scene();
+  s.lights[0].range = 3;
+  EXPECT_FALSE(pov_has_words_for(s));
+  s = small_scene();
+  s.lights[0].kind = scene::LightKind::spot;
+  EXPECT_FALSE(pov_has_words_for(s));
+  s = small_scene();
+  s.materials[0].emission = {1, 0, 0};
+  EXPECT_FALSE(pov_has_words_for(s));
+}
+
+// Above white too, which a PNG would cut off.
+TEST(Povray, GivesItsPictureInLinearLight) {
+  if (!has_povray()) GTEST_SKIP() << "povray is not installed";
+  scene::Scene s = small_scene();
+  s.background = {3, 0.5f, 0.25f};
+  s.camera->at = {0, -10, 2};  // away from everything
+  const Povray::Traced traced = Povray(s, 24, 16, 5, 0.001).trace(1, {"+AM2", "+A0.1", "+R2"});
+  EXPECT_GE(traced.seconds, 0);
+  ASSERT_EQ(traced.image.width, 24);
+  ASSERT_EQ(traced.image.height, 16);
+  for (const vec3& p : traced.image.pixels) {
+    EXPECT_NEAR(p.x, 3, 0.002);
+    EXPECT_NEAR(p.y, 0.5, 0.0003);
+    EXPECT_NEAR(p.z, 0.25, 0.0002);
+  }
+}
+
 TEST(Povray, TracesTheFile) {
   if (!has_povray()) GTEST_SKIP() << "povray is not installed";
   EXPECT_GE(Povray(small_scene(), 16, 16, 5, 0.001).trace_seconds(1), 0);

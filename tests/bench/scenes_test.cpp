@@ -36,7 +36,7 @@ TEST(Scenes, OfTheGeneratorsByName) {
 
 TEST(Scenes, AnotherNameIsAFile) {
   EXPECT_TRUE(test::fails([] { load_scene("nosuch"); }, "nosuch"));
-  EXPECT_TRUE(test::fails([] { load_scene("nosuch"); }, "boxes spheres displaced balls"));
+  EXPECT_TRUE(test::fails([] { load_scene("nosuch"); }, "boxes spheres displaced lamps balls"));
 }
 
 }  // namespace

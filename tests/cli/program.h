@@ -31,6 +31,9 @@ struct RunOptions {
 
 Outcome kdray(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
+// What is on stderr without the notice of compiling, which a busy machine may or may not bring out.
+std::string without_notice(std::string err);
+
 // The run failed as the command line promises: this code, nothing on stdout, one line "kdray: ..." with
 // `text` in it.
 ::testing::AssertionResult fails_with(const Outcome& run, int code, const std::string& text);

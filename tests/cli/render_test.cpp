@@ -137,18 +137,23 @@ TEST(RenderCommand, EveryScheduleGivesTheSameBytes) {
 }
 
 // PoCL makes as many devices as it is told to.
+const RunOptions kTwoDevices = {.environment = {{"POCL_DEVICES", "pthread basic"}}};
+
+// Into a.exr; false where there is no such device.
+bool draws_on_second_device(const Folder& folder, const fs::path& scene) {
+  return kdray({"render", scene, "-o", folder / "a.exr", "--device", "1"}, kTwoDevices).code != 3;
+}
+
 TEST(RenderCommand, SeveralDevicesShareAFrame) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
-  const RunOptions two = {.environment = {{"POCL_DEVICES", "pthread basic"}}};
-  if (kdray({"render", scene, "-o", folder / "a.exr", "--device", "1"}, two).code == 3)
-    GTEST_SKIP() << "PoCL gives no second device";
+  if (!draws_on_second_device(folder, scene)) GTEST_SKIP() << "PoCL gives no second device";
   for (const char* const queues : {"1", "3", "8"}) {
     ASSERT_TRUE(
         succeeds(kdray({"render", scene, "-o", folder / "b.exr", "--device", "0,1", "--queues", queues,
                         "--division", "interleaved", "--tile", "4x4", "--stats", folder / "s.json"},
-                       two)));
+                       kTwoDevices)));
     EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr"));
     const Json mode = Json::parse(folder.get("s.json"))["mode"];
     EXPECT_EQ(mode["queues"], std::max(std::stoi(queues), 2));
@@ -166,13 +171,11 @@ TEST(RenderCommand, SeveralDevicesShareAScene) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
-  const RunOptions two = {.environment = {{"POCL_DEVICES", "pthread basic"}}};
-  if (kdray({"render", scene, "-o", folder / "a.exr", "--device", "1"}, two).code == 3)
-    GTEST_SKIP() << "PoCL gives no second device";
+  if (!draws_on_second_device(folder, scene)) GTEST_SKIP() << "PoCL gives no second device";
   for (const char* const queues : {"2", "5"}) {
     ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "b.exr", "--device", "0,1", "--queues",
                                 queues, "--mode", "odprt", "--tile", "4x4", "--stats", folder / "s.json"},
-                               two)));
+                               kTwoDevices)));
     EXPECT_EQ(folder.get("a.exr"), folder.get("b.exr"));
     const Json mode = Json::parse(folder.get("s.json"))["mode"];
     EXPECT_EQ(mode["name"], "odprt");
@@ -223,6 +226,28 @@ TEST(RenderCommand, AQueueThatFailsCostsAWarningAndNothingElse) {
   EXPECT_EQ(stats["mode"]["quarantined"][0]["queue"], 1);
   EXPECT_EQ(stats["rays"]["primary"], 48 * 32);
   EXPECT_EQ(stats["mode"]["per_queue"][0]["tiles"], stats["mode"]["tiles"]);
+}
+
+TEST(RenderCommand, DeviceMemoryIsKeptInEveryMode) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const auto run = [&](const std::string& mode, const std::string& limit) {
+    return kdray({"render", scene, "-o", folder / "a.png", "--size", "600x600", "--mode", mode,
+                  "--device-memory", limit, "--stats", folder / "s.json", "-q"});
+  };
+  const auto holds = [&](const char* mode, std::uint64_t megabytes) {
+    const Json stats = Json::parse(folder.get("s.json"));
+    EXPECT_EQ(stats["mode"]["name"], mode);
+    const Json& queue = stats["memory"]["per_queue"][0];
+    EXPECT_LE(queue["work_bytes"].get<std::uint64_t>() + queue["geometry_bytes"].get<std::uint64_t>(),
+              megabytes << 20);
+  };
+  EXPECT_TRUE(fails_with(run("pdprt", "1M"), 4, "too little for pdprt"));
+  ASSERT_TRUE(succeeds(run("pdprt", "64M")));
+  holds("pdprt", 64);
+  ASSERT_TRUE(succeeds(run("auto", "12M")));
+  holds("odprt", 12);
 }
 
 TEST(RenderCommand, WhenEveryQueueFailsThereIsNoPicture) {

@@ -80,13 +80,24 @@ TEST(Summary, LinesSayWhatWasMeasuredAndLeftOut) {
   const Json stats = Json::parse(R"({
     "seconds": {"load": 0.001, "build": 0.25, "trace": 0.75, "render": 1.5, "total": 2},
     "rays": {"primary": 1000000, "shadow": 500000, "reflected": 0, "total": 1500000,
-             "skipped": {"light_behind": 20, "too_deep": 0}},
+             "skipped": {"light_behind": 300000, "light_of_no_weight": 200000, "too_deep": 0}},
     "mrays_per_s": 1.0,
-    "features": {"on": ["spheres"], "off": ["cones", "spot"]}})");
+    "features": {"on": ["spheres"], "off": ["cones", "spot"]},
+    "mode": {"programs": 1, "programs_known": 10}})");
   EXPECT_EQ(stages_line(stats), "load 1 ms, build 250 ms, render 1.5 s; 2 s in all");
   EXPECT_EQ(rays_line(stats), "1.5 M rays, 1 M primary, 500 k shadow: 1 Mrays/s");
-  EXPECT_EQ(left_out_line(stats), "rays not traced: 20 light behind; not compiled: cones, spot");
+  EXPECT_EQ(left_out_line(stats),
+            "no cones, no spot; 1 of 10 programs built; 50% of 1 M shadow rays proven needless");
   EXPECT_EQ(left_out_line(Json::object()), "");
+}
+
+TEST(Summary, SaysWhatSecondaryRaysWereLeftOut) {
+  const Json stats = Json::parse(R"({
+    "rays": {"shadow": 9999, "reflected": 20000, "refracted": 10000,
+             "skipped": {"light_behind": 1, "below_min_weight": 10000, "too_deep": 7}},
+    "features": {"off": []}, "mode": {"programs": 10, "programs_known": 10}})");
+  EXPECT_EQ(left_out_line(stats),
+            "under 1% of 10 k shadow rays and 25% of 40 k secondary rays proven needless; 7 rays too deep");
 }
 
 }  // namespace

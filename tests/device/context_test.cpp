@@ -70,6 +70,7 @@ TEST_P(ContextTest, AClockBringsTimesToTheHost) {
     const auto before = Clock::Host::now();
     queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes.size(), bytes.data(), nullptr, &event);
     const auto after = Clock::Host::now();
+    event.wait();  // see clock.cpp
     const auto moment = [&](auto time) { return clock.on_host(1e-9 * static_cast<double>(time)); };
     const auto start = moment(event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
     const auto end = moment(event.getProfilingInfo<CL_PROFILING_COMMAND_END>());

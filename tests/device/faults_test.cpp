@@ -22,13 +22,21 @@ TEST(Faults, NamedLaunchesFail) {
   EXPECT_NO_THROW(faults.launch(7));
 }
 
+TEST(Faults, NamedDevicesFailTheSelfTest) {
+  const Faults faults("self-test@1,0@1,self-test@3");
+  for (int device = 0; device < 5; ++device)
+    EXPECT_EQ(faults.fails_self_test(device), device == 1 || device == 3) << device;
+  EXPECT_FALSE(Faults().fails_self_test(0));
+}
+
 TEST(Faults, NoneByDefault) {
   Faults faults;
   for (int i = 0; i < 10; ++i) EXPECT_NO_THROW(faults.launch(0));
 }
 
 TEST(Faults, WhatNamesNoFaultIsRefused) {
-  for (const char* const text : {"1", "@", "1@", "@1", "1@0", "a@1", "1@2x", "1@1,,2@2", "-1@2"}) {
+  for (const char* const text : {"1", "@", "1@", "@1", "1@0", "a@1", "1@2x", "1@1,,2@2", "-1@2", "self-test",
+                                 "self-test@", "self-test@x", "self@1"}) {
     try {
       Faults faults(text);
       ADD_FAILURE() << text;

@@ -9,6 +9,7 @@
 #include "layout/shading.layout.h"
 #include "layout/simd_test.layout.h"
 #include "layout/tree.layout.h"
+#include "layout/verify.layout.h"
 #include "layout/wide.layout.h"
 #include "support/device.h"
 
@@ -36,12 +37,12 @@ const std::vector<Probe> kProbes = {SIZE(KdNode),
                                     SIZE(Cone),
                                     SIZE(Material),
                                     SIZE(Light),
-                                    SIZE(Hit),
                                     SIZE(QueryRay),
                                     SIZE(QueryHit),
                                     SIZE(Frame),
                                     SIZE(Slice),
                                     SIZE(WideNode),
+                                    SIZE(Departure),
                                     SIZE(SimdCase),
                                     SIZE(SimdAnswers),
                                     OFFSET(KdNode, word1),
@@ -71,9 +72,6 @@ const std::vector<Probe> kProbes = {SIZE(KdNode),
                                     OFFSET(Light, cos_inner),
                                     OFFSET(Light, attenuation),
                                     OFFSET(Light, cos_outer),
-                                    OFFSET(Hit, ref),
-                                    OFFSET(Hit, u),
-                                    OFFSET(Hit, v),
                                     OFFSET(QueryRay, t_min),
                                     OFFSET(QueryRay, direction),
                                     OFFSET(QueryRay, t_max),
@@ -103,12 +101,18 @@ const std::vector<Probe> kProbes = {SIZE(KdNode),
                                     OFFSET(Frame, pool_capacity),
                                     OFFSET(Frame, shadow_capacity),
                                     OFFSET(Frame, keep_weightless),
+                                    OFFSET(Frame, open_lights),
+                                    OFFSET(Frame, core_lo),
+                                    OFFSET(Frame, face_lo),
+                                    OFFSET(Frame, face_hi),
                                     OFFSET(Slice, n_pool),
                                     OFFSET(Slice, n_shadow),
                                     OFFSET(Slice, tile_stride),
                                     OFFSET(Slice, n_waves),
                                     OFFSET(Slice, n_primary),
                                     OFFSET(Slice, n_pool_overflow),
+                                    OFFSET(Slice, n_skipped_open),
+                                    OFFSET(Slice, n_skipped_background),
                                     OFFSET(Slice, next_place),
                                     OFFSET(Slice, depth),
                                     OFFSET(WideNode, child),
@@ -122,7 +126,7 @@ class LayoutTest : public test::EachDevice {};
 
 TEST_P(LayoutTest, TheDeviceSeesTheSameStructs) {
   std::string source;
-  for (const char* header : {"frame", "primitives", "rays", "shading", "simd_test", "tree", "wide"})
+  for (const char* header : {"frame", "primitives", "rays", "shading", "simd_test", "tree", "verify", "wide"})
     source += "#include \"layout/" + std::string(header) + ".layout.h\"\n";
   source += "__kernel void probe(__global uint* out) {\n";
   for (std::size_t i = 0; i < kProbes.size(); ++i)

@@ -4,9 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,45 +12,17 @@
 
 #include "device/context.h"
 #include "device/simd_answers.h"
-#include "kernels.h"
+#include "support/broken_kernels.h"
 #include "support/device.h"
 #include "support/errors.h"
 #include "support/folder.h"
+#include "support/variable.h"
 
 namespace kdray::device {
 namespace {
 
-// An environment variable for the length of a scope; what it was before comes back.
-class Variable {
- public:
-  explicit Variable(const char* name) : name_(name) {
-    if (const char* value = std::getenv(name)) before_ = value;
-    ::unsetenv(name);
-  }
-  Variable(const char* name, const std::string& value) : Variable(name) { ::setenv(name, value.c_str(), 1); }
-  ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
-
-// The kernels in a folder of their own, with one place of a file changed.
-void put_kernels(const test::Folder& folder, const std::string& file, const std::string& place,
-                 const std::string& changed) {
-  for (const kernels::Source& source : kernels::sources()) {
-    std::string text(source.text);
-    if (source.name == file) {
-      const std::size_t at = text.find(place);
-      ASSERT_NE(at, std::string::npos) << place;
-      text.replace(at, place.size(), changed);
-    }
-    std::filesystem::create_directories((folder / std::string(source.name)).parent_path());
-    folder.put(std::string(source.name), text);
-  }
-}
+using test::put_kernels;
+using test::Variable;
 
 class SimdTest : public test::EachDevice {
  protected:

@@ -55,6 +55,19 @@ TEST_P(Identical, WhateverTheSchedule) {
   }
 }
 
+// GPUs' schedule on any device, with one queue and several, and queries by it.
+TEST_P(Identical, WhateverTheKindOfLaunches) {
+  const Scene scene{GetParam().make()};
+  const Picture first = render(scene, {0, 0, 0, 1});
+  for (const kdray::Schedule schedule : {kdray::Schedule::slices, kdray::Schedule::global})
+    for (const int queues : {1, 2}) {
+      Renderer renderer(scene, {}, {.queues = queues, .schedule = schedule});
+      const Picture other = renderer.render(exact_options(kWidth, kHeight));
+      EXPECT_TRUE(same_bits(first.rgb, other.rgb))
+          << fmt::format("schedule {}, queues {}", static_cast<int>(schedule), queues);
+    }
+}
+
 TEST_P(Identical, WhateverTheDivision) {
   const Scene scene{GetParam().make()};
   const Picture first = render(scene, {0, 0, 0, 1});

@@ -98,7 +98,8 @@ TEST_P(ArithmeticTest, SignedVolumeDecidesPointsAFewUlpOffAPlane) {
       "  const uint i = get_global_id(0);\n"
       "  if (i >= n) return;\n"
       "  const float3 p = load3(in[i].p), a = load3(in[i].a), b = load3(in[i].b), c = load3(in[i].c);\n"
-      "  out[i] = signed_volume(p.x, p.y, p.z, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z);\n"
+      "  out[i] = plane_sides(p.x, p.y, p.z, 1, 0, 0, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, "
+      "c.z).distance;\n"
       "}\n",
       in);
   int near_zero = 0;

@@ -71,6 +71,31 @@ TEST_P(PowerTest, TheEnds) {
   EXPECT_EQ(out, wanted);
 }
 
+constexpr const char* kSourceInDouble = R"(#include "common/power.clh"
+__kernel void test(__global const float2* in, __global double* out, uint n) {
+  const uint i = get_global_id(0);
+  if (i < n) out[i] = power16((double16)(in[i].x), (double16)(in[i].y)).s3;
+}
+)";
+
+TEST_P(PowerTest, InDouble) {
+  if (!test::computes_in_double(GetParam()))
+    GTEST_SKIP() << "device " << GetParam() << " does not compute in double";
+  const unsigned seed = 12;
+  SCOPED_TRACE(seed);
+  std::vector<Case> in = cases(seed);
+  std::erase_if(in, [](const Case& c) { return !(c.x > 0 && c.x <= 1); });
+  in.insert(in.end(),
+            {{1, 0}, {1, 20}, {1, 1e30f}, {0.3f, 0}, {0.5f, 1}, {0.5f, 1022}, {0.5f, 1023}, {0.25f, 1e30f}});
+  const std::vector<double> out =
+      test::run_kernel<double>(GetParam(), kSourceInDouble, in, "-DKDRAY_PRECISION=64");
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const long double truth = std::pow(static_cast<long double>(in[i].x), static_cast<long double>(in[i].y));
+    const long double bound = truth < 0x1p-1022L ? 0x1p-1022L : 0x1p-51L * (4 - std::log2(truth)) * truth;
+    ASSERT_LE(std::abs(static_cast<long double>(out[i]) - truth), bound) << in[i].x << " to the " << in[i].y;
+  }
+}
+
 KDRAY_FOR_EACH_DEVICE(PowerTest);
 
 }  // namespace

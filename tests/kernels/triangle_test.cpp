@@ -31,7 +31,8 @@ const char* const kSource =
     "  const uint i = get_global_id(0);\n"
     "  if (i >= n) return;\n"
     "  Found f = {0, 0, 0, 0};\n"
-    "  f.hit = intersect_triangle(make_shear(load3(in[i].direction)), load3(in[i].origin), &in[i].v[0][0], "
+    "  f.hit = intersect_triangle(make_shear(load3(in[i].direction)), load3(in[i].origin), "
+    "load3(in[i].direction), &in[i].v[0][0], "
     "&f.t,\n"
     "                             &f.u, &f.v);\n"
     "  out[i] = f;\n"
@@ -165,7 +166,7 @@ const char* const kLanesSource =
     "  const uint i = get_global_id(0);\n"
     "  if (i >= n) return;\n"
     "  const RayShear s = make_shear(load3(in[i].direction));\n"
-    "  const float3 o = load3(in[i].origin);\n"
+    "  const float3 o = load3(in[i].origin), d = load3(in[i].direction);\n"
     "  const float3 p = load3(in[i].v[0]), q = load3(in[i].v[1]), r = load3(in[i].v[2]);\n"
     "  const float3 a = p - o, b = q - o, c = r - o;\n"
     "#define OF(v, k) ((LANES)(component(v, k)))\n"
@@ -173,7 +174,8 @@ const char* const kLanesSource =
     "s.kz),\n"
     "                               OF(c, s.kx), OF(c, s.ky), OF(c, s.kz), (LANES)(s.sx), (LANES)(s.sy));\n"
     "  const LANES sz = (LANES)(s.sz), t = sz * (e.scaled_t / e.det);\n"
-    "  const LANES settled = signed_t(t, e.det, sz, OF(o, 0), OF(o, 1), OF(o, 2), OF(p, 0), OF(p, 1), OF(p, "
+    "  const LANES settled = signed_t(t, e.det, OF(d, 0), OF(d, 1), OF(d, 2), OF(o, 0), OF(o, 1), OF(o, 2), "
+    "OF(p, 0), OF(p, 1), OF(p, "
     "2),\n"
     "                                 OF(q, 0), OF(q, 1), OF(q, 2), OF(r, 0), OF(r, 1), OF(r, 2));\n"
     "  const LANES least = lesser(e.wa, lesser(e.wb, e.wc)), most = greater(e.wa, greater(e.wb, e.wc));\n"
@@ -190,8 +192,9 @@ struct FoundInLanes {
 // The build options for a vector of n floats; its last lane is looked at.
 std::string lanes_options(int n) {
   const std::string type = n == 1 ? "float" : "float" + std::to_string(n);
+  const std::string form = n == 1 ? "real" : (n == 16 ? "real16" : type);  // common/real.clh
   const std::string lane = n == 1 ? "(v)" : (n == 4 ? "(v).s3" : (n == 8 ? "(v).s7" : "(v).sf"));
-  return "-DLANES=" + type + " -DEdgeTest=EdgeTest_" + type + " -DLANE(v)=" + lane;
+  return "-DLANES=" + type + " -DEdgeTest=EdgeTest_" + form + " -DLANE(v)=" + lane;
 }
 
 // Triangles with a ray along one of their edges, from its end or from beyond. The edge's slopes are exact, so that both of its

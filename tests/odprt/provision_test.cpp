@@ -36,7 +36,7 @@ odprt::Request request_of(std::size_t n_queues, std::uint64_t device_memory) {
 }
 
 std::size_t work_of(const odprt::Provision& p) {
-  return odprt::work_bytes(p.frame, p.plan, p.largest_band, p.n_outboxes);
+  return odprt::work_bytes(p.frame, p.plan, p.room.places, p.n_outboxes);
 }
 
 TEST(Provision, WithoutALimitThereIsAPartForEachQueue) {

@@ -48,8 +48,8 @@ __kernel void test(__constant const Batch* in, __global Answer* out, uint n) {
     for (int a = 0; a < 2; ++a) v[a][k] = in[i].rays[k].visited[a];
   }
   const Directory directory = {in[i].cells, 40, 16.0f};
-  const Float3x16 o = {vload16(0, f[0]), vload16(0, f[1]), vload16(0, f[2])};
-  const Float3x16 d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
+  const Real3x16 o = {vload16(0, f[0]), vload16(0, f[1]), vload16(0, f[2])};
+  const Real3x16 d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
   const Visited visited = {vload16(0, v[0]), vload16(0, v[1])};
   vstore16(next_part(&directory, (int16)(-1), o, d, vload16(0, f[6]), vload16(0, f[7]), visited), 0, out[i].part);
 }

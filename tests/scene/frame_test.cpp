@@ -77,6 +77,11 @@ TEST(FrameScene, LeavesWhatTheFileSaid) {
   frame_scene(lit);
   EXPECT_TRUE(lit.camera);
   EXPECT_EQ(lit.lights.size(), 1u);
+  Scene dark = box_of(dvec3(-1), dvec3(1));
+  dark.unlit = true;
+  frame_scene(dark);
+  EXPECT_TRUE(dark.camera);
+  EXPECT_TRUE(dark.lights.empty());
 }
 
 TEST(FrameScene, PutsLampsIntoARoom) {

@@ -214,6 +214,13 @@ TEST(Json, RefusesPlacementsThatMakeNoSense) {
   EXPECT_NE(placed(R"("matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2])").find("last row"), std::string::npos);
 }
 
+TEST(Json, AListWithoutLightsMeansNone) {
+  EXPECT_TRUE(read_json(R"({"lights": []})", "s.json").unlit);
+  EXPECT_FALSE(read_json(R"({})", "s.json").unlit);
+  EXPECT_FALSE(
+      read_json(R"({"lights": [{"type": "directional", "direction": [0, -1, 0]}]})", "s.json").unlit);
+}
+
 TEST(Json, RefusesToIncludeItselfAndNamesBadParts) {
   const ScratchFolder folder;
   folder.write("bad.nff", "f 1 1 1 1 0 1 0 0\ns 0 0 0 zero\n");

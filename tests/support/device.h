@@ -18,6 +18,12 @@ inline std::vector<std::string> usable_devices() {
   return numbers;
 }
 
+inline bool computes_in_double(const std::string& number) {
+  for (const device::FoundDevice& found : device::find_devices())
+    if (std::to_string(found.info.number) == number) return found.info.double_precision;
+  return false;
+}
+
 // A fixture whose cases take a device's number (DeviceOptions::device, --device).
 class EachDevice : public testing::TestWithParam<std::string> {};
 

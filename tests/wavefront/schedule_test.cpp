@@ -4,10 +4,12 @@
 // to hold.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "kdray/error.h"
+#include "layout/rays.layout.h"
 #include "support/device.h"
 #include "wavefront/hall_of_mirrors.h"
 
@@ -43,6 +45,24 @@ TEST_P(ScheduleTest, NoScheduleChangesThePicture) {
       schedule.work_group = work_group;
       expect_same(prepared.render(context, schedule), reference);
     }
+  }
+}
+
+TEST_P(ScheduleTest, NorInDouble) {
+  if (!test::computes_in_double(GetParam()))
+    GTEST_SKIP() << "device " << GetParam() << " does not compute in double";
+  const Hall prepared;
+  const device::Context context(GetParam(), 1);
+  const Schedule in_double{.traversal = Traversal::binary, .precision = Precision::float64};
+  const pdprt::Result reference = prepared.render(context, in_double);
+  EXPECT_GT(reference.counters.refracted, 5000u);
+  for (const bool fused : {true, false}) {
+    Schedule schedule = in_double;
+    schedule.fused = fused;
+    schedule.batch_size = fused ? 3 : 31;
+    schedule.n_slices = 5;
+    schedule.light_batch = 2;
+    expect_same(prepared.render(context, schedule), reference);
   }
 }
 
@@ -157,7 +177,7 @@ TEST_P(ScheduleTest, APoolThatIsTooSmallIsAnErrorNotAWrongPicture) {
     schedule.apply(frame, prepared.features);
     frame.pool_size = 10;
     Wavefront wavefront(context, context.queues().front(), buffers, programs, frame, schedule,
-                        prepared.features, 1, 32 * 32);
+                        prepared.features, {.tiles = 1, .pixels = 32 * 32});
     wavefront.begin(0);
     const layout::u32 tile[] = {KDRAY_TILE(0u, 0u)};
     bool first = true;
@@ -172,6 +192,32 @@ TEST_P(ScheduleTest, APoolThatIsTooSmallIsAnErrorNotAWrongPicture) {
       EXPECT_EQ(error.code(), ErrorCode::internal) << error.what();
     }
   }
+}
+
+// However little a device gives in one piece, a schedule that was made to fit has no larger buffer, and keeps what it can.
+TEST(Schedule, FitsIntoWhatADeviceGivesInOnePiece) {
+  const Hall hall;
+  const RenderOptions options = flatten::resolved(Hall::options(), {});
+  const layout::Frame scene_frame = flatten::make_frame(hall.scene, hall.geometry, options);
+  const Schedule wanted{.n_slices = 2112};
+  for (const std::size_t limit : {std::size_t{64} << 10, std::size_t{1} << 20, std::size_t{128} << 20}) {
+    SCOPED_TRACE(limit);
+    Schedule schedule = wanted;
+    schedule.fit(scene_frame, hall.features, limit);
+    layout::Frame frame = scene_frame;
+    schedule.apply(frame, hall.features);
+    const std::size_t pool = schedule.n_slices * std::size_t{frame.max_depth - 1} * KDRAY_POOL_FIELDS *
+                             frame.pool_capacity * sizeof(float);
+    const std::size_t shadow =
+        schedule.n_slices * std::size_t{KDRAY_SHADOW_FIELDS} * frame.shadow_capacity * sizeof(float);
+    EXPECT_LE(std::max(pool, shadow), limit);
+    EXPECT_GE(schedule.n_slices, 1u);
+    EXPECT_GT(std::max(pool, shadow), limit / 4);
+  }
+  Schedule roomy = wanted;
+  roomy.fit(scene_frame, hall.features, std::size_t{1} << 40);
+  EXPECT_EQ(roomy.n_slices, wanted.n_slices);
+  EXPECT_EQ(roomy.batch_size, wanted.batch_size);
 }
 
 KDRAY_FOR_EACH_DEVICE(ScheduleTest);

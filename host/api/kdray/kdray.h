@@ -100,14 +100,42 @@ class SceneCache {
   CacheOptions options_;
 };
 
+// How a device's work is cut into launches (docs/devices.md). A choice changes time, never the picture or a hit.
+enum class Schedule {
+  automatic,  // slices on CPUs, global elsewhere
+  slices,     // a work-item takes a slice of the picture through all stages of many waves
+  global      // a launch for each stage over all slices, one ray per work-item for tracing: for GPUs
+};
+
+// Settings that change time alone, never a bit of a picture or a hit; 0: kdray's own choice. `kdray tune` finds them, host/tune/
+// settings.cpp tells what each does.
+struct Tuning {
+  int tile = 0, batch = 0, slices = 0, waves = 0, work_group = 0;
+  int packets = 0, batch_rays = 0, spread = 0, distance = 0, prefetch = 0;
+  bool operator==(const Tuning&) const = default;
+};
+
 struct DeviceOptions {
   // "auto", "cpu", "gpu", a number from `kdray devices`, or a part of a name; several with commas between them
   std::string device = "auto";
   int queues = 1;         // one per sub-device of equal size when > 1; dealt out over several devices
   int work_group = 0;     // local size of the per-ray kernels; 0: chosen for the device
   int compute_units = 0;  // that many of the device's, as a sub-device; 0: all of them
-  // For tests: "1@5,0@9" makes the fifth launch on queue 1 and the ninth on queue 0 fail as if the device had.
+  Schedule schedule = Schedule::automatic;
+  // For tests: "1@5,0@9" makes the fifth launch on queue 1 and the ninth on queue 0 fail as if the device had; "self-test@0" makes
+  // device 0 fail the self-test.
   std::string faults = {};
+  std::filesystem::path programs = {};  // folder where built programs are looked for and kept; empty: none
+  std::filesystem::path tunings =
+      {};  // file of what `kdray tune` found; empty, or none there: what kdray ships with
+  std::function<void(const std::string&)> tunings_ignored =
+      {};  // told why, in a line, where that file is of no use
+  std::function<void(bool)> building =
+      {};  // true: a compiler begins to work; false: it ends. From any thread; may nest
+  std::function<void(const std::string&)> left_out =
+      {};  // told of each device that "auto" would prefer, but can't use
+  std::string build_options =
+      {};  // for benches: what every kernel is compiled with beside kdray's own options
 };
 
 // How rays find their way through the tree. A choice changes time, never a hit (docs/design/traversal.md).
@@ -118,6 +146,10 @@ enum class Traversal {
   packet,     // the wide tree, 16 coherent rays to a vector, several packets in flight
   batch       // the wide tree, many independent rays in flight
 };
+
+// What the kernels compute in. The scene is the same, stored as float. float64 (C++'s double) is the reference for float's
+// rounding: slower, by the binary walk and PDPRT alone, on devices that have it.
+enum class Precision { float32, float64 };
 
 // How a frame is divided among the queues (docs/modes.md). A choice changes time and memory, never the picture.
 enum class Mode {
@@ -134,27 +166,35 @@ enum class Balance {                                   // ODPRT: what a queue's 
 
 enum class PixelGrid { centers, corners };  // corners: the outermost rays go through the picture's edges
 
+// Of RenderOptions::adaptive_target: pictures about as good as of 16 samples in each pixel (docs/design/adaptive.md).
+constexpr double kDefaultAdaptiveTarget = 0.0075;
+
 struct RenderOptions {
   int width = 0, height = 0;  // 0: what the scene asks for, or 1024x1024
   int depth = 0;              // 0: what the scene asks for, or 5; the eye ray is depth 1
   double min_weight = -1;     // < 0: what the scene asks for, or the default; 0: no cut
   int samples = 0;            // per pixel, stratified; 0: what the scene asks for, or 1
+  double adaptive_target =
+      0;  // > 0: as many samples in each pixel as an RMSE of that, in linear RGB, is believed to take
   PixelGrid grid = PixelGrid::centers;
   int tile_width = 0, tile_height = 0;  // 0: chosen
   Traversal traversal = Traversal::automatic;
+  Precision precision = Precision::float32;
   Mode mode = Mode::automatic;
   Division division = Division::bag;
   Balance balance = Balance::pilot;
   int ray_buffer = 0;  // ODPRT: rays that a buffer between two queues holds for each slice; 0: chosen
   std::uint64_t device_memory =
-      0;                  // ODPRT: the most that a device may hold; subtrees come and go; 0: no limit
-  bool timeline = false;  // keep what Renderer::timeline() tells
-  std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost"
+      0;  // ODPRT: the most that a device may hold; subtrees come and go; 0: no limit
+  // For benches: bits of kernels/layout/features.h and rules.h, what is compiled and done though the scene doesn't need it.
+  std::uint32_t keep = 0;
+  bool timeline = false;                      // keep what Renderer::timeline() tells
+  std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost", "samples"
   std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1
 };
 
 struct Channel {
-  std::string name;           // "depth", "normal.x" "normal.y" "normal.z", "primitive", "cost"
+  std::string name;           // "depth", "normal.x" "normal.y" "normal.z", "primitive", "cost", "samples"
   std::vector<float> values;  // width * height
 };
 
@@ -192,7 +232,11 @@ class Renderer {
   // Hits in the order of the rays. `repeat` > 1 traces that often and reports the median time in statistics().
   // A ray with NaN or infinite origin, or a direction that is not finite or 0, is refused (ErrorCode::input).
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit = false, int repeat = 1,
-                         Traversal traversal = Traversal::automatic);
+                         Traversal traversal = Traversal::automatic,
+                         Precision precision = Precision::float32);
+
+  // From the next call on, in place of what was found in DeviceOptions::tunings. Forgets what former frames told of tiles.
+  void tune(const Tuning& tuning);
 
   // What the queues did in the last frame, one row each: JSON in the Chrome trace format. RenderOptions::timeline asks for it.
   std::string timeline() const;
@@ -209,17 +253,26 @@ class Renderer {
 // scene, by another thread. It stays open until the process ends. Throws what the Renderer would.
 void open_device(const DeviceOptions& device);
 
+// Beside SceneCache::default_folder(), or in $KDRAY_CACHE_DIR; empty where that is.
+std::filesystem::path default_program_folder();
+
+// Writes the programs that were built into DeviceOptions::programs, for later processes; takes as long as a build, so best when the
+// picture is out. A folder that can't be written is no error.
+void keep_programs(const DeviceOptions& device);
+
 struct DeviceInfo {
   int number = 0;
   std::string name, platform, version, driver, kind;  // kind: "cpu", "gpu", "accelerator"
   std::uint32_t compute_units = 0;
   std::uint64_t global_memory = 0, max_allocation = 0;
   std::string vectors;  // the form of the kernels' vector operations: "x86 AVX-512" or "portable"
+  bool double_precision = false;
   bool usable = true;
   std::string why_not;  // when not usable
 };
 
-// All OpenCL devices; empty when there is no platform. Never throws for want of a device.
-std::vector<DeviceInfo> devices();
+// All OpenCL devices; empty when there is no platform. Never throws for want of a device. A device that fails the self-test is not
+// usable; of the options, those on built programs and faults count.
+std::vector<DeviceInfo> devices(const DeviceOptions& options = {});
 
 }  // namespace kdray

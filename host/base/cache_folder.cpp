@@ -1,4 +1,4 @@
-#include "cache/folder.h"
+#include "base/cache_folder.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <vector>
 
-namespace kdray::cache {
+namespace kdray {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::string_view kEnding = ".scene";
 
 struct Entry {
   fs::path file;
@@ -22,19 +21,19 @@ struct Entry {
   std::uint64_t bytes;
 };
 
-bool is_entry(const std::string& name) {
-  return name.size() == 32 + kEnding.size() && name.ends_with(kEnding) &&
+bool is_entry(const std::string& name, std::string_view ending) {
+  return name.size() == 32 + ending.size() && name.ends_with(ending) &&
          name.find_first_not_of("0123456789abcdef") == 32;
 }
 
 // As write_atomically names its temporaries. No writer takes an hour.
-bool is_left_behind(const std::string& name, fs::file_time_type changed) {
-  return name.starts_with(".kdray-") && name.ends_with(kEnding) &&
+bool is_left_behind(const std::string& name, std::string_view ending, fs::file_time_type changed) {
+  return name.starts_with(".kdray-") && name.ends_with(ending) &&
          fs::file_time_type::clock::now() - changed > std::chrono::hours(1);
 }
 
 // The entries, while others come and go.
-std::vector<Entry> entries_in(const fs::path& folder) {
+std::vector<Entry> entries_in(const fs::path& folder, std::string_view ending) {
   std::vector<Entry> entries;
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
@@ -42,24 +41,24 @@ std::vector<Entry> entries_in(const fs::path& folder) {
     const std::string name = at->path().filename().string();
     const Entry entry{at->path(), at->last_write_time(gone), at->file_size(gone)};
     if (gone) continue;
-    if (is_entry(name)) entries.push_back(entry);
-    if (is_left_behind(name, entry.used)) fs::remove(entry.file, gone);
+    if (is_entry(name, ending)) entries.push_back(entry);
+    if (is_left_behind(name, ending, entry.used)) fs::remove(entry.file, gone);
   }
   return entries;
 }
 
 }  // namespace
 
-fs::path entry_file(const fs::path& folder, const Hash& key) {
-  return folder / (in_hex(key) + std::string(kEnding));
+fs::path entry_file(const fs::path& folder, const Hash& key, std::string_view ending) {
+  return folder / (in_hex(key) + std::string(ending));
 }
 
-void touch(const fs::path& entry) {
+void touch_entry(const fs::path& entry) {
   ::utimensat(AT_FDCWD, entry.c_str(), nullptr, 0);
 }
 
-void shrink(const fs::path& folder, std::uint64_t max_bytes) {
-  std::vector<Entry> entries = entries_in(folder);
+void shrink_folder(const fs::path& folder, std::string_view ending, std::uint64_t max_bytes) {
+  std::vector<Entry> entries = entries_in(folder, ending);
   std::ranges::sort(entries, std::ranges::greater(), &Entry::used);
   std::uint64_t total = 0;
   for (const Entry& entry : entries) {
@@ -69,4 +68,4 @@ void shrink(const fs::path& folder, std::uint64_t max_bytes) {
   }
 }
 
-}  // namespace kdray::cache
+}  // namespace kdray

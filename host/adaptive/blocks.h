@@ -1,0 +1,55 @@
+// What    The order in which adaptive sampling goes through a picture's pixels: blocks of 32x32 along a curve, and in a block as
+//         the device goes through a tile (kernels/raygen/place.clh), so that sixteen samples in a row make a packet.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace kdray::adaptive {
+
+struct Size {
+  std::uint32_t width = 0, height = 0;
+
+  std::size_t pixels() const { return std::size_t{width} * height; }
+};
+
+class Blocks {
+ public:
+  static constexpr std::uint32_t kSide = 32;
+
+  explicit Blocks(Size size);
+
+  std::size_t count() const { return corners_.size(); }
+
+  // Calls take(pixel, x, y) for the block's pixels.
+  template <class Take>
+  void for_each(std::size_t block, const Take& take) const {
+    const Corner corner = corners_[block];
+    for (std::uint32_t place = 0; place < kSide * kSide; ++place) {
+      const std::uint32_t x = corner.x + even_bits(place), y = corner.y + even_bits(place >> 1);
+      if (x < size_.width && y < size_.height) take(std::size_t{y} * size_.width + x, x, y);
+    }
+  }
+
+  // The blocks that touch it, and itself.
+  std::vector<std::size_t> around(std::size_t block) const;
+
+ private:
+  struct Corner {
+    std::uint32_t x, y;
+  };
+
+  static std::uint32_t even_bits(std::uint32_t v) {
+    v &= 0x55555555u;
+    v = (v | (v >> 1)) & 0x33333333u;
+    v = (v | (v >> 2)) & 0x0f0f0f0fu;
+    return (v | (v >> 4)) & 0x00ff00ffu;
+  }
+
+  Size size_;
+  std::uint32_t n_columns_, n_rows_;
+  std::vector<Corner> corners_;
+  std::vector<std::size_t> number_of_;  // by row and column
+};
+
+}  // namespace kdray::adaptive

@@ -1,0 +1,232 @@
+#include "adaptive/sampler.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "adaptive/contrast.h"
+
+namespace kdray::adaptive {
+
+namespace {
+
+constexpr float kNeighbours = 2;  // samples that the neighbours' variance counts as
+constexpr float kSpill = 0.25f;   // of refined neighbours' variance, that a pixel of one sample may have
+constexpr int kFirstLevels = 2;   // that a pixel is refined by at most, on no more than its contrast
+constexpr double kAim = 0.9;      // at that part of the target, so that it is met without many small rounds
+
+constexpr double kUnit = 1.0 / static_cast<double>(KDRAY_FILM_SCALE);
+
+template <class Body>
+void for_each_of(std::size_t n, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+  });
+}
+
+// Where in a list of runs sample i's entry is; its number lies a run's length behind.
+std::size_t place_of(std::size_t i) {
+  return i / KDRAY_SAMPLE_RUN * 2 * KDRAY_SAMPLE_RUN + i % KDRAY_SAMPLE_RUN;
+}
+
+// As the kernels add.
+layout::i64 add_saturated(layout::i64 a, layout::i64 b) {
+  layout::i64 sum = 0;
+  if (!__builtin_add_overflow(a, b, &sum)) return sum;
+  return b < 0 ? std::numeric_limits<layout::i64>::min() : std::numeric_limits<layout::i64>::max();
+}
+
+double square_of(const layout::i64* sums) {
+  double square = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double value = static_cast<double>(sums[c]) * kUnit;
+    square += value * value;
+  }
+  return square;
+}
+
+// Unbiased, of one sample, mean of the channels.
+float variance_of(const layout::i64* sums, double squares, double n) {
+  return static_cast<float>(std::max(0.0, squares - square_of(sums) / n) / (3 * (n - 1)));
+}
+
+}  // namespace
+
+Sampler::Sampler(Size size, double target)
+    : size_(size),
+      target_(target),
+      blocks_(size),
+      sums_(3 * size.pixels()),
+      squares_(size.pixels()),
+      variance_(size.pixels()),
+      class_(size.pixels()),
+      level_(size.pixels()),
+      refined_(blocks_.count()),
+      dearest_(blocks_.count()) {}
+
+void Sampler::begin() {
+  contrast(sums_, size_, variance_);
+  changed_.resize(blocks_.count());
+  std::iota(changed_.begin(), changed_.end(), std::size_t{0});
+}
+
+// The squared error of the mean of the pixel's samples. Few samples may agree by chance: the neighbours' count as some more.
+float Sampler::error_of(std::size_t pixel, std::uint32_t x, std::uint32_t y) const {
+  float sum = 0, refined_sum = 0;
+  int n = 0;
+  for (std::uint32_t v = y - std::min(y, 1u); v <= std::min(y + 1, size_.height - 1); ++v)
+    for (std::uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, size_.width - 1); ++u) {
+      const std::size_t other = std::size_t{v} * size_.width + u;
+      if (other == pixel) continue;
+      sum += variance_[other];
+      if (level_[other] > 0) refined_sum += variance_[other];
+      ++n;
+    }
+  const float each = 1.0f / static_cast<float>(std::max(n, 1));
+  const int level = level_[pixel];
+  if (level == 0) return remains_at(0) * std::max(variance_[pixel], kSpill * refined_sum * each);
+  const float own = static_cast<float>(samples_of(level) - 1);
+  const float variance = (own * variance_[pixel] + kNeighbours * sum * each) / (own + kNeighbours);
+  return remains_at(level) * variance;
+}
+
+void Sampler::estimate(std::span<const std::size_t> blocks) {
+  tbb::enumerable_thread_specific<Prices> changes;
+  const bool first = rounds_ == 1;
+  for_each_of(blocks.size(), [&](std::size_t i) {
+    Prices& prices = changes.local();
+    const bool alone = !refined_around(blocks[i]);
+    std::uint16_t dearest = 0;
+    blocks_.for_each(blocks[i], [&](std::size_t pixel, std::uint32_t x, std::uint32_t y) {
+      const int level = level_[pixel];
+      const float error = alone ? remains_at(0) * variance_[pixel] : error_of(pixel, x, y);
+      const float price = error / static_cast<float>(samples_of(level));
+      if (!first) prices.remove(level, class_[pixel]);
+      class_[pixel] = static_cast<std::uint16_t>(Prices::class_of(price));
+      prices.add(level, class_[pixel]);
+      if (level + 1 < kLevels) dearest = std::max(dearest, class_[pixel]);
+    });
+    dearest_[blocks[i]] = dearest;
+  });
+  for (const Prices& of_thread : changes) prices_.add(of_thread);
+}
+
+bool Sampler::refined_around(std::size_t block) const {
+  const auto around = blocks_.around(block);
+  return std::any_of(around.begin(), around.end(), [&](std::size_t other) { return refined_[other] != 0; });
+}
+
+// What the next round brings the pixel to: as far as the limit says, since samples of one pixel that are traced together cost less than
+// those of several rounds.
+int Sampler::next_level(std::size_t pixel) const {
+  const int level = level_[pixel];
+  if (class_[pixel] <= limit_) return level;
+  const int most = level == 0 ? kFirstLevels : kLevels;
+  return refined(level, Prices::price_of(class_[pixel]), Prices::price_of(limit_), most).level;
+}
+
+void Sampler::list() {
+  first_of_block_.assign(blocks_.count() + 1, 0);
+  for_each_of(blocks_.count(), [&](std::size_t block) {
+    if (dearest_[block] <= limit_) return;
+    std::size_t n = 0;
+    blocks_.for_each(block, [&](std::size_t pixel, std::uint32_t, std::uint32_t) {
+      n += samples_of(next_level(pixel)) - samples_of(level_[pixel]);
+    });
+    first_of_block_[block + 1] = n;
+  });
+  std::partial_sum(first_of_block_.begin(), first_of_block_.end(), first_of_block_.begin());
+  const std::size_t n_runs = (first_of_block_.back() + KDRAY_SAMPLE_RUN - 1) / KDRAY_SAMPLE_RUN;
+  list_.assign(n_runs * 2 * KDRAY_SAMPLE_RUN, KDRAY_NO_SAMPLE);
+  for_each_of(blocks_.count(), [&](std::size_t block) {
+    std::size_t i = first_of_block_[block];
+    if (i == first_of_block_[block + 1]) return;
+    blocks_.for_each(block, [&](std::size_t pixel, std::uint32_t x, std::uint32_t y) {
+      const std::uint32_t end = samples_of(next_level(pixel));
+      for (std::uint32_t k = samples_of(level_[pixel]); k < end; ++k, ++i) {
+        list_[place_of(i)] = KDRAY_TILE(x, y);
+        list_[place_of(i) + KDRAY_SAMPLE_RUN] = k;
+      }
+    });
+  });
+}
+
+std::span<const layout::u32> Sampler::next() {
+  if (rounds_ == 1) begin();
+  estimate(changed_);
+  const double pixels = static_cast<double>(size_.pixels());
+  list_.clear();
+  met_ = std::sqrt(prices_.sum() / pixels) <= target_;
+  if (met_) return {};
+  limit_ = prices_.limit_for(kAim * kAim * target_ * target_ * pixels);
+  list();
+  return list_;
+}
+
+void Sampler::take(std::span<const layout::i64> sums) {
+  ++rounds_;
+  std::vector<std::uint8_t> near(blocks_.count());
+  for (std::size_t block = 0; block < blocks_.count(); ++block)
+    if (first_of_block_[block] < first_of_block_[block + 1])
+      for (const std::size_t other : blocks_.around(block)) near[other] = 1;
+  tbb::enumerable_thread_specific<Prices> changes;
+  for_each_of(blocks_.count(), [&](std::size_t block) {
+    const layout::i64* sample = sums.data() + 3 * first_of_block_[block];
+    if (first_of_block_[block] == first_of_block_[block + 1]) return;
+    Prices& prices = changes.local();
+    refined_[block] = 1;
+    blocks_.for_each(block, [&](std::size_t pixel, std::uint32_t, std::uint32_t) {
+      const int level = next_level(pixel);
+      if (level == level_[pixel]) return;
+      layout::i64* const sum = &sums_[3 * pixel];
+      if (level_[pixel] == 0) squares_[pixel] = square_of(sum);
+      for (std::uint32_t k = samples_of(level_[pixel]); k < samples_of(level); ++k, sample += 3) {
+        for (int c = 0; c < 3; ++c) sum[c] = add_saturated(sum[c], sample[c]);
+        squares_[pixel] += square_of(sample);
+      }
+      prices.remove(level_[pixel], class_[pixel]);
+      level_[pixel] = static_cast<std::uint8_t>(level);
+      prices.add(level, class_[pixel]);
+      variance_[pixel] = variance_of(sum, squares_[pixel], samples_of(level_[pixel]));
+    });
+  });
+  for (const Prices& of_thread : changes) prices_.add(of_thread);
+  changed_.clear();
+  for (std::size_t block = 0; block < blocks_.count(); ++block)
+    if (near[block]) changed_.push_back(block);
+}
+
+std::vector<vec3> Sampler::picture() const {
+  std::vector<vec3> pixels(size_.pixels());
+  for_each_of(blocks_.count(), [&](std::size_t block) {
+    blocks_.for_each(block, [&](std::size_t pixel, std::uint32_t, std::uint32_t) {
+      const double scale = kUnit / samples_of(level_[pixel]);
+      for (int c = 0; c < 3; ++c)
+        pixels[pixel][c] =
+            static_cast<float>(static_cast<double>(sums_[3 * pixel + static_cast<std::size_t>(c)]) * scale);
+    });
+  });
+  return pixels;
+}
+
+Report Sampler::report() const {
+  Report r;
+  r.target = target_;
+  r.estimated_rmse = std::sqrt(prices_.sum() / static_cast<double>(size_.pixels()));
+  r.met = met_;
+  r.rounds = rounds_;
+  for (int level = 0; level < kLevels; ++level) {
+    r.pixels[static_cast<std::size_t>(level)] = prices_.pixels(level);
+    r.samples += prices_.pixels(level) * samples_of(level);
+  }
+  r.counts.reserve(level_.size());
+  for (const std::uint8_t level : level_) r.counts.push_back(static_cast<float>(samples_of(level)));
+  return r;
+}
+
+}  // namespace kdray::adaptive

@@ -1,0 +1,70 @@
+#include "open_devices.h"
+
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "base/error.h"
+#include "device/faults.h"
+#include "device/program_cache.h"
+#include "selftest/self_test.h"
+
+namespace kdray::api {
+
+namespace {
+
+// One for all who name this folder, so that what any of them has built is kept.
+std::shared_ptr<device::ProgramCache> cache_in(const std::filesystem::path& folder) {
+  static std::mutex mutex;
+  static std::map<std::filesystem::path, std::shared_ptr<device::ProgramCache>> caches;
+  if (folder.empty()) return nullptr;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<device::ProgramCache>& cache = caches[folder];
+  if (!cache) cache = std::make_shared<device::ProgramCache>(folder);
+  return cache;
+}
+
+void check(const DeviceOptions& o) {
+  if (o.queues < 1 || o.queues > 1024) throw Error(ErrorCode::usage, "the number of queues may be 1 to 1024");
+  if (o.work_group < 0) throw Error(ErrorCode::usage, "the work-group size may not be negative");
+  if (o.compute_units < 0) throw Error(ErrorCode::usage, "the number of compute units may not be negative");
+}
+
+}  // namespace
+
+device::Builds builds_of(const DeviceOptions& options) {
+  return {cache_in(options.programs), options.building};
+}
+
+std::vector<device::Context> open_devices(const DeviceOptions& o) {
+  check(o);
+  const device::Faults faults(o.faults);
+  device::OpenOptions options;
+  options.n_queues = o.queues;
+  options.compute_units = o.compute_units;
+  options.builds = builds_of(o);
+  options.left_out = o.left_out;
+  options.check = [&faults](const device::Context& context) {
+    selftest::require(context, faults.fails_self_test(context.info().number));
+  };
+  return device::open_contexts(o.device, options);
+}
+
+}  // namespace kdray::api
+
+namespace kdray {
+
+namespace fs = std::filesystem;
+
+fs::path default_program_folder() {
+  const fs::path scenes = SceneCache::default_folder();
+  if (scenes.empty()) return {};
+  return std::getenv("KDRAY_CACHE_DIR") ? scenes / "programs" : scenes.parent_path() / "programs";
+}
+
+void keep_programs(const DeviceOptions& options) {
+  if (const auto cache = api::cache_in(options.programs)) cache->keep();
+}
+
+}  // namespace kdray

@@ -1,0 +1,33 @@
+#include "precision.h"
+
+#include <fmt/format.h>
+
+namespace kdray::api {
+
+const char* name_of(Precision precision) {
+  return precision == Precision::float64 ? "double" : "float";
+}
+
+Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& device) {
+  if (precision == Precision::float32) return wanted;
+  if (wanted != Traversal::automatic && wanted != Traversal::binary)
+    throw Error(ErrorCode::usage,
+                "--precision double has the binary walk alone; leave --traversal out, or take binary");
+  if (!device.double_precision)
+    throw Error(ErrorCode::no_device,
+                fmt::format("{} does not compute in double; leave --precision double out, or take another "
+                            "--device",
+                            device.name));
+  return Traversal::binary;
+}
+
+void check_division(const RenderOptions& options) {
+  if (options.precision == Precision::float32) return;
+  if (options.mode == Mode::odprt)
+    throw Error(ErrorCode::usage, "odprt is float's alone; take --mode pdprt for --precision double");
+  if (options.device_memory > 0)
+    throw Error(ErrorCode::usage,
+                "--device-memory is odprt's, which is float's alone; leave it out for --precision double");
+}
+
+}  // namespace kdray::api

@@ -1,0 +1,17 @@
+// What    What the kernels compute in, and what double leaves: the binary walk and PDPRT, on devices that have it.
+#pragma once
+
+#include "kdray/kdray.h"
+
+namespace kdray::api {
+
+const char* name_of(Precision precision);
+
+// The walk of that precision. Throws ErrorCode::usage when there is no such walk in it, ErrorCode::no_device when the device
+// doesn't compute in it.
+Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& device);
+
+// Throws ErrorCode::usage for what odprt would have to do in double.
+void check_division(const RenderOptions& options);
+
+}  // namespace kdray::api

@@ -1,0 +1,56 @@
+#include "tuning.h"
+
+#include <fmt/format.h>
+
+#include "base/hash.h"
+#include "device/program.h"
+#include "kdray/error.h"
+
+namespace kdray::api {
+
+tune::Key tuning_key(const device::Context& context, bool global, std::uint32_t features) {
+  const DeviceInfo& info = context.info();
+  return {.device = fmt::format("{}, {} units", info.name, info.compute_units),
+          .driver = fmt::format("{}, {}, {}", info.platform, info.version, info.driver),
+          .kernels = in_hex(
+              hash_of(device::expand_source("wave/wave.cl") + device::expand_source("traverse/query.cl"))),
+          .schedule = global ? "global" : "slices",
+          .features = tune::features_text(features)};
+}
+
+tune::Database read_tunings(const DeviceOptions& options) {
+  if (options.tunings.empty()) return {};
+  try {
+    return tune::Database::read(options.tunings);
+  } catch (const Error& error) {
+    if (options.tunings_ignored) options.tunings_ignored(fmt::format("{}; it is ignored", error.what()));
+    return {};
+  }
+}
+
+Tuned tuned_for(const device::Context& context, bool global, std::uint32_t features,
+                const tune::Database& tunings, const std::string& file) {
+  Tuned tuned{tune::shipped(context.info().kind), tuning_key(context, global, features), "shipped"};
+  if (const tune::Entry* const entry = tunings.find(tuned.key)) {
+    tuned.settings = tune::merged(tuned.settings, entry->settings);
+    tuned.from = fmt::format("{}, features {}", file, entry->key.features);
+  }
+  return tuned;
+}
+
+Json tuning_json(const Tuned& tuned) {
+  Json settings = Json::object();
+  for (const tune::Setting& s : tune::settings())
+    if (tuned.settings.*s.value != 0) settings[std::string(s.name)] = tuned.settings.*s.value;
+  const tune::Key& k = tuned.key;
+  return {{"from", tuned.from},
+          {"settings", settings},
+          {"key",
+           {{"device", k.device},
+            {"driver", k.driver},
+            {"kernels", k.kernels},
+            {"schedule", k.schedule},
+            {"features", k.features}}}};
+}
+
+}  // namespace kdray::api

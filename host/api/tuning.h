@@ -1,0 +1,30 @@
+// What    The settings that a device works with: what was found for it (tune/database.h), or what kdray ships with for its kind.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "device/context.h"
+#include "statistics.h"
+#include "tune/database.h"
+
+namespace kdray::api {
+
+tune::Key tuning_key(const device::Context& context, bool global, std::uint32_t features);
+
+struct Tuned {
+  Tuning settings;
+  tune::Key key;
+  std::string from;  // "shipped", "given", or the file and the features of its entry
+};
+
+// The file's entries; none where it is of no use, of which the options' tunings_ignored is told.
+tune::Database read_tunings(const DeviceOptions& options);
+
+Tuned tuned_for(const device::Context& context, bool global, std::uint32_t features,
+                const tune::Database& tunings, const std::string& file);
+
+Json tuning_json(const Tuned& tuned);
+
+}  // namespace kdray::api

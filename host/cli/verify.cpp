@@ -1,0 +1,118 @@
+// What    kdray verify: whether a scene's mesh is sound, and whether kdray traces it soundly.
+// Errors  A mesh with holes is a finding, not an error: exit code 0. 1 when kdray itself went wrong, or for a file that can't be
+//         read.
+#include "verify/verify.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "base/error.h"
+#include "base/timer.h"
+#include "cli/command.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/parse.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
+#include "cli/verify_report.h"
+#include "film/write.h"
+#include "scene/load.h"
+#include "verify/picture.h"
+
+namespace kdray::cli {
+
+namespace {
+
+struct Options {
+  std::string scene, output, stats;
+  int width = 1280, height = 720, rays = 1 << 18;
+  bool quiet = false;
+  TreeOptions tree;
+  DeviceOptions device;
+};
+
+void check_options(const Options& o) {
+  if (!o.output.empty()) film::check_picture_name(o.output);
+  if (!o.stats.empty()) check_text_output(o.stats);
+  check_apart("SCENE", o.scene, "--output", o.output);
+  check_apart("SCENE", o.scene, "--stats", o.stats);
+  check_apart("--output", o.output, "--stats", o.stats);
+  if (o.width < verify::kLeastWidth || o.height < verify::kLeastHeight)
+    throw Error(ErrorCode::usage, fmt::format("--size {}x{}: the picture and its legend need {}x{} at least",
+                                              o.width, o.height, verify::kLeastWidth, verify::kLeastHeight));
+}
+
+Json stats_of(const Options& o, const verify::Findings& found, double load, double total) {
+  const verify::Seconds& s = found.seconds;
+  Json stats = {{"kdray", KDRAY_VERSION}, {"command", "verify"}, {"scene", {{"file", o.scene}}}};
+  stats["scene"].update({{"triangles", found.triangles}, {"spheres", found.spheres}, {"cones", found.cones}});
+  stats.update(findings_as_json(found));
+  stats["seconds"] = {
+      {"load", load},       {"build", s.build}, {"mesh", s.mesh},       {"duplicates", s.duplicates},
+      {"probes", s.probes}, {"film", s.film},   {"picture", s.picture}, {"total", total}};
+  stats["memory"] = {{"process_peak_bytes", peak_memory()}};
+  return stats;
+}
+
+void tell(const Options& o, const verify::Findings& found, double load, double total) {
+  const verify::Seconds& s = found.seconds;
+  std::string text = findings_in_words(found);
+  text += fmt::format(
+      "       time              load {}, build {}, mesh {}, duplicates {}, rays {}, film {}; {} in all\n",
+      seconds_in_words(load), seconds_in_words(s.build), seconds_in_words(s.mesh),
+      seconds_in_words(s.duplicates), seconds_in_words(s.probes), seconds_in_words(s.film),
+      seconds_in_words(total));
+  if (!o.output.empty()) text += fmt::format("       picture           {}\n", o.output);
+  std::fputs(text.c_str(), stderr);
+}
+
+int run(const Options& o) {
+  const Timer total;
+  check_options(o);
+  open_device(o.device);
+  Timer step;
+  const scene::Scene scene = scene::load(o.scene);
+  const double load = step.seconds();
+  if (!o.quiet)
+    for (const std::string& warning : scene.warnings) say(warning);
+
+  Progress progress(o.quiet);
+  verify::Options options{.rays = static_cast<std::uint64_t>(o.rays), .tree = o.tree, .device = o.device};
+  if (!o.output.empty()) options.width = o.width, options.height = o.height;
+  options.progress = [&](double share) { progress.update(share); };
+  const verify::Findings found = verify::verify(scene, options);
+  progress.clear();
+
+  if (!o.output.empty()) film::write_picture(o.output, found.picture, {}, {});
+  if (!o.stats.empty()) write_stats(o.stats, stats_of(o, found, load, total.seconds()));
+  if (!o.quiet) tell(o, found, load, total.seconds());
+  if (!o.quiet || !found.kdray_is_sound()) say(o.scene + ": " + verdict(found));
+  return found.kdray_is_sound() ? 0 : static_cast<int>(ErrorCode::input);
+}
+
+}  // namespace
+
+Command add_verify(CLI::App& kdray) {
+  CLI::App* const app = kdray.add_subcommand(
+      "verify", "Check a scene's mesh, and that kdray traces it without leaks and self-hits");
+  const auto o = std::make_shared<Options>();
+  app->add_option("SCENE", o->scene, "The scene, as for render")->required()->type_name("");
+  add_path(*app, "-o,--output", "A picture of where the findings are, .png or .exr", o->output);
+  add_size(*app, "Pixels of that picture (default 1280x720)", 16384, 1 << 26, o->width, o->height);
+  add_int(*app, "--rays", "Rays to send, besides those that leave their hits (default 262144)", 1, 2000000000,
+          o->rays);
+  add_path(*app, "--stats", "Write the findings as JSON ('-': to standard output)", o->stats);
+  app->add_flag("-q,--quiet", o->quiet, "Say nothing unless kdray went wrong");
+  add_text(*app, "--device", "SPEC", "As for render; one device", [o = o.get()](const std::string& text) {
+    if (text.empty()) throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
+    o->device.device = text;
+  });
+  add_tree_options(*app, o->tree);
+  return {app, [o] { return run(*o); }};
+}
+
+}  // namespace kdray::cli

@@ -1,0 +1,20 @@
+// What    What kdray verify found, in words and as JSON.
+#pragma once
+
+#include <string>
+
+#include "cli/stats.h"
+#include "verify/verify.h"
+
+namespace kdray::cli {
+
+// Several lines, each "[ok]", "[note]" (of the mesh) or "[bad]" (of kdray).
+std::string findings_in_words(const verify::Findings& found);
+
+// One line: what it comes to.
+std::string verdict(const verify::Findings& found);
+
+// Places are the file's; of each kind of finding the first hundred.
+Json findings_as_json(const verify::Findings& found);
+
+}  // namespace kdray::cli

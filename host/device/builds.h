@@ -1,0 +1,34 @@
+// What    What goes with the building of programs: where they are kept, and who is told when a compiler is at work.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+namespace kdray::device {
+
+class ProgramCache;
+
+struct Builds {
+  std::shared_ptr<ProgramCache> cache = {};  // none: programs are built anew
+  std::function<void(bool)> watch =
+      {};  // true: a compiler begins its work; false: it ends. From any thread; may nest
+};
+
+// Tells `watch` of a compiler's work as long as it lives.
+class AtWork {
+ public:
+  explicit AtWork(const Builds& builds) : watch_(builds.watch) {
+    if (watch_) watch_(true);
+  }
+  ~AtWork() {
+    if (watch_) watch_(false);
+  }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+
+ private:
+  std::function<void(bool)> watch_;
+};
+
+}  // namespace kdray::device

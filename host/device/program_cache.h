@@ -1,0 +1,52 @@
+// What    Built programs kept between runs, as the binaries that OpenCL gives (docs/design/start.md).
+// Shape   find() looks for an entry; built() only notes what had to be compiled; keep() writes the notes down, when the
+//         picture is out. For one thing PoCL compiles once more when it is asked for a binary; for another a binary that is
+//         asked for after the first launch holds the machine code of that launch's work-group size too.
+//         Several threads and processes may use a folder at once.
+// Errors  None: an entry that is damaged, or that the driver refuses, counts as none; a folder that can't be written is left.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/hash.h"
+#include "device/opencl.h"
+
+namespace kdray::device {
+
+class ProgramCache {
+ public:
+  static constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20;  // some 400 programs
+
+  explicit ProgramCache(std::filesystem::path folder, std::uint64_t max_bytes = kMaxBytes)
+      : folder_(std::move(folder)), max_bytes_(max_bytes) {}
+
+  // The program of that key, ready to be used on all of these devices, which are parts of one.
+  std::optional<cl::Program> find(const cl::Context& context, const std::vector<cl::Device>& devices,
+                                  const Hash& key, const std::string& options);
+
+  void built(const Hash& key, const cl::Program& program);
+
+  // How many entries it wrote. The least recently used go where the folder gets too large.
+  std::size_t keep();
+
+  // Whether something of this key was found right before: the self-test's outcome needs no binary.
+  bool has_passed(const Hash& key) const;
+  void note_passed(const Hash& key);
+
+ private:
+  std::filesystem::path file_of(const Hash& key) const;
+  bool write(const Hash& key, const std::string& bytes) const;
+
+  std::filesystem::path folder_;
+  std::uint64_t max_bytes_;
+  std::mutex mutex_;
+  std::vector<std::pair<Hash, cl::Program>> built_;  // to be kept
+};
+
+}  // namespace kdray::device

@@ -1,0 +1,54 @@
+#include "device/program_key.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <vector>
+
+namespace kdray::device {
+
+namespace {
+
+// As Linux tells of the first core; empty elsewhere.
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  std::string text;
+  for (std::string line; std::getline(in, line) && !line.empty();)
+    for (const std::string_view fact : {"vendor_id", "cpu family", "model", "stepping", "flags", "Features"})
+      if (line.starts_with(fact)) text += line + '\n';
+  return text;
+}
+
+// Those that say where things are kept don't matter.
+std::string pocl_environment() {
+  std::vector<std::string> set;
+  for (char** variable = environ; *variable; ++variable) {
+    const std::string_view text = *variable;
+    if (text.starts_with("POCL_") && !text.starts_with("POCL_CACHE_DIR=")) set.emplace_back(text);
+  }
+  std::sort(set.begin(), set.end());
+  return fmt::format("{}", fmt::join(set, "\n"));
+}
+
+}  // namespace
+
+std::string identity_of(const cl::Device& device) {
+  const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
+  const bool cpu = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", platform.getInfo<CL_PLATFORM_NAME>(),
+                     platform.getInfo<CL_PLATFORM_VERSION>(), device.getInfo<CL_DEVICE_NAME>(),
+                     device.getInfo<CL_DEVICE_VENDOR>(), device.getInfo<CL_DEVICE_VERSION>(),
+                     device.getInfo<CL_DRIVER_VERSION>(), device.getInfo<CL_DEVICE_OPENCL_C_VERSION>(),
+                     cpu ? processor() : "", pocl_environment());
+}
+
+Hash program_key(const std::string& identity, const std::string& source, const std::string& options) {
+  // The lengths keep what belongs to one apart from what belongs to the next.
+  return hash_of(fmt::format("kdray program 1 {} {} {}\n{}\n{}\n{}", identity.size(), options.size(),
+                             source.size(), identity, options, source));
+}
+
+}  // namespace kdray::device

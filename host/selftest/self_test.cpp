@@ -1,0 +1,132 @@
+#include "selftest/self_test.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "device/opencl_error.h"
+#include "device/program.h"
+#include "device/program_cache.h"
+#include "device/program_key.h"
+#include "prepare/prepared.h"
+#include "selftest/known_case.h"
+#include "wavefront/query.h"
+
+namespace kdray::selftest {
+
+namespace {
+
+constexpr const char* kProgram = "traverse/query.cl";
+
+float number(std::uint32_t bits) {
+  return std::bit_cast<float>(bits);
+}
+
+Answer bits_of(const Hit& hit) {
+  return {std::bit_cast<std::uint32_t>(hit.t), hit.primitive, std::bit_cast<std::uint32_t>(hit.u),
+          std::bit_cast<std::uint32_t>(hit.v)};
+}
+
+bool close(float a, float b) {
+  return a == b || std::abs(a - b) <= 1e-5f * std::max(1.0f, std::abs(b));
+}
+
+bool agrees(const Hit& hit, const Answer& right, bool exact) {
+  if (exact || hit.primitive != right.primitive) return bits_of(hit) == right;
+  return close(hit.t, number(right.t)) && close(hit.u, number(right.u)) && close(hit.v, number(right.v));
+}
+
+std::string check_occlusion(const std::vector<Hit>& hits) {
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    if ((hits[i].t == 0) != (known_answers()[i].primitive >= 0))
+      return fmt::format("occlusion of ray {} is wrong", i);
+  return "";
+}
+
+// Of the device with its driver, and of the kernels.
+Hash key_of(const device::Context& context) {
+  const std::string identity = device::checked(
+      "asking " + context.info().name, [&] { return device::identity_of(context.opened().devices.front()); });
+  return device::program_key(identity, device::expand_source(kProgram),
+                             "self-test " + device::build_option(context.simd()));
+}
+
+}  // namespace
+
+std::string first_fault(const std::vector<Hit>& hits, bool exact) {
+  const std::span<const Answer> answers = known_answers();
+  if (hits.size() != answers.size()) return "hits are missing";
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    if (!agrees(hits[i], answers[i], exact))
+      return fmt::format("ray {} should hit primitive {} at t = {}, but hits {} at {}", i,
+                         answers[i].primitive, number(answers[i].t), hits[i].primitive, hits[i].t);
+  return "";
+}
+
+namespace {
+
+// Rays on a device of their own scene.
+class Known {
+ public:
+  explicit Known(const device::Context& context)
+      : context_(context),
+        scene_(prepare::prepare(known_scene(), TreeOptions{})),
+        buffers_(context, scene_.flat, scene_.wide),
+        programs_(context, scene_.tree_depth, scene_.wide) {}
+
+  std::vector<Hit> trace(bool any_hit) {
+    constexpr std::size_t kWorkGroup = 16;
+    const bool cpu = context_.info().kind == "cpu";
+    return wavefront::trace_query(context_, buffers_, programs_, scene_.geometry, scene_.features,
+                                  std::min(kWorkGroup, context_.max_work_group()),
+                                  cpu ? Traversal::automatic : Traversal::wide, Precision::float32,
+                                  known_rays(), any_hit, 1)
+        .hits;
+  }
+
+ private:
+  const device::Context& context_;
+  const prepare::Prepared scene_;
+  const wavefront::SceneBuffers buffers_;
+  wavefront::Programs programs_;
+};
+
+}  // namespace
+
+std::vector<Answer> answers_of(const device::Context& opened) {
+  const device::Context context = opened.without_cache();
+  std::vector<Answer> answers;
+  for (const Hit& hit : Known(context).trace(false)) answers.push_back(bits_of(hit));
+  return answers;
+}
+
+std::string fault_of(const device::Context& opened) {
+  const device::Context context = opened.without_cache();  // the program is not for keeping
+  const bool cpu = context.info().kind == "cpu";
+  Known known(context);
+  const std::string fault = first_fault(known.trace(false), cpu && context.rounds_division_correctly());
+  return fault.empty() ? check_occlusion(known.trace(true)) : fault;
+}
+
+void require(const device::Context& context, bool fail) {
+  static std::mutex mutex;
+  static std::set<std::pair<std::uint64_t, std::uint64_t>> passed;
+  const std::lock_guard lock(mutex);
+  const Hash key = key_of(context);
+  const std::shared_ptr<device::ProgramCache>& cache = context.builds().cache;
+  if (!fail && (passed.contains({key.high, key.low}) || (cache && cache->has_passed(key)))) return;
+  const std::string fault = fail ? "told to fail" : fault_of(context);
+  if (!fault.empty())
+    throw Error(ErrorCode::no_device,
+                fmt::format("{} fails the self-test: {}; try another device or driver, see `kdray devices`",
+                            context.info().name, fault));
+  passed.insert({key.high, key.low});
+  if (cache) cache->note_passed(key);
+}
+
+}  // namespace kdray::selftest

@@ -1,0 +1,42 @@
+// What    The settings that may be tuned, in one table, and what kdray ships with for each kind of device.
+// Shape   Each is a whole number in Tuning (kdray.h); 0: kdray's own choice, by rules (api/renderer.cpp, wavefront/programs.cpp) or the
+//         kernels' own constant.
+// Why     Nothing in the table changes a bit of a picture: `kdray tune` may try anything, and a file of foreign settings can only cost
+//         time.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kdray/kdray.h"
+
+namespace kdray::tune {
+
+struct Setting {
+  std::string_view name;
+  int Tuning::*value;
+  std::vector<int> values;    // worth a try beside kdray's own choice
+  std::string_view programs;  // that it compiles anew; empty: none
+  bool slices, global;        // schedules that look at it
+  std::string_view what;
+
+  bool compiles() const { return !programs.empty(); }
+};
+
+// Those worth trying first come first: what costs no compiling.
+std::span<const Setting> settings();
+
+const Setting* find_setting(std::string_view name);
+
+// For a kind of device, as DeviceInfo has it.
+Tuning shipped(std::string_view kind);
+
+// `over`, and where it has 0 `under`.
+Tuning merged(const Tuning& under, const Tuning& over);
+
+// "batch 1024, packets 16"; what is left to kdray isn't named; "kdray's own" where all is.
+std::string in_words(const Tuning& tuning);
+
+}  // namespace kdray::tune

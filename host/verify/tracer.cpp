@@ -1,0 +1,73 @@
+#include "verify/tracer.h"
+
+#include "device/opencl_error.h"
+#include "layout/rays.layout.h"
+#include "layout/tree.layout.h"
+#include "wavefront/query.h"
+#include "wavefront/stage.h"
+
+namespace kdray::verify {
+
+namespace {
+
+constexpr std::size_t kWorkGroup = 16;
+
+template <class Primitive>
+void name_refs(const Array<Primitive>& primitives, std::uint32_t kind, std::vector<std::uint32_t>& ref_of) {
+  for (std::size_t i = 0; i < primitives.size(); ++i)
+    ref_of[primitives[i].number] = kind << KDRAY_REF_KIND_SHIFT | static_cast<std::uint32_t>(i);
+}
+
+}  // namespace
+
+prepare::Prepared about_center(prepare::Prepared prepared) {
+  if (auto& camera = prepared.settings.camera) {
+    camera->from -= prepared.geometry.center;
+    camera->at -= prepared.geometry.center;
+  }
+  prepared.geometry.center = dvec3(0);
+  return prepared;
+}
+
+Tracer::Tracer(const prepare::Prepared& scene, const DeviceOptions& device)
+    : scene_(scene),
+      context_(device::open_contexts(device.device, 1, device.compute_units).front()),
+      buffers_(context_, scene.flat, scene.wide),
+      programs_(context_, scene.tree_depth, scene.wide),
+      ref_of_(scene.counts.primitives, KDRAY_REF_MISS) {
+  name_refs(scene.flat.triangles, KDRAY_KIND_TRIANGLE, ref_of_);
+  name_refs(scene.flat.spheres, KDRAY_KIND_SPHERE, ref_of_);
+  name_refs(scene.flat.cones, KDRAY_KIND_CONE, ref_of_);
+}
+
+std::vector<Hit> Tracer::closest(std::span<const Ray> rays, Traversal wanted) {
+  // Packets and batches are explicit vectors, for CPUs.
+  const bool vectors = context_.info().kind == "cpu";
+  const Traversal traversal = !vectors && wanted != Traversal::binary ? Traversal::wide : wanted;
+  return wavefront::trace_query(context_, buffers_, programs_, scene_.geometry, scene_.features, kWorkGroup,
+                                traversal, Precision::float32, rays, false, 1)
+      .hits;
+}
+
+std::vector<layout::Departure> Tracer::departures(std::span<const Ray> rays, std::span<const Hit> hits) {
+  std::vector<layout::Departure> departures(rays.size());
+  if (rays.empty()) return departures;
+  std::vector<layout::KnownHit> known(hits.size());
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    known[i] = {hits[i].t, ref_of_[static_cast<std::size_t>(hits[i].primitive)], hits[i].u, hits[i].v};
+  wavefront::Stage stage("depart", programs_.kernel("shade/depart.cl", "depart", scene_.features));
+  device::checked("finding where rays leave", [&] {
+    const cl::Buffer in_rays = context_.upload_copy(rays.data(), rays.size_bytes(), "the rays");
+    const cl::Buffer in_hits = context_.upload_copy(known.data(), known.size() * sizeof known[0], "the hits");
+    const std::size_t bytes = departures.size() * sizeof departures[0];
+    const cl::Buffer out = context_.buffer(CL_MEM_WRITE_ONLY, bytes, "the rays' origins");
+    cl::CommandQueue queue = context_.queues().front();
+    stage.set_arguments(0, buffers_.triangles, buffers_.normals, buffers_.spheres, buffers_.cones,
+                        static_cast<cl_uint>(rays.size()), in_rays, in_hits, out);
+    stage.launch(queue, (rays.size() + KDRAY_LANES - 1) / KDRAY_LANES, 1);
+    queue.enqueueReadBuffer(out, CL_TRUE, 0, bytes, departures.data());
+  });
+  return departures;
+}
+
+}  // namespace kdray::verify

@@ -1,0 +1,36 @@
+// What    The scene on a device as the probes ask it: the closest hit by any walk, and where the rays that leave a hit begin, by
+//         the code that renders. All in the tree's own space, about the scene's centre: origins are not rounded on the way.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kdray/kdray.h"
+#include "layout/verify.layout.h"
+#include "prepare/prepared.h"
+#include "wavefront/programs.h"
+#include "wavefront/scene_buffers.h"
+
+namespace kdray::verify {
+
+// `prepared` as if the file had been about its own centre: world and tree have one space.
+prepare::Prepared about_center(prepare::Prepared prepared);
+
+class Tracer {
+ public:
+  // `scene`: about_center's; it must live as long.
+  Tracer(const prepare::Prepared& scene, const DeviceOptions& device);
+
+  std::vector<Hit> closest(std::span<const Ray> rays, Traversal traversal = Traversal::automatic);
+  std::vector<layout::Departure> departures(std::span<const Ray> rays, std::span<const Hit> hits);
+
+ private:
+  const prepare::Prepared& scene_;
+  device::Context context_;
+  wavefront::SceneBuffers buffers_;
+  wavefront::Programs programs_;
+  std::vector<std::uint32_t> ref_of_;  // by the primitive's number
+};
+
+}  // namespace kdray::verify

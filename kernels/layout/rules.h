@@ -1,0 +1,29 @@
+// What    The rules by which kernels leave work out, each with a bit of the feature mask that switches it off: for `kdray bench
+//         ablation`, and for tests. A program built without such bits, as all others are, holds no switch.
+// Shape   KDRAY_SKIPS(BEHIND) is 1 where the rule holds, a constant. The rules that are numbers of Frame (least weight, depth)
+//         have no bit.
+// Why     All change time alone: no bit of a picture depends on them. docs/design/skipping.md tells why, and what each is worth.
+#ifndef KDRAY_LAYOUT_RULES_H
+#define KDRAY_LAYOUT_RULES_H
+
+// Tracing.
+#define KDRAY_KEEP_FRUSTUM 0x00000020u   // packets: the children of a node that the frustum misses
+#define KDRAY_KEEP_OCCLUDER 0x00000040u  // packets: the walk of rays that the leaf before stops as well
+#define KDRAY_KEEP_NEARNESS 0x00000080u  // the roots of cones that a line surely passes by
+#define KDRAY_KEEP_BEYOND 0x00100000u    // children that a ray enters behind its best hit
+// Shading.
+#define KDRAY_KEEP_BEHIND 0x00001000u  // shadow rays towards lights behind the surface
+#define KDRAY_KEEP_UNLIT \
+  0x00002000u  // shadow rays whose light rounds to nothing on the film, or doesn't reach
+#define KDRAY_KEEP_WEIGHTLESS 0x00004000u  // secondary rays of no weight
+#define KDRAY_KEEP_LEFT 0x00008000u        // shadow rays against the triangle that they leave
+#define KDRAY_KEEP_OPEN 0x00200000u        // rays that surely meet nothing (shade/open.clh)
+
+#define KDRAY_KEEP_TRACING \
+  (KDRAY_KEEP_FRUSTUM | KDRAY_KEEP_OCCLUDER | KDRAY_KEEP_NEARNESS | KDRAY_KEEP_BEYOND)
+#define KDRAY_KEEP_SHADING \
+  (KDRAY_KEEP_BEHIND | KDRAY_KEEP_UNLIT | KDRAY_KEEP_WEIGHTLESS | KDRAY_KEEP_LEFT | KDRAY_KEEP_OPEN)
+#define KDRAY_KEEP_ALL (KDRAY_KEEP_TRACING | KDRAY_KEEP_SHADING)
+
+#define KDRAY_SKIPS(rule) ((KDRAY_FEATURES & KDRAY_KEEP_##rule) == 0)
+#endif

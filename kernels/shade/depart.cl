@@ -1,0 +1,51 @@
+// What    The origins of the rays that leave hits, by the code that shades: kdray verify and the tests ask where they lie.
+// Shape   in_rays[n], in_hits[n] (t, u, v and references) -> out_departures[n]; one work-item to sixteen hits. All hits are hits.
+// Cost    reads 48 B of ray and hit and the primitive, writes 40 B.
+#include "layout/rays.layout.h"
+#include "layout/verify.layout.h"
+#include "shade/surface.clh"
+
+inline Real3x16 load_lanes3(const real* lanes) {
+  const Real3x16 r = {vload16(0, lanes), vload16(1, lanes), vload16(2, lanes)};
+  return r;
+}
+inline void store_lanes3(Real3x16 v, real* lanes) {
+  vstore16(v.x, 0, lanes), vstore16(v.y, 1, lanes), vstore16(v.z, 2, lanes);
+}
+
+__kernel void depart(__global const Triangle* in_triangles, __global const VertexNormals* in_normals,
+                     __global const Sphere* in_spheres, __global const Cone* in_cones, u32 n,
+                     __global const QueryRay* in_rays, __global const KnownHit* in_hits,
+                     __global Departure* out_departures) {
+  const u32 first = (u32)get_global_id(0) * KDRAY_LANES;
+  if (first >= n) return;
+  const u32 count = min(n - first, KDRAY_LANES);
+  real origin[3 * KDRAY_LANES], direction[3 * KDRAY_LANES], t[KDRAY_LANES], u[KDRAY_LANES], v[KDRAY_LANES];
+  word ref[KDRAY_LANES];
+  for (u32 lane = 0; lane < KDRAY_LANES; ++lane) {
+    const u32 i = first + min(lane, count - 1);
+    for (u32 k = 0; k < 3; ++k) {
+      origin[k * KDRAY_LANES + lane] = in_rays[i].origin[k];
+      direction[k * KDRAY_LANES + lane] = in_rays[i].direction[k];
+    }
+    t[lane] = in_hits[i].t, ref[lane] = in_hits[i].ref, u[lane] = in_hits[i].u, v[lane] = in_hits[i].v;
+  }
+  const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
+  const Hits hits = {vload16(0, t), vload16(0, ref), vload16(0, u), vload16(0, v)};
+  Surface s;
+  surfaces_at(&arrays, load_lanes3(origin), load_lanes3(direction), &hits, lanes_up_to(count), &s);
+  real front[3 * KDRAY_LANES], back[3 * KDRAY_LANES], normal[3 * KDRAY_LANES];
+  store_lanes3(offset_origin(s.point, s.point_error, s.normal), front);
+  store_lanes3(offset_origin(s.point, s.point_error, negate3(s.normal)), back);
+  store_lanes3(s.normal, normal);
+  for (u32 lane = 0; lane < count; ++lane) {
+    Departure d;
+    for (u32 k = 0; k < 3; ++k) {
+      d.front[k] = (float)front[k * KDRAY_LANES + lane];
+      d.back[k] = (float)back[k * KDRAY_LANES + lane];
+      d.normal[k] = (float)normal[k * KDRAY_LANES + lane];
+    }
+    d.pad = 0;
+    out_departures[first + lane] = d;
+  }
+}

@@ -1,0 +1,112 @@
+// What    What exact rules of skipping leave out changes no bit of the picture, and they do leave something out
+//         (docs/design/skipping.md). Switched off by the mask that kernels are compiled with.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "image/render.h"
+#include "image/scenes.h"
+#include "layout/features.h"
+#include "oracle/build_scene.h"
+
+namespace kdray::test {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 65;
+
+bool same_bits(const Picture& a, const Picture& b) {
+  return a.rgb.size() == b.rgb.size() &&
+         std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(float)) == 0;
+}
+
+RenderOptions keeping(std::uint32_t rules) {
+  RenderOptions o = exact_options(kWidth, kHeight);
+  o.keep = rules;
+  return o;
+}
+
+std::uint64_t skipped(const Renderer& renderer, const char* why) {
+  return statistics_of(renderer)["rays"]["skipped"][why];
+}
+
+// A mirroring floor with a sphere and a cone on it, seen from just above; lights high and low, near and far, one below the floor.
+scene::Scene floor_show() {
+  scene::Material mirror = oracle::matte(vec3(0.5f));
+  mirror.reflect = vec3(0.4f), mirror.specular = vec3(0.3f), mirror.shine = 20;
+  oracle::SceneBuilder b;
+  b.quad({-8, 0, 8}, {16, 0, 0}, {0, 0, -16}, mirror);
+  b.sphere({0, 1, 0}, 1, mirror);
+  b.cone({2, 0, 1}, 0.7, {2, 2, 1}, 0.1, mirror);
+  b.background({0.1f, 0.3f, 0.6f}).camera({-6, 0.9, 7}, {0, 0.7, 0}, 0.7);
+  for (const dvec3& place : {dvec3{3, 6, 4}, {-7.9, 0.2, -7.9}, {0, 40, 0}, {1, -2, 1}, {30, 0.001, 0}})
+    b.light(place, vec3(0.4f));
+  return b.scene();
+}
+
+class EachRule : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(EachRule, ChangesNoBit) {
+  const Scene scene{floor_show()};
+  Renderer renderer(scene);
+  const Picture usual = renderer.render(keeping(0));
+  ASSERT_GT(mean_luminance(usual), 0.05);
+  EXPECT_TRUE(same_bits(usual, renderer.render(keeping(GetParam()))));
+}
+
+INSTANTIATE_TEST_SUITE_P(Skipping, EachRule,
+                         testing::Values(KDRAY_KEEP_FRUSTUM, KDRAY_KEEP_OCCLUDER, KDRAY_KEEP_NEARNESS,
+                                         KDRAY_KEEP_BEYOND, KDRAY_KEEP_BEHIND, KDRAY_KEEP_UNLIT,
+                                         KDRAY_KEEP_WEIGHTLESS, KDRAY_KEEP_LEFT, KDRAY_KEEP_OPEN));
+
+class AllRules : public testing::TestWithParam<NamedScene> {};
+
+TEST_P(AllRules, ChangeNoBit) {
+  const scene::Scene model = GetParam().make();
+  const bool smooth = !model.normals.empty();  // where a shadow ray may start behind its triangle
+  const Scene scene{scene::Scene(model)};
+  Renderer renderer(scene);
+  const Picture usual = renderer.render(keeping(0));
+  const std::uint32_t all = KDRAY_KEEP_ALL & ~(smooth ? KDRAY_KEEP_LEFT : 0u);
+  EXPECT_TRUE(same_bits(usual, renderer.render(keeping(all))));
+}
+
+INSTANTIATE_TEST_SUITE_P(Skipping, AllRules, testing::ValuesIn(small_scenes()),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(Skipping, ChangesNoBitInODPRT) {
+  const Scene scene{floor_show()};
+  Renderer renderer(scene, {}, {.queues = 2});
+  RenderOptions usual = keeping(0), all = keeping(KDRAY_KEEP_ALL);
+  usual.mode = all.mode = Mode::odprt;
+  const Picture picture = renderer.render(usual);
+  EXPECT_GT(skipped(renderer, "light_in_the_open"), 0u);
+  EXPECT_TRUE(same_bits(picture, renderer.render(all)));
+}
+
+TEST(Skipping, LeavesOutWhatPassesTheCore) {
+  const Scene scene{floor_show()};
+  Renderer renderer(scene);
+  renderer.render(keeping(0));
+  const std::uint64_t shadow = statistics_of(renderer)["rays"]["shadow"];
+  const std::uint64_t reflected = statistics_of(renderer)["rays"]["reflected"];
+  const std::uint64_t open = skipped(renderer, "light_in_the_open");
+  const std::uint64_t background = skipped(renderer, "of_the_background");
+  EXPECT_GT(open, 1000u);
+  EXPECT_GT(background, 500u);
+  renderer.render(keeping(KDRAY_KEEP_OPEN));
+  EXPECT_EQ(statistics_of(renderer)["rays"]["shadow"], shadow + open);
+  EXPECT_EQ(statistics_of(renderer)["rays"]["reflected"], reflected + background);
+  EXPECT_EQ(skipped(renderer, "light_in_the_open") + skipped(renderer, "of_the_background"), 0u);
+}
+
+TEST(Skipping, TracesEverythingWithoutLeastWeight) {
+  const Scene scene{floor_show()};
+  Renderer renderer(scene);
+  RenderOptions o = keeping(0);
+  o.min_weight = 0;
+  renderer.render(o);
+  EXPECT_EQ(skipped(renderer, "light_in_the_open") + skipped(renderer, "of_the_background"), 0u);
+}
+
+}  // namespace
+}  // namespace kdray::test

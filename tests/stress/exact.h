@@ -1,0 +1,40 @@
+// What    Rays and primitives in exact arithmetic: the oracle of the stress suite.
+// Shape   Floats are sums of powers of two and so are their sums and products: with 1024 bits of mantissa all of those are
+//         exact for coordinates of 1e-12 to 1e12, and what is not (quotients, roots) is right to some 300 digits.
+// Source  GMP's mpf.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "layout/primitives.layout.h"
+#include "math/vec.h"
+
+namespace kdray::stress {
+
+using Exact = mpf_class;  // with set_precision() called before the first is made
+void set_precision();
+
+struct Exact3 {
+  Exact x, y, z;
+};
+Exact3 exactly(const float (&v)[3]);
+
+// All t, negative ones too, where the line meets the primitive as stored.
+std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Triangle& triangle);
+std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Sphere& sphere);
+std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Cone& cone);
+
+// The distance from the surface's plane, sphere or cone; of a sphere or cone with its sign: negative inside.
+double distance(const Exact3& point, const layout::Triangle& triangle);
+double distance(const Exact3& point, const layout::Sphere& sphere);
+double distance(const Exact3& point, const layout::Cone& cone);
+
+// |approximate - exact| in units of the last place of a float of `scale`'s size.
+double ulps(double approximate, const Exact& exact, double scale);
+double ulp(double scale);
+
+}  // namespace kdray::stress

@@ -1,0 +1,262 @@
+// A small picture for every feature mask that matters, by a launch per stage: every bit alone, every pair whose code meets, all.
+// The scene is made to have exactly the mask's features, so a mask that is left out of the table below is not tested.
+// Everything is called from one thread and the pictures are tiny, so that scripts/portability can run these under Oclgrind's
+// checks for memory errors, data races and uninitialised reads (docs/design/portability.md).
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "flatten/features.h"
+#include "flatten/flatten.h"
+#include "flatten/frame.h"
+#include "flatten/wide.h"
+#include "kdtree/build.h"
+#include "layout/features.h"
+#include "scene/geometry.h"
+#include "support/device.h"
+#include "wavefront/channels.h"
+#include "wavefront/curve.h"
+#include "wavefront/develop.h"
+#include "wavefront/wavefront.h"
+
+namespace kdray::wavefront {
+namespace {
+
+constexpr std::uint32_t kT = KDRAY_FEATURE_TRIANGLES, kS = KDRAY_FEATURE_SPHERES, kC = KDRAY_FEATURE_CONES,
+                        kSmooth = KDRAY_FEATURE_SMOOTH, kNumbers = KDRAY_FEATURE_NUMBERS,
+                        kReflect = KDRAY_FEATURE_REFLECT, kTransmit = KDRAY_FEATURE_TRANSMIT,
+                        kSpecular = KDRAY_FEATURE_SPECULAR, kDiffuse = KDRAY_FEATURE_DIFFUSE,
+                        kLights = KDRAY_FEATURE_LIGHTS, kFallOff = KDRAY_FEATURE_ATTENUATION,
+                        kDirectional = KDRAY_FEATURE_DIRECTIONAL, kSpot = KDRAY_FEATURE_SPOT,
+                        kBackground = KDRAY_FEATURE_BACKGROUND, kSamples = KDRAY_FEATURE_SUPERSAMPLE;
+constexpr std::uint32_t kLit = kDiffuse | kLights, kAll = 0x03000000u | 0x000f0000u | 0x0f00u | 0x1fu;
+
+bool has(std::uint32_t mask, std::uint32_t bit) {
+  return (mask & bit) != 0;
+}
+
+scene::Material material_of(std::uint32_t mask) {
+  scene::Material m{.ambient = vec3(0.2f, 0.1f, 0.15f), .shine = 12, .index = 1.4f};
+  if (has(mask, kDiffuse)) m.diffuse = vec3(0.5f, 0.4f, 0.3f);
+  if (has(mask, kSpecular)) m.specular = vec3(0.4f);
+  if (has(mask, kReflect)) m.reflect = vec3(0.3f, 0.5f, 0.4f);
+  if (has(mask, kTransmit)) m.transmit = vec3(0.6f, 0.5f, 0.7f);
+  return m;
+}
+
+// Above the objects, so that some shadows fall on them.
+std::vector<scene::Light> lights_of(std::uint32_t mask) {
+  if (!has(mask, kLights)) return {};
+  std::vector<scene::Light> lights{{.position = {1, 4, 3}, .color = vec3(0.5f)},
+                                   {.position = {-4, 3, 1}, .color = vec3(0.3f)}};
+  if (has(mask, kFallOff)) lights[0].attenuation = {0.5f, 0.1f, 0.02f}, lights[1].range = 5;
+  if (has(mask, kDirectional))
+    lights.push_back(
+        {.kind = scene::LightKind::directional, .direction = {0, -0.6, -0.8}, .color = vec3(0.4f)});
+  if (has(mask, kSpot))
+    lights.push_back({.kind = scene::LightKind::spot,
+                      .position = {0, 5, 0},
+                      .direction = {0, -1, 0},
+                      .color = vec3(0.6f),
+                      .cos_inner = 0.95f,
+                      .cos_outer = 0.8f});
+  return lights;
+}
+
+void add_triangles(scene::Scene& s, std::uint32_t mask, std::uint32_t first_number) {
+  s.vertices = {{-3, -1, -2}, {3, -1, -2}, {0, -1, 3}, {-1.5, -0.9, -1}, {1, -0.8, -1.2}, {0.2, 1.4, -1.4}};
+  if (has(mask, kSmooth)) s.normals = {{-0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}};
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    scene::Triangle t{.vertex = {3 * i, 3 * i + 1, 3 * i + 2}, .number = first_number + i};
+    if (i == 1 && has(mask, kSmooth)) t.normal = {0, 1, 2};
+    s.triangles.push_back(t);
+  }
+}
+
+scene::Scene scene_of(std::uint32_t mask) {
+  scene::Scene s;
+  s.materials = {material_of(mask)};
+  s.lights = lights_of(mask);
+  const std::uint32_t first_number = has(mask, kNumbers) ? 3 : 0;
+  if (has(mask, kT)) add_triangles(s, mask, first_number);
+  if (has(mask, kS))
+    s.spheres = {{.center = {-0.6, 0, 0}, .radius = 0.8, .number = first_number},
+                 {.center = {0.9, -0.2, 0.7}, .radius = 0.5, .number = first_number + 1}};
+  if (has(mask, kC))
+    s.cones = {{.base = {0.2, -1, 0.2},
+                .apex = {0.4, 1.2, 0},
+                .base_radius = 0.7,
+                .apex_radius = 0.2,
+                .number = first_number}};
+  if (has(mask, kBackground)) s.background = {0.1f, 0.2f, 0.3f};
+  s.camera = scene::Camera{.from = {0.5, 0.8, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 0.7};
+  return s;
+}
+
+struct Drawn {
+  std::vector<layout::i64> film;
+  Counters counters;
+};
+
+// A scene of exactly these features on a device, and its programs, which pictures share.
+class Subject {
+ public:
+  Subject(const device::Context& context, std::uint32_t mask) : context_(context), scene_(scene_of(mask)) {
+    options_.width = 9;
+    options_.height = 7;
+    options_.depth = 3;
+    options_.samples = has(mask, kSamples) ? 3 : 1;
+    options_ = flatten::resolved(options_, {});
+    features_ = flatten::features_of(scene_, geometry_) | flatten::features_of_samples(options_.samples);
+  }
+
+  std::uint32_t features() const { return features_; }
+
+  Drawn draw(const Schedule& schedule) {
+    layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
+    schedule.apply(frame, features_);
+    const std::vector<layout::u32> tiles = tile_curve(frame.n_tiles_x, 0, frame.n_tiles / frame.n_tiles_x);
+    const std::size_t n_pixels = std::size_t{frame.width} * frame.height;
+    Wavefront wavefront(context_, context_.queues().front(), buffers_, programs_, frame, schedule, features_,
+                        {.tiles = tiles.size(), .pixels = n_pixels});
+    wavefront.begin(0);
+    std::span<const layout::u32> left = tiles;
+    wavefront.render([&](const Progress&) { return std::exchange(left, {}); });
+    Drawn drawn;
+    wavefront.finish(0, n_pixels,
+                     [&](const FilmSums& film) { drawn.film.assign(film.sums.begin(), film.sums.end()); });
+    drawn.counters = wavefront.counters();
+    return drawn;
+  }
+
+  std::vector<film::Channel> channels() {
+    layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
+    Schedule{}.apply(frame, features_);
+    const std::vector<std::string> names = {"depth", "normal", "primitive", "cost"};
+    return render_channels(context_, buffers_, programs_, frame, features_, Precision::float32, names);
+  }
+
+ private:
+  const device::Context& context_;
+  scene::Scene scene_;
+  scene::Geometry geometry_ = scene::make_geometry(scene_);
+  kdtree::Tree tree_ = kdtree::build(geometry_);
+  flatten::FlatScene flat_ = flatten::flatten(scene_, geometry_, tree_);
+  flatten::WideForm wide_ = flatten::make_wide(tree_, flat_, flatten::choose_block(tree_));
+  SceneBuffers buffers_{context_, flat_, wide_};
+  Programs programs_{context_, tree_.max_depth, wide_};
+  RenderOptions options_;
+  std::uint32_t features_;
+};
+
+// As on GPUs: a launch per stage, a ray per work-item; batches that aren't full, several slices and groups. Streams are filled,
+// so that a checker of uninitialised reads says nothing of the lanes behind the last ray, which hold anything by design:
+// FreshMemoryDoesNotShow is about those.
+const Schedule kByStages{.tile_width = 4,
+                         .tile_height = 4,
+                         .batch_size = 24,
+                         .n_slices = 3,
+                         .fused = false,
+                         .work_group = 8,
+                         .fill = 0};
+
+class FeaturesTest : public test::EachDevice {
+ protected:
+  const device::Context context_{GetParam(), 1};
+
+  void draw(std::initializer_list<std::uint32_t> masks) {
+    for (const std::uint32_t mask : masks) {
+      Subject subject(context_, mask);
+      SCOPED_TRACE(fmt::format("{:#010x}: {}", mask, fmt::join(flatten::feature_names(mask).on, ", ")));
+      ASSERT_EQ(subject.features(), mask);
+      const Drawn drawn = subject.draw(kByStages);
+      const Counters& n = drawn.counters;
+      EXPECT_EQ(n.primary, 63u * (has(mask, kSamples) ? 3 : 1));
+      EXPECT_EQ(n.primary_hit > 0, has(mask, kT | kS | kC));
+      EXPECT_EQ(n.shadow > 0, has(mask, kLights));
+      // Glass reflects too, where refraction is impossible.
+      EXPECT_EQ(n.reflected > 0, has(mask, kReflect | (n.reflected > 0 ? kTransmit : 0)));
+      EXPECT_EQ(n.refracted > 0, has(mask, kTransmit));
+      const bool all_dark = std::ranges::all_of(drawn.film, [](layout::i64 sum) { return sum == 0; });
+      EXPECT_EQ(all_dark, !has(mask, kT | kS | kC | kBackground));
+    }
+  }
+};
+
+TEST_P(FeaturesTest, Geometry) {
+  draw({0, kT, kT | kLit, kS | kLit, kC | kLit, kT | kSmooth | kLit, kT | kNumbers | kLit,
+        kS | kNumbers | kLit, kC | kNumbers | kLit, kT | kS | kLit, kT | kC | kLit, kS | kC | kLit,
+        kT | kS | kC | kNumbers | kLit});
+}
+
+TEST_P(FeaturesTest, Materials) {
+  draw({kT | kDiffuse, kT | kSpecular, kT | kReflect, kT | kTransmit, kT | kSpecular | kLights,
+        kT | kSpecular | kLit, kT | kReflect | kLit, kT | kTransmit | kLit, kT | kReflect | kTransmit | kLit,
+        kS | kReflect | kLit, kS | kTransmit | kLit, kC | kReflect | kLit, kC | kTransmit | kLit,
+        kT | kSmooth | kSpecular | kLit, kT | kSmooth | kReflect | kLit, kT | kSmooth | kTransmit | kLit});
+}
+
+TEST_P(FeaturesTest, Lights) {
+  draw({kT | kLit | kFallOff, kT | kLit | kDirectional, kT | kLit | kSpot,
+        kT | kLit | kFallOff | kDirectional, kT | kLit | kFallOff | kSpot, kT | kLit | kDirectional | kSpot,
+        kT | kLit | kSpecular | kSpot});
+}
+
+TEST_P(FeaturesTest, Film) {
+  draw({kBackground, kT | kBackground, kT | kLit | kSamples, kT | kLit | kSamples | kBackground,
+        kT | kReflect | kBackground, kT | kTransmit | kBackground, kT | kReflect | kLit | kSamples});
+}
+
+TEST_P(FeaturesTest, All) {
+  draw({kAll});
+}
+
+// The forms for CPUs of the same picture: all stages in one launch, by each of the walks.
+TEST_P(FeaturesTest, AllInOneLaunch) {
+  Subject subject(context_, kAll);
+  const Drawn stages = subject.draw(kByStages);
+  for (const Traversal walk :
+       {Traversal::binary, Traversal::wide, Traversal::packet, Traversal::batch, Traversal::automatic}) {
+    SCOPED_TRACE(static_cast<int>(walk));
+    Schedule schedule = kByStages;
+    schedule.fused = true;
+    schedule.traversal = walk;
+    EXPECT_EQ(subject.draw(schedule).film, stages.film);
+  }
+}
+
+// NaN of both signs, infinity, small and large numbers, indices far outside of any array.
+TEST_P(FeaturesTest, FreshMemoryDoesNotShow) {
+  Subject subject(context_, kAll);
+  for (const bool fused : {false, true}) {
+    Schedule schedule = kByStages;
+    schedule.fused = fused;
+    const Drawn zeros = subject.draw(schedule);
+    for (const cl_uint word :
+         {0xffffffffu, 0x7fc00001u, 0x7f800000u, 0x3f800000u, 0x7f7fffffu, 0x00000001u}) {
+      SCOPED_TRACE(fmt::format("{} {:#010x}", fused ? "one launch" : "stages", word));
+      schedule.fill = word;
+      const Drawn other = subject.draw(schedule);
+      EXPECT_EQ(other.film, zeros.film);
+      EXPECT_EQ(other.counters.total(), zeros.counters.total());
+    }
+  }
+}
+
+TEST_P(FeaturesTest, Channels) {
+  for (const film::Channel& channel : Subject(context_, kAll).channels()) {
+    EXPECT_EQ(channel.values.size(), 63u) << channel.name;
+    EXPECT_TRUE(std::ranges::none_of(channel.values, [](float v) { return std::isnan(v); })) << channel.name;
+  }
+}
+
+KDRAY_FOR_EACH_DEVICE(FeaturesTest);
+
+}  // namespace
+}  // namespace kdray::wavefront
