@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <future>
+#include <string_view>
+
 #include "base/timer.h"
 #include "device/opencl_error.h"
+#include "kernels.h"
 #include "layout/features.h"
 #include "layout/traversal.h"
 
@@ -11,12 +16,13 @@ namespace kdray::wavefront {
 
 namespace {
 
-constexpr std::uint32_t kGeometry =
-    KDRAY_FEATURE_TRIANGLES | KDRAY_FEATURE_SPHERES | KDRAY_FEATURE_CONES | KDRAY_FEATURE_NUMBERS;
+constexpr std::uint32_t kGeometry = KDRAY_FEATURE_TRIANGLES | KDRAY_FEATURE_SPHERES | KDRAY_FEATURE_CONES |
+                                    KDRAY_FEATURE_NUMBERS | KDRAY_KEEP_TRACING;
 constexpr std::uint32_t kShading = kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT |
                                    KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE |
                                    KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
-                                   KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND;
+                                   KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND |
+                                   KDRAY_FEATURE_FACES | KDRAY_KEEP_SHADING;
 
 // A wide form larger than this lies outside of the nearer caches, where fetching ahead is worth its instructions: a tenth is lost at
 // 1 and 3 MB, up to a third gained at 20 MB.
@@ -24,11 +30,12 @@ constexpr std::size_t kNear = 4 << 20;
 
 // The bits a file reads: a scene that differs elsewhere shares the program.
 std::uint32_t bits_read_by(const std::string& file) {
-  if (file == "raygen/admit.cl") return KDRAY_FEATURE_SUPERSAMPLE;
+  if (file == "raygen/admit.cl") return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
   if (file == "film/add.cl") return 0;
   if (file == "film/channels.cl") return kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
   if (file == "shade/shade.cl") return kShading;
-  if (file == "wave/wave.cl" || file == "odprt/wave.cl") return kShading | KDRAY_FEATURE_SUPERSAMPLE;
+  if (file == "wave/wave.cl" || file == "odprt/wave.cl")
+    return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
   if (file == "odprt/receive.cl") return 0;
   return kGeometry;
 }
@@ -51,38 +58,83 @@ int number_of(Traversal traversal) {
 }  // namespace
 
 // Rounded up, so that scenes of like depth share programs.
-Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide)
+Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
+                   std::string more_options)
     : context_(&context),
+      more_options_(std::move(more_options)),
       stack_size_((tree_depth / 8 + 1) * 8),
       wide_stack_size_((wide.stack_size / 32 + 1) * 32),
       block_(wide.block),
-      prefetch_(wide.bytes() > kNear) {}
+      prefetch_(wide.bytes() > kNear) {
+  use({});
+}
 
-std::string Programs::options_for(std::uint32_t features, Traversal traversal) const {
-  std::string options = fmt::format("-cl-std=CL1.2 -DKDRAY_FEATURES={:#010x}u {}", features,
-                                    device::build_option(context_->simd()));
+// What is left to the kernels' own defaults isn't named, so that their programs are the same as ever.
+void Programs::use(const Tuning& t) {
+  const bool prefetch = t.prefetch == 0 ? prefetch_ : t.prefetch == 2;
+  walk_options_ = fmt::format(" -DKDRAY_PREFETCH={}", prefetch ? 1 : 0);
+  if (t.packets > 0) walk_options_ += fmt::format(" -DKDRAY_PACKETS={}", t.packets);
+  if (t.batch_rays > 0) walk_options_ += fmt::format(" -DKDRAY_BATCH_RAYS={}", t.batch_rays);
+  if (t.spread > 0) walk_options_ += fmt::format(" -DKDRAY_COHERENT_SPREAD={:.3f}f", 0.01 * t.spread);
+  if (t.distance > 0) walk_options_ += fmt::format(" -DKDRAY_COHERENT_DISTANCE={:.4f}f", 0.001 * t.distance);
+}
+
+std::string Programs::options_for(std::uint32_t features, Traversal traversal, Precision precision) const {
+  const bool in_double = precision == Precision::float64;  // whose vectors have the portable form alone
+  std::string options =
+      fmt::format("-cl-std=CL1.2 -DKDRAY_FEATURES={:#010x}u {}", features,
+                  device::build_option(in_double ? device::Simd::portable : context_->simd()));
+  if (in_double) options += " -DKDRAY_PRECISION=64";
   if (traversal == Traversal::binary) {
     options += fmt::format(" -DKDRAY_STACK_SIZE={}", stack_size_);
   } else {
-    options += fmt::format(" -DKDRAY_TRAVERSAL={} -DKDRAY_BLOCK={} -DKDRAY_WIDE_STACK={} -DKDRAY_PREFETCH={}",
-                           number_of(traversal), block_, wide_stack_size_, prefetch_ ? 1 : 0);
+    options += fmt::format(" -DKDRAY_TRAVERSAL={} -DKDRAY_BLOCK={} -DKDRAY_WIDE_STACK={}",
+                           number_of(traversal), block_, wide_stack_size_) +
+               walk_options_;
   }
   if (context_->rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";
+  if (!more_options_.empty()) options += " " + more_options_;
   return options;
 }
 
-cl::Kernel Programs::kernel(const std::string& file, const std::string& name, std::uint32_t features,
-                            Traversal traversal) {
-  const std::uint32_t bits = features & bits_read_by(file);
-  const std::tuple key{file, bits, traversal};
-  auto found = programs_.find(key);
-  if (found == programs_.end()) {
-    const Timer timer;
-    found = programs_.emplace(key, context_->build(file, options_for(bits, traversal))).first;
-    build_seconds_ += timer.seconds();
+std::size_t Programs::n_known() {
+  const auto sources = kernels::sources();
+  return static_cast<std::size_t>(std::count_if(sources.begin(), sources.end(), [](const kernels::Source& s) {
+    const std::string_view name = s.name;
+    return name.ends_with(".cl") && name != "common/simd_test.cl";
+  }));
+}
+
+Programs::Key Programs::key_of(const Wanted& w) const {
+  return {w.file, w.features & bits_read_by(w.file), w.traversal, w.precision,
+          w.traversal == Traversal::binary ? std::string() : walk_options_};
+}
+
+// By a thread each: compilers work on several programs at once, and where they don't they take turns. But Oclgrind 21.10's are not
+// safe in several threads, nor in another than the first: they crash.
+void Programs::build(const std::vector<Wanted>& wanted) {
+  const Timer timer;
+  const auto when = context_->info().platform == "Oclgrind" ? std::launch::deferred : std::launch::async;
+  std::map<Key, std::future<cl::Program>> building;
+  for (const Wanted& w : wanted) {
+    const Key key = key_of(w);
+    if (programs_.contains(key) || building.contains(key)) continue;
+    building.emplace(key, std::async(when, [this, key] {
+                       const auto& [file, bits, traversal, precision, walk] = key;
+                       return context_->build(file, options_for(bits, traversal, precision));
+                     }));
   }
-  return device::checked("making the kernel " + name,
-                         [&] { return cl::Kernel(found->second, name.c_str()); });
+  if (building.empty()) return;
+  for (auto& [key, program] : building) programs_.emplace(key, program.get());
+  build_seconds_ += timer.seconds();
+}
+
+cl::Kernel Programs::kernel(const std::string& file, const std::string& name, std::uint32_t features,
+                            Traversal traversal, Precision precision) {
+  const Wanted wanted{file, features, traversal, precision};
+  build({wanted});
+  const cl::Program& program = programs_.at(key_of(wanted));
+  return device::checked("making the kernel " + name, [&] { return cl::Kernel(program, name.c_str()); });
 }
 
 }  // namespace kdray::wavefront

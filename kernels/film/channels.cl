@@ -31,7 +31,8 @@ __kernel void channels(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_
   const real3 eye = load3_constant(frame->eye);
   const Row dx = row_of(d.x), dy = row_of(d.y), dz = row_of(d.z);
   const Row t_min = row_of(frame->hither / dot3(d, splat3(load3_constant(frame->forward))));
-  Row t, u, v, number, cost;
+  // Lanes behind the last pixel are computed with: as a miss.
+  Row t = row_of((real16)(INFINITY)), u = row_of((real16)(0.0f)), v = u, number = u, cost = u;
   word refs[KDRAY_LANES];
   for (u32 i = 0; i < KDRAY_LANES; ++i) {
     refs[i] = KDRAY_REF_MISS;

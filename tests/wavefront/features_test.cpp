@@ -187,6 +187,14 @@ class FeaturesTest : public test::EachDevice {
       EXPECT_EQ(all_dark, !has(mask, kT | kS | kC | kBackground));
     }
   }
+
+  void expect_the_same_in_one_launch(Traversal walk) {
+    Subject subject(context_, kAll);
+    Schedule schedule = kByStages;
+    schedule.fused = true;
+    schedule.traversal = walk;
+    EXPECT_EQ(subject.draw(schedule).film, subject.draw(kByStages).film);
+  }
 };
 
 TEST_P(FeaturesTest, Geometry) {
@@ -218,17 +226,20 @@ TEST_P(FeaturesTest, All) {
 }
 
 // The forms for CPUs of the same picture: all stages in one launch, by each of the walks.
-TEST_P(FeaturesTest, AllInOneLaunch) {
-  Subject subject(context_, kAll);
-  const Drawn stages = subject.draw(kByStages);
-  for (const Traversal walk :
-       {Traversal::binary, Traversal::wide, Traversal::packet, Traversal::batch, Traversal::automatic}) {
-    SCOPED_TRACE(static_cast<int>(walk));
-    Schedule schedule = kByStages;
-    schedule.fused = true;
-    schedule.traversal = walk;
-    EXPECT_EQ(subject.draw(schedule).film, stages.film);
-  }
+TEST_P(FeaturesTest, OneLaunchOfTheBinaryWalk) {
+  expect_the_same_in_one_launch(Traversal::binary);
+}
+TEST_P(FeaturesTest, OneLaunchOfTheWideWalk) {
+  expect_the_same_in_one_launch(Traversal::wide);
+}
+TEST_P(FeaturesTest, OneLaunchOfPackets) {
+  expect_the_same_in_one_launch(Traversal::packet);
+}
+TEST_P(FeaturesTest, OneLaunchOfBatches) {
+  expect_the_same_in_one_launch(Traversal::batch);
+}
+TEST_P(FeaturesTest, OneLaunchOfAllWalks) {
+  expect_the_same_in_one_launch(Traversal::automatic);
 }
 
 // NaN of both signs, infinity, small and large numbers, indices far outside of any array.
