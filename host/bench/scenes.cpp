@@ -1,5 +1,6 @@
 #include "bench/scenes.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -29,7 +30,17 @@ scene::Scene displaced() {
   throw input_error(name, 0, "neither a file nor a built-in scene", "built in are " + known);
 }
 
+bool is_built_in(const std::string& name) {
+  return name == "boxes" || name == "spheres" || name == "lamps" || name == "displaced" ||
+         std::ranges::any_of(generate::generators(),
+                             [&](const generate::Generator& g) { return g.name == name; });
+}
+
 }  // namespace
+
+void require_scene(const std::string& name_or_file) {
+  if (!is_built_in(name_or_file) && !std::filesystem::exists(name_or_file)) fail_unknown(name_or_file);
+}
 
 scene::Scene load_scene(const std::string& name_or_file) {
   if (name_or_file == "boxes") return boxes();
@@ -45,7 +56,7 @@ scene::Scene load_scene(const std::string& name_or_file) {
     scene::frame_scene(made);
     return made;
   }
-  if (!std::filesystem::exists(name_or_file)) fail_unknown(name_or_file);
+  require_scene(name_or_file);
   return scene::load(name_or_file);
 }
 

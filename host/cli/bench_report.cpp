@@ -4,6 +4,7 @@
 
 #include "base/write_file.h"
 #include "bench/embree.h"
+#include "bench/scenes.h"
 #include "cli/message.h"
 #include "kdray/error.h"
 
@@ -47,6 +48,7 @@ void add_report(CLI::App& app, std::string& report) {
 void add_scenes(CLI::App& app, std::vector<std::string>& scenes, const std::string& default_scenes) {
   app.add_option("SCENE", scenes,
                  "Scene files, or names of built-in scenes (default: " + default_scenes + ")")
+      ->each(bench::require_scene)
       ->type_name("");
 }
 

@@ -28,6 +28,12 @@ void expect_numbers(const Json& spread) {
   }
 }
 
+// Before the first scene is measured, which would be for nothing.
+TEST(BenchAblation, AMissingSceneIsToldAtOnce) {
+  const Outcome run = kdray({"bench", "ablation", "boxes", "no_such_scene"});
+  EXPECT_TRUE(fails_with(run, 1, "no_such_scene: neither a file nor a built-in scene"));
+}
+
 TEST(BenchAblation, WritesTableFiguresAndPlot) {
   KDRAY_NEED_DEVICE();
   const Folder folder;

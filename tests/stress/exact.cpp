@@ -53,7 +53,10 @@ std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Sphere&
   return quadratic(dot(d, d), dot(f, d), dot(f, f) - r * r);
 }
 
-std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Cone& cone) {
+namespace {
+
+std::vector<Exact> roots_of(const Exact3& o, const Exact3& d, const layout::Cone& cone,
+                            bool beyond_the_ends) {
   const Exact3 f = minus(o, exactly(cone.base)), axis = exactly(cone.axis);
   const Exact length2 = dot(axis, axis), fs = dot(f, axis) / length2, ds = dot(d, axis) / length2;
   const Exact r = cone.base_radius + cone.slope * fs, dr = cone.slope * ds;
@@ -62,9 +65,20 @@ std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Cone& c
        quadratic(dot(d, d) - ds * ds * length2 - dr * dr, dot(f, d) - fs * ds * length2 - r * dr,
                  dot(f, f) - fs * fs * length2 - r * r)) {
     const Exact s = fs + t * ds;
-    if (sgn(s) >= 0 && s <= cone.height && sgn(Exact(r + t * dr)) >= 0) found.push_back(t);
+    const bool within = beyond_the_ends || (sgn(s) >= 0 && s <= cone.height);
+    if (within && sgn(Exact(r + t * dr)) >= 0) found.push_back(t);
   }
   return found;
+}
+
+}  // namespace
+
+std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Cone& cone) {
+  return roots_of(o, d, cone, false);
+}
+
+std::vector<Exact> roots_beyond_the_ends(const Exact3& o, const Exact3& d, const layout::Cone& cone) {
+  return roots_of(o, d, cone, true);
 }
 
 double distance(const Exact3& p, const layout::Triangle& triangle) {

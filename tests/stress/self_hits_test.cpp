@@ -197,6 +197,7 @@ struct Departure {
   bool to_light;
   float radius;  // of the surface where it leaves it
   float step;    // how far off the surface its origin was moved, about
+  float blur;    // by how much at most in any direction
 };
 
 // A light that is nearer to the surface than rounding can tell is lit or not as rounding will have it.
@@ -213,19 +214,36 @@ bool ends_at_the_surface(const Kind& surface, const Ray& ray, const Departure& d
 Verdict judge(const layout::Triangle& surface, const Ray& ray, const Hit&, const Departure& departure) {
   return ends_at_the_surface(surface, ray, departure) ? Verdict::excepted : Verdict::wrong;
 }
+// Whether a point of the surface that is moved inwards by the step may come out again: on the other side, or across, where the
+// blur is longer than half of the chord at that depth.
+bool may_come_out_again(const Departure& d) {
+  return 4 * d.step > d.radius || d.blur * d.blur > d.step * (2 * d.radius - d.step);
+}
+
+// A ray that grazes a cone may meet it next where the exact one is just past an end.
+bool is_at_an_end(const Exact3& o, const Exact3& d, const layout::Cone& cone, float t_found) {
+  const std::vector<Exact> all = roots_beyond_the_ends(o, d, cone);
+  return std::ranges::any_of(all, [t_found](const Exact& root) {
+    return root > 0 && std::abs(t_found - root.get_d()) <= 0.01 * root.get_d();
+  });
+}
+bool is_at_an_end(const Exact3&, const Exact3&, const layout::Sphere&, float) {
+  return false;
+}
+
 template <class Curved>
 Verdict judge(const Curved& surface, const Ray& ray, const Hit& hit, const Departure& departure) {
   if (ends_at_the_surface(surface, ray, departure)) return Verdict::excepted;
   if (!departure.inwards) return Verdict::wrong;
   const Exact3 o = exactly(ray.origin), d = exactly(ray.direction);
-  if (distance(o, surface) > 0)  // moved right through
-    return 4 * departure.step > departure.radius ? Verdict::excepted : Verdict::wrong;
+  if (distance(o, surface) > 0) return may_come_out_again(departure) ? Verdict::excepted : Verdict::wrong;
   // From inside: the hit is what is behind the ray's way, not what it left.
   for (const Exact& root : roots(o, d, surface)) {
     const double t = root.get_d();
     // (Grazing, rounding moves it far; what was left lies behind the origin.)
     if (t > 0 && std::abs(hit.t - t) <= 0.5 * t) return Verdict::right;
   }
+  if (is_at_an_end(o, d, surface, hit.t)) return Verdict::excepted;
   return 64 * departure.step > departure.radius ? Verdict::excepted : Verdict::wrong;
 }
 
@@ -334,10 +352,11 @@ class Case {
       const Kind& primitive = primitive_of(hits[i].ref);
       const bool inside = s.flags & kFromInside;
       const float step = static_cast<float>(glm::dot(glm::abs(point3(s.normal)), point3(s.point_error)));
+      const float blur = static_cast<float>(glm::length(point3(s.point_error)));
       const auto put = [&](const float(&o)[3], const float(&d)[3], bool inwards, bool to_light) {
         if (!std::isfinite(d[0] + d[1] + d[2]) || (d[0] == 0 && d[1] == 0 && d[2] == 0)) return;
         rays_.push_back({{o[0], o[1], o[2]}, 0, {d[0], d[1], d[2]}, to_light ? 1 - 0x1p-19f : kInfinity});
-        departures_.push_back({primitive.number, inwards, to_light, radius_at(primitive, s), step});
+        departures_.push_back({primitive.number, inwards, to_light, radius_at(primitive, s), step, blur});
       };
       put(s.above, s.reflected, inside, false);
       if (s.flags & kRefracts) put(s.below, s.refracted, !inside, false);
