@@ -56,7 +56,7 @@ std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Sphere&
 namespace {
 
 std::vector<Exact> roots_of(const Exact3& o, const Exact3& d, const layout::Cone& cone,
-                            bool beyond_the_ends) {
+                            double past_the_ends) {
   const Exact3 f = minus(o, exactly(cone.base)), axis = exactly(cone.axis);
   const Exact length2 = dot(axis, axis), fs = dot(f, axis) / length2, ds = dot(d, axis) / length2;
   const Exact r = cone.base_radius + cone.slope * fs, dr = cone.slope * ds;
@@ -65,7 +65,8 @@ std::vector<Exact> roots_of(const Exact3& o, const Exact3& d, const layout::Cone
        quadratic(dot(d, d) - ds * ds * length2 - dr * dr, dot(f, d) - fs * ds * length2 - r * dr,
                  dot(f, f) - fs * fs * length2 - r * r)) {
     const Exact s = fs + t * ds;
-    const bool within = beyond_the_ends || (sgn(s) >= 0 && s <= cone.height);
+    const Exact more = past_the_ends * cone.height;
+    const bool within = s >= -more && s <= cone.height + more;
     if (within && sgn(Exact(r + t * dr)) >= 0) found.push_back(t);
   }
   return found;
@@ -74,11 +75,12 @@ std::vector<Exact> roots_of(const Exact3& o, const Exact3& d, const layout::Cone
 }  // namespace
 
 std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Cone& cone) {
-  return roots_of(o, d, cone, false);
+  return roots_of(o, d, cone, 0);
 }
 
-std::vector<Exact> roots_beyond_the_ends(const Exact3& o, const Exact3& d, const layout::Cone& cone) {
-  return roots_of(o, d, cone, true);
+std::vector<Exact> roots_past_the_ends(const Exact3& o, const Exact3& d, const layout::Cone& cone,
+                                       double share) {
+  return roots_of(o, d, cone, share);
 }
 
 double distance(const Exact3& p, const layout::Triangle& triangle) {

@@ -27,9 +27,9 @@ Exact3 exactly(const float (&v)[3]);
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Triangle& triangle);
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Sphere& sphere);
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Cone& cone);
-// The same without the cone's ends: of the surface carried on to its tip and beyond its base.
-std::vector<Exact> roots_beyond_the_ends(const Exact3& origin, const Exact3& direction,
-                                         const layout::Cone& cone);
+// The same of the cone carried on at both ends, by this share of its height.
+std::vector<Exact> roots_past_the_ends(const Exact3& origin, const Exact3& direction,
+                                       const layout::Cone& cone, double share);
 
 // The distance from the surface's plane, sphere or cone; of a sphere or cone with its sign: negative inside.
 double distance(const Exact3& point, const layout::Triangle& triangle);

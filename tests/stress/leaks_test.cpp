@@ -134,7 +134,7 @@ void trace_family(ClosedMesh& mesh, const Family& family, std::uint64_t seed, st
 void expect_tight(const Tally& tally) {
   tally.publish();
   EXPECT_EQ(tally.wrong(), 0) << "seed " << kSeed << ", " << tally.first_wrong;
-  EXPECT_EQ(tally.differing, 0) << "hits that differ between the traversals";
+  EXPECT_EQ(tally.differing, 0) << "hits that differ between the traversals: " << tally.first_differing;
 }
 
 class Leaks : public testing::TestWithParam<Family> {

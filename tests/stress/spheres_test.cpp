@@ -78,7 +78,7 @@ class Spheres : public testing::Test {
     for (std::size_t w = 0; w < kWalks.size(); ++w) tally.row(w).exceptions = undecided;
     tally.publish();
     EXPECT_EQ(tally.wrong(), 0) << "seed " << kSeed << ", " << tally.first_wrong;
-    EXPECT_EQ(tally.differing, 0);
+    EXPECT_EQ(tally.differing, 0) << tally.first_differing;
     EXPECT_LT(undecided, n / 2);
   }
 

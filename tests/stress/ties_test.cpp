@@ -97,7 +97,7 @@ TEST_P(Ties, OverlappingInAPlaneAcrossAnAxis) {
     trace_all(renderer, 0, rays_to_trace(0.002), make, wrong, tally);
     tally.publish();
     EXPECT_EQ(tally.wrong(), 0) << "seed " << kSeed << ", " << tally.first_wrong;
-    EXPECT_EQ(tally.differing, 0);
+    EXPECT_EQ(tally.differing, 0) << tally.first_differing;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Axis, Ties, testing::Values(0, 1, 2));
@@ -121,7 +121,7 @@ TEST_F(Ties, CoincidingInAnyPlane) {
   trace_all(renderer, 0, rays_to_trace(0.004), make, wrong, tally);
   tally.publish();
   EXPECT_EQ(tally.wrong(), 0) << "seed " << kSeed << ", " << tally.first_wrong;
-  EXPECT_EQ(tally.differing, 0);
+  EXPECT_EQ(tally.differing, 0) << tally.first_differing;
 }
 
 }  // namespace

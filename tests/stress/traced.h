@@ -37,8 +37,8 @@ class Tally {
     for (std::size_t w = 0; w < kWalks.size(); ++w) rows_[w] = {figure, family, kWalks[w].name};
   }
   Row& row(std::size_t walk) { return rows_[walk]; }
-  std::uint64_t differing = 0;  // hits or occlusions that are not the binary walk's, bit for bit
-  std::string first_wrong;      // in words
+  std::uint64_t differing = 0;               // hits or occlusions that are not the binary walk's, bit for bit
+  std::string first_wrong, first_differing;  // in words
 
   std::uint64_t wrong() const {
     std::uint64_t sum = 0;
@@ -80,6 +80,20 @@ inline bool same_bits(const Hit& a, const Hit& b) {
 std::string in_words(const Ray& ray);
 std::string in_words(const Hit& hit);
 
+// Adds the rays whose hits differ from the binary walk's, or whose occlusion does from `hits`, and tells of the first.
+template <class Differs>
+void count_differing(const std::vector<Ray>& rays, const std::vector<Hit>& found,
+                     const std::vector<Hit>& reference, const std::string& walk, const Differs& differs,
+                     Tally& tally) {
+  const std::uint64_t n = count(rays.size(), differs);
+  tally.differing += n;
+  if (n == 0 || !tally.first_differing.empty()) return;
+  std::size_t i = 0;
+  while (!differs(i)) ++i;
+  tally.first_differing =
+      walk + ": " + in_words(rays[i]) + in_words(found[i]) + ", binary" + in_words(reference[i]);
+}
+
 // `total` rays, each traced by every walk. `first`: the number of the first.
 template <class Make, class Wrong>
 void trace_all(Renderer& renderer, std::uint64_t first, std::uint64_t total, const Make& make,
@@ -102,12 +116,13 @@ void trace_all(Renderer& renderer, std::uint64_t first, std::uint64_t total, con
       row.rays += n;
       row.wrong += bad;
       if (w == 0) reference = hits;
-      tally.differing += count(n, [&](std::size_t i) { return !same_bits(hits[i], reference[i]); });
+      const auto other = [&](std::size_t i) { return !same_bits(hits[i], reference[i]); };
+      count_differing(rays, hits, reference, kWalks[w].name, other, tally);
       if (!occlusion_too) continue;
       const std::vector<Hit> any = renderer.trace(rays, true, 1, kWalks[w].traversal);
       const auto unlike = [&](std::size_t i) { return (any[i].t == 0) != (reference[i].primitive >= 0); };
       row.rays += n;
-      tally.differing += count(n, unlike);
+      count_differing(rays, any, reference, std::string("occlusion, ") + kWalks[w].name, unlike, tally);
     }
   }
 }
