@@ -41,6 +41,7 @@ struct RaysCommand {
 };
 
 int run_rays(const RaysCommand& c) {
+  require_scenes(c.options.scenes);
   prepare_report(c.report, "rays");
   if (c.options.embree) say_without_embree();
   const auto runs = bench::bench_rays(
@@ -54,6 +55,7 @@ int run_rays(const RaysCommand& c) {
 }
 
 int run_frames(const FramesCommand& c) {
+  require_scenes(c.options.scenes);
   prepare_report(c.report, "frames");
   say_without_embree();
   if (!bench::has_povray()) say("povray is not installed: its times are left out");

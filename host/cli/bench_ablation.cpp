@@ -26,6 +26,7 @@ struct AblationCommand {
 };
 
 int run(const AblationCommand& c) {
+  require_scenes(c.options.scenes);
   prepare_report(c.report, "ablation");
   const auto runs = bench::bench_ablation(
       c.options, [](const bench::AblationRun& run) { print_table(bench::table_of(run)); },

@@ -41,6 +41,7 @@ void prepare_pictures(const std::string& report) {
 }
 
 int run(const AccuracyCommand& c) {
+  require_scenes(c.options.scenes);
   prepare_report(c.report, kName);
   prepare_pictures(c.report);
   if (c.options.povray && !bench::has_povray()) say("povray is not installed: its points are left out");

@@ -33,6 +33,7 @@ void tell(const std::string& what) {
 }
 
 int run_build(const BuildCommand& c) {
+  require_scenes(c.options.scenes);
   prepare_report(c.report, "build");
   if (c.options.embree) say_without_embree();
   const auto runs = bench::bench_build(

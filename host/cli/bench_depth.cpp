@@ -23,6 +23,7 @@ struct DepthCommand {
 };
 
 int run(const DepthCommand& c) {
+  require_scenes(c.options.scenes);
   prepare_report(c.report, "depth");
   const auto runs = bench::bench_depth(
       c.options, [](const bench::DepthRun& run) { print_table(bench::table_of(run)); },

@@ -47,6 +47,7 @@ void write_plot(const std::string& folder, const std::string& name, const std::s
 }
 
 int run(const ModesCommand& c) {
+  require_scenes(c.options.scenes);
   prepare_report(c.report, "modes");
   const auto runs = bench::bench_modes(
       c.options, [&](const bench::ModesRun& run) { print_table(bench::table_of(run, c.options)); },

@@ -48,8 +48,11 @@ void add_report(CLI::App& app, std::string& report) {
 void add_scenes(CLI::App& app, std::vector<std::string>& scenes, const std::string& default_scenes) {
   app.add_option("SCENE", scenes,
                  "Scene files, or names of built-in scenes (default: " + default_scenes + ")")
-      ->each(bench::require_scene)
       ->type_name("");
+}
+
+void require_scenes(const std::vector<std::string>& scenes) {
+  for (const std::string& name : scenes) bench::require_scene(name);
 }
 
 }  // namespace kdray::cli

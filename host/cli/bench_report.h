@@ -15,6 +15,9 @@ namespace kdray::cli {
 void add_report(CLI::App& app, std::string& report);
 void add_scenes(CLI::App& app, std::vector<std::string>& scenes, const std::string& default_scenes);
 
+// Throws for a name that is neither a file's nor a built-in scene's: before the first scene is measured.
+void require_scenes(const std::vector<std::string>& scenes);
+
 // A folder for the report, made before anything is measured; nothing where there is to be none.
 void prepare_report(const std::string& folder, const std::string& name);
 void write_report(const std::string& folder, const std::string& name, const bench::Json& json,
