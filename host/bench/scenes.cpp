@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "bench/meshes.h"
@@ -24,38 +27,48 @@ scene::Scene displaced() {
   return made;
 }
 
-[[noreturn]] void fail_unknown(const std::string& name) {
-  std::string known = "boxes spheres displaced lamps";
-  for (const generate::Generator& g : generate::generators()) known.append(" ").append(g.name);
-  throw input_error(name, 0, "neither a file nor a built-in scene", "built in are " + known);
+scene::Scene generated(const generate::Generator& g) {
+  std::ostringstream text;
+  generate::generate(g.name, g.default_size, text);
+  scene::Scene made = scene::read_nff(text.str(), std::string(g.name) + ".nff");
+  made.name = g.name;
+  scene::frame_scene(made);
+  return made;
 }
 
-bool is_built_in(const std::string& name) {
-  return name == "boxes" || name == "spheres" || name == "lamps" || name == "displaced" ||
-         std::ranges::any_of(generate::generators(),
-                             [&](const generate::Generator& g) { return g.name == name; });
+struct BuiltIn {
+  std::string name;
+  std::function<scene::Scene()> make;
+};
+
+const std::vector<BuiltIn>& all_built_in() {
+  static const std::vector<BuiltIn> all = [] {
+    std::vector<BuiltIn> made = {
+        {"boxes", boxes}, {"spheres", spheres}, {"displaced", displaced}, {"lamps", lamps}};
+    for (const generate::Generator& g : generate::generators())
+      made.push_back({std::string(g.name), [&g] { return generated(g); }});
+    return made;
+  }();
+  return all;
+}
+
+// None of that name: null.
+const BuiltIn* find_built_in(const std::string& name) {
+  const auto found = std::ranges::find(all_built_in(), name, &BuiltIn::name);
+  return found == all_built_in().end() ? nullptr : &*found;
 }
 
 }  // namespace
 
 void require_scene(const std::string& name_or_file) {
-  if (!is_built_in(name_or_file) && !std::filesystem::exists(name_or_file)) fail_unknown(name_or_file);
+  if (find_built_in(name_or_file) || std::filesystem::exists(name_or_file)) return;
+  std::string known;
+  for (const BuiltIn& b : all_built_in()) known.append(known.empty() ? "" : " ").append(b.name);
+  throw input_error(name_or_file, 0, "neither a file nor a built-in scene", "built in are " + known);
 }
 
 scene::Scene load_scene(const std::string& name_or_file) {
-  if (name_or_file == "boxes") return boxes();
-  if (name_or_file == "spheres") return spheres();
-  if (name_or_file == "lamps") return lamps();
-  if (name_or_file == "displaced") return displaced();
-  for (const generate::Generator& g : generate::generators()) {
-    if (g.name != name_or_file) continue;
-    std::ostringstream text;
-    generate::generate(g.name, g.default_size, text);
-    scene::Scene made = scene::read_nff(text.str(), name_or_file + ".nff");
-    made.name = name_or_file;
-    scene::frame_scene(made);
-    return made;
-  }
+  if (const BuiltIn* const b = find_built_in(name_or_file)) return b->make();
   require_scene(name_or_file);
   return scene::load(name_or_file);
 }
