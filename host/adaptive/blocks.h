@@ -2,6 +2,7 @@
 //         the device goes through a tile (kernels/raygen/place.clh), so that sixteen samples in a row make a packet.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -17,8 +18,14 @@ class Blocks {
  public:
   static constexpr std::uint32_t kSide = 32;
 
+  struct Corner {
+    std::uint32_t x, y;
+  };
+
   explicit Blocks(Size size);
 
+  Size size() const { return size_; }
+  Corner corner(std::size_t block) const { return corners_[block]; }
   std::size_t count() const { return corners_.size(); }
 
   // Calls take(pixel, x, y) for the block's pixels.
@@ -31,14 +38,20 @@ class Blocks {
     }
   }
 
+  // In rows, where their order is all the same.
+  template <class Take>
+  void for_each_by_rows(std::size_t block, const Take& take) const {
+    const Corner corner = corners_[block];
+    const std::uint32_t end_x = std::min(corner.x + kSide, size_.width),
+                        end_y = std::min(corner.y + kSide, size_.height);
+    for (std::uint32_t y = corner.y; y < end_y; ++y)
+      for (std::uint32_t x = corner.x; x < end_x; ++x) take(std::size_t{y} * size_.width + x, x, y);
+  }
+
   // The blocks that touch it, and itself.
   std::vector<std::size_t> around(std::size_t block) const;
 
  private:
-  struct Corner {
-    std::uint32_t x, y;
-  };
-
   static std::uint32_t even_bits(std::uint32_t v) {
     v &= 0x55555555u;
     v = (v | (v >> 1)) & 0x33333333u;

@@ -5,11 +5,13 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "adaptive/contrast.h"
+#include "adaptive/neighbours.h"
 
 namespace kdray::adaptive {
 
@@ -75,43 +77,63 @@ void Sampler::begin() {
   std::iota(changed_.begin(), changed_.end(), std::size_t{0});
 }
 
-// The squared error of the mean of the pixel's samples. Few samples may agree by chance: the neighbours' count as some more.
-float Sampler::error_of(std::size_t pixel, std::uint32_t x, std::uint32_t y) const {
-  float sum = 0, refined_sum = 0;
-  int n = 0;
-  for (std::uint32_t v = y - std::min(y, 1u); v <= std::min(y + 1, size_.height - 1); ++v)
-    for (std::uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, size_.width - 1); ++u) {
-      const std::size_t other = std::size_t{v} * size_.width + u;
-      if (other == pixel) continue;
-      sum += variance_[other];
-      if (level_[other] > 0) refined_sum += variance_[other];
-      ++n;
+// The squared error of the mean of a block's pixels' samples. Few samples may agree by chance: the neighbours' count as some more.
+class Sampler::Errors {
+ public:
+  Errors(const Sampler& sampler, std::size_t block)
+      : sampler_(sampler),
+        variances_(sampler.blocks_, block, [&](std::size_t pixel) { return sampler.variance_[pixel]; }),
+        refined_(sampler.blocks_, block, [&](std::size_t pixel) {
+          return sampler.level_[pixel] > 0 ? sampler.variance_[pixel] : 0.0f;
+        }) {}
+
+  float of(std::size_t pixel, std::uint32_t x, std::uint32_t y) const {
+    const float each = 1.0f / static_cast<float>(std::max(neighbours_of(x, y, sampler_.size_), 1u));
+    const float variance = sampler_.variance_[pixel];
+    const int level = sampler_.level_[pixel];
+    if (level == 0) return remains_at(0) * std::max(variance, kSpill * refined_.sum(x, y) * each);
+    const float own = static_cast<float>(samples_of(level) - 1);
+    return remains_at(level) * (own * variance + kNeighbours * variances_.sum(x, y) * each) /
+           (own + kNeighbours);
+  }
+
+ private:
+  const Sampler& sampler_;
+  const Neighbours variances_, refined_;
+};
+
+// error_of(pixel, x, y), of all its pixels.
+template <class ErrorOf>
+void Sampler::estimate_block(std::size_t block, Prices& changes, const ErrorOf& error_of) {
+  const bool first = rounds_ == 1;
+  std::uint16_t dearest = 0;
+  blocks_.for_each_by_rows(block, [&](std::size_t pixel, std::uint32_t x, std::uint32_t y) {
+    const int level = level_[pixel];
+    const float price = error_of(pixel, x, y) / static_cast<float>(samples_of(level));
+    const auto number = static_cast<std::uint16_t>(Prices::class_of(price));
+    if (first || number != class_[pixel]) {
+      if (!first) changes.remove(level, class_[pixel]);
+      class_[pixel] = number;
+      changes.add(level, number);
     }
-  const float each = 1.0f / static_cast<float>(std::max(n, 1));
-  const int level = level_[pixel];
-  if (level == 0) return remains_at(0) * std::max(variance_[pixel], kSpill * refined_sum * each);
-  const float own = static_cast<float>(samples_of(level) - 1);
-  const float variance = (own * variance_[pixel] + kNeighbours * sum * each) / (own + kNeighbours);
-  return remains_at(level) * variance;
+    if (level + 1 < kLevels) dearest = std::max(dearest, number);
+  });
+  dearest_[block] = dearest;
 }
 
 void Sampler::estimate(std::span<const std::size_t> blocks) {
   tbb::enumerable_thread_specific<Prices> changes;
-  const bool first = rounds_ == 1;
   for_each_of(blocks.size(), [&](std::size_t i) {
-    Prices& prices = changes.local();
-    const bool alone = !refined_around(blocks[i]);
-    std::uint16_t dearest = 0;
-    blocks_.for_each(blocks[i], [&](std::size_t pixel, std::uint32_t x, std::uint32_t y) {
-      const int level = level_[pixel];
-      const float error = alone ? remains_at(0) * variance_[pixel] : error_of(pixel, x, y);
-      const float price = error / static_cast<float>(samples_of(level));
-      if (!first) prices.remove(level, class_[pixel]);
-      class_[pixel] = static_cast<std::uint16_t>(Prices::class_of(price));
-      prices.add(level, class_[pixel]);
-      if (level + 1 < kLevels) dearest = std::max(dearest, class_[pixel]);
-    });
-    dearest_[blocks[i]] = dearest;
+    if (refined_around(blocks[i])) {
+      const Errors errors(*this, blocks[i]);
+      estimate_block(blocks[i], changes.local(), [&](std::size_t pixel, std::uint32_t x, std::uint32_t y) {
+        return errors.of(pixel, x, y);
+      });
+    } else {
+      estimate_block(blocks[i], changes.local(), [&](std::size_t pixel, std::uint32_t, std::uint32_t) {
+        return remains_at(0) * variance_[pixel];
+      });
+    }
   });
   for (const Prices& of_thread : changes) prices_.add(of_thread);
 }
@@ -202,14 +224,15 @@ void Sampler::take(std::span<const layout::i64> sums) {
 }
 
 std::vector<vec3> Sampler::picture() const {
+  std::array<double, kLevels> scale;
+  for (int level = 0; level < kLevels; ++level)
+    scale[static_cast<std::size_t>(level)] = kUnit / samples_of(level);
   std::vector<vec3> pixels(size_.pixels());
-  for_each_of(blocks_.count(), [&](std::size_t block) {
-    blocks_.for_each(block, [&](std::size_t pixel, std::uint32_t, std::uint32_t) {
-      const double scale = kUnit / samples_of(level_[pixel]);
-      for (int c = 0; c < 3; ++c)
-        pixels[pixel][c] =
-            static_cast<float>(static_cast<double>(sums_[3 * pixel + static_cast<std::size_t>(c)]) * scale);
-    });
+  for_each_of(size_.height, [&](std::size_t y) {
+    for (std::size_t pixel = y * size_.width; pixel < (y + 1) * size_.width; ++pixel)
+      for (std::size_t c = 0; c < 3; ++c)
+        pixels[pixel][static_cast<int>(c)] =
+            static_cast<float>(static_cast<double>(sums_[3 * pixel + c]) * scale[level_[pixel]]);
   });
   return pixels;
 }

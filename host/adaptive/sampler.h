@@ -40,9 +40,12 @@ class Sampler {
   Report report() const;
 
  private:
+  class Errors;
+
   void begin();
-  float error_of(std::size_t pixel, std::uint32_t x, std::uint32_t y) const;
   bool refined_around(std::size_t block) const;
+  template <class ErrorOf>
+  void estimate_block(std::size_t block, Prices& changes, const ErrorOf& error_of);
   void estimate(std::span<const std::size_t> blocks);
   int next_level(std::size_t pixel) const;
   void list();
