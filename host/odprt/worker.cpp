@@ -118,7 +118,7 @@ void Worker::serve(const LoadedPart& part, std::uint32_t census_every) {
   travel_.n_shared = part.n_shared;
   travel_.n_subtrees = census_every > 0 ? part.n_subtrees : 0;
   travel_.census_every = std::max(census_every, 1u);
-  queue_.enqueueWriteBuffer(travel_buffer_, CL_TRUE, 0, sizeof travel_, &travel_);
+  queue_.enqueueWriteBuffer(travel_buffer_, CL_FALSE, 0, sizeof travel_, &travel_);
   wave_.set_arguments(part.scene.set_tree_arguments(wave_.kernel()), part.scene.normals, part.scene.materials,
                       part.scene.lights, frame_buffer_, travel_buffer_, cells_, part.subtrees,
                       cl_uint{plan_.n_waves}, tiles_, cl_uint{0}, slice_buffer_, grant_buffer_,
@@ -149,7 +149,7 @@ void Worker::receive(const Outbox& outbox, std::uint32_t part) {
 std::uint64_t Worker::receive(Mail& mail) {
   const OutboxShape& shape = inbox_.shape();
   auto* rays = static_cast<float*>(queue_.enqueueMapBuffer(
-      inbox_.rays(), CL_TRUE, CL_MAP_WRITE, 0,
+      inbox_.rays(), CL_FALSE, CL_MAP_WRITE, 0,  // the next one waits for both
       shape.n_places() * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity * sizeof(float)));
   auto* shadow_rays = static_cast<float*>(queue_.enqueueMapBuffer(
       inbox_.shadow_rays(), CL_TRUE, CL_MAP_WRITE, 0,
@@ -204,28 +204,40 @@ void Worker::finish() {
 
 void Worker::stash(Mail& mail) {
   const std::size_t pool_words = std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * frame_.pool_capacity;
-  std::vector<float> words(pool_words);
-  std::vector<float> shadow_words(KDRAY_TRAVEL_SHADOW_FIELDS * std::size_t{travel_.shadow_pool_capacity});
-  for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
-    for (std::uint32_t depth = 1; depth <= frame_.max_depth; ++depth) {
-      layout::u32& n = slices_[s].n_pool[depth - 1];
-      if (n == 0) continue;
-      const std::size_t number = std::size_t{s} * frame_.max_depth + (depth - 1);
-      queue_.enqueueReadBuffer(pool_, CL_TRUE, number * pool_words * sizeof(float),
-                               pool_words * sizeof(float), words.data());
-      mail.put_pooled_rays(s, words.data(), frame_.pool_capacity, n, depth);
-      n = 0;
+  const std::size_t shadow_words = KDRAY_TRAVEL_SHADOW_FIELDS * std::size_t{travel_.shadow_pool_capacity};
+  stashed_.clear();
+  const auto begin_reading = [&](const cl::Buffer& buffer, std::size_t place, std::size_t n_words) {
+    std::vector<float>& words = stashed_.emplace_back(n_words);
+    queue_.enqueueReadBuffer(buffer, CL_FALSE, place * n_words * sizeof(float), n_words * sizeof(float),
+                             words.data());
+  };
+  const auto for_each_in_use = [&](const auto& rays, const auto& shadow_rays) {
+    for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
+      for (std::uint32_t depth = 1; depth <= frame_.max_depth; ++depth)
+        if (slices_[s].n_pool[depth - 1] > 0) rays(s, depth, slices_[s].n_pool[depth - 1]);
+      if (traffic_[s].n_shadow_pool > 0) shadow_rays(s, traffic_[s].n_shadow_pool);
     }
-    layout::u32& n = traffic_[s].n_shadow_pool;
-    if (n == 0) continue;
-    queue_.enqueueReadBuffer(shadow_pool_, CL_TRUE, s * shadow_words.size() * sizeof(float),
-                             shadow_words.size() * sizeof(float), shadow_words.data());
-    mail.put_shadow_rays(s, shadow_words.data(), travel_.shadow_pool_capacity, n);
-    n = 0;
-  }
-  queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices_.size() * sizeof(layout::Slice),
+  };
+  for_each_in_use(
+      [&](std::uint32_t s, std::uint32_t depth, layout::u32) {
+        begin_reading(pool_, std::size_t{s} * frame_.max_depth + (depth - 1), pool_words);
+      },
+      [&](std::uint32_t s, layout::u32) { begin_reading(shadow_pool_, s, shadow_words); });
+  queue_.finish();
+  auto words = stashed_.begin();
+  for_each_in_use(
+      [&](std::uint32_t s, std::uint32_t depth, layout::u32& n) {
+        mail.put_pooled_rays(s, (words++)->data(), frame_.pool_capacity, n, depth);
+        n = 0;
+      },
+      [&](std::uint32_t s, layout::u32& n) {
+        mail.put_shadow_rays(s, (words++)->data(), travel_.shadow_pool_capacity, n);
+        n = 0;
+      });
+  stashed_.clear();
+  queue_.enqueueWriteBuffer(slice_buffer_, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
                             slices_.data());
-  queue_.enqueueWriteBuffer(traffic_buffer_, CL_TRUE, 0, traffic_.size() * sizeof(layout::Traffic),
+  queue_.enqueueWriteBuffer(traffic_buffer_, CL_FALSE, 0, traffic_.size() * sizeof(layout::Traffic),
                             traffic_.data());
 }
 

@@ -119,6 +119,8 @@ class Worker {
   cl::Buffer frame_buffer_, travel_buffer_, cells_, tiles_, slice_buffer_, grant_buffer_, traffic_buffer_,
       pool_, batch_, hits_, shadow_rays_, occluded_, shadow_pool_, film_, visit_buffer_;
   void* mapped_film_ = nullptr;
+  std::vector<std::vector<float>>
+      stashed_;   // what is being read of the pools: here, since after an error a read may go on
   Outbox inbox_;  // of one part: rays from the host's memory
   wavefront::Stage wave_, receive_;
 };

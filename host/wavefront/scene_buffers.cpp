@@ -1,5 +1,7 @@
 #include "wavefront/scene_buffers.h"
 
+#include "device/opencl_error.h"
+
 namespace kdray::wavefront {
 
 namespace {
@@ -11,7 +13,7 @@ class Upload {
   template <class T>
   cl::Buffer operator()(const Array<T>& items, const std::string& what) const {
     return placement_ == Placement::copied
-               ? context_.upload_copy(items.data(), items.bytes(), what)
+               ? context_.upload_unawaited(items.data(), items.bytes(), what)
                : context_.upload(items.data(), items.bytes(), items.owner(), what);
   }
 
@@ -37,6 +39,8 @@ SceneBuffers::SceneBuffers(const device::Context& context, const flatten::FlatSc
   triangle_blocks = upload(wide.triangle_blocks, "the leaves' triangles");
   sphere_blocks = upload(wide.sphere_blocks, "the leaves' spheres");
   cone_blocks = upload(wide.cone_blocks, "the leaves' cones");
+  if (placement == Placement::copied)
+    device::checked("uploading the scene", [&] { context.queues().front().finish(); });
 }
 
 cl_uint SceneBuffers::set_tree_arguments(cl::Kernel& kernel) const {
