@@ -116,7 +116,7 @@ void Queue::serve(Tiles& tiles, const Work& work, Shared& shared) {
 }
 
 void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared) {
-  if (tiles.empty()) return;  // another queue was faster
+  if (tiles.empty()) return wavefront_.finish();  // another queue was faster
   if (work.samples.empty()) note_costs(tiles, shared);
   const Extent extent = work.samples.empty() ? extent_of(tiles, frame_) : extent_of_runs(tiles);
   // Last: what it adds to the counters counts.

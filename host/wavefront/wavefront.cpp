@@ -411,6 +411,10 @@ void Wavefront::finish(std::size_t first, std::size_t n,
     take_film({{static_cast<const layout::i64*>(sums), n * 3}, first});
     queue_.enqueueUnmapMemObject(film_, sums);
   });
+  finish();
+}
+
+void Wavefront::finish() {
   collect();
   if (wave_) share_out_seconds();
   counters_.add(list_counters_);

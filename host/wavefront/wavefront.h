@@ -120,6 +120,8 @@ class Wavefront {
   // Hands over `n` places of the film from the picture's pixel, or the sample, `first` on; what was rendered since begin()
   // counts from then on.
   void finish(std::size_t first, std::size_t n, const std::function<void(const FilmSums&)>& take_film);
+  // Where nothing was rendered: the launches that found nothing count.
+  void finish();
 
   // Cycles charged to each tile of the list, when it has been rendered; empty, or all 0, where the device doesn't count them.
   std::vector<layout::u64> tile_cycles();

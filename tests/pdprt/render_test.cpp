@@ -216,6 +216,22 @@ TEST_P(RenderTest, TheTimelineTellsOfEveryLaunch) {
   }
 }
 
+// More queues than tiles: some begin a list when there are tiles left, and find that another took them. Their launches count.
+TEST_P(RenderTest, LaunchesThatFindNothingAreToldOf) {
+  constexpr int kQueues = 8;
+  wavefront::Schedule schedule = kSmall;
+  schedule.tile_width = schedule.tile_height = 32;
+  for (int i = 0; i < 20; ++i) {
+    timeline::Timeline timeline;
+    Task task = hall.task();
+    task.timeline = &timeline;
+    const Result result = render(kQueues, schedule, task);
+    std::size_t launches = 0;
+    for (int row = 0; row < kQueues; ++row) launches += timeline.spans(row).size();
+    ASSERT_EQ(launches, result.counters.launches);
+  }
+}
+
 TEST_P(RenderTest, TilesCostWhatTheQueuesTook) {
   timeline::Timeline timeline;
   Task task = hall.task();
