@@ -220,9 +220,19 @@ bool may_come_out_again(const Departure& d) {
   return 4 * d.step > d.radius || d.blur * d.blur > d.step * (2 * d.radius - d.step);
 }
 
+// From inside: the hit is what is behind the ray's way, not what it left. (Grazing, rounding moves it far; what was left lies
+// behind the origin.)
+template <class Curved>
+bool is_on_the_way(const Exact3& o, const Exact3& d, const Curved& surface, float t_found) {
+  return std::ranges::any_of(roots(o, d, surface), [t_found](const Exact& root) {
+    const double t = root.get_d();
+    return t > 0 && std::abs(t_found - t) <= 0.5 * t;
+  });
+}
+
 // A ray that grazes a cone may meet it next where the exact one is just past an end.
 bool is_at_an_end(const Exact3& o, const Exact3& d, const layout::Cone& cone, float t_found) {
-  return std::ranges::any_of(roots_past_the_ends(o, d, cone, 0.01), [t_found](const Exact& root) {
+  return std::ranges::any_of(roots_past_the_ends(o, d, cone, 0.02), [t_found](const Exact& root) {
     return root > 0 && std::abs(t_found - root.get_d()) <= 0.5 * root.get_d();
   });
 }
@@ -233,15 +243,13 @@ bool is_at_an_end(const Exact3&, const Exact3&, const layout::Sphere&, float) {
 template <class Curved>
 Verdict judge(const Curved& surface, const Ray& ray, const Hit& hit, const Departure& departure) {
   if (ends_at_the_surface(surface, ray, departure)) return Verdict::excepted;
-  if (!departure.inwards) return Verdict::wrong;
   const Exact3 o = exactly(ray.origin), d = exactly(ray.direction);
+  // To the outside of a tip that is thinner than the blur, a normal may be so far off that even the exact ray meets it again.
+  if (!departure.inwards)
+    return 4 * departure.step > departure.radius && is_on_the_way(o, d, surface, hit.t) ? Verdict::excepted
+                                                                                        : Verdict::wrong;
   if (distance(o, surface) > 0) return may_come_out_again(departure) ? Verdict::excepted : Verdict::wrong;
-  // From inside: the hit is what is behind the ray's way, not what it left.
-  for (const Exact& root : roots(o, d, surface)) {
-    const double t = root.get_d();
-    // (Grazing, rounding moves it far; what was left lies behind the origin.)
-    if (t > 0 && std::abs(hit.t - t) <= 0.5 * t) return Verdict::right;
-  }
+  if (is_on_the_way(o, d, surface, hit.t)) return Verdict::right;
   if (is_at_an_end(o, d, surface, hit.t)) return Verdict::excepted;
   return 64 * departure.step > departure.radius ? Verdict::excepted : Verdict::wrong;
 }
