@@ -192,7 +192,7 @@ std::vector<AccuracyRun> bench_accuracy(const AccuracyOptions& options, const Ac
   std::vector<AccuracyRun> runs;
   for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
     runs.push_back(SceneBench(options, calls, name).run());
-    calls.done(runs.back());
+    calls.done(runs);
   }
   return runs;
 }

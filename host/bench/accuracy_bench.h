@@ -63,7 +63,7 @@ struct AccuracyRun {
 };
 
 struct AccuracyCalls {
-  std::function<void(const AccuracyRun&)> done;
+  std::function<void(std::span<const AccuracyRun>)> done;  // a scene: all so far, it last
   std::function<void(const std::string&)> working;
   // The reference and, by the name of its setting, where each picture differs from it.
   std::function<void(const std::string& scene, const std::string& name, const film::Image&)> picture;

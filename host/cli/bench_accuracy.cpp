@@ -1,6 +1,7 @@
 // What    kdray bench accuracy: time against error of every setting, beside POV-Ray's antialiasing.
-// Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to DIR/accuracy.json, the plot
-//         beside it, and to DIR/accuracy the references and where each picture differs from them.
+// Shape   Tables go to stderr; with --report DIR the figures go to DIR/accuracy.json, the plot beside it, and to DIR/accuracy the
+//         references and where each picture differs from them. All of it as soon as a scene is done: a reference may take an
+//         hour, and a run that is stopped keeps the scenes before.
 // Errors  A traversal or tree whose picture is not the base's: exit code 1, after everything has been written.
 #include "cli/bench_accuracy.h"
 
@@ -46,7 +47,12 @@ int run(const AccuracyCommand& c) {
   prepare_pictures(c.report);
   if (c.options.povray && !bench::has_povray()) say("povray is not installed: its points are left out");
   const bench::AccuracyCalls calls = {
-      .done = [](const bench::AccuracyRun& run) { print_table(bench::table_of(run)); },
+      .done =
+          [&](std::span<const bench::AccuracyRun> runs) {
+            print_table(bench::table_of(runs.back()));
+            write_report(c.report, kName, bench::json_of(runs, c.options),
+                         to_svg(bench::plot_of(runs, c.options)));
+          },
       .working = [](const std::string& what) { say(what); },
       .picture =
           [&](const std::string& scene, const std::string& name, const film::Image& image) {
@@ -55,7 +61,6 @@ int run(const AccuracyCommand& c) {
             film::write_picture(folder / bench::picture_name(scene, name), image, {}, {});
           }};
   const auto runs = bench::bench_accuracy(c.options, calls);
-  write_report(c.report, kName, bench::json_of(runs, c.options), to_svg(bench::plot_of(runs, c.options)));
   if (const std::size_t n = bench::count_unlike_base(runs); n > 0)
     throw Error(ErrorCode::internal, fmt::format("{} traversals or trees don't give the base's picture", n));
   return 0;
