@@ -11,8 +11,8 @@
 #include "bench/modes_paths.h"
 #include "bench/modes_tiles.h"
 #include "bench/modes_traffic.h"
-#include "odprt/deal.h"
-#include "odprt/subtrees.h"
+#include "odprt/division.h"
+#include "odprt/replicate.h"
 
 namespace kdray::bench {
 
@@ -23,20 +23,27 @@ using Json = nlohmann::json;
 constexpr int kTile = 8;  // pixels of the measured tiles' sides
 // As host/odprt has them.
 constexpr std::size_t kLeastSubtrees = 64;
-constexpr double kSpareGeometry = 0.15;  // of the scene, that a queue may hold beyond its share
 constexpr std::array kKinds = {"primary", "shadow", "reflected", "refracted"};  // by LifeKind
 
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-// Of the queue that holds the most.
-double largest_sum(const std::vector<std::uint64_t>& values, const std::vector<std::uint32_t>& queue_of,
-                   std::uint32_t n_queues) {
+// Of the scene's geometry, what the queue with most of it holds.
+double largest_share(const odprt::Cut& cut, const std::vector<std::uint32_t>& queue_of,
+                     std::uint32_t n_queues) {
   std::vector<double> sums(n_queues);
-  for (std::size_t i = 0; i < values.size(); ++i) sums[queue_of[i]] += static_cast<double>(values[i]);
-  return *std::max_element(sums.begin(), sums.end());
+  double everywhere = 0, all = 0;
+  for (std::size_t i = 0; i < queue_of.size(); ++i) {
+    const auto bytes = static_cast<double>(cut.subtrees[i].bytes);
+    (queue_of[i] == odprt::kEveryPart ? everywhere : sums[queue_of[i]]) += bytes;
+    all += bytes;
+  }
+  return (everywhere + *std::max_element(sums.begin(), sums.end())) / std::max(all, 1.0);
 }
+
+// What every queue holds costs a ray something wherever it is.
+static_assert(odprt::kEveryPart == kDirectory);
 
 class Prophet {
  public:
@@ -185,11 +192,8 @@ class Prophet {
   void predict_odprt(const std::string& scheme, int queues, const odprt::Cut& cut,
                      const std::vector<LifeRay>& lives, const std::vector<double>& costs) {
     const auto n = static_cast<std::uint32_t>(queues);
-    std::vector<std::uint64_t> bytes;
-    for (const odprt::Subtree& subtree : cut.subtrees) bytes.push_back(subtree.bytes);
-    const auto whole = static_cast<double>(std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0}));
     const std::vector<std::uint32_t> queue_of =
-        odprt::deal(costs, bytes, n, static_cast<std::uint64_t>(whole * (1.0 / queues + kSpareGeometry)));
+        odprt::assign(cut, costs, {.n_parts = n, .spare = odprt::kSpare, .replicated = odprt::kReplicated});
     const Rates rates{rates_.seconds_of_cost * model_.odprt_overhead,
                       rates_.seconds_of_shade * model_.odprt_overhead};
     const Traffic traffic =
@@ -203,7 +207,7 @@ class Prophet {
     p.port_seconds = outcome.busiest_port;
     p.critical_path = outcome.critical_path;
     p.rays_sent = outcome.rays_sent, p.bytes_sent = outcome.rays_sent * options_.bytes_per_ray;
-    p.largest_geometry = largest_sum(bytes, queue_of, n) / std::max(whole, 1.0);
+    p.largest_geometry = largest_share(cut, queue_of, n);
     if (queues <= kMatrixMost) p.exchange = exchange_matrix(traffic, n);
   }
 

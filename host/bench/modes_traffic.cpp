@@ -50,11 +50,16 @@ class Way {
   bool start_is_asked_ = false;
 };
 
-// The queue that finds the hit: the last that the walk comes to.
+// The queue that finds the hit, to which the walk comes last; kDirectory: all hold it.
 std::uint32_t finder(std::span<const Visit> path) {
-  for (std::size_t i = path.size(); i-- > 0;)
-    if (path[i].owner != kDirectory) return path[i].owner;
-  return kDirectory;
+  return path.empty() ? kDirectory : path.back().owner;
+}
+
+// Where an eye ray is made: by the queue that it enters first, if any.
+std::uint32_t maker(std::span<const Visit> path, std::uint32_t otherwise) {
+  const auto first =
+      std::find_if(path.begin(), path.end(), [](const Visit& v) { return v.owner != kDirectory; });
+  return first != path.end() ? first->owner : otherwise;
 }
 
 }  // namespace
@@ -70,12 +75,11 @@ Traffic make_traffic(std::span<const LifeRay> lives, const Paths& paths, std::ui
     journey.depth = life.depth;
     const bool from_eye = life.parent == kNoParent;
     (from_eye ? traffic.first : traffic.journeys[life.parent].next).push_back(i);
-    Way way(from_eye ? i % n_queues : traffic.journeys[life.parent].hops.back().queue,
+    Way way(from_eye ? maker(paths.of(i), i % n_queues) : traffic.journeys[life.parent].hops.back().queue,
             rays_per_journey * rates.seconds_of_cost, journey.hops);
     for (const Visit& v : paths.of(i)) way.visit(v);
-    const std::uint32_t found_by = life.hit ? finder(paths.of(i)) : kDirectory;
-    if (found_by == kDirectory) continue;
-    life.kind == LifeKind::shadow ? way.end_with(found_by) : way.go_to(found_by);
+    if (const std::uint32_t found_by = finder(paths.of(i)); life.hit && found_by != kDirectory)
+      life.kind == LifeKind::shadow ? way.end_with(found_by) : way.go_to(found_by);
     if (is_shaded(life)) journey.hops.back().seconds += rays_per_journey * rates.seconds_of_shade;
   }
   return traffic;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <tuple>
@@ -127,14 +128,22 @@ cl::Buffer Context::buffer(cl_mem_flags flags, std::size_t bytes, const std::str
   });
 }
 
+cl::Buffer Context::sparse_buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const {
+  if (bytes < kLargePages || bytes > found_.info.max_allocation) return buffer(flags, bytes, what);
+  return checked("allocating " + what, [&] { return cl::Buffer(opened_->context, flags, bytes); });
+}
+
 cl::Buffer Context::buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what,
-                                       std::future<void>& made) const {
+                                       bool zeroed, std::future<void>& made) const {
   const bool in_host_memory = bytes >= kLargePages && bytes <= found_.info.max_allocation &&
                               checked("asking", [&] { return works_in_host_memory(); });
   if (!in_host_memory) return buffer(flags, bytes, what);
   return checked("allocating " + what, [&] {
     const std::shared_ptr<void> memory = allocate(bytes);
-    made = std::async(std::launch::async, [memory, bytes] { make_pages(memory.get(), bytes); });
+    made = std::async(std::launch::async, [memory, bytes, zeroed] {
+      make_pages(memory.get(), bytes);
+      if (zeroed) std::memset(memory.get(), 0, bytes);
+    });
     return buffer_over(opened_->context, flags, memory.get(), bytes, memory);
   });
 }

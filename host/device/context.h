@@ -51,9 +51,12 @@ class Context {
   // of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
   cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // The same, and its pages are made in the background where it lies in the host's memory: `made` ends when they are. (Or
-  // it is no future at all.)
-  cl::Buffer buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what,
+  // The same, of which only pieces here and there are going to be used: never in large pages, each of which is cleared as a whole.
+  cl::Buffer sparse_buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
+
+  // The same, and its pages are made in the background where it lies in the host's memory: `made` ends when they are, all 0
+  // if that is asked for. (Or it is no future at all, and nothing is done.)
+  cl::Buffer buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what, bool zeroed,
                                 std::future<void>& made) const;
 
   // A buffer for reading of what lies at `data`: that memory itself where the device works in the host's, which `owner` then

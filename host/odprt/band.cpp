@@ -27,18 +27,6 @@ void check(const Worker& worker) {
                           sum.invalid, sum.pool_overflow, n_lost, sum.nan));
 }
 
-// Every n-th entry of the list, from the i-th on, in an order that goes all over the picture: whatever part of the scene a piece
-// of the picture shows, the queue that holds it has something to do all the time. (Along the curve half of the queues'
-// time was lost: all made eye rays for the same part.)
-std::vector<layout::u32> share_of(const std::vector<layout::u32>& curve, std::size_t i, std::size_t n) {
-  // Steps of the golden section, as far as they don't come to the same tile twice.
-  auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(curve.size())) | 1u;
-  while (std::gcd(step, curve.size()) != 1) step += 2;
-  std::vector<layout::u32> tiles;
-  for (; i < curve.size(); i += n) tiles.push_back(curve[i * step % curve.size()]);
-  return tiles;
-}
-
 std::uint64_t sum_of(std::span<const layout::Traffic> traffic, layout::u32 layout::Traffic::*count) {
   std::uint64_t sum = 0;
   for (const layout::Traffic& t : traffic) sum += t.*count;
@@ -53,24 +41,24 @@ BandRun::BandRun(const Request& request, Crew& crew)
       exchange_(crew.plan, crew.owner, crew.direct, crew.outboxes),
       tiles_left_(crew.workers.size()) {}
 
-void BandRun::run(const BandWork& band, const std::function<void(double)>& progress) {
+void BandRun::run(BandWork& band, const std::function<void(double)>& progress) {
   n_serving_ = crew_.workers.size();
+  const std::size_t n_entries = band.shares.left();
   std::vector<std::jthread> threads;
   for (std::size_t q = 0; q < crew_.workers.size(); ++q)
     threads.emplace_back([this, q, &band] {
       try {
-        const std::vector<layout::u32> tiles = share_of(band.list, q, crew_.workers.size());
-        tiles_left_[q] = static_cast<std::uint32_t>(tiles.size());
-        crew_.workers[q]->begin({band.first_pixel, band.n_places, tiles, band.samples});
-        take_turns(q);
+        crew_.workers[q]->begin({band.first_pixel, band.n_places, band.samples});
+        take_turns(q, band.shares);
       } catch (...) {
         exchange_.fail(q, std::current_exception());
       }
+      const std::lock_guard lock(mutex_);
       --n_serving_;
-      n_serving_.notify_one();
+      ended_.notify_one();
     });
   try {
-    wait(band, progress);
+    wait(band.shares, n_entries, progress);
   } catch (...) {
     // The caller's progress threw: nobody goes on.
     exchange_.fail(crew_.workers.size(), std::current_exception());
@@ -78,42 +66,53 @@ void BandRun::run(const BandWork& band, const std::function<void(double)>& progr
   }
 }
 
-void BandRun::wait(const BandWork& band, const std::function<void(double)>& progress) {
+void BandRun::wait(const Shares& shares, std::size_t n_entries, const std::function<void(double)>& progress) {
   using namespace std::chrono_literals;
-  const double n_tiles = static_cast<double>(std::max<std::size_t>(band.list.size(), 1));
-  while (const std::size_t serving = n_serving_) {
-    if (!progress) {
-      n_serving_.wait(serving);
-      continue;
-    }
-    std::this_thread::sleep_for(20ms);
-    double left = 0;
+  std::unique_lock lock(mutex_);
+  const auto ended = [this] { return n_serving_ == 0; };
+  if (!progress) return ended_.wait(lock, ended);
+  while (!ended_.wait_for(lock, 20ms, ended)) {
+    auto left = static_cast<double>(shares.left());
     for (const auto& n : tiles_left_) left += n;
-    progress(std::clamp(1 - left / n_tiles, 0.0, 1.0));
+    progress(std::clamp(1 - left / static_cast<double>(std::max<std::size_t>(n_entries, 1)), 0.0, 1.0));
   }
 }
 
-void BandRun::take_turns(std::size_t queue) {
+void BandRun::take_turns(std::size_t queue, Shares& shares) {
   QueueState state;
   const auto first = std::find(crew_.owner.begin(), crew_.owner.end(), queue);
   state.part = static_cast<std::uint32_t>(first - crew_.owner.begin());
   crew_.workers[queue]->serve(crew_.stores[queue]->get(state.part), request_.census_every);
   Mail pending(crew_.plan.n_slices);
   while (const std::optional<Turn> turn = exchange_.next_turn(queue, state))
-    take_turn(queue, *turn, state, pending);
+    take_turn(queue, *turn, shares, state, pending);
 }
 
-void BandRun::take_turn(std::size_t queue, const Turn& turn, QueueState& state, Mail& pending) {
+// As many as a launch may begin, and fewer when the end is near.
+void BandRun::take_entries(std::size_t queue, Shares& shares) {
+  Worker& worker = *crew_.workers[queue];
+  const std::size_t n = std::min<std::size_t>(worker.launch_tiles(), shares.left() / (4 * shares.n_queues()));
+  const std::size_t wanted = std::max<std::size_t>(n, crew_.plan.n_slices), has = worker.tiles_left();
+  if (has < wanted) worker.add(shares.take(queue, wanted - has));
+}
+
+void BandRun::take_turn(std::size_t queue, const Turn& turn, Shares& shares, QueueState& state,
+                        Mail& pending) {
   Worker& worker = *crew_.workers[queue];
   if (turn.part != state.part) change_part(queue, turn.part, state, pending);
   const double start = request_.timeline ? request_.timeline->now() : 0;
   for (const Letter& letter : turn.letters) worker.receive(*letter.outbox, turn.part);
   exchange_.take_mail(turn.part, pending);
   if (pending.n > 0) worker.receive(pending);
-  turn.outbox ? launch(queue, turn, state) : worker.finish();
+  if (turn.outbox) {
+    take_entries(queue, shares);
+    launch(queue, turn, state);
+  } else {
+    worker.finish();
+  }
   check(worker);
   tiles_left_[queue] = worker.tiles_left();
-  state.has_tiles = tiles_left_[queue] > 0;
+  state.has_tiles = tiles_left_[queue] > 0 || shares.left() > 0;
   state.has_rays = worker.n_waiting() + pending.n > 0;
   state.progressed = state.progressed || !turn.letters.empty();
   if (request_.timeline && turn.outbox) {

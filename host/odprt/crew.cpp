@@ -9,9 +9,10 @@ namespace kdray::odprt {
 namespace {
 
 std::size_t largest_part(const Division& division) {
-  std::vector<std::size_t> counts(division.parts.size());
-  for (const std::uint32_t part : division.part_of) ++counts[part];
-  return *std::max_element(counts.begin(), counts.end());
+  std::size_t most = 0;
+  for (std::uint32_t part = 0; part < division.parts.size(); ++part)
+    most = std::max(most, division.subtrees_of(part).size());
+  return most;
 }
 
 void add_worker(const Request& request, const Provision& provision, const Division& division, const Cut& cut,

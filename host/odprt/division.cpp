@@ -1,33 +1,78 @@
 #include "odprt/division.h"
 
+#include <algorithm>
+
 #include "odprt/deal.h"
+#include "odprt/replicate.h"
 
 namespace kdray::odprt {
 
 std::vector<std::uint32_t> Division::subtrees_of(std::uint32_t part) const {
   std::vector<std::uint32_t> subtrees;
   for (std::uint32_t i = 0; i < part_of.size(); ++i)
-    if (part_of[i] == part) subtrees.push_back(i);
+    if (part_of[i] == part || part_of[i] == kEveryPart) subtrees.push_back(i);
   return subtrees;
 }
 
-Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
-                std::span<const double> costs, std::uint32_t n_parts, double spare) {
+std::size_t largest_bytes(const Division& division) {
+  std::size_t largest = 0;
+  for (const Part& part : division.parts) largest = std::max(largest, part.geometry_bytes());
+  return largest;
+}
+
+namespace {
+
+// Those that every part is to hold.
+std::vector<bool> choose_replicated(const Cut& cut, std::span<const double> costs, const DivideOptions& o) {
   std::vector<std::uint64_t> bytes;
+  std::vector<double> visits;
   double all_bytes = 0;
-  for (const Subtree& subtree : cut.subtrees) {
-    bytes.push_back(subtree.bytes);
-    all_bytes += static_cast<double>(subtree.bytes);
+  for (std::size_t i = 0; i < cut.subtrees.size(); ++i) {
+    bytes.push_back(cut.subtrees[i].bytes);
+    visits.push_back(costs[i] / cut.subtrees[i].visit);
+    all_bytes += static_cast<double>(bytes.back());
   }
+  // n parts that share s of the whole hold s + (1 - s)/n each.
+  const double most = o.n_parts > 1 ? o.replicated * o.n_parts / (o.n_parts - 1) : 0;
+  return replicate(visits, bytes, static_cast<std::uint64_t>(most * all_bytes));
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> assign(const Cut& cut, std::span<const double> costs, const DivideOptions& o) {
+  const std::vector<bool> everywhere = choose_replicated(cut, costs, o);
+  std::vector<double> dealt_costs;
+  std::vector<std::uint64_t> dealt_bytes;
+  double all = 0, replicated = 0;
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const std::uint64_t bytes = cut.subtrees[i].bytes;
+    all += static_cast<double>(bytes);
+    if (everywhere[i]) {
+      replicated += static_cast<double>(bytes);
+    } else {
+      dealt_costs.push_back(costs[i]);
+      dealt_bytes.push_back(bytes);
+    }
+  }
+  const double most = (1.0 / o.n_parts + o.spare) * all - replicated;
+  const std::vector<std::uint32_t> dealt =
+      deal(dealt_costs, dealt_bytes, o.n_parts, static_cast<std::uint64_t>(std::max(most, 0.0)));
+  std::vector<std::uint32_t> part_of;
+  for (std::size_t i = 0, next = 0; i < costs.size(); ++i)
+    part_of.push_back(everywhere[i] ? kEveryPart : dealt[next++]);
+  return part_of;
+}
+
+Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
+                std::span<const double> costs, const DivideOptions& options) {
   Division division;
-  division.part_of =
-      deal(costs, bytes, n_parts, static_cast<std::uint64_t>((1.0 / n_parts + spare) * all_bytes));
+  division.part_of = assign(cut, costs, options);
   division.directory = make_directory(form, cut, division.part_of);
-  if (n_parts == 1) {
+  if (options.n_parts == 1) {
     division.parts.push_back({scene, form, 0});  // nothing to take apart
     return division;
   }
-  division.parts = make_parts(scene, form, cut, division.part_of, n_parts);
+  division.parts = make_parts(scene, form, cut, division.part_of, options.n_parts);
   return division;
 }
 

@@ -11,7 +11,7 @@
 namespace kdray::odprt {
 
 struct Division {
-  std::vector<std::uint32_t> part_of;  // of each subtree
+  std::vector<std::uint32_t> part_of;  // of each subtree; kEveryPart (replicate.h)
   std::vector<layout::PartCell> directory;
   std::vector<Part> parts;
 
@@ -19,8 +19,23 @@ struct Division {
   std::vector<std::uint32_t> subtrees_of(std::uint32_t part) const;
 };
 
-// `costs` of the subtrees, of any unit. A part takes no more than an equal share of the bytes and `spare` of the whole, if possible.
+// Of the largest part's geometry.
+std::size_t largest_bytes(const Division& division);
+
+struct DivideOptions {
+  std::uint32_t n_parts = 1;
+  double spare = 0;       // of the scene's bytes, that a part may take beyond an equal share, if possible
+  double replicated = 0;  // ... of which so much may be what every part holds
+};
+
+// What a part may take of the geometry where memory is not short.
+inline constexpr double kSpare = 0.19, kReplicated = 0.16;
+
+// The part of each subtree, or kEveryPart. `costs` of the subtrees, of any unit.
+std::vector<std::uint32_t> assign(const Cut& cut, std::span<const double> costs,
+                                  const DivideOptions& options);
+
 Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
-                std::span<const double> costs, std::uint32_t n_parts, double spare);
+                std::span<const double> costs, const DivideOptions& options);
 
 }  // namespace kdray::odprt

@@ -67,9 +67,12 @@ void add_band(const Crew& crew, const Exchange& exchange, Result& result) {
 
 void add_visits(const Crew& crew, const Division& division, Result& result) {
   for (std::size_t q = 0; q < crew.workers.size(); ++q) {
-    const std::vector<std::uint64_t> visits = crew.workers[q]->visits();
+    const std::vector<SubtreeUse> visits = crew.workers[q]->visits();
     const std::vector<std::uint32_t> subtrees = division.subtrees_of(static_cast<std::uint32_t>(q));
-    for (std::size_t i = 0; i < visits.size(); ++i) result.visits[subtrees[i]] += visits[i];
+    for (std::size_t i = 0; i < visits.size(); ++i) {
+      result.visits[subtrees[i]].visits += visits[i].visits;
+      result.visits[subtrees[i]].hits += visits[i].hits;
+    }
   }
 }
 
@@ -114,7 +117,7 @@ class FrameRun {
  private:
   void render_bands(const std::function<void(const wavefront::Band&, Films)>& take);
   void render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
-  void render(const BandWork& work, double from, double to, const std::function<void(Films)>& take);
+  void render(BandWork& work, double from, double to, const std::function<void(Films)>& take);
 
   const Request& request_;
   const Provision& provision_;
@@ -125,7 +128,7 @@ class FrameRun {
 };
 
 // `from`, `to`: of the round.
-void FrameRun::render(const BandWork& work, double from, double to, const std::function<void(Films)>& take) {
+void FrameRun::render(BandWork& work, double from, double to, const std::function<void(Films)>& take) {
   BandRun run(request_, crew_);
   const auto progress = [&](double share) {
     request_.progress(from_ + (to_ - from_) * (from + (to - from) * share));
@@ -141,8 +144,10 @@ void FrameRun::render_bands(const std::function<void(const wavefront::Band&, Fil
   const auto n_bands = static_cast<double>(provision_.bands.size());
   double done = 0;
   for (const wavefront::Band& band : provision_.bands) {
-    const BandWork work{wavefront::tile_curve(provision_.frame.n_tiles_x, band.first_row, band.n_rows),
-                        band.first_pixel, band.n_pixels};
+    const auto tiles = wavefront::tile_curve(provision_.frame.n_tiles_x, band.first_row, band.n_rows);
+    BandWork work{
+        share_by_part(tiles, crew_.workers.size(), provision_.frame, division_.directory, crew_.owner),
+        band.first_pixel, band.n_pixels};
     render(work, done / n_bands, (done + 1) / n_bands, [&](Films films) { take(band, films); });
     ++done;
   }
@@ -162,8 +167,10 @@ void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<la
   const auto all = static_cast<double>(n_runs);
   for (std::size_t first = 0; first < n_runs; first += most) {
     const std::size_t n = std::min(most, n_runs - first), n_places = n * KDRAY_SAMPLE_RUN;
-    BandWork work{std::vector<layout::u32>(n), 0, n_places, samples.subspan(first * kWords, n * kWords)};
-    std::iota(work.list.begin(), work.list.end(), 0u);
+    std::vector<layout::u32> runs(n);
+    std::iota(runs.begin(), runs.end(), 0u);
+    BandWork work{share_evenly(runs, crew_.workers.size()), 0, n_places,
+                  samples.subspan(first * kWords, n * kWords)};
     render(work, static_cast<double>(first) / all, static_cast<double>(first + n) / all,
            [&](Films films) { add_up(films, sums.subspan(3 * first * KDRAY_SAMPLE_RUN, 3 * n_places)); });
   }

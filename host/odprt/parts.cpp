@@ -9,6 +9,7 @@
 
 #include "layout/primitives.layout.h"
 #include "layout/wide.layout.h"
+#include "odprt/replicate.h"
 
 namespace kdray::odprt {
 
@@ -57,8 +58,9 @@ class PartWalk {
   // What becomes of an opened node's child.
   bool holds(std::int32_t below) const {
     if (below == Opened::kEmpty) return false;
-    return below >= 0 ? holds_[static_cast<std::size_t>(below)]
-                      : part_of_[static_cast<std::size_t>(-1 - below)] == part_;
+    if (below >= 0) return holds_[static_cast<std::size_t>(below)];
+    const std::uint32_t part = part_of_[static_cast<std::size_t>(-1 - below)];
+    return part == part_ || part == kEveryPart;
   }
 
   const flatten::WideForm& form() const { return form_; }
@@ -278,36 +280,43 @@ layout::PartCell cell_of(std::uint32_t part, const Box& box) {
   return {{box.lo.x, box.lo.y, box.lo.z}, part, {box.hi.x, box.hi.y, box.hi.z}, 0};
 }
 
-constexpr std::uint32_t kSeveral = ~0u;
+// What lies below an opened node's child, but for what every part holds.
+struct Below {
+  bool several = false;             // parts
+  std::uint32_t part = kEveryPart;  // kEveryPart: there is nothing else
+  Box bounds;
 
-// The part that holds all below an opened node, or kSeveral.
-std::uint32_t sole_part(const Cut& cut, std::span<const std::uint32_t> part_of, std::int32_t below) {
-  if (below < 0) return part_of[static_cast<std::size_t>(-1 - below)];
-  std::uint32_t sole = kSeveral;
-  bool first = true;
-  for (const std::int32_t b : cut.top[static_cast<std::size_t>(below)].below) {
-    if (b == Opened::kEmpty) continue;
-    const std::uint32_t part = sole_part(cut, part_of, b);
-    if (part == kSeveral || (!first && part != sole)) return kSeveral;
-    sole = part;
-    first = false;
+  void add(const Below& o) {
+    if (o.part == kEveryPart) return;
+    several = several || o.several || (part != kEveryPart && part != o.part);
+    part = o.part;
+    bounds.grow(o.bounds);
   }
-  return sole;
+};
+
+Below below_of(const flatten::WideForm& form, const Cut& cut, std::span<const std::uint32_t> part_of,
+               std::int32_t below, const Box& bounds) {
+  if (below < 0) return {false, part_of[static_cast<std::size_t>(-1 - below)], bounds};
+  Below all;
+  const Opened& opened = cut.top[static_cast<std::size_t>(below)];
+  for (std::uint32_t slot = 0; slot < 8; ++slot)
+    if (opened.below[slot] != Opened::kEmpty)
+      all.add(below_of(form, cut, part_of, opened.below[slot], child_bounds(form.nodes[opened.node], slot)));
+  return all;
 }
 
 void add_cells(const flatten::WideForm& form, const Cut& cut, std::span<const std::uint32_t> part_of,
                std::size_t i, std::vector<layout::PartCell>& cells) {
   const Opened& opened = cut.top[i];
-  const layout::WideNode& node = form.nodes[opened.node];
   for (std::uint32_t slot = 0; slot < 8; ++slot) {
     const std::int32_t below = opened.below[slot];
     if (below == Opened::kEmpty) continue;
-    const std::uint32_t part = sole_part(cut, part_of, below);
-    if (part == kSeveral) {
+    const Below all = below_of(form, cut, part_of, below, child_bounds(form.nodes[opened.node], slot));
+    if (all.several) {
       add_cells(form, cut, part_of, static_cast<std::size_t>(below), cells);
-      continue;
+    } else if (all.part != kEveryPart) {
+      cells.push_back(cell_of(all.part, all.bounds));
     }
-    cells.push_back(cell_of(part, child_bounds(node, slot)));
   }
 }
 

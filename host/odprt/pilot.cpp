@@ -24,7 +24,7 @@ layout::Frame small_frame(layout::Frame frame) {
 
 }  // namespace
 
-std::vector<std::uint64_t> run_pilot(const Request& request, const Division& whole, const Cut& cut) {
+std::vector<SubtreeUse> run_pilot(const Request& request, const Division& whole, const Cut& cut) {
   Request pilot = request;
   pilot.queues.resize(1);
   pilot.n_slices = (request.n_slices + 3) / 4;  // its tiles are few

@@ -11,6 +11,6 @@
 namespace kdray::odprt {
 
 // `whole` has one part. The visits of each subtree.
-std::vector<std::uint64_t> run_pilot(const Request& request, const Division& whole, const Cut& cut);
+std::vector<SubtreeUse> run_pilot(const Request& request, const Division& whole, const Cut& cut);
 
 }  // namespace kdray::odprt

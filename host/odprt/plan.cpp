@@ -10,9 +10,9 @@ namespace kdray::odprt {
 namespace {
 
 constexpr std::uint32_t kBatch = 512;                     // large batches keep packets full
-constexpr std::uint32_t kWaves = 16, kLaunchWaves = 128;  // of a slice in a launch, and of all slices
+constexpr std::uint32_t kWaves = 16, kLaunchWaves = 256;  // of a slice in a launch, and of all slices
 // Of all slices together: rays of a depth that may be alive, and those that an outbox holds for a part.
-constexpr std::uint32_t kRays = 1u << 15, kOutboxRays = 1u << 13;
+constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
 // Where parts come and go: rays that may wait in the host's memory, in a queue's pool, and in the outbox for all parts.
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 

@@ -12,7 +12,8 @@ namespace kdray::odprt {
 
 namespace {
 
-constexpr std::size_t kOutboxes = 3;
+// Of a queue, for all parts: with few a queue waits for the others to read.
+constexpr std::size_t kLeastOutboxes = 3, kMostOutboxes = 8, kOutboxPlaces = 16;
 constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // of a queue; larger pictures go in bands
 constexpr double kSpareGeometry = 1.3;  // primitives that lie in several parts, and parts of unequal size
 // Of memory that is short. Each band goes through all parts, so the film is worth more than room for larger parts; and the more
@@ -41,7 +42,8 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
   p.frame = request.frame;
   p.n_parts = n_parts;
   p.streamed = streamed;
-  p.n_outboxes = streamed ? 1 : kOutboxes;  // what is sent is copied at once
+  p.n_outboxes = streamed ? 1  // what is sent is copied at once
+                          : std::clamp(kOutboxPlaces / n_parts, kLeastOutboxes, kMostOutboxes);
   p.plan = make_plan(p.frame, {.features = request.features,
                                .n_parts = n_parts,
                                .n_queues = static_cast<std::uint32_t>(request.queues.size()),
@@ -109,8 +111,7 @@ Provision provide(const Request& request, std::size_t geometry_bytes, std::uint3
 
 bool fits(const Provision& provision, const Division& division, const Request& request) {
   if (!provision.streamed) return true;
-  std::size_t largest = 0;
-  for (const Part& part : division.parts) largest = std::max(largest, part.geometry_bytes());
+  const std::size_t largest = largest_bytes(division);
   if (largest <= provision.most_geometry) return true;
   if (provision.n_parts < KDRAY_MAX_PARTS) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));

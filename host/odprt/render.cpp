@@ -8,15 +8,18 @@
 #include "base/timer.h"
 #include "odprt/frame.h"
 #include "odprt/pilot.h"
+#include "odprt/replicate.h"
 
 namespace kdray::odprt {
 
 namespace {
 
 constexpr std::size_t kSubtreesPerPart = 16, kLeastSubtrees = 64, kMostSubtrees = 512;
-constexpr double kSpare = 0.15;       // of the geometry, that a part may take beyond its equal share
+// Less is replicated where primitives in several parts take a queue beyond that of the geometry, over its equal share.
+constexpr double kMostSpare = 0.2;
 constexpr double kUnbalanced = 1.05;  // the busiest queue against the mean, from which on subtrees are moved
 constexpr std::uint32_t kCensusEvery = 16;
+constexpr double kHitCost = 20;  // of what a hit is shaded for; a node costs 1
 
 std::size_t subtrees_for(std::size_t n_parts) {
   return std::clamp(kSubtreesPerPart * n_parts, kLeastSubtrees, kMostSubtrees);
@@ -41,23 +44,34 @@ void DividedScene::cut_for(std::uint32_t n_parts) {
   division_.reset();
 }
 
-void DividedScene::divide_into(std::uint32_t n_parts) {
-  if (division_ && division_->parts.size() == n_parts) return;
-  division_ = divide(flat_, wide_, cut_, costs_, n_parts, kSpare);
+// Where memory is short nothing is held twice.
+void DividedScene::divide_into(std::uint32_t n_parts, bool streamed) {
+  if (division_ && division_->parts.size() == n_parts && streamed_ == streamed) return;
+  const double most = (1.0 / n_parts + kMostSpare) * static_cast<double>(geometry_bytes());
+  for (double replicated = streamed ? 0 : kReplicated;; replicated = std::max(replicated - 0.04, 0.0)) {
+    division_ =
+        divide(flat_, wide_, cut_, costs_, {.n_parts = n_parts, .spare = kSpare, .replicated = replicated});
+    if (replicated == 0 || static_cast<double>(largest_bytes(*division_)) <= most) break;
+  }
+  streamed_ = streamed;
 }
 
 void DividedScene::measure_costs(const Request& request) {
   if (request.balance == Balance::sah || measured_) return;
-  const Division whole = divide(flat_, wide_, cut_, costs_, 1, 1);
+  const Division whole = divide(flat_, wide_, cut_, costs_, {});
   weigh(run_pilot(request, whole, cut_));
 }
 
-// A subtree costs as much as rays came to it, times what one is expected to cost there.
-void DividedScene::weigh(std::span<const std::uint64_t> visits) {
+// A subtree costs as much as rays came to it, times what one is expected to cost there, and what its hits are shaded for.
+double DividedScene::cost_of(const SubtreeUse& use, std::size_t subtree) const {
+  return static_cast<double>(use.visits) * cut_.subtrees[subtree].visit +
+         kHitCost * static_cast<double>(use.hits);
+}
+
+void DividedScene::weigh(std::span<const SubtreeUse> visits) {
   double sum = 0;
   std::vector<double> costs(cut_.subtrees.size());
-  for (std::size_t i = 0; i < costs.size(); ++i)
-    sum += costs[i] = static_cast<double>(visits[i]) * cut_.subtrees[i].visit;
+  for (std::size_t i = 0; i < costs.size(); ++i) sum += costs[i] = cost_of(visits[i], i);
   if (sum == 0) return;  // no ray met anything
   costs_ = std::move(costs);
   measured_ = true;
@@ -69,8 +83,8 @@ void DividedScene::learn(const Result& result) {
   if (result.visits.size() != costs_.size() || !division_) return;
   std::vector<double> costs(costs_.size()), of_part(division_->parts.size());
   for (std::size_t i = 0; i < costs.size(); ++i) {
-    costs[i] = static_cast<double>(result.visits[i]) * cut_.subtrees[i].visit;
-    of_part[division_->part_of[i]] += costs[i];
+    costs[i] = cost_of(result.visits[i], i);
+    if (division_->part_of[i] != kEveryPart) of_part[division_->part_of[i]] += costs[i];
   }
   double busiest = 0, all = 0;
   for (const QueueReport& queue : result.queues) {
@@ -81,7 +95,7 @@ void DividedScene::learn(const Result& result) {
   if (all == 0 || busiest * static_cast<double>(result.queues.size()) < kUnbalanced * all) return;
   for (std::size_t i = 0; i < costs.size(); ++i) {
     const std::uint32_t part = division_->part_of[i];
-    if (of_part[part] > 0) costs[i] *= result.queues[part].busy_seconds / of_part[part];
+    if (part != kEveryPart && of_part[part] > 0) costs[i] *= result.queues[part].busy_seconds / of_part[part];
   }
   costs_ = std::move(costs);
   division_.reset();
@@ -93,7 +107,7 @@ Provision DividedScene::divide_for(const Request& request) {
     Provision provision = provide(request, geometry_bytes(), least_parts);
     cut_for(provision.n_parts);
     if (!provision.streamed) measure_costs(request);
-    divide_into(provision.n_parts);
+    divide_into(provision.n_parts, provision.streamed);
     if (fits(provision, *division_, request)) return provision;
     least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, KDRAY_MAX_PARTS);
   }

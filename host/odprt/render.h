@@ -71,7 +71,7 @@ struct Result {
   double render_seconds = 0, divide_seconds = 0;
   std::vector<QueueReport> queues;
   ExchangeCounts exchange{0};
-  std::vector<std::uint64_t> visits;  // of each subtree, where counted
+  std::vector<SubtreeUse> visits;  // of each subtree, where counted
   std::vector<Quarantined> quarantined;
   std::uint32_t n_bands = 0, n_parts = 0, n_cells = 0;
 };
@@ -90,9 +90,10 @@ class DividedScene {
 
  private:
   void cut_for(std::uint32_t n_parts);
-  void divide_into(std::uint32_t n_parts);
+  void divide_into(std::uint32_t n_parts, bool streamed);
   void measure_costs(const Request& request);
-  void weigh(std::span<const std::uint64_t> visits);
+  void weigh(std::span<const SubtreeUse> visits);
+  double cost_of(const SubtreeUse& use, std::size_t subtree) const;
   void learn(const Result& result);
   Provision divide_for(const Request& request);
   Result render_once(const Request& request);
@@ -104,6 +105,7 @@ class DividedScene {
   std::vector<double> costs_;  // of the subtrees, as they are dealt out by
   bool measured_ = false;      // costs_ come from rays
   std::optional<Division> division_;
+  bool streamed_ = false;  // it is for parts that come and go
 };
 
 }  // namespace kdray::odprt

@@ -21,6 +21,11 @@ struct Subtree {
   layout::u32 child = 0;    // the wide node's word: a node or a leaf
 };
 
+// What rays did with a subtree.
+struct SubtreeUse {
+  std::uint64_t visits = 0, hits = 0;
+};
+
 // An opened node of the wide tree, and what became of its children.
 struct Opened {
   static constexpr std::int32_t kEmpty = INT32_MIN;

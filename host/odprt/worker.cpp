@@ -29,6 +29,12 @@ cl::Buffer Worker::make_stream(std::size_t n_streams, std::size_t n_fields, std:
   return make(n_streams * n_fields * capacity * sizeof(float), what);
 }
 
+// Of each depth's many rays few are there at a time.
+cl::Buffer Worker::make_pool(std::size_t n_words) {
+  bytes_ += n_words * sizeof(float);
+  return context_.sparse_buffer(CL_MEM_READ_WRITE, n_words * sizeof(float), "the ray pools");
+}
+
 Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
                const layout::Frame& frame, const Plan& plan, std::uint32_t features, Traversal traversal,
                std::span<const layout::PartCell> directory, const WorkRoom& room, std::size_t max_subtrees)
@@ -39,7 +45,7 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       room_(room),
       slices_(plan.n_slices),
       traffic_(plan.n_slices),
-      visits_(plan.n_slices * max_subtrees),
+      visits_(2 * plan.n_slices * max_subtrees),
       frame_buffer_(make(sizeof(layout::Frame), "the frame")),
       travel_buffer_(make(sizeof(layout::Travel), "the division")),
       cells_(make(directory.size_bytes(), "the directory")),
@@ -47,8 +53,8 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       slice_buffer_(make(plan.n_slices * sizeof(layout::Slice), "the slices")),
       grant_buffer_(make(plan.n_slices * sizeof(layout::Grant), "the slices' grants")),
       traffic_buffer_(make(plan.n_slices * sizeof(layout::Traffic), "the slices' accounts")),
-      pool_(make_stream(std::size_t{plan.n_slices} * frame.max_depth, KDRAY_TRAVEL_RAY_FIELDS,
-                        frame.pool_capacity, "the ray pools")),
+      pool_(make_pool(std::size_t{plan.n_slices} * frame.max_depth * KDRAY_TRAVEL_RAY_FIELDS *
+                      frame.pool_capacity)),
       batch_(make_stream(plan.n_slices, KDRAY_TRAVEL_RAY_FIELDS, frame.batch_capacity, "the ray batches")),
       hits_(make_stream(plan.n_slices, KDRAY_HIT_FIELDS, frame.batch_capacity, "the hits")),
       shadow_rays_(
@@ -57,7 +63,7 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       shadow_pool_(make_stream(plan.n_slices, KDRAY_TRAVEL_SHADOW_FIELDS, plan.shadow_pool + 2 * KDRAY_LANES,
                                "the waiting shadow rays")),
       film_(context.buffer_made_beside(CL_MEM_READ_WRITE, room.places * 3 * sizeof(layout::i64), "the film",
-                                       film_made_)),
+                                       true, film_made_)),
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
       inbox_(context, plan.inbox),
       wave_("wave",
@@ -89,7 +95,9 @@ void Worker::begin(const Work& work) {
   frame_.first_pixel = static_cast<layout::u32>(work.first_pixel);
   frame_.samples_at = work.samples.empty() ? 0 : static_cast<layout::u32>(room_.entries);
   n_places_ = work.n_places;
-  n_tiles_ = static_cast<std::uint32_t>(work.list.size());
+  in_runs_ = !work.samples.empty();
+  list_.clear();
+  list_.reserve(room_.entries);  // what is added stays where it is while it is being copied
   std::fill(slices_.begin(), slices_.end(), layout::Slice{});
   std::fill(traffic_.begin(), traffic_.end(), layout::Traffic{});
   for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
@@ -97,8 +105,6 @@ void Worker::begin(const Work& work) {
     slices_[s].tile_stride = plan_.n_slices;
   }
   queue_.enqueueWriteBuffer(frame_buffer_, CL_FALSE, 0, sizeof frame_, &frame_);
-  if (!work.list.empty())
-    queue_.enqueueWriteBuffer(tiles_, CL_FALSE, 0, work.list.size_bytes(), work.list.data());
   if (!work.samples.empty())
     queue_.enqueueWriteBuffer(tiles_, CL_FALSE, room_.entries * sizeof(layout::u32),
                               work.samples.size_bytes(), work.samples.data());
@@ -106,11 +112,27 @@ void Worker::begin(const Work& work) {
                             slices_.data());
   queue_.enqueueWriteBuffer(traffic_buffer_, CL_FALSE, 0, traffic_.size() * sizeof(layout::Traffic),
                             traffic_.data());
-  if (n_places_ > 0 && film_made_.valid()) film_made_.get();
-  if (n_places_ > 0) queue_.enqueueFillBuffer(film_, cl_long{0}, 0, n_places_ * 3 * sizeof(layout::i64));
+  if (n_places_ > 0 && film_made_.valid())
+    film_made_.get();  // 0 already
+  else if (n_places_ > 0)
+    queue_.enqueueFillBuffer(film_, cl_long{0}, 0, n_places_ * 3 * sizeof(layout::i64));
   if (!visits_.empty())
     queue_.enqueueFillBuffer(visit_buffer_, cl_uint{0}, 0, visits_.size() * sizeof(layout::u32));
   queue_.finish();
+}
+
+void Worker::add(std::span<const layout::u32> entries) {
+  if (entries.empty()) return;
+  const std::size_t first = list_.size();
+  list_.insert(list_.end(), entries.begin(), entries.end());
+  queue_.enqueueWriteBuffer(tiles_, CL_FALSE, first * sizeof(layout::u32), entries.size_bytes(),
+                            &list_[first]);
+}
+
+std::uint32_t Worker::launch_tiles() const {
+  constexpr std::uint32_t kEyeWaves = 4;  // one wave of so many is of eye rays
+  const std::uint32_t n_rays = plan_.n_slices * plan_.n_waves * frame_.batch_size / kEyeWaves;
+  return n_rays / (in_runs_ ? KDRAY_SAMPLE_RUN : frame_.tile_width * frame_.tile_height * frame_.n_samples);
 }
 
 void Worker::serve(const LoadedPart& part, std::uint32_t census_every) {
@@ -185,7 +207,7 @@ void Worker::launch(std::span<const layout::Grant> grants, Outbox& outbox) {
   constexpr cl_uint kTilesArgument = kGeometryArguments + 9, kOutboxArguments = kGeometryArguments + 20;
   queue_.enqueueWriteBuffer(grant_buffer_, CL_FALSE, 0, grants.size_bytes(), grants.data());
   queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
-  wave_.set_arguments(kTilesArgument, cl_uint{n_tiles_});
+  wave_.set_arguments(kTilesArgument, static_cast<cl_uint>(list_.size()));
   wave_.set_arguments(kOutboxArguments, outbox.rays(), outbox.shadow_rays(), outbox.counts(), visit_buffer_);
   wave_.launch(queue_, plan_.n_slices, 1);
   queue_.enqueueReadBuffer(outbox.counts(), CL_FALSE, 0, outbox.n().size() * sizeof(layout::u32),
@@ -279,8 +301,9 @@ void Worker::add_cycles(std::map<std::string, double>& cycles) const {
 
 std::uint32_t Worker::tiles_left() const {
   std::uint32_t n = 0;
+  const auto n_tiles = static_cast<std::uint32_t>(list_.size());
   for (const layout::Slice& slice : slices_)
-    if (slice.tile < n_tiles_) n += (n_tiles_ - slice.tile + slice.tile_stride - 1) / slice.tile_stride;
+    if (slice.tile < n_tiles) n += (n_tiles - slice.tile + slice.tile_stride - 1) / slice.tile_stride;
   return n;
 }
 
@@ -292,13 +315,14 @@ std::uint64_t Worker::n_waiting() const {
   return n;
 }
 
-std::vector<std::uint64_t> Worker::visits() const {
+std::vector<SubtreeUse> Worker::visits() const {
   const std::size_t n = travel_.n_subtrees;
-  std::vector<std::uint64_t> sums(n);
-  std::vector<layout::u32> counts(n * plan_.n_slices);
+  std::vector<SubtreeUse> sums(n);
+  std::vector<layout::u32> counts(2 * n * plan_.n_slices);
   if (n == 0) return sums;
   queue_.enqueueReadBuffer(visit_buffer_, CL_TRUE, 0, counts.size() * sizeof(layout::u32), counts.data());
-  for (std::size_t i = 0; i < counts.size(); ++i) sums[i % n] += counts[i];
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    (i / n % 2 == 0 ? sums[i % n].visits : sums[i % n].hits) += counts[i];
   return sums;
 }
 

@@ -20,6 +20,7 @@
 #include "odprt/mail.h"
 #include "odprt/outbox.h"
 #include "odprt/plan.h"
+#include "odprt/subtrees.h"
 #include "wavefront/programs.h"
 #include "wavefront/scene_buffers.h"
 #include "wavefront/stage.h"
@@ -38,7 +39,6 @@ struct LoadedPart {
 // What is rendered between two clearings of the film: tiles of a band of the picture, or runs of samples (frame.layout.h).
 struct Work {
   std::size_t first_pixel = 0, n_places = 0;  // of the film
-  std::span<const layout::u32> list;          // entries whose eye rays the worker is to make
   std::span<const layout::u32> samples = {};  // empty: tiles
 };
 
@@ -59,6 +59,10 @@ class Worker {
 
   // Clears the film.
   void begin(const Work& work);
+  // Entries (tiles, or runs of samples) whose eye rays the worker is to make, behind those that it has.
+  void add(std::span<const layout::u32> entries);
+  // About how many of them a launch begins.
+  std::uint32_t launch_tiles() const;
 
   // `census_every`: visits to the part's subtrees are counted in one wave of so many; 0: in none.
   void serve(const LoadedPart& part, std::uint32_t census_every);
@@ -84,7 +88,7 @@ class Worker {
   std::span<const layout::Traffic> traffic() const { return traffic_; }
   std::uint32_t tiles_left() const;  // not begun
   std::uint64_t n_waiting() const;   // rays in the pools
-  std::vector<std::uint64_t> visits() const;
+  std::vector<SubtreeUse> visits() const;
 
   // The film's sums, three for each place, until unmap_film().
   std::span<const layout::i64> map_film();
@@ -100,9 +104,9 @@ class Worker {
 
  private:
   cl::Buffer make(std::size_t bytes, const std::string& what);
+  cl::Buffer make_pool(std::size_t n_words);
   cl::Buffer make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
                          const std::string& what);
-  void write_travel();
 
   const device::Context& context_;
   cl::CommandQueue queue_;
@@ -111,7 +115,8 @@ class Worker {
   layout::Travel travel_{};
   WorkRoom room_;
   std::size_t bytes_ = 0, n_places_ = 0;
-  std::uint32_t n_tiles_ = 0;
+  bool in_runs_ = false;  // the entries are runs of samples
+  std::vector<layout::u32> list_;
   std::vector<layout::Slice> slices_;
   std::vector<layout::Traffic> traffic_;
   std::vector<layout::u32> visits_;

@@ -165,7 +165,7 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       shadow_rays_(make_stream(KDRAY_SHADOW_FIELDS, frame.shadow_capacity, "the shadow rays")),
       occluded_(make(std::size_t{schedule.n_slices} * frame.shadow_capacity, "the occlusion flags")),
       film_(context.buffer_made_beside(CL_MEM_READ_WRITE, room_.pixels * 3 * sizeof(layout::i64), "the film",
-                                       film_made_)) {
+                                       false, film_made_)) {
   device_bytes_ += room_.pixels * 3 * sizeof(layout::i64);
   device::checked("setting up the kernels", [&] {
     if (schedule.fill) fill_streams(*schedule.fill);

@@ -126,7 +126,7 @@ __kernel void travel_wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* 
                      io_traffic + slice_id};
   const Shaders shaders = {{in_triangles, in_normals, in_spheres, in_cones}, in_materials, in_lights};
   const Streams streams = {io_pool, io_batch, io_hits, io_shadow_rays, io_shadow_pool, io_occluded, io_film};
-  const Census census = {in_subtrees, travel->n_subtrees, out_visits + (size_t)slice_id * travel->n_subtrees};
+  const Census census = {in_subtrees, travel->n_subtrees, out_visits + (size_t)slice_id * 2 * travel->n_subtrees};
   const TileList tiles = {in_tiles, n_tiles};
   begin_account(t.traffic);
   u32 n = 0;

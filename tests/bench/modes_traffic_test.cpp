@@ -52,10 +52,15 @@ TEST(TrafficOfRays, AShadowRayEndsWithTheFirstThatFindsSomething) {
 
 TEST(TrafficOfRays, OneThatMeetsNothingEndsWhereItBegins) {
   expect_hops(way({}, false), {{0, 0}});
-  expect_hops(way({{kDirectory, 2}}, true), {{0, 2}});
+  expect_hops(way({{kDirectory, 2}}, false), {{0, 2}});
 }
 
-TEST(TrafficOfRays, EyeRaysAreDealtOutAndChildrenBeginWhereTheHitIs) {
+TEST(TrafficOfRays, WhatAllHoldIsShadedWhereTheRayIs) {
+  expect_hops(way({{kDirectory, 2}}, true), {{0, 102}});
+  expect_hops(way({{3, 1}, {kDirectory, 2}}, true), {{0, 0}, {3, 103}});
+}
+
+TEST(TrafficOfRays, EyeRaysBeginWhereTheyAreAskedAndChildrenWhereTheHitIs) {
   Paths paths;
   paths.visits = {{2, 1}};
   paths.first = {0, 1, 1, 1};
@@ -65,7 +70,7 @@ TEST(TrafficOfRays, EyeRaysAreDealtOutAndChildrenBeginWhereTheHitIs) {
   const Traffic traffic = make_traffic(lives, paths, 4, kRates, 8);
   EXPECT_EQ(traffic.first, (std::vector<std::uint32_t>{0, 1}));
   EXPECT_EQ(traffic.journeys[0].next, std::vector<std::uint32_t>{2});
-  expect_hops(traffic.journeys[0].hops, {{0, 0}, {2, 8 * 101}});
+  expect_hops(traffic.journeys[0].hops, {{2, 8 * 101}});
   expect_hops(traffic.journeys[1].hops, {{1, 0}});
   expect_hops(traffic.journeys[2].hops, {{2, 0}});
   EXPECT_EQ(traffic.journeys[2].depth, 2u);

@@ -34,14 +34,14 @@ struct Play {
     return sum;
   }
 
-  // Ends some rays that are alive and makes some, as far as the grant goes. Only rays that are settled may end elsewhere,
-  // so a queue ends rays that were alive before.
+  // Ends some rays that are alive and makes some, as far as the grant goes and what has ended makes room. Only rays that are settled
+  // may end elsewhere, so a queue ends rays that were alive before.
   void settle(std::size_t queue) {
     std::vector<layout::Traffic> traffic(kSlices);
     for (std::size_t s = 0; s < kSlices; ++s)
       for (std::uint32_t level = 0; level <= kDepth; ++level) {
         const std::uint32_t ended = below(alive[s][level] + 1),
-                            made = below(grants[queue][s].rays[level] + 1);
+                            made = below(grants[queue][s].rays[level] + ended + 1);
         traffic[s].made[level] = made;
         traffic[s].ended[level] = ended;
         alive[s][level] += made - ended;

@@ -13,6 +13,7 @@
 
 #include "odprt/division.h"
 #include "odprt/prepared_scenes.h"
+#include "odprt/replicate.h"
 
 namespace kdray::test {
 namespace {
@@ -72,11 +73,23 @@ Box box_of(const layout::PartCell& c) {
   return {{c.lo[0], c.lo[1], c.lo[2]}, {c.hi[0], c.hi[1], c.hi[2]}};
 }
 
-// Any part for each subtree: not only runs of neighbours.
-std::vector<std::uint32_t> random_parts(std::size_t n, std::uint32_t n_parts, std::mt19937_64& random) {
+// Any part for each subtree: not only runs of neighbours. Some subtrees are everywhere, if that is asked for.
+std::vector<std::uint32_t> random_parts(std::size_t n, std::uint32_t n_parts, bool replicated,
+                                        std::mt19937_64& random) {
   std::vector<std::uint32_t> parts(n);
-  for (std::uint32_t& part : parts) part = static_cast<std::uint32_t>(random() % n_parts);
+  for (std::uint32_t& part : parts)
+    part =
+        replicated && random() % 3 == 0 ? odprt::kEveryPart : static_cast<std::uint32_t>(random() % n_parts);
   return parts;
+}
+
+std::size_t leaves_below(const flatten::WideForm& form, layout::u32 child) {
+  if (child & KDRAY_WIDE_LEAF) return 1;
+  std::size_t n = 0;
+  for (std::uint32_t slot = 0; slot < 8; ++slot)
+    if (!odprt::child_bounds(form.nodes[child], slot).empty())
+      n += leaves_below(form, form.nodes[child].child[slot]);
+  return n;
 }
 
 class Parts : public testing::Test {
@@ -86,25 +99,35 @@ class Parts : public testing::Test {
   void for_all(const Check& check) {
     std::mt19937_64 random(kSeed);
     for (const auto& [name, scene] : prepared_scenes())
-      for (const std::uint32_t n_parts : {2u, 5u, 64u}) {
-        const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 4 * n_parts);
-        const auto part_of = random_parts(cut.subtrees.size(), n_parts, random);
-        check(name, scene, cut, part_of, odprt::make_parts(scene.flat, scene.wide, cut, part_of, n_parts));
-      }
+      for (const std::uint32_t n_parts : {2u, 5u, 64u})
+        for (const bool replicated : {false, true}) {
+          const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 4 * n_parts);
+          const auto part_of = random_parts(cut.subtrees.size(), n_parts, replicated, random);
+          check(name, scene, cut, part_of, odprt::make_parts(scene.flat, scene.wide, cut, part_of, n_parts));
+        }
   }
 };
 
-TEST_F(Parts, HoldEveryLeafOnce) {
-  for_all([](const std::string& name, const prepare::Prepared& scene, const odprt::Cut&, const auto&,
-             const std::vector<odprt::Part>& parts) {
+TEST_F(Parts, HoldEveryLeafOnceOrAllOfThemDo) {
+  for_all([](const std::string& name, const prepare::Prepared& scene, const odprt::Cut& cut,
+             const auto& part_of, const std::vector<odprt::Part>& parts) {
+    std::size_t n_replicated = 0;
+    for (std::size_t i = 0; i < cut.subtrees.size(); ++i)
+      if (part_of[i] == odprt::kEveryPart) n_replicated += leaves_below(scene.wide, cut.subtrees[i].child);
     std::vector<Leaf> leaves;
     for (const odprt::Part& part : parts) {
       const std::vector<Leaf> own = leaves_of(part.flat, part.wide);
       leaves.insert(leaves.end(), own.begin(), own.end());
     }
     std::sort(leaves.begin(), leaves.end());
+    std::vector<Leaf> whole = leaves_of(scene.flat, scene.wide);
+    EXPECT_EQ(leaves.size(), whole.size() + (parts.size() - 1) * n_replicated) << name;
+    if (n_replicated > 0) {
+      leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+      whole.erase(std::unique(whole.begin(), whole.end()), whole.end());
+    }
     // Many leaves: compared whole, told by their number.
-    EXPECT_TRUE(leaves == leaves_of(scene.flat, scene.wide)) << name << ": " << leaves.size() << " leaves";
+    EXPECT_TRUE(leaves == whole) << name << ": " << leaves.size() << " leaves";
   });
 }
 
@@ -160,6 +183,7 @@ TEST_F(Parts, TheDirectoryEnclosesThem) {
         EXPECT_TRUE(box_of(cells[i]).contains(box_of(cells[k]))) << name;
       }
     for (std::size_t i = 0; i < cut.subtrees.size(); ++i) {
+      if (part_of[i] == odprt::kEveryPart) continue;
       const Box& box = cut.subtrees[i].bounds;
       const bool enclosed = std::any_of(cells.begin(), cells.end(), [&](const layout::PartCell& c) {
         return c.n_cells == 0 && c.part == part_of[i] && box_of(c).contains(box);
@@ -173,7 +197,7 @@ TEST(Division, OnePartIsTheSceneItself) {
   const prepare::Prepared scene = prepare::prepare(smooth_meshes(), TreeOptions());
   const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 64);
   const std::vector<double> costs(cut.subtrees.size(), 1.0);
-  const odprt::Division whole = odprt::divide(scene.flat, scene.wide, cut, costs, 1, 0.1);
+  const odprt::Division whole = odprt::divide(scene.flat, scene.wide, cut, costs, {});
   ASSERT_EQ(whole.parts.size(), 1u);
   EXPECT_EQ(whole.parts[0].wide.nodes.data(), scene.wide.nodes.data()) << "copied";
 }
@@ -185,10 +209,35 @@ TEST(Division, NoPartTakesMuchMoreThanItsShareOfTheBytes) {
   costs[0] = 1;  // all the cost in one place
   const std::size_t whole = odprt::geometry_bytes(scene.flat, scene.wide);
   for (const std::uint32_t n : {2u, 4u, 8u}) {
-    const odprt::Division division = odprt::divide(scene.flat, scene.wide, cut, costs, n, 0.15);
+    const odprt::Division division =
+        odprt::divide(scene.flat, scene.wide, cut, costs, {.n_parts = n, .spare = 0.15});
     for (const odprt::Part& part : division.parts)
       EXPECT_LE(static_cast<double>(part.geometry_bytes()), (1.0 / n + 0.20) * static_cast<double>(whole))
           << n;
+  }
+}
+
+TEST(Division, WhatRaysComeToMostIsEverywhere) {
+  const prepare::Prepared scene = prepare::prepare(smooth_meshes(), TreeOptions());
+  const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 64);
+  std::vector<double> costs;
+  for (const odprt::Subtree& subtree : cut.subtrees) costs.push_back(subtree.visit);
+  costs[7] *= 1000;
+  for (const std::uint32_t n : {2u, 5u}) {
+    const odprt::Division division =
+        odprt::divide(scene.flat, scene.wide, cut, costs, {.n_parts = n, .spare = 0.15, .replicated = 0.1});
+    EXPECT_EQ(division.part_of[7], odprt::kEveryPart);
+    std::uint64_t all = 0, everywhere = 0;
+    for (std::size_t i = 0; i < cut.subtrees.size(); ++i) {
+      all += cut.subtrees[i].bytes;
+      if (division.part_of[i] == odprt::kEveryPart) everywhere += cut.subtrees[i].bytes;
+    }
+    // n parts that share s of the whole hold s - s/n more than an equal share.
+    EXPECT_LE(static_cast<double>(everywhere) * (1 - 1.0 / n), 0.1 * static_cast<double>(all));
+    for (std::uint32_t part = 0; part < n; ++part) {
+      const std::vector<std::uint32_t> subtrees = division.subtrees_of(part);
+      EXPECT_TRUE(std::find(subtrees.begin(), subtrees.end(), 7u) != subtrees.end());
+    }
   }
 }
 

@@ -92,7 +92,7 @@ TEST(Provision, WorkersTakeWhatWasComputed) {
     const odprt::Provision p = odprt::provide(request, 0);
     const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 16);
     const std::vector<double> costs(cut.subtrees.size(), 1.0);
-    const odprt::Division division = odprt::divide(scene.flat, scene.wide, cut, costs, 1, 1);
+    const odprt::Division division = odprt::divide(scene.flat, scene.wide, cut, costs, {});
     const odprt::Crew crew = odprt::make_crew(request, p, division, cut);
     const auto computed = static_cast<double>(work_of(p)),
                taken = static_cast<double>(crew.reports[0].work_bytes);
