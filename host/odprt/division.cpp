@@ -7,6 +7,10 @@
 
 namespace kdray::odprt {
 
+bool Division::replicates() const {
+  return std::find(part_of.begin(), part_of.end(), kEveryPart) != part_of.end();
+}
+
 std::vector<std::uint32_t> Division::subtrees_of(std::uint32_t part) const {
   std::vector<std::uint32_t> subtrees;
   for (std::uint32_t i = 0; i < part_of.size(); ++i)

@@ -15,6 +15,7 @@ struct Division {
   std::vector<layout::PartCell> directory;
   std::vector<Part> parts;
 
+  bool replicates() const;  // some subtrees are in every part
   // The subtrees of a part, in the order of the census.
   std::vector<std::uint32_t> subtrees_of(std::uint32_t part) const;
 };

@@ -14,8 +14,8 @@ std::unique_ptr<LoadedPart> PartStore::load(std::uint32_t number) {
   const auto placement =
       most_bytes_ > 0 ? wavefront::Placement::copied : wavefront::Placement::in_place_if_possible;
   auto loaded = std::make_unique<LoadedPart>(
-      LoadedPart{number, part.n_shared, wavefront::SceneBuffers(context_, part.flat, part.wide, placement),
-                 part.geometry_bytes(),
+      LoadedPart{number, part.n_shared, division_.replicates(),
+                 wavefront::SceneBuffers(context_, part.flat, part.wide, placement), part.geometry_bytes(),
                  context_.buffer(CL_MEM_READ_ONLY, cells.size() * sizeof cells[0], "the subtrees"),
                  static_cast<std::uint32_t>(cells.size())});
   if (!cells.empty())

@@ -138,6 +138,7 @@ std::uint32_t Worker::launch_tiles() const {
 void Worker::serve(const LoadedPart& part, std::uint32_t census_every) {
   travel_.part = part.number;
   travel_.n_shared = part.n_shared;
+  travel_.replicated = part.replicates ? 1 : 0;
   travel_.n_subtrees = census_every > 0 ? part.n_subtrees : 0;
   travel_.census_every = std::max(census_every, 1u);
   queue_.enqueueWriteBuffer(travel_buffer_, CL_FALSE, 0, sizeof travel_, &travel_);

@@ -30,6 +30,7 @@ namespace kdray::odprt {
 // A part on a device.
 struct LoadedPart {
   std::uint32_t number = 0, n_shared = 0;
+  bool replicates = false;  // the division does
   wavefront::SceneBuffers scene;
   std::size_t bytes = 0;  // of its geometry
   cl::Buffer subtrees;    // a cell for each, for the census

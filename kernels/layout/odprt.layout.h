@@ -33,7 +33,8 @@ typedef struct Travel {
   u32 n_shared;      // triangles that other parts hold too: the first ones, by number
   u32 n_subtrees;    // whose visitors are to be counted; 0: none are
   u32 census_every;  // ... in one wave of so many
-  u32 pad[3];
+  u32 replicated;    // 1: what most rays come to is held by every part
+  u32 pad[2];
 } Travel;
 KDRAY_ASSERT_SIZE(Travel, 64)
 
