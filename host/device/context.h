@@ -51,11 +51,13 @@ class Context {
   // of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
   cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // The same, of which only pieces here and there are going to be used: never in large pages, each of which is cleared as a whole.
+  // As buffer(), of which only pieces here and there are going to be used: large pages, each of which is cleared as a whole, are not
+  // asked for.
   cl::Buffer sparse_buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // The same, and its pages are made in the background where it lies in the host's memory: `made` ends when they are, all 0
-  // if that is asked for. (Or it is no future at all, and nothing is done.)
+  // As buffer(), and its pages are made in the background where it lies in the host's memory: `made` ends when they are, all 0
+  // if that is asked for. (Or it is no future at all, and nothing is done.) No command may use it before. The device has to work in
+  // that very memory, as a CPU with CL_DEVICE_HOST_UNIFIED_MEMORY does: the 0s are written beside OpenCL.
   cl::Buffer buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what, bool zeroed,
                                 std::future<void>& made) const;
 

@@ -94,6 +94,7 @@ void BandRun::take_entries(std::size_t queue, Shares& shares) {
   const std::size_t n = std::min<std::size_t>(worker.launch_tiles(), shares.left() / (4 * shares.n_queues()));
   const std::size_t wanted = std::max<std::size_t>(n, crew_.plan.n_slices), has = worker.tiles_left();
   if (has < wanted) worker.add(shares.take(queue, wanted - has));
+  tiles_left_[queue] = worker.tiles_left();
 }
 
 void BandRun::take_turn(std::size_t queue, const Turn& turn, Shares& shares, QueueState& state,

@@ -27,6 +27,8 @@ struct DivideOptions {
   std::uint32_t n_parts = 1;
   double spare = 0;       // of the scene's bytes, that a part may take beyond an equal share, if possible
   double replicated = 0;  // ... of which so much may be what every part holds
+
+  bool operator==(const DivideOptions&) const = default;
 };
 
 // What a part may take of the geometry where memory is not short.

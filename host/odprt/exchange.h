@@ -43,7 +43,7 @@ struct Turn {
 // What a queue knows of itself after a turn.
 struct QueueState {
   std::uint32_t part = 0;  // that it serves
-  bool has_tiles = true;   // eye rays still to make
+  bool has_tiles = true;   // eye rays still to make, its own or what it may take of others'
   bool has_rays = false;   // in its pools, or in mail that it has taken
   bool progressed = true;  // the last launch did something
 };

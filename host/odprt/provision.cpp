@@ -15,7 +15,6 @@ namespace {
 // Of a queue, for all parts: with few a queue waits for the others to read.
 constexpr std::size_t kLeastOutboxes = 3, kMostOutboxes = 8, kOutboxPlaces = 16;
 constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // of a queue; larger pictures go in bands
-constexpr double kSpareGeometry = 1.3;  // primitives that lie in several parts, and parts of unequal size
 // Of memory that is short. Each band goes through all parts, so the film is worth more than room for larger parts; and the more
 // parts there are, the more cells every ray is tested against, so there is room for one at a time only.
 constexpr std::size_t kFilmEighths = 3;

@@ -14,6 +14,9 @@
 
 namespace kdray::odprt {
 
+// Of an equal share of the geometry, what a part is given room for: primitives that lie in several parts, and parts of unequal size.
+inline constexpr double kSpareGeometry = 1.3;
+
 struct Provision {
   layout::Frame frame;  // with the plan's sizes
   Plan plan;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/timer.h"
@@ -25,6 +26,14 @@ std::size_t subtrees_for(std::size_t n_parts) {
   return std::clamp(kSubtreesPerPart * n_parts, kLeastSubtrees, kMostSubtrees);
 }
 
+// With a limit nothing is held twice; where all parts stay, they keep to what has been provided for, and where they come and go
+// their size is checked.
+DivideOptions options_for(const Provision& provision, const Request& request) {
+  if (request.device_memory == 0) return {provision.n_parts, kSpare, kReplicated};
+  return {provision.n_parts,
+          provision.streamed ? kSpare : std::min(kSpare, (kSpareGeometry - 1) / provision.n_parts), 0};
+}
+
 }  // namespace
 
 DividedScene::DividedScene(flatten::FlatScene flat, flatten::WideForm wide)
@@ -44,16 +53,17 @@ void DividedScene::cut_for(std::uint32_t n_parts) {
   division_.reset();
 }
 
-// Where memory is short nothing is held twice.
-void DividedScene::divide_into(std::uint32_t n_parts, bool streamed) {
-  if (division_ && division_->parts.size() == n_parts && streamed_ == streamed) return;
-  const double most = (1.0 / n_parts + kMostSpare) * static_cast<double>(geometry_bytes());
-  for (double replicated = streamed ? 0 : kReplicated;; replicated = std::max(replicated - 0.04, 0.0)) {
-    division_ =
-        divide(flat_, wide_, cut_, costs_, {.n_parts = n_parts, .spare = kSpare, .replicated = replicated});
-    if (replicated == 0 || static_cast<double>(largest_bytes(*division_)) <= most) break;
+// Replicates less than asked for where primitives in several parts take much.
+void DividedScene::divide_by(const DivideOptions& options) {
+  if (division_ && divided_by_ == options) return;
+  const double most = (1.0 / options.n_parts + kMostSpare) * static_cast<double>(geometry_bytes());
+  DivideOptions o = options;
+  division_ = divide(flat_, wide_, cut_, costs_, o);
+  while (o.replicated > 0 && static_cast<double>(largest_bytes(*division_)) > most) {
+    o.replicated = std::max(o.replicated - 0.04, 0.0);
+    division_ = divide(flat_, wide_, cut_, costs_, o);
   }
-  streamed_ = streamed;
+  divided_by_ = options;
 }
 
 void DividedScene::measure_costs(const Request& request) {
@@ -93,9 +103,12 @@ void DividedScene::learn(const Result& result) {
   }
   // Not worth its while where queues are about as busy.
   if (all == 0 || busiest * static_cast<double>(result.queues.size()) < kUnbalanced * all) return;
+  // In units of the counted costs, which are those of what every part holds too.
+  const double seconds_of_cost = all / std::max(std::accumulate(of_part.begin(), of_part.end(), 0.0), 1.0);
   for (std::size_t i = 0; i < costs.size(); ++i) {
     const std::uint32_t part = division_->part_of[i];
-    if (part != kEveryPart && of_part[part] > 0) costs[i] *= result.queues[part].busy_seconds / of_part[part];
+    if (part != kEveryPart && of_part[part] > 0)
+      costs[i] *= result.queues[part].busy_seconds / of_part[part] / seconds_of_cost;
   }
   costs_ = std::move(costs);
   division_.reset();
@@ -107,7 +120,7 @@ Provision DividedScene::divide_for(const Request& request) {
     Provision provision = provide(request, geometry_bytes(), least_parts);
     cut_for(provision.n_parts);
     if (!provision.streamed) measure_costs(request);
-    divide_into(provision.n_parts, provision.streamed);
+    divide_by(options_for(provision, request));
     if (fits(provision, *division_, request)) return provision;
     least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, KDRAY_MAX_PARTS);
   }

@@ -90,7 +90,7 @@ class DividedScene {
 
  private:
   void cut_for(std::uint32_t n_parts);
-  void divide_into(std::uint32_t n_parts, bool streamed);
+  void divide_by(const DivideOptions& options);
   void measure_costs(const Request& request);
   void weigh(std::span<const SubtreeUse> visits);
   double cost_of(const SubtreeUse& use, std::size_t subtree) const;
@@ -105,7 +105,7 @@ class DividedScene {
   std::vector<double> costs_;  // of the subtrees, as they are dealt out by
   bool measured_ = false;      // costs_ come from rays
   std::optional<Division> division_;
-  bool streamed_ = false;  // it is for parts that come and go
+  DivideOptions divided_by_;
 };
 
 }  // namespace kdray::odprt

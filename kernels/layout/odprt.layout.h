@@ -38,7 +38,7 @@ typedef struct Travel {
 } Travel;
 KDRAY_ASSERT_SIZE(Travel, 64)
 
-// What a slice may make in a launch: [0] shadow rays that leave the part where they begin, [d] rays of depth d.
+// What a slice may make in a launch beyond what it ends: [0] shadow rays that leave the part where they begin, [d] rays of depth d.
 typedef struct Grant {
   u32 rays[KDRAY_MAX_DEPTH + 1];
 } Grant;
