@@ -204,6 +204,27 @@ TEST(Odprt, LessMemoryThanTheSceneTakes) {
   }
 }
 
+// A limit that all parts fit in together, just so: they stay, and keep to it.
+TEST(Odprt, PartsThatStayKeepToTheLimit) {
+  const Scene scene{many_triangles()};
+  for (const int queues : {2, 4}) {
+    Way way = odprt(queues, Balance::pilot, ", limited");
+    const Shot free = render(scene, way);
+    std::uint64_t work = 0;
+    for (const auto& queue : free.statistics["memory"]["per_queue"])
+      work += queue["work_bytes"].get<std::uint64_t>();
+    const auto geometry = free.statistics["mode"]["whole_geometry_bytes"].get<double>();
+    way.options.device_memory = work + static_cast<std::uint64_t>(1.35 * geometry);
+    const Shot got = render(scene, way);
+    EXPECT_TRUE(same_bits(free.picture.rgb, got.picture.rgb)) << queues;
+    EXPECT_EQ(got.statistics["mode"]["parts"], queues);
+    std::uint64_t held = 0;
+    for (const auto& queue : got.statistics["memory"]["per_queue"])
+      held += queue["geometry_bytes"].get<std::uint64_t>() + queue["work_bytes"].get<std::uint64_t>();
+    EXPECT_LE(held, way.options.device_memory) << queues;
+  }
+}
+
 TEST(ModeAuto, TakesWhatFitsAndSaysWhy) {
   const Scene scene{smooth_meshes()};
   Way way{"auto", 2};
