@@ -9,7 +9,7 @@
 namespace kdray::odprt {
 
 // In Division::part_of: a subtree that every part holds.
-constexpr std::uint32_t kEveryPart = 0xffffffffu;
+inline constexpr std::uint32_t kEveryPart = 0xffffffffu;
 
 // A flag for each subtree. `visits`: how many rays come to it (a hit counts as some more), in any unit; `most_bytes`: of all that are chosen.
 std::vector<bool> replicate(std::span<const double> visits, std::span<const std::uint64_t> bytes,

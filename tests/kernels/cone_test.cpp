@@ -165,13 +165,24 @@ TEST_P(ConeTest, AlmostAlongTheAxisOfAFlatCone) {
   EXPECT_GT(hits, 3000);
 }
 
+// A cone's axis, base, and a direction away from the axis.
+struct Flank {
+  vec3 axis, base, side;
+};
+
+Flank any_flank(const layout::Cone& cone, std::mt19937& random) {
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const vec3 axis(cone.axis[0], cone.axis[1], cone.axis[2]);
+  const float u = unit(random), v = unit(random);
+  return {axis, vec3(cone.base[0], cone.base[1], cone.base[2]),
+          glm::normalize(glm::cross(axis, vec3(u, v, 1.5f)))};
+}
+
 // Lines that touch a cone, or all but touch it: their two roots are nearly one.
 Case touching_case(std::mt19937& random, int i) {
   std::uniform_real_distribution<float> unit(-1, 1);
   Case c = random_case(random, i);
-  const vec3 axis(c.cone.axis[0], c.cone.axis[1], c.cone.axis[2]);
-  const vec3 base(c.cone.base[0], c.cone.base[1], c.cone.base[2]);
-  const vec3 side = glm::normalize(glm::cross(axis, vec3(unit(random), unit(random), 1.5f)));
+  const auto [axis, base, side] = any_flank(c.cone, random);
   const float s = c.cone.height * (0.5f + 0.4f * unit(random)), r = c.cone.base_radius + c.cone.slope * s;
   const vec3 touched = base + axis * s + side * r, normal = glm::normalize(side - c.cone.slope * axis);
   const vec3 along = glm::normalize(0.2f * unit(random) * glm::cross(normal, glm::cross(axis, side)) +
@@ -205,9 +216,7 @@ Case grazing_case(std::mt19937& random, int i) {
   std::uniform_real_distribution<float> unit(-1, 1);
   Case c = random_case(random, i);
   if (i % 5 == 0) c.cone.base_radius *= 1e-3f, c.cone.slope *= 1e-3f;
-  const vec3 axis(c.cone.axis[0], c.cone.axis[1], c.cone.axis[2]);
-  const vec3 base(c.cone.base[0], c.cone.base[1], c.cone.base[2]);
-  const vec3 side = glm::normalize(glm::cross(axis, vec3(unit(random), unit(random), 1.5f)));
+  const auto [axis, base, side] = any_flank(c.cone, random);
   const float s = c.cone.height * 0.5f * (unit(random) + 1);
   const vec3 touched = base + axis * s + side * (c.cone.base_radius + c.cone.slope * s);
   const float tilt = std::pow(10.0f, -4 * std::abs(unit(random)));

@@ -561,38 +561,6 @@ TEST_P(TraversalTest, AHugeLeaf) {
   expect_right(b.scene(), 20, 0.2);
 }
 
-// Shadow rays, side by side from a floor to a light: what stopped one packet is tried on the next, which it stops or doesn't.
-TEST_P(TraversalTest, OccludersOfOtherPackets) {
-  constexpr unsigned kSeed = 23;
-  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
-  Random random(kSeed);
-  oracle::SceneBuilder b;
-  // Few of one kind and many of another: what takes a node for a leaf reads far beyond the few.
-  for (int i = 0; i < 6000; ++i) b.sphere(random.grid_point(1), 0.05 * random.size(), kAny);
-  for (int i = 0; i < 3; ++i) {
-    const dvec3 p = random.grid_point(1);
-    b.triangle(p, p + 0.3 * random.direction(), p + 0.3 * random.direction(), kAny);
-    b.cone(p, 0.1, p + 0.3 * random.direction(), 0.05, kAny);
-  }
-  Subject s(b.scene(), GetParam());
-  constexpr int kAcross = 160;
-  for (const dvec3 light : {dvec3(0.25, 4, -0.125), dvec3(-1, 0.5, 2)}) {
-    std::vector<Ray> rays;
-    for (int y = 0; y < kAcross; ++y)
-      for (int x = 0; x < kAcross; ++x) {
-        const dvec3 o(3.0 * (x + 0.5) / kAcross - 1.5, -1.5, 3.0 * (y + 0.5) / kAcross - 1.5);
-        rays.push_back(make_ray(o, light - o, 0, 1));
-      }
-    const std::vector<Hit> any = s.trace(rays, true);
-    const auto stopped =
-        std::count_if(any.begin(), any.end(), [](const Hit& h) { return h.primitive >= 0 || h.t == 0; });
-    EXPECT_GT(stopped, kAcross * kAcross / 4);
-    EXPECT_LT(stopped, kAcross * kAcross * 9 / 10);
-    for (const Walk& walk : kWalks)
-      EXPECT_TRUE(alike(rays, any, s.trace(rays, true, walk.traversal))) << walk.name;
-  }
-}
-
 scene::Scene moved(scene::Scene s, double scale, const dvec3& offset) {
   for (dvec3& v : s.vertices) v = v * scale + offset;
   for (scene::Sphere& p : s.spheres) p.center = p.center * scale + offset, p.radius *= scale;
