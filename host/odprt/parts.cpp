@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <map>
 
 #include "layout/primitives.layout.h"
 #include "layout/wide.layout.h"
@@ -305,38 +306,86 @@ Below below_of(const flatten::WideForm& form, const Cut& cut, std::span<const st
   return all;
 }
 
-void add_cells(const flatten::WideForm& form, const Cut& cut, std::span<const std::uint32_t> part_of,
-               std::size_t i, std::vector<layout::PartCell>& cells) {
-  const Opened& opened = cut.top[i];
-  for (std::uint32_t slot = 0; slot < 8; ++slot) {
-    const std::int32_t below = opened.below[slot];
-    if (below == Opened::kEmpty) continue;
-    const Below all = below_of(form, cut, part_of, below, child_bounds(form.nodes[opened.node], slot));
-    if (all.several) {
-      add_cells(form, cut, part_of, static_cast<std::size_t>(below), cells);
-    } else if (all.part != kEveryPart) {
-      cells.push_back(cell_of(all.part, all.bounds));
-    }
+// Writes the cells of the parts, in the tree's order: what lies within a cell comes behind it.
+class Directory {
+ public:
+  Directory(const flatten::WideForm& form, const Cut& cut, std::span<const std::uint32_t> part_of)
+      : form_(form), cut_(cut), part_of_(part_of) {
+    if (!cut.top.empty()) add_largest(0);
   }
-}
 
-// Puts each part's bounds before its cells, where those are several.
-std::vector<layout::PartCell> with_bounds(const std::vector<layout::PartCell>& cells) {
-  std::vector<layout::PartCell> all;
-  for (std::size_t first = 0; first < cells.size();) {
-    std::size_t end = first;
-    Box bounds;
-    for (; end < cells.size() && cells[end].part == cells[first].part; ++end) bounds.grow(box_of(cells[end]));
-    if (end - first > 1) {
-      all.push_back(cell_of(cells[first].part, bounds));
-      all.back().n_cells = static_cast<layout::u32>(end - first);
+  // Each part's cells behind the bounds of them all.
+  std::vector<layout::PartCell> cells() const {
+    std::vector<layout::PartCell> all;
+    for (const auto& [part, cells] : cells_) {
+      if (!is_one(cells)) {
+        Box bounds;
+        for (std::size_t i = 0; i < cells.size(); i += 1 + cells[i].n_below) bounds.grow(box_of(cells[i]));
+        all.push_back(cell_of(part, bounds));
+        all.back().n_below = static_cast<layout::u32>(cells.size());
+      }
+      all.insert(all.end(), cells.begin(), cells.end());
     }
-    all.insert(all.end(), cells.begin() + static_cast<std::ptrdiff_t>(first),
-               cells.begin() + static_cast<std::ptrdiff_t>(end));
-    first = end;
+    return all;
   }
-  return all;
-}
+
+ private:
+  using Cells = std::vector<layout::PartCell>;
+
+  static bool is_one(const Cells& cells) { return cells.front().n_below + 1 == cells.size(); }
+
+  // The largest nodes of the top whose contents lie in one part.
+  void add_largest(std::size_t i) {
+    const Opened& opened = cut_.top[i];
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
+      const std::int32_t below = opened.below[slot];
+      if (below == Opened::kEmpty) continue;
+      const Below all = below_of(form_, cut_, part_of_, below, child_bounds(form_.nodes[opened.node], slot));
+      if (all.several) {
+        add_largest(static_cast<std::size_t>(below));
+      } else if (all.part != kEveryPart) {
+        add(below, all, cells_[all.part]);
+      }
+    }
+  }
+
+  void add(std::int32_t below, const Below& all, Cells& cells) {
+    if (below < 0) return add_subtree(cut_.subtrees[static_cast<std::size_t>(-1 - below)].child, all, cells);
+    const std::size_t first = begin(all.bounds, all.part, cells);
+    const Opened& opened = cut_.top[static_cast<std::size_t>(below)];
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
+      if (opened.below[slot] == Opened::kEmpty) continue;
+      const Below child =
+          below_of(form_, cut_, part_of_, opened.below[slot], child_bounds(form_.nodes[opened.node], slot));
+      if (child.part != kEveryPart) add(opened.below[slot], child, cells);
+    }
+    end(first, cells);
+  }
+
+  // With the children of its root, which half as many rays meet.
+  void add_subtree(layout::u32 root, const Below& all, Cells& cells) {
+    const std::size_t first = begin(all.bounds, all.part, cells);
+    for (std::uint32_t slot = 0; slot < 8 && !(root & KDRAY_WIDE_LEAF); ++slot) {
+      const Box bounds = child_bounds(form_.nodes[root], slot);
+      if (!bounds.empty()) cells.push_back(cell_of(all.part, bounds));
+    }
+    end(first, cells);
+  }
+
+  static std::size_t begin(const Box& bounds, std::uint32_t part, Cells& cells) {
+    cells.push_back(cell_of(part, bounds));
+    return cells.size() - 1;
+  }
+  static void end(std::size_t first, Cells& cells) {
+    if (cells.size() == first + 2) cells.pop_back();  // one within it tells nothing more
+    cells[first].n_below = static_cast<layout::u32>(cells.size() - 1 - first);
+  }
+
+  const flatten::WideForm& form_;
+  const Cut& cut_;
+  std::span<const std::uint32_t> part_of_;
+  std::map<std::uint32_t, Cells> cells_;  // by part
+};
 
 }  // namespace
 
@@ -368,11 +417,7 @@ std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::Wid
 
 std::vector<layout::PartCell> make_directory(const flatten::WideForm& form, const Cut& cut,
                                              std::span<const std::uint32_t> part_of) {
-  std::vector<layout::PartCell> cells;
-  if (!cut.top.empty()) add_cells(form, cut, part_of, 0, cells);
-  std::stable_sort(cells.begin(), cells.end(),
-                   [](const layout::PartCell& a, const layout::PartCell& b) { return a.part < b.part; });
-  return with_bounds(cells);
+  return Directory(form, cut, part_of).cells();
 }
 
 }  // namespace kdray::odprt

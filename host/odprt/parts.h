@@ -32,8 +32,8 @@ std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideFo
 std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
                              std::span<const std::uint32_t> part_of, std::uint32_t n_parts);
 
-// The bounds of what the parts hold, in the order of parts: of all that a part holds, and behind that in as few cells as the tree
-// has for it.
+// The bounds of what the parts hold, in the order of parts: of all that a part holds, and behind that, cell within cell, of the largest
+// nodes whose contents lie in that part, of what there is of the tree's top below, and of the children of the subtrees' roots.
 std::vector<layout::PartCell> make_directory(const flatten::WideForm& form, const Cut& cut,
                                              std::span<const std::uint32_t> part_of);
 

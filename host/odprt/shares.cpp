@@ -1,5 +1,7 @@
 #include "odprt/shares.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -19,11 +21,11 @@ std::vector<layout::u32> scattered(std::span<const layout::u32> list) {
   return entries;
 }
 
-// Where the ray enters the cell; infinity where it doesn't.
-double entry(const layout::PartCell& cell, const dvec3& origin, const dvec3& direction, double t_min) {
+// Where a ray of the inverse direction enters the cell; infinity where it doesn't.
+double entry(const layout::PartCell& cell, const dvec3& origin, const dvec3& inverse, double t_min) {
   double enter = t_min, leave = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
-    const double a = (cell.lo[k] - origin[k]) / direction[k], b = (cell.hi[k] - origin[k]) / direction[k];
+    const double a = (cell.lo[k] - origin[k]) * inverse[k], b = (cell.hi[k] - origin[k]) * inverse[k];
     enter = std::max(enter, std::min(a, b));
     leave = std::min(leave, std::max(a, b));
   }
@@ -34,19 +36,24 @@ double entry(const layout::PartCell& cell, const dvec3& origin, const dvec3& dir
 class Probe {
  public:
   Probe(const layout::Frame& frame, std::span<const layout::PartCell> directory)
-      : frame_(frame), directory_(directory) {}
+      : frame_(frame), directory_(directory), eye_(vector(frame.eye)) {}
 
   // At (x, y) in pixels. KDRAY_NO_PART: none.
   std::uint32_t first_part(double x, double y) const {
     const dvec3 direction = vector(frame_.forward) +
                             (x * frame_.x_scale + frame_.x_offset) * vector(frame_.right) +
                             (y * frame_.y_scale + frame_.y_offset) * vector(frame_.up);
+    const dvec3 inverse = 1.0 / direction;
     double nearest = std::numeric_limits<double>::infinity();
     std::uint32_t part = KDRAY_NO_PART;
     for (std::size_t i = 0; i < directory_.size(); ++i) {
-      if (directory_[i].n_cells > 0) continue;  // bounds of the cells that follow
-      const double t = entry(directory_[i], vector(frame_.eye), direction, frame_.hither);
-      if (t < nearest) nearest = t, part = directory_[i].part;
+      const layout::PartCell& cell = directory_[i];
+      const double t = entry(cell, eye_, inverse, frame_.hither);
+      if (cell.n_below > 0) {
+        if (t >= nearest) i += cell.n_below;
+      } else if (t < nearest) {
+        nearest = t, part = cell.part;
+      }
     }
     return part;
   }
@@ -56,13 +63,14 @@ class Probe {
 
   const layout::Frame& frame_;
   std::span<const layout::PartCell> directory_;
+  dvec3 eye_;
 };
 
 constexpr int kProbes = 3;  // a side of a tile
 
-// How many of a tile's rays begin with each queue.
-std::vector<int> count_rays(layout::u32 tile, const layout::Frame& frame, const Probe& probe,
-                            std::span<const std::size_t> owner, std::size_t n_queues) {
+// The queue that most of a tile's rays begin with; n_queues: they meet no part.
+std::size_t queue_of(layout::u32 tile, const layout::Frame& frame, const Probe& probe,
+                     std::span<const std::size_t> owner, std::size_t n_queues) {
   std::vector<int> counts(n_queues);
   for (int i = 0; i < kProbes * kProbes; ++i) {
     const double x = (KDRAY_TILE_COLUMN(tile) + (i % kProbes + 0.5) / kProbes) * frame.tile_width;
@@ -70,7 +78,8 @@ std::vector<int> count_rays(layout::u32 tile, const layout::Frame& frame, const 
     const std::uint32_t part = probe.first_part(x, y);
     if (part != KDRAY_NO_PART) ++counts[owner[part]];
   }
-  return counts;
+  const auto most = std::max_element(counts.begin(), counts.end());
+  return *most > 0 ? static_cast<std::size_t>(most - counts.begin()) : n_queues;
 }
 
 }  // namespace
@@ -112,15 +121,16 @@ Shares share_evenly(std::span<const layout::u32> list, std::size_t n_queues) {
 
 Shares share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
                      std::span<const layout::PartCell> directory, std::span<const std::size_t> owner) {
-  std::vector<Shares::Entries> own(n_queues);
-  Shares::Entries anyones;
   const Probe probe(frame, directory);
-  for (const layout::u32 tile : scattered(tiles)) {
-    const std::vector<int> counts = count_rays(tile, frame, probe, owner, n_queues);
-    const auto most = std::max_element(counts.begin(), counts.end());
-    (*most > 0 ? own[static_cast<std::size_t>(most - counts.begin())] : anyones).push_back(tile);
-  }
-  return {std::move(own), std::move(anyones)};
+  const std::vector<layout::u32> order = scattered(tiles);
+  std::vector<std::size_t> queues(order.size());
+  tbb::parallel_for(std::size_t{0}, order.size(),
+                    [&](std::size_t i) { queues[i] = queue_of(order[i], frame, probe, owner, n_queues); });
+  std::vector<Shares::Entries> shares(n_queues + 1);
+  for (std::size_t i = 0; i < order.size(); ++i) shares[queues[i]].push_back(order[i]);
+  Shares::Entries anyones = std::move(shares.back());
+  shares.pop_back();
+  return {std::move(shares), std::move(anyones)};
 }
 
 }  // namespace kdray::odprt

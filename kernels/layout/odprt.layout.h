@@ -9,12 +9,12 @@
 #define KDRAY_NO_PART 255u
 
 KDRAY_LAYOUT_BEGIN
-// Bounds of a part's contents; if its cells follow, that many are the bounds of some of its contents each, and tell more.
+// Bounds of some of a part's contents; the cells that follow, if any are below it, are bounds of less of them each, and tell more.
 typedef struct PartCell {
   float lo[3];
   u32 part;
   float hi[3];
-  u32 n_cells;  // that follow a part's bounds; 0 in those
+  u32 n_below;
 } PartCell;
 KDRAY_ASSERT_SIZE(PartCell, 32)
 

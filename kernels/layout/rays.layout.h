@@ -40,12 +40,13 @@
 #define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS
 #define KDRAY_SHADOW_CONTRIBUTION 9u  // red green blue
 #define KDRAY_SHADOW_PIXEL 12u        // u32
-#define KDRAY_SHADOW_VISITED 13u      // ODPRT: as KDRAY_RAY_VISITED
+#define KDRAY_MADE_SHADOW_FIELDS 13u  // what shading writes
+#define KDRAY_SHADOW_VISITED 13u      // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
 #define KDRAY_TRAVEL_SHADOW_FIELDS 15u
 #if KDRAY_ODPRT
 #define KDRAY_SHADOW_FIELDS KDRAY_TRAVEL_SHADOW_FIELDS
 #else
-#define KDRAY_SHADOW_FIELDS 13u
+#define KDRAY_SHADOW_FIELDS KDRAY_MADE_SHADOW_FIELDS
 #endif
 
 // Pooled rays wait for their batch; they begin at t = 0 and have no end. Those of ODPRT may have come from elsewhere, and are

@@ -86,8 +86,8 @@ inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* f
   if (work.depth == 0) {
 #if KDRAY_HAS_LIGHTS
     admit_shadow_rays(
-        t, work.n, const_stream_of(s->shadow_pool, slice_id, KDRAY_SHADOW_FIELDS, t->travel->shadow_pool_capacity),
-        stream_of(s->shadow_rays, slice_id, KDRAY_SHADOW_FIELDS, frame->shadow_capacity));
+        t, frame, work.n, const_stream_of(s->shadow_pool, slice_id, KDRAY_SHADOW_FIELDS, t->travel->shadow_pool_capacity),
+        stream_of(s->shadow_rays, slice_id, KDRAY_SHADOW_FIELDS, frame->shadow_capacity), s->film);
     clock_stage(&t->slice->cycles_admit, &since);
     trace_shadow_rays(t, frame, slice_id, census, s, false, &since);
 #endif
@@ -108,7 +108,7 @@ inline void begin_account(__global Traffic* traffic) {
 __kernel void travel_wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
                           __global const Material* in_materials, __global const Light* in_lights,
                           __constant const Frame* frame, __constant const Travel* travel,
-                          __constant const PartCell* in_cells, __constant const PartCell* in_subtrees, u32 n_waves, __global const u32* in_tiles,
+                          __global const PartCell* in_cells, __global const PartCell* in_subtrees, u32 n_waves, __global const u32* in_tiles,
                           u32 n_tiles, __global Slice* io_slices, __global Grant* io_grants, __global Traffic* io_traffic, __global float* io_pool,
                           __global float* io_batch, __global float* io_hits, __global float* io_shadow_rays,
                           __global uchar* io_occluded, __global float* io_shadow_pool, __global i64* io_film,

@@ -28,16 +28,18 @@ struct Batch {  // sixteen rays and the directory that they are asked about
   RouteRay rays[16];
 };
 struct Answer {
-  layout::u32 part[16];
+  layout::u32 part[16], around[16];  // of the origins
 };
+
+constexpr layout::u32 kOwn = 24;  // a part with cells
 
 const char* const kSource = R"(
 #define KDRAY_ODPRT 1
 #include "odprt/route.clh"
 typedef struct RouteRay { float o[3], d[3], t_min, t_max; u32 visited[2], pad[2]; } RouteRay;
 typedef struct Batch { PartCell cells[40]; RouteRay rays[16]; } Batch;
-typedef struct Answer { u32 part[16]; } Answer;
-__kernel void test(__constant const Batch* in, __global Answer* out, uint n) {
+typedef struct Answer { u32 part[16], around[16]; } Answer;
+__kernel void test(__global const Batch* in, __global Answer* out, uint n) {
   const u32 i = (u32)get_global_id(0);
   if (i >= n) return;
   float f[8][16];
@@ -52,21 +54,37 @@ __kernel void test(__constant const Batch* in, __global Answer* out, uint n) {
   const Real3x16 d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
   const Visited visited = {vload16(0, v[0]), vload16(0, v[1])};
   vstore16(next_part(&directory, (int16)(-1), o, d, vload16(0, f[6]), vload16(0, f[7]), visited), 0, out[i].part);
+  vstore16(part_around(&directory, (int16)(-1), o, 24), 0, out[i].around);
 }
 )";
 
-// Makes the first cell of each part that has several their bounds.
-void put_bounds_first(layout::PartCell (&cells)[kCells]) {
-  for (std::size_t first = 0; first < kCells;) {
-    std::size_t end = first + 1;
-    for (; end < kCells && cells[end].part == cells[first].part; ++end)
-      for (int k = 0; k < 3; ++k) {
-        cells[first].lo[k] =
-            end == first + 1 ? cells[end].lo[k] : std::min(cells[first].lo[k], cells[end].lo[k]);
-        cells[first].hi[k] =
-            end == first + 1 ? cells[end].hi[k] : std::max(cells[first].hi[k], cells[end].hi[k]);
-      }
-    cells[first].n_cells = static_cast<layout::u32>(end - first - 1);
+layout::PartCell bounds_of(const layout::PartCell* first, const layout::PartCell* end) {
+  layout::PartCell bounds = *first;
+  for (const layout::PartCell* cell = first; cell != end; cell += 1 + cell->n_below)
+    for (int k = 0; k < 3; ++k) {
+      bounds.lo[k] = std::min(bounds.lo[k], cell->lo[k]);
+      bounds.hi[k] = std::max(bounds.hi[k], cell->hi[k]);
+    }
+  return bounds;
+}
+
+// Makes the first of [first, end), which are of one part, the bounds of all behind it; and so on among those, at random.
+void put_in_a_tree(layout::PartCell* first, layout::PartCell* end, std::mt19937_64& random) {
+  if (end - first < 2) return;
+  layout::PartCell* middle =
+      first + 1 + static_cast<std::ptrdiff_t>(random() % static_cast<std::uint64_t>(end - first));
+  if (random() % 3 == 0) middle = end;  // all in one
+  put_in_a_tree(first + 1, middle, random);
+  put_in_a_tree(middle, end, random);
+  *first = bounds_of(first + 1, end);
+  first->n_below = static_cast<layout::u32>(end - first - 1);
+}
+
+void put_in_trees(layout::PartCell (&cells)[kCells], std::mt19937_64& random) {
+  for (layout::PartCell* first = cells; first != cells + kCells;) {
+    layout::PartCell* end = first + 1;
+    while (end != cells + kCells && end->part == first->part) ++end;
+    put_in_a_tree(first, end, random);
     first = end;
   }
 }
@@ -80,9 +98,9 @@ Batch random_batch(std::mt19937_64& random) {
       cell.lo[k] = std::round(place(random));
       cell.hi[k] = cell.lo[k] + (random() % 5 == 0 ? 0.0f : size(random));
     }
-    cell.part = static_cast<layout::u32>(i * kParts / kCells / 3 * 3);  // one to three cells each
+    cell.part = static_cast<layout::u32>(i * kParts / kCells / 12 * 12);  // seven or eight cells each
   }
-  put_bounds_first(batch.cells);
+  put_in_trees(batch.cells, random);
   for (RouteRay& r : batch.rays) {
     for (int k = 0; k < 3; ++k) {
       r.o[k] = random() % 4 == 0 ? std::round(place(random)) : place(random);
@@ -122,7 +140,7 @@ std::array<double, kParts> entries(const Batch& batch, const RouteRay& r, double
   std::array<double, kParts> first;
   first.fill(NAN);
   for (const layout::PartCell& cell : batch.cells) {
-    if (cell.n_cells > 0) continue;  // a part's bounds
+    if (cell.n_below > 0) continue;  // bounds of those behind it
     const double t = entry(r, cell, widen);
     if (!was_asked(r, cell.part) && !std::isnan(t) && !(first[cell.part] <= t)) first[cell.part] = t;
   }
@@ -131,7 +149,7 @@ std::array<double, kParts> entries(const Batch& batch, const RouteRay& r, double
 
 TEST(Route, TheFirstPartNotAskedYet) {
   std::mt19937_64 random(kSeed);
-  std::vector<Batch> batches(400);
+  std::vector<Batch> batches(1000);
   for (Batch& batch : batches) batch = random_batch(random);
   const auto answers = run_kernel<Answer>("cpu", kSource, batches);
   int n_found = 0, n_none = 0;
@@ -157,6 +175,46 @@ TEST(Route, TheFirstPartNotAskedYet) {
     }
   EXPECT_GT(n_found, 500);
   EXPECT_GT(n_none, 300);
+}
+
+bool lies_in(const RouteRay& r, const layout::PartCell& cell) {
+  for (int k = 0; k < 3; ++k)
+    if (r.o[k] < cell.lo[k] || r.o[k] > cell.hi[k]) return false;
+  return true;
+}
+
+// Moves a ray's origin into a cell, or onto its faces.
+void put_into(const layout::PartCell& cell, std::mt19937_64& random, RouteRay& r) {
+  for (int k = 0; k < 3; ++k) {
+    const float share = 0.25f * static_cast<float>(random() % 5);
+    r.o[k] = std::min(cell.lo[k] + share * (cell.hi[k] - cell.lo[k]), cell.hi[k]);
+  }
+}
+
+TEST(Route, TheOtherPartAroundAPoint) {
+  std::mt19937_64 random(kSeed + 1);
+  std::vector<Batch> batches(400);
+  for (Batch& batch : batches) {
+    batch = random_batch(random);
+    for (RouteRay& r : batch.rays)
+      if (random() % 2) put_into(batch.cells[random() % kCells], random, r);
+  }
+  const auto answers = run_kernel<Answer>("cpu", kSource, batches);
+  int n_inside = 0, n_outside = 0;
+  for (std::size_t b = 0; b < batches.size(); ++b)
+    for (std::size_t k = 0; k < 16; ++k) {
+      std::vector<layout::u32> around;
+      for (const layout::PartCell& cell : batches[b].cells)
+        if (cell.n_below == 0 && cell.part != kOwn && lies_in(batches[b].rays[k], cell))
+          around.push_back(cell.part);
+      const layout::u32 part = answers[b].around[k];
+      const bool right = around.empty() ? part == KDRAY_NO_PART
+                                        : std::find(around.begin(), around.end(), part) != around.end();
+      EXPECT_TRUE(right) << "batch " << b << " point " << k << ": part " << part;
+      ++(around.empty() ? n_outside : n_inside);
+    }
+  EXPECT_GT(n_inside, 300);
+  EXPECT_GT(n_outside, 300);
 }
 
 }  // namespace
