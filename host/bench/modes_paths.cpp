@@ -44,31 +44,10 @@ u32 slot_at(const layout::WideNode& node, u32 octant, u32 nearer) {
   return node.order[octant] >> (3 * (flatten::kWidth - 1 - nearer)) & 7u;
 }
 
-// The owner of all that is below each opened node, or kDirectory. Nodes are opened before those below them.
-std::vector<u32> owners_of_opened(const odprt::Cut& cut, std::span<const u32> owner_of) {
-  std::vector<u32> owners(cut.top.size(), kDirectory);
-  for (std::size_t i = cut.top.size(); i-- > 0;) {
-    bool first = true;
-    for (const std::int32_t below : cut.top[i].below) {
-      if (below == odprt::Opened::kEmpty) continue;
-      const u32 owner = below >= 0 ? owners[static_cast<std::size_t>(below)]
-                                   : owner_of[static_cast<std::size_t>(-1 - below)];
-      owners[i] = first || owner == owners[i] ? owner : kDirectory;
-      first = false;
-      if (owners[i] == kDirectory) break;
-    }
-  }
-  return owners;
-}
-
 class Walk {
  public:
   Walk(const flatten::WideForm& form, const odprt::Cut& cut, std::span<const u32> owner_of, Paths& paths)
-      : form_(form),
-        cut_(cut),
-        owner_of_(owner_of),
-        owners_(owners_of_opened(cut, owner_of)),
-        paths_(paths) {}
+      : form_(form), cut_(cut), owner_of_(owner_of), paths_(paths) {}
 
   void run(const Line& line) {
     if (!cut_.top.empty()) visit_opened(line, 0);
@@ -86,22 +65,31 @@ class Walk {
   }
 
   void visit_opened(const Line& line, std::size_t i) {
-    count(owners_[i], kVisitCost);
+    count(kDirectory, kVisitCost);
     const layout::WideNode& node = form_.nodes[cut_.top[i].node];
     for_each_met(line, node, [&](u32 slot) {
       const std::int32_t below = cut_.top[i].below[slot];
       if (below >= 0)
         visit_opened(line, static_cast<std::size_t>(below));
       else
-        visit(line, node.child[slot], owner_of_[static_cast<std::size_t>(-1 - below)]);
+        visit_root(line, node.child[slot], owner_of_[static_cast<std::size_t>(-1 - below)]);
     });
+  }
+
+  void visit_root(const Line& line, u32 child, u32 owner) {
+    const bool leaf = (child & KDRAY_WIDE_LEAF) != 0;
+    leaf ? visit(line, child, owner) : visit_node(line, child, kDirectory, owner);
   }
 
   void visit(const Line& line, u32 child, u32 owner) {
     if ((child & KDRAY_WIDE_LEAF) != 0) return count(owner, kBlockCost * odprt::leaf_blocks(form_, child));
+    visit_node(line, child, owner, owner);
+  }
+
+  void visit_node(const Line& line, u32 number, u32 owner, u32 owner_below) {
     count(owner, kVisitCost);
-    const layout::WideNode& node = form_.nodes[child];
-    for_each_met(line, node, [&](u32 slot) { visit(line, node.child[slot], owner); });
+    const layout::WideNode& node = form_.nodes[number];
+    for_each_met(line, node, [&](u32 slot) { visit(line, node.child[slot], owner_below); });
   }
 
   void count(u32 owner, double cost) {
@@ -113,7 +101,6 @@ class Walk {
   const flatten::WideForm& form_;
   const odprt::Cut& cut_;
   std::span<const u32> owner_of_;
-  std::vector<u32> owners_;
   Paths& paths_;
 };
 
