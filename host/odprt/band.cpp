@@ -39,7 +39,8 @@ BandRun::BandRun(const Request& request, Crew& crew)
     : request_(request),
       crew_(crew),
       exchange_(crew.plan, crew.owner, crew.direct, crew.outboxes),
-      tiles_left_(crew.workers.size()) {}
+      tiles_left_(crew.workers.size()),
+      sent_(crew.workers.size(), std::vector<Mail>(crew.owner.size(), Mail(crew.plan.n_slices))) {}
 
 void BandRun::run(BandWork& band, const std::function<void(double)>& progress) {
   n_serving_ = crew_.workers.size();
@@ -117,16 +118,13 @@ void BandRun::take_turn(std::size_t queue, const Turn& turn, Shares& shares, Que
   state.has_rays = worker.n_waiting() + pending.n > 0;
   state.progressed = state.progressed || !turn.letters.empty();
   if (request_.timeline && turn.outbox) {
-    double n_out = 0;
-    for (std::uint32_t part = 0; part < crew_.owner.size(); ++part)
-      n_out += static_cast<double>(turn.outbox->rays_for(part) + turn.outbox->shadow_rays_for(part));
     request_.timeline->add(
         static_cast<int>(request_.queues[queue].number), fmt::format("part {}", turn.part), start,
         request_.timeline->now(),
         {{"waves", static_cast<double>(sum_of(worker.traffic(), &layout::Traffic::n_waves))},
          {"rays", static_cast<double>(sum_of(worker.traffic(), &layout::Traffic::n_traced))},
          {"messages", static_cast<double>(turn.letters.size())},
-         {"rays_out", n_out}});
+         {"rays_out", static_cast<double>(turn.outbox->n_all())}});
   }
   hand_over(queue, turn, state);
 }
@@ -154,19 +152,12 @@ void BandRun::launch(std::size_t queue, const Turn& turn, QueueState& state) {
 
 void BandRun::hand_over(std::size_t queue, const Turn& turn, const QueueState& state) {
   Worker& worker = *crew_.workers[queue];
-  std::vector<Mail> sent(crew_.owner.size(), Mail(0));
-  bool any = false;
-  if (turn.outbox)
-    for (std::uint32_t part = 0; part < crew_.owner.size(); ++part) {
-      if (exchange_.direct(queue, part) ||
-          turn.outbox->rays_for(part) + turn.outbox->shadow_rays_for(part) == 0)
-        continue;
-      sent[part] = Mail(crew_.plan.n_slices);
-      any = true;
-    }
-  if (any)
-    worker.copy_out(*turn.outbox,
-                    [&](std::uint32_t part) { return sent[part].rays.empty() ? nullptr : &sent[part]; });
+  std::vector<Mail>& sent = sent_[queue];
+  const auto mail_of = [&](std::uint32_t part) {
+    return exchange_.direct(queue, part) ? nullptr : &sent[part];
+  };
+  if (turn.outbox && turn.outbox->n_all() > 0 && !exchange_.all_direct(queue))
+    worker.copy_out(*turn.outbox, mail_of);
   exchange_.end_turn(queue, turn, worker.traffic(), state, sent);
 }
 

@@ -49,6 +49,8 @@ class BandRun {
   std::condition_variable ended_;
   std::size_t n_serving_ = 0;
   std::vector<std::atomic<std::uint32_t>> tiles_left_;  // of those that a queue has taken
+  std::vector<std::vector<Mail>>
+      sent_;  // of each queue's last turn to each part; kept for the memory that it has
 };
 
 }  // namespace kdray::odprt

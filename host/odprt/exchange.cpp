@@ -91,11 +91,13 @@ void Exchange::end_turn(std::size_t queue, const Turn& turn, std::span<const lay
     if (!news) seen_version_[queue] = ledger_.version();
     running_[queue] = 0;
     for (std::uint32_t part = 0; part < owner_.size(); ++part) {
-      const std::uint64_t n_rays = turn.outbox->rays_for(part), n_shadow = turn.outbox->shadow_rays_for(part);
+      const bool directly = direct_[queue][part];
+      const std::uint64_t n_rays = directly ? turn.outbox->n_rays(part) : sent[part].n_rays();
+      const std::uint64_t n_shadow = directly ? turn.outbox->n_shadow_rays(part) : sent[part].n - n_rays;
       if (n_rays + n_shadow == 0) continue;
       counts_.rays[queue][owner_[part]] += n_rays;
       counts_.shadow_rays[queue][owner_[part]] += n_shadow;
-      if (direct_[queue][part]) {
+      if (directly) {
         ++turn.outbox->n_readers;
         letters_[part].push_back({turn.outbox, queue});
       } else {

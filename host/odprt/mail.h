@@ -2,7 +2,9 @@
 // Shape   For each slice the rays that wait, as structures of their fields (kernels/layout/rays.layout.h), taken from the end.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,20 +19,21 @@ class RayPile {
  public:
   std::size_t size() const { return words_.size() / kFields; }
 
-  // n rays of a stream: field f of ray i at stream[f*capacity + i].
-  void put(const float* stream, std::size_t capacity, std::size_t n) {
+  // Ray i of a stream: its field f is at stream[f*capacity + i].
+  void put(const float* stream, std::size_t capacity, std::size_t i) {
     const std::size_t first = words_.size();
-    words_.resize(first + n * kFields);
-    for (std::uint32_t f = 0; f < kFields; ++f)
-      for (std::size_t i = 0; i < n; ++i) words_[first + i * kFields + f] = stream[f * capacity + i];
+    words_.resize(first + kFields);
+    for (std::uint32_t f = 0; f < kFields; ++f) words_[first + f] = stream[f * capacity + i];
   }
 
   // Moves the last n rays into a stream, behind the `at` that are there.
   void take(float* stream, std::size_t capacity, std::size_t at, std::size_t n) {
     const std::size_t first = words_.size() - n * kFields;
-    for (std::size_t i = 0; i < n; ++i)
+    // A cache line of each field at a time.
+    for (std::size_t from = 0; from < n; from += KDRAY_LANES)
       for (std::uint32_t f = 0; f < kFields; ++f)
-        stream[f * capacity + at + i] = words_[first + i * kFields + f];
+        for (std::size_t i = from; i < std::min<std::size_t>(from + KDRAY_LANES, n); ++i)
+          stream[f * capacity + at + i] = words_[first + i * kFields + f];
     words_.resize(first);
   }
 
@@ -56,15 +59,23 @@ struct Mail {
 
   explicit Mail(std::size_t n_slices) : rays(n_slices), shadow_rays(n_slices) {}
 
-  // n rays as they are sent.
-  void put_rays(std::size_t slice, const float* stream, std::size_t capacity, std::size_t n_rays);
+  std::uint64_t n_rays() const;
+
+  // Ray i of a stream, as it is sent.
+  void put_ray(std::size_t slice, const float* stream, std::size_t capacity, std::size_t i);
+  void put_shadow_ray(std::size_t slice, const float* stream, std::size_t capacity, std::size_t i);
   // n rays of one depth as they lie in a pool; `stream` is left as they are sent.
   void put_pooled_rays(std::size_t slice, float* stream, std::size_t capacity, std::size_t n_rays,
                        std::uint32_t depth);
-  void put_shadow_rays(std::size_t slice, const float* stream, std::size_t capacity, std::size_t n_rays);
 
   // Takes all that is in the other, which has as many slices.
   void take_all(Mail& other);
 };
+
+// Puts the n rays of a stream, as they are sent, into the mail of the parts that they go to; nullptr: they are left.
+void sort_rays(const float* stream, std::size_t capacity, std::size_t n, std::size_t slice,
+               const std::function<Mail*(std::uint32_t)>& mail_of);
+void sort_shadow_rays(const float* stream, std::size_t capacity, std::size_t n, std::size_t slice,
+                      const std::function<Mail*(std::uint32_t)>& mail_of);
 
 }  // namespace kdray::odprt

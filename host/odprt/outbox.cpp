@@ -9,20 +9,24 @@ namespace kdray::odprt {
 Outbox::Outbox(const device::Context& context, const OutboxShape& shape)
     : shape_(shape),
       rays_(context.buffer(CL_MEM_READ_WRITE,
-                           shape.n_places() * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity * sizeof(float),
+                           shape.n_streams() * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity * sizeof(float),
                            "the rays between queues")),
-      shadow_rays_(context.buffer(
-          CL_MEM_READ_WRITE,
-          shape.n_places() * KDRAY_TRAVEL_SHADOW_FIELDS * shape.shadow_capacity * sizeof(float),
-          "the shadow rays between queues")),
-      counts_(context.buffer(CL_MEM_READ_WRITE, 2 * shape.n_places() * sizeof(layout::u32), "their counts")),
-      n_(2 * shape.n_places()) {}
+      shadow_rays_(
+          context.buffer(CL_MEM_READ_WRITE,
+                         shape.n_streams() * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity * sizeof(float),
+                         "the shadow rays between queues")),
+      counts_(context.buffer(CL_MEM_READ_WRITE, 2 * shape.n_streams() * sizeof(layout::u32), "their counts")),
+      n_(2 * shape.n_streams()) {}
 
 std::size_t Outbox::bytes() const {
-  return shape_.n_places() *
+  return shape_.n_streams() *
          (std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * shape_.ray_capacity * sizeof(float) +
-          std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * shape_.shadow_capacity * sizeof(float) +
+          std::size_t{KDRAY_SENT_SHADOW_FIELDS} * shape_.shadow_capacity * sizeof(float) +
           2 * sizeof(layout::u32));
+}
+
+std::uint64_t Outbox::n_all() const {
+  return std::accumulate(n_.begin(), n_.end(), std::uint64_t{0});
 }
 
 std::uint64_t Outbox::sum(std::uint32_t row) const {

@@ -1,5 +1,5 @@
-// What    What a queue's launch sends: rays packed by the part and the slice that they go to, in buffers on the device
-//         (kernels/odprt/send.clh), with their counts.
+// What    What a queue's launch sends: rays packed by the part and the slice that they go to, or by the slice alone, in buffers on
+//         the device (kernels/odprt/send.clh), with their counts.
 // Shape   A queue has several, so that it can go on while others still read the last one. Receivers whose context is the same read
 //         the buffers themselves; for others, and for parts that nobody serves at the moment, the rays are copied (mail.h).
 #pragma once
@@ -13,12 +13,13 @@
 
 namespace kdray::odprt {
 
-// Rays for each part and slice, and the words per field that they take.
+// Rays for each place and slice, and the words per field that they take.
 struct OutboxShape {
-  std::uint32_t n_parts = 0, n_slices = 0;
+  std::uint32_t n_places = 0;  // one for each part, or one for all of them, where the host sorts the rays
+  std::uint32_t n_slices = 0;
   std::uint32_t rays = 0, ray_capacity = 0, shadow = 0, shadow_capacity = 0;
 
-  std::size_t n_places() const { return std::size_t{n_parts} * n_slices; }
+  std::size_t n_streams() const { return std::size_t{n_places} * n_slices; }
 };
 
 class Outbox {
@@ -31,11 +32,12 @@ class Outbox {
   const cl::Buffer& counts() const { return counts_; }
   std::size_t bytes() const;
 
-  // The counts as the last launch left them, read by the queue that sends: rays, then shadow rays, by part and slice.
+  // The counts as the last launch left them, read by the queue that sends: rays, then shadow rays, by place and slice.
   std::vector<layout::u32>& n() { return n_; }
   const std::vector<layout::u32>& n() const { return n_; }
-  std::uint64_t rays_for(std::uint32_t part) const { return sum(part); }
-  std::uint64_t shadow_rays_for(std::uint32_t part) const { return sum(shape_.n_parts + part); }
+  std::uint64_t n_rays(std::uint32_t place) const { return sum(place); }
+  std::uint64_t n_shadow_rays(std::uint32_t place) const { return sum(shape_.n_places + place); }
+  std::uint64_t n_all() const;
 
   // Receivers that haven't read it yet; it is written to again when there are none.
   std::atomic<int> n_readers{0};

@@ -13,7 +13,7 @@ constexpr std::uint32_t kBatch = 512;                     // large batches keep 
 constexpr std::uint32_t kWaves = 16, kLaunchWaves = 256;  // of a slice in a launch, and of all slices
 // Of all slices together: rays of a depth that may be alive, and those that an outbox holds for a part.
 constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
-// Where parts come and go: rays that may wait in the host's memory, in a queue's pool, and in the outbox for all parts.
+// Where parts come and go: rays that may wait in the host's memory, in a queue's pool, and in the outbox.
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 
 // Words per field of a stream of n rays (kernels/layout/rays.layout.h).
@@ -36,17 +36,16 @@ std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uin
 
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
 constexpr std::size_t kSentBytes =
-    kRayBytes + 2 * KDRAY_TRAVEL_SHADOW_FIELDS * sizeof(float);  // with shadow rays
-constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;         // of memory that is short: that part of it
+    kRayBytes + 2 * KDRAY_SENT_SHADOW_FIELDS * sizeof(float);  // with shadow rays
+constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;       // of memory that is short: that part of it
 
-// Rays for one part and slice.
+// Rays for one place and slice.
 std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {
   if (r.ray_buffer > 0) return r.ray_buffer;
   if (!r.streamed) return std::max(kOutboxRays / n_slices, 2 * kBatch);
-  const std::uint32_t n_places = r.n_parts * n_slices;
   return static_cast<std::uint32_t>(
-      std::clamp<std::size_t>(r.memory / kOutboxShare / kSentBytes / n_places, KDRAY_LANES,
-                              std::max(kStreamedOutbox / n_places, kBatch / 4)));
+      std::clamp<std::size_t>(r.memory / kOutboxShare / kSentBytes / n_slices, KDRAY_LANES,
+                              std::max(kStreamedOutbox / n_slices, kBatch / 4)));
 }
 
 // Rays of one depth that a slice's pool holds, where that is less than what may be alive.
@@ -79,7 +78,8 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   plan.shadow_pool = r.streamed ? std::min(streamed, plan.capacity[0]) : plan.capacity[0];
 
   OutboxShape& out = plan.outbox;
-  out.n_parts = r.n_parts;
+  // Where parts come and go all rays are copied, and few parts are what most of a launch's go to: they share the room.
+  out.n_places = r.streamed ? 1 : r.n_parts;
   out.n_slices = plan.n_slices;
   out.rays = outbox_rays(r, plan.n_slices);
   out.shadow = lights ? std::max(r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights) : 1;
@@ -87,7 +87,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   out.ray_capacity = capacity_for(r.n_parts > 1 ? out.rays : 0);
   out.shadow_capacity = capacity_for(r.n_parts > 1 ? out.shadow : 0);
   OutboxShape& in = plan.inbox;
-  in.n_parts = 1;
+  in.n_places = 1;
   in.n_slices = plan.n_slices;
   in.rays = frame.pool_size;
   in.shadow = plan.shadow_pool;
@@ -104,9 +104,9 @@ std::size_t work_bytes(const layout::Frame& frame, const Plan& plan, std::size_t
                               std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS + 1} * frame.shadow_capacity;
   const auto words = [](const OutboxShape& box) {
     return std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * box.ray_capacity +
-           std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * box.shadow_capacity;
+           std::size_t{KDRAY_SENT_SHADOW_FIELDS} * box.shadow_capacity;
   };
-  const std::size_t boxes = words(plan.outbox) * n_outboxes * plan.outbox.n_parts + words(plan.inbox);
+  const std::size_t boxes = words(plan.outbox) * n_outboxes * plan.outbox.n_places + words(plan.inbox);
   return plan.n_slices * sizeof(float) * (pools + streams + boxes) + band_pixels * 3 * sizeof(layout::i64);
 }
 

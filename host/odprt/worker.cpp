@@ -72,7 +72,7 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
   bytes_ += inbox_.bytes() + room.places * 3 * sizeof(layout::i64);
   if (!directory.empty())
     queue_.enqueueWriteBuffer(cells_, CL_TRUE, 0, directory.size_bytes(), directory.data());
-  travel_.n_parts = plan.outbox.n_parts;
+  travel_.n_places = plan.outbox.n_places;
   travel_.n_cells = static_cast<layout::u32>(directory.size());
   travel_.n_slices = plan.n_slices;
   travel_.out_rays = plan.outbox.rays;
@@ -161,8 +161,8 @@ void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
   receive_.forget_launches();
 }
 
-void Worker::receive(const Outbox& outbox, std::uint32_t part) {
-  receive_.set_arguments(0, frame_buffer_, travel_buffer_, cl_uint{part}, cl_uint{outbox.shape().n_parts},
+void Worker::receive(const Outbox& outbox, std::uint32_t place) {
+  receive_.set_arguments(0, frame_buffer_, travel_buffer_, cl_uint{place}, cl_uint{outbox.shape().n_places},
                          cl_uint{outbox.shape().ray_capacity}, cl_uint{outbox.shape().shadow_capacity},
                          outbox.rays(), outbox.shadow_rays(), outbox.counts(), slice_buffer_, traffic_buffer_,
                          pool_, shadow_pool_);
@@ -173,10 +173,10 @@ std::uint64_t Worker::receive(Mail& mail) {
   const OutboxShape& shape = inbox_.shape();
   auto* rays = static_cast<float*>(queue_.enqueueMapBuffer(
       inbox_.rays(), CL_FALSE, CL_MAP_WRITE, 0,  // the next one waits for both
-      shape.n_places() * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity * sizeof(float)));
+      shape.n_streams() * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity * sizeof(float)));
   auto* shadow_rays = static_cast<float*>(queue_.enqueueMapBuffer(
       inbox_.shadow_rays(), CL_TRUE, CL_MAP_WRITE, 0,
-      shape.n_places() * KDRAY_TRAVEL_SHADOW_FIELDS * shape.shadow_capacity * sizeof(float)));
+      shape.n_streams() * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity * sizeof(float)));
   std::uint64_t total = 0;
   for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
     const auto fullest =
@@ -187,9 +187,8 @@ std::uint64_t Worker::receive(Mail& mail) {
         {mail.shadow_rays[s].size(), shape.shadow, plan_.shadow_pool - traffic_[s].n_shadow_pool});
     mail.rays[s].take(rays + std::size_t{s} * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity,
                       shape.ray_capacity, 0, n);
-    mail.shadow_rays[s].take(
-        shadow_rays + std::size_t{s} * KDRAY_TRAVEL_SHADOW_FIELDS * shape.shadow_capacity,
-        shape.shadow_capacity, 0, n_shadow);
+    mail.shadow_rays[s].take(shadow_rays + std::size_t{s} * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity,
+                             shape.shadow_capacity, 0, n_shadow);
     inbox_.n()[s] = static_cast<layout::u32>(n);
     inbox_.n()[plan_.n_slices + s] = static_cast<layout::u32>(n_shadow);
     total += n + n_shadow;
@@ -254,7 +253,9 @@ void Worker::stash(Mail& mail) {
         n = 0;
       },
       [&](std::uint32_t s, layout::u32& n) {
-        mail.put_shadow_rays(s, (words++)->data(), travel_.shadow_pool_capacity, n);
+        for (layout::u32 i = 0; i < n; ++i)
+          mail.put_shadow_ray(s, words->data(), travel_.shadow_pool_capacity, i);
+        ++words;
         n = 0;
       });
   stashed_.clear();
@@ -267,22 +268,18 @@ void Worker::stash(Mail& mail) {
 void Worker::copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of) {
   const OutboxShape& shape = outbox.shape();
   const std::size_t ray_words = std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * shape.ray_capacity;
-  const std::size_t shadow_words = std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * shape.shadow_capacity;
+  const std::size_t shadow_words = std::size_t{KDRAY_SENT_SHADOW_FIELDS} * shape.shadow_capacity;
   const auto map = [&](const cl::Buffer& buffer, std::size_t words) {
     return static_cast<float*>(
-        queue_.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_READ, 0, shape.n_places() * words * sizeof(float)));
+        queue_.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_READ, 0, shape.n_streams() * words * sizeof(float)));
   };
   float* const rays = map(outbox.rays(), ray_words);
   float* const shadow_rays = map(outbox.shadow_rays(), shadow_words);
-  for (std::uint32_t part = 0; part < shape.n_parts; ++part) {
-    Mail* const mail = mail_of(part);
-    if (mail == nullptr) continue;
-    for (std::uint32_t s = 0; s < shape.n_slices; ++s) {
-      const std::size_t place = std::size_t{part} * shape.n_slices + s;
-      mail->put_rays(s, rays + place * ray_words, shape.ray_capacity, outbox.n()[place]);
-      mail->put_shadow_rays(s, shadow_rays + place * shadow_words, shape.shadow_capacity,
-                            outbox.n()[shape.n_places() + place]);
-    }
+  for (std::size_t i = 0; i < shape.n_streams(); ++i) {
+    const std::size_t slice = i % shape.n_slices;
+    sort_rays(rays + i * ray_words, shape.ray_capacity, outbox.n()[i], slice, mail_of);
+    sort_shadow_rays(shadow_rays + i * shadow_words, shape.shadow_capacity, outbox.n()[shape.n_streams() + i],
+                     slice, mail_of);
   }
   queue_.enqueueUnmapMemObject(outbox.rays(), rays);
   queue_.enqueueUnmapMemObject(outbox.shadow_rays(), shadow_rays);

@@ -71,8 +71,8 @@ class Worker {
   // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's time.
   void warm_up(const LoadedPart& part, Outbox& outbox);
 
-  // Takes the rays that an outbox of this context has for a part into the pools.
-  void receive(const Outbox& outbox, std::uint32_t part);
+  // Takes the rays that a place of an outbox of this context has into the pools.
+  void receive(const Outbox& outbox, std::uint32_t place);
   // Takes as many of the rays in the mail as there is room for; returns how many.
   std::uint64_t receive(Mail& mail);
 
@@ -95,7 +95,7 @@ class Worker {
   std::span<const layout::i64> map_film();
   void unmap_film();
 
-  // Copies what an outbox of this queue has for each part to its mail; nullptr: nothing.
+  // Copies what an outbox of this queue has to the mail of the parts that it goes to; nullptr: not that part's.
   void copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of);
 
   void add_cycles(std::map<std::string, double>& cycles) const;  // of the stages, in the band

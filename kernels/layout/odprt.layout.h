@@ -20,11 +20,11 @@ KDRAY_ASSERT_SIZE(PartCell, 32)
 
 // A queue that serves a part.
 typedef struct Travel {
-  u32 part;  // whose geometry is at hand
-  u32 n_parts;
-  u32 n_cells;  // of the directory
+  u32 part;      // whose geometry is at hand
+  u32 n_places;  // of a slice in the outbox: one for each part, or one for all
+  u32 n_cells;   // of the directory
   u32 n_slices;
-  u32 out_rays;          // rays for one part and slice that the outbox holds
+  u32 out_rays;          // rays that a place of the outbox holds
   u32 out_ray_capacity;  // words per field of those
   u32 out_shadow;        // the same of shadow rays
   u32 out_shadow_capacity;

@@ -27,7 +27,7 @@
 // ODPRT: the best hit so far, whose t is the float below t_max.
 #define KDRAY_RAY_NUMBER 12u  // u32: of its primitive, in file order
 #define KDRAY_RAY_FINDER \
-  13u  // u32: the part that holds it, or KDRAY_NO_PART; on its way, depth << 8 above that
+  13u  // u32: the part that holds it, or KDRAY_NO_PART; on its way, above that, depth << 8 and the part that it goes to << 16
 #define KDRAY_RAY_VISITED 14u  // two u32: a bit for each part that was asked
 #define KDRAY_TRAVEL_RAY_FIELDS 16u
 #if KDRAY_ODPRT
@@ -43,6 +43,8 @@
 #define KDRAY_MADE_SHADOW_FIELDS 13u  // what shading writes
 #define KDRAY_SHADOW_VISITED 13u      // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
 #define KDRAY_TRAVEL_SHADOW_FIELDS 15u
+#define KDRAY_SENT_SHADOW_TO 15u  // on its way: the part that it goes to
+#define KDRAY_SENT_SHADOW_FIELDS 16u
 #if KDRAY_ODPRT
 #define KDRAY_SHADOW_FIELDS KDRAY_TRAVEL_SHADOW_FIELDS
 #else

@@ -1,6 +1,6 @@
 // What    Takes rays that another queue has sent into the slices' pools. One work-item per slice.
 // Shape   `place` of `n_places` parts in the outbox of the sender (odprt/send.clh), whose streams have these capacities.
-// Cost    reads and writes 64 B per ray, 60 B per shadow ray.
+// Cost    reads and writes 64 B per ray, 60 B per shadow ray; where they go to is known.
 // Errors  A pool that is full counts what finds no place (n_pool_overflow): a broken bound, which the host acts on.
 #define KDRAY_ODPRT 1
 #include "odprt/send.clh"
@@ -10,7 +10,7 @@ inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n,
                          __global float* pool) {
   for (u32 i = 0; i < n; i += KDRAY_LANES) {
     const uint16 word = as_uint16(read16(from, KDRAY_RAY_FINDER, i));
-    for (Distinct d = distinct_values(word >> 8u, lanes_up_to(n - i)); d.rest != 0;) {
+    for (Distinct d = distinct_values(word >> 8u & 255u, lanes_up_to(n - i)); d.rest != 0;) {
       const mask16 same = next_lanes(&d);
       __global u32* n_pool = &slice->n_pool[d.value - 1];
       if (*n_pool + count_lanes(same) > frame->pool_size) {
@@ -47,7 +47,7 @@ __kernel void receive(__constant const Frame* frame, __constant const Travel* tr
   const u32 from = place * travel->n_slices + s;
   receive_rays(frame, const_stream_of(in_rays, from, KDRAY_RAY_FIELDS, ray_capacity), in_counts[from], s,
                io_slices + s, io_pool);
-  receive_shadow_rays(travel, const_stream_of(in_shadow_rays, from, KDRAY_SHADOW_FIELDS, shadow_capacity),
+  receive_shadow_rays(travel, const_stream_of(in_shadow_rays, from, KDRAY_SENT_SHADOW_FIELDS, shadow_capacity),
                       in_counts[n_places * travel->n_slices + from], io_slices + s, io_traffic + s,
                       stream_of(io_shadow_pool, s, KDRAY_SHADOW_FIELDS, travel->shadow_pool_capacity));
 }

@@ -11,6 +11,12 @@ namespace {
 
 using odprt::Mail;
 
+// All rays, whatever part they go to.
+void put_rays(Mail& mail, std::size_t slice, const std::vector<float>& rays, std::size_t capacity,
+              std::size_t n) {
+  odprt::sort_rays(rays.data(), capacity, n, slice, [&](std::uint32_t) { return &mail; });
+}
+
 constexpr std::size_t kCapacity = 48;
 
 // Ray i has i + 100*field in each field, and its depth above the finder.
@@ -26,8 +32,9 @@ std::vector<float> stream(std::uint32_t n_fields, std::uint32_t depth) {
 TEST(Mail, RaysComeOutAsTheyWentIn) {
   Mail mail(2);
   const std::vector<float> rays = stream(KDRAY_TRAVEL_RAY_FIELDS, 3);
-  mail.put_rays(1, rays.data(), kCapacity, 20);
-  mail.put_shadow_rays(1, stream(KDRAY_TRAVEL_SHADOW_FIELDS, 0).data(), kCapacity, 7);
+  put_rays(mail, 1, rays, kCapacity, 20);
+  odprt::sort_shadow_rays(stream(KDRAY_SENT_SHADOW_FIELDS, 0).data(), kCapacity, 7, 1,
+                          [&](std::uint32_t) { return &mail; });
   EXPECT_EQ(mail.n, 27u);
   EXPECT_EQ(mail.deepest, 3u);
   EXPECT_EQ(mail.rays[0].size(), 0u);
@@ -49,6 +56,29 @@ TEST(Mail, RaysComeOutAsTheyWentIn) {
   EXPECT_EQ(first_fields, expected);
 }
 
+// Ray i goes to part i % 3, of which the second's is not taken.
+TEST(Mail, RaysAreSortedByTheirParts) {
+  std::vector<float> rays = stream(KDRAY_TRAVEL_RAY_FIELDS, 2), shadow = stream(KDRAY_SENT_SHADOW_FIELDS, 0);
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    float& word = rays[KDRAY_RAY_FINDER * kCapacity + i];
+    word = std::bit_cast<float>(std::bit_cast<std::uint32_t>(word) | (i % 3) << 16);
+    shadow[KDRAY_SENT_SHADOW_TO * kCapacity + i] = std::bit_cast<float>(i % 3);
+  }
+  std::vector<Mail> mails(3, Mail(2));
+  const auto mail_of = [&](std::uint32_t part) { return part == 1 ? nullptr : &mails.at(part); };
+  odprt::sort_rays(rays.data(), kCapacity, 20, 0, mail_of);
+  odprt::sort_shadow_rays(shadow.data(), kCapacity, 20, 1, mail_of);
+  EXPECT_EQ(mails[0].rays[0].size(), 7u);
+  EXPECT_EQ(mails[0].n_rays(), 7u);
+  EXPECT_EQ(mails[0].shadow_rays[1].size(), 7u);
+  EXPECT_EQ(mails[1].n, 0u);
+  EXPECT_EQ(mails[2].n, 12u);
+  EXPECT_EQ(mails[2].deepest, 2u) << "the part is above the depth";
+  std::vector<float> out(KDRAY_SENT_SHADOW_FIELDS * kCapacity);
+  mails[2].shadow_rays[1].take(out.data(), kCapacity, 0, 6);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(static_cast<int>(out[i]) % 3, 2);
+}
+
 TEST(Mail, PooledRaysGetTheirDepth) {
   Mail mail(1);
   std::vector<float> pool = stream(KDRAY_TRAVEL_RAY_FIELDS, 0);
@@ -63,9 +93,9 @@ TEST(Mail, PooledRaysGetTheirDepth) {
 TEST(Mail, TakingAllMovesAndEmpties) {
   Mail a(2), b(2);
   const std::vector<float> rays = stream(KDRAY_TRAVEL_RAY_FIELDS, 2);
-  a.put_rays(0, rays.data(), kCapacity, 3);
-  b.put_rays(0, rays.data(), kCapacity, 4);
-  b.put_rays(1, rays.data(), kCapacity, 5);
+  put_rays(a, 0, rays, kCapacity, 3);
+  put_rays(b, 0, rays, kCapacity, 4);
+  put_rays(b, 1, rays, kCapacity, 5);
   a.take_all(b);
   EXPECT_EQ(a.n, 12u);
   EXPECT_EQ(a.rays[0].size(), 7u);
