@@ -166,14 +166,6 @@ cl::Buffer Context::upload_copy(const void* data, std::size_t bytes, const std::
   return copy;
 }
 
-cl::Buffer Context::upload_unawaited(const void* data, std::size_t bytes, const std::string& what) const {
-  cl::Buffer copy = buffer(CL_MEM_READ_ONLY, bytes, what);
-  if (bytes > 0)
-    checked("uploading " + what,
-            [&] { queues().front().enqueueWriteBuffer(copy, CL_FALSE, 0, bytes, data); });
-  return copy;
-}
-
 bool Context::works_in_host_memory() const {
   return found_.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU &&
          found_.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;

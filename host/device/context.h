@@ -67,8 +67,6 @@ class Context {
                     const std::string& what) const;
   // A copy everywhere.
   cl::Buffer upload_copy(const void* data, std::size_t bytes, const std::string& what) const;
-  // Likewise, but the copy may come later: `data` has to stay until the first queue has finished.
-  cl::Buffer upload_unawaited(const void* data, std::size_t bytes, const std::string& what) const;
 
  private:
   bool works_in_host_memory() const;

@@ -20,7 +20,8 @@ void add_worker(const Request& request, const Provision& provision, const Divisi
   crew.workers.push_back(std::make_unique<Worker>(
       *queue.context, queue.queue, *queue.programs, provision.frame, provision.plan, request.features,
       request.traversal, division.directory, provision.room, largest_part(division)));
-  crew.stores.push_back(std::make_unique<PartStore>(*queue.context, division, cut, provision.most_geometry));
+  crew.stores.push_back(
+      std::make_unique<PartStore>(*queue.context, queue.queue, division, cut, provision.streamed));
   crew.outboxes.emplace_back();
   for (std::size_t i = 0; i < provision.n_outboxes; ++i)
     crew.outboxes.back().push_back(std::make_unique<Outbox>(*queue.context, provision.plan.outbox));

@@ -1,6 +1,8 @@
 #include "odprt/division.h"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "odprt/deal.h"
 #include "odprt/replicate.h"
@@ -22,6 +24,15 @@ std::size_t largest_bytes(const Division& division) {
   std::size_t largest = 0;
   for (const Part& part : division.parts) largest = std::max(largest, part.geometry_bytes());
   return largest;
+}
+
+std::size_t room_bytes(const Division& division) {
+  std::array<std::size_t, Part::kArrays> most{};
+  for (const Part& part : division.parts) {
+    const auto bytes = part.array_bytes();
+    for (std::size_t i = 0; i < bytes.size(); ++i) most[i] = std::max(most[i], bytes[i]);
+  }
+  return std::accumulate(most.begin(), most.end(), std::size_t{0});
 }
 
 namespace {

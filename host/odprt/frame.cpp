@@ -92,7 +92,7 @@ void finish(Crew& crew, const Division& division, Result& result) {
     QueueReport& report = crew.reports[q];
     report.busy_seconds = crew.workers[q]->busy_seconds();
     report.n_loads = crew.stores[q]->n_loads();
-    report.geometry_bytes = crew.stores[q]->peak_bytes();
+    report.geometry_bytes = crew.stores[q]->bytes();
     result.counters.waves += report.waves;
     for (std::uint32_t part = 0; part < crew.owner.size(); ++part) {
       if (crew.owner[part] != q) continue;

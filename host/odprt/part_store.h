@@ -1,9 +1,8 @@
-// What    The parts that a queue's device holds: all of its own, or as many as fit, those least recently served going first.
+// What    The part that a queue's device holds: its only one, or, where memory is short, one at a time in room that is made once.
 #pragma once
 
 #include <cstdint>
-#include <list>
-#include <memory>
+#include <optional>
 
 #include "odprt/division.h"
 #include "odprt/worker.h"
@@ -12,26 +11,28 @@ namespace kdray::odprt {
 
 class PartStore {
  public:
-  // `most_bytes` of geometry; 0: no limit, and parts are used where they lie if the device works in the host's memory.
-  PartStore(const device::Context& context, const Division& division, const Cut& cut, std::size_t most_bytes)
-      : context_(context), division_(division), cut_(cut), most_bytes_(most_bytes) {}
+  // `streamed`: parts come and go; else they are used where they lie if the device works in the host's memory.
+  PartStore(const device::Context& context, cl::CommandQueue queue, const Division& division, const Cut& cut,
+            bool streamed)
+      : context_(context), queue_(std::move(queue)), division_(division), cut_(cut), streamed_(streamed) {}
 
-  // Loads the part if it isn't there. What it returns stays until another part is asked for.
+  // Loads the part if it isn't there; nothing may be running that reads the last one. What it returns stays until another is asked
+  // for.
   const LoadedPart& get(std::uint32_t part);
 
-  std::size_t peak_bytes() const { return peak_bytes_; }
+  std::size_t bytes() const;  // of geometry, with room that is not used
   std::uint64_t n_loads() const { return n_loads_; }
 
  private:
-  std::unique_ptr<LoadedPart> load(std::uint32_t part);
-  void make_room(std::size_t bytes);
+  wavefront::SceneBuffers scene_of(const Part& part);
 
   const device::Context& context_;
+  cl::CommandQueue queue_;
   const Division& division_;
   const Cut& cut_;
-  const std::size_t most_bytes_;
-  std::list<std::unique_ptr<LoadedPart>> loaded_;  // the last served first
-  std::size_t bytes_ = 0, peak_bytes_ = 0;
+  const bool streamed_;
+  std::optional<wavefront::SceneBuffers> room_;  // streamed: large enough for every part
+  std::optional<LoadedPart> loaded_;
   std::uint64_t n_loads_ = 0;
 };
 

@@ -110,7 +110,7 @@ Provision provide(const Request& request, std::size_t geometry_bytes, std::uint3
 
 bool fits(const Provision& provision, const Division& division, const Request& request) {
   if (!provision.streamed) return true;
-  const std::size_t largest = largest_bytes(division);
+  const std::size_t largest = room_bytes(division);
   if (largest <= provision.most_geometry) return true;
   if (provision.n_parts < KDRAY_MAX_PARTS) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));

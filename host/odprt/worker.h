@@ -32,8 +32,7 @@ struct LoadedPart {
   std::uint32_t number = 0, n_shared = 0;
   bool replicates = false;  // the division does
   wavefront::SceneBuffers scene;
-  std::size_t bytes = 0;  // of its geometry
-  cl::Buffer subtrees;    // a cell for each, for the census
+  cl::Buffer subtrees;  // a cell for each, for the census
   std::uint32_t n_subtrees = 0;
 };
 
