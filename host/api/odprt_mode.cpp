@@ -11,7 +11,7 @@ namespace kdray::api {
 namespace {
 
 constexpr std::uint64_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
-constexpr std::uint64_t kShadowBytes = KDRAY_TRAVEL_SHADOW_FIELDS * sizeof(float);
+constexpr std::uint64_t kShadowBytes = KDRAY_SENT_SHADOW_FIELDS * sizeof(float);
 
 const char* name_of(Balance balance) {
   switch (balance) {

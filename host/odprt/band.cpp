@@ -150,14 +150,21 @@ void BandRun::launch(std::size_t queue, const Turn& turn, QueueState& state) {
   state.progressed = n_waves > 0;
 }
 
+// Whether it holds something for parts that don't read it themselves.
+bool BandRun::sends_mail(std::size_t queue, const Outbox& outbox) const {
+  if (outbox.shape().n_places == 1) return outbox.n_all() > 0;  // for all of them
+  for (std::uint32_t part = 0; part < crew_.owner.size(); ++part)
+    if (!exchange_.direct(queue, part) && outbox.n_rays(part) + outbox.n_shadow_rays(part) > 0) return true;
+  return false;
+}
+
 void BandRun::hand_over(std::size_t queue, const Turn& turn, const QueueState& state) {
   Worker& worker = *crew_.workers[queue];
   std::vector<Mail>& sent = sent_[queue];
   const auto mail_of = [&](std::uint32_t part) {
     return exchange_.direct(queue, part) ? nullptr : &sent[part];
   };
-  if (turn.outbox && turn.outbox->n_all() > 0 && !exchange_.all_direct(queue))
-    worker.copy_out(*turn.outbox, mail_of);
+  if (turn.outbox && sends_mail(queue, *turn.outbox)) worker.copy_out(*turn.outbox, mail_of);
   exchange_.end_turn(queue, turn, worker.traffic(), state, sent);
 }
 

@@ -39,6 +39,7 @@ class BandRun {
   void take_entries(std::size_t queue, Shares& shares);
   void change_part(std::size_t queue, std::uint32_t part, QueueState& state, Mail& pending);
   void launch(std::size_t queue, const Turn& turn, QueueState& state);
+  bool sends_mail(std::size_t queue, const Outbox& outbox) const;
   void hand_over(std::size_t queue, const Turn& turn, const QueueState& state);
   void wait(const Shares& shares, std::size_t n_entries, const std::function<void(double)>& progress);
 

@@ -1,8 +1,6 @@
 #include "odprt/division.h"
 
 #include <algorithm>
-#include <array>
-#include <numeric>
 
 #include "odprt/deal.h"
 #include "odprt/replicate.h"
@@ -24,15 +22,6 @@ std::size_t largest_bytes(const Division& division) {
   std::size_t largest = 0;
   for (const Part& part : division.parts) largest = std::max(largest, part.geometry_bytes());
   return largest;
-}
-
-std::size_t room_bytes(const Division& division) {
-  std::array<std::size_t, Part::kArrays> most{};
-  for (const Part& part : division.parts) {
-    const auto bytes = part.array_bytes();
-    for (std::size_t i = 0; i < bytes.size(); ++i) most[i] = std::max(most[i], bytes[i]);
-  }
-  return std::accumulate(most.begin(), most.end(), std::size_t{0});
 }
 
 namespace {
@@ -82,11 +71,11 @@ Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, 
                 std::span<const double> costs, const DivideOptions& options) {
   Division division;
   division.part_of = assign(cut, costs, options);
-  division.directory = make_directory(form, cut, division.part_of);
-  if (options.n_parts == 1) {
-    division.parts.push_back({scene, form, 0});  // nothing to take apart
+  if (options.n_parts == 1) {  // nothing to take apart, and nowhere to go
+    division.parts.push_back({scene, form, 0});
     return division;
   }
+  division.directory = make_directory(form, cut, division.part_of);
   division.parts = make_parts(scene, form, cut, division.part_of, options.n_parts);
   return division;
 }

@@ -22,8 +22,6 @@ struct Division {
 
 // Of the largest part's geometry.
 std::size_t largest_bytes(const Division& division);
-// Of room for any part's: of each of its arrays the most that a part has.
-std::size_t room_bytes(const Division& division);
 
 struct DivideOptions {
   std::uint32_t n_parts = 1;

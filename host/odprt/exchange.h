@@ -9,7 +9,6 @@
 // Threads One for each queue.
 #pragma once
 
-#include <algorithm>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -79,9 +78,6 @@ class Exchange {
   const std::map<std::size_t, std::exception_ptr>& failures() const { return failures_; }  // by queue
 
   bool direct(std::size_t queue, std::uint32_t part) const { return direct_[queue][part]; }
-  bool all_direct(std::size_t queue) const {
-    return std::find(direct_[queue].begin(), direct_[queue].end(), false) == direct_[queue].end();
-  }
   const ExchangeCounts& counts() const { return counts_; }
 
  private:

@@ -1,6 +1,7 @@
 #include "odprt/part_store.h"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace kdray::odprt {
@@ -20,6 +21,13 @@ SceneBuffers::Sizes largest_sizes(const Division& division) {
 }
 
 }  // namespace
+
+std::size_t room_bytes(const Division& division) {
+  SceneBuffers::Sizes sizes = largest_sizes(division);
+  for (const std::size_t no_geometry : {SceneBuffers::kMaterials, SceneBuffers::kLights})
+    sizes[no_geometry] = 0;
+  return std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
+}
 
 SceneBuffers PartStore::scene_of(const Part& part) {
   if (!streamed_) return {context_, part.flat, part.wide};

@@ -9,6 +9,10 @@
 
 namespace kdray::odprt {
 
+// Of geometry in room for any part: of each array as much as the part with most of it has. Where parts are of different kinds of
+// primitives that is more than the largest part.
+std::size_t room_bytes(const Division& division);
+
 class PartStore {
  public:
   // `streamed`: parts come and go; else they are used where they lie if the device works in the host's memory.

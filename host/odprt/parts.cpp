@@ -398,12 +398,6 @@ std::size_t Part::geometry_bytes() const {
   return odprt::geometry_bytes(flat, wide);
 }
 
-std::array<std::size_t, Part::kArrays> Part::array_bytes() const {
-  return {flat.triangles.bytes(),     flat.normals.bytes(),    flat.spheres.bytes(),
-          flat.cones.bytes(),         wide.nodes.bytes(),      wide.triangle_blocks.bytes(),
-          wide.sphere_blocks.bytes(), wide.cone_blocks.bytes()};
-}
-
 std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
                              std::span<const std::uint32_t> part_of, std::uint32_t n_parts) {
   Holders holders(scene);

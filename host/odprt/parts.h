@@ -6,7 +6,6 @@
 //         ray meets in the parts what it would meet in the whole.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,8 +24,6 @@ struct Part {
 
   // Of what there is of the scene's geometry: the same everywhere, materials and lights are no part of it.
   std::size_t geometry_bytes() const;
-  static constexpr std::size_t kArrays = 8;
-  std::array<std::size_t, kArrays> array_bytes() const;  // what they are the sum of
 };
 
 std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideForm& wide);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "odprt/part_store.h"
 
 namespace kdray::odprt {
 
@@ -15,6 +16,8 @@ namespace {
 // Of a queue, for all parts: with few a queue waits for the others to read.
 constexpr std::size_t kLeastOutboxes = 3, kMostOutboxes = 8, kOutboxPlaces = 16;
 constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // of a queue; larger pictures go in bands
+// Of the directory of a scene that isn't streamed.
+constexpr std::size_t kMostDirectory = std::size_t{5120} * sizeof(layout::PartCell);
 // Of memory that is short. Each band goes through all parts, so the film is worth more than room for larger parts; and the more
 // parts there are, the more cells every ray is tested against, so there is room for one at a time only.
 constexpr std::size_t kFilmEighths = 3;
@@ -104,13 +107,13 @@ Provision provide(const Request& request, std::size_t geometry_bytes, std::uint3
   if (request.device_memory == 0) return all;
   const std::size_t of_queue = request.device_memory / queues_on_a_device(request);
   const double share = kSpareGeometry * static_cast<double>(geometry_bytes) / n_queues;
-  if (static_cast<double>(work_of(all)) + share <= static_cast<double>(of_queue)) return all;
+  if (static_cast<double>(work_of(all) + kMostDirectory) + share <= static_cast<double>(of_queue)) return all;
   return provide_streamed(request, geometry_bytes, of_queue, least_parts);
 }
 
 bool fits(const Provision& provision, const Division& division, const Request& request) {
   if (!provision.streamed) return true;
-  const std::size_t largest = room_bytes(division);
+  const std::size_t largest = room_bytes(division) + division.directory.size() * sizeof(layout::PartCell);
   if (largest <= provision.most_geometry) return true;
   if (provision.n_parts < KDRAY_MAX_PARTS) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));

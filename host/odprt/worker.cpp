@@ -276,7 +276,8 @@ void Worker::copy_out(const Outbox& outbox, const std::function<Mail*(std::uint3
   float* const rays = map(outbox.rays(), ray_words);
   float* const shadow_rays = map(outbox.shadow_rays(), shadow_words);
   for (std::size_t i = 0; i < shape.n_streams(); ++i) {
-    const std::size_t slice = i % shape.n_slices;
+    const std::size_t place = i / shape.n_slices, slice = i % shape.n_slices;
+    if (shape.n_places > 1 && mail_of(static_cast<std::uint32_t>(place)) == nullptr) continue;
     sort_rays(rays + i * ray_words, shape.ray_capacity, outbox.n()[i], slice, mail_of);
     sort_shadow_rays(shadow_rays + i * shadow_words, shape.shadow_capacity, outbox.n()[shape.n_streams() + i],
                      slice, mail_of);

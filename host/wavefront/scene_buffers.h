@@ -13,6 +13,7 @@ namespace kdray::wavefront {
 struct SceneBuffers {
   static constexpr std::size_t kArrays = 12;
   using Sizes = std::array<std::size_t, kArrays>;  // bytes, in the order of the members
+  static constexpr std::size_t kMaterials = 6, kLights = 7;
 
   cl::Buffer nodes, refs, triangles, normals, spheres, cones, materials, lights;
   cl::Buffer wide_nodes, triangle_blocks, sphere_blocks, cone_blocks;

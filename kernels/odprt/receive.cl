@@ -1,5 +1,5 @@
 // What    Takes rays that another queue has sent into the slices' pools. One work-item per slice.
-// Shape   `place` of `n_places` parts in the outbox of the sender (odprt/send.clh), whose streams have these capacities.
+// Shape   `place` of `n_places` in the outbox of the sender (odprt/send.clh), whose streams have these capacities.
 // Cost    reads and writes 64 B per ray, 60 B per shadow ray; where they go to is known.
 // Errors  A pool that is full counts what finds no place (n_pool_overflow): a broken bound, which the host acts on.
 #define KDRAY_ODPRT 1

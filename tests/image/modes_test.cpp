@@ -204,6 +204,27 @@ TEST(Odprt, LessMemoryThanTheSceneTakes) {
   }
 }
 
+// Parts come and go, few rays have room on the way (so that each change of parts serves few), and a queue fails.
+TEST(Odprt, LessMemoryTinyBuffersAndAFault) {
+  const Scene scene{many_triangles()};
+  Way plain{"pdprt"};
+  plain.options = exact_options(16, 12);
+  const Shot expected = render(scene, plain);
+  for (const int rays : {7, 100}) {
+    Way way{fmt::format("buffers of {}", rays), 3, plain.options, "1@2"};
+    way.options.mode = Mode::odprt;
+    way.options.balance = Balance::sah;
+    way.options.ray_buffer = rays;
+    way.options.tile_width = way.options.tile_height = 4;
+    way.options.device_memory = std::uint64_t{60} << 20;
+    const Shot got = render(scene, way);
+    EXPECT_TRUE(same_bits(expected.picture.rgb, got.picture.rgb)) << way.name;
+    EXPECT_EQ(expected.statistics["rays"], got.statistics["rays"]) << way.name;
+    EXPECT_GT(got.statistics["mode"]["parts"], 3) << way.name;
+    EXPECT_EQ(got.statistics["mode"]["quarantined"].size(), 1u) << way.name;
+  }
+}
+
 // A limit that all parts fit in together, just so: they stay, and keep to it.
 TEST(Odprt, PartsThatStayKeepToTheLimit) {
   const Scene scene{many_triangles()};

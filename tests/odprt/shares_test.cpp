@@ -81,10 +81,9 @@ layout::Frame frame_from_above() {
 // queue 0's.
 TEST(Shares, TilesGoToTheOwnerOfWhatTheySeeFirst) {
   const std::vector<layout::PartCell> directory = {
-      {{-4, -1, 0}, 0, {-2, 2, 1}, 0},
-      {{2, -1, 0}, 1, {4, 2, 1}, 2},  // the bounds of the next two
-      {{2, -1, 0}, 1, {4, 0.5f, 1}, 0},
-      {{2, 0.5f, 0}, 1, {4, 2, 1}, 0},
+      {{-4, -1, 0}, 0, {-2, 2, 1}, 0},    {{2, -1, 0}, 1, {4, 2, 1}, 6},  // the bounds of the next six
+      {{2, -1, 0}, 1, {4, 0.5f, 1}, 2},   {{2, -1, 0}, 1, {3, 0.5f, 1}, 0}, {{3, -1, 0}, 1, {4, 0.5f, 1}, 0},
+      {{2, 0.5f, 0}, 1, {4, 2, 1}, 2},    {{2, 0.5f, 0}, 1, {4, 1, 1}, 0},  {{2, 1, 0}, 1, {4, 2, 1}, 0},
       {{-5, -1.1f, -3}, 2, {5, 3, -2}, 0}};
   const std::vector<std::size_t> owner = {0, 1, 0};
   std::vector<layout::u32> tiles;

@@ -183,7 +183,7 @@ struct RenderOptions {
   Mode mode = Mode::automatic;
   Division division = Division::bag;
   Balance balance = Balance::pilot;
-  int ray_buffer = 0;  // ODPRT: rays that a buffer between two queues holds for each slice; 0: chosen
+  int ray_buffer = 0;  // ODPRT: rays that a buffer between queues holds for each slice; 0: chosen
   std::uint64_t device_memory =
       0;  // ODPRT: the most that a device may hold; subtrees come and go; 0: no limit
   // For benches: bits of kernels/layout/features.h and rules.h, what is compiled and done though the scene doesn't need it.
