@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -33,15 +31,9 @@ RenderOptions options_for(double target, int samples = 1) {
 }
 
 Shot render(const Scene& scene, const RenderOptions& options, const DeviceOptions& device = {}) {
-  Renderer renderer(scene, {}, device);
+  Renderer renderer(scene, {}, device_of(device));
   Picture picture = renderer.render(options);
   return {std::move(picture), statistics_of(renderer)};
-}
-
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return std::ranges::equal(a, b, [](float l, float r) {
-    return std::bit_cast<std::uint32_t>(l) == std::bit_cast<std::uint32_t>(r);
-  });
 }
 
 double rmse(const Picture& a, const Picture& b) {

@@ -82,7 +82,7 @@ void expect_same_rays(const Renderer& renderer, const oracle::RayCounts& truth) 
 
 void expect_like_oracle(const scene::Scene& model, const RenderOptions& options) {
   const Scene scene{scene::Scene(model)};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const Picture picture = renderer.render(options);
   const auto grid = options.grid == PixelGrid::corners ? oracle::Grid::corners : oracle::Grid::centers;
   const oracle::OracleResult truth =
@@ -119,7 +119,7 @@ TEST(AgainstOracle, ManySamplesAverageToTheSamePicture) {
   // Stratified samples of a 40x40 picture against the mean of the oracle's finer one: the mean error is what
   // 4x4 strata leave at the edges.
   const Scene scene{every_light()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   RenderOptions options = exact_options(40, 40);
   options.samples = 16;
   const Picture picture = renderer.render(options);
@@ -142,7 +142,7 @@ TEST(AgainstOracle, ManySamplesAverageToTheSamePicture) {
 
 TEST(AgainstOracle, RaysOfNoWeightChangeNothing) {
   const Scene scene{flat_glass()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   RenderOptions options = exact_options(kSize, kSize);
   const Picture without = renderer.render(options);
   options.min_weight = 0;
@@ -154,7 +154,7 @@ TEST(AgainstOracle, TheDefaultCutOfWeightsIsInvisible) {
   const Scene scene{scene::Scene(model)};
   RenderOptions options = exact_options(kSize, kSize, 8);
   options.min_weight = -1;  // the default: below half of an 8-bit step in the worst case
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   expect_equal(renderer.render(options), oracle::trace_picture(model, kSize, kSize, 8));
 }
 
@@ -197,7 +197,7 @@ TEST(AgainstOracle, AnNffFileAllTheWay) {
   std::filesystem::remove(file);
   ASSERT_EQ(scene.primitives(), 7u);
   ASSERT_EQ(scene.model().lights.size(), 2u);
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const RenderOptions options = exact_options(kSize, kSize);
   const oracle::OracleResult truth = oracle::trace_picture(scene.model(), kSize, kSize, options.depth);
   expect_equal(renderer.render(options), truth);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 #include "image/render.h"
@@ -23,18 +22,12 @@ Picture render(const Scene& scene, const Schedule& s, const std::vector<std::str
   DeviceOptions device;
   device.queues = s.queues;
   device.work_group = s.work_group;
-  Renderer renderer(scene, {}, device);
+  Renderer renderer(scene, {}, device_of(device));
   RenderOptions options = exact_options(kWidth, kHeight);
   options.tile_width = s.tile_width;
   options.tile_height = s.tile_height;
   options.channels = channels;
   return renderer.render(options);
-}
-
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return std::ranges::equal(a, b, [](float l, float r) {
-    return std::bit_cast<std::uint32_t>(l) == std::bit_cast<std::uint32_t>(r);
-  });
 }
 
 class Identical : public testing::TestWithParam<NamedScene> {};
@@ -61,7 +54,7 @@ TEST_P(Identical, WhateverTheKindOfLaunches) {
   const Picture first = render(scene, {0, 0, 0, 1});
   for (const kdray::Schedule schedule : {kdray::Schedule::slices, kdray::Schedule::global})
     for (const int queues : {1, 2}) {
-      Renderer renderer(scene, {}, {.queues = queues, .schedule = schedule});
+      Renderer renderer(scene, {}, device_of({.queues = queues, .schedule = schedule}));
       const Picture other = renderer.render(exact_options(kWidth, kHeight));
       EXPECT_TRUE(same_bits(first.rgb, other.rgb))
           << fmt::format("schedule {}, queues {}", static_cast<int>(schedule), queues);
@@ -72,7 +65,7 @@ TEST_P(Identical, WhateverTheDivision) {
   const Scene scene{GetParam().make()};
   const Picture first = render(scene, {0, 0, 0, 1});
   for (const int queues : {1, 2, 3, 8}) {
-    Renderer renderer(scene, {}, {.queues = queues});
+    Renderer renderer(scene, {}, device_of({.queues = queues}));
     for (const Division division : {Division::bag, Division::contiguous, Division::interleaved}) {
       for (const int tile : {0, 4, 50}) {
         RenderOptions options = exact_options(kWidth, kHeight);
@@ -89,7 +82,7 @@ TEST_P(Identical, WhateverQueuesFail) {
   const Scene scene{GetParam().make()};
   const Picture first = render(scene, {0, 0, 0, 1});
   for (const char* const faults : {"0@1", "1@1,2@2", "0@2,2@1"}) {
-    Renderer renderer(scene, {}, {.queues = 3, .faults = faults});
+    Renderer renderer(scene, {}, device_of({.queues = 3, .faults = faults}));
     RenderOptions options = exact_options(kWidth, kHeight);
     options.division = Division::interleaved;
     const Picture picture = renderer.render(options);
@@ -117,7 +110,7 @@ TEST_P(Identical, FromRunToRunAndWithChannels) {
 
 TEST_P(Identical, OneRendererTwice) {
   const Scene scene{GetParam().make()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const Picture first = renderer.render(exact_options(kWidth, kHeight));
   const Picture small = renderer.render(exact_options(16, 9));  // leaves nothing behind for the next
   EXPECT_EQ(small.rgb.size(), 3u * 16 * 9);

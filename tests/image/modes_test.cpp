@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "image/render.h"
@@ -38,15 +36,9 @@ Shot render(const Scene& scene, const Way& way) {
   DeviceOptions device;
   device.queues = way.queues;
   device.faults = way.faults;
-  Renderer renderer(scene, {}, device);
+  Renderer renderer(scene, {}, device_of(device));
   Picture picture = renderer.render(way.options);
   return {std::move(picture), statistics_of(renderer)};
-}
-
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return std::ranges::equal(a, b, [](float l, float r) {
-    return std::bit_cast<std::uint32_t>(l) == std::bit_cast<std::uint32_t>(r);
-  });
 }
 
 class Modes : public testing::TestWithParam<NamedScene> {
@@ -117,7 +109,7 @@ TEST_P(Modes, OdprtThatFailsEverywhereSaysSo) {
 TEST_P(Modes, ASequenceOfFramesThatMovesSubtrees) {
   DeviceOptions device;
   device.queues = 3;
-  Renderer renderer(scene, {}, device);
+  Renderer renderer(scene, {}, device_of(device));
   Way way = odprt(3, Balance::dynamic);
   for (int frame = 0; frame < 4; ++frame)
     EXPECT_TRUE(same_bits(first.picture.rgb, renderer.render(way.options).rgb)) << "frame " << frame;

@@ -22,7 +22,7 @@ TEST_P(Povray, SeesTheSame) {
   KDRAY_NEED_DATA(reference);
   const film::Image wanted = film::read_picture(reference, {.srgb = false, .gamma = 1});
   const Scene scene = Scene::load(file);
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const Picture picture = renderer.render(exact_options(1024, 1024));
   film::Image found{picture.width, picture.height, {}};
   found.pixels.reserve(picture.rgb.size() / 3);

@@ -248,7 +248,8 @@ TEST_P(Precision64, TheScheduleChangesNothing) {
   RenderOptions o = in_double(exact_options(50, 31));
   o.samples = 3;
   o.channels = {"depth", "normal", "primitive"};
-  Renderer one(scene, {}, {.device = GetParam()}), two(scene, {}, {.device = GetParam(), .queues = 2});
+  Renderer one(scene, {}, device_of({.device = GetParam()})),
+      two(scene, {}, device_of({.device = GetParam(), .queues = 2}));
   const Picture whole = one.render(o);
   o.tile_width = 7, o.tile_height = 3;
   const Picture tiles = two.render(o);

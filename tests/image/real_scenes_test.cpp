@@ -102,7 +102,7 @@ TEST_P(RealScenes, ShowTheModel) {
   const Scene scene = Scene::load(file);
   ASSERT_TRUE(scene.model().camera.has_value());
   EXPECT_FALSE(scene.model().lights.empty());
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   RenderOptions options;
   options.width = kWidth;
   options.height = kHeight;

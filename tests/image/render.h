@@ -3,15 +3,27 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "kdray/kdray.h"
 #include "scene/scene.h"
+#include "support/programs.h"
 
 namespace kdray::test {
+
+// Such a device for a new Renderer, as kept_programs() for a context.
+inline DeviceOptions device_of(DeviceOptions options = {}) {
+  options.programs = programs_folder();
+  keep_programs(options);
+  return options;
+}
 
 inline nlohmann::json statistics_of(const Renderer& renderer) {
   return nlohmann::json::parse(renderer.statistics());
@@ -33,6 +45,12 @@ inline bool all_finite(const Picture& picture) {
   for (const float v : picture.rgb)
     if (!std::isfinite(v)) return false;
   return true;
+}
+
+inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::ranges::equal(a, b, [](float l, float r) {
+    return std::bit_cast<std::uint32_t>(l) == std::bit_cast<std::uint32_t>(r);
+  });
 }
 
 // The mean of Rec. 709 luminance, linear.

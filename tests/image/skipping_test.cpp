@@ -47,7 +47,7 @@ class EachRule : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(EachRule, ChangesNoBit) {
   const Scene scene{floor_show()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const Picture usual = renderer.render(keeping(0));
   ASSERT_GT(mean_luminance(usual), 0.05);
   EXPECT_TRUE(same_bits(usual, renderer.render(keeping(GetParam()))));
@@ -64,7 +64,7 @@ TEST_P(AllRules, ChangeNoBit) {
   const scene::Scene model = GetParam().make();
   const bool smooth = !model.normals.empty();  // where a shadow ray may start behind its triangle
   const Scene scene{scene::Scene(model)};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const Picture usual = renderer.render(keeping(0));
   const std::uint32_t all = KDRAY_KEEP_ALL & ~(smooth ? KDRAY_KEEP_LEFT : 0u);
   EXPECT_TRUE(same_bits(usual, renderer.render(keeping(all))));
@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Skipping, AllRules, testing::ValuesIn(small_scenes()),
 
 TEST(Skipping, ChangesNoBitInODPRT) {
   const Scene scene{floor_show()};
-  Renderer renderer(scene, {}, {.queues = 2});
+  Renderer renderer(scene, {}, device_of({.queues = 2}));
   RenderOptions usual = keeping(0), all = keeping(KDRAY_KEEP_ALL);
   usual.mode = all.mode = Mode::odprt;
   const Picture picture = renderer.render(usual);
@@ -85,7 +85,7 @@ TEST(Skipping, ChangesNoBitInODPRT) {
 
 TEST(Skipping, LeavesOutWhatPassesTheCore) {
   const Scene scene{floor_show()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   renderer.render(keeping(0));
   const std::uint64_t shadow = statistics_of(renderer)["rays"]["shadow"];
   const std::uint64_t reflected = statistics_of(renderer)["rays"]["reflected"];
@@ -101,7 +101,7 @@ TEST(Skipping, LeavesOutWhatPassesTheCore) {
 
 TEST(Skipping, TracesEverythingWithoutLeastWeight) {
   const Scene scene{floor_show()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   RenderOptions o = keeping(0);
   o.min_weight = 0;
   renderer.render(o);

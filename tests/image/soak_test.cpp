@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <bit>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -96,15 +94,9 @@ Shot render(const PreparedScene& scene, const RenderOptions& options, int queues
   DeviceOptions device;
   device.queues = queues;
   device.faults = faults;
-  Renderer renderer(scene, device);
+  Renderer renderer(scene, device_of(device));
   Picture picture = renderer.render(options);
   return {std::move(picture), statistics_of(renderer)["rays"]};
-}
-
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return std::ranges::equal(a, b, [](float l, float r) {
-    return std::bit_cast<std::uint32_t>(l) == std::bit_cast<std::uint32_t>(r);
-  });
 }
 
 std::vector<PreparedScene> soak_scenes() {

@@ -26,7 +26,7 @@ TEST_P(SpdCounts, AreThePublishedOnes) {
   const std::filesystem::path file = data_path(std::string("spd/") + wanted.name + ".nff.gz");
   KDRAY_NEED_DATA(file);
   const Scene scene = Scene::load(file);
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   RenderOptions options = exact_options(513, 513);
   options.grid = PixelGrid::corners;
   options.min_weight = 0;  // the published counts hold the rays of no weight, too
@@ -60,7 +60,7 @@ TEST_P(SpdFiles, Render) {
   const std::filesystem::path file = data_path(std::string("spd/") + GetParam() + ".nff.gz");
   KDRAY_NEED_DATA(file);
   const Scene scene = Scene::load(file);
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   RenderOptions options = exact_options(96, 96);
   options.channels = {"primitive"};
   const Picture picture = renderer.render(options);

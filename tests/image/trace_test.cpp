@@ -134,7 +134,7 @@ std::vector<Ray> random_rays(const scene::Scene& model, unsigned seed, int n) {
 void expect_like_brute_force(const Scene& scene, unsigned seed, int n, double most_uncertain = 0.02) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   const std::vector<Ray> rays = random_rays(scene.model(), seed, n);
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const std::vector<Hit> hits = renderer.trace(rays);
   ASSERT_EQ(hits.size(), rays.size());
   const oracle::World world(scene.model());
@@ -190,7 +190,7 @@ TEST(Trace, ARealMesh) {
 TEST(Trace, AnyHitSaysWhatClosestHitSays) {
   const Scene scene{soup(73, 600)};
   const std::vector<Ray> rays = random_rays(scene.model(), 74, 20000);
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const std::vector<Hit> closest = renderer.trace(rays), any = renderer.trace(rays, true);
   ASSERT_EQ(any.size(), rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -204,7 +204,7 @@ TEST(Trace, AnyHitSaysWhatClosestHitSays) {
 TEST(Trace, IntervalsAreHonoured) {
   const Scene scene{soup(75, 600)};
   std::vector<Ray> rays = random_rays(scene.model(), 76, 4000);
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const std::vector<Hit> whole = renderer.trace(rays);
   std::vector<Ray> before = rays, around = rays, behind = rays;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -235,7 +235,7 @@ TEST(Trace, IntervalsAreHonoured) {
 
 TEST(Trace, TheLengthOfTheDirectionScalesT) {
   const Scene scene{glass_and_mirror_balls()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const Ray unit{{0.2f, 3, 7}, 0, {0, -0.25f, -0.5f}, kInfinity};
   Ray longer = unit;
   for (float& d : longer.direction) d *= 8;
@@ -275,7 +275,7 @@ TEST(Trace, AxisRaysAlongSplittingPlanes) {
       }
     }
   }
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const std::vector<Hit> hits = renderer.trace(rays), any_hits = renderer.trace(rays, true);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Every ray meets the first square of its own axis at distance 4: squares it runs along have no area to
@@ -301,7 +301,7 @@ TEST(Trace, NothingLeaksThroughVerticesAndEdges) {
       rays.push_back(RayMaker::make(inside, 0.5 * (a + b) - inside, 0, kInfinity));
     }
   }
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const std::vector<Hit> hits = renderer.trace(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_GE(hits[i].primitive, 0) << "ray " << i;
@@ -314,7 +314,7 @@ TEST(Trace, OfCoincidingTrianglesTheSmallerNumberIsHit) {
   const scene::Material any = oracle::matte(vec3(1));
   for (int i = 0; i < 5; ++i) b.triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, any);
   const Scene scene{scene::Scene(b.scene())};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   for (const float from : {-3.0f, 3.0f}) {
     const Ray ray{{0.1f, 0.2f, from}, 0, {0, 0, -from}, kInfinity};
     EXPECT_EQ(renderer.trace(std::vector<Ray>{ray})[0].primitive, 0);
@@ -325,7 +325,7 @@ TEST(Trace, ConesTellTheHeightOfTheHit) {
   oracle::SceneBuilder b;
   b.cone({0, 0, 0}, 1, {0, 4, 0}, 0.5, oracle::matte(vec3(1)));
   const Scene scene{scene::Scene(b.scene())};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const Ray ray{{9, 1, 0}, 0, {-1, 0, 0}, kInfinity};
   const Hit hit = renderer.trace(std::vector<Ray>{ray})[0];
   EXPECT_NEAR(hit.u, 0.25, 1e-5);
@@ -334,7 +334,7 @@ TEST(Trace, ConesTellTheHeightOfTheHit) {
 
 TEST(Trace, RaysThatAreNoneAreRefused) {
   const Scene scene{glass_and_mirror_balls()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const Ray good{{1.2f, -0.2f, 9}, 0, {0, 0, -1}, kInfinity};
   for (const float bad : {nan, kInfinity, -kInfinity}) {
@@ -360,7 +360,7 @@ TEST(Trace, RaysThatAreNoneAreRefused) {
 
 TEST(Trace, NoRaysAndRepetition) {
   const Scene scene{glass_and_mirror_balls()};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   EXPECT_TRUE(renderer.trace({}).empty());
   const std::vector<Ray> rays = random_rays(scene.model(), 77, 1000);
   const std::vector<Hit> once = renderer.trace(rays), often = renderer.trace(rays, false, 3);
@@ -377,7 +377,7 @@ TEST(Trace, AnEmptySceneIsMissed) {
   model.camera = scene::Camera{};
   model.background = {0.25f, 0.5f, 0.75f};
   const Scene scene{std::move(model)};
-  Renderer renderer(scene);
+  Renderer renderer(scene, {}, device_of());
   const Ray ray{{0, 0, 9}, 0, {0, 0, -1}, kInfinity};
   EXPECT_EQ(renderer.trace(std::vector<Ray>{ray})[0].primitive, -1);
   EXPECT_EQ(renderer.trace(std::vector<Ray>{ray}, true)[0].t, kInfinity);

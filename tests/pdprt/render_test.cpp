@@ -12,6 +12,7 @@
 #include "kdray/error.h"
 #include "layout/features.h"
 #include "support/device.h"
+#include "support/programs.h"
 #include "wavefront/curve.h"
 #include "wavefront/hall_of_mirrors.h"
 
@@ -38,11 +39,11 @@ std::uint64_t rays_of(const Result& result) {
 class RenderTest : public test::EachDevice {
  protected:
   const Hall hall;
-  const device::Context one{GetParam(), 1};
+  const device::Context one{GetParam(), 1, 0, test::kept_programs()};
   const Result reference = hall.render(one, wavefront::Schedule{});
 
   Result render(int n_queues, const wavefront::Schedule& schedule, const Task& task) const {
-    return hall.render({device::Context(GetParam(), n_queues)}, schedule, task);
+    return hall.render({device::Context(GetParam(), n_queues, 0, test::kept_programs())}, schedule, task);
   }
 
   void expect_whole(const Result& result) const {
