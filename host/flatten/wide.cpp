@@ -7,6 +7,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <type_traits>
 
 #include "base/error.h"
 #include "flatten/collapse.h"
@@ -19,15 +21,25 @@ layout::u32 bits(float v) {
   return std::bit_cast<layout::u32>(v);
 }
 
+// A triangle of a block, of which lane 0 of row 0 is at `rows`: vertex v, axis k in row 3 v + k.
+struct TriangleInBlock {
+  const layout::u32* rows;
+  std::uint32_t block;
+
+  float operator()(int v, int k) const {
+    return std::bit_cast<float>(rows[static_cast<std::uint32_t>(3 * v + k) * block]);
+  }
+};
+
 // |n|_1 of the normal that the kernels compute in float, or more. With u = 2^-24, an edge is off by u of itself, a product of
 // two by 3u, a component by 3u of the products' sizes and u of itself: here and there together by less than 8u of `size` and
 // 4u of `sum`. What underflows is below 2^-140.
 // To it what sign_limit adds for the tilt (intersect/triangle.clh): at most 8 times the square of the edges' largest component.
-float normal_bound(const layout::Triangle& t) {
+inline float normal_bound(const TriangleInBlock& t) {
   float e[2][3];
   for (int k = 0; k < 3; ++k) {
-    e[0][k] = t.v[1][k] - t.v[0][k];
-    e[1][k] = t.v[2][k] - t.v[0][k];
+    e[0][k] = t(1, k) - t(0, k);
+    e[1][k] = t(2, k) - t(0, k);
   }
   float sum = 0, size = 0;
   for (int k = 0; k < 3; ++k) {
@@ -43,16 +55,27 @@ float normal_bound(const layout::Triangle& t) {
 }
 
 // Whether its plane lies across an axis: the kernels then take the distance from that plane alone (level_t).
-bool is_level(const layout::Triangle& t) {
-  for (int k = 0; k < 3; ++k)
-    if (t.v[0][k] == t.v[1][k] && t.v[1][k] == t.v[2][k]) return true;
-  return false;
+inline bool is_level(const TriangleInBlock& t) {
+  bool level = false;
+  for (int k = 0; k < 3; ++k) level |= (t(0, k) == t(1, k)) & (t(1, k) == t(2, k));
+  return level;
 }
 
-// The rows of a primitive in its block, without the index.
-std::array<float, KDRAY_TRIANGLE_ROWS - 1> rows_of(const layout::Triangle& t) {
-  return {t.v[0][0], t.v[0][1], t.v[0][2], t.v[1][0], t.v[1][1],
-          t.v[1][2], t.v[2][0], t.v[2][1], t.v[2][2], is_level(t) ? -normal_bound(t) : normal_bound(t)};
+// Row 9 of a block of kLanes triangles; the compiler makes vectors of it.
+template <std::uint32_t kLanes>
+void write_normal_bounds(layout::u32* rows) {
+  std::array<layout::u32, kLanes> bounds;
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const TriangleInBlock t{rows + lane, kLanes};
+    const float bound = normal_bound(t);
+    bounds[lane] = bits(is_level(t) ? -bound : bound);
+  }
+  std::copy(bounds.begin(), bounds.end(), rows + 9 * kLanes);
+}
+
+// The rows of a primitive in its block, without the index, and without a triangle's bound.
+std::array<float, KDRAY_TRIANGLE_ROWS - 2> rows_of(const layout::Triangle& t) {
+  return {t.v[0][0], t.v[0][1], t.v[0][2], t.v[1][0], t.v[1][1], t.v[1][2], t.v[2][0], t.v[2][1], t.v[2][2]};
 }
 std::array<float, KDRAY_SPHERE_ROWS - 1> rows_of(const layout::Sphere& s) {
   return {s.center[0], s.center[1], s.center[2], s.radius};
@@ -71,20 +94,41 @@ void prefetch(const kdtree::Tree& tree, std::size_t ref, const Array<Primitive>&
   if (index < primitives.size()) __builtin_prefetch(primitives.data() + index);  // it may be of another kind
 }
 
+template <class Primitive>
+constexpr std::size_t kRowsOf = std::tuple_size_v<decltype(rows_of(Primitive()))>;
+
+// Lanes without primitive: NaN but for the index.
+void clear_lanes(std::uint32_t first, std::uint32_t block, std::size_t n_rows, layout::u32* words) {
+  for (std::size_t row = 0; row < n_rows; ++row)
+    std::fill(words + row * block + first, words + (row + 1) * block, bits(NAN));
+  std::fill(words + n_rows * block + first, words + (n_rows + 1) * block, KDRAY_WIDE_LAST);
+}
+
+// What follows from the vertices, for all lanes at once.
+void write_normal_bounds(std::uint32_t block, layout::u32* words) {
+  block == 8 ? write_normal_bounds<8>(words) : write_normal_bounds<4>(words);
+}
+
 // Writes a leaf's blocks of one kind, from `words` on.
 template <class Primitive>
 void write_blocks(const kdtree::Tree& tree, const LeafRun& run, const Array<Primitive>& primitives,
                   std::uint32_t block, layout::u32* words) {
-  constexpr std::size_t kRows = std::tuple_size_v<decltype(rows_of(Primitive()))>;
-  const std::uint32_t n_lanes = (run.n + block - 1) / block * block;
-  for (std::uint32_t i = 0; i < n_lanes; ++i) {
-    layout::u32* lane = words + i / block * (kRows + 1) * block + i % block;
-    const bool used = i < run.n;
-    prefetch(tree, run.first + i + kAhead, primitives);
-    const std::uint32_t index = used ? kdtree::ref_index(tree.refs[run.first + i]) : 0;
-    const auto rows = used ? rows_of(primitives[index]) : std::array<float, kRows>{};
-    for (std::size_t r = 0; r < kRows; ++r) lane[r * block] = used ? bits(rows[r]) : bits(NAN);
-    lane[kRows * block] = index | (i + 1 >= run.n ? KDRAY_WIDE_LAST : 0);
+  constexpr bool kTriangles = std::is_same_v<Primitive, layout::Triangle>;
+  constexpr std::size_t kRows = kRowsOf<Primitive> + (kTriangles ? 1 : 0);
+  for (std::uint32_t done = 0; done < run.n; done += block, words += (kRows + 1) * block) {
+    const std::uint32_t n = std::min(block, run.n - done);
+    for (std::uint32_t lane = 0; lane < n; ++lane) {
+      const std::uint32_t ref = run.first + done + lane;
+      prefetch(tree, ref + kAhead, primitives);
+      const std::uint32_t index = kdtree::ref_index(tree.refs[ref]);
+      const auto rows = rows_of(primitives[index]);
+      for (std::size_t r = 0; r < rows.size(); ++r) words[r * block + lane] = bits(rows[r]);
+      words[kRows * block + lane] = index | (done + lane + 1 == run.n ? KDRAY_WIDE_LAST : 0);
+    }
+    if (n < block) clear_lanes(n, block, kRows, words);
+    if (!kTriangles) continue;
+    write_normal_bounds(block, words);
+    std::fill(words + 9 * block + n, words + 10 * block, bits(NAN));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "kdtree/reference.h"
@@ -14,9 +15,10 @@ namespace kdray::kdtree::binned {
 
 inline constexpr int kBins = 32;
 
-// Which references of a cell of n are counted: in large cells every fourth says as well where to split.
+// Which references of a cell of n are counted: some hundreds say as well where to split as all of them do.
 inline std::size_t sample_stride(std::size_t n) {
-  return n > 8192 ? 4 : 1;
+  constexpr std::size_t kEnough = 512, kMost = 8;
+  return std::clamp<std::size_t>(std::bit_floor(n / kEnough), 1, kMost);
 }
 
 struct BinGrid {

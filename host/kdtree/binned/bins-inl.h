@@ -17,15 +17,25 @@ struct BinPair {
   alignas(16) std::int32_t begin[4], end[4];
 };
 
+// Floors of what is clamped to the bins. Between 32 and 64 a float's first five bits behind the leading one are what it has more
+// than 32, rounded down: cheaper than a conversion.
+HWY_ATTR inline hn::Vec<hn::Full128<std::int32_t>> bin_of(hn::Vec<hn::Full128<float>> x) {
+  static_assert(kBins == 32);
+  const hn::Full128<float> d;
+  const hn::Full128<std::int32_t> di;
+  const auto clamped = hn::Min(hn::Max(x, hn::Zero(d)), hn::Set(d, static_cast<float>(kBins - 1)));
+  const auto bits = hn::BitCast(di, hn::Add(clamped, hn::Set(d, static_cast<float>(kBins))));
+  return hn::And(hn::ShiftRight<18>(bits), hn::Set(di, kBins - 1));
+}
+
 HWY_ATTR inline void find_bins(const BoundedRef& r, const BinGrid& grid, BinPair& bins) {
   const hn::Full128<float> d;
   const hn::Full128<std::int32_t> di;
   const auto scale = hn::Load(d, grid.scale.data());
   const auto begin = hn::Mul(hn::Sub(hn::Load(d, r.lo.data()), hn::Load(d, grid.lo.data())), scale);
   const auto end = hn::Mul(hn::Sub(hn::Load(d, grid.hi.data()), hn::Load(d, r.hi.data())), scale);
-  const auto none = hn::Zero(d), last = hn::Set(d, static_cast<float>(kBins - 1));
-  hn::Store(hn::ConvertTo(di, hn::Min(hn::Max(begin, none), last)), di, bins.begin);
-  hn::Store(hn::ConvertTo(di, hn::Min(hn::Max(end, none), last)), di, bins.end);
+  hn::Store(bin_of(begin), di, bins.begin);
+  hn::Store(bin_of(end), di, bins.end);
 }
 
 HWY_ATTR inline void add_bins(const BinPair& bins, BinCounts& counts) {
@@ -72,14 +82,16 @@ inline SideCounts side_counts(const BinCounts& counts, std::size_t axis, std::si
   return sides;
 }
 
+// Of a cell of n references.
 HWY_ATTR inline Best best_between_bins(const BinCounts& counts, const BinGrid& grid, const Bounds& contents,
-                                       std::size_t stride, const BuildConfig& config) {
+                                       std::size_t n, const BuildConfig& config) {
   const Floats d;
+  const std::size_t stride = sample_stride(n);
   Best best;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (const int axis : longest_first(contents)) {
     const auto k = static_cast<std::size_t>(axis);
     const PlaneCosts costs(config, contents, axis);
-    if (!costs.usable() || grid.scale[k] == 0) continue;
+    if (!costs.usable() || grid.scale[k] == 0 || !costs.may_beat(best.cost, n)) continue;
     const SideCounts sides = side_counts(counts, k, stride);
     BestOfAxis best_here;
     for (std::size_t b = 0; b < kBins; b += hn::Lanes(d)) {

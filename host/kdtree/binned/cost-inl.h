@@ -9,7 +9,9 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 #include "hwy/highway.h"
 #include "kdtree/build.h"
@@ -85,6 +87,15 @@ class PlaneCosts {
     return hn::IfThenElse(inside, cost, hn::Set(d, std::numeric_limits<float>::infinity()));
   }
 
+  // False if no plane is as cheap as a leaf of n references, or as that cost. Both sides are tested, and tests for n references
+  // are shared by them: at best all but one reference's are on the side of the lesser chance, which is that of the face or more,
+  // and the chances add up to 1 and that of the face.
+  bool may_beat(float cost, std::size_t n) const {
+    const float one = tests_.of(1), rest = tests_.of(n) - one;
+    const float least = traverse_ + intersect_ * (one + face_ * rest);
+    return least * (1 - 0x1p-18f) <= std::min(cost, leaf(n));  // what is taken off is for rounding
+  }
+
   float leaf(std::size_t n) const { return intersect_ * tests_.of(n); }
 
  private:
@@ -92,6 +103,19 @@ class PlaneCosts {
   float lo_, hi_, face_, rim_, traverse_, intersect_;
   bool usable_;
 };
+
+// The axes, that of the cell's longest edge first: the best plane is likely to lie across it, and rules out planes across others.
+inline std::array<int, 3> longest_first(const Bounds& b) {
+  const auto length = [&](int axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    return b.hi[k] - b.lo[k];
+  };
+  std::array<int, 3> axes{0, 1, 2};
+  if (length(axes[1]) > length(axes[0])) std::swap(axes[0], axes[1]);
+  if (length(axes[2]) > length(axes[0])) std::swap(axes[0], axes[2]);
+  if (length(axes[2]) > length(axes[1])) std::swap(axes[1], axes[2]);
+  return axes;
+}
 
 // The cheapest plane so far.
 struct Best {

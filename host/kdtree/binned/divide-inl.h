@@ -9,6 +9,7 @@
 #define KDRAY_BINNED_DIVIDE_INL_H
 #endif
 
+#include "hwy/cache_control.h"
 #include "kdtree/binned/clip-inl.h"
 #include "kdtree/clip.h"
 
@@ -17,7 +18,7 @@ namespace kdray::kdtree::binned::HWY_NAMESPACE {
 
 HWY_ATTR inline Bounds hull_of_refs(std::span<const BoundedRef> refs) {
   const hn::Full128<float> d;
-  auto lo = hn::Set(d, std::numeric_limits<float>::infinity());
+  auto lo = hn::Inf(d);
   auto hi = hn::Neg(lo);
   for (const BoundedRef& r : refs) {
     lo = hn::Min(lo, hn::Load(d, r.lo.data()));
@@ -33,23 +34,27 @@ struct Sorted {
   std::size_t n_below = 0, n_above = 0, n_straddling = 0;
 };
 
+// In one piece where vectors are wide enough.
+HWY_ATTR inline void copy_ref(const BoundedRef& from, BoundedRef* to) {
+  const hn::CappedTag<float, 8> d;
+  const float* const in = from.lo.data();
+  float* const out = to->lo.data();
+  for (std::size_t i = 0; i < 8; i += hn::Lanes(d)) hn::StoreU(hn::LoadU(d, in + i), d, out + i);
+}
+
 // `above` may be where the references are; each place has room for all and one more.
 HWY_ATTR inline Sorted sort_sides(const BoundedRef* refs, std::size_t n, const Plane& plane,
                                   BoundedRef* below, BoundedRef* above, BoundedRef* straddling) {
-  const hn::Full128<float> d;
   const auto k = static_cast<std::size_t>(plane.axis);
   Sorted sorted;
   for (std::size_t i = 0; i < n; ++i) {
     // As numbers: a branch here would be mispredicted for every other reference.
     const std::size_t ends = refs[i].hi[k] <= plane.position ? 1 : 0;
     const std::size_t begins = (refs[i].lo[k] >= plane.position ? 1 : 0) & (ends ^ 1);
-    const auto lo = hn::Load(d, refs[i].lo.data()), hi = hn::Load(d, refs[i].hi.data());
-    BoundedRef *const b = below + sorted.n_below, *const a = above + sorted.n_above,
-                      *const s = straddling + sorted.n_straddling;
-    for (BoundedRef* to : {b, a, s}) {
-      hn::Store(lo, d, to->lo.data());
-      hn::Store(hi, d, to->hi.data());
-    }
+    const BoundedRef r = refs[i];
+    copy_ref(r, below + sorted.n_below);
+    copy_ref(r, above + sorted.n_above);
+    copy_ref(r, straddling + sorted.n_straddling);
     sorted.n_below += ends;
     sorted.n_above += begins;
     sorted.n_straddling += 1 - ends - begins;
@@ -83,7 +88,10 @@ HWY_ATTR inline void clip_straddling(const scene::Geometry& geometry, const Buil
   if (config.clip) {
     const bool mixed = !geometry.spheres.empty() || !geometry.cones.empty();
     n_triangles = mixed ? triangles_first(refs) : refs.size();
-    clip_triangles(geometry, refs.first(n_triangles), plane, below, above, sides);
+    // They lie anywhere in memory: all are on their way before the first is needed.
+    for (const BoundedRef& r : refs.first(n_triangles)) hwy::Prefetch(&geometry.triangles[ref_index(r.ref)]);
+    for (const BoundedRef& r : refs.first(n_triangles))
+      clip_triangle(geometry.triangles[ref_index(r.ref)], r, plane, below, above, sides);
   }
   for (const BoundedRef& r : refs.subspan(n_triangles))
     clip_one(geometry, config, r, plane, below, above, sides);

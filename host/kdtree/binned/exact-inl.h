@@ -127,9 +127,9 @@ HWY_ATTR inline Best best_of_all(std::span<const BoundedRef> refs, const Bounds&
   Best best;
   BoundsByAxis by_axis;
   transpose(refs, by_axis);
-  for (int axis = 0; axis < 3; ++axis) {
+  for (const int axis : longest_first(contents)) {
     const PlaneCosts costs(config, contents, axis);
-    if (!costs.usable()) continue;
+    if (!costs.usable() || !costs.may_beat(best.cost, refs.size())) continue;
     auto& bounds = by_axis.bounds[static_cast<std::size_t>(axis)];
     // Behind the last are planes that are not inside.
     std::fill_n(bounds.begin() + static_cast<std::ptrdiff_t>(2 * refs.size()), 2 * kMostLanes, costs.lo());

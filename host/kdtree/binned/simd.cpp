@@ -20,7 +20,7 @@ HWY_ATTR void Count(std::span<const BoundedRef> refs, const BinGrid& grid, std::
 
 HWY_ATTR Plane BestPlane(const BinCounts& counts, const BinGrid& grid, const Bounds& contents, std::size_t n,
                          const BuildConfig& config) {
-  return cheaper_than_leaf(best_between_bins(counts, grid, contents, sample_stride(n), config), n, config);
+  return cheaper_than_leaf(best_between_bins(counts, grid, contents, n, config), n, config);
 }
 
 HWY_ATTR Divided Divide(const scene::Geometry& geometry, const BuildConfig& config,

@@ -3,8 +3,11 @@
 
 #include <tbb/concurrent_queue.h>
 
+#include <array>
+#include <list>
 #include <memory>
-#include <vector>
+#include <mutex>
+#include <span>
 
 #include "base/raw_vector.h"
 #include "kdtree/reference.h"
@@ -15,8 +18,7 @@ inline constexpr std::size_t kTaskRefs = 16384;  // references to a task, at mos
 
 // What a task writes: the parts below a plane and those above it. A place has one slot more than it can have references.
 struct Slab {
-  RawVector<BoundedRef> below = RawVector<BoundedRef>(kTaskRefs + 1),
-                        above = RawVector<BoundedRef>(kTaskRefs + 1);
+  std::array<BoundedRef, kTaskRefs + 1> below, above;
 };
 
 // References of one cell that lie together in a slab, which they keep.
@@ -28,22 +30,31 @@ struct Piece {
   std::span<BoundedRef> refs() const { return {first, n}; }
 };
 
-// Slabs come back when the last piece in them is gone. The pool must outlive its pieces.
+// Slabs come back when the last piece in them is gone. The pool must outlive its pieces. Memory is taken for several at a time,
+// in large pages.
 class SlabPool {
  public:
   std::shared_ptr<Slab> take() {
     Slab* slab = nullptr;
-    if (!free_.try_pop(slab)) slab = new Slab;
+    while (!free_.try_pop(slab)) add_chunk();
     return {slab, [this](Slab* s) { free_.push(s); }};
   }
   SlabPool() = default;
   SlabPool(const SlabPool&) = delete;
   SlabPool& operator=(const SlabPool&) = delete;
-  ~SlabPool() {
-    for (Slab* slab = nullptr; free_.try_pop(slab);) delete slab;
-  }
 
  private:
+  static constexpr std::size_t kChunk = 16;  // 16 MiB
+
+  void add_chunk() {
+    const std::lock_guard lock(mutex_);
+    if (!free_.empty()) return;
+    auto& chunk = chunks_.emplace_back(kChunk);
+    for (Slab& slab : chunk) free_.push(&slab);
+  }
+
+  std::mutex mutex_;
+  std::list<RawVector<Slab>> chunks_;
   tbb::concurrent_queue<Slab*> free_;
 };
 

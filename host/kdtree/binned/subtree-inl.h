@@ -30,9 +30,8 @@ HWY_ATTR inline Plane choose_plane(std::span<const BoundedRef> refs, const Bound
     return cheaper_than_leaf(best_of_all(refs, contents, config), refs.size(), config);
   const BinGrid grid = make_bin_grid(contents);
   BinCounts counts;
-  const std::size_t stride = sample_stride(refs.size());
-  count_bins(refs, grid, stride, counts);
-  Best best = best_between_bins(counts, grid, contents, stride, config);
+  count_bins(refs, grid, sample_stride(refs.size()), counts);
+  Best best = best_between_bins(counts, grid, contents, refs.size(), config);
   if (best.plane.found() && refs.size() <= kRefined) refine(refs, contents, grid, config, best);
   return cheaper_than_leaf(best, refs.size(), config);
 }
