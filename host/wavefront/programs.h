@@ -51,7 +51,7 @@ class Programs {
   const device::Context* context_;
   std::string more_options_, walk_options_;
   int stack_size_, wide_stack_size_, block_;
-  bool prefetch_;
+  bool prefetch_, far_;
   double build_seconds_ = 0;
   std::map<Key, cl::Program> programs_;
 };
