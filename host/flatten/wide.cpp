@@ -56,9 +56,10 @@ inline float normal_bound(const TriangleInBlock& t) {
 
 // Whether its plane lies across an axis: the kernels then take the distance from that plane alone (level_t).
 inline bool is_level(const TriangleInBlock& t) {
-  bool level = false;
-  for (int k = 0; k < 3; ++k) level |= (t(0, k) == t(1, k)) & (t(1, k) == t(2, k));
-  return level;
+  int level = 0;  // numbers, not conditions: no branches
+  for (int k = 0; k < 3; ++k)
+    level |= static_cast<int>(t(0, k) == t(1, k)) & static_cast<int>(t(1, k) == t(2, k));
+  return level != 0;
 }
 
 // Row 9 of a block of kLanes triangles; the compiler makes vectors of it.
