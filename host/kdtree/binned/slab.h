@@ -30,29 +30,28 @@ struct Piece {
   std::span<BoundedRef> refs() const { return {first, n}; }
 };
 
-// Slabs come back when the last piece in them is gone. The pool must outlive its pieces. Memory is taken for several at a time,
-// in large pages.
+// Slabs come back when the last piece in them is gone. The pool must outlive its pieces. Memory is taken for several at a time:
+// of four and more it comes in large pages.
 class SlabPool {
  public:
+  explicit SlabPool(std::size_t at_a_time) : at_a_time_(at_a_time) {}
   std::shared_ptr<Slab> take() {
     Slab* slab = nullptr;
     while (!free_.try_pop(slab)) add_chunk();
     return {slab, [this](Slab* s) { free_.push(s); }};
   }
-  SlabPool() = default;
   SlabPool(const SlabPool&) = delete;
   SlabPool& operator=(const SlabPool&) = delete;
 
  private:
-  static constexpr std::size_t kChunk = 16;  // 16 MiB
-
   void add_chunk() {
     const std::lock_guard lock(mutex_);
     if (!free_.empty()) return;
-    auto& chunk = chunks_.emplace_back(kChunk);
+    auto& chunk = chunks_.emplace_back(at_a_time_);
     for (Slab& slab : chunk) free_.push(&slab);
   }
 
+  const std::size_t at_a_time_;
   std::mutex mutex_;
   std::list<RawVector<Slab>> chunks_;
   tbb::concurrent_queue<Slab*> free_;

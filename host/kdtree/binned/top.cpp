@@ -21,6 +21,10 @@ std::size_t subtree_refs(std::size_t n) {
   return std::clamp<std::size_t>(n / 32, 2048, 32768);
 }
 
+std::size_t n_pieces_of(std::size_t n_refs) {
+  return (n_refs + kTaskRefs - 1) / kTaskRefs;
+}
+
 // A cell of the top, and where its node goes.
 struct TopCell {
   TopNode* node;
@@ -43,7 +47,8 @@ class TopBuilder {
       : geometry_(geometry),
         config_(config),
         max_depth_(max_depth),
-        subtree_refs_(subtree_refs(geometry.size())) {}
+        subtree_refs_(subtree_refs(geometry.size())),
+        slabs_(std::clamp<std::size_t>(n_pieces_of(geometry.size()), 1, 16)) {}
 
   std::unique_ptr<TopNode> run(Bounds& bounds) {
     auto root = std::make_unique<TopNode>();
@@ -57,7 +62,7 @@ class TopBuilder {
 
  private:
   TopCell whole_scene(TopNode& root) {
-    const std::size_t n = geometry_.size(), n_pieces = (n + kTaskRefs - 1) / kTaskRefs;
+    const std::size_t n = geometry_.size(), n_pieces = n_pieces_of(n);
     TopCell cell{&root, {no_bounds(), 0, reference_budget(n, config_.quality)}, n, {}};
     cell.pieces.resize(n_pieces);
     std::vector<Bounds> hulls(n_pieces);
