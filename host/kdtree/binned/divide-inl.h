@@ -42,22 +42,36 @@ HWY_ATTR inline void copy_ref(const BoundedRef& from, BoundedRef* to) {
   for (std::size_t i = 0; i < 8; i += hn::Lanes(d)) hn::StoreU(hn::LoadU(d, in + i), d, out + i);
 }
 
-// `above` may be where the references are; each place has room for all and one more.
+// On which side a reference is, as numbers: a branch would be mispredicted for every other one.
+inline std::size_t is_below(const BoundedRef& r, std::size_t axis, float position) {
+  return r.hi[axis] <= position ? 1 : 0;
+}
+inline std::size_t is_above(const BoundedRef& r, std::size_t axis, float position) {
+  return (r.lo[axis] >= position ? 1 : 0) & (is_below(r, axis, position) ^ 1);
+}
+
+HWY_ATTR inline std::size_t count_straddling(std::span<const BoundedRef> refs, const Plane& plane) {
+  const auto k = static_cast<std::size_t>(plane.axis);
+  std::size_t n = refs.size();
+  for (const BoundedRef& r : refs) n -= is_below(r, k, plane.position) + is_above(r, k, plane.position);
+  return n;
+}
+
+// `below` or `above` may be where the references are; each place has room for all and one more.
 HWY_ATTR inline Sorted sort_sides(const BoundedRef* refs, std::size_t n, const Plane& plane,
                                   BoundedRef* below, BoundedRef* above, BoundedRef* straddling) {
   const auto k = static_cast<std::size_t>(plane.axis);
   Sorted sorted;
   for (std::size_t i = 0; i < n; ++i) {
-    // As numbers: a branch here would be mispredicted for every other reference.
-    const std::size_t ends = refs[i].hi[k] <= plane.position ? 1 : 0;
-    const std::size_t begins = (refs[i].lo[k] >= plane.position ? 1 : 0) & (ends ^ 1);
+    const std::size_t below_it = is_below(refs[i], k, plane.position);
+    const std::size_t above_it = is_above(refs[i], k, plane.position);
     const BoundedRef r = refs[i];
     copy_ref(r, below + sorted.n_below);
     copy_ref(r, above + sorted.n_above);
     copy_ref(r, straddling + sorted.n_straddling);
-    sorted.n_below += ends;
-    sorted.n_above += begins;
-    sorted.n_straddling += 1 - ends - begins;
+    sorted.n_below += below_it;
+    sorted.n_above += above_it;
+    sorted.n_straddling += 1 - below_it - above_it;
   }
   return sorted;
 }

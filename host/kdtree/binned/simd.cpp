@@ -23,14 +23,20 @@ HWY_ATTR Plane BestPlane(const BinCounts& counts, const BinGrid& grid, const Bou
   return cheaper_than_leaf(best_between_bins(counts, grid, contents, n, config), n, config);
 }
 
+HWY_ATTR std::size_t NStraddling(std::span<const BoundedRef> refs, const Plane& plane) {
+  return count_straddling(refs, plane);
+}
+
 HWY_ATTR Divided Divide(const scene::Geometry& geometry, const BuildConfig& config,
-                        std::span<const BoundedRef> refs, const Plane& plane, BoundedRef* below,
-                        BoundedRef* above, Workspace& workspace) {
-  std::vector<BoundedRef>& straddlers = workspace.straddlers;
-  if (straddlers.size() < refs.size() + 1) straddlers.resize(refs.size() + 1);
-  const Sorted sorted = sort_sides(refs.data(), refs.size(), plane, below, above, straddlers.data());
+                        std::span<BoundedRef> refs, const Plane& plane, Workspace& workspace) {
+  std::vector<BoundedRef>&straddlers = workspace.straddlers, &above = workspace.above;
+  for (std::vector<BoundedRef>* const v : {&straddlers, &above})
+    if (v->size() < refs.size() + 1) v->resize(refs.size() + 1);
+  const Sorted sorted =
+      sort_sides(refs.data(), refs.size(), plane, refs.data(), above.data(), straddlers.data());
   Divided sides{sorted.n_below, sorted.n_above};
-  clip_straddling(geometry, config, {straddlers.data(), sorted.n_straddling}, plane, below, above, sides);
+  clip_straddling(geometry, config, {straddlers.data(), sorted.n_straddling}, plane, refs.data(),
+                  above.data(), sides);
   return sides;
 }
 
@@ -52,6 +58,7 @@ namespace kdray::kdtree::binned {
 
 HWY_EXPORT(Count);
 HWY_EXPORT(BestPlane);
+HWY_EXPORT(NStraddling);
 HWY_EXPORT(Divide);
 HWY_EXPORT(Hull);
 HWY_EXPORT(BuildSubtree);
@@ -63,9 +70,12 @@ Plane best_plane(const BinCounts& counts, const BinGrid& grid, const Bounds& con
                  const BuildConfig& config) {
   return HWY_DYNAMIC_DISPATCH(BestPlane)(counts, grid, contents, n, config);
 }
-Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::span<const BoundedRef> refs,
-               const Plane& plane, BoundedRef* below, BoundedRef* above, Workspace& workspace) {
-  return HWY_DYNAMIC_DISPATCH(Divide)(geometry, config, refs, plane, below, above, workspace);
+std::size_t n_straddling(std::span<const BoundedRef> refs, const Plane& plane) {
+  return HWY_DYNAMIC_DISPATCH(NStraddling)(refs, plane);
+}
+Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::span<BoundedRef> refs,
+               const Plane& plane, Workspace& workspace) {
+  return HWY_DYNAMIC_DISPATCH(Divide)(geometry, config, refs, plane, workspace);
 }
 Bounds fast_hull_of(std::span<const BoundedRef> refs) {
   return HWY_DYNAMIC_DISPATCH(Hull)(refs);

@@ -31,7 +31,7 @@ struct Plane {
 
 // Memory that is kept from task to task; one per thread.
 struct Workspace {
-  std::vector<BoundedRef> stack, straddlers;
+  std::vector<BoundedRef> stack, straddlers, above, others;
   Fragment fragment;
 };
 
@@ -47,9 +47,13 @@ void count(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t st
 Plane best_plane(const BinCounts& counts, const BinGrid& grid, const Bounds& contents, std::size_t n,
                  const BuildConfig& config);
 
-// Writes the references' parts on both sides of the plane; `below` and `above` have room for refs.size() + 1 each.
-Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::span<const BoundedRef> refs,
-               const Plane& plane, BoundedRef* below, BoundedRef* above, Workspace& workspace);
+// How many references are on neither side of the plane.
+std::size_t n_straddling(std::span<const BoundedRef> refs, const Plane& plane);
+
+// Leaves the references' parts below the plane in front of `refs`, behind which there is room for one more, and those above it in
+// workspace.above.
+Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::span<BoundedRef> refs,
+               const Plane& plane, Workspace& workspace);
 
 // Hull of the references' bounds.
 Bounds fast_hull_of(std::span<const BoundedRef> refs);

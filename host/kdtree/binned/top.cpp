@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "kdtree/binned/piece.h"
 #include "kdtree/binned/simd.h"
-#include "kdtree/binned/slab.h"
 #include "kdtree/budget.h"
 
 namespace kdray::kdtree::binned {
@@ -33,12 +33,24 @@ struct TopCell {
   std::vector<Piece> pieces;
 };
 
+// What a task finds on one side of its cell's plane.
+struct Side {
+  std::vector<Piece> pieces;
+  Bounds contents = no_bounds();
+
+  void add(const Piece& piece) {
+    if (piece.n == 0) return;
+    contents = hull(contents, fast_hull_of(piece.refs()));
+    pieces.push_back(piece);
+  }
+};
+
 // Pieces of one cell, about kTaskRefs references in all, and what comes of them.
 struct Task {
   std::size_t cell, first_piece, end_piece;
   BinCounts counts;
-  Piece below, above;
-  Bounds below_hull, above_hull;
+  std::size_t n_straddling = 0;
+  Side below, above;
 };
 
 class TopBuilder {
@@ -48,7 +60,7 @@ class TopBuilder {
         config_(config),
         max_depth_(max_depth),
         subtree_refs_(subtree_refs(geometry.size())),
-        slabs_(std::clamp<std::size_t>(n_pieces_of(geometry.size()), 1, 16)) {}
+        pool_(geometry.size() + n_pieces_of(geometry.size())) {}
 
   std::unique_ptr<TopNode> run(Bounds& bounds) {
     auto root = std::make_unique<TopNode>();
@@ -65,12 +77,12 @@ class TopBuilder {
     const std::size_t n = geometry_.size(), n_pieces = n_pieces_of(n);
     TopCell cell{&root, {no_bounds(), 0, reference_budget(n, config_.quality)}, n, {}};
     cell.pieces.resize(n_pieces);
+    for (std::size_t i = 0; i < n_pieces; ++i)
+      cell.pieces[i] = pool_.take(std::min(kTaskRefs, n - i * kTaskRefs));
     std::vector<Bounds> hulls(n_pieces);
     tbb::parallel_for(std::size_t{0}, n_pieces, [&](std::size_t i) {
       Piece& piece = cell.pieces[i];
-      piece.slab = slabs_.take();
-      piece.first = piece.slab->below.data();
-      piece.n = std::min(kTaskRefs, n - i * kTaskRefs);
+      piece.n = most_in(piece);
       for (std::size_t k = 0; k < piece.n; ++k) piece.first[k] = reference(i * kTaskRefs + k);
       hulls[i] = fast_hull_of(piece.refs());
     });
@@ -104,7 +116,8 @@ class TopBuilder {
       for (std::size_t p = t.first_piece; p < t.end_piece; ++p)
         count(level[t.cell].pieces[p].refs(), grids[t.cell], sample_stride(level[t.cell].n), t.counts);
     });
-    const std::vector<Plane> planes = choose_planes(level, grids, tasks);
+    std::vector<Plane> planes = choose_planes(level, grids, tasks);
+    drop_unaffordable(level, tasks, planes);
     for_tasks(tasks, [&](Task& t) {
       if (planes[t.cell].found()) divide_task(level[t.cell], planes[t.cell], t);
     });
@@ -118,7 +131,7 @@ class TopBuilder {
       for (std::size_t p = 0; p < pieces.size();) {
         const std::size_t first = p;
         for (std::size_t n = 0; p < pieces.size() && n + pieces[p].n <= kTaskRefs; ++p) n += pieces[p].n;
-        tasks.push_back({c, first, p, {}, {}, {}, no_bounds(), no_bounds()});
+        tasks.push_back({c, first, p, {}, 0, {}, {}});
       }
     }
     return tasks;
@@ -140,32 +153,60 @@ class TopBuilder {
     return planes;
   }
 
+  // A cell is divided where it lies, so that whether its parts fit the budget must be known before. Where even twice the references
+  // would fit, nothing need be counted.
+  static void drop_unaffordable(const std::vector<TopCell>& level, std::vector<Task>& tasks,
+                                std::vector<Plane>& planes) {
+    const auto tight = [&](std::size_t c) {
+      return planes[c].found() && !fits_budget(level[c].cell.budget, level[c].n, level[c].n);
+    };
+    for_tasks(tasks, [&](Task& t) {
+      if (!tight(t.cell)) return;
+      for (std::size_t p = t.first_piece; p < t.end_piece; ++p)
+        t.n_straddling += n_straddling(level[t.cell].pieces[p].refs(), planes[t.cell]);
+    });
+    std::vector<std::size_t> straddling(level.size(), 0);
+    for (const Task& t : tasks) straddling[t.cell] += t.n_straddling;
+    for (std::size_t c = 0; c < level.size(); ++c)
+      if (tight(c) && !fits_budget(level[c].cell.budget, level[c].n, straddling[c])) planes[c] = {};
+  }
+
+  // What is below stays in front of its piece, what is above goes behind it; the task's other references above, one for each that
+  // straddles, to a piece of their own.
   void divide_task(const TopCell& cell, const Plane& plane, Task& t) {
-    const std::shared_ptr<Slab> slab = slabs_.take();
-    t.below = {slab, slab->below.data(), 0};
-    t.above = {slab, slab->above.data(), 0};
+    Workspace& workspace = workspaces_.local();
+    std::vector<BoundedRef>& others = workspace.others;
+    others.clear();
     for (std::size_t p = t.first_piece; p < t.end_piece; ++p) {
-      const Divided sides = divide(geometry_, config_, cell.pieces[p].refs(), plane,
-                                   t.below.first + t.below.n, t.above.first + t.above.n, workspaces_.local());
-      t.below.n += sides.n_below;
-      t.above.n += sides.n_above;
+      const Piece& whole = cell.pieces[p];
+      const Divided sides = divide(geometry_, config_, whole.refs(), plane, workspace);
+      Piece above = rest_of(whole, sides.n_below);
+      above.n = std::min(most_in(above), sides.n_above);
+      const auto from = workspace.above.begin(), rest = from + static_cast<std::ptrdiff_t>(above.n);
+      std::copy(from, rest, above.first);
+      others.insert(others.end(), rest, from + static_cast<std::ptrdiff_t>(sides.n_above));
+      t.below.add({whole.first, sides.n_below, sides.n_below + 1});
+      t.above.add(above);
     }
-    t.below_hull = fast_hull_of(t.below.refs());
-    t.above_hull = fast_hull_of(t.above.refs());
+    if (others.empty()) return;
+    Piece more = pool_.take(others.size());
+    more.n = others.size();
+    std::copy(others.begin(), others.end(), more.first);
+    t.above.add(more);
   }
 
   std::vector<TopCell> children(std::vector<TopCell>&& level, const std::vector<Plane>& planes,
-                                std::vector<Task>& tasks) {
+                                const std::vector<Task>& tasks) {
     std::vector<TopCell> next;
     std::size_t t = 0;
     for (std::size_t c = 0; c < level.size(); ++c) {
       TopCell below{nullptr, {no_bounds(), level[c].cell.depth + 1, 0}, 0, {}};
       TopCell above = below;
       for (; t < tasks.size() && tasks[t].cell == c; ++t) {
-        take(std::move(tasks[t].below), tasks[t].below_hull, below);
-        take(std::move(tasks[t].above), tasks[t].above_hull, above);
+        take(tasks[t].below, below);
+        take(tasks[t].above, above);
       }
-      if (!planes[c].found() || !fits_budget(level[c].cell.budget, below.n, above.n)) {
+      if (!planes[c].found()) {
         subtrees_.push_back(std::move(level[c]));
         continue;
       }
@@ -179,11 +220,10 @@ class TopBuilder {
     return next;
   }
 
-  static void take(Piece&& piece, const Bounds& bounds, TopCell& cell) {
-    if (piece.n == 0) return;
-    cell.n += piece.n;
-    cell.cell.contents = hull(cell.cell.contents, bounds);
-    cell.pieces.push_back(std::move(piece));
+  static void take(const Side& side, TopCell& cell) {
+    for (const Piece& piece : side.pieces) cell.n += piece.n;
+    cell.cell.contents = hull(cell.cell.contents, side.contents);
+    cell.pieces.insert(cell.pieces.end(), side.pieces.begin(), side.pieces.end());
   }
 
   static void split(TopNode& node, const Plane& plane, TopCell& below, TopCell& above) {
@@ -211,7 +251,6 @@ class TopBuilder {
     if (stack.size() < top.n + 1) stack.resize(top.n + 1);
     auto to = stack.begin();
     for (const Piece& piece : top.pieces) to = std::copy_n(piece.first, piece.n, to);
-    top.pieces.clear();
     build_subtree(geometry_, config_, max_depth_, top.n, top.cell, workspace);
     top.node->fragment = workspace.fragment;
   }
@@ -220,7 +259,7 @@ class TopBuilder {
   const BuildConfig& config_;
   const int max_depth_;
   const std::size_t subtree_refs_;
-  SlabPool slabs_;
+  PiecePool pool_;
   std::vector<TopCell> subtrees_;
   tbb::enumerable_thread_specific<Workspace> workspaces_;
 };

@@ -82,14 +82,13 @@ struct Parts {
 };
 
 Parts divide_one(const scene::Geometry& g, const Bounds& known, int axis, float position) {
-  const BoundedRef ref{known.lo, kdtree::make_ref(scene::PrimitiveKind::triangle, 0), known.hi};
-  std::array<BoundedRef, 2> below, above;
+  std::array<BoundedRef, 2> refs{
+      BoundedRef{known.lo, kdtree::make_ref(scene::PrimitiveKind::triangle, 0), known.hi}, BoundedRef()};
   binned::Workspace workspace;
-  const binned::Divided sides =
-      binned::divide(g, {}, {&ref, 1}, {axis, position}, below.data(), above.data(), workspace);
+  const binned::Divided sides = binned::divide(g, {}, std::span(refs).first(1), {axis, position}, workspace);
   Parts parts;
-  if (sides.n_below > 0) parts.below = below[0].bounds();
-  if (sides.n_above > 0) parts.above = above[0].bounds();
+  if (sides.n_below > 0) parts.below = refs[0].bounds();
+  if (sides.n_above > 0) parts.above = workspace.above[0].bounds();
   return parts;
 }
 
