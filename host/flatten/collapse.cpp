@@ -16,6 +16,7 @@ struct Item {
   Subtree subtree;
   std::uint32_t kind = kNone;  // kNone: not a leaf of one kind, so it can be opened
   float area = 0;
+  std::uint32_t n_inside = 0;  // what it would be opened into
   // What it was opened into, nearest first for directions that are positive along `axis`.
   std::uint32_t n_parts = 0, first_part = 0;
   std::uint32_t axis = kdtree::Node::kLeaf;  // kLeaf: one order for all directions
@@ -23,14 +24,34 @@ struct Item {
   bool is_closed() const { return kind != kNone; }
 };
 
-// Slots from far to near, 3 bits each, the farthest lowest.
-struct Order {
-  layout::u32 word;
+// For each octant of directions: slots from far to near, 3 bits each, the farthest lowest.
+struct Orders {
+  std::array<layout::u32, 8> words;
   std::uint32_t n;
 
-  void put_nearer(const Order& o) {
-    word |= o.word << (3 * n);
+  static Orders of_one(std::uint32_t slot) {
+    Orders one;
+    one.words.fill(slot);
+    one.n = 1;
+    return one;
+  }
+
+  void put_nearer(const Orders& o) {
+    for (std::size_t octant = 0; octant < 8; ++octant) words[octant] |= o.words[octant] << (3 * n);
     n += o.n;
+  }
+
+  // `below` is the nearer one for directions that are positive along the axis.
+  static Orders of_two(const Orders& below, const Orders& above, std::uint32_t axis) {
+    Orders both;
+    both.n = below.n + above.n;
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      const layout::u32 reversed = 0u - (static_cast<layout::u32>(octant) >> axis & 1u);
+      const layout::u32 above_nearer = below.words[octant] | above.words[octant] << (3 * below.n);
+      const layout::u32 below_nearer = above.words[octant] | below.words[octant] << (3 * above.n);
+      both.words[octant] = (above_nearer & reversed) | (below_nearer & ~reversed);
+    }
+    return both;
   }
 };
 
@@ -49,10 +70,17 @@ class Opening {
   std::uint32_t n_children() const { return n_children_; }
   const Item& child(std::uint32_t slot) const { return items_[children_[slot]]; }
 
+  // Parts have larger numbers than what they are parts of.
   std::array<layout::u32, 8> orders() const {
-    std::array<layout::u32, 8> orders;
-    for (std::uint32_t octant = 0; octant < 8; ++octant) orders[octant] = order(octant);
-    return orders;
+    std::array<Orders, kMost> orders;  // only those of items are set and read
+    for (std::uint32_t slot = 0; slot < n_children_; ++slot) orders[children_[slot]] = Orders::of_one(slot);
+    for (std::uint32_t i = n_items_; i-- > 0;)
+      if (items_[i].n_parts > 0) orders[i] = orders_of_parts(items_[i], orders);
+    // Slots without child are the farthest.
+    Orders whole{};
+    for (std::uint32_t slot = kWidth; slot-- > n_children_;) whole.put_nearer(Orders::of_one(slot));
+    if (n_items_ > 0) whole.put_nearer(orders[0]);
+    return whole.words;
   }
 
  private:
@@ -66,7 +94,7 @@ class Opening {
     subtree = without_empty_cells(subtree);
     const kdtree::Node& node = tree_.nodes[subtree.node];
     Item& item = items_[n_items_++];
-    item = {subtree, kNone, tree_.contents[subtree.node].area(), 0, 0, node.axis};
+    item = {subtree, kNone, tree_.contents[subtree.node].area(), 2, 0, 0, node.axis};
     if (!node.is_leaf()) return true;
     if (only_kind_ != kAnyKind) {
       item.kind = only_kind_;
@@ -74,6 +102,7 @@ class Opening {
     }
     const std::uint32_t first = kind_at(node.left), last = kind_at(node.left + node.right - 1);
     if (first == last) item.kind = first;
+    item.n_inside = n_kinds(subtree.node);
     return true;
   }
 
@@ -102,8 +131,7 @@ class Opening {
     float best_area = -1;
     for (std::uint32_t slot = 0; slot < n_children_; ++slot) {
       const Item& item = child(slot);
-      if (item.is_closed() || item.area <= best_area || n_children_ - 1 + count_parts(item) > kWidth)
-        continue;
+      if (item.is_closed() || item.area <= best_area || n_children_ - 1 + item.n_inside > kWidth) continue;
       best = slot;
       best_area = item.area;
     }
@@ -116,11 +144,9 @@ class Opening {
     return true;
   }
 
-  std::uint32_t count_parts(const Item& item) const {
-    if (!tree_.nodes[item.subtree.node].is_leaf()) return 2;
+  std::uint32_t n_kinds(std::uint32_t leaf) const {
     std::uint32_t n = 0;
-    for (std::uint32_t kind = 0; kind < kKinds; ++kind)
-      n += leaf_run(tree_, item.subtree.node, kind).n > 0 ? 1 : 0;
+    for (std::uint32_t kind = 0; kind < kKinds; ++kind) n += leaf_run(tree_, leaf, kind).n > 0 ? 1 : 0;
     return n;
   }
 
@@ -131,7 +157,7 @@ class Opening {
     if (node.is_leaf()) {
       for (std::uint32_t kind = 0; kind < kKinds; ++kind)
         if (leaf_run(tree_, subtree.node, kind).n > 0)
-          items_[n_items_++] = {subtree, kind, 0, 0, 0, kdtree::Node::kLeaf};
+          items_[n_items_++] = {subtree, kind, 0, 0, 0, 0, kdtree::Node::kLeaf};
     } else {
       add({node.left, node.right});
       add({node.right, subtree.end});
@@ -140,24 +166,13 @@ class Opening {
     items_[index].n_parts = n_items_ - first;
   }
 
-  // Parts have larger numbers than what they are parts of.
-  layout::u32 order(std::uint32_t octant) const {
-    std::array<Order, kMost> orders;  // only those of items are set and read
-    for (std::uint32_t slot = 0; slot < n_children_; ++slot) orders[children_[slot]] = {slot, 1};
-    for (std::uint32_t i = n_items_; i-- > 0;) {
-      const Item& item = items_[i];
-      if (item.n_parts == 0) continue;
-      const bool reversed = item.axis != kdtree::Node::kLeaf && (octant >> item.axis & 1u) != 0;
-      Order all{0, 0};
-      for (std::uint32_t k = 0; k < item.n_parts; ++k)
-        all.put_nearer(orders[item.first_part + (reversed ? k : item.n_parts - 1 - k)]);
-      orders[i] = all;
-    }
-    // Slots without child are the farthest.
-    Order whole{0, 0};
-    for (std::uint32_t slot = kWidth; slot-- > n_children_;) whole.put_nearer({slot, 1});
-    if (n_items_ > 0) whole.put_nearer(orders[0]);
-    return whole.word;
+  // A leaf's kinds come in one order for all directions.
+  static Orders orders_of_parts(const Item& item, const std::array<Orders, kMost>& orders) {
+    if (item.axis != kdtree::Node::kLeaf)
+      return Orders::of_two(orders[item.first_part], orders[item.first_part + 1], item.axis);
+    Orders all{};
+    for (std::uint32_t k = item.n_parts; k-- > 0;) all.put_nearer(orders[item.first_part + k]);
+    return all;
   }
 
   const kdtree::Tree& tree_;
@@ -231,16 +246,6 @@ class Collapse {
   CollapsedPart& out_;
 };
 
-// What the children of a node add to its own: each is popped with those behind it left below.
-void add_child_needs(const CollapsedNode& node, std::uint32_t slot, const StackNeeds& below,
-                     StackNeeds& needs) {
-  for (std::size_t octant = 0; octant < 8; ++octant)
-    for (std::uint32_t nearer = 0; nearer < node.n; ++nearer)
-      if ((node.order[octant] >> (3 * (kWidth - 1 - nearer)) & 7u) == slot)
-        needs[octant] =
-            std::max(needs[octant], static_cast<std::uint16_t>(node.n - 1 - nearer + below[octant]));
-}
-
 }  // namespace
 
 LeafRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind) {
@@ -262,15 +267,26 @@ CollapsedPart collapse(const kdtree::Tree& tree, const Subtree& root, std::uint3
 }
 
 StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>& cuts) {
+  constexpr StackNeeds kNothing{};
   std::vector<StackNeeds> needs(part.nodes.size());
   for (std::size_t i = part.nodes.size(); i-- > 0;) {
     const CollapsedNode& node = part.nodes[i];
-    needs[i].fill(static_cast<std::uint16_t>(node.n));
+    std::array<const StackNeeds*, kWidth> below;  // each child's
     for (std::uint32_t slot = 0; slot < node.n; ++slot) {
       const layout::u32 child = node.child[slot];
-      if (child & KDRAY_WIDE_LEAF) continue;
       const bool cut = (child & CollapsedPart::kCut) != 0;
-      add_child_needs(node, slot, cut ? cuts[child & ~CollapsedPart::kCut] : needs[child], needs[i]);
+      below[slot] = child & KDRAY_WIDE_LEAF ? &kNothing
+                    : cut                   ? &cuts[child & ~CollapsedPart::kCut]
+                                            : &needs[child];
+    }
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      needs[i][octant] = static_cast<std::uint16_t>(node.n);
+      // Each is popped with those behind it left.
+      layout::u32 order = node.order[octant] >> (3 * (kWidth - node.n));
+      for (std::uint32_t behind = 0; behind < node.n; ++behind, order >>= 3) {
+        const auto need = static_cast<std::uint16_t>(behind + (*below[order & 7u])[octant]);
+        needs[i][octant] = std::max(needs[i][octant], need);
+      }
     }
   }
   return needs.front();

@@ -19,6 +19,12 @@ struct Fragment {
   void clear();
 };
 
+// Appends a leaf of n references, which the caller writes, in ascending order, to where the result is.
+std::span<Ref> add_leaf(std::size_t n, const Bounds& contents, int depth, Fragment& out);
+
+// The references' numbers in ascending order.
+void write_sorted(std::span<const BoundedRef> refs, std::span<Ref> out);
+
 // Appends a leaf; returns `contents`, the hull of what it holds.
 Box append_leaf(std::span<const BoundedRef> refs, const Bounds& contents, int depth, Fragment& out);
 

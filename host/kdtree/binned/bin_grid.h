@@ -44,7 +44,8 @@ inline BinGrid make_bin_grid(const Bounds& contents) {
 }
 
 struct BinCounts {
-  std::array<std::array<std::uint32_t, kBins>, 3> begins{}, ends{};
+  alignas(64) std::array<std::array<std::uint32_t, kBins>, 3> begins{};
+  alignas(64) std::array<std::array<std::uint32_t, kBins>, 3> ends{};
 
   void add(const BinCounts& other) {
     for (std::size_t k = 0; k < 3; ++k)

@@ -45,6 +45,18 @@ HWY_ATTR inline void add_bins(const BinPair& bins, BinCounts& counts) {
   }
 }
 
+HWY_ATTR inline void add_counts(const BinCounts& from, BinCounts& to) {
+  const hn::CappedTag<std::uint32_t, 16> d;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t b = 0; b < kBins; b += hn::Lanes(d)) {
+      const auto add = [&](const auto& more, auto& sum) HWY_ATTR {
+        hn::Store(hn::Add(hn::Load(d, &more[k][b]), hn::Load(d, &sum[k][b])), d, &sum[k][b]);
+      };
+      add(from.begins, to.begins);
+      add(from.ends, to.ends);
+    }
+}
+
 // Two sets of counts: neighbours often fall into one bin, and a count that was just written is slow to be read again.
 HWY_ATTR inline void count_bins(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride,
                                 BinCounts& counts) {
@@ -61,23 +73,23 @@ HWY_ATTR inline void count_bins(std::span<const BoundedRef> refs, const BinGrid&
     find_bins(refs[i], grid, first);
     add_bins(first, counts);
   }
-  counts.add(odd);
+  add_counts(odd, counts);
 }
 
 // References below and above the plane in front of each bin.
 struct SideCounts {
-  alignas(64) std::array<float, kBins> below, above;
+  alignas(64) std::array<std::int32_t, kBins> below, above;
 };
 
-inline SideCounts side_counts(const BinCounts& counts, std::size_t axis, std::size_t stride) {
+inline SideCounts side_counts(const BinCounts& counts, std::size_t axis) {
   SideCounts sides;
-  std::uint32_t below = 0, above = 0;
+  std::int32_t below = 0, above = 0;
   sides.below[0] = sides.above[0] = 0;
   for (std::size_t b = 1; b < kBins; ++b) {
-    below += counts.begins[axis][b - 1];
-    above += counts.ends[axis][b - 1];
-    sides.below[b] = static_cast<float>(below * stride);
-    sides.above[kBins - b] = static_cast<float>(above * stride);
+    below += static_cast<std::int32_t>(counts.begins[axis][b - 1]);
+    above += static_cast<std::int32_t>(counts.ends[axis][b - 1]);
+    sides.below[b] = below;
+    sides.above[kBins - b] = above;
   }
   return sides;
 }
@@ -86,19 +98,22 @@ inline SideCounts side_counts(const BinCounts& counts, std::size_t axis, std::si
 HWY_ATTR inline Best best_between_bins(const BinCounts& counts, const BinGrid& grid, const Bounds& contents,
                                        std::size_t n, const BuildConfig& config) {
   const Floats d;
-  const std::size_t stride = sample_stride(n);
+  const Ints di;
+  const V stride = hn::Set(d, static_cast<float>(sample_stride(n)));
   Best best;
   for (const int axis : longest_first(contents)) {
     const auto k = static_cast<std::size_t>(axis);
     const PlaneCosts costs(config, contents, axis);
     if (!costs.usable() || grid.scale[k] == 0 || !costs.may_beat(best.cost, n)) continue;
-    const SideCounts sides = side_counts(counts, k, stride);
+    const SideCounts sides = side_counts(counts, k);
     BestOfAxis best_here;
     for (std::size_t b = 0; b < kBins; b += hn::Lanes(d)) {
       // As BinGrid::plane. The plane in front of the first bin is not inside.
       const V share = hn::Mul(hn::Iota(d, static_cast<float>(b)), hn::Set(d, 1.0f / kBins));
       const V plane = hn::Add(hn::Set(d, grid.lo[k]), hn::Mul(hn::Set(d, grid.hi[k] - grid.lo[k]), share));
-      best_here.offer(costs(plane, hn::Load(d, &sides.below[b]), hn::Load(d, &sides.above[b])), plane);
+      const V below = hn::Mul(hn::ConvertTo(d, hn::Load(di, &sides.below[b])), stride);
+      const V above = hn::Mul(hn::ConvertTo(d, hn::Load(di, &sides.above[b])), stride);
+      best_here.offer(costs(plane, below, above), plane);
     }
     best_here.offer_to(best, axis);
   }

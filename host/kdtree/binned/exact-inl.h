@@ -84,40 +84,75 @@ HWY_ATTR inline void transpose(std::span<const BoundedRef> refs, BoundsByAxis& o
   }
 }
 
-// Counts of references on both sides of a vector of planes. One is below that begins before the plane or lies in it, and above
-// that does not end before or at it.
-struct SidesOfPlanes {
-  VI below, ended;
+// Counting compares two numbers of 16 bits in each lane: a plane's rank with where a reference begins, and their negatives with where it
+// ends.
+using Shorts = hn::Repartition<std::int16_t, Floats>;
+using VS = hn::Vec<Shorts>;
 
-  HWY_ATTR void add(V plane, V begin, V end) {
+HWY_ATTR inline VI pair_of(VI low, VI high) {
+  return hn::Or(hn::And(low, hn::Set(Ints(), 0xffff)), hn::ShiftLeft<16>(high));
+}
+
+// Ranks are in the order of bounds, but for what differs by less than 1/32000 of the cell: as with bins, such counts choose a plane and
+// decide nothing else. What lies in a plane begins, for this purpose, a step before it.
+struct Ranks {
+  alignas(64) std::array<std::int32_t, 2 * kSmallCell + 2 * kMostLanes> planes;
+  alignas(
+      64) std::array<std::int32_t, 2 * kSmallCell + 2 * kMostLanes> refs;  // of each the first of two places
+
+  HWY_ATTR Ranks(const float* bounds, std::size_t n, const PlaneCosts& costs) {
+    const Floats d;
     const Ints di;
-    const VI one = hn::Set(di, 1);
-    const auto ends = hn::Le(end, plane);
-    const auto begins = hn::Or(hn::Lt(begin, plane), ends);
-    below = hn::IfThenElse(hn::RebindMask(di, begins), hn::Add(below, one), below);
-    ended = hn::IfThenElse(hn::RebindMask(di, ends), hn::Add(ended, one), ended);
+    // No more than fits where the cell is hardly wider than nothing.
+    const float scale = std::min(32000 / (costs.hi() - costs.lo()), std::numeric_limits<float>::max());
+    for (std::size_t p = 0; p < 2 * n; p += hn::Lanes(d)) {
+      const V bound = hn::Load(d, bounds + p);
+      const VI rank = hn::ConvertTo(di, hn::Mul(hn::Sub(bound, hn::Set(d, costs.lo())), hn::Set(d, scale)));
+      const VI minus = hn::Neg(rank);
+      const auto planar = hn::RebindMask(di, hn::Eq(bound, hn::Shuffle2301(bound)));
+      const VI begin = hn::Sub(rank, hn::IfThenElseZero(planar, hn::Set(di, 1)));
+      hn::Store(pair_of(rank, minus), di, &planes[p]);
+      hn::Store(pair_of(begin, hn::Shuffle2301(minus)), di, &refs[p]);
+    }
+  }
+};
+
+// Counts of references on both sides of a vector of planes.
+struct SidesOfPlanes {
+  VS counts;
+
+  HWY_ATTR void add(VS plane, VS ref) {
+    counts = hn::IfThenElse(hn::Lt(ref, plane), hn::Add(counts, hn::Set(Shorts(), 1)), counts);
+  }
+  HWY_ATTR void offer_to(BestOfAxis& best, const PlaneCosts& costs, const float* planes) const {
+    const Floats d;
+    const Ints di;
+    const VI pairs = hn::BitCast(di, counts);
+    const V below = hn::ConvertTo(d, hn::And(pairs, hn::Set(di, 0xffff)));
+    const V above = hn::ConvertTo(d, hn::ShiftRight<16>(pairs));
+    const V plane = hn::Load(d, planes);
+    best.offer(costs(plane, below, above), plane);
   }
 };
 
 HWY_ATTR inline void offer_bounds(const float* bounds, std::size_t n, const PlaneCosts& costs, int axis,
                                   Best& best) {
-  const Floats d;
   const Ints di;
-  const std::size_t n_lanes = hn::Lanes(d);
-  const V all = hn::Set(d, static_cast<float>(n));
+  const Shorts d16;
+  const std::size_t n_lanes = hn::Lanes(di);
+  const Ranks ranks(bounds, n, costs);
   BestOfAxis best_here;
   for (std::size_t p = 0; p < 2 * n; p += 2 * n_lanes) {
-    const V plane0 = hn::Load(d, bounds + p), plane1 = hn::Load(d, bounds + p + n_lanes);
-    SidesOfPlanes sides0{hn::Zero(di), hn::Zero(di)}, sides1 = sides0;
+    const VS plane0 = hn::BitCast(d16, hn::Load(di, &ranks.planes[p]));
+    const VS plane1 = hn::BitCast(d16, hn::Load(di, &ranks.planes[p + n_lanes]));
+    SidesOfPlanes sides0{hn::Zero(d16)}, sides1 = sides0;
     for (std::size_t i = 0; i < n; ++i) {
-      const V begin = hn::Set(d, bounds[2 * i]), end = hn::Set(d, bounds[2 * i + 1]);
-      sides0.add(plane0, begin, end);
-      sides1.add(plane1, begin, end);
+      const VS ref = hn::BitCast(d16, hn::Set(di, ranks.refs[2 * i]));
+      sides0.add(plane0, ref);
+      sides1.add(plane1, ref);
     }
-    best_here.offer(
-        costs(plane0, hn::ConvertTo(d, sides0.below), hn::Sub(all, hn::ConvertTo(d, sides0.ended))), plane0);
-    best_here.offer(
-        costs(plane1, hn::ConvertTo(d, sides1.below), hn::Sub(all, hn::ConvertTo(d, sides1.ended))), plane1);
+    sides0.offer_to(best_here, costs, bounds + p);
+    sides1.offer_to(best_here, costs, bounds + p + n_lanes);
   }
   best_here.offer_to(best, axis);
 }

@@ -11,6 +11,7 @@
 #include "kdtree/binned/bins-inl.h"
 #include "kdtree/binned/divide-inl.h"
 #include "kdtree/binned/exact-inl.h"
+#include "kdtree/binned/leaf-inl.h"
 #include "kdtree/budget.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -58,9 +59,9 @@ class SubtreeBuilder {
   HWY_ATTR Box build(std::size_t first, std::size_t n, const Cell& cell) {
     const std::span<const BoundedRef> refs(stack_.data() + first, n);
     if (is_leaf_anyway(n, config_) || cell.depth >= max_depth_)
-      return append_leaf(refs, cell.contents, cell.depth, out_);
+      return append_ranked_leaf(refs, cell.contents, cell.depth, out_);
     const Plane plane = choose_plane(refs, cell.contents, config_);
-    if (!plane.found()) return append_leaf(refs, cell.contents, cell.depth, out_);
+    if (!plane.found()) return append_ranked_leaf(refs, cell.contents, cell.depth, out_);
     make_room(first, n);
     BoundedRef *const above = stack_.data() + first, *const below = above + n + 1;
     const Sorted sorted = sort_sides(above, n, plane, below, above, straddlers_.data());
@@ -68,7 +69,7 @@ class SubtreeBuilder {
     if (!fits(cell.budget, sides, sorted.n_straddling)) {
       std::copy_n(below, sides.n_below, above + sides.n_above);
       std::copy_n(straddlers_.data(), sorted.n_straddling, above + sides.n_above + sides.n_below);
-      return append_leaf({above, n}, cell.contents, cell.depth, out_);
+      return append_ranked_leaf({above, n}, cell.contents, cell.depth, out_);
     }
     clip_straddling(geometry_, config_, {straddlers_.data(), sorted.n_straddling}, plane, below, above,
                     sides);
