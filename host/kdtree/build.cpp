@@ -32,8 +32,8 @@ void check(const BuildConfig& c, std::size_t n) {
     throw Error(ErrorCode::input, "too many primitives for one tree: " + std::to_string(n));
 }
 
-BuildConfig binned_config(BuildConfig config) {
-  if (config.quality == Quality::fast) config.cost_traverse *= 2;
+BuildConfig priced(BuildConfig config) {
+  config.cost_traverse *= traverse_factor(config.quality);
   return config;
 }
 
@@ -63,6 +63,17 @@ int depth_limit(const BuildConfig& config, std::size_t n) {
   return std::min(kDepthLimit, config.max_depth >= 0 ? config.max_depth : static_cast<int>(automatic));
 }
 
+double traverse_factor(Quality quality) {
+  switch (quality) {
+    case Quality::fast:
+      return 2;
+    case Quality::balanced:
+      return 1.15;
+    default:
+      return 1;
+  }
+}
+
 BuildConfig suited(BuildConfig config, std::size_t n_primitives) {
   config.block = n_primitives > kFineMesh ? 8 : 4;
   return config;
@@ -85,7 +96,7 @@ Tree build(const scene::Geometry& geometry, const BuildConfig& config) {
     bounds = hull_of(refs);
     top = build_exact(geometry, config, max_depth, std::move(refs), bounds);
   } else {
-    top = binned::build_binned(geometry, binned_config(config), max_depth, bounds);
+    top = binned::build_binned(geometry, priced(config), max_depth, bounds);
   }
   tree = assemble(*top);
   tree.bounds = box_from(bounds);

@@ -64,6 +64,18 @@ TEST(Hostile, Slivers) {
   check_hostile(g);
 }
 
+// So many that the budget ends splits in cells that all threads divide together.
+TEST(Hostile, NeedlesAcrossTheScene) {
+  Random random(27);
+  scene::Geometry g;
+  for (int i = 0; i < 60000; ++i) {
+    const vec3 a = random_vec3(random, -8, 8);
+    add_triangle(g, a, random_vec3(random, -8, 8), a + random_vec3(random, -1, 1) * 0x1p-8f);
+  }
+  check_hostile(g, kdtree::Quality::fast);
+  check_hostile(g, kdtree::Quality::balanced);
+}
+
 TEST(Hostile, NeedlesInOnePlane) {
   Random random(24);
   scene::Geometry g;

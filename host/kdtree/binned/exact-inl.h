@@ -65,7 +65,7 @@ HWY_ATTR void offer_planes(const Candidates<kMost>& c, const PlaneCosts& costs, 
 }
 
 // The best of all planes of a small cell.
-inline constexpr std::size_t kSmallCell = 32;
+inline constexpr std::size_t kSmallCell = 48;
 
 // Bounds of the references by axis, begins at even places and ends at odd ones: planes as they are.
 struct BoundsByAxis {

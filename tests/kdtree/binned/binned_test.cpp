@@ -178,6 +178,8 @@ long double naive_least(const std::vector<BoundedRef>& refs, const Bounds& conte
   };
   std::array<long double, 3> size;
   for (std::size_t k = 0; k < 3; ++k) size[k] = static_cast<long double>(contents.hi[k]) - contents.lo[k];
+  const long double traverse =
+      static_cast<long double>(config.cost_traverse) * kdtree::traverse_factor(config.quality);
   long double least = std::numeric_limits<long double>::infinity();
   for (std::size_t k = 0; k < 3; ++k)
     for (const BoundedRef& r : refs)
@@ -191,10 +193,9 @@ long double naive_least(const std::vector<BoundedRef>& refs, const Bounds& conte
         std::array<long double, 3> below = size, above = size;
         below[k] = static_cast<long double>(s) - contents.lo[k];
         above[k] = static_cast<long double>(contents.hi[k]) - s;
-        least = std::min(
-            least, config.cost_traverse + config.cost_intersect *
-                                              (area(below) * tests(n_below) + area(above) * tests(n_above)) /
-                                              area(size));
+        least = std::min(least, traverse + config.cost_intersect *
+                                               (area(below) * tests(n_below) + area(above) * tests(n_above)) /
+                                               area(size));
       }
   return least;
 }
@@ -227,8 +228,8 @@ TEST(BinnedPlane, SmallCellsGetTheBestOfAll) {
   int n_split = 0;
   for (int trial = 0; trial < 2000 && !HasFailure(); ++trial) {
     SCOPED_TRACE(trial);
-    const SmallScene s = small_scene(random, 2 + static_cast<int>(random() % 14));
-    if (s.refs.size() > 32) continue;
+    const SmallScene s = small_scene(random, 2 + static_cast<int>(random() % 30));
+    if (s.refs.size() > 48) continue;
     BuildConfig config;
     config.max_depth = 1;
     config.block = 1 << random() % 4;
@@ -269,7 +270,7 @@ TEST(BinnedPlane, SmallCellsGetTheBestOfAll) {
              (config.block > 1 ? 1e-3L * static_cast<long double>(m) : 0.0L);
     };
     const long double cost =
-        config.cost_traverse +
+        config.cost_traverse * kdtree::traverse_factor(config.quality) +
         config.cost_intersect *
             (share(root.split - static_cast<long double>(s.contents.lo[k])) * tests(n_below) +
              share(static_cast<long double>(s.contents.hi[k]) - root.split) * tests(n_above));
