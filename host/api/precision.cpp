@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace kdray::api {
 
 const char* name_of(Precision precision) {
@@ -21,6 +23,14 @@ Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& 
   return Traversal::binary;
 }
 
+void check_form(bool is_walked, bool is_there) {
+  if (is_walked && !is_there)
+    throw Error(
+        ErrorCode::usage,
+        "the scene was prepared without the tree's binary form, which the binary walk, double and channels "
+        "take; leave TreeOptions::binary_form true");
+}
+
 void check_division(const RenderOptions& options) {
   if (options.precision == Precision::float32) return;
   if (options.mode == Mode::odprt)
@@ -31,3 +41,12 @@ void check_division(const RenderOptions& options) {
 }
 
 }  // namespace kdray::api
+
+namespace kdray {
+
+bool takes_binary_form(Traversal traversal, Precision precision, std::span<const std::string> channels) {
+  return traversal == Traversal::binary || precision == Precision::float64 ||
+         std::any_of(channels.begin(), channels.end(), [](const std::string& c) { return c != "samples"; });
+}
+
+}  // namespace kdray

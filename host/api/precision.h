@@ -11,6 +11,9 @@ const char* name_of(Precision precision);
 // doesn't compute in it.
 Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& device);
 
+// Throws ErrorCode::usage where the binary form is walked and the scene was prepared without it.
+void check_form(bool is_walked, bool is_there);
+
 // Throws ErrorCode::usage for what odprt would have to do in double.
 void check_division(const RenderOptions& options);
 

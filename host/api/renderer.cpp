@@ -170,6 +170,7 @@ struct Renderer::Impl {
   std::size_t n_queues() const;  // of all devices
   double build_seconds() const;
   double upload_seconds() const;
+  bool has_binary_form() const { return !scene.flat.nodes.empty(); }
   void use_core(Job& job);
   void choose_tiles(wavefront::Schedule& schedule, const Job& job) const;
   wavefront::Schedule schedule_for(const Device& device, const Job& job) const;
@@ -492,6 +493,7 @@ void Renderer::Impl::use_core(Job& job) {
 Picture Renderer::Impl::render(const RenderOptions& options) {
   const RenderOptions o = flatten::resolved(options, scene.settings.settings);
   api::check_division(o);
+  api::check_form(takes_binary_form(o.traversal, o.precision, o.channels), has_binary_form());
   timeline::Timeline kept;
   Job job{
       .options = o,
@@ -529,6 +531,7 @@ std::vector<film::Channel> Renderer::Impl::channels(const Job& job, Drawn& drawn
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
                                        Precision precision) {
   Traversal traversal = api::traversal_in(precision, wanted, first().context.info());
+  api::check_form(takes_binary_form(traversal, precision), has_binary_form());
   // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
   if (traversal == Traversal::automatic && first().global) traversal = Traversal::wide;
   wavefront::QueryResult result =

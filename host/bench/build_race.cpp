@@ -57,7 +57,8 @@ BuildTimes time_build(const scene::Scene& scene, const scene::Geometry& geometry
   const BuildClock clock;
   const kdtree::Tree tree = kdtree::build(geometry, config);
   times.tree = clock.wall();
-  const flatten::FlatScene flat = flatten::flatten(scene, geometry, tree);
+  constexpr bool kBinaryForm = false;  // a picture takes the wide one alone
+  const flatten::FlatScene flat = flatten::flatten(scene, geometry, tree, kBinaryForm);
   const flatten::WideForm wide = flatten::make_wide(tree, flat, flatten::choose_block(tree));
   times.flatten = clock.wall() - times.tree;
   times.cpu = clock.cpu();

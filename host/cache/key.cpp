@@ -10,15 +10,15 @@ namespace kdray::cache {
 
 Hash key_of(const std::filesystem::path& file, const Hash& content, const TreeOptions& options) {
   // All of them: an option that is added fails to compile here.
-  const auto& [quality, max_depth, cost_traverse, cost_intersect, memory_bytes] = options;
+  const auto& [quality, max_depth, cost_traverse, cost_intersect, memory_bytes, binary_form] = options;
   // The ending decides how bytes are read; numbers are written so that no bit is lost.
   const std::string text = fmt::format(
       "kdray {}, code {}, compiler {}, layout {}, words of {} bytes\n{} {}\n{}\nquality {}, depth {}, costs "
       "{:a} {:a}, "
-      "memory {}",
+      "memory {}, binary {}",
       KDRAY_VERSION, KDRAY_FINGERPRINT, __VERSION__, KDRAY_LAYOUT_VERSION, sizeof(void*),
       scene::format_of(file), file.extension().string(), in_hex(content), static_cast<int>(quality),
-      max_depth, cost_traverse, cost_intersect, memory_bytes);
+      max_depth, cost_traverse, cost_intersect, memory_bytes, binary_form);
   return hash_of(text);
 }
 

@@ -192,6 +192,7 @@ Picture render(Renderer& renderer, const Options& o) {
 int run(Options& o) {
   const Timer total;
   check_files(o);
+  o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
   OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet,
                     [&o](const scene::Scene& asked) { check_memory(o.render, asked.settings); });
   Renderer renderer(scene.scene(), scene.device());

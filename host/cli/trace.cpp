@@ -48,7 +48,9 @@ int run(const Options& o) {
   const std::vector<Ray> rays = rays::read_rays(o.rays);
   const double read_rays = step.seconds();
 
-  OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet);
+  TreeOptions tree = o.tree;
+  tree.binary_form = takes_binary_form(o.traversal, o.precision);
+  OpenedScene scene(o.scene, tree, o.device, o.cache, o.quiet);
   Renderer renderer(scene.scene(), scene.device());
   const std::vector<Hit> hits = renderer.trace(rays, o.any_hit, o.repeat, o.traversal, o.precision);
   OwnSeconds seconds;

@@ -40,10 +40,12 @@ Array<T> filled(std::size_t n, const Value& value) {
   return out;
 }
 
-Array<layout::KdNode> pack_nodes(const kdtree::Tree& tree) {
+void pack_binary(const kdtree::Tree& tree, FlatScene& flat) {
   if (tree.nodes.size() > KDRAY_NODE_MAX || tree.refs.size() > KDRAY_NODE_MAX)
     throw Error(ErrorCode::input, "the kd-tree has over 2^30 nodes or references; lower --tree-depth");
-  return filled<layout::KdNode>(tree.nodes.size(), [&](std::size_t i) { return pack(tree.nodes[i], i); });
+  flat.nodes =
+      filled<layout::KdNode>(tree.nodes.size(), [&](std::size_t i) { return pack(tree.nodes[i], i); });
+  flat.refs = filled<layout::u32>(tree.refs.size(), [&](std::size_t i) { return tree.refs[i]; });
 }
 
 bool is_smooth(const scene::Triangle& t) {
@@ -162,10 +164,10 @@ std::size_t FlatScene::bytes() const {
          cones.bytes() + materials.bytes() + lights.bytes();
 }
 
-FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree) {
+FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree,
+                  bool binary_form) {
   FlatScene flat;
-  flat.nodes = pack_nodes(tree);
-  flat.refs = filled<layout::u32>(tree.refs.size(), [&](std::size_t i) { return tree.refs[i]; });
+  if (binary_form) pack_binary(tree, flat);
   pack_triangles(scene, geometry, flat);
   flat.spheres = filled<layout::Sphere>(geometry.spheres.size(), [&](std::size_t i) {
     return pack(geometry.spheres[i], scene.spheres[geometry.spheres[i].source]);

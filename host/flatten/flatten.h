@@ -27,6 +27,8 @@ struct FlatScene {
   std::size_t bytes() const;
 };
 
-FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree);
+// The binary form, `nodes` and `refs`, is for the binary walk alone: without it these are empty.
+FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree,
+                  bool binary_form = true);
 
 }  // namespace kdray::flatten

@@ -69,12 +69,12 @@ std::string megabytes(std::uint64_t bytes) {
 
 // Dearer inner nodes make larger leaves: fewer nodes, and fewer copies of primitives that lie in several.
 Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geometry,
-                        kdtree::BuildConfig config, std::uint64_t most_bytes) {
+                        kdtree::BuildConfig config, bool binary_form, std::uint64_t most_bytes) {
   config.cost_traverse = std::max(config.cost_traverse, 1.0);
   const double asked = config.cost_traverse;
   for (double coarser = 1;; coarser *= 2) {
     config.cost_traverse = asked * coarser;
-    Prepared made = prepare(scene, geometry, config);
+    Prepared made = prepare(scene, geometry, config, binary_form);
     if (made.bytes() <= most_bytes) {
       if (coarser > 1)
         made.settings.warnings.push_back(
@@ -103,15 +103,16 @@ Prepared prepare(const scene::Scene& scene, const TreeOptions& options) {
   const scene::Geometry geometry = scene::make_geometry(scene);
   const kdtree::BuildConfig config = config_of(options, geometry.size());
   const double seconds = timer.seconds();
-  Prepared made = options.memory_bytes > 0 ? prepare_within(scene, geometry, config, options.memory_bytes)
-                                           : prepare(scene, geometry, config);
+  Prepared made = options.memory_bytes > 0
+                      ? prepare_within(scene, geometry, config, options.binary_form, options.memory_bytes)
+                      : prepare(scene, geometry, config, options.binary_form);
   made.tree_options = options;
   made.seconds.build += seconds;
   return made;
 }
 
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
-                 const kdtree::BuildConfig& config) {
+                 const kdtree::BuildConfig& config, bool binary_form) {
   Prepared made;
   made.settings = settings_of(scene);
 
@@ -120,7 +121,7 @@ Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
   made.seconds.build = step.seconds();
 
   step.restart();
-  made.flat = flatten::flatten(scene, geometry, tree);
+  made.flat = flatten::flatten(scene, geometry, tree, binary_form);
   made.wide = flatten::make_wide(tree, made.flat, flatten::choose_block(tree));
   made.seconds.flatten = step.seconds();
 

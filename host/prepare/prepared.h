@@ -49,6 +49,6 @@ Prepared prepare(const scene::Scene& scene, const TreeOptions& options);
 
 // The same with a tree of any kind; `geometry` is the scene's. Its tree_options are left at their defaults.
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
-                 const kdtree::BuildConfig& config);
+                 const kdtree::BuildConfig& config, bool binary_form = true);
 
 }  // namespace kdray::prepare

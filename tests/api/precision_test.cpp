@@ -32,5 +32,18 @@ TEST(Precision, DoubleTakesTheBinaryWalkWhereTheDeviceHasIt) {
                       ErrorCode::usage));
 }
 
+TEST(Precision, TheBinaryFormIsForTheBinaryWalkDoubleAndChannels) {
+  const auto taken = [](Traversal t, Precision p, const std::vector<std::string>& channels) {
+    return takes_binary_form(t, p, channels);
+  };
+  for (const Traversal t : {Traversal::automatic, Traversal::wide, Traversal::packet, Traversal::batch}) {
+    EXPECT_FALSE(taken(t, Precision::float32, {}));
+    EXPECT_FALSE(taken(t, Precision::float32, {"samples"}));
+    EXPECT_TRUE(taken(t, Precision::float32, {"samples", "depth"}));
+    EXPECT_TRUE(taken(t, Precision::float64, {}));
+  }
+  EXPECT_TRUE(taken(Traversal::binary, Precision::float32, {}));
+}
+
 }  // namespace
 }  // namespace kdray::test

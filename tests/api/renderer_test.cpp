@@ -100,6 +100,29 @@ TEST_P(RendererTest, EveryBuildGivesTheSameHits) {
   }
 }
 
+TEST_P(RendererTest, WithoutTheBinaryFormAllOtherWalksGiveTheSamePicture) {
+  DeviceOptions device;
+  device.device = GetParam();
+  Renderer whole(small_scene(), {}, device), without(small_scene(), {.binary_form = false}, device);
+  const RenderOptions size{.width = 33, .height = 21};
+  const Picture expected = whole.render(size);
+  for (const Traversal t : {Traversal::automatic, Traversal::wide, Traversal::packet, Traversal::batch}) {
+    RenderOptions options = size;
+    options.traversal = t;
+    EXPECT_EQ(without.render(options).rgb, expected.rgb) << static_cast<int>(t);
+  }
+  RenderOptions binary = size;
+  binary.traversal = Traversal::binary;
+  EXPECT_EQ(whole.render(binary).rgb, expected.rgb);
+  EXPECT_EQ(code_of([&] { without.render(binary); }), ErrorCode::usage);
+  RenderOptions channels = size;
+  channels.channels = {"depth"};
+  EXPECT_EQ(code_of([&] { without.render(channels); }), ErrorCode::usage);
+  const std::vector<Ray> rays{ray(0, 0, 5, 0, 0, -1)};
+  EXPECT_EQ(code_of([&] { without.trace(rays, false, 1, Traversal::binary); }), ErrorCode::usage);
+  EXPECT_EQ(without.trace(rays)[0].primitive, whole.trace(rays)[0].primitive);
+}
+
 TEST_P(RendererTest, ClosestHitsAreInRayOrderAndInTheirUnits) {
   const Hit miss{std::numeric_limits<float>::infinity(), -1, 0, 0};
   const Ray rays[] = {

@@ -22,8 +22,9 @@ TEST(Key, ChangesWithAllThatShapesTheScene) {
       in_hex(key_of("a.ply", content, {.cost_traverse = 1.0 + 1e-16 * 3})),
       in_hex(key_of("a.ply", content, {.cost_intersect = 3})),
       in_hex(key_of("a.ply", content, {.memory_bytes = 1})),
+      in_hex(key_of("a.ply", content, {.binary_form = false})),
   };
-  EXPECT_EQ(keys.size(), 12u);
+  EXPECT_EQ(keys.size(), 13u);
 }
 
 TEST(Key, IsThatOfTheContentWhereverItLies) {

@@ -96,6 +96,15 @@ TEST(Prepared, FitsTheMemoryItIsGiven) {
   EXPECT_TRUE(enough.settings.warnings.empty());
 }
 
+TEST(Prepared, HasTheBinaryFormWhereItIsAskedFor) {
+  const scene::Scene scene = sheet(10);
+  const Prepared both = prepare(scene, {}), wide_alone = prepare(scene, {.binary_form = false});
+  EXPECT_EQ(both.flat.nodes.size(), both.tree_nodes);
+  EXPECT_TRUE(wide_alone.flat.nodes.empty());
+  EXPECT_TRUE(wide_alone.flat.refs.empty());
+  EXPECT_EQ(wide_alone.bytes(), both.bytes() - both.flat.nodes.bytes() - both.flat.refs.bytes());
+}
+
 TEST(Prepared, NamesTheLeastThatItTakes) {
   try {
     prepare(sheet(60), {.memory_bytes = 1000});

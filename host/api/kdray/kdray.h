@@ -56,6 +56,7 @@ struct TreeOptions {
   double cost_intersect = 2.0;  // of one test: of a block of primitives
   std::uint64_t memory_bytes =
       0;  // the most that the scene may take when it is traced; the tree gets coarser; 0: no limit
+  bool binary_form = true;  // is made too; few options take it (takes_binary_form)
 };
 
 // A scene ready to be traced: its tree built, all in the form that a device uses. It keeps nothing of the Scene that it does
@@ -218,6 +219,9 @@ struct Hit {
   std::int32_t primitive;  // number in file order; -1: a miss
   float u, v;  // triangle: barycentric weights of its 2nd and 3rd corner; cone: u = 0 base to 1 apex
 };
+
+// Whether rays of these options walk the tree's binary form, so that TreeOptions::binary_form is to be left true.
+bool takes_binary_form(Traversal traversal, Precision precision, std::span<const std::string> channels = {});
 
 class Renderer {
  public:
