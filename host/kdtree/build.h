@@ -32,8 +32,8 @@ struct BuildConfig {
   bool clip = true;          // false: split the references' boxes only ("boxed" of the thesis)
 };
 
-// What Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references: with 1.15 the build of a mesh takes a
-// fifteenth less time, for a hundredth more expected work of a ray.
+// What Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references: with 1.15 the build of a mesh of slivers takes
+// a fifteenth less time, for 1.1% more expected cost of a ray.
 double traverse_factor(Quality quality);
 
 // The leaves that the wide form's walks want of a scene of n primitives (docs/traversal.md): small ones for a clutter of
