@@ -12,7 +12,7 @@
 
 namespace kdray::kdtree {
 
-// What a primitive may cost on average: enough for any mesh of plain triangles (2.9 for slivers, in leaves of 8), and not so much
+// What a primitive may cost on average: enough for any mesh of plain triangles (2.5 for slivers, in leaves of 8), and not so much
 // that a mesh of needles takes more than twice their time. The exact builder is for those who would rather wait than trace slowly.
 inline double reference_budget(std::size_t n_primitives, Quality quality) {
   constexpr double kFree = 1u << 17;  // a small scene may cut its needles finely at little cost
