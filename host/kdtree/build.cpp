@@ -19,6 +19,7 @@ namespace kdray::kdtree {
 namespace {
 
 constexpr std::size_t kFineMesh = std::size_t{1} << 19;  // primitives
+constexpr int kFineBlock = 8;                            // of a fine mesh's leaves
 constexpr int kDepthLimit = 64;                          // the traversal's stack
 
 void check(const BuildConfig& c, std::size_t n) {
@@ -33,7 +34,7 @@ void check(const BuildConfig& c, std::size_t n) {
 }
 
 BuildConfig priced(BuildConfig config) {
-  config.cost_traverse *= traverse_factor(config.quality);
+  config.cost_traverse *= traverse_factor(config);
   return config;
 }
 
@@ -63,19 +64,19 @@ int depth_limit(const BuildConfig& config, std::size_t n) {
   return std::min(kDepthLimit, config.max_depth >= 0 ? config.max_depth : static_cast<int>(automatic));
 }
 
-double traverse_factor(Quality quality) {
-  switch (quality) {
+double traverse_factor(const BuildConfig& config) {
+  switch (config.quality) {
     case Quality::fast:
       return 2;
     case Quality::balanced:
-      return 1.15;
+      return config.block >= kFineBlock ? 1.15 : 1;
     default:
       return 1;
   }
 }
 
 BuildConfig suited(BuildConfig config, std::size_t n_primitives) {
-  config.block = n_primitives > kFineMesh ? 8 : 4;
+  config.block = n_primitives > kFineMesh ? kFineBlock : 4;
   return config;
 }
 

@@ -179,7 +179,7 @@ long double naive_least(const std::vector<BoundedRef>& refs, const Bounds& conte
   std::array<long double, 3> size;
   for (std::size_t k = 0; k < 3; ++k) size[k] = static_cast<long double>(contents.hi[k]) - contents.lo[k];
   const long double traverse =
-      static_cast<long double>(config.cost_traverse) * kdtree::traverse_factor(config.quality);
+      static_cast<long double>(config.cost_traverse) * kdtree::traverse_factor(config);
   long double least = std::numeric_limits<long double>::infinity();
   for (std::size_t k = 0; k < 3; ++k)
     for (const BoundedRef& r : refs)
@@ -270,7 +270,7 @@ TEST(BinnedPlane, SmallCellsGetTheBestOfAll) {
              (config.block > 1 ? 1e-3L * static_cast<long double>(m) : 0.0L);
     };
     const long double cost =
-        config.cost_traverse * kdtree::traverse_factor(config.quality) +
+        config.cost_traverse * kdtree::traverse_factor(config) +
         config.cost_intersect *
             (share(root.split - static_cast<long double>(s.contents.lo[k])) * tests(n_below) +
              share(static_cast<long double>(s.contents.hi[k]) - root.split) * tests(n_above));
