@@ -27,6 +27,14 @@ void check_hostile(const scene::Geometry& g) {
     check_hostile(g, quality);
 }
 
+// From anywhere to anywhere in the scene, one edge about as short as `width`.
+void add_needles(scene::Geometry& g, Random& random, int n, float width) {
+  for (int i = 0; i < n; ++i) {
+    const vec3 a = random_vec3(random, -8, 8);
+    add_triangle(g, a, random_vec3(random, -8, 8), a + random_vec3(random, -1, 1) * width);
+  }
+}
+
 TEST(Hostile, AllTheSame) {
   scene::Geometry g;
   for (int i = 0; i < 30000; ++i) add_triangle(g, {0, 0, 0}, {1, 0, 0.25f}, {0, 1, 0.5f});
@@ -57,10 +65,7 @@ TEST(Hostile, FanAboutOneVertex) {
 TEST(Hostile, Slivers) {
   Random random(23);
   scene::Geometry g;
-  for (int i = 0; i < 3000; ++i) {
-    const vec3 a = random_vec3(random, -8, 8);
-    add_triangle(g, a, random_vec3(random, -8, 8), a + random_vec3(random, -1, 1) * 0x1p-4f);
-  }
+  add_needles(g, random, 3000, 0x1p-4f);
   check_hostile(g);
 }
 
@@ -68,10 +73,7 @@ TEST(Hostile, Slivers) {
 TEST(Hostile, NeedlesAcrossTheScene) {
   Random random(27);
   scene::Geometry g;
-  for (int i = 0; i < 60000; ++i) {
-    const vec3 a = random_vec3(random, -8, 8);
-    add_triangle(g, a, random_vec3(random, -8, 8), a + random_vec3(random, -1, 1) * 0x1p-8f);
-  }
+  add_needles(g, random, 60000, 0x1p-8f);
   check_hostile(g, kdtree::Quality::fast);
   check_hostile(g, kdtree::Quality::balanced);
 }
@@ -79,10 +81,7 @@ TEST(Hostile, NeedlesAcrossTheScene) {
 TEST(Hostile, NeedlesInOnePlane) {
   Random random(24);
   scene::Geometry g;
-  for (int i = 0; i < 3000; ++i) {
-    const vec3 a = random_vec3(random, -8, 8);
-    add_triangle(g, a, random_vec3(random, -8, 8), a + random_vec3(random, -1, 1) * 0x1p-4f);
-  }
+  add_needles(g, random, 3000, 0x1p-4f);
   for (auto& t : g.triangles) {
     for (vec3& v : t.vertex) v.z = 0;
   }

@@ -45,6 +45,7 @@ HWY_ATTR inline void add_bins(const BinPair& bins, BinCounts& counts) {
   }
 }
 
+// As BinCounts::add, in the widest vectors: a small cell has fewer references than bins.
 HWY_ATTR inline void add_counts(const BinCounts& from, BinCounts& to) {
   const hn::CappedTag<std::uint32_t, 16> d;
   for (std::size_t k = 0; k < 3; ++k)
