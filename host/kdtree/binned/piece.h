@@ -10,23 +10,30 @@
 #include <span>
 
 #include "base/raw_vector.h"
+#include "kdtree/binned/simd.h"
 #include "kdtree/reference.h"
 
 namespace kdray::kdtree::binned {
 
 inline constexpr std::size_t kTaskRefs = 16384;  // references to a task, and to a piece, at most
 
-// References of one cell that lie together. There is room for one more than the piece can have: partitions write there in vain.
+// References of one cell that lie together, and their hull. There is room for one more than the piece can have: partitions write there in
+// vain.
 struct Piece {
   BoundedRef* first = nullptr;
   std::size_t n = 0, room = 0;
+  Bounds hull = no_bounds();
 
   std::span<BoundedRef> refs() const { return {first, n}; }
+
+  // Whether all references go to one side, so that none need be looked at. What lies in a plane is below it.
+  bool is_below(const Plane& plane) const { return hull.hi[plane.axis] <= plane.position; }
+  bool is_above(const Plane& plane) const { return hull.lo[plane.axis] > plane.position; }
 };
 
 // What a division left below the plane stays in front; above it there may be as many as the rest holds.
 inline Piece rest_of(const Piece& whole, std::size_t n_below) {
-  return {whole.first + n_below + 1, 0, whole.room - n_below - 1};
+  return {whole.first + n_below + 1, 0, whole.room - n_below - 1, no_bounds()};
 }
 inline std::size_t most_in(const Piece& piece) {
   return piece.room == 0 ? 0 : piece.room - 1;
@@ -41,7 +48,7 @@ class PiecePool {
   Piece take(std::size_t n) {
     const std::lock_guard lock(mutex_);
     if (left_ < n + 1) add_chunk(std::max(n + 1, kChunk));
-    const Piece piece{next_, 0, n + 1};
+    const Piece piece{next_, 0, n + 1, no_bounds()};
     next_ += n + 1;
     left_ -= n + 1;
     return piece;

@@ -31,6 +31,7 @@ struct TopCell {
   Cell cell;
   std::size_t n = 0;
   std::vector<Piece> pieces;
+  bool is_leaf = false;  // however many references it has
 };
 
 // What a task finds on one side of its cell's plane.
@@ -39,9 +40,13 @@ struct Side {
   Bounds contents = no_bounds();
 
   void add(const Piece& piece) {
-    if (piece.n == 0) return;
-    contents = hull(contents, fast_hull_of(piece.refs()));
+    contents = hull(contents, piece.hull);
     pieces.push_back(piece);
+  }
+  void add_divided(Piece piece) {
+    if (piece.n == 0) return;
+    piece.hull = fast_hull_of(piece.refs());
+    add(piece);
   }
 };
 
@@ -75,18 +80,17 @@ class TopBuilder {
  private:
   TopCell whole_scene(TopNode& root) {
     const std::size_t n = geometry_.size(), n_pieces = n_pieces_of(n);
-    TopCell cell{&root, {no_bounds(), 0, reference_budget(n, config_.quality)}, n, {}};
+    TopCell cell{&root, {no_bounds(), 0, reference_budget(n, config_.quality)}, n, {}, false};
     cell.pieces.resize(n_pieces);
     for (std::size_t i = 0; i < n_pieces; ++i)
       cell.pieces[i] = pool_.take(std::min(kTaskRefs, n - i * kTaskRefs));
-    std::vector<Bounds> hulls(n_pieces);
     tbb::parallel_for(std::size_t{0}, n_pieces, [&](std::size_t i) {
       Piece& piece = cell.pieces[i];
       piece.n = most_in(piece);
       for (std::size_t k = 0; k < piece.n; ++k) piece.first[k] = reference(i * kTaskRefs + k);
-      hulls[i] = fast_hull_of(piece.refs());
+      piece.hull = fast_hull_of(piece.refs());
     });
-    for (const Bounds& h : hulls) cell.cell.contents = hull(cell.cell.contents, h);
+    for (const Piece& piece : cell.pieces) cell.cell.contents = hull(cell.cell.contents, piece.hull);
     return cell;
   }
 
@@ -104,7 +108,8 @@ class TopBuilder {
 
   // Large cells go to the next level, small ones are subtrees.
   void place(TopCell&& cell, std::vector<TopCell>& level) {
-    const bool small = cell.n <= subtree_refs_ || cell.cell.depth >= max_depth_;
+    cell.is_leaf = cell.cell.depth >= max_depth_;
+    const bool small = cell.n <= subtree_refs_ || cell.is_leaf;
     (small ? subtrees_ : level).push_back(std::move(cell));
   }
 
@@ -162,8 +167,12 @@ class TopBuilder {
     };
     for_tasks(tasks, [&](Task& t) {
       if (!tight(t.cell)) return;
-      for (std::size_t p = t.first_piece; p < t.end_piece; ++p)
-        t.n_straddling += n_straddling(level[t.cell].pieces[p].refs(), planes[t.cell]);
+      const Plane& plane = planes[t.cell];
+      for (std::size_t p = t.first_piece; p < t.end_piece; ++p) {
+        const Piece& piece = level[t.cell].pieces[p];
+        if (!piece.is_below(plane) && !piece.is_above(plane))
+          t.n_straddling += n_straddling(piece.refs(), plane);
+      }
     });
     std::vector<std::size_t> straddling(level.size(), 0);
     for (const Task& t : tasks) straddling[t.cell] += t.n_straddling;
@@ -171,28 +180,36 @@ class TopBuilder {
       if (tight(c) && !fits_budget(level[c].cell.budget, level[c].n, straddling[c])) planes[c] = {};
   }
 
-  // What is below stays in front of its piece, what is above goes behind it; the task's other references above, one for each that
-  // straddles, to a piece of their own.
+  // Pieces on one side go there as they are. Of others, what is below stays in front and what is above goes behind it; the task's
+  // other references above, one for each that straddles, to a piece of their own.
   void divide_task(const TopCell& cell, const Plane& plane, Task& t) {
     Workspace& workspace = workspaces_.local();
     std::vector<BoundedRef>& others = workspace.others;
     others.clear();
     for (std::size_t p = t.first_piece; p < t.end_piece; ++p) {
       const Piece& whole = cell.pieces[p];
+      if (whole.is_below(plane)) {
+        t.below.add(whole);
+        continue;
+      }
+      if (whole.is_above(plane)) {
+        t.above.add(whole);
+        continue;
+      }
       const Divided sides = divide(geometry_, config_, whole.refs(), plane, workspace);
       Piece above = rest_of(whole, sides.n_below);
       above.n = std::min(most_in(above), sides.n_above);
       const auto from = workspace.above.begin(), rest = from + static_cast<std::ptrdiff_t>(above.n);
       std::copy(from, rest, above.first);
       others.insert(others.end(), rest, from + static_cast<std::ptrdiff_t>(sides.n_above));
-      t.below.add({whole.first, sides.n_below, sides.n_below + 1});
-      t.above.add(above);
+      t.below.add_divided({whole.first, sides.n_below, sides.n_below + 1, no_bounds()});
+      t.above.add_divided(above);
     }
     if (others.empty()) return;
     Piece more = pool_.take(others.size());
     more.n = others.size();
     std::copy(others.begin(), others.end(), more.first);
-    t.above.add(more);
+    t.above.add_divided(more);
   }
 
   std::vector<TopCell> children(std::vector<TopCell>&& level, const std::vector<Plane>& planes,
@@ -200,13 +217,14 @@ class TopBuilder {
     std::vector<TopCell> next;
     std::size_t t = 0;
     for (std::size_t c = 0; c < level.size(); ++c) {
-      TopCell below{nullptr, {no_bounds(), level[c].cell.depth + 1, 0}, 0, {}};
+      TopCell below{nullptr, {no_bounds(), level[c].cell.depth + 1, 0}, 0, {}, false};
       TopCell above = below;
       for (; t < tasks.size() && tasks[t].cell == c; ++t) {
         take(tasks[t].below, below);
         take(tasks[t].above, above);
       }
       if (!planes[c].found()) {
+        level[c].is_leaf = true;
         subtrees_.push_back(std::move(level[c]));
         continue;
       }
@@ -241,8 +259,17 @@ class TopBuilder {
                      [](const TopCell& a, const TopCell& b) { return a.n > b.n; });
     std::atomic<std::size_t> next{0};
     tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(), [&](int) {
-      for (std::size_t i; (i = next++) < subtrees_.size();) build_one(subtrees_[i]);
+      for (std::size_t i; (i = next++) < subtrees_.size();)
+        subtrees_[i].is_leaf ? make_leaf(subtrees_[i]) : build_one(subtrees_[i]);
     });
+  }
+
+  static void make_leaf(TopCell& top) {
+    const std::span<Ref> refs = add_leaf(top.n, top.cell.contents, top.cell.depth, top.node->fragment);
+    auto to = refs.begin();
+    for (const Piece& piece : top.pieces)
+      to = std::transform(piece.first, piece.first + piece.n, to, [](const BoundedRef& r) { return r.ref; });
+    std::sort(refs.begin(), refs.end());
   }
 
   void build_one(TopCell& top) {
