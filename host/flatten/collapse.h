@@ -1,8 +1,8 @@
 // What    Binary nodes collapsed into nodes of up to eight children: which nodes become children of which, in what order for
 //         each octant of directions, and where leaves' blocks go. Bounds and blocks are not here: they are written once, when
 //         all places are known (wide.cpp).
-// Shape   Of the nodes on the way down, the one whose contents have the largest surface is opened first, until eight
-//         children are found; empty leaves are dropped. A leaf of several kinds of primitives becomes a child for each.
+// Shape   openings.h says which nodes become children; empty leaves are dropped. A leaf of several kinds of primitives becomes a child
+//         for each.
 // Source  Dammertz, Hanika, Keller, EGSR 2008; Wald, Benthin, Boulos, RT 2008.
 #pragma once
 
@@ -10,12 +10,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "flatten/openings.h"
 #include "kdtree/tree.h"
 #include "layout/wide.layout.h"
 
 namespace kdray::flatten {
-
-inline constexpr std::uint32_t kWidth = 8;
 
 // A subtree of the binary tree, whose nodes are [node, end).
 struct Subtree {
@@ -44,10 +43,8 @@ struct CollapsedPart {
 };
 
 // `cut_at`: subtrees of at most so many nodes, other than the root, are left to other parts; 0: none is.
-// `only_kind`: the one kind of primitives that the tree holds, or kAnyKind.
-inline constexpr std::uint32_t kAnyKind = ~0u;
-CollapsedPart collapse(const kdtree::Tree& tree, const Subtree& root, std::uint32_t block,
-                       std::uint32_t only_kind, std::uint32_t cut_at);
+CollapsedPart collapse(const kdtree::Tree& tree, const Openings& openings, const Subtree& root,
+                       std::uint32_t block, std::uint32_t only_kind, std::uint32_t cut_at);
 
 // For a walk that pushes all children of a node, then pops the nearest; `cuts` are those of the parts cut off.
 StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>& cuts);

@@ -220,11 +220,12 @@ Parts collapse_in_parts(const kdtree::Tree& tree, std::uint32_t block, std::uint
   const auto n = static_cast<std::uint32_t>(tree.nodes.size());
   // Enough parts for any number of threads, none so small that it isn't worth a task.
   const std::uint32_t cut_at = std::max(n / 256, 512u);
-  Parts parts{collapse(tree, {0, n}, block, kind, cut_at), {}, 0};
+  const Openings openings(tree, kind);
+  Parts parts{collapse(tree, openings, {0, n}, block, kind, cut_at), {}, 0};
   parts.below.resize(parts.top.cuts.size());
   std::vector<StackNeeds> needs(parts.below.size());
   tbb::parallel_for(std::size_t{0}, parts.below.size(), [&](std::size_t i) {
-    parts.below[i] = collapse(tree, parts.top.cuts[i], block, kind, 0);
+    parts.below[i] = collapse(tree, openings, parts.top.cuts[i], block, kind, 0);
     needs[i] = stack_needs(parts.below[i], {});
   });
   const StackNeeds all = stack_needs(parts.top, needs);

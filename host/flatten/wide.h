@@ -1,6 +1,5 @@
 // What    The wide form of a kd-tree (kernels/layout/wide.layout.h): collapsed nodes and leaf blocks, ready to upload.
-// Shape   Of the nodes on the way down, the one whose contents have the largest surface is opened first, until eight
-//         children are found; empty leaves are dropped. A leaf that holds several kinds of primitives becomes a child for
+// Shape   openings.h says which nodes become whose children; empty leaves are dropped. A leaf that holds several kinds of primitives becomes a child for
 //         each of them. Within a node and a leaf the order is the tree's, so the form is the same on every machine.
 // Source  Kd cells are disjoint: one order for each octant of directions is front to back for all rays of it, without a sort.
 // Errors  ErrorCode::input where the form has more nodes or blocks than its indices can name.

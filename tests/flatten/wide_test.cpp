@@ -294,7 +294,7 @@ TEST(Wide, ThreadsDoNotShow) {
   const scene::Geometry g = test::mixed_geometry(random, 8000, 0.3f);
   const kdtree::Tree tree = kdtree::build(g, {});
   const FlatScene flat = flat_of(g, tree);
-  ASSERT_GT(tree.nodes.size(), 4096u);
+  ASSERT_GT(tree.nodes.size(), 16384u);
   const auto made_by = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return make_wide(tree, flat, 4);
