@@ -25,8 +25,8 @@ Buffers triangle_buffers(const scene::Scene& scene, const scene::Geometry& geome
   for (const dvec3& v : scene.vertices)
     for (int k = 0; k < 3; ++k) b.vertices.push_back(static_cast<float>(v[k] - geometry.center[k]));
   b.indices.reserve(3 * geometry.triangles.size());
-  for (const scene::TriangleGeometry& t : geometry.triangles)
-    for (const std::uint32_t v : scene.triangles[t.source].vertex) b.indices.push_back(v);
+  for (const std::uint32_t source : geometry.sources)
+    for (const std::uint32_t v : scene.triangles[source].vertex) b.indices.push_back(v);
   b.vertices.resize(b.vertices.size() + kPadding);
   return b;
 }

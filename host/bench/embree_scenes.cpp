@@ -18,12 +18,12 @@ T* new_buffer(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t s
 }
 
 void fill(RTCGeometry g, std::span<const scene::TriangleGeometry> triangles) {
-  auto* vertex =
+  auto* point =
       new_buffer<vec3>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(vec3), 3 * triangles.size());
   auto* index = new_buffer<std::uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
                                           3 * sizeof(std::uint32_t), triangles.size());
   for (const scene::TriangleGeometry& t : triangles)
-    for (const vec3& v : t.vertex) *vertex++ = v;
+    for (int i = 0; i < 3; ++i) *point++ = scene::vertex(t, i);
   for (std::uint32_t i = 0; i < 3 * triangles.size(); ++i) index[i] = i;
 }
 
@@ -58,6 +58,12 @@ void attach(RTCDevice device, RTCScene into, PrimitiveKind kind, RTCGeometryType
   rtcReleaseGeometry(g);
 }
 
+std::vector<std::uint32_t> numbers_of(const Array<scene::TriangleGeometry>& triangles) {
+  std::vector<std::uint32_t> numbers;
+  for (const auto& t : triangles) numbers.push_back(t.number);
+  return numbers;
+}
+
 template <class Sources, class Primitives>
 std::vector<std::uint32_t> numbers_of(const Sources& sources, const Primitives& primitives) {
   std::vector<std::uint32_t> numbers;
@@ -76,7 +82,7 @@ RTCDevice open_embree() {
 EmbreeScenes::EmbreeScenes(const scene::Scene& scene) : device_(open_embree()) {
   const scene::Geometry geometry = scene::make_geometry(scene);
   center_ = vec3(geometry.center);
-  numbers_ = {numbers_of(scene.triangles, geometry.triangles), numbers_of(scene.spheres, geometry.spheres),
+  numbers_ = {numbers_of(geometry.triangles), numbers_of(scene.spheres, geometry.spheres),
               numbers_of(scene.cones, geometry.cones)};
   fast_ = build(geometry, RTC_SCENE_FLAG_NONE);
   robust_ = build(geometry, RTC_SCENE_FLAG_ROBUST);

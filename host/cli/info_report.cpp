@@ -28,8 +28,9 @@ Json scene_arrays(const scene::Scene& scene) {
 }
 
 Json geometry_arrays(const scene::Geometry& geometry) {
-  const auto& [center, triangles, spheres, cones, bounds, dropped] = geometry;
-  return {{"triangles", bytes_of(triangles)}, {"spheres", bytes_of(spheres)}, {"cones", bytes_of(cones)}};
+  const auto& [center, triangles, sources, n_smooth, spheres, cones, bounds, dropped] = geometry;
+  // Its triangles are the flat form's.
+  return {{"sources", bytes_of(sources)}, {"spheres", bytes_of(spheres)}, {"cones", bytes_of(cones)}};
 }
 
 Json tree_arrays(const kdtree::Tree& tree) {

@@ -43,30 +43,28 @@ bool some(const Items& items, Predicate predicate) {
 
 // True when each primitive's place in the file is its index in its kind's array: one kind, and none dropped.
 bool numbers_are_indices(const scene::Scene& scene, const scene::Geometry& geometry) {
-  const auto in_order = [](const auto& kept, const auto& source) {
+  const auto in_order = [](const auto& kept, const auto& number_of) {
     for (std::size_t i = 0; i < kept.size(); ++i)
-      if (source[kept[i].source].number != i) return false;
+      if (number_of(kept[i]) != i) return false;
     return true;
   };
-  return in_order(geometry.triangles, scene.triangles) && in_order(geometry.spheres, scene.spheres) &&
-         in_order(geometry.cones, scene.cones);
+  return in_order(geometry.triangles, [](const auto& t) { return t.number; }) &&
+         in_order(geometry.spheres, [&](const auto& s) { return scene.spheres[s.source].number; }) &&
+         in_order(geometry.cones, [&](const auto& c) { return scene.cones[c.source].number; });
 }
 
 std::uint32_t geometry_features(const scene::Scene& scene, const scene::Geometry& geometry) {
-  const auto smooth = [&](const scene::TriangleGeometry& t) {
-    return scene.triangles[t.source].normal[0] != scene::kNone;
-  };
   return when(!numbers_are_indices(scene, geometry), KDRAY_FEATURE_NUMBERS) |
          when(!geometry.triangles.empty(), KDRAY_FEATURE_TRIANGLES) |
          when(!geometry.spheres.empty(), KDRAY_FEATURE_SPHERES) |
          when(!geometry.cones.empty(), KDRAY_FEATURE_CONES) |
-         when(some(geometry.triangles, smooth), KDRAY_FEATURE_SMOOTH);
+         when(geometry.n_smooth > 0, KDRAY_FEATURE_SMOOTH);
 }
 
 // A material counts only when a primitive wears it.
 std::uint32_t material_features(const scene::Scene& scene, const scene::Geometry& geometry) {
   std::vector<bool> used(scene.materials.size(), false);
-  for (const auto& t : geometry.triangles) used[scene.triangles[t.source].material] = true;
+  for (const auto& t : geometry.triangles) used[t.material] = true;
   for (const auto& s : geometry.spheres) used[scene.spheres[s.source].material] = true;
   for (const auto& c : geometry.cones) used[scene.cones[c.source].material] = true;
   std::uint32_t mask = 0;

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
-#include <vector>
 
 #include "base/error.h"
 
@@ -48,54 +46,24 @@ void pack_binary(const kdtree::Tree& tree, FlatScene& flat) {
   flat.refs = filled<layout::u32>(tree.refs.size(), [&](std::size_t i) { return tree.refs[i]; });
 }
 
-bool is_smooth(const scene::Triangle& t) {
-  return t.normal[0] != scene::kNone;
-}
-
-// For each grain of triangles: how many before it have vertex normals; at the end, how many have in all.
-std::vector<std::size_t> smooth_before(const scene::Scene& scene, const scene::Geometry& geometry) {
-  const std::size_t n = geometry.triangles.size(), n_grains = (n + kGrain - 1) / kGrain;
-  std::vector<std::size_t> before(n_grains + 1, 0);
-  if (scene.normals.empty()) return before;
-  tbb::parallel_for(std::size_t{0}, n_grains, [&](std::size_t grain) {
-    for (std::size_t i = grain * kGrain; i < std::min(n, (grain + 1) * kGrain); ++i)
-      before[grain + 1] += is_smooth(scene.triangles[geometry.triangles[i].source]) ? 1 : 0;
-  });
-  std::partial_sum(before.begin(), before.end(), before.begin());
-  return before;
-}
-
-layout::Triangle pack(const scene::TriangleGeometry& g, const scene::Triangle& source) {
-  layout::Triangle t{};
-  for (int k = 0; k < 3; ++k) set(t.v[k], g.vertex[static_cast<std::size_t>(k)]);
-  t.number = source.number;
-  t.material = source.material;
-  t.normals = KDRAY_NO_NORMALS;
-  return t;
-}
-
 layout::VertexNormals pack_normals(const scene::Scene& scene, const scene::Triangle& source) {
   layout::VertexNormals n{};
   for (std::size_t k = 0; k < 3; ++k) set(n.n[k], scene.normals[source.normal[k]]);
   return n;
 }
 
-void pack_triangles(const scene::Scene& scene, const scene::Geometry& geometry, FlatScene& flat) {
-  const std::size_t n = geometry.triangles.size();
-  const std::vector<std::size_t> before = smooth_before(scene, geometry);
-  flat.triangles = Array<layout::Triangle>(n);
-  flat.normals = Array<layout::VertexNormals>(before.back());
-  tbb::parallel_for(std::size_t{0}, before.size() - 1, [&](std::size_t grain) {
-    std::size_t smooth = before[grain];
-    for (std::size_t i = grain * kGrain; i < std::min(n, (grain + 1) * kGrain); ++i) {
-      const scene::TriangleGeometry& g = geometry.triangles[i];
-      const scene::Triangle& source = scene.triangles[g.source];
-      flat.triangles[i] = pack(g, source);
-      if (!is_smooth(source)) continue;
-      flat.triangles[i].normals = static_cast<layout::u32>(smooth);
-      flat.normals[smooth++] = pack_normals(scene, source);
-    }
-  });
+Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene::Geometry& geometry) {
+  Array<layout::VertexNormals> normals(geometry.n_smooth);
+  if (normals.empty()) return normals;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, geometry.triangles.size(), kGrain),
+                    [&](const auto& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        const layout::u32 place = geometry.triangles[i].normals;
+                        if (place != KDRAY_NO_NORMALS)
+                          normals[place] = pack_normals(scene, scene.triangles[geometry.sources[i]]);
+                      }
+                    });
+  return normals;
 }
 
 layout::Sphere pack(const scene::SphereGeometry& g, const scene::Sphere& source) {
@@ -168,7 +136,8 @@ FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, co
                   bool binary_form) {
   FlatScene flat;
   if (binary_form) pack_binary(tree, flat);
-  pack_triangles(scene, geometry, flat);
+  flat.triangles = geometry.triangles;
+  flat.normals = pack_normals(scene, geometry);
   flat.spheres = filled<layout::Sphere>(geometry.spheres.size(), [&](std::size_t i) {
     return pack(geometry.spheres[i], scene.spheres[geometry.spheres[i].source]);
   });

@@ -34,7 +34,7 @@ void check(const BuildConfig& c, std::size_t n) {
 }
 
 BuildConfig priced(BuildConfig config) {
-  config.cost_traverse *= traverse_factor(config);
+  config.cost_traverse *= traverse_factor(config.quality);
   return config;
 }
 
@@ -64,15 +64,8 @@ int depth_limit(const BuildConfig& config, std::size_t n) {
   return std::min(kDepthLimit, config.max_depth >= 0 ? config.max_depth : static_cast<int>(automatic));
 }
 
-double traverse_factor(const BuildConfig& config) {
-  switch (config.quality) {
-    case Quality::fast:
-      return 2;
-    case Quality::balanced:
-      return config.block >= kFineBlock ? 1.15 : 1;
-    default:
-      return 1;
-  }
+double traverse_factor(Quality quality) {
+  return quality == Quality::fast ? 2 : 1;
 }
 
 BuildConfig suited(BuildConfig config, std::size_t n_primitives) {

@@ -32,9 +32,8 @@ struct BuildConfig {
   bool clip = true;          // false: split the references' boxes only ("boxed" of the thesis)
 };
 
-// What Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references: with 1.15 the build of a mesh of slivers takes a
-// fifteenth less time, for 1.1% more expected cost of a ray. Only fine meshes, in large blocks, take long enough for that.
-double traverse_factor(const BuildConfig& config);
+// What Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references.
+double traverse_factor(Quality quality);
 
 // The leaves that the wide form's walks want of a scene of n primitives (docs/traversal.md): small ones for a clutter of
 // large and small, whole blocks for fine meshes, where small leaves would multiply the references and full blocks are as fast.

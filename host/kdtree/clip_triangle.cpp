@@ -99,9 +99,10 @@ SplitBounds clip_triangle(const scene::TriangleGeometry& t, const Bounds& known,
   double largest = 0;
   polygon.n = 3;
   for (int i = 0; i < 3; ++i) {
-    const vec3& v = t.vertex[i];
-    polygon.p[i][0] = v.x, polygon.p[i][1] = v.y, polygon.p[i][2] = v.z;
-    for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(polygon.p[i][k]));
+    for (int k = 0; k < 3; ++k) {
+      polygon.p[i][k] = t.v[i][k];
+      largest = std::max(largest, std::abs(polygon.p[i][k]));
+    }
   }
   const double widen = kWiden * largest;
   clip_to_cell(cell, widen, polygon);

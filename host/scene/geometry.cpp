@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -62,7 +63,8 @@ dvec3 center_of(const DBox& box) {
 }
 
 // Whether a triangle of floats has exactly no area: its three projections all have none.
-bool is_flat(const std::array<vec3, 3>& v) {
+bool is_flat(const TriangleGeometry& t) {
+  const auto& v = t.v;
   const auto flat_across = [&](int i, int j) {
     return orient_sign({v[0][i], v[0][j]}, {v[1][i], v[1][j]}, {v[2][i], v[2][j]}) == 0;
   };
@@ -111,47 +113,74 @@ class Maker {
 
   vec3 local(const dvec3& p) const { return vec3(p - out_.center); }
 
+  TriangleGeometry triangle(const RawVector<vec3>& vertices, std::size_t i) const {
+    const Triangle& from = scene_.triangles[i];
+    TriangleGeometry t{};
+    for (std::size_t v = 0; v < 3; ++v)
+      for (int k = 0; k < 3; ++k) t.v[v][k] = vertices[from.vertex[v]][k];
+    t.number = from.number;
+    t.material = from.material;
+    t.normals = KDRAY_NO_NORMALS;
+    return t;
+  }
+
   void add_triangles() {
     const RawVector<vec3> vertices = local_vertices();
-    const auto triangle = [&](std::size_t i) {
-      const auto& v = scene_.triangles[i].vertex;
-      return TriangleGeometry{{vertices[v[0]], vertices[v[1]], vertices[v[2]]},
-                              static_cast<std::uint32_t>(i)};
-    };
     const std::size_t n = scene_.triangles.size(), n_grains = (n + kGrain - 1) / kGrain;
     std::vector<std::size_t> kept(n_grains);
     std::vector<Box> bounds(n_grains);
-    out_.triangles.resize(n);
+    out_.triangles = Array<TriangleGeometry>(n);
+    out_.sources.resize(n);
     for_each_grain(n, [&](std::size_t first, std::size_t last) {
-      TriangleGeometry* out = out_.triangles.data() + first;
+      std::size_t end = first;
       Box box;
       for (std::size_t i = first; i < last; ++i) {
-        const TriangleGeometry t = triangle(i);
-        if (is_flat(t.vertex)) continue;
-        *out++ = t;
-        Box one{t.vertex[0], t.vertex[0]};
-        one.grow(t.vertex[1]);
-        one.grow(t.vertex[2]);
-        box.grow(one);
+        const TriangleGeometry t = triangle(vertices, i);
+        if (is_flat(t)) continue;
+        out_.triangles[end] = t;
+        out_.sources[end++] = static_cast<std::uint32_t>(i);
+        box.grow(bounds_of(t));
       }
-      kept[first / kGrain] = static_cast<std::size_t>(out - out_.triangles.data()) - first;
+      kept[first / kGrain] = end - first;
       bounds[first / kGrain] = box;
     });
     close_gaps(kept);
     out_.dropped_degenerate += static_cast<std::uint32_t>(n - out_.triangles.size());
     for (const Box& box : bounds) out_.bounds.grow(box);
+    if (!scene_.normals.empty()) number_normals();
   }
 
   // Moves together the triangles that each grain kept at its beginning.
   void close_gaps(const std::vector<std::size_t>& kept) {
-    const auto begin = out_.triangles.begin();
-    auto end = begin;
+    std::size_t end = 0;
     for (std::size_t grain = 0; grain < kept.size(); ++grain) {
-      const auto from = begin + static_cast<std::ptrdiff_t>(grain * kGrain);
-      const auto to = from + static_cast<std::ptrdiff_t>(kept[grain]);
-      end = from == end ? to : std::move(from, to, end);
+      const std::size_t from = grain * kGrain, n = kept[grain];
+      if (from != end) {
+        std::copy_n(out_.triangles.begin() + from, n, out_.triangles.begin() + end);
+        std::copy_n(out_.sources.begin() + static_cast<std::ptrdiff_t>(from), n,
+                    out_.sources.begin() + static_cast<std::ptrdiff_t>(end));
+      }
+      end += n;
     }
-    out_.triangles.resize(static_cast<std::size_t>(end - begin));
+    out_.triangles = Array<TriangleGeometry>(out_.triangles.owner(), out_.triangles.data(), end);
+    out_.sources.resize(end);
+  }
+
+  bool is_smooth(std::size_t i) const { return scene_.triangles[out_.sources[i]].normal[0] != kNone; }
+
+  void number_normals() {
+    const std::size_t n = out_.triangles.size();
+    std::vector<std::uint32_t> before((n + kGrain - 1) / kGrain + 1, 0);  // those of earlier grains
+    for_each_grain(n, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) before[first / kGrain + 1] += is_smooth(i) ? 1 : 0;
+    });
+    std::partial_sum(before.begin(), before.end(), before.begin());
+    for_each_grain(n, [&](std::size_t first, std::size_t last) {
+      std::uint32_t next = before[first / kGrain];
+      for (std::size_t i = first; i < last; ++i)
+        if (is_smooth(i)) out_.triangles[i].normals = next++;
+    });
+    out_.n_smooth = before.back();
   }
 
   RawVector<vec3> local_vertices() const {
@@ -206,7 +235,7 @@ Geometry make_geometry(const Scene& scene) {
 
 Box bounds_of(const TriangleGeometry& t) {
   Box box;
-  for (const vec3& p : t.vertex) box.grow(p);
+  for (int i = 0; i < 3; ++i) box.grow(vertex(t, i));
   return box;
 }
 

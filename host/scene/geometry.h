@@ -2,13 +2,16 @@
 //         in double (DESIGN.md section 6), so that a model at (1e6, 1e6, 1e6) keeps its bits.
 // Shape   One array per kind, in file order; `number` maps back to the file. Degenerate triangles (zero area after
 //         rounding, exactly decided) and spheres or cones whose radius rounds to 0 are dropped and counted.
+//         Triangles are as the kernels read them: a device that shares memory takes them from here, without a copy. Copies of a
+//         Geometry share them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "base/array.h"
 #include "base/raw_vector.h"
+#include "layout/primitives.layout.h"
 #include "math/box.h"
 #include "scene/scene.h"
 
@@ -16,10 +19,11 @@ namespace kdray::scene {
 
 enum class PrimitiveKind : std::uint32_t { triangle = 0, sphere = 1, cone = 2 };
 
-struct TriangleGeometry {
-  std::array<vec3, 3> vertex;
-  std::uint32_t source;  // index into Scene::triangles
-};
+using TriangleGeometry = layout::Triangle;
+inline vec3 vertex(const TriangleGeometry& t, int i) {
+  return {t.v[i][0], t.v[i][1], t.v[i][2]};
+}
+
 struct SphereGeometry {
   vec3 center;
   float radius;
@@ -33,7 +37,9 @@ struct ConeGeometry {
 
 struct Geometry {
   dvec3 center{0};  // world = local + center
-  RawVector<TriangleGeometry> triangles;
+  Array<TriangleGeometry> triangles;
+  RawVector<std::uint32_t> sources;  // of each triangle, the index into Scene::triangles
+  std::uint32_t n_smooth = 0;        // triangles with vertex normals, which their `normals` number in order
   std::vector<SphereGeometry> spheres;
   std::vector<ConeGeometry> cones;
   Box bounds;  // contains every primitive

@@ -50,7 +50,7 @@ Mesh make_mesh(const scene::Scene& scene, const scene::Geometry& geometry) {
   mesh.triangles.resize(geometry.triangles.size());
   mesh.numbers.resize(geometry.triangles.size());
   tbb::parallel_for(std::size_t{0}, mesh.triangles.size(), [&](std::size_t i) {
-    const scene::Triangle& from = scene.triangles[geometry.triangles[i].source];
+    const scene::Triangle& from = scene.triangles[geometry.sources[i]];
     for (std::size_t k = 0; k < 3; ++k) mesh.triangles[i][k] = point_of[from.vertex[k]];
     mesh.numbers[i] = from.number;
   });

@@ -54,10 +54,15 @@ bool is_hit(const Hit& h) {
 std::vector<std::uint32_t> places_by_number(const Subject& s) {
   std::vector<std::uint32_t> places(s.scene.primitive_count());
   std::uint32_t place = 0;
-  for (const auto& t : s.geometry.triangles) places[s.scene.triangles[t.source].number] = place++;
+  for (const auto& t : s.geometry.triangles) places[t.number] = place++;
   for (const auto& p : s.geometry.spheres) places[s.scene.spheres[p.source].number] = place++;
   for (const auto& c : s.geometry.cones) places[s.scene.cones[c.source].number] = place++;
   return places;
+}
+
+int side_of(const Line& line, const scene::TriangleGeometry& t) {
+  return side_of_plane(line, dvec3(scene::vertex(t, 0)), dvec3(scene::vertex(t, 1)),
+                       dvec3(scene::vertex(t, 2)));
 }
 
 enum class Leaves { mirrored, scattered, grazing, through };
@@ -194,8 +199,8 @@ class Prober {
   std::optional<double> target_distance(const Line& line, std::size_t target, double margin) const {
     const scene::Geometry& g = s_.geometry;
     if (target < g.triangles.size()) {
-      const auto& v = g.triangles[target].vertex;
-      const dvec3 a(v[0]), b(v[1]), c(v[2]);
+      const scene::TriangleGeometry& v = g.triangles[target];
+      const dvec3 a(scene::vertex(v, 0)), b(scene::vertex(v, 1)), c(scene::vertex(v, 2));
       // The distance along the ray is off by what the plane is, over the sine of their angle.
       const dvec3 n = glm::cross(b - a, c - a);
       if (std::abs(glm::dot(n, line.direction)) < 0x1p-4 * glm::length(n) * glm::length(line.direction))
@@ -212,9 +217,7 @@ class Prober {
   void check_before(const Ray& ray, const Hit& hit, std::size_t i) {
     const std::optional<std::uint32_t> face = face_of(hit);
     if (!face) return;
-    const auto& v = s_.geometry.triangles[*face].vertex;
-    if (side_of_plane(line_of(ray), dvec3(v[0]), dvec3(v[1]), dvec3(v[2])) < 0)
-      blame(Defect::behind, ray, hit, i);
+    if (side_of(line_of(ray), s_.geometry.triangles[*face]) < 0) blame(Defect::behind, ray, hit, i);
   }
 
   // ---- Rays that leave hits.
@@ -279,9 +282,8 @@ class Prober {
     std::size_t place = place_of_[static_cast<std::size_t>(from.primitive)];
     const scene::Geometry& g = s_.geometry;
     if (place < g.triangles.size()) {
-      const auto& v = g.triangles[place].vertex;
       // A direction of our own may lie on the wrong side of the plane, by the rounding of the normal it was made from.
-      const bool towards = side_of_plane(line, dvec3(v[0]), dvec3(v[1]), dvec3(v[2])) > 0;
+      const bool towards = side_of(line, g.triangles[place]) > 0;
       if ((how.how == Leaves::scattered || how.how == Leaves::grazing) && towards) return;
       return blame(Defect::self_hit, ray, found, i);
     }

@@ -83,7 +83,7 @@ TEST(Build, FlatScene) {
   scene::Geometry g;
   add_triangles(g, random, 2000, 0.5f);
   for (auto& t : g.triangles) {
-    for (vec3& v : t.vertex) v.y = 3;
+    for (auto& v : t.v) v[1] = 3;
   }
   check_tree(g);
 }

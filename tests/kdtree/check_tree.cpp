@@ -119,8 +119,8 @@ dvec3 triangle_point(const scene::TriangleGeometry& t, int sample, Random& rando
     j = sample == 3 ? kWhole - i : (sample == 4 ? 0 : j);
     if (sample == 5) i = 0;
   }
-  const dvec3 sum = dvec3(t.vertex[0]) * double(i) + dvec3(t.vertex[1]) * double(j) +
-                    dvec3(t.vertex[2]) * double(kWhole - i - j);
+  const dvec3 sum = dvec3(scene::vertex(t, 0)) * double(i) + dvec3(scene::vertex(t, 1)) * double(j) +
+                    dvec3(scene::vertex(t, 2)) * double(kWhole - i - j);
   return sum / double(kWhole);
 }
 

@@ -44,7 +44,7 @@ void check_integer_cases(std::uint64_t seed, int size, float offset, float scale
     const IntegerCase c = random_case(random, size);
     scene::TriangleGeometry t{};
     for (int v = 0; v < 3; ++v) {
-      for (int k = 0; k < 3; ++k) t.vertex[v][k] = to_float(c.triangle[v][k], offset, scale);
+      for (int k = 0; k < 3; ++k) t.v[v][k] = to_float(c.triangle[v][k], offset, scale);
     }
     const Bounds cell = to_bounds(c.lo, c.hi, offset, scale);
     const Bounds known = kdtree::intersection(cell, kdtree::bounds_from(scene::bounds_of(t)));
@@ -101,9 +101,12 @@ TEST(ClipTriangle, ContainsItsPoints) {
     SCOPED_TRACE(trial);
     const float reach = trial % 2 == 0 ? 1.0f : 500.0f;
     scene::TriangleGeometry t{};
-    for (vec3& v : t.vertex) v = {coordinate(reach), coordinate(reach), coordinate(reach)};
-    if (trial % 5 == 0) t.vertex[2] = t.vertex[0] + (t.vertex[1] - t.vertex[0]) * 0.5f;  // a needle
-    for (int k = 0; k < 3; ++k) t.vertex[2][k] = FixedPoint::quantise(t.vertex[2][k]);
+    for (auto& v : t.v)
+      for (float& x : v) x = coordinate(reach);
+    for (int k = 0; k < 3; ++k) {
+      if (trial % 5 == 0) t.v[2][k] = t.v[0][k] + (t.v[1][k] - t.v[0][k]) * 0.5f;  // a needle
+      t.v[2][k] = FixedPoint::quantise(t.v[2][k]);
+    }
     Bounds cell;
     for (int k = 0; k < 3; ++k) {
       const float a = coordinate(reach), b = coordinate(reach);
@@ -119,8 +122,8 @@ TEST(ClipTriangle, ContainsItsPoints) {
       if (sample % 3 == 0) j = whole - i;  // on an edge
       FixedPoint::Integer p[3];
       for (int k = 0; k < 3; ++k)
-        p[k] = FixedPoint::of(t.vertex[0][k]) * i + FixedPoint::of(t.vertex[1][k]) * j +
-               FixedPoint::of(t.vertex[2][k]) * (whole - i - j);
+        p[k] = FixedPoint::of(t.v[0][k]) * i + FixedPoint::of(t.v[1][k]) * j +
+               FixedPoint::of(t.v[2][k]) * (whole - i - j);
       const auto inside = [&](const Bounds& b) {
         for (int k = 0; k < 3; ++k) {
           if (p[k] < FixedPoint::shared(b.lo[k]) || p[k] > FixedPoint::shared(b.hi[k])) return false;

@@ -83,7 +83,7 @@ TEST(Hostile, NeedlesInOnePlane) {
   scene::Geometry g;
   add_needles(g, random, 3000, 0x1p-4f);
   for (auto& t : g.triangles) {
-    for (vec3& v : t.vertex) v.z = 0;
+    for (auto& v : t.v) v[2] = 0;
   }
   check_hostile(g);
 }
@@ -116,7 +116,8 @@ TEST(Hostile, ExtremeScales) {
     scene::Geometry g;
     add_triangles(g, random, 2000, 1);
     for (auto& t : g.triangles) {
-      for (vec3& v : t.vertex) v *= scale;
+      for (auto& v : t.v)
+        for (float& x : v) x *= scale;
     }
     SCOPED_TRACE(scale);
     check_hostile(g);

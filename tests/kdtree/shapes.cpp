@@ -15,7 +15,14 @@ vec3 random_vec3(Random& random, float lo, float hi) {
 }
 
 void add_triangle(scene::Geometry& g, const vec3& a, const vec3& b, const vec3& c) {
-  g.triangles.push_back({{a, b, c}, static_cast<std::uint32_t>(g.triangles.size())});
+  const auto n = static_cast<std::uint32_t>(g.triangles.size());
+  // An array's size is fixed: the geometry has that of a vector, which grows.
+  using Triangles = std::vector<scene::TriangleGeometry>;
+  const auto grown =
+      n > 0 ? std::static_pointer_cast<Triangles>(g.triangles.owner()) : std::make_shared<Triangles>();
+  grown->push_back({{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}, n, 0, KDRAY_NO_NORMALS});
+  g.triangles = {grown, grown->data(), grown->size()};
+  g.sources.push_back(n);
 }
 
 void add_triangles(scene::Geometry& g, Random& random, int n, float size) {

@@ -40,7 +40,7 @@ TEST(MakeGeometry, KeepsFloatsNearTheOriginAsTheyAre) {
   EXPECT_EQ(g.center, dvec3(0));
   ASSERT_EQ(g.triangles.size(), 100u);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    EXPECT_EQ(dvec3(g.triangles[i / 3].vertex[i % 3]), corners[i]);
+    EXPECT_EQ(dvec3(vertex(g.triangles[i / 3], static_cast<int>(i % 3))), corners[i]);
   }
 }
 
@@ -60,7 +60,7 @@ TEST(MakeGeometry, MovesFarFloatsWithoutLoss) {
     const Geometry g = make_geometry(triangle_scene(corners));
     for (const TriangleGeometry& t : g.triangles) {
       for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(dvec3(t.vertex[i]) + g.center, corners[t.source * 3 + i]) << "size " << size;
+        EXPECT_EQ(dvec3(vertex(t, i)) + g.center, corners[t.number * 3 + i]) << "size " << size;
       }
     }
   }
@@ -75,8 +75,8 @@ TEST(MakeGeometry, KeepsTheShapeOfAModelAMillionAway) {
   EXPECT_NEAR(g.center.x, 1e6, 1);
   for (const TriangleGeometry& t : g.triangles) {
     for (int i = 0; i < 3; ++i) {
-      const dvec3 back = dvec3(t.vertex[i]) + g.center;
-      EXPECT_LT(glm::length(back - corners[t.source * 3 + i]), 1e-7) << "float at 1e6 would be off by 0.03";
+      const dvec3 back = dvec3(vertex(t, i)) + g.center;
+      EXPECT_LT(glm::length(back - corners[t.number * 3 + i]), 1e-7) << "float at 1e6 would be off by 0.03";
     }
   }
 }
@@ -101,8 +101,8 @@ TEST(MakeGeometry, DropsAndCountsTrianglesWithoutArea) {
   });
   const Geometry g = make_geometry(s);
   ASSERT_EQ(g.triangles.size(), 2u);
-  EXPECT_EQ(g.triangles[0].source, 0u);
-  EXPECT_EQ(g.triangles[1].source, 3u);
+  EXPECT_EQ(g.sources[0], 0u);
+  EXPECT_EQ(g.sources[1], 3u);
   EXPECT_EQ(g.dropped_degenerate, 3u);
 }
 
@@ -129,8 +129,8 @@ TEST(MakeGeometry, KeepsTheOrderAroundDroppedTrianglesOfALargeScene) {
   ASSERT_EQ(g.triangles.size(), kept.size());
   Box bounds;
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    ASSERT_EQ(g.triangles[i].source, kept[i]);
-    ASSERT_EQ(dvec3(g.triangles[i].vertex[1]) + g.center, dvec3(kept[i] + 1.0, 0, 0));
+    ASSERT_EQ(g.sources[i], kept[i]);
+    ASSERT_EQ(dvec3(vertex(g.triangles[i], 1)) + g.center, dvec3(kept[i] + 1.0, 0, 0));
     bounds.grow(bounds_of(g.triangles[i]));
   }
   EXPECT_EQ(g.bounds.lo, bounds.lo);

@@ -41,10 +41,10 @@ HWY_ATTR inline Parts parts_of(const scene::TriangleGeometry& triangle, const Pl
   Parts parts{none, none};
   P x[3], corner[3];
   for (int v = 0; v < 3; ++v) {
-    const vec3& p = triangle.vertex[static_cast<std::size_t>(v)];
+    const float* const p = triangle.v[v];
     x[v] = hn::Set(d, p[plane.axis]);
     // The fourth float is part of the triangle too; left in, it could be slow (a denormal).
-    corner[v] = hn::IfThenElseZero(hn::FirstN(d, 3), hn::LoadU(d, &p.x));
+    corner[v] = hn::IfThenElseZero(hn::FirstN(d, 3), hn::LoadU(d, p));
     parts.below.include(hn::Le(x[v], s), corner[v], corner[v]);
     parts.above.include(hn::Ge(x[v], s), corner[v], corner[v]);
   }

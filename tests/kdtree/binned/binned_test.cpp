@@ -125,10 +125,11 @@ void check_integer_cases(std::uint64_t seed, int size, float offset, float scale
     SCOPED_TRACE(trial);
     const IntegerCase c = random_case(random, size);
     scene::Geometry g;
-    scene::TriangleGeometry& t = g.triangles.emplace_back();
+    g.triangles = Array<scene::TriangleGeometry>(1);
+    scene::TriangleGeometry& t = g.triangles[0] = {};
     for (std::size_t v = 0; v < 3; ++v)
       for (int k = 0; k < 3; ++k)
-        t.vertex[v][k] = to_float(c.triangle[v][static_cast<std::size_t>(k)], offset, scale);
+        t.v[v][k] = to_float(c.triangle[v][static_cast<std::size_t>(k)], offset, scale);
     const Bounds own = kdtree::bounds_from(scene::bounds_of(t));
     const Bounds known = kdtree::intersection(own, to_bounds(c.lo, c.hi, offset, scale));
     const auto axis = static_cast<std::size_t>(c.axis);
@@ -179,7 +180,7 @@ long double naive_least(const std::vector<BoundedRef>& refs, const Bounds& conte
   std::array<long double, 3> size;
   for (std::size_t k = 0; k < 3; ++k) size[k] = static_cast<long double>(contents.hi[k]) - contents.lo[k];
   const long double traverse =
-      static_cast<long double>(config.cost_traverse) * kdtree::traverse_factor(config);
+      static_cast<long double>(config.cost_traverse) * kdtree::traverse_factor(config.quality);
   long double least = std::numeric_limits<long double>::infinity();
   for (std::size_t k = 0; k < 3; ++k)
     for (const BoundedRef& r : refs)
@@ -270,7 +271,7 @@ TEST(BinnedPlane, SmallCellsGetTheBestOfAll) {
              (config.block > 1 ? 1e-3L * static_cast<long double>(m) : 0.0L);
     };
     const long double cost =
-        config.cost_traverse * kdtree::traverse_factor(config) +
+        config.cost_traverse * kdtree::traverse_factor(config.quality) +
         config.cost_intersect *
             (share(root.split - static_cast<long double>(s.contents.lo[k])) * tests(n_below) +
              share(static_cast<long double>(s.contents.hi[k]) - root.split) * tests(n_above));

@@ -109,7 +109,7 @@ TEST(MedianSplit, HostileGeometryEnds) {
     add_triangle(fan, {0, 0, 0}, random_vec3(random, -1, 1), random_vec3(random, -1, 1));
   add_triangles(flat, random, 2000, 0.5f);
   for (auto& t : flat.triangles)
-    for (vec3& v : t.vertex) v.y = 3;
+    for (auto& v : t.v) v[1] = 3;
   for (const SplitRule rule : kRules)
     for (const scene::Geometry& g : {same, fan, flat}) check_rule(g, rule);
 }
