@@ -15,13 +15,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
 
+// Cells with more references than this keep a plane between two bins: the exact place matters less there.
+inline constexpr std::size_t kRefined = 512;
+
 // References along one axis: the bounds that are to be compared with planes, and the planes to try.
-template <std::size_t kMost>
 struct Candidates {
-  alignas(64) std::array<float, kMost> begins;
-  alignas(64) std::array<float, kMost> ends;
+  alignas(64) std::array<float, kRefined> begins;
+  alignas(64) std::array<float, kRefined> ends;
   // Planes come in pairs of vectors; what is behind the last is not inside the cell.
-  alignas(64) std::array<float, 2 * kMost + 2 * kMostLanes> planes;
+  alignas(64) std::array<float, 2 * kRefined + 2 * kMostLanes> planes;
   std::size_t n_begins = 0, n_ends = 0, n_planes = 0;
   std::size_t base_below = 0, base_above = 0;  // references on a side of all planes
 
@@ -36,8 +38,7 @@ inline float begin_of(float lo, float hi) {
   return lo == hi ? next_below(lo) : lo;
 }
 
-template <std::size_t kMost>
-HWY_ATTR void offer_planes(const Candidates<kMost>& c, const PlaneCosts& costs, int axis, Best& best) {
+HWY_ATTR inline void offer_planes(const Candidates& c, const PlaneCosts& costs, int axis, Best& best) {
   const Floats d;
   const Ints di;
   const std::size_t n_lanes = hn::Lanes(d);
@@ -173,10 +174,7 @@ HWY_ATTR inline Best best_of_all(std::span<const BoundedRef> refs, const Bounds&
   return best;
 }
 
-// Tries the bounds in the two bins beside the best plane, exactly. Cells with more bounds there than `kMostNear` keep the
-// plane between the bins.
-inline constexpr std::size_t kMostNear = 1024;
-
+// Tries the bounds in the two bins beside the best plane, exactly. Of a cell of kRefined references at most.
 HWY_ATTR inline void refine(std::span<const BoundedRef> refs, const Bounds& contents, const BinGrid& grid,
                             const BuildConfig& config, Best& best) {
   const int axis = best.plane.axis;
@@ -185,13 +183,12 @@ HWY_ATTR inline void refine(std::span<const BoundedRef> refs, const Bounds& cont
   const float bin = (grid.hi[k] - grid.lo[k]) / kBins;
   const float from = std::max(best.plane.position - bin, costs.lo()),
               to = std::min(best.plane.position + bin, costs.hi());
-  Candidates<kMostNear> c;
+  Candidates c;
   std::size_t n_begins = 0, n_ends = 0, n_planes = 0, below = 0, above = 0;
   for (const BoundedRef& r : refs) {
     const float lo = r.lo[k], hi = r.hi[k];
     const int begins = static_cast<int>(lo > from) & static_cast<int>(lo < to);
     const int ends = static_cast<int>(hi > from) & static_cast<int>(hi < to);
-    if (n_begins == kMostNear || n_ends == kMostNear) return;
     c.begins[n_begins] = begin_of(lo, hi);
     n_begins += static_cast<std::size_t>(begins);
     c.planes[n_planes] = lo;

@@ -17,9 +17,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
 
-// Cells with more references than this keep a plane between two bins: the exact place matters less there.
-inline constexpr std::size_t kRefined = 512;
-
 HWY_ATTR inline Plane cheaper_than_leaf(const Best& best, std::size_t n, const BuildConfig& config) {
   const float leaf = static_cast<float>(config.cost_intersect) * TestCost(config).of(n);
   return best.plane.found() && best.cost < leaf ? best.plane : Plane{};
