@@ -20,10 +20,13 @@ if(KDRAY_SANITIZE)
   target_link_options(kdray_sanitizers INTERFACE -fsanitize=address,undefined)
 endif()
 
-# kdray_room(NAME SOURCES ... [PUBLIC libs...] [PRIVATE libs...])
+# kdray_room(NAME SOURCES ... [PUBLIC libs...] [PRIVATE libs...] [APART])
 #   Adds the library kdray_NAME (alias kdray::NAME) from host/NAME. Headers are included as "NAME/file.h".
+#   A room's files are compiled several at a time, as one: most of the time goes into headers that all of them include. Names in
+#   unnamed namespaces must differ within a room, then. (The preset `dev` joins nothing, so that a missing #include is found there.)
+#   APART: each file by itself, where the code that the compiler makes of it counts, or types in unnamed namespaces have linkage.
 function(kdray_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "APART" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(kdray_${name} STATIC ${ROOM_SOURCES})
   add_library(kdray::${name} ALIAS kdray_${name})
   target_compile_features(kdray_${name} PUBLIC cxx_std_20)
@@ -32,6 +35,9 @@ function(kdray_room name)
   target_link_libraries(kdray_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE}
                         $<BUILD_INTERFACE:kdray_warnings> $<BUILD_INTERFACE:kdray_numerics>
                         $<BUILD_INTERFACE:kdray_sanitizers>)
+  if(NOT ROOM_APART)
+    set_target_properties(kdray_${name} PROPERTIES UNITY_BUILD ${KDRAY_JOIN} UNITY_BUILD_BATCH_SIZE 8)
+  endif()
   set_property(GLOBAL APPEND PROPERTY KDRAY_ROOMS kdray_${name})
 endfunction()
 
@@ -46,7 +52,7 @@ function(kdray_compile_quickly target)
 endfunction()
 
 # kdray_test(NAME SOURCES ... LIBS ... [LABELS ...])
-#   One test executable per room, each of its cases a CTest test labelled as given.
+#   One test executable per room, each of its cases a CTest test labelled as given. (Not joined: tests use the same names.)
 function(kdray_test name)
   cmake_parse_arguments(T "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name}_test ${T_SOURCES})

@@ -17,6 +17,7 @@
 #include "cli/bench_ablation.h"
 #include "cli/bench_accuracy.h"
 #include "cli/bench_build.h"
+#include "cli/bench_limits.h"
 #include "cli/bench_modes.h"
 #include "cli/bench_report.h"
 #include "cli/command.h"
@@ -28,7 +29,7 @@ namespace kdray::cli {
 
 namespace {
 
-constexpr int kRaysMax = 1 << 26, kRepeatMax = 100000, kCoresMax = 4096, kSideMax = 65536;
+constexpr int kCoresMax = 4096;
 
 struct FramesCommand {
   bench::FramesOptions options;

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "bench/report_ablation.h"
+#include "cli/bench_limits.h"
 #include "cli/bench_report.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -16,9 +17,6 @@
 namespace kdray::cli {
 
 namespace {
-
-constexpr int kRepeatMax = 100000, kSideMax = 65536;
-constexpr long long kPixelsMax = 1 << 26;
 
 struct AblationCommand {
   bench::AblationOptions options;

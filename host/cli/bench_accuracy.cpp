@@ -12,6 +12,7 @@
 #include "bench/accuracy_reference.h"
 #include "bench/povray.h"
 #include "bench/report_accuracy.h"
+#include "cli/bench_limits.h"
 #include "cli/bench_report.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -22,8 +23,8 @@ namespace kdray::cli {
 
 namespace {
 
-constexpr int kRepeatMax = 100000, kSideMax = 16384, kSamplesMax = 65536;
-constexpr long long kPixelsMax = 1 << 24;  // a reference takes 16 times as many
+constexpr int kReferenceSideMax = 16384, kSamplesMax = 65536;
+constexpr long long kReferencePixelsMax = 1 << 24;  // a reference takes 16 times as many
 constexpr const char* kName = "accuracy";
 
 struct AccuracyCommand {
@@ -81,7 +82,8 @@ Command add_bench_accuracy(CLI::App& bench) {
   const auto c = std::make_shared<AccuracyCommand>();
   bench::AccuracyOptions& o = c->options;
   add_scenes(*app, o.scenes, "balls gears lamps");
-  add_size(*app, "Pixels across and down (default 512x512)", kSideMax, kPixelsMax, o.width, o.height);
+  add_size(*app, "Pixels across and down (default 512x512)", kReferenceSideMax, kReferencePixelsMax, o.width,
+           o.height);
   add_int(*app, "--repeat", "Rounds to take the median of (default 5)", 1, kRepeatMax, o.repeat);
   add_text(*app, "--reference-samples", "N",
            "Samples per pixel of the reference, a multiple of 32 (default 256)",

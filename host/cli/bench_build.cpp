@@ -9,6 +9,7 @@
 
 #include "bench/hostile_meshes.h"
 #include "bench/report_builds.h"
+#include "cli/bench_limits.h"
 #include "cli/bench_report.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -18,7 +19,7 @@ namespace kdray::cli {
 
 namespace {
 
-constexpr int kRaysMax = 1 << 26, kRepeatMax = 100000, kTrianglesMax = 100000000;
+constexpr int kTrianglesMax = 100000000;
 
 struct BuildCommand {
   bench::BuildOptions options;

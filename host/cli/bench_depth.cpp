@@ -7,6 +7,7 @@
 
 #include "bench/report_builds.h"
 #include "cli/bench_build.h"
+#include "cli/bench_limits.h"
 #include "cli/bench_report.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -14,8 +15,6 @@
 namespace kdray::cli {
 
 namespace {
-
-constexpr int kRaysMax = 1 << 26, kRepeatMax = 100000;
 
 struct DepthCommand {
   bench::DepthOptions options;

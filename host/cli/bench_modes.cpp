@@ -12,6 +12,7 @@
 #include "base/write_file.h"
 #include "bench/modes_timeline.h"
 #include "bench/report_modes.h"
+#include "cli/bench_limits.h"
 #include "cli/bench_report.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -21,8 +22,7 @@ namespace kdray::cli {
 
 namespace {
 
-constexpr int kRepeatMax = 100000, kSideMax = 65536, kQueuesMax = 1024;
-constexpr long long kPixelsMax = 1 << 26;
+constexpr int kQueuesMax = 1024;
 
 struct ModesCommand {
   bench::ModesOptions options;

@@ -14,8 +14,6 @@ namespace kdray::cli {
 
 namespace {
 
-using Json = nlohmann::json;
-
 // The first pixel that differs in a bit.
 std::string difference(const Picture& picture, const Picture& reference) {
   if (picture.width != reference.width || picture.height != reference.height) return "another size";
@@ -38,7 +36,8 @@ TuneScene::TuneScene(const std::string& name, const DeviceOptions& device, const
       reference_(TuneScene::render({})) {}
 
 tune::Key TuneScene::key() const {
-  const Json key = Json::parse(renderer_.statistics()).at("device").at("tuning").at("key");
+  const nlohmann::json key =
+      nlohmann::json::parse(renderer_.statistics()).at("device").at("tuning").at("key");
   const auto text = [&](const char* word) { return key.at(word).get<std::string>(); };
   return {text("device"), text("driver"), text("kernels"), text("schedule"), text("features")};
 }
@@ -55,7 +54,7 @@ std::string TuneScene::fault(const Tuning& tuning) {
 
 double TuneScene::seconds(const Tuning& tuning) {
   render(tuning);
-  return Json::parse(renderer_.statistics()).at("seconds").at("render").get<double>();
+  return nlohmann::json::parse(renderer_.statistics()).at("seconds").at("render").get<double>();
 }
 
 namespace {

@@ -6,8 +6,6 @@
 
 namespace kdray::cli {
 
-using Json = nlohmann::json;
-
 namespace {
 
 std::string value_text(int value) {
@@ -28,15 +26,15 @@ std::string explain_rival(const tune::Setting& setting, const tune::Rival& rival
                      rival.ratios.size() == 1 ? "" : "s");
 }
 
-Json settings_json(const Tuning& tuning) {
-  Json json = Json::object();
+nlohmann::json settings_json(const Tuning& tuning) {
+  nlohmann::json json = nlohmann::json::object();
   for (const tune::Setting& s : tune::settings())
     if (tuning.*s.value != 0) json[std::string(s.name)] = tuning.*s.value;
   return json;
 }
 
-Json step_json(const tune::Step& step) {
-  Json rivals = Json::array();
+nlohmann::json step_json(const tune::Step& step) {
+  nlohmann::json rivals = nlohmann::json::array();
   for (const tune::Rival& r : step.rivals)
     rivals.push_back({{"value", r.tuning.*step.setting->value},
                       {"verdict", tune::name_of(r.verdict)},
@@ -84,10 +82,10 @@ std::string table_of(const std::vector<Checked>& checked) {
   return text;
 }
 
-Json json_of(const std::vector<Tuned>& tuned, const std::vector<Checked>& checked) {
-  Json json = {{"tuned", Json::array()}, {"checked", Json::array()}};
+nlohmann::json json_of(const std::vector<Tuned>& tuned, const std::vector<Checked>& checked) {
+  nlohmann::json json = {{"tuned", nlohmann::json::array()}, {"checked", nlohmann::json::array()}};
   for (const Tuned& t : tuned) {
-    Json steps = Json::array();
+    nlohmann::json steps = nlohmann::json::array();
     for (const tune::Step& step : t.found.steps) steps.push_back(step_json(step));
     json["tuned"].push_back({{"scenes", t.scenes},
                              {"settings", settings_json(t.found.best)},

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "film/png.h"
+#include "film/png_errors.h"
 
 namespace kdray::film {
 namespace {
@@ -26,13 +27,6 @@ void take(png_structp png, png_bytep data, png_size_t n_bytes) {
   std::memcpy(data, source->bytes.data() + source->position, n_bytes);
   source->position += n_bytes;
 }
-
-[[noreturn]] void fail(png_structp png, png_const_charp message) {
-  static_cast<Source*>(png_get_error_ptr(png))->error = message;
-  longjmp(png_jmpbuf(png), 1);
-}
-
-void ignore_warning(png_structp, png_const_charp) {}
 
 struct Reader {
   png_structp png = nullptr;
@@ -88,7 +82,7 @@ PngPixels decode_png(std::string_view bytes, const std::string& file) {
     throw input_error(file, 0, "is not a PNG file", "name a PNG or EXR picture");
   Source source{bytes, 0, {}};
   Reader reader;
-  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, fail, ignore_warning);
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, keep_error<Source>, ignore_warning);
   if (reader.png) reader.info = png_create_info_struct(reader.png);
   if (!reader.info) throw std::bad_alloc();
   if (!start(reader.png, reader.info, source)) throw damaged(source.error);

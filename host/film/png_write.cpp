@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "film/png.h"
+#include "film/png_errors.h"
 
 namespace kdray::film {
 namespace {
@@ -27,13 +28,6 @@ void append(png_structp png, png_bytep data, png_size_t n_bytes) {
 }
 
 void flush(png_structp) {}
-
-[[noreturn]] void fail(png_structp png, png_const_charp message) {
-  static_cast<Sink*>(png_get_error_ptr(png))->error = message;
-  longjmp(png_jmpbuf(png), 1);
-}
-
-void ignore_warning(png_structp, png_const_charp) {}
 
 void set_color(png_structp png, png_infop info, const PngMeta& meta) {
   // png_set_sRGB_gAMA_and_cHRM adds what readers that do not know the sRGB chunk need.
@@ -84,7 +78,7 @@ bool encode_rows(png_structp png, png_infop info, const PngPixels& picture, cons
 std::string encode_png(const PngPixels& picture, const PngMeta& meta) {
   Sink sink;
   std::vector<png_byte> row(static_cast<std::size_t>(picture.width) * picture.channels * picture.bits / 8);
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, fail, ignore_warning);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, keep_error<Sink>, ignore_warning);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   const bool good = info && encode_rows(png, info, picture, meta, sink, row.data());
   png_destroy_write_struct(&png, &info);

@@ -17,7 +17,7 @@ namespace {
 constexpr int kTeeth = 36;
 constexpr double kOuter = 0.995;  // of the pitch the gears mesh at; below 1, so that no two surfaces coincide
 constexpr double kInner = 0.9;
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Gear {
   dvec3 center;  // of the upper face
@@ -27,7 +27,7 @@ struct Gear {
 
 // The outline at the height z; `sense` -1 goes round the other way, for the lower face.
 std::vector<dvec3> outline(const Gear& g, double z, int sense) {
-  constexpr double tooth = 2 * kPi / kTeeth;
+  constexpr double tooth = 2 * pi / kTeeth;
   struct Corner {
     double at;  // in teeth
     bool outer;
@@ -97,7 +97,7 @@ void write_gears(std::ostream& out, int size) {
         nff.surface(surface_of(x, y, z));
         const double pitch = radius * (2 - depth);
         write_gear(nff, {.center = {-1 + radius + x * pitch, -1 + radius + y * pitch, 1 - z * (1.0 / size)},
-                         .turn = (x + y + z) % 2 * kPi / kTeeth,
+                         .turn = (x + y + z) % 2 * pi / kTeeth,
                          .outer_radius = kOuter * radius,
                          .inner_radius = kInner * radius,
                          .thickness = thickness});

@@ -12,7 +12,7 @@ namespace kdray::generate {
 
 namespace {
 
-constexpr double kBall = 1.0 / 4, kRod = 1.0 / 16;  // radii, in cells
+constexpr double kBallRadius = 1.0 / 4, kRodRadius = 1.0 / 16;  // radii, in cells
 
 void write_view_and_lights(NffWriter& nff, int size) {
   // Looks down a corridor from the middle of a cell.
@@ -30,7 +30,7 @@ void write_view_and_lights(NffWriter& nff, int size) {
 void write_rods(NffWriter& nff, const std::array<int, 3>& at, int size) {
   const double cell = 1.0 / size;
   // Rods start about half a ball's radius from its centre: their rims are hidden inside.
-  const double sunk = kBall * cell * (1 - std::sqrt(kRod / kBall)) * 0.99;
+  const double sunk = kBallRadius * cell * (1 - std::sqrt(kRodRadius / kBallRadius)) * 0.99;
   const dvec3 point = dvec3(at[0], at[1], at[2]) / double(size);
   for (int axis = 0; axis < 3; ++axis) {
     if (at[axis] == size) continue;
@@ -39,7 +39,7 @@ void write_rods(NffWriter& nff, const std::array<int, 3>& at, int size) {
     base[axis] += sunk;
     apex[axis] += cell - sunk;
     nff.surface({.color = color, .diffuse = 0.99, .specular = 0});
-    nff.cone(base, kRod * cell, apex, kRod * cell);
+    nff.cone(base, kRodRadius * cell, apex, kRodRadius * cell);
   }
 }
 
@@ -53,7 +53,7 @@ void write_lattice(std::ostream& out, int size) {
     for (int y = 0; y <= size; ++y)
       for (int z = 0; z <= size; ++z) {
         nff.surface({.color = {0.9, 0.9, 0.9}, .diffuse = 0.5, .specular = 0.5, .shine = 3.0827});
-        nff.sphere(dvec3(x, y, z) / double(size), kBall / size);
+        nff.sphere(dvec3(x, y, z) / double(size), kBallRadius / size);
         write_rods(nff, {x, y, z}, size);
       }
 }

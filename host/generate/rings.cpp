@@ -15,7 +15,7 @@ namespace kdray::generate {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kRadius = 0.07412;  // of rods and joints, as published
 
 using Ring = std::array<dvec3, 5>;
@@ -27,10 +27,10 @@ Object ring_vertices() {
   const double scale = 1 / (1 + kRadius);  // fits a sphere of radius 1
   Object object;
   for (int i = 0; i < 5; ++i)
-    object[0][i] = scale * dvec3(std::cos(i * 2 * kPi / 5), std::sin(i * 2 * kPi / 5), 0);
-  const dmat3 tilt = rotation_x(2 * std::acos(std::cos(kPi / 3) / std::sin(kPi / 5)));
+    object[0][i] = scale * dvec3(std::cos(i * 2 * pi / 5), std::sin(i * 2 * pi / 5), 0);
+  const dmat3 tilt = rotation_x(2 * std::acos(std::cos(pi / 3) / std::sin(pi / 5)));
   for (int k = 1; k < 6; ++k) {
-    const dmat3 place = rotation_z(kPi * (2 * k - 1) / 5) * tilt;
+    const dmat3 place = rotation_z(pi * (2 * k - 1) / 5) * tilt;
     for (int i = 0; i < 5; ++i) object[k][i] = place * object[0][i];
   }
   return object;
@@ -51,7 +51,7 @@ void write_object(NffWriter& nff, const Object& object, const dvec3& offset) {
 
 // Just fills the 45 degree view.
 void write_wall(NffWriter& nff, const dvec3& eye, double y) {
-  const double half = 1.01 * (y - eye.y) * std::tan(kPi / 8);
+  const double half = 1.01 * (y - eye.y) * std::tan(pi / 8);
   nff.surface({.color = {1, 1, 1}, .diffuse = 1, .specular = 0});
   nff.polygon({{eye.x + half, y, eye.z + half},
                {eye.x - half, y, eye.z + half},
@@ -63,7 +63,7 @@ void write_wall(NffWriter& nff, const dvec3& eye, double y) {
 
 void write_rings(std::ostream& out, int size) {
   NffWriter nff(out);
-  const double layer = 1 / std::sin(kPi / 8);  // between the layers of the pyramid
+  const double layer = 1 / std::sin(pi / 8);  // between the layers of the pyramid
   const dvec3 eye{-1, -layer, 0.5};
   nff.background(kSkyBlue);
   nff.view({.from = eye, .at = eye + dvec3(0, 1, 0), .up = {0, 0, 1}, .angle = 45, .hither = 1});

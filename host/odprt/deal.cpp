@@ -52,14 +52,14 @@ std::vector<std::uint32_t> in_runs(std::span<const double> costs, std::span<cons
   }
 }
 
-struct Load {
+struct PartLoad {
   double cost = 0;
   std::uint64_t bytes = 0;
 };
 
-std::vector<Load> loads_of(std::span<const double> costs, std::span<const std::uint64_t> bytes,
-                           std::span<const std::uint32_t> parts, std::size_t n_parts) {
-  std::vector<Load> loads(n_parts);
+std::vector<PartLoad> loads_of(std::span<const double> costs, std::span<const std::uint64_t> bytes,
+                               std::span<const std::uint32_t> parts, std::size_t n_parts) {
+  std::vector<PartLoad> loads(n_parts);
   for (std::size_t i = 0; i < costs.size(); ++i) {
     loads[parts[i]].cost += costs[i];
     loads[parts[i]].bytes += bytes[i];
@@ -67,9 +67,9 @@ std::vector<Load> loads_of(std::span<const double> costs, std::span<const std::u
   return loads;
 }
 
-double largest_cost(std::span<const Load> loads) {
+double largest_cost(std::span<const PartLoad> loads) {
   return std::max_element(loads.begin(), loads.end(),
-                          [](const Load& a, const Load& b) { return a.cost < b.cost; })
+                          [](const PartLoad& a, const PartLoad& b) { return a.cost < b.cost; })
       ->cost;
 }
 
@@ -80,12 +80,12 @@ std::vector<std::uint32_t> in_several_runs(std::span<const double> costs,
                                            std::uint64_t most_bytes, std::uint32_t runs_per_part) {
   const std::uint32_t n_runs = n_parts * runs_per_part;
   const std::vector<std::uint32_t> run_of = in_runs(costs, bytes, n_runs, most_bytes / 2);
-  const std::vector<Load> runs = loads_of(costs, bytes, run_of, n_runs);
+  const std::vector<PartLoad> runs = loads_of(costs, bytes, run_of, n_runs);
   std::vector<std::uint32_t> order(n_runs), part_of(n_runs);
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return runs[a].cost > runs[b].cost; });
-  std::vector<Load> parts(n_parts);
+  std::vector<PartLoad> parts(n_parts);
   for (const std::uint32_t run : order) {
     std::uint32_t best = n_parts;
     for (std::uint32_t part = 0; part < n_parts; ++part)

@@ -10,21 +10,12 @@
 
 #include "layout/primitives.layout.h"
 #include "layout/wide.layout.h"
+#include "odprt/kinds.h"
 #include "odprt/replicate.h"
 
 namespace kdray::odprt {
 
 namespace {
-
-constexpr std::uint32_t kKinds = 3;
-constexpr std::size_t kRows[kKinds] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
-
-const Array<layout::u32>& blocks_of(const flatten::WideForm& form, std::uint32_t kind) {
-  return kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
-}
-Array<layout::u32>& blocks_of(flatten::WideForm& form, std::uint32_t kind) {
-  return kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
-}
 
 // For each primitive a bit for every part that holds it.
 struct Holders {
@@ -116,9 +107,9 @@ class Counting {
     const std::uint32_t kind = leaf >> KDRAY_WIDE_KIND_SHIFT & 3u, n = leaf_blocks(walk_.form(), leaf);
     const auto width = static_cast<std::size_t>(walk_.form().block);
     const layout::u32* words = blocks_of(walk_.form(), kind).data() +
-                               (leaf & KDRAY_WIDE_FIRST_MASK) * kRows[kind] * width +
-                               (kRows[kind] - 1) * width;
-    for (std::uint32_t b = 0; b < n; ++b, words += kRows[kind] * width)
+                               (leaf & KDRAY_WIDE_FIRST_MASK) * kBlockRows[kind] * width +
+                               (kBlockRows[kind] - 1) * width;
+    for (std::uint32_t b = 0; b < n; ++b, words += kBlockRows[kind] * width)
       for (std::size_t lane = 0; lane < width; ++lane) {
         holders_.add(kind, words[lane] & ~KDRAY_WIDE_LAST, std::uint64_t{1} << walk_.part());
         if (words[lane] & KDRAY_WIDE_LAST) break;  // the last primitive; empty lanes follow
@@ -169,7 +160,7 @@ class Copying {
     out.stack_size = walk.form().stack_size;  // a part's is no larger than the whole's
     out.nodes = Array<layout::WideNode>(sizes.nodes);
     for (std::uint32_t kind = 0; kind < kKinds; ++kind)
-      blocks_of(out, kind) = Array<layout::u32>(sizes.blocks[kind] * kRows[kind] * width);
+      blocks_of(out, kind) = Array<layout::u32>(sizes.blocks[kind] * kBlockRows[kind] * width);
     n_nodes_ = 1;
     copy_opened(0, 0);
   }
@@ -223,12 +214,12 @@ class Copying {
   layout::u32 copy_leaf(layout::u32 leaf) {
     const std::uint32_t kind = leaf >> KDRAY_WIDE_KIND_SHIFT & 3u, n = leaf_blocks(walk_.form(), leaf);
     const auto width = static_cast<std::size_t>(walk_.form().block);
-    const std::size_t words = kRows[kind] * width;
+    const std::size_t words = kBlockRows[kind] * width;
     const layout::u32* from = blocks_of(walk_.form(), kind).data() + (leaf & KDRAY_WIDE_FIRST_MASK) * words;
     layout::u32* to = blocks_of(out_, kind).data() + n_blocks_[kind] * words;
     std::copy(from, from + n * words, to);
     for (std::uint32_t b = 0; b < n; ++b)
-      rename(to + b * words + (kRows[kind] - 1) * width, width, numbering_.place[kind]);
+      rename(to + b * words + (kBlockRows[kind] - 1) * width, width, numbering_.place[kind]);
     const auto first = static_cast<layout::u32>(n_blocks_[kind]);
     n_blocks_[kind] += n;
     return (leaf & ~KDRAY_WIDE_FIRST_MASK) | first;

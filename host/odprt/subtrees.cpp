@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "layout/primitives.layout.h"
+#include "odprt/kinds.h"
 
 namespace kdray::odprt {
 
@@ -14,16 +15,11 @@ namespace {
 
 // The heuristic's units: a node costs 1, a block of primitives 2 (host/kdtree).
 constexpr double kNodeCost = 1, kBlockCost = 2;
-constexpr std::uint32_t kRows[] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
 constexpr std::uint64_t kPrimitiveBytes[] = {sizeof(layout::Triangle), sizeof(layout::Sphere),
                                              sizeof(layout::Cone)};
 
 std::uint32_t kind_of(layout::u32 leaf) {
   return leaf >> KDRAY_WIDE_KIND_SHIFT & 3u;
-}
-
-const Array<layout::u32>& blocks_of_kind(const flatten::WideForm& form, std::uint32_t kind) {
-  return kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
 }
 
 // What a subtree takes: surface times cost, and bytes.
@@ -68,7 +64,7 @@ class Loads {
     const std::uint32_t kind = kind_of(leaf), n = leaf_blocks(form_, leaf);
     const auto lanes = n * static_cast<std::uint64_t>(form_.block);
     return {kBlockCost * n * static_cast<double>(bounds.area()),
-            lanes * (kRows[kind] * sizeof(float) + primitive_bytes_[kind])};
+            lanes * (kBlockRows[kind] * sizeof(float) + primitive_bytes_[kind])};
   }
 
   // A node's leaves, and that it costs something to come to its inner children.
@@ -157,8 +153,8 @@ class Cutter {
 
 std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf) {
   const std::uint32_t kind = kind_of(leaf);
-  const std::size_t words = kRows[kind] * static_cast<std::size_t>(form.block);
-  const layout::u32* block = blocks_of_kind(form, kind).data() + (leaf & KDRAY_WIDE_FIRST_MASK) * words;
+  const std::size_t words = kBlockRows[kind] * static_cast<std::size_t>(form.block);
+  const layout::u32* block = blocks_of(form, kind).data() + (leaf & KDRAY_WIDE_FIRST_MASK) * words;
   std::uint32_t n = 1;
   for (; !(block[words - 1] & KDRAY_WIDE_LAST); block += words) ++n;
   return n;

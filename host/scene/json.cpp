@@ -16,15 +16,14 @@ namespace kdray::scene {
 
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
-
 Camera read_camera(const JsonNode& node) {
   node.expect_keys(json_keys::kCamera);
   Camera camera;
   camera.from = node["from"].vector();
   camera.at = node["at"].vector();
   if (const auto up = node.find("up")) camera.up = up->vector();
-  if (const auto fov = node.find("fov")) camera.vertical_fov = fov->number_between(1e-6, 179.999) * kDegree;
+  if (const auto fov = node.find("fov"))
+    camera.vertical_fov = glm::radians(fov->number_between(1e-6, 179.999));
   if (const auto hither = node.find("hither")) camera.hither = hither->number_from(0);
   if (const char* fault = fault_of(camera)) throw node.error(fault);
   return camera;
@@ -60,8 +59,8 @@ void read_cone_angles(const JsonNode& node, Light& light) {
   const auto inner = node.find("inner");
   const double full = inner ? inner->number_between(0, 180) : outer;
   if (full > outer) throw inner->error("the inner angle is wider than the outer one");
-  light.cos_inner = static_cast<float>(std::cos(full * kDegree));
-  light.cos_outer = static_cast<float>(std::cos(outer * kDegree));
+  light.cos_inner = static_cast<float>(std::cos(glm::radians(full)));
+  light.cos_outer = static_cast<float>(std::cos(glm::radians(outer)));
 }
 
 Light read_light(const JsonNode& node) {

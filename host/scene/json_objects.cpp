@@ -14,8 +14,6 @@ namespace kdray::scene {
 
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
-
 vec3 color_or(const JsonNode& object, std::string_view key, const vec3& otherwise) {
   const auto node = object.find(key);
   return node ? node->color() : otherwise;
@@ -25,10 +23,10 @@ vec3 color_or(const JsonNode& object, std::string_view key, const vec3& otherwis
 dmat4 read_rotation(const JsonNode& node) {
   if (node.is_object()) {
     node.expect_keys(json_keys::kTurn);
-    return rotation(node["axis"].direction(), node["angle"].number() * kDegree);
+    return rotation(node["axis"].direction(), glm::radians(node["angle"].number()));
   }
   if (!node.is_array()) throw node.expected("[x, y, z] in degrees or {\"axis\": ..., \"angle\": ...}");
-  const dvec3 turn = node.vector() * kDegree;
+  const dvec3 turn = glm::radians(node.vector());
   return rotation({0, 0, 1}, turn.z) * rotation({0, 1, 0}, turn.y) * rotation({1, 0, 0}, turn.x);
 }
 

@@ -22,7 +22,6 @@ namespace kdray::scene {
 namespace {
 
 constexpr float kAmbient = 0.1f;
-constexpr double kDegree = 0.017453292519943295;
 constexpr std::uint32_t kLargestPicture = 1u << 16;
 
 class NffReader {
@@ -268,7 +267,7 @@ class NffReader {
       const double degrees = in_.number("the view's angle in degrees");
       if (!(degrees > 0 && degrees < 180))
         throw in_.error("the view's angle is not between 0 and 180 degrees");
-      view.camera.vertical_fov = degrees * kDegree;
+      view.camera.vertical_fov = glm::radians(degrees);
       view.has_angle = true;
     } else if (key == "hither") {
       in_.word(key);

@@ -11,7 +11,7 @@ namespace kdray::scene {
 
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 14;
+constexpr std::size_t kBoundsGrain = std::size_t{1} << 14;
 
 // Only vertices that a triangle uses count: files often carry some that no face names.
 DBox triangle_bounds(const Scene& scene) {
@@ -29,8 +29,8 @@ DBox triangle_bounds(const Scene& scene) {
     a.grow(b);
     return a;
   };
-  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), kGrain), DBox(),
-                              grow, join);
+  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), kBoundsGrain),
+                              DBox(), grow, join);
 }
 
 }  // namespace

@@ -50,22 +50,22 @@ class Sets {
 };
 
 // An edge as one of its faces sees it.
-struct Side {
+struct FaceSide {
   std::uint64_t key;  // both points
   std::uint32_t face;
   bool forward;  // the face runs from the smaller point to the larger
   auto order() const { return std::pair(key, face); }
 };
 
-std::vector<Side> sorted_sides(const Mesh& mesh) {
-  std::vector<Side> sides(3 * mesh.triangles.size());
+std::vector<FaceSide> sorted_sides(const Mesh& mesh) {
+  std::vector<FaceSide> sides(3 * mesh.triangles.size());
   tbb::parallel_for(std::size_t{0}, mesh.triangles.size(), [&](std::size_t i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint64_t a = mesh.triangles[i][k], b = mesh.triangles[i][(k + 1) % 3];
       sides[3 * i + k] = {std::min(a, b) << 32 | std::max(a, b), static_cast<std::uint32_t>(i), a < b};
     }
   });
-  tbb::parallel_sort(sides, [](const Side& a, const Side& b) { return a.order() < b.order(); });
+  tbb::parallel_sort(sides, [](const FaceSide& a, const FaceSide& b) { return a.order() < b.order(); });
   return sides;
 }
 
@@ -75,7 +75,7 @@ class Finder {
       : mesh_(mesh), joined_(mesh.triangles.size()), agreeing_(mesh.triangles.size()) {}
 
   Topology find() {
-    const std::vector<Side> sides = sorted_sides(mesh_);
+    const std::vector<FaceSide> sides = sorted_sides(mesh_);
     for (std::size_t first = 0, last; first < sides.size(); first = last) {
       for (last = first + 1; last < sides.size() && sides[last].key == sides[first].key; ++last) {
       }
@@ -89,11 +89,11 @@ class Finder {
   }
 
  private:
-  void take_edge(std::span<const Side> sides) {
+  void take_edge(std::span<const FaceSide> sides) {
     const Edge edge{static_cast<std::uint32_t>(sides[0].key >> 32), static_cast<std::uint32_t>(sides[0].key),
                     sides[0].face};
     ++out_.n_edges;
-    for (const Side& side : sides.subspan(1)) joined_.join(sides[0].face, side.face, false);
+    for (const FaceSide& side : sides.subspan(1)) joined_.join(sides[0].face, side.face, false);
     if (sides.size() == 1) out_.open.push_back(edge);
     if (sides.size() % 2 == 1) odd_.push_back(edge.triangle);
     if (sides.size() > 2) out_.crowded.push_back(edge);
