@@ -113,7 +113,8 @@ TEST(MakeGeometry, KeepsTheOrderAroundDroppedTrianglesOfALargeScene) {
   constexpr std::uint32_t kMany = 70000;
   std::mt19937 random(9);
   Scene s;
-  s.materials.emplace_back();
+  s.materials.resize(2);
+  s.normals = {vec3(0, 0, 1)};
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < kMany; ++i) {
     const bool flat = i < 20000 ? random() % 3 == 0 : i > 40000 && i < 62000;
@@ -121,20 +122,26 @@ TEST(MakeGeometry, KeepsTheOrderAroundDroppedTrianglesOfALargeScene) {
     const double x = i;
     for (const dvec3& p : {dvec3(x, 0, 0), dvec3(x + 1, 0, 0), dvec3(x, flat ? 0 : 1, 0)})
       s.vertices.push_back(p);
-    s.triangles.push_back({.vertex = {first, first + 1, first + 2}, .number = i});
+    s.triangles.push_back({.vertex = {first, first + 1, first + 2}, .material = i % 2, .number = i});
+    if (i % 5 == 0) s.triangles.back().normal = {0, 0, 0};
     if (!flat) kept.push_back(i);
   }
   const Geometry g = make_geometry(s);
   EXPECT_EQ(g.dropped_degenerate, kMany - kept.size());
   ASSERT_EQ(g.triangles.size(), kept.size());
   Box bounds;
+  std::uint32_t n_smooth = 0;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     ASSERT_EQ(g.sources[i], kept[i]);
+    ASSERT_EQ(g.triangles[i].number, kept[i]);
+    ASSERT_EQ(g.triangles[i].material, kept[i] % 2);
+    ASSERT_EQ(g.triangles[i].normals, kept[i] % 5 == 0 ? n_smooth++ : KDRAY_NO_NORMALS);
     ASSERT_EQ(dvec3(vertex(g.triangles[i], 1)) + g.center, dvec3(kept[i] + 1.0, 0, 0));
     bounds.grow(bounds_of(g.triangles[i]));
   }
   EXPECT_EQ(g.bounds.lo, bounds.lo);
   EXPECT_EQ(g.bounds.hi, bounds.hi);
+  EXPECT_EQ(g.n_smooth, n_smooth);
 }
 
 TEST(MakeGeometry, DecidesFlatnessExactly) {
