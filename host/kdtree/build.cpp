@@ -19,7 +19,6 @@ namespace kdray::kdtree {
 namespace {
 
 constexpr std::size_t kFineMesh = std::size_t{1} << 19;  // primitives
-constexpr int kFineBlock = 8;                            // of a fine mesh's leaves
 constexpr int kDepthLimit = 64;                          // the traversal's stack
 
 void check(const BuildConfig& c, std::size_t n) {
@@ -69,7 +68,7 @@ double traverse_factor(Quality quality) {
 }
 
 BuildConfig suited(BuildConfig config, std::size_t n_primitives) {
-  config.block = n_primitives > kFineMesh ? kFineBlock : 4;
+  config.block = n_primitives > kFineMesh ? 8 : 4;
   return config;
 }
 

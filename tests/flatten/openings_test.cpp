@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "flatten/flatten.h"
+#include "flatten/flat_of.h"
 #include "flatten/wide.h"
 #include "kdtree/build.h"
 #include "kdtree/shapes.h"
@@ -76,14 +76,6 @@ class AllWays {
   const kdtree::Tree& tree_;
   std::map<std::uint32_t, double> least_;
 };
-
-FlatScene flat_of(const scene::Geometry& g, const kdtree::Tree& tree) {
-  scene::Scene s;
-  s.triangles.resize(g.triangles.size());
-  s.spheres.resize(g.spheres.size());
-  s.cones.resize(g.cones.size());
-  return flatten(s, g, tree);
-}
 
 // The sum of surfaces of the form's nodes, as their parents have them.
 double surface_of(const WideForm& wide, const kdtree::Tree& tree) {

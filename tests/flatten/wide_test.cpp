@@ -14,7 +14,7 @@
 #include <string>
 #include <tuple>
 
-#include "flatten/flatten.h"
+#include "flatten/flat_of.h"
 #include "kdtree/build.h"
 #include "kdtree/shapes.h"
 
@@ -70,15 +70,6 @@ std::vector<NamedGeometry> geometries() {
   add_layers(add("layers"));
   add_fan(add("fan"), random, 3000);
   return all;
-}
-
-// flatten() wants the scene that the geometry comes from; of it only the counts matter here.
-FlatScene flat_of(const scene::Geometry& g, const kdtree::Tree& tree) {
-  scene::Scene s;
-  s.triangles.resize(g.triangles.size());
-  s.spheres.resize(g.spheres.size());
-  s.cones.resize(g.cones.size());
-  return flatten(s, g, tree);
 }
 
 struct Subject {

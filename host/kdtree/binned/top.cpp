@@ -259,8 +259,7 @@ class TopBuilder {
                      [](const TopCell& a, const TopCell& b) { return a.n > b.n; });
     std::atomic<std::size_t> next{0};
     tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(), [&](int) {
-      for (std::size_t i; (i = next++) < subtrees_.size();)
-        subtrees_[i].is_leaf ? make_leaf(subtrees_[i]) : build_one(subtrees_[i]);
+      for (std::size_t i; (i = next++) < subtrees_.size();) build_one(subtrees_[i]);
     });
   }
 
@@ -273,6 +272,7 @@ class TopBuilder {
   }
 
   void build_one(TopCell& top) {
+    if (top.is_leaf) return make_leaf(top);
     Workspace& workspace = workspaces_.local();
     std::vector<BoundedRef>& stack = workspace.stack;
     if (stack.size() < top.n + 1) stack.resize(top.n + 1);

@@ -1,0 +1,17 @@
+// What    The flat form of a geometry that comes from no scene.
+#pragma once
+
+#include "flatten/flatten.h"
+
+namespace kdray::flatten {
+
+// flatten() wants the scene that the geometry comes from; of it only the counts matter here.
+inline FlatScene flat_of(const scene::Geometry& g, const kdtree::Tree& tree) {
+  scene::Scene s;
+  s.triangles.resize(g.triangles.size());
+  s.spheres.resize(g.spheres.size());
+  s.cones.resize(g.cones.size());
+  return flatten(s, g, tree);
+}
+
+}  // namespace kdray::flatten
