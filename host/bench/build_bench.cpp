@@ -64,8 +64,7 @@ class SceneBench {
       prepare::Prepared made = prepare::prepare(scene_, geometry_, builders_[i].config);
       run.builders[i].tree = facts_of(made);
       renderers.push_back(std::make_shared<Renderer>(PreparedScene(std::move(made)), device()));
-      const std::string automatic = "auto";
-      Contestant contestant = kdray_contestants(renderers.back(), std::span(&automatic, 1)).front();
+      Contestant contestant = kdray_contestant(renderers.back(), "auto");
       contestant.mode = builders_[i].name;
       contestants.push_back(std::move(contestant));
     }

@@ -52,7 +52,8 @@ class SceneBench {
 
  private:
   kdtree::BuildConfig config(int depth) const {
-    return prepare::config_of({.quality = options_.quality, .max_depth = depth}, geometry_.size());
+    return prepare::config_of({.quality = options_.quality, .max_depth = depth, .binary_form = false},
+                              geometry_.size());
   }
   prepare::Prepared prepare_with(int depth) const {
     return prepare::prepare(scene_, geometry_, config(depth));

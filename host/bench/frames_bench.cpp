@@ -38,7 +38,7 @@ class FrameBench {
       : options_(options), name_(name), scene_(load_scene(name)) {
     DeviceOptions device;
     device.device = options.device;
-    renderer_ = std::make_unique<Renderer>(scene_, TreeOptions{}, device);
+    renderer_ = std::make_unique<Renderer>(scene_, TreeOptions{.binary_form = false}, device);
     facts_ = nlohmann::json::parse(renderer_->statistics()).at("device");
     cores_ = cores_of(facts_);
     embree_ = make_embree_scenes(scene_.model());

@@ -16,7 +16,7 @@ class Mesh {
   Mesh(scene::Scene&& scene, BuildQuality quality)
       : scene_(std::move(scene)),
         geometry_(scene::make_geometry(scene_)),
-        config_(prepare::config_of({.quality = quality}, geometry_.size())) {}
+        config_(prepare::config_of({.quality = quality, .binary_form = false}, geometry_.size())) {}
 
   BuildTimes build() const { return time_build(scene_, geometry_, config_); }
   prepare::Prepared prepared() const { return prepare::prepare(scene_, geometry_, config_); }

@@ -32,14 +32,10 @@ Traversal traversal_of(std::string_view name) {
   throw Error(ErrorCode::usage, "there is no traversal '" + std::string(name) + "'");
 }
 
-std::vector<Contestant> kdray_contestants(const std::shared_ptr<Renderer>& renderer,
-                                          std::span<const std::string> traversals) {
-  std::vector<Contestant> contestants;
-  for (const std::string& name : traversals)
-    contestants.push_back({Family::kdray, name, {{"", [renderer, t = traversal_of(name)](const RayClass& c) {
-                                                    return trace(*renderer, c, t);
-                                                  }}}});
-  return contestants;
+Contestant kdray_contestant(const std::shared_ptr<Renderer>& renderer, const std::string& traversal) {
+  return {Family::kdray, traversal, {{"", [renderer, t = traversal_of(traversal)](const RayClass& c) {
+                                        return trace(*renderer, c, t);
+                                      }}}};
 }
 
 }  // namespace kdray::bench

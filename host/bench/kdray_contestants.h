@@ -15,7 +15,6 @@ std::span<const std::string_view> traversal_names();
 
 Traversal traversal_of(std::string_view name);
 
-std::vector<Contestant> kdray_contestants(const std::shared_ptr<Renderer>& renderer,
-                                          std::span<const std::string> traversals);
+Contestant kdray_contestant(const std::shared_ptr<Renderer>& renderer, const std::string& traversal);
 
 }  // namespace kdray::bench

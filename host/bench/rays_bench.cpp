@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -59,9 +60,18 @@ class SceneBench {
     DeviceOptions device;
     device.device = options_.device;
     device.compute_units = cores;
-    const auto renderer = std::make_shared<Renderer>(scene_, TreeOptions{}, device);
-    RaysRun run = described(nlohmann::json::parse(renderer->statistics()).at("device"));
-    std::vector<Contestant> contestants = kdray_contestants(renderer, options_.traversals);
+    // Each walk has the tree that `kdray trace` would make for it.
+    std::array<std::shared_ptr<Renderer>, 2> renderers;
+    std::vector<Contestant> contestants;
+    for (const std::string& name : options_.traversals) {
+      const bool binary = takes_binary_form(traversal_of(name), Precision::float32);
+      auto& renderer = renderers[binary ? 1 : 0];
+      if (!renderer)
+        renderer = std::make_shared<Renderer>(scene_, TreeOptions{.binary_form = binary}, device);
+      contestants.push_back(kdray_contestant(renderer, name));
+    }
+    const auto& any = renderers[renderers[0] ? 0 : 1];
+    RaysRun run = described(nlohmann::json::parse(any->statistics()).at("device"));
     if (options_.embree)
       for (Contestant& c : embree_contestants(embree_, run.cores)) contestants.push_back(std::move(c));
     for (std::size_t i = 0; i < classes_.size(); ++i)

@@ -76,10 +76,10 @@ void get(const Json& from, std::vector<scene::FileRead>& files) {
 }
 
 Json of(const kdtree::Statistics& s) {
-  const auto& [inner_nodes, leaves, empty_leaves, references, leaves_by_size, largest_leaf, max_depth,
+  const auto& [inner_nodes, leaves, empty_leaves, references, groups, leaves_by_size, largest_leaf, max_depth,
                mean_leaf_depth, duplication, sah_cost, tight_cost] = s;
-  return {inner_nodes, leaves,          empty_leaves, references, leaves_by_size, largest_leaf,
-          max_depth,   mean_leaf_depth, duplication,  sah_cost,   tight_cost};
+  return {inner_nodes,  leaves,    empty_leaves,    references,  groups,   leaves_by_size,
+          largest_leaf, max_depth, mean_leaf_depth, duplication, sah_cost, tight_cost};
 }
 
 void get(const Json& from, kdtree::Statistics& s) {
@@ -87,13 +87,14 @@ void get(const Json& from, kdtree::Statistics& s) {
   from.at(1).get_to(s.leaves);
   from.at(2).get_to(s.empty_leaves);
   from.at(3).get_to(s.references);
-  from.at(4).get_to(s.leaves_by_size);
-  from.at(5).get_to(s.largest_leaf);
-  from.at(6).get_to(s.max_depth);
-  from.at(7).get_to(s.mean_leaf_depth);
-  from.at(8).get_to(s.duplication);
-  from.at(9).get_to(s.sah_cost);
-  from.at(10).get_to(s.tight_cost);
+  from.at(4).get_to(s.groups);
+  from.at(5).get_to(s.leaves_by_size);
+  from.at(6).get_to(s.largest_leaf);
+  from.at(7).get_to(s.max_depth);
+  from.at(8).get_to(s.mean_leaf_depth);
+  from.at(9).get_to(s.duplication);
+  from.at(10).get_to(s.sah_cost);
+  from.at(11).get_to(s.tight_cost);
 }
 
 Json of(const prepare::Counts& c) {

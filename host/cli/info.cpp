@@ -62,14 +62,16 @@ int run(const Options& o) {
   step.restart();
   const scene::Geometry geometry = scene::make_geometry(scene);
   const double geometry_seconds = step.seconds();
-  const kdtree::BuildConfig config = prepare::config_of(o.tree, geometry.size());
+  TreeOptions usual = o.tree;
+  usual.binary_form = false;  // the tree that `render` makes
+  const kdtree::BuildConfig config = prepare::config_of(usual, geometry.size());
   Forms forms;
   const std::uint64_t peak_before = peak_memory();  // measuring the next one makes the system forget it
   const std::optional<std::uint64_t> build_peak =
       peak_bytes_of([&] { forms = build_forms(scene, geometry, config); });
 
   Json report = scene_report(scene, geometry);
-  report["tree"] = tree_report(forms.tree, kdtree::measure(forms.tree, geometry, config));
+  report["tree"] = tree_report(kdtree::measure(forms.tree, geometry, config));
   report["tree"]["build"] = prepare::name_of(o.tree.quality);
   report["memory"] = memory_report({scene, geometry, forms.tree, forms.flat, forms.wide, build_peak,
                                     std::max(peak_before, peak_memory())});

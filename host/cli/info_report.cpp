@@ -134,11 +134,12 @@ Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
   return report;
 }
 
-Json tree_report(const kdtree::Tree& tree, const kdtree::Statistics& s) {
-  return {{"nodes", tree.nodes.size()},
+Json tree_report(const kdtree::Statistics& s) {
+  return {{"nodes", s.inner_nodes + s.leaves},
           {"inner_nodes", s.inner_nodes},
           {"leaves", s.leaves},
           {"empty_leaves", s.empty_leaves},
+          {"groups", s.groups},
           {"references", s.references},
           {"duplication", s.duplication},
           {"leaves_by_size", s.leaves_by_size},

@@ -17,7 +17,7 @@
 namespace kdray::cli {
 
 Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry);
-Json tree_report(const kdtree::Tree& tree, const kdtree::Statistics& statistics);
+Json tree_report(const kdtree::Statistics& statistics);
 
 // What takes memory on the way from a file to the device.
 struct MemoryUsers {

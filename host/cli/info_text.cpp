@@ -94,10 +94,10 @@ std::string leaf_sizes_text(const Json& sizes) {
 
 std::string tree_text(const Json& t) {
   std::string text;
-  text += line(
-      "tree", fmt::format("built {}, {} nodes: {} inner, {} leaves ({} empty)", t["build"].get<std::string>(),
-                          t["nodes"].get<std::uint64_t>(), t["inner_nodes"].get<std::uint64_t>(),
-                          t["leaves"].get<std::uint64_t>(), t["empty_leaves"].get<std::uint64_t>()));
+  text += line("tree", fmt::format("built {}, {} nodes: {} inner, {} leaves ({} empty); {} groups in leaves",
+                                   t["build"].get<std::string>(), t["nodes"].get<std::uint64_t>(),
+                                   t["inner_nodes"].get<std::uint64_t>(), t["leaves"].get<std::uint64_t>(),
+                                   t["empty_leaves"].get<std::uint64_t>(), t["groups"].get<std::uint64_t>()));
   text += line("  depth", fmt::format("{} at most, {:.2f} on average", t["max_depth"].get<int>(),
                                       t["mean_leaf_depth"].get<double>()));
   text +=

@@ -79,7 +79,7 @@ class Children {
     const std::uint32_t below = openings_.share_below(s.node, n_slots);
     if (below == 0) return add({s, kNone});
     const Orders nearer = gather({node.left, node.right}, below);
-    return Orders::of_two(nearer, gather({node.right, s.end}, n_slots - below), node.axis);
+    return Orders::of_two(nearer, gather({node.right, s.end}, n_slots - below), node.order_axis());
   }
 
   // A leaf's kinds come in one order for all directions.

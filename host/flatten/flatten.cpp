@@ -19,13 +19,32 @@ void set(float (&out)[3], const vec3& v) {
   for (int k = 0; k < 3; ++k) out[k] = v[k];
 }
 
+// The nodes that this form has, which knows planes alone: a cell's groups are one leaf.
+struct BinaryNodes {
+  RawVector<std::uint32_t> nodes;   // of the tree, in its order
+  RawVector<std::uint32_t> places;  // of the tree's nodes among them
+
+  explicit BinaryNodes(const kdtree::Tree& tree) : places(tree.nodes.size()) {
+    nodes.reserve(tree.nodes.size());
+    for (std::uint32_t i = 0; i < tree.nodes.size();) {
+      places[i] = static_cast<std::uint32_t>(nodes.size());
+      nodes.push_back(i);
+      i = tree.nodes[i].has_groups() ? kdtree::last_leaf(tree, i) + 1 : i + 1;
+    }
+  }
+};
+
 // The tree's nodes are in depth-first order with the lower child next to its parent, as the form wants; that they
 // are is checked, since a wrong tree would otherwise be a wrong picture.
-layout::KdNode pack(const kdtree::Node& node, std::size_t self) {
-  if (node.is_leaf()) return {node.left, node.right << 2 | KDRAY_NODE_LEAF};
+layout::KdNode pack(const kdtree::Tree& tree, std::uint32_t self, const BinaryNodes& all) {
+  const kdtree::Node& node = tree.nodes[self];
+  if (node.is_leaf() || node.has_groups()) {
+    const kdtree::RefRun run = kdtree::refs_of_cell(tree, self);
+    return {run.first, run.n << 2 | KDRAY_NODE_LEAF};
+  }
   if (node.left != self + 1)
     throw Error(ErrorCode::internal, "kd-tree: a lower child does not follow its parent");
-  return {std::bit_cast<layout::u32>(node.split), node.right << 2 | node.axis};
+  return {std::bit_cast<layout::u32>(node.split), all.places[node.right] << 2 | node.axis};
 }
 
 // out[i] = value(i), with all cores.
@@ -41,8 +60,9 @@ Array<T> filled(std::size_t n, const Value& value) {
 void pack_binary(const kdtree::Tree& tree, FlatScene& flat) {
   if (tree.nodes.size() > KDRAY_NODE_MAX || tree.refs.size() > KDRAY_NODE_MAX)
     throw Error(ErrorCode::input, "the kd-tree has over 2^30 nodes or references; lower --tree-depth");
+  const BinaryNodes all(tree);
   flat.nodes =
-      filled<layout::KdNode>(tree.nodes.size(), [&](std::size_t i) { return pack(tree.nodes[i], i); });
+      filled<layout::KdNode>(all.nodes.size(), [&](std::size_t i) { return pack(tree, all.nodes[i], all); });
   flat.refs = filled<layout::u32>(tree.refs.size(), [&](std::size_t i) { return tree.refs[i]; });
 }
 

@@ -24,7 +24,8 @@ constexpr int kDepthLimit = 64;                          // the traversal's stac
 void check(const BuildConfig& c, std::size_t n) {
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   if (!positive(c.cost_intersect) || !(std::isfinite(c.cost_traverse) && c.cost_traverse >= 0) ||
-      !(positive(c.empty_bonus) && c.empty_bonus <= 1))
+      !(positive(c.empty_bonus) && c.empty_bonus <= 1) ||
+      !(std::isfinite(c.group_traverse) && c.group_traverse >= 0 && c.group_each >= 0 && c.group_each <= 1))
     throw Error(ErrorCode::usage, "kd-tree: costs must be positive and the empty-space factor in (0, 1]");
   if (c.block < 1 || c.block > 64 || (c.block & (c.block - 1)) != 0)
     throw Error(ErrorCode::usage, "kd-tree: the block size must be a power of two from 1 to 64");
@@ -32,8 +33,18 @@ void check(const BuildConfig& c, std::size_t n) {
     throw Error(ErrorCode::input, "too many primitives for one tree: " + std::to_string(n));
 }
 
-BuildConfig priced(BuildConfig config) {
-  config.cost_traverse *= traverse_factor(config.quality);
+// How much more Ct counts where cells are divided into groups: what a plane would save of their tests, groups save mostly. Cones
+// are dear to test, and planes in the end the better fence around them (docs/design/kdtree.md).
+double grouped_factor(const scene::Geometry& geometry, const BuildConfig& config) {
+  constexpr double kGrouped = 6, kConesFactor = 7;
+  if (!config.groups || config.small_cells) return 1;
+  const double n = static_cast<double>(std::max<std::size_t>(geometry.size(), 1));
+  const double cones = static_cast<double>(geometry.cones.size()) / n;
+  return kGrouped / (1 + kConesFactor * cones);
+}
+
+BuildConfig priced(BuildConfig config, const scene::Geometry& geometry) {
+  config.cost_traverse *= traverse_factor(config.quality) * grouped_factor(geometry, config);
   return config;
 }
 
@@ -68,13 +79,20 @@ double traverse_factor(Quality quality) {
 }
 
 BuildConfig suited(BuildConfig config, std::size_t n_primitives) {
-  config.block = n_primitives > kFineMesh ? 8 : 4;
+  const bool fine = n_primitives > kFineMesh;
+  config.block = fine ? 8 : 4;
+  config.groups = true;
+  if (fine || config.quality == Quality::fast) {
+    config.group_traverse = 0.3;
+    config.group_each = 0;
+  }
   return config;
 }
 
-Tree build(const scene::Geometry& geometry, const BuildConfig& config) {
+Tree build(const scene::Geometry& geometry, const BuildConfig& asked) {
   const std::size_t n = geometry.size();
-  check(config, n);
+  check(asked, n);
+  const BuildConfig config = priced(asked, geometry);
   Tree tree;
   if (n == 0) {
     tree.nodes.push_back({});
@@ -89,7 +107,7 @@ Tree build(const scene::Geometry& geometry, const BuildConfig& config) {
     bounds = hull_of(refs);
     top = build_exact(geometry, config, max_depth, std::move(refs), bounds);
   } else {
-    top = binned::build_binned(geometry, priced(config), max_depth, bounds);
+    top = binned::build_binned(geometry, config, max_depth, bounds);
   }
   tree = assemble(*top);
   tree.bounds = box_from(bounds);

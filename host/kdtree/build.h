@@ -28,8 +28,14 @@ struct BuildConfig {
   bool tight_cells =
       true;  // costs are those of the contents' bounds; false: of the cell's, as in the thesis (exact builder)
   double empty_bonus = 0.6;  // lambda: with loose cells, a split that cuts off empty space costs this share
-  int max_depth = -1;        // -1: 8 + 1.3*log2(N)
-  bool clip = true;          // false: split the references' boxes only ("boxed" of the thesis)
+  // What is in a cell is divided further, by primitives (binned/group-inl.h). Cells are then larger, unless they are to stay as
+  // small as without: for the binary form, whose walk tests all that a cell holds.
+  bool groups = false;
+  bool small_cells = false;
+  double group_traverse = 0.8;  // a division into groups, where a test costs 1, of which
+  double group_each = 0.5;  // this share is each primitive's, and the rest its block's; 0: blocks stay whole
+  int max_depth = -1;       // -1: 8 + 1.3*log2(N)
+  bool clip = true;         // false: split the references' boxes only ("boxed" of the thesis)
 };
 
 // What Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references.
@@ -37,6 +43,7 @@ double traverse_factor(Quality quality);
 
 // The leaves that the wide form's walks want of a scene of n primitives (docs/traversal.md): small ones for a clutter of
 // large and small, whole blocks for fine meshes, where small leaves would multiply the references and full blocks are as fast.
+// In groups, both.
 BuildConfig suited(BuildConfig config, std::size_t n_primitives);
 
 // The deepest leaf that a tree of n primitives may have: what the config says, up to the traversal's stack.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kdtree/binned/simd.h"
+
 namespace kdray::kdtree {
 
 void Fragment::clear() {
@@ -25,9 +27,14 @@ void write_sorted(std::span<const BoundedRef> refs, std::span<Ref> out) {
   std::sort(out.begin(), out.end());
 }
 
-Box append_leaf(std::span<const BoundedRef> refs, const Bounds& contents, int depth, Fragment& out) {
-  write_sorted(refs, add_leaf(refs.size(), contents, depth, out));
-  return out.contents.back();
+Box append_cell(std::span<BoundedRef> refs, const Bounds& contents, int depth, const BuildConfig& config,
+                Fragment& out) {
+  if (config.groups) {
+    binned::append_groups(refs, contents, depth, config, out);
+  } else {
+    write_sorted(refs, add_leaf(refs.size(), contents, depth, out));
+  }
+  return box_from(contents);
 }
 
 }  // namespace kdray::kdtree

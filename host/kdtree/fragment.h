@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "kdtree/build.h"
 #include "kdtree/reference.h"
 #include "kdtree/tree.h"
 
@@ -25,7 +26,9 @@ std::span<Ref> add_leaf(std::size_t n, const Bounds& contents, int depth, Fragme
 // The references' numbers in ascending order.
 void write_sorted(std::span<const BoundedRef> refs, std::span<Ref> out);
 
-// Appends a leaf; returns `contents`, the hull of what it holds.
-Box append_leaf(std::span<const BoundedRef> refs, const Bounds& contents, int depth, Fragment& out);
+// Appends what is in a cell, as a leaf or, where the config says so, as groups (binned/group-inl.h); leaves the references in another
+// order. Returns `contents`, their hull.
+Box append_cell(std::span<BoundedRef> refs, const Bounds& contents, int depth, const BuildConfig& config,
+                Fragment& out);
 
 }  // namespace kdray::kdtree

@@ -16,8 +16,7 @@ struct Visit {
   Bounds cell;
 };
 
-void count_leaf(const Node& leaf, int depth, Statistics& s) {
-  const std::uint32_t n = leaf.right;
+void count_cell(std::uint32_t n, int depth, Statistics& s) {
   ++s.leaves;
   s.empty_leaves += n == 0;
   s.references += n;
@@ -25,6 +24,22 @@ void count_leaf(const Node& leaf, int depth, Statistics& s) {
   s.largest_leaf = std::max(s.largest_leaf, n);
   s.max_depth = std::max(s.max_depth, depth);
   s.mean_leaf_depth += depth;
+}
+
+// Of a cell's groups, or of the one that it is.
+double groups_cost(const Tree& tree, std::uint32_t cell, double root_area, double chance_of_cell,
+                   const BuildConfig& config, Statistics& s) {
+  double cost = 0;
+  for (std::uint32_t i = cell, last = last_leaf(tree, cell); i <= last; ++i) {
+    const Bounds contents = bounds_from(tree.contents[i]);
+    const double chance =
+        contents.empty() ? 0 : (root_area > 0 ? half_area(contents) / root_area : chance_of_cell);
+    const Node& node = tree.nodes[i];
+    cost += chance *
+            (node.is_leaf() ? config.cost_intersect * LeafCost(config)(node.right) : config.cost_traverse);
+    s.groups += node.is_leaf() && last > cell ? 1 : 0;
+  }
+  return cost;
 }
 
 }  // namespace
@@ -46,10 +61,11 @@ Statistics measure(const Tree& tree, const scene::Geometry& geometry, const Buil
     const Bounds contents = bounds_from(tree.contents[v.node]);
     const double tight_chance =
         contents.empty() ? 0 : (root_area > 0 ? half_area(contents) / root_area : chance);
-    if (node.is_leaf()) {
-      count_leaf(node, v.depth, s);
-      s.sah_cost += chance * config.cost_intersect * LeafCost(config)(node.right);
-      s.tight_cost += tight_chance * config.cost_intersect * LeafCost(config)(node.right);
+    if (node.is_leaf() || node.has_groups()) {
+      const std::uint32_t n = refs_of_cell(tree, v.node).n;
+      count_cell(n, v.depth, s);
+      s.sah_cost += chance * config.cost_intersect * LeafCost(config)(n);
+      s.tight_cost += groups_cost(tree, v.node, root_area, tight_chance, config, s);
       continue;
     }
     ++s.inner_nodes;

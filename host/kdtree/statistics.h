@@ -9,7 +9,9 @@
 namespace kdray::kdtree {
 
 struct Statistics {
-  std::uint64_t inner_nodes = 0, leaves = 0, empty_leaves = 0, references = 0;
+  std::uint64_t inner_nodes = 0, leaves = 0, empty_leaves = 0,
+                references = 0;  // a leaf is a cell, in groups or whole
+  std::uint64_t groups = 0;      // that cells are divided into
   std::vector<std::uint64_t>
       leaves_by_size;  // [k] = leaves of k references, the last entry: that many or more
   std::uint32_t largest_leaf = 0;

@@ -27,6 +27,7 @@ kdtree::Quality quality_of(BuildQuality quality) {
 
 kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
   kdtree::BuildConfig config;
+  config.small_cells = o.binary_form;
   config.quality = quality_of(o.quality);
   config.max_depth = o.max_depth;
   config.cost_traverse = o.cost_traverse;
@@ -71,9 +72,10 @@ std::string megabytes(std::uint64_t bytes) {
 Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geometry,
                         kdtree::BuildConfig config, bool binary_form, std::uint64_t most_bytes) {
   config.cost_traverse = std::max(config.cost_traverse, 1.0);
-  const double asked = config.cost_traverse;
+  const double asked = config.cost_traverse, finest = config.group_traverse;
   for (double coarser = 1;; coarser *= 2) {
     config.cost_traverse = asked * coarser;
+    config.group_traverse = finest * coarser;
     Prepared made = prepare(scene, geometry, config, binary_form);
     if (made.bytes() <= most_bytes) {
       if (coarser > 1)

@@ -65,6 +65,30 @@ TEST(Flatten, PacksInnerNodesAndLeaves) {
   EXPECT_EQ(flat.nodes[2].word0, 3u);
 }
 
+// Below: a leaf; above: groups of two and of one with one more leaf behind them.
+TEST(Flatten, GroupsAreOneLeafOfTheBinaryForm) {
+  const scene::Scene s = mixed_scene();
+  kdtree::Tree tree = leaf_of_all();
+  using kdtree::Node;
+  tree.nodes = {{.axis = 0, .split = 1, .left = 1, .right = 6},
+                {.axis = 2, .split = 2, .left = 2, .right = 5},
+                {.axis = Node::kGroups + 1, .left = 3, .right = 4},
+                {.left = 0, .right = 2},
+                {.left = 2, .right = 1},
+                {.left = 3, .right = 0},
+                {.left = 3, .right = 1}};
+  const FlatScene flat = flatten(s, scene::make_geometry(s), tree);
+  ASSERT_EQ(flat.nodes.size(), 5u);
+  EXPECT_EQ(flat.nodes[0].word1, 4u << 2 | 0u);
+  EXPECT_EQ(flat.nodes[1].word1, 3u << 2 | 2u);
+  EXPECT_EQ(flat.nodes[2].word0, 0u);
+  EXPECT_EQ(flat.nodes[2].word1, 3u << 2 | KDRAY_NODE_LEAF);
+  EXPECT_EQ(flat.nodes[3].word1, 0u << 2 | KDRAY_NODE_LEAF);
+  EXPECT_EQ(flat.nodes[4].word0, 3u);
+  EXPECT_EQ(flat.nodes[4].word1, 1u << 2 | KDRAY_NODE_LEAF);
+  EXPECT_EQ(flat.refs.size(), 4u);
+}
+
 TEST(Flatten, RefusesATreeInAnotherOrder) {
   const scene::Scene s = mixed_scene();
   kdtree::Tree tree = leaf_of_all();

@@ -28,13 +28,16 @@ constexpr Quality kQualities[] = {Quality::fast, Quality::balanced, Quality::bes
 
 // Trees of all builders.
 void check_tree(const scene::Geometry& g, BuildConfig config = {}) {
-  for (const Quality quality : kQualities) {
-    SCOPED_TRACE(testing::Message() << "quality " << static_cast<int>(quality));
-    config.quality = quality;
-    const Tree tree = kdtree::build(g, config);
-    check_shape(tree, g, config.max_depth >= 0 ? config.max_depth : default_depth(g.size()));
-    if (!testing::Test::HasFatalFailure()) check_complete(tree, g, 12, 99);
-  }
+  for (const Quality quality : kQualities)
+    for (const bool groups : {false, true}) {
+      SCOPED_TRACE(testing::Message()
+                   << "quality " << static_cast<int>(quality) << (groups ? ", groups" : ""));
+      config.quality = quality;
+      config.groups = groups;
+      const Tree tree = kdtree::build(g, config);
+      check_shape(tree, g, config.max_depth >= 0 ? config.max_depth : default_depth(g.size()));
+      if (!testing::Test::HasFatalFailure()) check_complete(tree, g, 12, 99);
+    }
 }
 
 TEST(Build, EmptyGeometryIsOneEmptyLeaf) {
@@ -228,6 +231,7 @@ TEST(Build, ThreadsDoNotShow) {
     SCOPED_TRACE(testing::Message() << "quality " << static_cast<int>(quality));
     BuildConfig config;
     config.quality = quality;
+    config.groups = quality != Quality::fast;
     std::vector<Tree> trees;
     for (const std::size_t threads : {1, 2, 5}) {
       tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "kdtree/reference.h"
 
@@ -47,6 +48,7 @@ class ShapeCheck {
       deepest_ = std::max(deepest_, depth);
       return check_leaf(node);
     }
+    if (node.has_groups()) return check_groups(index, cell, depth);
     ASSERT_LT(node.axis, 3u);
     ASSERT_LE(cell.lo[node.axis], node.split);
     ASSERT_GE(cell.hi[node.axis], node.split);
@@ -59,6 +61,26 @@ class ShapeCheck {
     visit(node.left, kdtree::below(cell, axis, node.split), depth + 1);
     if (testing::Test::HasFatalFailure()) return;
     visit(node.right, kdtree::above(cell, axis, node.split), depth + 1);
+  }
+
+  // Both sides are in the whole cell; each of its primitives is in one of the groups, and the first has the smaller centres.
+  void check_groups(std::uint32_t index, const Bounds& cell, int depth) {
+    const Node node = tree_.nodes[index];
+    ASSERT_LT(node.order_axis(), 3u);
+    EXPECT_EQ(node.left, index + 1);
+    ASSERT_LT(node.right, tree_.nodes.size());
+    const kdtree::RefRun run = kdtree::refs_of_cell(tree_, index);
+    ASSERT_LE(std::size_t{run.first} + run.n, tree_.refs.size());
+    std::vector<Ref> refs(tree_.refs.begin() + run.first, tree_.refs.begin() + run.first + run.n);
+    std::sort(refs.begin(), refs.end());
+    ASSERT_EQ(std::adjacent_find(refs.begin(), refs.end()), refs.end()) << "a primitive in two groups";
+    for (const std::uint32_t side : {node.left, node.right}) {
+      ASSERT_TRUE(tree_.nodes[side].is_leaf() || tree_.nodes[side].has_groups()) << "a plane below groups";
+      ASSERT_FALSE(tree_.contents[side].empty());
+      ASSERT_TRUE(tree_.contents[index].contains(tree_.contents[side]));
+      visit(side, cell, depth);
+      if (testing::Test::HasFatalFailure()) return;
+    }
   }
 
   void check_leaf(const Node& leaf) {
@@ -99,6 +121,11 @@ bool leaf_refers(const Tree& tree, const dvec3& p, double tolerance, Ref r) {
     if (node.is_leaf()) {
       const auto first = tree.refs.begin() + node.left;
       if (std::binary_search(first, first + node.right, r)) return true;
+      continue;
+    }
+    if (node.has_groups()) {
+      stack.push_back(node.left);
+      stack.push_back(node.right);
       continue;
     }
     const double x = p[static_cast<int>(node.axis)];

@@ -10,16 +10,21 @@
 namespace kdray::test {
 namespace {
 
-void check_hostile(const scene::Geometry& g, kdtree::Quality quality) {
-  SCOPED_TRACE(testing::Message() << "quality " << static_cast<int>(quality));
+void check_hostile(const scene::Geometry& g, kdtree::Quality quality, bool groups) {
+  SCOPED_TRACE(testing::Message() << "quality " << static_cast<int>(quality) << (groups ? ", groups" : ""));
   kdtree::BuildConfig config;
   config.quality = quality;
+  config.groups = groups;
   const kdtree::Tree tree = kdtree::build(g, config);
   EXPECT_LE(static_cast<double>(tree.refs.size()), kdtree::reference_budget(g.size(), quality));
   // Every leaf that holds something costs a reference; empty ones are cut off at most six times in a row.
   EXPECT_LE(tree.nodes.size(), 16 * (tree.refs.size() + 1));
   check_shape(tree, g, 64);
   if (!testing::Test::HasFatalFailure()) check_complete(tree, g, 7, 77);
+}
+
+void check_hostile(const scene::Geometry& g, kdtree::Quality quality) {
+  for (const bool groups : {false, true}) check_hostile(g, quality, groups);
 }
 
 void check_hostile(const scene::Geometry& g) {

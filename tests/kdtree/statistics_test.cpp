@@ -50,6 +50,32 @@ TEST(Statistics, CountsAndCostByHand) {
   EXPECT_DOUBLE_EQ(s.tight_cost, 3 + 5 * 1.0 / 14 + 3 * 7.0 / 14 + 5 * 2 * 7.0 / 14);
 }
 
+// The last leaf's two references in groups of one: what they cost counts where each is met.
+TEST(Statistics, GroupsByHand) {
+  Tree t = small_tree();
+  t.nodes[4] = {Node::kGroups + 2, 0, 5, 6};
+  t.nodes.push_back({Node::kLeaf, 0, 1, 1});
+  t.nodes.push_back({Node::kLeaf, 0, 2, 1});
+  t.contents.push_back({vec3(1, 1, 0), vec3(2, 2, 0)});
+  t.contents.push_back({vec3(1, 1, 0), vec3(4, 2, 0)});
+  scene::Geometry g;
+  for (int i = 0; i < 2; ++i) add_triangle(g, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  kdtree::BuildConfig config;
+  config.cost_traverse = 3;
+  config.cost_intersect = 5;
+  const Statistics s = kdtree::measure(t, g, config);
+  EXPECT_EQ(s.inner_nodes, 2u);
+  EXPECT_EQ(s.leaves, 3u);
+  EXPECT_EQ(s.groups, 2u);
+  EXPECT_EQ(s.references, 3u);
+  EXPECT_EQ(s.largest_leaf, 2u);
+  EXPECT_EQ(s.leaves_by_size[2], 1u);
+  EXPECT_EQ(s.max_depth, 2);
+  EXPECT_DOUBLE_EQ(s.sah_cost, 3 + 5 * 5.0 / 14 + 3 * 11.0 / 14 + 5 * 2 * 7.0 / 14);
+  // Half areas of the groups: 1 and 3.
+  EXPECT_DOUBLE_EQ(s.tight_cost, 3 + 5 * 1.0 / 14 + 3 * 7.0 / 14 + 3 * 7.0 / 14 + 5 * (1 + 3) / 14.0);
+}
+
 TEST(Statistics, EmptyTree) {
   const Statistics s = kdtree::measure(kdtree::build({}), {});
   EXPECT_EQ(s.leaves, 1u);

@@ -31,28 +31,32 @@ inline constexpr std::size_t kMostLanes = 16;
 // LeafCost (kdtree/sah.h) in floats.
 class TestCost {
  public:
-  explicit TestCost(const BuildConfig& config)
-      : inverse_block_(1.0f / static_cast<float>(config.block)),
-        round_up_(static_cast<float>(config.block - 1)),
-        each_(config.block > 1 ? 1e-3f : 0.0f) {}
+  explicit TestCost(int block) : TestCost(block, 1, block > 1 ? 1e-3f : 0.0f) {}
+
+  // So much for each block, and for each reference.
+  TestCost(int block, float whole, float each)
+      : inverse_block_(1.0f / static_cast<float>(block)),
+        round_up_(static_cast<float>(block - 1)),
+        whole_(whole),
+        each_(each) {}
 
   // Tests that leaves of n references take.
   HWY_ATTR V operator()(V n) const {
     const Floats d;
     const V blocks = hn::Floor(hn::Mul(hn::Add(n, hn::Set(d, round_up_)), hn::Set(d, inverse_block_)));
-    return hn::Add(blocks, hn::Mul(n, hn::Set(d, each_)));
+    return hn::Add(hn::Mul(blocks, hn::Set(d, whole_)), hn::Mul(n, hn::Set(d, each_)));
   }
   HWY_ATTR float of(std::size_t n) const {
     return hn::GetLane((*this)(hn::Set(Floats(), static_cast<float>(n))));
   }
 
  private:
-  float inverse_block_, round_up_, each_;
+  float inverse_block_, round_up_, whole_, each_;
 };
 
 class PlaneCosts {
  public:
-  PlaneCosts(const BuildConfig& config, const Bounds& contents, int axis) : tests_(config) {
+  PlaneCosts(const BuildConfig& config, const Bounds& contents, int axis) : tests_(config.block) {
     const auto k = static_cast<std::size_t>(axis), i = (k + 1) % 3, j = (k + 2) % 3;
     std::array<float, 3> size;
     for (std::size_t a = 0; a < 3; ++a) size[a] = contents.hi[a] - contents.lo[a];

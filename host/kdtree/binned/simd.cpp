@@ -44,6 +44,12 @@ HWY_ATTR Bounds Hull(std::span<const BoundedRef> refs) {
   return hull_of_refs(refs);
 }
 
+HWY_ATTR void AppendGroups(std::span<BoundedRef> refs, const Bounds& contents, int depth,
+                           const BuildConfig& config, Fragment& out) {
+  std::vector<BoundedRef> room;
+  Grouper(config, depth, room, out).append(refs, contents);
+}
+
 HWY_ATTR void BuildSubtree(const scene::Geometry& geometry, const BuildConfig& config, int max_depth,
                            std::size_t n, const Cell& cell, Workspace& workspace) {
   workspace.fragment.clear();
@@ -61,6 +67,7 @@ HWY_EXPORT(BestPlane);
 HWY_EXPORT(NStraddling);
 HWY_EXPORT(Divide);
 HWY_EXPORT(Hull);
+HWY_EXPORT(AppendGroups);
 HWY_EXPORT(BuildSubtree);
 
 void count(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride, BinCounts& counts) {
@@ -79,6 +86,10 @@ Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::
 }
 Bounds fast_hull_of(std::span<const BoundedRef> refs) {
   return HWY_DYNAMIC_DISPATCH(Hull)(refs);
+}
+void append_groups(std::span<BoundedRef> refs, const Bounds& contents, int depth, const BuildConfig& config,
+                   Fragment& out) {
+  HWY_DYNAMIC_DISPATCH(AppendGroups)(refs, contents, depth, config, out);
 }
 void build_subtree(const scene::Geometry& geometry, const BuildConfig& config, int max_depth, std::size_t n,
                    const Cell& cell, Workspace& workspace) {

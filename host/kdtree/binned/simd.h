@@ -58,6 +58,10 @@ Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::
 // Hull of the references' bounds.
 Bounds fast_hull_of(std::span<const BoundedRef> refs);
 
+// Appends the references of a cell that is not divided by a plane, as a leaf or as groups; leaves them in another order.
+void append_groups(std::span<BoundedRef> refs, const Bounds& contents, int depth, const BuildConfig& config,
+                   Fragment& out);
+
 // Builds the subtree over the first n references of the workspace's stack, which has more than n; the result is
 // workspace.fragment.
 void build_subtree(const scene::Geometry& geometry, const BuildConfig& config, int max_depth, std::size_t n,

@@ -11,6 +11,7 @@
 #include "kdtree/binned/bins-inl.h"
 #include "kdtree/binned/divide-inl.h"
 #include "kdtree/binned/exact-inl.h"
+#include "kdtree/binned/group-inl.h"
 #include "kdtree/binned/leaf-inl.h"
 #include "kdtree/budget.h"
 
@@ -18,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
 
 HWY_ATTR inline Plane cheaper_than_leaf(const Best& best, std::size_t n, const BuildConfig& config) {
-  const float leaf = static_cast<float>(config.cost_intersect) * TestCost(config).of(n);
+  const float leaf = static_cast<float>(config.cost_intersect) * TestCost(config.block).of(n);
   return best.plane.found() && best.cost < leaf ? best.plane : Plane{};
 }
 
@@ -54,11 +55,10 @@ class SubtreeBuilder {
 
   // The references are stack[first, first + n), with nothing of use behind them. Returns the hull of what the leaves hold.
   HWY_ATTR Box build(std::size_t first, std::size_t n, const Cell& cell) {
-    const std::span<const BoundedRef> refs(stack_.data() + first, n);
-    if (is_leaf_anyway(n, config_) || cell.depth >= max_depth_)
-      return append_ranked_leaf(refs, cell.contents, cell.depth, out_);
+    const std::span<BoundedRef> refs(stack_.data() + first, n);
+    if (is_leaf_anyway(n, config_) || cell.depth >= max_depth_) return append_leaf(refs, cell);
     const Plane plane = choose_plane(refs, cell.contents, config_);
-    if (!plane.found()) return append_ranked_leaf(refs, cell.contents, cell.depth, out_);
+    if (!plane.found()) return append_leaf(refs, cell);
     make_room(first, n);
     BoundedRef *const above = stack_.data() + first, *const below = above + n + 1;
     const Sorted sorted = sort_sides(above, n, plane, below, above, straddlers_.data());
@@ -66,7 +66,7 @@ class SubtreeBuilder {
     if (!fits(cell.budget, sides, sorted.n_straddling)) {
       std::copy_n(below, sides.n_below, above + sides.n_above);
       std::copy_n(straddlers_.data(), sorted.n_straddling, above + sides.n_above + sides.n_below);
-      return append_ranked_leaf({above, n}, cell.contents, cell.depth, out_);
+      return append_leaf({above, n}, cell);
     }
     clip_straddling(geometry_, config_, {straddlers_.data(), sorted.n_straddling}, plane, below, above,
                     sides);
@@ -74,6 +74,11 @@ class SubtreeBuilder {
   }
 
  private:
+  HWY_ATTR Box append_leaf(std::span<BoundedRef> refs, const Cell& cell) {
+    if (!config_.groups) return append_ranked_leaf(refs, cell.contents, cell.depth, out_);
+    return Grouper(config_, cell.depth, straddlers_, out_).append(refs, cell.contents);
+  }
+
   HWY_ATTR Box build_children(std::size_t first, std::size_t n, const Cell& cell, const Plane& plane,
                               const Divided& sides) {
     const std::size_t node = out_.nodes.size();

@@ -263,12 +263,11 @@ class TopBuilder {
     });
   }
 
-  static void make_leaf(TopCell& top) {
-    const std::span<Ref> refs = add_leaf(top.n, top.cell.contents, top.cell.depth, top.node->fragment);
+  void make_leaf(TopCell& top) const {
+    RawVector<BoundedRef> refs(top.n);
     auto to = refs.begin();
-    for (const Piece& piece : top.pieces)
-      to = std::transform(piece.first, piece.first + piece.n, to, [](const BoundedRef& r) { return r.ref; });
-    std::sort(refs.begin(), refs.end());
+    for (const Piece& piece : top.pieces) to = std::copy_n(piece.first, piece.n, to);
+    append_cell({refs.data(), top.n}, top.cell.contents, top.cell.depth, config_, top.node->fragment);
   }
 
   void build_one(TopCell& top) {

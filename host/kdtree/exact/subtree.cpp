@@ -28,7 +28,7 @@ class SubtreeBuilder {
     const std::span<BoundedRef> refs = std::span(stack_).subspan(first);
     const CellState state = tightened(loose, refs, config_);
     const Split split = choose_split(refs, state, config_, max_depth_, scratch_);
-    if (!split.found()) return append_leaf(refs, hull_of(refs), state.depth, out_);
+    if (!split.found()) return append_cell(refs, hull_of(refs), state.depth, config_, out_);
     below_.clear();
     // A leaf needs the references as they were when the budget turns out too small for both sides.
     const bool tight = !fits_budget(state.budget, refs.size(), refs.size());
@@ -36,7 +36,7 @@ class SubtreeBuilder {
     const std::size_t n_above = partition(geometry_, config_, state.cell, split, refs, below_);
     const std::size_t n_below = below_.size();
     if (tight && !fits_budget(state.budget, n_below, n_above))
-      return append_leaf(saved_, hull_of(saved_), state.depth, out_);
+      return append_cell(saved_, hull_of(saved_), state.depth, config_, out_);
     stack_.resize(first + n_above);
     stack_.insert(stack_.end(), below_.begin(), below_.end());
 

@@ -20,7 +20,7 @@ class TopBuilder {
     if (refs.size() <= kSubtree) {
       node->fragment = build_subtree(geometry_, config_, max_depth_, std::move(refs), state);
     } else if (!divide(*node, std::move(refs), state)) {
-      append_leaf(refs, hull_of(refs), state.depth, node->fragment);
+      append_cell(refs, hull_of(refs), state.depth, config_, node->fragment);
     }
     return node;
   }

@@ -62,6 +62,7 @@ TEST(Binned, InstructionSetsDoNotShow) {
       BuildConfig config;
       config.quality = quality;
       config.block = block;
+      config.groups = quality == Quality::balanced;
       const Tree best = kdtree::build(g, config);
       int n_targets = 0;
       for (const std::int64_t target : targets_of_this_machine()) {
