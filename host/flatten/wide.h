@@ -1,7 +1,8 @@
 // What    The wide form of a kd-tree (kernels/layout/wide.layout.h): collapsed nodes and leaf blocks, ready to upload.
 // Shape   openings.h says which nodes become whose children; empty leaves are dropped. A leaf that holds several kinds of primitives becomes a child for
 //         each of them. Within a node and a leaf the order is the tree's, so the form is the same on every machine.
-// Source  Kd cells are disjoint: one order for each octant of directions is front to back for all rays of it, without a sort.
+// Source  Kd cells are disjoint: one order for each octant of directions is front to back for all rays of it, without a sort; among a
+//         cell's groups it nearly is, and no walk relies on it.
 // Errors  ErrorCode::input where the form has more nodes or blocks than its indices can name.
 #pragma once
 

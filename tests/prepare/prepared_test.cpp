@@ -99,10 +99,19 @@ TEST(Prepared, FitsTheMemoryItIsGiven) {
 TEST(Prepared, HasTheBinaryFormWhereItIsAskedFor) {
   const scene::Scene scene = sheet(10);
   const Prepared both = prepare(scene, {}), wide_alone = prepare(scene, {.binary_form = false});
-  EXPECT_EQ(both.flat.nodes.size(), both.tree_nodes);
+  EXPECT_EQ(both.flat.nodes.size(), both.tree.inner_nodes + both.tree.leaves);
+  EXPECT_EQ(both.flat.refs.size(), both.tree.references);
   EXPECT_TRUE(wide_alone.flat.nodes.empty());
   EXPECT_TRUE(wide_alone.flat.refs.empty());
-  EXPECT_EQ(wide_alone.bytes(), both.bytes() - both.flat.nodes.bytes() - both.flat.refs.bytes());
+}
+
+// The binary form's walk tests all that a cell holds; the wide form's have groups.
+TEST(Prepared, CellsAreSmallForTheBinaryForm) {
+  const scene::Scene scene = sheet(40);
+  const Prepared both = prepare(scene, {}), wide_alone = prepare(scene, {.binary_form = false});
+  EXPECT_GT(both.tree.leaves, 2 * wide_alone.tree.leaves);
+  EXPECT_GT(wide_alone.tree.groups, 2 * wide_alone.tree.leaves);
+  EXPECT_LT(wide_alone.tree.duplication, both.tree.duplication);
 }
 
 TEST(Prepared, NamesTheLeastThatItTakes) {
