@@ -21,6 +21,7 @@ namespace kdray::kdtree::binned::HWY_NAMESPACE {
 inline constexpr std::size_t kSmallGroup = 48;  // up to here all ways to part a group along an axis are tried
 inline constexpr std::size_t kGroupBins = 16;
 inline constexpr int kMostGroupLevels = 64;
+inline constexpr float kGroupSteps = 32000;  // of a small group's longest edge: its coordinates have 16 bits
 
 // Where a group is parted: what has its centre, doubled, at `position` or below it goes first.
 struct GroupSplit {
@@ -44,8 +45,8 @@ class GroupCosts {
     const float longest =
         std::max({hull.hi[0] - hull.lo[0], hull.hi[1] - hull.lo[1], hull.hi[2] - hull.lo[2]});
     scale_ = 1 / longest;
-    usable_ = longest > 0 && longest < std::numeric_limits<float>::max() &&
-              scale_ < std::numeric_limits<float>::max();
+    constexpr float kMax = std::numeric_limits<float>::max();
+    usable_ = longest > 0 && longest < kMax && scale_ < kMax / kGroupSteps;
     if (usable_) inverse_size_ = 1 / size(hull);
   }
 
@@ -84,10 +85,9 @@ class GroupCosts {
   bool usable_;
 };
 
-// A small group's bounds and centres by axis, in 1/32000 of the hull's longest edge; what is behind the last has its centre behind all.
+// A small group's bounds and centres by axis, in steps of the hull's longest edge; what is behind the last has its centre behind all.
 // As with bins, such numbers choose where a group is parted and decide nothing else.
 struct SmallGroup {
-  static constexpr float kSteps = 32000;
   static constexpr std::size_t kRoom = (kSmallGroup + 4 * kMostLanes - 1) / (2 * kMostLanes) *
                                        (2 * kMostLanes);  // rows begin where vectors may
   alignas(64) std::array<std::array<std::int16_t, kRoom>, 3> lo, hi, center;
@@ -98,7 +98,7 @@ struct SmallGroup {
     const hn::Full128<float> d;
     const hn::Full128<std::int32_t> di;
     const auto from = hn::LoadU(d, std::array{hull.lo[0], hull.lo[1], hull.lo[2], 0.0f}.data());
-    const auto scale = hn::Set(d, kSteps * costs.scale());
+    const auto scale = hn::Set(d, kGroupSteps * costs.scale());
     alignas(16) std::array<std::int32_t, 4> l, h;
     for (std::size_t i = 0; i < n; ++i) {
       hn::Store(hn::ConvertTo(di, hn::Mul(hn::Sub(hn::Load(d, refs[i].lo.data()), from), scale)), di,
@@ -152,8 +152,7 @@ template <class D>
 HWY_ATTR inline V size_of(const Hulls<D>& h, const GroupCosts& costs, std::size_t at) {
   V length[3];
   for (int k = 0; k < 3; ++k)
-    length[k] =
-        hn::Mul(floats_from<D>(hn::Sub(h.hi[k], h.lo[k]), at), hn::Set(Floats(), 1 / SmallGroup::kSteps));
+    length[k] = hn::Mul(floats_from<D>(hn::Sub(h.hi[k], h.lo[k]), at), hn::Set(Floats(), 1 / kGroupSteps));
   return costs.size_of_scaled(length[0], length[1], length[2]);
 }
 
