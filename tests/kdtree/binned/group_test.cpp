@@ -93,6 +93,7 @@ BuildConfig grouped(int block, double each) {
   c.groups = true;
   c.block = block;
   c.group_each = each;
+  c.quality = kdtree::Quality::best;  // cells of any size
   return c;
 }
 
@@ -146,6 +147,17 @@ TEST(Groups, LargeHeapsComeApart) {
     EXPECT_EQ(first.size(), 200u);
     for (const BoundedRef& r : first) EXPECT_EQ(r.ref % 2, 1u);
   }
+}
+
+// Such cells are there where a budget has ended the planes: the time that they would take is for `best` alone.
+TEST(Groups, HugeCellsAreForThoseWhoWait) {
+  Random random(64);
+  const auto refs = random_refs(random, 1100, 0.5f);
+  BuildConfig c = grouped(4, 0.5);
+  EXPECT_GT(groups_of(refs, c).nodes.size(), 500u);
+  c.quality = kdtree::Quality::balanced;
+  EXPECT_EQ(groups_of(refs, c).nodes.size(), 1u);
+  EXPECT_GT(groups_of({refs.begin(), refs.begin() + 1000}, c).nodes.size(), 500u);
 }
 
 TEST(Groups, WhatCannotBePartedStaysWhole) {
