@@ -39,7 +39,7 @@ class SceneBench {
   SceneBench(const AblationOptions& options, const std::string& name)
       : options_(options),
         name_(name),
-        scene_(Scene(load_scene(name))),
+        scene_(Scene(load_scene(name)), {.binary_form = false}),
         renderer_(scene_, {.device = options.device, .build_options = unheard_of()}) {}
 
   AblationRun run() {

@@ -124,7 +124,7 @@ class Runner {
 class SceneBench {
  public:
   SceneBench(const ModesOptions& options, const std::string& name)
-      : options_(options), scene_(load_scene(name)), prepared_(scene_) {
+      : options_(options), scene_(load_scene(name)), prepared_(scene_, {.binary_form = false}) {
     Renderer renderer(prepared_, {.device = options.device});
     const Json facts = Json::parse(renderer.statistics());
     run_.scene = name;

@@ -32,7 +32,9 @@ std::string difference(const Picture& picture, const Picture& reference) {
 TuneScene::TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render)
     : name_(name),
       options_(render),
-      renderer_(PreparedScene(Scene(bench::load_scene(name))), device),
+      renderer_(PreparedScene(Scene(bench::load_scene(name)),
+                              {.binary_form = takes_binary_form(render.traversal, render.precision)}),
+                device),
       reference_(TuneScene::render({})) {}
 
 tune::Key TuneScene::key() const {

@@ -184,7 +184,7 @@ class Collapse {
 
 }  // namespace
 
-LeafRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind) {
+kdtree::RefRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind) {
   const kdtree::Node& node = tree.nodes[leaf];
   std::uint32_t first = node.left, end = node.left + node.right;
   const auto kind_at = [&](std::uint32_t i) {

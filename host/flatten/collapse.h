@@ -50,9 +50,6 @@ CollapsedPart collapse(const kdtree::Tree& tree, const Openings& openings, const
 StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>& cuts);
 
 // A leaf's references of one kind. Within a leaf references ascend, so kinds follow each other.
-struct LeafRun {
-  std::uint32_t first = 0, n = 0;
-};
-LeafRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind);
+kdtree::RefRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind);
 
 }  // namespace kdray::flatten

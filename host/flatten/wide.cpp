@@ -112,7 +112,7 @@ void write_normal_bounds(std::uint32_t block, layout::u32* words) {
 
 // Writes a leaf's blocks of one kind, from `words` on.
 template <class Primitive>
-void write_blocks(const kdtree::Tree& tree, const LeafRun& run, const Array<Primitive>& primitives,
+void write_blocks(const kdtree::Tree& tree, const kdtree::RefRun& run, const Array<Primitive>& primitives,
                   std::uint32_t block, layout::u32* words) {
   constexpr bool kTriangles = std::is_same_v<Primitive, layout::Triangle>;
   constexpr std::size_t kRows = kRowsOf<Primitive> + (kTriangles ? 1 : 0);
@@ -185,7 +185,7 @@ class Writer {
   }
 
   void write_leaf(std::uint32_t leaf, std::uint32_t kind, std::size_t first) const {
-    const LeafRun run = leaf_run(tree_, leaf, kind);
+    const kdtree::RefRun run = leaf_run(tree_, leaf, kind);
     if (kind == 0)
       write_blocks(tree_, run, primitives_.triangles, block_,
                    form_.triangle_blocks.data() + first * KDRAY_TRIANGLE_ROWS * block_);

@@ -82,7 +82,6 @@ BuildConfig suited(BuildConfig config, std::size_t n_primitives) {
   const bool fine = n_primitives > kFineMesh;
   config.block = fine ? 8 : 4;
   config.groups = true;
-  // By whole blocks: less memory to wait for, less to build, and, of small cells, no third more of it.
   if (fine || config.quality == Quality::fast || config.small_cells) {
     config.group_traverse = 0.3;
     config.group_each = 0;

@@ -41,9 +41,8 @@ struct BuildConfig {
 // What Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references.
 double traverse_factor(Quality quality);
 
-// The leaves that the wide form's walks want of a scene of n primitives (docs/traversal.md): small ones for a clutter of
-// large and small, whole blocks for fine meshes, where small leaves would multiply the references and full blocks are as fast.
-// In groups, both.
+// The groups that the wide form's walks want of a scene of n primitives (docs/design/kdtree.md): few primitives for a clutter of
+// large and small, whole blocks for fine meshes, which wait for memory, and for what is to be built fast or has small cells.
 BuildConfig suited(BuildConfig config, std::size_t n_primitives);
 
 // The deepest leaf that a tree of n primitives may have: what the config says, up to the traversal's stack.
