@@ -76,6 +76,10 @@ void expect_vectors(const SimdCase& c, SimdAnswers& out) {
   std::ranges::copy(out.permute8, out.permuteu8);
   std::ranges::copy(out.compress16, out.compressu16);
   std::ranges::copy(out.compress8, out.compressu8);
+  for (u32 i = 0; i < 16; ++i) {
+    const float v = as_float(c.a[i]);
+    out.nearest_long16[i] = std::abs(v) < 0x1p62f ? static_cast<layout::i64>(std::nearbyint(v)) : 0;
+  }
 }
 
 struct Field {
@@ -88,11 +92,12 @@ struct Field {
 #name, offsetof(SimdAnswers, name), sizeof(std::declval <SimdAnswers>().name) \
   }
 constexpr std::array kFields = {
-    FIELD(lanes_below), FIELD(count_lanes), FIELD(first_lane),  FIELD(less16),      FIELD(less_equal16),
-    FIELD(equal16),     FIELD(equalu16),    FIELD(negative16),  FIELD(less8),       FIELD(less_equal8),
-    FIELD(equal8),      FIELD(less4),       FIELD(less_equal4), FIELD(smallest16),  FIELD(largest16),
-    FIELD(select16),    FIELD(selectu16),   FIELD(compress16),  FIELD(compressu16), FIELD(gather16),
-    FIELD(gatheru16),   FIELD(compress8),   FIELD(compressu8),  FIELD(permute8),    FIELD(permuteu8)};
+    FIELD(lanes_below),   FIELD(count_lanes), FIELD(first_lane),  FIELD(less16),      FIELD(less_equal16),
+    FIELD(equal16),       FIELD(equalu16),    FIELD(negative16),  FIELD(less8),       FIELD(less_equal8),
+    FIELD(equal8),        FIELD(less4),       FIELD(less_equal4), FIELD(smallest16),  FIELD(largest16),
+    FIELD(select16),      FIELD(selectu16),   FIELD(compress16),  FIELD(compressu16), FIELD(gather16),
+    FIELD(gatheru16),     FIELD(compress8),   FIELD(compressu8),  FIELD(permute8),    FIELD(permuteu8),
+    FIELD(nearest_long16)};
 #undef FIELD
 
 const void* at(const SimdAnswers& answers, const Field& field) {

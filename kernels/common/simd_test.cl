@@ -34,6 +34,7 @@ inline void answer16(__global const SimdCase* in, __global SimdAnswers* out) {
   const float16 numbers = select16(equal16(a, a), a, zero);
   out->smallest16 = as_uint(smallest16(numbers) + 0.0f);
   out->largest16 = as_uint(largest16(numbers) + 0.0f);
+  vstore16(nearest_long16(select16(less16(fabs(a), (float16)(0x1p62f)), a, zero)), 0, out->nearest_long16);
 }
 
 inline void answer8(__global const SimdCase* in, __global SimdAnswers* out) {

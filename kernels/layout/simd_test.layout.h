@@ -26,7 +26,8 @@ typedef struct SimdAnswers {
   u32 gather16[16], gatheru16[16];      // from b
   u32 compress8[8], compressu8[8];      // of a's lower half
   u32 permute8[8], permuteu8[8];        // of a's lower half
+  i64 nearest_long16[16];               // of a with 0 for what is not below 2^62
 } SimdAnswers;
-KDRAY_ASSERT_SIZE(SimdAnswers, 576)
+KDRAY_ASSERT_SIZE(SimdAnswers, 704)
 KDRAY_LAYOUT_END
 #endif

@@ -1,8 +1,10 @@
 // The small arithmetic that exactness rests on, against wider host arithmetic: difference of products (sign exact,
-// 1.5 ulp) and signed volumes in pairs of floats.
+// 1.5 ulp), signed volumes in pairs of floats, and rounding to whole numbers.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "support/device.h"
@@ -110,6 +112,50 @@ TEST_P(ArithmeticTest, SignedVolumeDecidesPointsAFewUlpOffAPlane) {
     ASSERT_EQ(out[i] > 0, truth > 0) << i << " " << truth;
   }
   EXPECT_GT(near_zero, 50000);  // the cases are hard: float alone could not tell
+}
+
+// Halves, whose neighbours must be even, up to where reals have no more fractions; and reals of all exponents.
+template <class Real, class Bits>
+std::vector<Real> around_wholes(unsigned seed, Real all_whole) {
+  std::mt19937_64 random(seed);
+  std::vector<Real> in;
+  for (Real scale = 1; scale <= 4 * all_whole; scale *= 2)
+    for (const Real k :
+         {Real{0.5}, Real{1}, Real{1.5}, Real{2.5}, scale - Real{0.5}, scale, scale + Real{0.5}, scale + 1})
+      for (const Real v : {k, std::nextafter(k, Real{0}), std::nextafter(k, 2 * k)})
+        in.push_back(v), in.push_back(-v);
+  for (int i = 0; i < 100000; ++i) {
+    const Real v = std::bit_cast<Real>(static_cast<Bits>(random()));
+    if (v == v) in.push_back(v);
+  }
+  const Real infinity = std::numeric_limits<Real>::infinity();
+  in.insert(in.end(), {Real{0}, Real{-0.0}, infinity, -infinity});
+  return in;
+}
+
+template <class Real, class Bits>
+void expect_nearest_wholes(const std::string& device, Real all_whole, const std::string& type,
+                           const std::string& options) {
+  const unsigned seed = 23;
+  SCOPED_TRACE(seed);
+  const std::vector<Real> in = around_wholes<Real, Bits>(seed, all_whole);
+  const std::vector<Real> out =
+      test::run_kernel<Real>(device,
+                             "#include \"common/math.clh\"\n"
+                             "__kernel void test(__global const " +
+                                 type + "* in, __global " + type +
+                                 "* out, uint n) {\n"
+                                 "  const uint i = get_global_id(0);\n"
+                                 "  if (i < n) out[i] = nearest_whole((real16)(in[i])).sb;\n"
+                                 "}\n",
+                             in, options);
+  for (std::size_t i = 0; i < in.size(); ++i) ASSERT_EQ(out[i], std::nearbyint(in[i])) << in[i];
+}
+
+TEST_P(ArithmeticTest, NearestWholeIsTheNearestAndOfTwoTheEvenOne) {
+  expect_nearest_wholes<float, std::uint32_t>(GetParam(), 0x1p23f, "float", "");
+  if (test::computes_in_double(GetParam()))
+    expect_nearest_wholes<double, std::uint64_t>(GetParam(), 0x1p52, "double", "-DKDRAY_PRECISION=64");
 }
 
 KDRAY_FOR_EACH_DEVICE(ArithmeticTest);
