@@ -12,6 +12,7 @@
 typedef uint u32;
 typedef int i32;
 typedef ulong u64;
+typedef uchar u8;
 typedef long i64;
 #define KDRAY_LAYOUT_BEGIN
 #define KDRAY_LAYOUT_END
@@ -27,6 +28,7 @@ typedef long i64;
 #include <type_traits>
 #define KDRAY_LAYOUT_BEGIN   \
   namespace kdray::layout {  \
+  using u8 = std::uint8_t;   \
   using u32 = std::uint32_t; \
   using i32 = std::int32_t;  \
   using u64 = std::uint64_t; \

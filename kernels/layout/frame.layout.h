@@ -90,8 +90,11 @@ typedef struct Slice {
   u64 n_nan;                 // contributions that were not numbers
   u64 n_pool_overflow;       // spawned rays that found no place: a broken bound
   u64 cycles_admit, cycles_closest, cycles_shade, cycles_shadow, cycles_add;  // wave.cl
+  // For closest hits and for any, by depth: how often the distance that a packet's rays may start apart was halved
+  // (traverse/learn.clh).
+  u8 halvings[2][KDRAY_MAX_DEPTH + 4];
 } Slice;
-KDRAY_ASSERT_SIZE(Slice, 448)
+KDRAY_ASSERT_SIZE(Slice, 584)
 KDRAY_ASSERT_OFFSET(Slice, n_primary, 296)
 KDRAY_LAYOUT_END
 #endif

@@ -30,7 +30,7 @@ typedef struct Shaders {
 inline void trace_shadow_rays(const Travels* t, __constant const Frame* frame, u32 slice_id, const Census* census,
                               const Streams* s, bool made_here, u64* since) {
   const RaySource source = shadow_rays(frame, slice_id, s->shadow_rays, s->occluded);
-  trace_all(t->scene, frame, &source, t->slice->n_shadow, false);
+  trace_all(t->scene, frame, &source, t->slice->n_shadow, false, t->slice);
   t->traffic->n_traced += t->slice->n_shadow;
   clock_stage(&t->slice->cycles_shadow, since);
   if (census) count_visits(census, frame->world_max, source.rays, source.rays, true, t->slice->n_shadow);
@@ -66,7 +66,7 @@ inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32
   const ConstStream hits = const_stream_of(s->hits, slice_id, KDRAY_HIT_FIELDS, frame->batch_capacity);
   send_fresh_rays(t, rays.rays, batch);
   clock_stage(&t->traffic->cycles_route, since);
-  trace_all(t->scene, frame, &rays, t->slice->n_batch, eye);
+  trace_all(t->scene, frame, &rays, t->slice->n_batch, eye, t->slice);
   t->traffic->n_traced += t->slice->n_batch;
   clock_stage(&t->slice->cycles_closest, since);
   if (census) count_visits(census, frame->world_max, rays.rays, hits, false, t->slice->n_batch);

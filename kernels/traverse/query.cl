@@ -48,6 +48,7 @@ __kernel void trace_query(KDRAY_SCENE_PARAMETERS, float4 root_lo, float4 root_hi
 #else
   (void)root_lo, (void)root_hi;
   const u32 first = item * KDRAY_CHUNK;
-  if (first < n) walk_rays(&scene, &source, first, min(n, first + KDRAY_CHUNK), world_max, false);
+  if (first < n)
+    walk_rays(&scene, &source, first, min(n, first + KDRAY_CHUNK), world_max, false, KDRAY_COHERENT_DISTANCE * world_max);
 #endif
 }

@@ -31,7 +31,7 @@ __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_norm
     clock_stage(&slice->cycles_admit, &since);
     if (slice->n_batch == 0) return;
     const RaySource rays = batch_rays(frame, slice_id, io_batch, io_hits);
-    trace_all(&scene, frame, &rays, slice->n_batch, slice->depth == 1);
+    trace_all(&scene, frame, &rays, slice->n_batch, slice->depth == 1, slice);
     clock_stage(&slice->cycles_closest, &since);
     u32 first_light = 0;
     do {
@@ -40,7 +40,7 @@ __kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_norm
       clock_stage(&slice->cycles_shade, &since);
 #if KDRAY_HAS_LIGHTS
       const RaySource to_lights = shadow_rays(frame, slice_id, io_shadow_rays, io_occluded);
-      trace_all(&scene, frame, &to_lights, slice->n_shadow, false);
+      trace_all(&scene, frame, &to_lights, slice->n_shadow, false, slice);
       clock_stage(&slice->cycles_shadow, &since);
       add_arrived(frame, slice_id, slice, io_shadow_rays, io_occluded, io_film);
       clock_stage(&slice->cycles_add, &since);
