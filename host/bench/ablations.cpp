@@ -24,12 +24,12 @@ constexpr Rule kRules[] = {
     {KDRAY_KEEP_BEHIND, "shadow rays to lights behind", KDRAY_FEATURE_LIGHTS},
     {KDRAY_KEEP_UNLIT, "shadow rays of no light", KDRAY_FEATURE_LIGHTS},
     {KDRAY_KEEP_OPEN, "rays that pass the core by", KDRAY_FEATURE_FACES},
-    {KDRAY_KEEP_LEFT, "the triangle a shadow ray leaves", KDRAY_FEATURE_TRIANGLES},
+    {KDRAY_KEEP_LEFT, "the triangle a ray leaves", KDRAY_FEATURE_TRIANGLES},
     {KDRAY_KEEP_WEIGHTLESS, "secondary rays of no weight", kSecondary},
 };
 
 bool applies(const Rule& rule, std::uint32_t features) {
-  if (rule.bit == KDRAY_KEEP_LEFT && !(features & KDRAY_FEATURE_LIGHTS)) return false;
+  if (rule.bit == KDRAY_KEEP_LEFT && !(features & (KDRAY_FEATURE_LIGHTS | kSecondary))) return false;
   return rule.any_of == 0 || (features & rule.any_of) != 0;
 }
 

@@ -41,7 +41,7 @@ __kernel void channels(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_
                                     INFINITY, frame->world_max);
     u32 steps = 0;
     const Hit hit =
-        find_closest(&scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi), &steps);
+        find_closest(&scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi), KDRAY_REF_MISS, &steps);
     const bool found = hit.ref < KDRAY_REF_INVALID;
     t.lane[i] = hit.ref == KDRAY_REF_INVALID ? NAN : hit.t;
     u.lane[i] = hit.u;

@@ -33,7 +33,9 @@
 #if KDRAY_ODPRT
 #define KDRAY_RAY_FIELDS KDRAY_TRAVEL_RAY_FIELDS
 #else
-#define KDRAY_RAY_FIELDS 12u
+#define KDRAY_RAY_SKIP \
+  12u  // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS
+#define KDRAY_RAY_FIELDS 13u
 #endif
 
 // Shadow rays: each adds `contribution` to its pixel unless something lies inside of its interval.
@@ -62,7 +64,8 @@
 #else
 #define KDRAY_POOL_WEIGHT 6u
 #define KDRAY_POOL_PIXEL 9u
-#define KDRAY_POOL_FIELDS 10u
+#define KDRAY_POOL_SKIP 10u
+#define KDRAY_POOL_FIELDS 11u
 #endif
 
 // Hits of a batch, with the batch's capacity.

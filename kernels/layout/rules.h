@@ -16,7 +16,7 @@
 #define KDRAY_KEEP_UNLIT \
   0x00002000u  // shadow rays whose light rounds to nothing on the film, or doesn't reach
 #define KDRAY_KEEP_WEIGHTLESS 0x00004000u  // secondary rays of no weight
-#define KDRAY_KEEP_LEFT 0x00008000u        // shadow rays against the triangle that they leave
+#define KDRAY_KEEP_LEFT 0x00008000u        // rays against the triangle that they leave
 #define KDRAY_KEEP_OPEN 0x00200000u        // rays that surely meet nothing (shade/open.clh)
 
 #define KDRAY_KEEP_TRACING \

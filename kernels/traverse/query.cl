@@ -24,7 +24,7 @@ inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 
     store_query_hit(source, i, 0.0f, found == KDRAY_OCCLUSION_INVALID ? KDRAY_REF_INVALID : ref, 0.0f, 0.0f);
   } else {
     u32 cost;
-    const Hit hit = find_closest(scene, &r, root_lo, root_hi, &cost);
+    const Hit hit = find_closest(scene, &r, root_lo, root_hi, KDRAY_REF_MISS, &cost);
     store_query_hit(source, i, hit.t, hit.ref, hit.u, hit.v);
   }
 }
