@@ -35,7 +35,8 @@ bool applies(const Rule& rule, std::uint32_t features) {
 
 // Shadow rays of a smooth triangle begin on the curve that it stands for, which may lie behind it.
 bool is_exact(const Rule& rule, std::uint32_t features) {
-  return rule.bit != KDRAY_KEEP_LEFT || !(features & KDRAY_FEATURE_SMOOTH);
+  constexpr std::uint32_t kSmoothAndLit = KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_LIGHTS;
+  return rule.bit != KDRAY_KEEP_LEFT || (features & kSmoothAndLit) != kSmoothAndLit;
 }
 
 }  // namespace

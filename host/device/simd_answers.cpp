@@ -121,7 +121,7 @@ constexpr std::array kHardValues = {
     0x3f800001u,  // the next number above 1
     0x3f7fffffu,  // the next below 1
     0x4b800001u,  // above 2^24
-    0xc2f6e979u   // -123.456
+    0xc0200000u   // -2.5, as near to -3 as to -2
 };
 
 u32 reversed_byte(u32 byte) {

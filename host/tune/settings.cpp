@@ -45,7 +45,7 @@ std::span<const Setting> settings() {
        kWalks,
        true,
        false,
-       "single rays fetch their next node ahead: 1 no, 2 yes"},
+       "rays and packets fetch their next node ahead: 1 no, 2 yes"},
       {"packets", &Tuning::packets, {4, 16}, kWalks, true, false, "packets of 16 rays in flight"},
       {"batch-rays", &Tuning::batch_rays, {16, 64}, kWalks, true, false, "single rays in flight"},
       {"spread",
@@ -61,7 +61,7 @@ std::span<const Setting> settings() {
        kWalks,
        true,
        false,
-       "origins that count as near, thousandths of the world"}};
+       "origins that count as near to begin with, thousandths of the world"}};
   return all;
 }
 

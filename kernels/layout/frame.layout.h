@@ -92,9 +92,10 @@ typedef struct Slice {
   u64 cycles_admit, cycles_closest, cycles_shade, cycles_shadow, cycles_add;  // wave.cl
   // For closest hits and for any, by depth: how often the distance that a packet's rays may start apart was halved
   // (traverse/learn.clh).
-  u8 halvings[2][KDRAY_MAX_DEPTH + 4];
+  u8 halvings[2][KDRAY_MAX_DEPTH + 1];
+  u8 pad2[62];  // no two slices share a line of a cache
 } Slice;
-KDRAY_ASSERT_SIZE(Slice, 584)
+KDRAY_ASSERT_SIZE(Slice, 640)
 KDRAY_ASSERT_OFFSET(Slice, n_primary, 296)
 KDRAY_LAYOUT_END
 #endif

@@ -31,6 +31,7 @@
 #define KDRAY_RAY_VISITED 14u  // two u32: a bit for each part that was asked
 #define KDRAY_TRAVEL_RAY_FIELDS 16u
 #if KDRAY_ODPRT
+#define KDRAY_RAY_SKIP 0u  // none: a part may not know another's triangle
 #define KDRAY_RAY_FIELDS KDRAY_TRAVEL_RAY_FIELDS
 #else
 #define KDRAY_RAY_SKIP \

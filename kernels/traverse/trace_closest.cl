@@ -1,6 +1,6 @@
 // What    Finds the closest hit of each ray of the slices' batches. One ray per work-item.
 // Shape   item i serves ray i % batch_size of slice i / batch_size; launch size >= n_slices * batch_size.
-// Cost    reads 32 B of the ray and the tree, writes 16 B.
+// Cost    reads 36 B of the ray and the tree, writes 16 B.
 // Errors  a full stack (binary tree) marks the hit KDRAY_REF_INVALID; shade counts it.
 #include "traverse/trace_slice.clh"
 

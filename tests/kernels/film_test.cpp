@@ -39,10 +39,11 @@ __kernel void test(__global const Case* in, __global Result* out, uint n) {
   for (int k = 0; k < 18; ++k) out[i].film[k / 3][k % 3] = in[i].film[k / 3][k % 3];
   FilmLight sum = no_light();
   for (int k = 0; k < 2; ++k) {
-    const Real3x16 light = {vload16(0, in[i].light[k][0]), vload16(0, in[i].light[k][1]), vload16(0, in[i].light[k][2])};
-    add_light(&sum, convert_int16(vload16(0, in[i].in[k]) != 0), light);
+    const Real3x16 light = {convert_real16(vload16(0, in[i].light[k][0])), convert_real16(vload16(0, in[i].light[k][1])),
+                            convert_real16(vload16(0, in[i].light[k][2]))};
+    add_light(&sum, convert_lanes16(vload16(0, in[i].in[k]) != 0), light);
   }
-  add_to_film(&frame, (__global i64*)out[i].film, vload16(0, in[i].pixel), &sum);
+  add_to_film(&frame, (__global i64*)out[i].film, convert_word16(vload16(0, in[i].pixel)), &sum);
   out[i].n_nan = sum.n_nan;
 }
 )";
@@ -108,13 +109,13 @@ Result expected(const Case& c) {
 
 class FilmTest : public test::EachDevice {};
 
-void expect_exact_sums(const std::string& device, device::Simd form) {
+void expect_exact_sums(const std::string& device, const std::string& options) {
   const unsigned seed = 31;
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
   std::vector<Case> in;
   for (int i = 0; i < 2000; ++i) in.push_back(some_case(random));
-  const std::vector<Result> out = test::run_kernel<Result>(device, kSource, in, device::build_option(form));
+  const std::vector<Result> out = test::run_kernel<Result>(device, kSource, in, options);
   int saturated = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
     const Result wanted = expected(in[i]);
@@ -130,14 +131,20 @@ void expect_exact_sums(const std::string& device, device::Simd form) {
 }
 
 TEST_P(FilmTest, SumsAreExact) {
-  expect_exact_sums(GetParam(), device::Simd::portable);
+  expect_exact_sums(GetParam(), device::build_option(device::Simd::portable));
 }
 
 TEST_P(FilmTest, SumsAreExactWithX86sBuiltins) {
   const std::string why_not =
       device::why_no_x86(device::choose_device(GetParam()), device::Context(GetParam(), 1).opened());
   if (!why_not.empty()) GTEST_SKIP() << why_not;
-  expect_exact_sums(GetParam(), device::Simd::x86);
+  expect_exact_sums(GetParam(), device::build_option(device::Simd::x86));
+}
+
+TEST_P(FilmTest, SumsAreExactInDouble) {
+  if (!test::computes_in_double(GetParam()))
+    GTEST_SKIP() << "device " << GetParam() << " does not compute in double";
+  expect_exact_sums(GetParam(), "-DKDRAY_PRECISION=64");
 }
 
 KDRAY_FOR_EACH_DEVICE(FilmTest);

@@ -84,9 +84,19 @@ class Batch {
       stream[std::size_t{field} * frame_.batch_capacity + i] = v;
     };
     for (cl_uint i = 0; i < n_; ++i) {
-      const float ray[KDRAY_RAY_FIELDS] = {
-          static_cast<float>(pixel(i)),  0, 1, 0, 0, -1, 0, INFINITY, 1, 0.5f, 0.25f,
-          std::bit_cast<float>(pixel(i))};
+      const float ray[KDRAY_RAY_FIELDS] = {static_cast<float>(pixel(i)),
+                                           0,
+                                           1,
+                                           0,
+                                           0,
+                                           -1,
+                                           0,
+                                           INFINITY,
+                                           1,
+                                           0.5f,
+                                           0.25f,
+                                           std::bit_cast<float>(pixel(i)),
+                                           std::bit_cast<float>(KDRAY_REF_MISS)};
       for (cl_uint f = 0; f < KDRAY_RAY_FIELDS; ++f) set(batch, f, i, ray[f]);
       const float u = ray[0] / 2e4f, v = 0.5f;  // not where the ray meets the floor; any place on it will do
       const float hit[KDRAY_HIT_FIELDS] = {1, std::bit_cast<float>(hits(i) ? 0u : KDRAY_REF_MISS), u, v};
@@ -193,6 +203,7 @@ TEST_P(StreamsTest, SpawnedRaysLieInThePoolOfTheirDepth) {
           if (!Batch::hits(ray)) continue;
           const Words& p = batch.pool;
           ASSERT_EQ(p.bits(KDRAY_POOL_PIXEL, i), Batch::pixel(ray)) << i;
+          ASSERT_EQ(p.bits(KDRAY_POOL_SKIP, i), 0u) << i;  // the floor
           ASSERT_NEAR(p.at(KDRAY_POOL_DIRECTION + 2, i), down, 1e-6f) << i;
           ASSERT_EQ(p.at(KDRAY_POOL_WEIGHT, i), down < 0 ? 0.5f : 0.25f) << i;
           ASSERT_EQ(p.at(KDRAY_POOL_WEIGHT + 1, i), 0.5f * (down < 0 ? 0.4f : 0.25f)) << i;
