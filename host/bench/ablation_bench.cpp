@@ -17,8 +17,6 @@ namespace kdray::bench {
 
 namespace {
 
-using Json = nlohmann::json;
-
 // A definition that nothing reads and no program was ever built with: caches of programs don't know it.
 std::string unheard_of() {
   static int n = 0;
@@ -29,14 +27,14 @@ std::string unheard_of() {
 struct Frame {
   Picture picture;
   double wall = 0, render = 0;  // seconds of the call; of the frame alone
-  Json statistics;
+  nlohmann::json statistics;
 
   double beside() const { return wall - render; }
 };
 
-class SceneBench {
+class AblationScene {
  public:
-  SceneBench(const AblationOptions& options, const std::string& name)
+  AblationScene(const AblationOptions& options, const std::string& name)
       : options_(options),
         name_(name),
         scene_(Scene(load_scene(name)), {.binary_form = false}),
@@ -66,7 +64,7 @@ class SceneBench {
  private:
   // With the features of the last frame.
   AblationRun describe() const {
-    const Json facts = Json::parse(renderer_.statistics());
+    const nlohmann::json facts = nlohmann::json::parse(renderer_.statistics());
     return {name_,
             facts.at("device").at("name"),
             facts.at("scene").at("primitives"),
@@ -91,7 +89,7 @@ class SceneBench {
                                                  .samples = 1,
                                                  .mode = Mode::pdprt}));
     f.wall = timer.seconds();
-    f.statistics = Json::parse(renderer_.statistics());
+    f.statistics = nlohmann::json::parse(renderer_.statistics());
     f.render = f.statistics.at("seconds").at("render");
     return f;
   }
@@ -143,7 +141,7 @@ std::vector<AblationRun> bench_ablation(const AblationOptions& options,
   std::vector<AblationRun> runs;
   for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
     working(name);
-    runs.push_back(SceneBench(options, name).run());
+    runs.push_back(AblationScene(options, name).run());
     done(runs.back());
   }
   return runs;

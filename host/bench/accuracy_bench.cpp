@@ -20,9 +20,9 @@ namespace {
 
 constexpr int kPovrayRounds = 2;  // beside the one that is judged
 
-class SceneBench {
+class AccuracyScene {
  public:
-  SceneBench(const AccuracyOptions& options, const AccuracyCalls& calls, const std::string& name)
+  AccuracyScene(const AccuracyOptions& options, const AccuracyCalls& calls, const std::string& name)
       : options_(options), calls_(calls), scene_(load_scene(name)) {
     run_.scene = name;
   }
@@ -191,7 +191,7 @@ std::vector<AccuracyRun> bench_accuracy(const AccuracyOptions& options, const Ac
   static const std::vector<std::string> kDefault = {"balls", "gears", "lamps"};
   std::vector<AccuracyRun> runs;
   for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
-    runs.push_back(SceneBench(options, calls, name).run());
+    runs.push_back(AccuracyScene(options, calls, name).run());
     calls.done(runs);
   }
   return runs;

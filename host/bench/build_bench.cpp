@@ -21,9 +21,9 @@ namespace kdray::bench {
 
 namespace {
 
-class SceneBench {
+class BuildScene {
  public:
-  SceneBench(const BuildOptions& options, const std::string& name)
+  BuildScene(const BuildOptions& options, const std::string& name)
       : options_(options), name_(name), scene_(load_scene(name)), geometry_(scene::make_geometry(scene_)) {
     if (geometry_.size() == 0)
       throw Error(ErrorCode::input, name + ": nothing to build a tree of; the scene is empty");
@@ -133,7 +133,7 @@ std::vector<BuildRun> bench_build(const BuildOptions& options,
   static const std::vector<std::string> kDefault = {"boxes", "spheres", "balls", "rings", "displaced"};
   std::vector<BuildRun> runs;
   for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
-    runs.push_back(SceneBench(options, name).run(working));
+    runs.push_back(BuildScene(options, name).run(working));
     done(runs.back());
   }
   return runs;

@@ -23,9 +23,9 @@ struct Measured {
   std::vector<double> traces;
 };
 
-class SceneBench {
+class DepthScene {
  public:
-  SceneBench(const DepthOptions& options, const std::string& name)
+  DepthScene(const DepthOptions& options, const std::string& name)
       : options_(options), name_(name), scene_(load_scene(name)), geometry_(scene::make_geometry(scene_)) {
     if (geometry_.size() == 0)
       throw Error(ErrorCode::input, name + ": nothing to build a tree of; the scene is empty");
@@ -119,7 +119,7 @@ std::vector<DepthRun> bench_depth(const DepthOptions& options,
   std::vector<DepthRun> runs;
   for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
     working(name);
-    runs.push_back(SceneBench(options, name).run());
+    runs.push_back(DepthScene(options, name).run());
     done(runs.back());
   }
   return runs;

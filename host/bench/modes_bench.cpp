@@ -5,7 +5,6 @@
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "bench/cores.h"
 #include "bench/scenes.h"
@@ -15,24 +14,22 @@ namespace kdray::bench {
 
 namespace {
 
-using Json = nlohmann::json;
-
 const Scheme kSequential{"sequential"};
 const Scheme kWholeDevice{"one queue, all cores", Mode::pdprt, Division::bag, Balance::pilot, true};
 
 // The number at a path of keys, where there is one.
-std::optional<double> number_at(const Json& json, const std::string& path) {
-  const Json::json_pointer pointer(path);
+std::optional<double> number_at(const nlohmann::json& json, const std::string& path) {
+  const nlohmann::json::json_pointer pointer(path);
   if (!json.contains(pointer) || !json.at(pointer).is_number()) return std::nullopt;
   return json.at(pointer).get<double>();
 }
 
 // Those that the entries of a list have under a key.
-std::vector<double> numbers_of(const Json& json, const std::string& path, const std::string& key) {
+std::vector<double> numbers_of(const nlohmann::json& json, const std::string& path, const std::string& key) {
   std::vector<double> found;
-  const Json::json_pointer pointer(path);
+  const nlohmann::json::json_pointer pointer(path);
   if (!json.contains(pointer)) return found;
-  for (const Json& entry : json.at(pointer))
+  for (const nlohmann::json& entry : json.at(pointer))
     if (const auto number = number_at(entry, "/" + key)) found.push_back(*number);
   return found;
 }
@@ -40,10 +37,6 @@ std::vector<double> numbers_of(const Json& json, const std::string& path, const 
 std::optional<double> largest(const std::vector<double>& values) {
   if (values.empty()) return std::nullopt;
   return *std::max_element(values.begin(), values.end());
-}
-
-double sum(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 // A row being measured.
@@ -65,7 +58,7 @@ class Runner {
       Picture picture = renderer_->render(options);
       if (first) row_.differing_pixels += differing_pixels(*first, picture);
       if (!first) first = std::move(picture);
-      if (counts) record(Json::parse(renderer_->statistics()));
+      if (counts) record(nlohmann::json::parse(renderer_->statistics()));
     } catch (const Error& error) {
       fail(error.what());
     }
@@ -96,7 +89,7 @@ class Runner {
     renderer_.reset();
   }
 
-  void record(const Json& statistics) {
+  void record(const nlohmann::json& statistics) {
     row_.rounds.push_back(statistics.at("seconds").at("render"));
     if (const auto n = number_at(statistics, "/mode/sub_devices"))
       row_.sub_devices = std::min(row_.queues, static_cast<int>(*n));
@@ -121,12 +114,12 @@ class Runner {
   std::vector<double> idle_, busy_;
 };
 
-class SceneBench {
+class ModesScene {
  public:
-  SceneBench(const ModesOptions& options, const std::string& name)
+  ModesScene(const ModesOptions& options, const std::string& name)
       : options_(options), scene_(load_scene(name)), prepared_(scene_, {.binary_form = false}) {
     Renderer renderer(prepared_, {.device = options.device});
-    const Json facts = Json::parse(renderer.statistics());
+    const nlohmann::json facts = nlohmann::json::parse(renderer.statistics());
     run_.scene = name;
     run_.device = facts.at("device").at("name");
     run_.n_primitives = scene_.primitives();
@@ -244,7 +237,7 @@ std::vector<ModesRun> bench_modes(const ModesOptions& options,
   std::vector<ModesRun> runs;
   for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
     working(name);
-    runs.push_back(SceneBench(options, name).run());
+    runs.push_back(ModesScene(options, name).run());
     done(runs.back());
   }
   return runs;

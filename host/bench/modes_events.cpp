@@ -48,7 +48,7 @@ class Simulation {
         queues_(n_queues),
         message_seconds_(traffic.rays_per_journey * network.bytes_per_ray / network.bytes_per_second) {}
 
-  Outcome run() {
+  Simulated run() {
     for (const std::uint32_t journey : traffic_.first) wait({journey, 0});
     for (std::size_t q = 0; q < queues_.size(); ++q) serve(queues_[q], 0);
     while (!events_.empty()) {
@@ -118,7 +118,7 @@ class Simulation {
   double message_seconds_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::uint64_t n_ = 0;  // of events and of waiting journeys, in the order of their making
-  Outcome outcome_;
+  Simulated outcome_;
 };
 
 // The longest life from this journey on, for one ray by itself. Journeys come before those that they lead to.
@@ -141,8 +141,8 @@ double critical_path(const Traffic& traffic, const Network& network) {
 
 }  // namespace
 
-Outcome simulate(const Traffic& traffic, std::uint32_t n_queues, const Network& network) {
-  Outcome outcome = Simulation(traffic, n_queues, network).run();
+Simulated simulate(const Traffic& traffic, std::uint32_t n_queues, const Network& network) {
+  Simulated outcome = Simulation(traffic, n_queues, network).run();
   outcome.critical_path = critical_path(traffic, network);
   return outcome;
 }

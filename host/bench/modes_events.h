@@ -39,7 +39,7 @@ struct Traffic {
   double rays_per_journey = 1;
 };
 
-struct Outcome {
+struct Simulated {
   double seconds = 0;
   double busiest = 0;        // work of the queue that has the most
   double busiest_port = 0;   // seconds that the port with the most to carry is carrying
@@ -47,7 +47,7 @@ struct Outcome {
   double rays_sent = 0;      // from queue to queue
 };
 
-Outcome simulate(const Traffic& traffic, std::uint32_t n_queues, const Network& network);
+Simulated simulate(const Traffic& traffic, std::uint32_t n_queues, const Network& network);
 
 // Rays that each queue sends to each other, [from * n_queues + to].
 std::vector<double> exchange_matrix(const Traffic& traffic, std::uint32_t n_queues);

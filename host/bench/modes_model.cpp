@@ -11,6 +11,7 @@
 #include "bench/modes_paths.h"
 #include "bench/modes_tiles.h"
 #include "bench/modes_traffic.h"
+#include "bench/spread.h"
 #include "odprt/division.h"
 #include "odprt/replicate.h"
 
@@ -18,16 +19,10 @@ namespace kdray::bench {
 
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr int kTile = 8;  // pixels of the measured tiles' sides
 // As host/odprt has them.
 constexpr std::size_t kLeastSubtrees = 64;
 constexpr std::array kKinds = {"primary", "shadow", "reflected", "refracted"};  // by LifeKind
-
-double sum(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
 
 // Of the scene's geometry, what the queue with most of it holds.
 double largest_share(const odprt::Cut& cut, const std::vector<std::uint32_t>& queue_of,
@@ -67,8 +62,8 @@ class Prophet {
     frame_.timeline = true;
     frame_.tile_width = frame_.tile_height = kTile;
     renderer_.render(frame_);
-    statistics_ = Json::parse(renderer_.statistics());
-    const Json& mode = statistics_.at("mode");
+    statistics_ = nlohmann::json::parse(renderer_.statistics());
+    const nlohmann::json& mode = statistics_.at("mode");
     if (!mode.contains("tile_seconds") || !mode.at("tile_seconds").is_array()) return;
     tiles_ = mode.at("tile_seconds").get<std::vector<double>>();
     const double all = sum(tiles_);
@@ -76,7 +71,7 @@ class Prophet {
       tiles_.clear();
       return;
     }
-    const Json tile = mode.value("tile", Json::array({kTile, kTile}));
+    const nlohmann::json tile = mode.value("tile", nlohmann::json::array({kTile, kTile}));
     model_.tile_width = tile.at(0), model_.tile_height = tile.at(1);
     model_.tiles_over_sequential = all / input_.sequential_seconds;
     for (double& seconds : tiles_) seconds *= input_.sequential_seconds / all;
@@ -177,7 +172,7 @@ class Prophet {
     double cost = 0;
     for (const Visit& v : paths_of(cut, std::vector<std::uint32_t>(cut.subtrees.size()), lives).visits)
       cost += v.cost;
-    const Json& seconds = statistics_.at("seconds");
+    const nlohmann::json& seconds = statistics_.at("seconds");
     const double trace = seconds.value("trace", 0.0);
     double all = trace;
     for (const char* const stage : {"shade", "admit", "add"}) all += seconds.value(stage, 0.0);
@@ -200,7 +195,7 @@ class Prophet {
         make_traffic(lives, paths_of(cut, queue_of, lives), n, rates, model_.rays_per_sample);
     const Network network{options_.gigabytes_per_second * 1e9, options_.latency_us * 1e-6,
                           options_.bytes_per_ray};
-    const Outcome outcome = simulate(traffic, n, network);
+    const Simulated outcome = simulate(traffic, n, network);
     Prediction& p = add(scheme, queues, outcome.seconds);
     p.subtrees = cut.subtrees.size();
     p.balance = outcome.busiest > 0 ? input_.sequential_seconds / (queues * outcome.busiest) : 0;
@@ -215,7 +210,7 @@ class Prophet {
   Renderer& renderer_;
   RenderOptions frame_;
   const ModelOptions& options_;
-  Json statistics_;            // of the frame in small tiles
+  nlohmann::json statistics_;  // of the frame in small tiles
   std::vector<double> tiles_;  // seconds, along the curve that they come in
   Rates rates_;                // without ODPRT's own overhead
   Model model_;

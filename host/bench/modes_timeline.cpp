@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "bench/report_modes.h"
+#include "bench/scenes.h"
 #include "bench/svg.h"
 
 namespace kdray::bench {
@@ -31,7 +31,7 @@ double end_of(std::span<const TimelineSpan> spans) {
   return end;
 }
 
-class Drawing {
+class TimelineDrawing {
  public:
   std::string finish(const ModesOptions& options) {
     const std::string title = svg::text(
@@ -124,7 +124,7 @@ std::vector<TimelineSpan> spans_of(const std::string& chrome_trace) {
 }
 
 std::string timeline_svg(std::span<const ModesRun> runs, const ModesOptions& options) {
-  Drawing drawing;
+  TimelineDrawing drawing;
   for (const ModesRun& run : runs) drawing.add(run);
   return drawing.empty() ? std::string() : drawing.finish(options);
 }

@@ -45,10 +45,10 @@ std::size_t n_hits(const std::vector<Hit>& hits) {
       std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return std::isfinite(h.t); }));
 }
 
-class SceneBench {
+class RaysScene {
  public:
-  SceneBench(const RaysOptions& options, const std::string& name,
-             const std::function<void(const std::string&)>& working)
+  RaysScene(const RaysOptions& options, const std::string& name,
+            const std::function<void(const std::string&)>& working)
       : options_(options), name_(name), working_(working), scene_(load_scene(name)) {
     if (scene_.model().primitive_count() == 0)
       throw Error(ErrorCode::input, name + ": nothing to trace; the scene is empty");
@@ -131,7 +131,7 @@ std::vector<RaysRun> bench_rays(const RaysOptions& options, const std::function<
   const RaysOptions o = resolved(options);
   std::vector<RaysRun> runs;
   for (const std::string& name : o.scenes) {
-    SceneBench bench(o, name, working);
+    RaysScene bench(o, name, working);
     for (const int cores : o.cores) {
       runs.push_back(bench.run(cores));
       done(runs.back());

@@ -4,17 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
+#include "bench/scenes.h"
 #include "bench/svg.h"
 
 namespace kdray::bench {
 
 namespace {
-
-std::string short_name(const std::string& scene) {
-  return std::filesystem::path(scene).filename().string();
-}
 
 double millions(std::uint64_t n) {
   return 1e-6 * static_cast<double>(n);

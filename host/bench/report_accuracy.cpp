@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
 
 #include "bench/accuracy_answers.h"
+#include "bench/scenes.h"
 
 namespace kdray::bench {
 
@@ -17,11 +17,6 @@ constexpr int kKdrayFront = 0, kPovrayFront = 1;
 
 const char* precision_name(bool in_double) {
   return in_double ? "double" : "float";
-}
-
-std::string short_name(const std::string& scene) {
-  const std::string file = std::filesystem::path(scene).filename().string();
-  return file.substr(0, file.find('.'));
 }
 
 // How many times as long a point takes as the fastest of kdray's that is no worse.

@@ -1,18 +1,14 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <optional>
 
 #include "bench/embree.h"
 #include "bench/report_builds.h"
+#include "bench/scenes.h"
 
 namespace kdray::bench {
 
 namespace {
-
-std::string short_name(const std::string& scene) {
-  return std::filesystem::path(scene).filename().string();
-}
 
 std::string heading(const BuildRun& run) {
   std::string out = short_name(run.scene) + ":";
@@ -39,17 +35,17 @@ std::string megabytes(std::size_t bytes) {
 }
 
 // How many times as long as Embree's, by medians.
-struct Ratios {
+struct BuildRatios {
   double wall, cpu;
 };
 
-std::optional<Ratios> ratios_to(const BuilderResult* embree, const BuilderResult& b) {
+std::optional<BuildRatios> ratios_to(const BuilderResult* embree, const BuilderResult& b) {
   if (embree == nullptr) return std::nullopt;
-  return Ratios{b.seconds.total.median / embree->seconds.total.median,
-                b.seconds.cpu.median / embree->seconds.cpu.median};
+  return BuildRatios{b.seconds.total.median / embree->seconds.total.median,
+                     b.seconds.cpu.median / embree->seconds.cpu.median};
 }
 
-std::string row(const BuilderResult& b, const std::optional<Ratios>& ratios) {
+std::string row(const BuilderResult& b, const std::optional<BuildRatios>& ratios) {
   const BuildSpreads& s = b.seconds;
   std::string out = fmt::format("  {:<15}{:>9.1f}{:>9.1f}{:>9.1f} {:>8.1f}-{:<8.1f}{:>9.1f}", b.builder,
                                 1e3 * s.tree.median, 1e3 * s.flatten.median, 1e3 * s.total.median,
@@ -73,7 +69,7 @@ std::string disagreements(const BuildRun& run) {
   return out;
 }
 
-Json json_of(const BuilderResult& b, const std::optional<Ratios>& ratios) {
+Json json_of(const BuilderResult& b, const std::optional<BuildRatios>& ratios) {
   Json json = {{"builder", b.builder},
                {"seconds", json_of(b.seconds)},
                {"times_embree", ratios ? Json(ratios->wall) : Json()},

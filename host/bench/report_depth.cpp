@@ -1,17 +1,12 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "bench/report_builds.h"
+#include "bench/scenes.h"
 #include "prepare/quality.h"
 
 namespace kdray::bench {
 
 namespace {
-
-std::string short_name(const std::string& scene) {
-  return std::filesystem::path(scene).filename().string();
-}
 
 Json json_of(const DepthRow& row) {
   return {{"max_depth", row.max_depth},

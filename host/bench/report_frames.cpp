@@ -1,18 +1,12 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "bench/embree.h"
 #include "bench/report.h"
+#include "bench/scenes.h"
 
 namespace kdray::bench {
 
 namespace {
-
-std::string short_name(const std::string& scene) {
-  const std::string file = std::filesystem::path(scene).filename().string();
-  return file.substr(0, file.find('.'));
-}
 
 // What POV-Ray would need to trace as many rays as kdray did for the same picture.
 std::optional<Spread> povray_rate(const FrameResult& f) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <set>
 
 #include "bench/report_modes.h"
+#include "bench/scenes.h"
 
 namespace kdray::bench {
 
@@ -201,11 +201,6 @@ std::string subtitle(std::span<const ModesRun> runs, const ModesOptions& options
 }
 
 }  // namespace
-
-std::string short_name(const std::string& scene) {
-  const std::string file = std::filesystem::path(scene).filename().string();
-  return file.substr(0, file.find('.'));
-}
 
 std::vector<Check> checks_of(const ModesRun& run) {
   std::vector<Check> checks;

@@ -20,9 +20,6 @@ struct Check {
 };
 std::vector<Check> checks_of(const ModesRun& run);
 
-// "balls" of ".../balls.nff.gz".
-std::string short_name(const std::string& scene);
-
 std::string table_of(const ModesRun& run, const ModesOptions& options);
 std::string summary_of(std::span<const ModesRun> runs);
 Json json_of(std::span<const ModesRun> runs, const ModesOptions& options);

@@ -41,9 +41,9 @@ double ratio(const Outcome* one, const Outcome* other) {
   return one == nullptr || other == nullptr ? 0 : other->seconds.median / one->seconds.median;
 }
 
-struct Ratios {
+struct RayRatios {
   const Outcome *best_kdray, *automatic, *fast, *robust;
-  explicit Ratios(std::span<const Outcome> o)
+  explicit RayRatios(std::span<const Outcome> o)
       : best_kdray(best_of(o, Family::kdray)),
         automatic(find(o, Family::kdray, "auto")),
         fast(best_of(o, Family::embree_fast)),
@@ -96,7 +96,7 @@ std::string ratios(const RaysRun& run) {
       out += fmt::format("  {:<10} no rays of this class\n", c.name);
       continue;
     }
-    const Ratios r(c.outcomes);
+    const RayRatios r(c.outcomes);
     out += fmt::format("  {:<10}{}{}{}{}{}{}{}{}\n", c.name, spread_in_words(r.best_kdray, c.n_rays),
                        spread_in_words(r.fast, c.n_rays), spread_in_words(r.robust, c.n_rays),
                        cell(ratio(r.best_kdray, r.fast)), cell(ratio(r.best_kdray, r.robust)),
@@ -132,7 +132,7 @@ Json json_of(const Outcome& o, std::size_t n_rays) {
 }
 
 Json json_of(const ClassResult& c) {
-  const Ratios r(c.outcomes);
+  const RayRatios r(c.outcomes);
   Json json = {{"name", c.name},   {"any_hit", c.any_hit},         {"rays", c.n_rays},
                {"hits", c.n_hits}, {"contestants", Json::array()}, {"ratios", Json::object()}};
   for (const Outcome& o : c.outcomes) json["contestants"].push_back(json_of(o, c.n_rays));

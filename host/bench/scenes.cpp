@@ -67,6 +67,11 @@ void require_scene(const std::string& name_or_file) {
   throw input_error(name_or_file, 0, "neither a file nor a built-in scene", "built in are " + known);
 }
 
+std::string short_name(const std::string& name_or_file) {
+  const std::string file = std::filesystem::path(name_or_file).filename().string();
+  return file.substr(0, file.find('.'));
+}
+
 scene::Scene load_scene(const std::string& name_or_file) {
   if (const BuiltIn* const b = find_built_in(name_or_file)) return b->make();
   require_scene(name_or_file);

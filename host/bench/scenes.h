@@ -18,6 +18,9 @@ scene::Scene lamps();
 // Throws for a name that is neither, so that a bench of many scenes needn't come to it first.
 void require_scene(const std::string& name_or_file);
 
+// "balls" of ".../balls.nff.gz".
+std::string short_name(const std::string& name_or_file);
+
 // A built-in scene of that name, or else the file.
 scene::Scene load_scene(const std::string& name_or_file);
 

@@ -1,6 +1,7 @@
 #include "bench/spread.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/median.h"
 
@@ -10,6 +11,10 @@ Spread spread_of(std::vector<double> values) {
   if (values.empty()) return {};
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return {median(values), *least, *most};
+}
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 Spread mrays_per_s(std::size_t n_rays, const Spread& seconds) {

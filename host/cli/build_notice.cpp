@@ -1,12 +1,9 @@
 #include "cli/build_notice.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <string_view>
 #include <utility>
 
 #include "cli/message.h"
@@ -16,12 +13,7 @@ namespace kdray::cli {
 namespace {
 
 constexpr const char* kText = "compiling kernels for this scene and device; later runs find them";
-constexpr auto kRedraw = std::chrono::milliseconds(500);
-
-bool can_redraw() {
-  const char* const term = std::getenv("TERM");
-  return ::isatty(STDERR_FILENO) && term && std::string_view(term) != "dumb";
-}
+constexpr auto kNoticeEvery = std::chrono::milliseconds(500);
 
 void draw_line(const std::string& line) {
   std::fputs(("\r" + line + "\033[K").c_str(), stderr);
@@ -71,7 +63,7 @@ void BuildNotice::watch() {
     } else if (!std::exchange(said, true) && output_.say) {
       output_.say(kText);
     }
-    changed_.wait_for(lock, kRedraw);
+    changed_.wait_for(lock, kNoticeEvery);
   }
   if (drawn) output_.draw("");
 }

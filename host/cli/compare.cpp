@@ -20,7 +20,7 @@ namespace kdray::cli {
 
 namespace {
 
-struct Options {
+struct CompareArgs {
   std::string a, b, diff;
   film::Transfer transfer;
   double max_rmse = -1;  // < 0: no limit
@@ -46,7 +46,7 @@ std::string as_json(const film::Difference& d) {
   return json.dump(2) + "\n";
 }
 
-int run(const Options& o) {
+int run(const CompareArgs& o) {
   if (!o.diff.empty()) {
     film::check_picture_name(o.diff);
     check_apart("A", o.a, "--diff", o.diff);
@@ -74,7 +74,7 @@ int run(const Options& o) {
 
 Command add_compare(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand("compare", "Tell how far two pictures are apart");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<CompareArgs>();
   app->add_option("A", o->a, "A picture, .png or .exr")->required()->type_name("");
   app->add_option("B", o->b, "Another of the same size")->required()->type_name("");
   add_path(*app, "--diff", "Write a heat map of the differences, .png or .exr", o->diff);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kSizeMax = 1'000'000'000;  // each generator has a limit of its own below this
 
-struct Options {
+struct GenerateArgs {
   std::string name, output;
   int size = -1;  // < 0: the generator's own
 };
@@ -40,13 +40,13 @@ int default_size(const std::string& name) {
   return 1;
 }
 
-void write(const Options& o, int size, std::ostream& out, const std::string& where) {
+void write(const GenerateArgs& o, int size, std::ostream& out, const std::string& where) {
   generate::generate(o.name, size, out);
   out.flush();
   if (!out) throw input_error(where, 0, "can't be written", "is the disk full?");
 }
 
-int run(const Options& o) {
+int run(const GenerateArgs& o) {
   const int size = o.size < 0 ? default_size(o.name) : o.size;
   if (o.output.empty() || o.output == "-") {
     write(o, size, std::cout, "standard output");
@@ -67,7 +67,7 @@ int run(const Options& o) {
 
 Command add_generate(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand("generate", "Write one of Haines' SPD scenes as an NFF file");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<GenerateArgs>();
   app->add_option("NAME", o->name, "Which scene")->required()->type_name("");
   add_int(*app, "--size", "Size factor (default: the scene's own, see below)", 0, kSizeMax, o->size);
   add_path(*app, "-o,--output", "The file (default: standard output)", o->output);

@@ -26,7 +26,7 @@ namespace kdray::cli {
 
 namespace {
 
-struct Options {
+struct InfoArgs {
   std::string scene;
   TreeOptions tree;
   bool json = false;
@@ -53,7 +53,7 @@ Forms build_forms(const scene::Scene& scene, const scene::Geometry& geometry,
   return forms;
 }
 
-int run(const Options& o) {
+int run(const InfoArgs& o) {
   Timer step;
   const scene::Scene scene = scene::load(o.scene);
   const double load_seconds = step.seconds();
@@ -87,7 +87,7 @@ int run(const Options& o) {
 Command add_info(CLI::App& kdray) {
   CLI::App* const app =
       kdray.add_subcommand("info", "Show counts, bounds, materials, tree statistics and memory of a scene");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<InfoArgs>();
   app->add_option("SCENE", o->scene, "The scene, as for render")->required()->type_name("");
   app->add_flag("--json", o->json, "Print JSON");
   add_tree_options(*app, o->tree);

@@ -1,9 +1,11 @@
 #include "cli/message.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace kdray::cli {
 
@@ -26,6 +28,11 @@ std::string one_line(std::string_view text) {
 void say(std::string_view text) {
   const std::string line = "kdray: " + one_line(text) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+bool can_redraw() {
+  const char* const term = std::getenv("TERM");
+  return ::isatty(STDERR_FILENO) && term && std::string_view(term) != "dumb";
 }
 
 std::string in_words(double count) {

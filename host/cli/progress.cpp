@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
-#include <string_view>
 
 #include "cli/message.h"
 
@@ -17,17 +15,12 @@ namespace kdray::cli {
 namespace {
 
 constexpr double kQuietStart = 0.3;  // seconds: a bar that would be gone at once only flickers
-constexpr double kRedraw = 0.1;      // seconds
+constexpr double kBarEvery = 0.1;    // seconds
 
 int columns() {
   winsize size{};
   if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
   return size.ws_col;
-}
-
-bool can_redraw() {
-  const char* const term = std::getenv("TERM");
-  return ::isatty(STDERR_FILENO) && term && std::string_view(term) != "dumb";
 }
 
 }  // namespace
@@ -36,7 +29,7 @@ Progress::Progress(bool quiet) : shown_here_(!quiet && can_redraw()) {}
 
 void Progress::update(double share) {
   if (!shown_here_ || since_start_.seconds() < kQuietStart) return;
-  if (drawn_ && since_draw_.seconds() < kRedraw) return;
+  if (drawn_ && since_draw_.seconds() < kBarEvery) return;
   share = std::clamp(share, 0.0, 1.0);
   const double elapsed = since_start_.seconds();
   const std::string left = share > 0 ? seconds_in_words(elapsed * (1 - share) / share) + " left" : "";

@@ -31,10 +31,11 @@ namespace kdray::cli {
 
 namespace {
 
-constexpr int kSideMax = 65536;
-constexpr long long kPixelsMax = 1ll << 28;  // 16384 x 16384; memory.h refuses what this machine can't hold
+constexpr int kPictureSideMax = 65536;
+constexpr long long kPicturePixelsMax =
+    1ll << 28;  // 16384 x 16384; memory.h refuses what this machine can't hold
 
-struct Options {
+struct RenderArgs {
   std::string scene, output, stats, timeline;
   bool quiet = false;
   bool gamma_given = false, bits_given = false;
@@ -45,9 +46,9 @@ struct Options {
   film::WriteOptions write;
 };
 
-void add_picture_options(CLI::App& app, Options& o) {
-  add_size(app, "Pixels across and down (default: the scene's, or 1024x1024)", kSideMax, kPixelsMax,
-           o.render.width, o.render.height);
+void add_picture_options(CLI::App& app, RenderArgs& o) {
+  add_size(app, "Pixels across and down (default: the scene's, or 1024x1024)", kPictureSideMax,
+           kPicturePixelsMax, o.render.width, o.render.height);
   add_int(app, "--depth", "Deepest ray; the eye ray is 1 (default: the scene's, or 5)", 1, 64,
           o.render.depth);
   add_real(app, "--min-weight", "W",
@@ -72,7 +73,7 @@ void add_picture_options(CLI::App& app, Options& o) {
            });
 }
 
-void add_file_options(CLI::App& app, Options& o) {
+void add_file_options(CLI::App& app, RenderArgs& o) {
   static constexpr std::array<std::string_view, 2> kBits = {"8", "16"};
   static constexpr std::array<std::string_view, 5> kChannels = {"depth", "normal", "primitive", "cost",
                                                                 "samples"};
@@ -104,7 +105,7 @@ void add_choice(CLI::App& app, const std::string& option, const std::string& hel
   })->group("Division");
 }
 
-void add_division_options(CLI::App& app, Options& o) {
+void add_division_options(CLI::App& app, RenderArgs& o) {
   static constexpr std::array<std::string_view, 3> kModes = {"auto", "pdprt", "odprt"};
   static constexpr std::array<std::string_view, 3> kDivisions = {"bag", "contiguous", "interleaved"};
   static constexpr std::array<std::string_view, 3> kBalances = {"sah", "pilot", "dynamic"};
@@ -117,7 +118,7 @@ void add_division_options(CLI::App& app, Options& o) {
              kBalances, o.render.balance);
   add_text(app, "--tile", "WxH", "Size of the tiles the picture is divided into (default: chosen)",
            [&o](const std::string& text) {
-             const Size size = parse_size("--tile", text, kSideMax, kPixelsMax);
+             const Size size = parse_size("--tile", text, kPictureSideMax, kPicturePixelsMax);
              o.render.tile_width = size.width, o.render.tile_height = size.height;
            })
       ->group(group);
@@ -135,14 +136,14 @@ void add_division_options(CLI::App& app, Options& o) {
       ->group(group);
 }
 
-void check_timeline(const Options& o) {
+void check_timeline(const RenderArgs& o) {
   check_text_output(o.timeline);
   check_apart("SCENE", o.scene, "--trace", o.timeline);
   check_apart("--output", o.output, "--trace", o.timeline);
   check_apart("--stats", o.stats, "--trace", o.timeline);
 }
 
-void check_files(Options& o) {
+void check_files(RenderArgs& o) {
   if (o.output.empty()) o.output = default_picture(o.scene).string();
   film::check_picture_name(o.output);
   if (!o.stats.empty()) check_text_output(o.stats);
@@ -173,7 +174,7 @@ film::Image to_image(const Picture& picture) {
   return image;
 }
 
-film::Written write(Picture&& picture, const Options& o) {
+film::Written write(Picture&& picture, const RenderArgs& o) {
   std::vector<film::Channel> channels;
   for (Channel& c : picture.channels) channels.push_back({std::move(c.name), std::move(c.values)});
   const film::Image image = to_image(picture);
@@ -181,7 +182,7 @@ film::Written write(Picture&& picture, const Options& o) {
   return film::write_picture(o.output, image, channels, o.write);
 }
 
-Picture render(Renderer& renderer, const Options& o) {
+Picture render(Renderer& renderer, const RenderArgs& o) {
   Progress progress(o.quiet);
   RenderOptions options = o.render;
   options.timeline = !o.timeline.empty();
@@ -189,7 +190,7 @@ Picture render(Renderer& renderer, const Options& o) {
   return renderer.render(options);
 }
 
-int run(Options& o) {
+int run(RenderArgs& o) {
   const Timer total;
   check_files(o);
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
@@ -221,7 +222,7 @@ int run(Options& o) {
 
 Command add_render(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand("render", "Render a scene to a picture");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<RenderArgs>();
   app->add_option("SCENE", o->scene,
                   "The scene: .nff .obj .ply .stl .gltf .glb .json, also .gz and .xz of them")
       ->required()

@@ -20,7 +20,7 @@ namespace kdray::cli {
 
 namespace {
 
-struct Options {
+struct TraceArgs {
   std::string scene, rays, output, stats;
   bool any_hit = false, quiet = false;
   int repeat = 1;
@@ -31,7 +31,7 @@ struct Options {
   DeviceOptions device;
 };
 
-void check_files(const Options& o) {
+void check_files(const TraceArgs& o) {
   check_writable(o.output);
   if (!o.stats.empty()) check_text_output(o.stats);
   check_apart("SCENE", o.scene, "--output", o.output);
@@ -41,7 +41,7 @@ void check_files(const Options& o) {
   check_apart("--output", o.output, "--stats", o.stats);
 }
 
-int run(const Options& o) {
+int run(const TraceArgs& o) {
   const Timer total;
   check_files(o);
   Timer step;
@@ -80,7 +80,7 @@ int run(const Options& o) {
 
 Command add_trace(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand("trace", "Trace rays from a NumPy file and write their hits");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<TraceArgs>();
   app->add_option("SCENE", o->scene, "The scene, as for render")->required()->type_name("");
   add_path(*app, "--rays", "The rays: float32, N x 8: origin, t_min, direction, t_max", o->rays)->required();
   add_path(*app, "-o,--output", "The hits: a structured array of t, primitive, u, v", o->output)->required();

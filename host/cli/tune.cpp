@@ -29,13 +29,13 @@ namespace kdray::cli {
 
 namespace {
 
-constexpr int kSideMax = 8192;
-constexpr long long kPixelsMax = 1 << 26;
+constexpr int kTunedSideMax = 8192;
+constexpr long long kTunedPixelsMax = 1 << 26;
 constexpr int kCheckRounds = 21;
 constexpr double kNoSlower = 1.02;
 const std::vector<std::string> kBuiltIn = {"balls", "gears", "boxes"};
 
-struct Options {
+struct TuneArgs {
   std::vector<std::string> scenes, merge;
   std::string file, stats;
   bool explain = false, check = false, quiet = false;
@@ -46,11 +46,11 @@ struct Options {
   Injection injection;
 };
 
-void talk(const Options& o, const std::string& text) {
+void talk(const TuneArgs& o, const std::string& text) {
   if (!o.quiet) say(text);
 }
 
-tune::Database read_own(const Options& o) {
+tune::Database read_own(const TuneArgs& o) {
   try {
     return tune::Database::read(o.file);
   } catch (const Error& error) {
@@ -60,13 +60,13 @@ tune::Database read_own(const Options& o) {
 }
 
 // What others wrote meanwhile is kept.
-void add_to_file(const Options& o, const tune::Database& found) {
+void add_to_file(const TuneArgs& o, const tune::Database& found) {
   tune::Database all = read_own(o);
   all.merge(found);
   all.write(o.file);
 }
 
-int merge_files(const Options& o) {
+int merge_files(const TuneArgs& o) {
   tune::Database others;
   for (const std::string& file : o.merge) {
     if (!std::filesystem::exists(file)) throw input_error(file, 0, "no such file", "name files of tunings");
@@ -88,7 +88,7 @@ tune::Entry entry_of(const Tuned& tuned, tune::Key key, bool any) {
           .scenes = tuned.scenes};
 }
 
-Tuned tune_group(const Options& o, TuneScenes& scenes) {
+Tuned tune_group(const TuneArgs& o, TuneScenes& scenes) {
   Tuned tuned;
   for (const auto& scene : scenes) tuned.scenes.push_back(scene->name());
   Progress progress(o.quiet);
@@ -99,7 +99,7 @@ Tuned tune_group(const Options& o, TuneScenes& scenes) {
   return tuned;
 }
 
-std::vector<Checked> check(const Options& o, std::vector<TuneScenes>& groups, const tune::Database& found) {
+std::vector<Checked> check(const TuneArgs& o, std::vector<TuneScenes>& groups, const tune::Database& found) {
   std::vector<Checked> checked;
   for (TuneScenes& group : groups)
     for (auto& scene : group) {
@@ -119,7 +119,7 @@ std::vector<Checked> check(const Options& o, std::vector<TuneScenes>& groups, co
 }
 
 // Before a search that would be for nothing.
-void check_outputs(const Options& o) {
+void check_outputs(const TuneArgs& o) {
   const std::filesystem::path folder = std::filesystem::path(o.file).parent_path();
   std::error_code error;  // check_writable tells
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
@@ -127,7 +127,7 @@ void check_outputs(const Options& o) {
   if (!o.stats.empty()) check_text_output(o.stats);
 }
 
-int run(Options& o) {
+int run(TuneArgs& o) {
   if (o.file.empty()) o.file = tune::default_file().string();
   if (o.file.empty())
     throw Error(ErrorCode::usage, "there is no home folder to keep tunings in; name a file with --output");
@@ -179,7 +179,7 @@ Injection parse_injection(const std::string& text) {
 Command add_tune(CLI::App& kdray) {
   CLI::App* const app =
       kdray.add_subcommand("tune", "Find the settings that render fastest on a device, and keep them");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<TuneArgs>();
   app->add_option("SCENE", o->scenes,
                   "Scenes to tune for, files or names as for bench (default: a built-in set, for all scenes)")
       ->type_name("");
@@ -200,7 +200,7 @@ Command add_tune(CLI::App& kdray) {
       *app, "--frames", "N",
       "Frames that the settings are to pay for themselves in: what takes longer isn't tried (default 10000)",
       1, 1e12, o->search.frames);
-  add_size(*app, "Pixels across and down (default 512x512)", kSideMax, kPixelsMax, o->render.width,
+  add_size(*app, "Pixels across and down (default 512x512)", kTunedSideMax, kTunedPixelsMax, o->render.width,
            o->render.height);
   app->add_flag("--explain", o->explain, "Print what each setting bought, and what else was tried");
   app->add_flag("--check", o->check, "Then race what was found against what kdray ships with");

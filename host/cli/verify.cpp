@@ -27,7 +27,7 @@ namespace kdray::cli {
 
 namespace {
 
-struct Options {
+struct VerifyArgs {
   std::string scene, output, stats;
   int width = 1280, height = 720, rays = 1 << 18;
   bool quiet = false;
@@ -35,7 +35,7 @@ struct Options {
   DeviceOptions device;
 };
 
-void check_options(const Options& o) {
+void check_options(const VerifyArgs& o) {
   if (!o.output.empty()) film::check_picture_name(o.output);
   if (!o.stats.empty()) check_text_output(o.stats);
   check_apart("SCENE", o.scene, "--output", o.output);
@@ -46,7 +46,7 @@ void check_options(const Options& o) {
                                               o.width, o.height, verify::kLeastWidth, verify::kLeastHeight));
 }
 
-Json stats_of(const Options& o, const verify::Findings& found, double load, double total) {
+Json stats_of(const VerifyArgs& o, const verify::Findings& found, double load, double total) {
   const verify::Seconds& s = found.seconds;
   Json stats = {{"kdray", KDRAY_VERSION}, {"command", "verify"}, {"scene", {{"file", o.scene}}}};
   stats["scene"].update({{"triangles", found.triangles}, {"spheres", found.spheres}, {"cones", found.cones}});
@@ -58,7 +58,7 @@ Json stats_of(const Options& o, const verify::Findings& found, double load, doub
   return stats;
 }
 
-void tell(const Options& o, const verify::Findings& found, double load, double total) {
+void tell(const VerifyArgs& o, const verify::Findings& found, double load, double total) {
   const verify::Seconds& s = found.seconds;
   std::string text = findings_in_words(found);
   text += fmt::format(
@@ -70,7 +70,7 @@ void tell(const Options& o, const verify::Findings& found, double load, double t
   std::fputs(text.c_str(), stderr);
 }
 
-int run(const Options& o) {
+int run(const VerifyArgs& o) {
   const Timer total;
   check_options(o);
   open_device(o.device);
@@ -99,7 +99,7 @@ int run(const Options& o) {
 Command add_verify(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand(
       "verify", "Check a scene's mesh, and that kdray traces it without leaks and self-hits");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<VerifyArgs>();
   app->add_option("SCENE", o->scene, "The scene, as for render")->required()->type_name("");
   add_path(*app, "-o,--output", "A picture of where the findings are, .png or .exr", o->output);
   add_size(*app, "Pixels of that picture (default 1280x720)", 16384, 1 << 26, o->width, o->height);

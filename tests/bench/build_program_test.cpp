@@ -43,7 +43,7 @@ TEST(BenchBuild, WritesTableFiguresAndPlot) {
                              "--no-embree", "--report", (folder / "report").string()},
                             {.limit_seconds = 280});
   ASSERT_TRUE(succeeds(run));
-  EXPECT_NE(run.err.find("balls.nff: 2 triangles, 820 spheres,"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("balls: 2 triangles, 820 spheres,"), std::string::npos) << run.err;
   const Json json = Json::parse(folder.get("report/build.json"));
   expect_keys(json, {"command", "embree", "rays", "repeat", "not_identical", "runs"});
   EXPECT_EQ(json["not_identical"], 0);
@@ -153,7 +153,7 @@ TEST(BenchDepth, WritesTableFiguresAndPlot) {
   }
   EXPECT_EQ(depths[0]["tree"]["max_depth"], 0);
   EXPECT_GT(depths[0]["tree"]["sah_cost"], depths.back()["tree"]["sah_cost"]);
-  EXPECT_NE(folder.get("depth.svg").find(">balls.nff<"), std::string::npos);
+  EXPECT_NE(folder.get("depth.svg").find(">balls<"), std::string::npos);
 }
 
 TEST(BenchBuild, RefusesWhatItDoesNotKnow) {

@@ -25,7 +25,7 @@ TEST(SimulatedRays, WithoutANetworkTheBusiestQueueIsAllThatCounts) {
     traffic.journeys.push_back({{{i % 3 == 0 ? 0u : 1u, 0.5}}, {}, 1});  // 4 and 8 of them
     traffic.first.push_back(i);
   }
-  const Outcome outcome = simulate(traffic, 4, kFree);
+  const Simulated outcome = simulate(traffic, 4, kFree);
   EXPECT_DOUBLE_EQ(outcome.seconds, 4);
   EXPECT_DOUBLE_EQ(outcome.busiest, 4);
   EXPECT_DOUBLE_EQ(outcome.rays_sent, 0);
@@ -33,7 +33,7 @@ TEST(SimulatedRays, WithoutANetworkTheBusiestQueueIsAllThatCounts) {
 
 TEST(SimulatedRays, OneJourneyPaysForEveryHop) {
   const Network network{64 * 10 / 2.0, 0.25, 64};  // ten rays take 2 seconds
-  const Outcome outcome = simulate(same(1, {{0, 1}, {1, 3}, {0, 1}}, 10), 2, network);
+  const Simulated outcome = simulate(same(1, {{0, 1}, {1, 3}, {0, 1}}, 10), 2, network);
   EXPECT_DOUBLE_EQ(outcome.seconds, 5 + 2 * (2 + 0.25));
   EXPECT_DOUBLE_EQ(outcome.rays_sent, 20);
   EXPECT_DOUBLE_EQ(outcome.busiest_port, 2);
@@ -52,7 +52,7 @@ TEST(SimulatedRays, LatencyIsHiddenByOtherRays) {
 
 TEST(SimulatedRays, AFullPortHoldsThemUp) {
   const Network narrow{64, 0, 64};  // a ray a second
-  const Outcome outcome = simulate(same(100, {{0, 0.25}, {1, 0.25}}), 2, narrow);
+  const Simulated outcome = simulate(same(100, {{0, 0.25}, {1, 0.25}}), 2, narrow);
   EXPECT_DOUBLE_EQ(outcome.seconds, 0.25 + 100 + 0.25);
   EXPECT_DOUBLE_EQ(outcome.busiest_port, 100);
 }
@@ -72,7 +72,7 @@ TEST(SimulatedRays, AChainOfRaysIsTheLeastThatItTakes) {
   for (std::uint32_t i = 0; i < 4; ++i) traffic.journeys.push_back({{{i, 1}}, {}, i + 1});
   for (std::uint32_t i = 0; i < 3; ++i) traffic.journeys[i].next = {i + 1};
   traffic.first = {0};
-  const Outcome outcome = simulate(traffic, 4, far);
+  const Simulated outcome = simulate(traffic, 4, far);
   EXPECT_DOUBLE_EQ(outcome.seconds, 4 + 3 * 2);
   EXPECT_DOUBLE_EQ(outcome.critical_path, outcome.seconds);
 }
