@@ -51,12 +51,15 @@ function(kdray_compile_quickly target)
   endif()
 endfunction()
 
-# kdray_test(NAME SOURCES ... LIBS ... [LABELS ...])
-#   One test executable per room, each of its cases a CTest test labelled as given. (Not joined: tests use the same names.)
+# kdray_test(NAME SOURCES ... LIBS ... [LABELS ...] [APART ...])
+#   One test executable per room, each of its cases a CTest test labelled as given. Its files are joined as a room's are, but for
+#   those named APART, whose names others have as well.
 function(kdray_test name)
-  cmake_parse_arguments(T "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(T "" "TIMEOUT" "SOURCES;LIBS;LABELS;APART" ${ARGN})
   add_executable(${name}_test ${T_SOURCES})
-  set_target_properties(${name}_test PROPERTIES CXX_EXTENSIONS OFF)
+  set_target_properties(${name}_test PROPERTIES CXX_EXTENSIONS OFF
+                        UNITY_BUILD ${KDRAY_JOIN} UNITY_BUILD_BATCH_SIZE 6)
+  set_source_files_properties(${T_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name}_test PRIVATE KDRAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              KDRAY_DATA_DIR="${KDRAY_DATA_DIR}")

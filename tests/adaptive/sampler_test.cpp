@@ -13,7 +13,7 @@
 namespace kdray::adaptive {
 namespace {
 
-constexpr Size kSize{100, 75};
+constexpr Size kPictureSize{100, 75};
 
 using Function = std::function<double(double x, double y)>;  // in pixels
 
@@ -50,14 +50,14 @@ struct Outcome {
 };
 
 Outcome sample(const Function& f, double target) {
-  Sampler sampler(kSize, target);
+  Sampler sampler(kPictureSize, target);
   const auto value = [&](std::uint32_t x, std::uint32_t y, std::uint32_t k) {
-    const Point p = point_of(y * kSize.width + x, k);
+    const Point p = point_of(y * kPictureSize.width + x, k);
     return units(f(x + p.x, y + p.y));
   };
   for (std::size_t i = 0; i < sampler.first_sums().size(); ++i)
-    sampler.first_sums()[i] = value(static_cast<std::uint32_t>(i / 3) % kSize.width,
-                                    static_cast<std::uint32_t>(i / 3) / kSize.width, 0);
+    sampler.first_sums()[i] = value(static_cast<std::uint32_t>(i / 3) % kPictureSize.width,
+                                    static_cast<std::uint32_t>(i / 3) / kPictureSize.width, 0);
   std::map<layout::u32, std::uint32_t> counts;  // by entry, of pixels that were refined
   for (auto list = sampler.next(); !list.empty(); list = sampler.next()) {
     EXPECT_EQ(list.size() % (2 * KDRAY_SAMPLE_RUN), 0u);
@@ -77,7 +77,7 @@ Outcome sample(const Function& f, double target) {
   }
   const Report report = sampler.report();
   for (const auto& [entry, n] : counts)
-    EXPECT_EQ(report.counts[KDRAY_TILE_ROW(entry) * kSize.width + KDRAY_TILE_COLUMN(entry)],
+    EXPECT_EQ(report.counts[KDRAY_TILE_ROW(entry) * kPictureSize.width + KDRAY_TILE_COLUMN(entry)],
               static_cast<float>(n));
   return {sampler.picture(), report};
 }
@@ -85,23 +85,23 @@ Outcome sample(const Function& f, double target) {
 // Against 16x16 samples of each pixel.
 double error_of(const std::vector<vec3>& picture, const Function& f) {
   double squares = 0;
-  for (std::uint32_t y = 0; y < kSize.height; ++y)
-    for (std::uint32_t x = 0; x < kSize.width; ++x) {
+  for (std::uint32_t y = 0; y < kPictureSize.height; ++y)
+    for (std::uint32_t x = 0; x < kPictureSize.width; ++x) {
       double mean = 0;
       for (int i = 0; i < 256; ++i) mean += f(x + (i % 16 + 0.5) / 16, y + (i / 16 + 0.5) / 16) / 256;
-      const double d = static_cast<double>(picture[y * kSize.width + x].x) - mean;
+      const double d = static_cast<double>(picture[y * kPictureSize.width + x].x) - mean;
       squares += d * d;
     }
-  return std::sqrt(squares / static_cast<double>(kSize.pixels()));
+  return std::sqrt(squares / static_cast<double>(kPictureSize.pixels()));
 }
 
 std::vector<vec3> uniform(const Function& f, std::uint32_t n) {
-  std::vector<vec3> picture(kSize.pixels());
+  std::vector<vec3> picture(kPictureSize.pixels());
   for (std::uint32_t pixel = 0; pixel < picture.size(); ++pixel) {
     double sum = 0;
     for (std::uint32_t k = 0; k < n; ++k) {
       const Point p = point_of(pixel, k);
-      sum += f(pixel % kSize.width + p.x, pixel / kSize.width + p.y);
+      sum += f(pixel % kPictureSize.width + p.x, pixel / kPictureSize.width + p.y);
     }
     picture[pixel] = vec3(static_cast<float>(sum / n));
   }
@@ -110,7 +110,7 @@ std::vector<vec3> uniform(const Function& f, std::uint32_t n) {
 
 TEST(Sampler, AFlatPictureTakesOneSamplePerPixel) {
   const Outcome flat = sample([](double, double) { return 0.4; }, 1e-6);
-  EXPECT_EQ(flat.report.samples, kSize.pixels());
+  EXPECT_EQ(flat.report.samples, kPictureSize.pixels());
   EXPECT_EQ(flat.report.rounds, 1);
   EXPECT_EQ(flat.report.estimated_rmse, 0);
   EXPECT_TRUE(flat.report.met);
@@ -119,12 +119,13 @@ TEST(Sampler, AFlatPictureTakesOneSamplePerPixel) {
 TEST(Sampler, AnEdgeIsRefinedAndNothingElse) {
   const Outcome edge = sample(half_plane, 0.003);
   EXPECT_TRUE(edge.report.met);
-  for (std::uint32_t y = 0; y < kSize.height; ++y)
-    for (std::uint32_t x = 0; x < kSize.width; ++x)
+  for (std::uint32_t y = 0; y < kPictureSize.height; ++y)
+    for (std::uint32_t x = 0; x < kPictureSize.width; ++x)
       if (std::abs(0.3 * x + y - 50) > 4) {
-        EXPECT_EQ(edge.report.counts[y * kSize.width + x], 1) << x << " " << y;
+        EXPECT_EQ(edge.report.counts[y * kPictureSize.width + x], 1) << x << " " << y;
       }
-  const auto per_pixel = static_cast<double>(edge.report.samples) / static_cast<double>(kSize.pixels());
+  const auto per_pixel =
+      static_cast<double>(edge.report.samples) / static_cast<double>(kPictureSize.pixels());
   EXPECT_LT(per_pixel, 3);
   EXPECT_LT(error_of(edge.picture, half_plane), 0.5 * error_of(uniform(half_plane, 4), half_plane));
 }
@@ -156,7 +157,8 @@ TEST(Sampler, TheTargetIsMetOrTheCapSaid) {
   EXPECT_LE(coarse.report.estimated_rmse, 0.1);
   EXPECT_FALSE(fine.report.met);
   EXPECT_GT(fine.report.estimated_rmse, 1e-4);
-  EXPECT_GT(fine.report.pixels[kLevels - 1], kSize.pixels() * 9 / 10) << "all that could be refined was";
+  EXPECT_GT(fine.report.pixels[kLevels - 1], kPictureSize.pixels() * 9 / 10)
+      << "all that could be refined was";
   EXPECT_LT(coarse.report.samples, fine.report.samples);
 }
 
@@ -164,7 +166,7 @@ TEST(Sampler, TheTargetIsMetOrTheCapSaid) {
 // centre line somewhere, it is followed from there.
 TEST(Sampler, ALineBetweenTheCentresIsFoundWhereOneIsOnIt) {
   const Outcome hidden = sample([](double x, double) { return std::abs(x - 40) < 0.2 ? 1.0 : 0.0; }, 0.001);
-  EXPECT_EQ(hidden.report.samples, kSize.pixels());
+  EXPECT_EQ(hidden.report.samples, kPictureSize.pixels());
   const Function slanted = [](double x, double y) { return std::abs(x - 20 - y / 3) < 0.2 ? 1.0 : 0.0; };
   const Outcome seen = sample(slanted, 0.001);
   EXPECT_LT(error_of(seen.picture, slanted), 0.3 * error_of(uniform(slanted, 1), slanted));

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "bench/expect_keys.h"
 #include "cli/program.h"
 #include "cli/scenes.h"
 #include "kdray/kdray.h"
@@ -13,10 +14,6 @@ namespace kdray::test {
 namespace {
 
 using Json = nlohmann::json;
-
-void expect_keys(const Json& json, const std::vector<std::string>& keys) {
-  for (const std::string& key : keys) EXPECT_TRUE(json.contains(key)) << key << " is not in " << json.dump();
-}
 
 Json run_on(const Folder& folder, const std::string& scene, const std::vector<std::string>& more) {
   std::vector<std::string> words = {"bench",

@@ -13,8 +13,8 @@
 namespace kdray::bench {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 TEST(AccuracySettings, BeginWithTheBaseAndHaveNamesOfTheirOwn) {
   for (const SettingsWanted& wanted :
@@ -94,7 +94,7 @@ TEST(LightReach, ChangesOnlyWhatFadesAndNeverLengthensARange) {
 }
 
 TEST(Shown, IsBetweenBlackAndWhite) {
-  const Picture picture{2, 1, {-1, 0.5f, 7, kNan, kInfinity, -kInfinity}, {}, {}};
+  const Picture picture{2, 1, {-1, 0.5f, 7, kNoNumber, kEndless, -kEndless}, {}, {}};
   const film::Image image = shown(image_of(picture));
   EXPECT_EQ(image.width, 2);
   EXPECT_EQ(image.height, 1);

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/expect_keys.h"
 #include "cli/program.h"
 #include "cli/scenes.h"
 #include "support/folder.h"
@@ -12,10 +13,6 @@ namespace kdray::test {
 namespace {
 
 using Json = nlohmann::json;
-
-void expect_keys(const Json& json, const std::vector<std::string>& keys) {
-  for (const std::string& key : keys) EXPECT_TRUE(json.contains(key)) << key << " is not in " << json.dump();
-}
 
 void expect_times(const Json& seconds) {
   expect_keys(seconds, {"tree", "flatten", "total", "cpu"});

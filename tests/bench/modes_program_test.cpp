@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bench/expect_keys.h"
 #include "cli/program.h"
 #include "cli/scenes.h"
 #include "kdray/kdray.h"
@@ -11,10 +12,6 @@ namespace kdray::test {
 namespace {
 
 using Json = nlohmann::json;
-
-void expect_keys(const Json& json, const std::vector<std::string>& keys) {
-  for (const std::string& key : keys) EXPECT_TRUE(json.contains(key)) << key << " is not in " << json.dump();
-}
 
 TEST(BenchModes, WritesTablesFiguresAndPlots) {
   KDRAY_NEED_DEVICE();

@@ -17,8 +17,8 @@ fs::path small_scene(const Folder& folder) {
   return folder / "balls.nff";
 }
 
-Outcome render(const Folder& folder, std::vector<std::string> more,
-               const std::map<std::string, std::string>& environment = {}) {
+Outcome render_into(const Folder& folder, std::vector<std::string> more,
+                    const std::map<std::string, std::string>& environment = {}) {
   std::vector<std::string> arguments = {"render", folder / "balls.nff", "--size", "32x32",
                                         "-o",     folder / "a.png"};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -36,16 +36,16 @@ TEST(Start, ProgramsAreKeptAndFoundAndTheFolderIsNotThePicturesConcern) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   small_scene(folder);
-  ASSERT_TRUE(succeeds(render(folder, {"--cache", folder / "cache"})));
+  ASSERT_TRUE(succeeds(render_into(folder, {"--cache", folder / "cache"})));
   const std::size_t n = n_programs(folder / "cache" / "programs");
   EXPECT_GE(n, 2u) << "the render's program, the vectors' test, the self-test's outcome";
   const std::string picture = folder.get("a.png");
-  ASSERT_TRUE(succeeds(render(folder, {"--cache", folder / "cache"})));
+  ASSERT_TRUE(succeeds(render_into(folder, {"--cache", folder / "cache"})));
   EXPECT_EQ(n_programs(folder / "cache" / "programs"), n) << "nothing was built";
   EXPECT_EQ(folder.get("a.png"), picture);
   for (const auto& entry : fs::directory_iterator(folder / "cache" / "programs"))
     std::ofstream(entry.path(), std::ios::trunc) << "damaged";
-  ASSERT_TRUE(succeeds(render(folder, {"--cache", folder / "cache"})));
+  ASSERT_TRUE(succeeds(render_into(folder, {"--cache", folder / "cache"})));
   EXPECT_EQ(folder.get("a.png"), picture);
 }
 
@@ -53,9 +53,9 @@ TEST(Start, NoCacheKeepsNoProgramsAndTheEnvironmentNamesTheFolder) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   small_scene(folder);
-  ASSERT_TRUE(succeeds(render(folder, {"--no-cache"}, {{"KDRAY_CACHE_DIR", folder / "own"}})));
+  ASSERT_TRUE(succeeds(render_into(folder, {"--no-cache"}, {{"KDRAY_CACHE_DIR", folder / "own"}})));
   EXPECT_FALSE(exists(folder / "own"));
-  ASSERT_TRUE(succeeds(render(folder, {}, {{"KDRAY_CACHE_DIR", folder / "own"}})));
+  ASSERT_TRUE(succeeds(render_into(folder, {}, {{"KDRAY_CACHE_DIR", folder / "own"}})));
   EXPECT_GE(n_programs(folder / "own" / "programs"), 2u);
 }
 
@@ -63,7 +63,7 @@ TEST(Start, ADeviceThatFailsTheSelfTestIsExitCode3WhenItWasNamed) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   small_scene(folder);
-  EXPECT_TRUE(fails_with(render(folder, {"--device", "0", "--inject-fault", "self-test@0"}), 3,
+  EXPECT_TRUE(fails_with(render_into(folder, {"--device", "0", "--inject-fault", "self-test@0"}), 3,
                          "fails the self-test"));
   EXPECT_FALSE(exists(folder / "a.png"));
 }
@@ -78,10 +78,10 @@ TEST(Start, AutoGoesOnToTheNextDevice) {
   const std::map<std::string, std::string> two = {{"POCL_DEVICES", "pthread pthread"}};
   const Outcome devices = kdray({"devices", "--json"}, {.environment = two});
   if (Json::parse(devices.out).size() != 2) GTEST_SKIP() << "more than PoCL's two devices";
-  const Outcome one = render(folder, {"--inject-fault", "self-test@0"}, two);
+  const Outcome one = render_into(folder, {"--inject-fault", "self-test@0"}, two);
   ASSERT_TRUE(succeeds(one));
   EXPECT_NE(one.err.find("fails the self-test"), std::string::npos) << one.err;
-  EXPECT_TRUE(fails_with(render(folder, {"-q", "--inject-fault", "self-test@0,self-test@1"}, two), 3,
+  EXPECT_TRUE(fails_with(render_into(folder, {"-q", "--inject-fault", "self-test@0,self-test@1"}, two), 3,
                          "fails the self-test"));
 }
 

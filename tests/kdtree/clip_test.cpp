@@ -35,7 +35,7 @@ void check_part(const Bounds& found, const std::optional<ExactBounds>& exact, fl
   }
 }
 
-void check_integer_cases(std::uint64_t seed, int size, float offset, float scale) {
+void check_integer_clips(std::uint64_t seed, int size, float offset, float scale) {
   SCOPED_TRACE(testing::Message() << "seed " << seed << " offset " << offset << " scale " << scale);
   Random random(seed);
   int n_both = 0, n_empty = 0;
@@ -63,19 +63,19 @@ void check_integer_cases(std::uint64_t seed, int size, float offset, float scale
 }
 
 TEST(ClipTriangle, IsExactOnIntegers) {
-  check_integer_cases(1, 40, 0, 1);
+  check_integer_clips(1, 40, 0, 1);
 }
 TEST(ClipTriangle, IsExactOnACoarseGrid) {
-  check_integer_cases(2, 3, 0, 1);
+  check_integer_clips(2, 3, 0, 1);
 }
 TEST(ClipTriangle, IsExactFarFromTheOrigin) {
-  check_integer_cases(3, 30, 131072, 1);
+  check_integer_clips(3, 30, 131072, 1);
 }
 TEST(ClipTriangle, IsExactWhenTiny) {
-  check_integer_cases(4, 30, 0, 0x1p-120f);
+  check_integer_clips(4, 30, 0, 0x1p-120f);
 }
 TEST(ClipTriangle, IsExactWhenHuge) {
-  check_integer_cases(5, 30, 0, 0x1p+110f);
+  check_integer_clips(5, 30, 0, 0x1p+110f);
 }
 
 // Floats of very different size: points of the triangle, exact in 128 bits, must be in the bounds of their

@@ -13,12 +13,12 @@ namespace {
 
 using odprt::Ledger;
 
-constexpr std::uint64_t kSeed = 17;
+constexpr std::uint64_t kLedgerSeed = 17;
 constexpr std::size_t kSlices = 3, kQueues = 4;
 constexpr std::uint32_t kDepth = 5;
 
 struct Play {
-  std::mt19937_64 random{kSeed};
+  std::mt19937_64 random{kLedgerSeed};
   std::vector<std::uint32_t> capacity = {30, 24, 16, 16, 8, 8}, least = {3, 1, 2, 2, 2, 2};
   Ledger ledger{kSlices, capacity, least, kQueues};
   // Rays alive by slice and level, as the play knows them; those that a running queue is to settle are in it.

@@ -18,7 +18,7 @@
 namespace kdray::test {
 namespace {
 
-constexpr std::uint64_t kSeed = 23;
+constexpr std::uint64_t kPartsSeed = 23;
 constexpr std::size_t kRows[3] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
 
 std::uint32_t number_of(const flatten::FlatScene& scene, std::uint32_t kind, std::uint32_t index) {
@@ -108,7 +108,7 @@ class Parts : public testing::Test {
   // Calls check(name, scene, cut, part_of, parts) for all scenes, cut into few and many subtrees.
   template <class Check>
   void for_all(const Check& check) {
-    std::mt19937_64 random(kSeed);
+    std::mt19937_64 random(kPartsSeed);
     for (const auto& [name, scene] : prepared_scenes())
       for (const std::uint32_t n_parts : {2u, 5u, 64u})
         for (const bool replicated : {false, true}) {

@@ -22,7 +22,7 @@ namespace {
 using test::expect_same;
 using test::Hall;
 
-constexpr Division kDivisions[] = {Division::bag, Division::contiguous, Division::interleaved};
+constexpr Division kAllDivisions[] = {Division::bag, Division::contiguous, Division::interleaved};
 const wavefront::Schedule kSmall{
     .tile_width = 8, .tile_height = 4, .batch_size = 64, .n_slices = 3, .fused_waves = 2};
 
@@ -55,7 +55,7 @@ class RenderTest : public test::EachDevice {
 
 TEST_P(RenderTest, EveryDivisionAndNumberOfQueues) {
   for (const int n_queues : {1, 2, 3, 8}) {
-    for (const Division division : kDivisions) {
+    for (const Division division : kAllDivisions) {
       for (const auto& [width, height] : {std::pair{8u, 4u}, {1u, 43u}, {32u, 32u}}) {
         SCOPED_TRACE(fmt::format("{} queues, division {}, tiles {}x{}", n_queues, static_cast<int>(division),
                                  width, height));
@@ -76,7 +76,7 @@ TEST_P(RenderTest, EveryDivisionAndNumberOfQueues) {
 TEST_P(RenderTest, ALaunchForEachStageToo) {
   wavefront::Schedule schedule = kSmall;
   schedule.fused = false;
-  for (const Division division : kDivisions) {
+  for (const Division division : kAllDivisions) {
     Task task = hall.task();
     task.division = division;
     expect_whole(render(2, schedule, task));
@@ -102,7 +102,7 @@ TEST_P(RenderTest, SeveralDevices) {
   ASSERT_EQ(contexts.size(), 2u);
   EXPECT_EQ(contexts[0].queues().size(), 2u);
   EXPECT_EQ(contexts[1].queues().size(), 1u);
-  for (const Division division : kDivisions) {
+  for (const Division division : kAllDivisions) {
     Task task = hall.task();
     task.division = division;
     expect_whole(hall.render(contexts, kSmall, task));

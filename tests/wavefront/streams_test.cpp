@@ -20,8 +20,9 @@
 namespace kdray::wavefront {
 namespace {
 
-constexpr cl_uint kLights = 4, kBehind = 1, kDark = 2;  // one light is below the floor, one gives no light
-constexpr float kGuard = 12345;                         // behind the streams
+constexpr cl_uint kManyLights = 4, kBehind = 1,
+                  kDark = 2;     // one light is below the floor, one gives no light
+constexpr float kGuard = 12345;  // behind the streams
 
 // A stream's words, read back.
 struct Words {
@@ -39,12 +40,12 @@ class Batch {
     frame_.width = 1024;
     frame_.height = 1;
     frame_.max_depth = 3;
-    frame_.n_lights = frame_.light_batch = kLights;
+    frame_.n_lights = frame_.light_batch = kManyLights;
     frame_.batch_size = n;
     frame_.batch_capacity = capacity;
     frame_.pool_size = 3 * n;
     frame_.pool_capacity = 3 * capacity;
-    frame_.shadow_capacity = kLights * capacity;
+    frame_.shadow_capacity = kManyLights * capacity;
     frame_.background[1] = 0.5f;
     slice_.depth = 1;
     slice_.n_batch = n;
@@ -70,8 +71,8 @@ class Batch {
                                  10,
                                  1.5f,
                                  {}};
-    std::array<layout::Light, kLights> lights{};
-    for (cl_uint k = 0; k < kLights; ++k) {
+    std::array<layout::Light, kManyLights> lights{};
+    for (cl_uint k = 0; k < kManyLights; ++k) {
       lights[k].attenuation[0] = 1;
       lights[k].range = INFINITY;
       lights[k].position[0] = light_x(k);
