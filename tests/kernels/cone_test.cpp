@@ -196,24 +196,6 @@ Case touching_case(std::mt19937& random, int i) {
   return c;
 }
 
-// Of a shadow ray that ends between the two, occlusion asks for both and a closest hit for the first that is not behind the origin:
-// the stress suite found one that was occluded by nothing.
-TEST_P(ConeTest, RootsAscend) {
-  const unsigned seed = 33;
-  SCOPED_TRACE(seed);
-  std::mt19937 random(seed);
-  std::vector<Case> in;
-  for (int i = 0; i < 200000; ++i) in.push_back(touching_case(random, i));
-  const std::vector<Found> out = roots_of(GetParam(), in);
-  int two = 0, unordered = 0;
-  for (const Found& f : out) {
-    two += !std::isnan(f.t[0]) && !std::isnan(f.t[1]);
-    unordered += f.t[1] < f.t[0];
-  }
-  EXPECT_EQ(unordered, 0);
-  EXPECT_GT(two, 50000);
-}
-
 // Tips, needles, lines that graze, that run along the axis or come from far away.
 Case grazing_case(std::mt19937& random, int i) {
   std::uniform_real_distribution<float> unit(-1, 1);
@@ -271,51 +253,61 @@ TEST_P(ConeTest, NearnessKeepsEveryLineThatHits) {
   EXPECT_GT(passed_by, misses / 8);
 }
 
-// cone_test refines the root that it takes for the first; where another may be, both. So no t_min, however near to a root, may
-// give anything but the first of the two that are beyond it.
+// cone_test refines the root that is the first, the other where that one is not beyond t_min after all. So no t_min, however near to
+// a root, may give anything but the first of the same two that are beyond it; also of lines that all but touch the cone, whose roots
+// may have gone past each other: occlusion and closest hits ask for one and the same (the stress suite once found a shadow ray
+// that was occluded by nothing).
 TEST_P(ConeTest, TheFirstHitBeyondAnyDistanceIsOneOfTheSameTwo) {
   const unsigned seed = 33;
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
   std::vector<Case> in;
-  for (int i = 0; i < 20000; ++i) in.push_back(i % 2 ? random_case(random, i) : grazing_case(random, i));
+  for (int i = 0; i < 30000; ++i)
+    in.push_back(i % 3 == 0   ? random_case(random, i)
+                 : i % 3 == 1 ? grazing_case(random, i)
+                              : touching_case(random, i));
   struct Answer {
-    int asked, wrong, beyond_first;
+    int asked, wrong, second;
   };
   const std::vector<Answer> out = test::run_kernel<Answer>(
       GetParam(),
       "#include \"intersect/cone.clh\"\n"
       "typedef struct Case { Cone cone; float origin[3], direction[3]; } Case;\n"
-      "typedef struct Answer { int asked, wrong, beyond_first; } Answer;\n"
+      "typedef struct Answer { int asked, wrong, second; } Answer;\n"
       "__kernel void test(__global const Case* in, __global Answer* out, uint n) {\n"
       "  const uint i = get_global_id(0);\n"
       "  if (i >= n) return;\n"
       "  const float3 o = load3(in[i].origin), d = load3(in[i].direction);\n"
-      "  const float t0 = intersect_cone(o, d, &in[i].cone, -INFINITY).t;\n"
-      "  const float t1 = intersect_cone(o, d, &in[i].cone, t0).t;\n"
+      "  const ConeHit_real first = intersect_cone(o, d, &in[i].cone, -INFINITY);\n"
+      "  const ConeHit_real next = intersect_cone(o, d, &in[i].cone, first.t);\n"
+      "  const int two = next.t > first.t;\n"
       "  Answer a = {0, 0, 0};\n"
       "  for (int k = -12; k <= 12; ++k) {\n"
       "    const float share = k == 0 ? 0.0f : copysign(ldexp(1.0f, 4 - 2 * abs(k)), (float)k);\n"
-      "    const float bounds[3] = {t0 + share * fabs(t0), t1 + share * fabs(t1), mix(t0, t1, share)};\n"
+      "    const float bounds[3] = {first.t + share * fabs(first.t), next.t + share * fabs(next.t),\n"
+      "                             mix(first.t, next.t, share)};\n"
       "    for (int j = 0; j < 3; ++j) {\n"
-      "      const float t_min = bounds[j], t = intersect_cone(o, d, &in[i].cone, t_min).t;\n"
-      "      const float wanted = t0 > t_min ? t0 : t1 > t_min ? t1 : NAN;\n"
+      "      const float t_min = bounds[j];\n"
       "      if (isnan(t_min)) continue;\n"
+      "      const ConeHit_real hit = intersect_cone(o, d, &in[i].cone, t_min);\n"
+      "      const int is_first = first.t > t_min, is_second = !is_first && two && next.t > t_min;\n"
       "      ++a.asked;\n"
-      "      a.wrong += isnan(wanted) ? t > t_min : t != wanted;\n"
-      "      a.beyond_first += !isnan(wanted) && wanted == t1;\n"
+      "      a.second += is_second;\n"
+      "      a.wrong += is_first    ? hit.t != first.t || hit.s != first.s\n"
+      "                 : is_second ? hit.t != next.t || hit.s != next.s\n"
+      "                             : hit.t > t_min;\n"
       "    }\n"
       "  }\n"
       "  out[i] = a;\n"
       "}\n",
       in);
-  long asked = 0, beyond_first = 0;
+  long asked = 0, second = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
     EXPECT_EQ(out[i].wrong, 0) << i;
-    asked += out[i].asked, beyond_first += out[i].beyond_first;
+    asked += out[i].asked, second += out[i].second;
   }
   EXPECT_GT(asked, 500000);
-  EXPECT_GT(beyond_first, 50000);
+  EXPECT_GT(second, 50000);
 }
 
 KDRAY_FOR_EACH_DEVICE(ConeTest);
