@@ -2,9 +2,12 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <mutex>
 #include <new>
+#include <vector>
 
 namespace kdray {
 
@@ -16,6 +19,50 @@ constexpr std::size_t kAlignment = 128;  // the widest vector of OpenCL: long16
 std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
   return (bytes + unit - 1) / unit * unit;
 }
+
+// Below the first, freed memory stays with malloc anyway (cli/main.cpp; glibc's own limit).
+constexpr std::size_t kLeastKept = std::size_t{32} << 20, kMostKept = std::size_t{256} << 20;
+constexpr std::size_t kBlocksKept = 2;
+
+// What was freed last.
+class Kept {
+ public:
+  // Never destroyed: what owns memory may outlive it.
+  static Kept& all() {
+    static Kept* const kept = new Kept;
+    return *kept;
+  }
+
+  void* take(std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    const auto found =
+        std::find_if(blocks_.begin(), blocks_.end(), [&](const Block& b) { return b.bytes == bytes; });
+    if (found == blocks_.end()) return nullptr;
+    void* const memory = found->memory;
+    blocks_.erase(found);
+    return memory;
+  }
+
+  void keep(void* memory, std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    if (blocks_.size() == kBlocksKept) {
+      std::free(blocks_.front().memory);
+      blocks_.erase(blocks_.begin());
+    }
+    blocks_.push_back({memory, bytes});
+  }
+
+ private:
+  struct Block {
+    void* memory;
+    std::size_t bytes;
+  };
+
+  Kept() { blocks_.reserve(kBlocksKept); }
+
+  std::mutex mutex_;
+  std::vector<Block> blocks_;
+};
 
 }  // namespace
 
@@ -53,7 +100,10 @@ void make_pages(void* memory, std::size_t bytes) {
 }
 
 std::shared_ptr<void> allocate(std::size_t bytes) {
-  return {allocate_pages(bytes), [](void* p) { std::free(p); }};
+  const bool kept = bytes >= kLeastKept && bytes <= kMostKept;
+  void* const memory = kept ? Kept::all().take(bytes) : nullptr;
+  return {memory ? memory : allocate_pages(bytes),
+          [bytes, kept](void* p) { kept ? Kept::all().keep(p, bytes) : std::free(p); }};
 }
 
 }  // namespace kdray

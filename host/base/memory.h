@@ -14,6 +14,8 @@ namespace kdray {
 // From this size on memory comes in large pages.
 inline constexpr std::size_t kLargePages = std::size_t{4} << 20;
 
+// Of 32 to 256 MiB, what was freed last is kept for the next that asks for as much, two blocks at most: the ray pools of deep frames,
+// which would be mapped and touched anew for each.
 std::shared_ptr<void> allocate(std::size_t bytes);
 
 // Asks for large pages where memory of another allocator is large, before it is touched.
