@@ -47,7 +47,8 @@ TEST(Memory, IsAskedForFromManyThreads) {
       for (int i = 0; i < 50; ++i) {
         const std::shared_ptr<void> memory = allocate((33 + (i + t) % 3) * kMiB);
         auto* const bytes = static_cast<volatile unsigned char*>(memory.get());
-        bytes[0] = bytes[33 * kMiB - 1] = static_cast<unsigned char>(t);
+        bytes[0] = static_cast<unsigned char>(t);
+        bytes[33 * kMiB - 1] = static_cast<unsigned char>(t);
         std::this_thread::yield();
         spoilt[t] += bytes[0] != t || bytes[33 * kMiB - 1] != t;
       }
