@@ -6,6 +6,15 @@
 #include <algorithm>
 #include <vector>
 
+// Which of several forms of a function is taken is asked before a sanitizer is ready.
+#if defined(__SANITIZE_ADDRESS__)
+#define KDRAY_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define KDRAY_SANITIZED
+#endif
+#endif
+
 namespace kdray::wavefront {
 
 namespace {
@@ -50,19 +59,26 @@ void for_each_row(const layout::Frame& frame, std::span<const layout::u32> tiles
   });
 }
 
+// Compiled for vectors of eight as well, where the processor has them: the conversions of 64-bit whole numbers are instructions
+// there, of eight at once. Each operation is rounded by itself, so the values are the same.
+#if defined(__x86_64__) && defined(__linux__) && !defined(KDRAY_SANITIZED)
+__attribute__((target_clones("arch=x86-64-v4", "default")))
+#endif
+void scale_sums(const layout::i64* sums, std::size_t n, double scale, float* values) {
+  for (std::size_t i = 0; i < n; ++i) values[i] = static_cast<float>(static_cast<double>(sums[i]) * scale);
+}
+
 class Developer {
  public:
   explicit Developer(std::uint32_t samples)
       : scale_(1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples)) {}
 
   void operator()(std::span<const layout::i64> sums, std::span<vec3> pixels) const {
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-      pixels[i] = {channel(sums[3 * i]), channel(sums[3 * i + 1]), channel(sums[3 * i + 2])};
+    static_assert(sizeof(vec3) == 3 * sizeof(float));
+    if (!pixels.empty()) scale_sums(sums.data(), 3 * pixels.size(), scale_, &pixels.front().x);
   }
 
  private:
-  float channel(layout::i64 sum) const { return static_cast<float>(static_cast<double>(sum) * scale_); }
-
   double scale_;
 };
 
