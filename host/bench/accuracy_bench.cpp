@@ -139,8 +139,8 @@ class AccuracyScene {
       seconds_.resize(run_.points.size());
       calls_.working(run_.scene + ": times");
     }
-    render(run_.points.front()
-               .setting);  // not counted: after POV-Ray's processes a frame takes up to a third longer
+    // Not counted: after POV-Ray's processes a frame takes up to a third longer.
+    render(run_.points.front().setting);
     for (std::size_t i = 0; i < run_.points.size(); ++i)
       seconds_[i].push_back(render(run_.points[i].setting).seconds());
     if (!povray_ || round >= kPovrayRounds) return;
