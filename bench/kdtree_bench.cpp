@@ -1,5 +1,5 @@
-// What    Building the kd-tree over a displaced sphere, clipped and boxed. Units: triangles/s of wall time; counters:
-//         references per triangle and expected SAH cost.
+// What    Building the kd-tree over a displaced sphere, clipped and boxed. Units: triangles/s of wall time;
+//         counters: references per triangle and expected SAH cost.
 #include <benchmark/benchmark.h>
 
 #include "bench/meshes.h"

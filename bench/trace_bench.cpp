@@ -1,5 +1,6 @@
-// What    Tracing random rays through a displaced sphere on the default device. Units: rays/s, rays and scene already
-//         on the device (Renderer's own timing); the hits are checked against a count before anything is timed.
+// What    Tracing random rays through a displaced sphere on the default device. Units: rays/s, rays and scene
+//         already on the device (Renderer's own timing); the hits are checked against a count before anything
+//         is timed.
 #include <benchmark/benchmark.h>
 
 #include <limits>

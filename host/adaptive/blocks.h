@@ -1,5 +1,6 @@
-// What    The order in which adaptive sampling goes through a picture's pixels: blocks of 32x32 along a curve, and in a block as
-//         the device goes through a tile (kernels/raygen/place.clh), so that sixteen samples in a row make a packet.
+// What    The order in which adaptive sampling goes through a picture's pixels: blocks of 32x32 along a
+//         curve, and in a block as the device goes through a tile (kernels/raygen/place.clh), so that sixteen
+//         samples in a row make a packet.
 #pragma once
 
 #include <algorithm>

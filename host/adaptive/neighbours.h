@@ -1,6 +1,6 @@
 // What    Sums of a value over each pixel's eight neighbours, for the pixels of a block.
-// Shape   By columns of three, each of which serves three pixels. Outside of the picture the value is 0, so that borders need no cases
-//         of their own.
+// Shape   By columns of three, each of which serves three pixels. Outside of the picture the value is 0, so
+//         that borders need no cases of their own.
 #pragma once
 
 #include <array>

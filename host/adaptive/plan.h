@@ -1,6 +1,8 @@
-// What    How far pixels are to be refined for an error: all until another sample of any of them is worth as little.
-// Shape   A pixel of n samples with the squared error v has the price v/n, by which pixels are counted. Each is refined level by
-//         level until its price is not above a limit; the limit is the highest for which the errors add up to what is wanted.
+// What    How far pixels are to be refined for an error: all until another sample of any of them is worth as
+//         little.
+// Shape   A pixel of n samples with the squared error v has the price v/n, by which pixels are counted. Each
+//         is refined level by level until its price is not above a limit; the limit is the highest for which
+//         the errors add up to what is wanted.
 // Why     Counts are whole numbers: the sum and the limit are the same in whatever order pixels come.
 // Source  Neyman, "On the two different aspects of the representative method", 1934, for the allocation.
 #pragma once
@@ -13,8 +15,8 @@
 
 namespace kdray::adaptive {
 
-// A pixel's squared error at a level, as a share of its samples' variance: n^-1.5, as of stratified samples of an edge. A single
-// sample lies in the centre, which halves it.
+// A pixel's squared error at a level, as a share of its samples' variance: n^-1.5, as of stratified samples
+// of an edge. A single sample lies in the centre, which halves it.
 float remains_at(int level);
 
 // How far a pixel is to be refined: until its price is not above the limit, by `most` levels at most.

@@ -1,4 +1,5 @@
-// What    What adaptive sampling tells of a picture: how far its pixels were refined, and the error that it is believed to have.
+// What    What adaptive sampling tells of a picture: how far its pixels were refined, and the error that it
+//         is believed to have.
 #pragma once
 
 #include <array>

@@ -77,7 +77,8 @@ void Sampler::begin() {
   std::iota(changed_.begin(), changed_.end(), std::size_t{0});
 }
 
-// The squared error of the mean of a block's pixels' samples. Few samples may agree by chance: the neighbours' count as some more.
+// The squared error of the mean of a block's pixels' samples. Few samples may agree by chance: the
+// neighbours' count as some more.
 class Sampler::Errors {
  public:
   Errors(const Sampler& sampler, std::size_t block)
@@ -143,8 +144,8 @@ bool Sampler::refined_around(std::size_t block) const {
   return std::any_of(around.begin(), around.end(), [&](std::size_t other) { return refined_[other] != 0; });
 }
 
-// What the next round brings the pixel to: as far as the limit says, since samples of one pixel that are traced together cost less than
-// those of several rounds.
+// What the next round brings the pixel to: as far as the limit says, since samples of one pixel that are
+// traced together cost less than those of several rounds.
 int Sampler::next_level(std::size_t pixel) const {
   const int level = level_[pixel];
   if (class_[pixel] <= limit_) return level;

@@ -1,13 +1,15 @@
-// What    Adaptive sampling: which samples a picture is to have, round by round, until its error is believed to be what is wanted.
-// Shape   A first round of one sample through each pixel's centre, which a mode renders as any frame. Then rounds of single
-//         samples (frame.layout.h: runs of them), of which the light of each comes back: a pixel has the first 4, 8, 16, 32
-//         or 64 of its sequence (kernels/raygen/sequence.clh). Between rounds each pixel's error is estimated from
-//         the spread of its samples and its neighbours' (or, of a single sample, from the contrast), and those that cost
-//         least for what they bring are refined (plan.h).
-// Why     All that is decided is decided from the film's whole numbers, pixel by pixel: it is the same in every mode, and so is
-//         the picture.
-// Source  T. Whitted, "An improved illumination model for shaded display", CACM 1980; D. Mitchell, "Generating antialiased
-//         images at low sampling densities", SIGGRAPH 1987. docs/design/adaptive.md.
+// What    Adaptive sampling: which samples a picture is to have, round by round, until its error is believed
+//         to be what is wanted.
+// Shape   A first round of one sample through each pixel's centre, which a mode renders as any frame. Then
+//         rounds of single samples (frame.layout.h: runs of them), of which the light of each comes back: a
+//         pixel has the first 4, 8, 16, 32 or 64 of its sequence (kernels/raygen/sequence.clh). Between
+//         rounds each pixel's error is estimated from the spread of its samples and its neighbours' (or, of a
+//         single sample, from the contrast), and those that cost least for what they bring are refined
+//         (plan.h).
+// Why     All that is decided is decided from the film's whole numbers, pixel by pixel: it is the same in
+//         every mode, and so is the picture.
+// Source  T. Whitted, "An improved illumination model for shaded display", CACM 1980; D. Mitchell,
+//         "Generating antialiased images at low sampling densities", SIGGRAPH 1987. docs/design/adaptive.md.
 #pragma once
 
 #include <cstdint>

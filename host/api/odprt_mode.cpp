@@ -24,7 +24,8 @@ const char* name_of(Balance balance) {
   }
 }
 
-// Rays of both kinds that a queue has sent to others (`out`) or had from them; not those that it sent to itself.
+// Rays of both kinds that a queue has sent to others (`out`) or had from them; not those that it sent to
+// itself.
 std::uint64_t moved(const odprt::ExchangeCounts& exchange, std::size_t queue, bool out, std::uint64_t per_ray,
                     std::uint64_t per_shadow_ray) {
   std::uint64_t n = 0;

@@ -7,7 +7,8 @@
 
 namespace kdray::api {
 
-// The wide form is what is divided: other walks of it than asked for do, the binary tree's doesn't (ErrorCode::usage).
+// The wide form is what is divided: other walks of it than asked for do, the binary tree's doesn't
+// (ErrorCode::usage).
 Traversal odprt_traversal(Traversal wanted, bool on_cpus);
 
 // mode.* and memory.per_queue of the statistics. `bytes_of_whole` is the scene's geometry.

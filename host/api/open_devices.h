@@ -1,5 +1,5 @@
-// What    Opens the devices that DeviceOptions names: each has passed the self-test, and keeps what it builds in the folder that
-//         the options name.
+// What    Opens the devices that DeviceOptions names: each has passed the self-test, and keeps what it builds
+//         in the folder that the options name.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// What    What the kernels compute in, and what double leaves: the binary walk and PDPRT, on devices that have it.
+// What    What the kernels compute in, and what double leaves: the binary walk and PDPRT, on devices that
+//         have it.
 #pragma once
 
 #include "kdray/kdray.h"
@@ -7,8 +8,8 @@ namespace kdray::api {
 
 const char* name_of(Precision precision);
 
-// The walk of that precision. Throws ErrorCode::usage when there is no such walk in it, ErrorCode::no_device when the device
-// doesn't compute in it.
+// The walk of that precision. Throws ErrorCode::usage when there is no such walk in it, ErrorCode::no_device
+// when the device doesn't compute in it.
 Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& device);
 
 // Throws ErrorCode::usage where the binary form is walked and the scene was prepared without it.

@@ -273,13 +273,14 @@ wavefront::Schedule Renderer::Impl::schedule_for(const Device& device, const Job
   schedule.traversal = api::traversal_in(job.options.precision, job.options.traversal, device.context.info());
   schedule.precision = job.options.precision;
   schedule.fused = !device.global;
-  // Enough slices that the last ones to end leave no core idle for long; each has a pool and streams of its own.
+  // Enough slices that the last ones to end leave no core idle for long; each has a pool and streams of its
+  // own.
   const auto n_parts = static_cast<std::uint32_t>(device.context.n_sub_devices());
   const std::uint32_t units = (device.context.info().compute_units + n_parts - 1) / n_parts;  // of a queue
   schedule.n_slices = std::max(schedule.n_slices, 16 * units);
   if (schedule.fused && n_queues() > 1) {
-    // Launches that do less, so that what a queue must have ahead of it (pdprt/queue.h) is little. On one core slices
-    // would only take turns.
+    // Launches that do less, so that what a queue must have ahead of it (pdprt/queue.h) is little. On one
+    // core slices would only take turns.
     schedule.n_slices = units == 1 ? 1 : 16 * units;
     schedule.fused_waves = units == 1 ? 128 : 32;
   }
@@ -305,8 +306,8 @@ const Device* Renderer::Impl::too_small_for_an_array() const {
   return nullptr;
 }
 
-// What a queue on the device may have for its film in PDPRT: all that scene and streams leave of --device-memory. Nothing
-// where that is less than a row of tiles, or a round of samples, takes.
+// What a queue on the device may have for its film in PDPRT: all that scene and streams leave of
+// --device-memory. Nothing where that is less than a row of tiles, or a round of samples, takes.
 std::optional<std::size_t> Renderer::Impl::pdprt_film_bytes(const Device& device, const Job& job) const {
   constexpr std::size_t kPlace = 3 * sizeof(layout::i64), kListed = 2 * sizeof(layout::u32);
   const wavefront::Schedule schedule = schedule_for(device, job);

@@ -1,4 +1,4 @@
-// What    Gathers what a Renderer has done into the JSON of DESIGN.md section 2 (`--stats`).
+// What    Gathers what a Renderer has done into the JSON of docs/cli.md (`--stats`).
 // Units   Seconds of wall time, except seconds.{trace,shade,admit,add}: device time, added over the queues.
 #pragma once
 

@@ -1,4 +1,5 @@
-// What    The settings that a device works with: what was found for it (tune/database.h), or what kdray ships with for its kind.
+// What    The settings that a device works with: what was found for it (tune/database.h), or what kdray ships
+//         with for its kind.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
-// What    An array of plain values whose size is known when it is made, in memory that others may use as it is: a device's
-//         buffer or a file's mapping.
-// Shape   A handle: copies share the values, which live as long as any of them or of their owner(). New values are
-//         uninitialised. What lies in a read-only mapping must not be written.
+// What    An array of plain values whose size is known when it is made, in memory that others may use as it
+//         is: a device's buffer or a file's mapping.
+// Shape   A handle: copies share the values, which live as long as any of them or of their owner(). New
+//         values are uninitialised. What lies in a read-only mapping must not be written.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // What    A folder that entries of one kind are kept in, and its bound: the least recently used go first.
-// Shape   An entry is "<32 hex digits><ending>"; its time of change is that of its last use. Files of other names are left
-//         alone, so that entries of several kinds may share a folder. Several processes may use, add and remove entries
-//         at once: what is open or mapped stays, whoever removes its name.
+// Shape   An entry is "<32 hex digits><ending>"; its time of change is that of its last use. Files of other
+//         names are left alone, so that entries of several kinds may share a folder. Several processes may
+//         use, add and remove entries at once: what is open or mapped stays, whoever removes its name.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ std::filesystem::path entry_file(const std::filesystem::path& folder, const Hash
 // Marks the entry as used just now; that it can't be (a folder for reading only) is no error.
 void touch_entry(const std::filesystem::path& entry);
 
-// Removes entries of this ending until no more than `max_bytes` are left, and what writers that were killed have left behind.
+// Removes entries of this ending until no more than `max_bytes` are left, and what writers that were killed
+// have left behind.
 void shrink_folder(const std::filesystem::path& folder, std::string_view ending, std::uint64_t max_bytes);
 
 }  // namespace kdray

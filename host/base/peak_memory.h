@@ -1,4 +1,5 @@
-// What    The largest resident set of this process while something runs, where the system lets it be measured (Linux).
+// What    The largest resident set of this process while something runs, where the system lets it be measured
+//         (Linux).
 // Units   bytes.
 #pragma once
 
@@ -8,8 +9,8 @@
 
 namespace kdray {
 
-// What `work` needs beyond what the process holds when it begins. The system then counts the process' peak anew: getrusage
-// and VmHWM no longer know of earlier ones.
+// What `work` needs beyond what the process holds when it begins. The system then counts the process' peak
+// anew: getrusage and VmHWM no longer know of earlier ones.
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
 
 }  // namespace kdray

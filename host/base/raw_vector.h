@@ -1,8 +1,10 @@
-// What    A vector whose elements are left as they are when it grows: for arrays that are written once, by several threads,
-//         right after. emplace_back() leaves its element so too; push_back({}) adds an empty one.
-// Why     std::vector fills what resize() adds, in one thread; memory that is touched for the first time costs several
-//         times what warm memory costs, and would be touched twice. Large ones come in large pages (base/memory.h).
-//         PageVector is for elements whose empty state means something: large pages too, but filled as std::vector does.
+// What    A vector whose elements are left as they are when it grows: for arrays that are written once, by
+//         several threads, right after. emplace_back() leaves its element so too; push_back({}) adds an empty
+//         one.
+// Why     std::vector fills what resize() adds, in one thread; memory that is touched for the first time
+//         costs several times what warm memory costs, and would be touched twice. Large ones come in large
+//         pages (base/memory.h). PageVector is for elements whose empty state means something: large pages
+//         too, but filled as std::vector does.
 #pragma once
 
 #include <cstdlib>

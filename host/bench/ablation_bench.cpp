@@ -94,8 +94,8 @@ class AblationScene {
     return f;
   }
 
-  // The first frame compiles, the last of it at the first launch, which belongs to no frame: what it takes longer than the second,
-  // beside rendering, is the time to compile.
+  // The first frame compiles, the last of it at the first launch, which belongs to no frame: what it takes
+  // longer than the second, beside rendering, is the time to compile.
   AblationRow first_frames(const Ablation& ablation) {
     const bool usual = ablation.kind == Ablation::Kind::none, compiles = usual || ablation.keep != 0;
     const Frame first = frame(ablation), second = frame(ablation);

@@ -1,7 +1,7 @@
-// What    `kdray bench ablation`: what each specialisation and each rule of skipping is worth, by taking it away: time, rays,
-//         time to compile, and whether the picture changes.
-// Shape   One renderer for a scene, which compiles anew for this run whatever it compiled before. A round is a frame of
-//         each variant, each with a usual frame right before it.
+// What    `kdray bench ablation`: what each specialisation and each rule of skipping is worth, by taking it
+//         away: time, rays, time to compile, and whether the picture changes.
+// Shape   One renderer for a scene, which compiles anew for this run whatever it compiled before. A round is
+//         a frame of each variant, each with a usual frame right before it.
 // Errors  As scene::load's and Renderer's. Pictures that differ where none may are counted, not thrown.
 #pragma once
 

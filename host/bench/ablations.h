@@ -1,7 +1,7 @@
-// What    What `kdray bench ablation` takes away, one thing at a time: a specialisation (the code that a scene doesn't need is
-//         compiled in) or a rule (the work that it would leave out is done).
-// Shape   A rule is exact where it claims that no bit of the picture depends on it. The two that are not leave out light below
-//         --min-weight, and what is deeper than --depth.
+// What    What `kdray bench ablation` takes away, one thing at a time: a specialisation (the code that a
+//         scene doesn't need is compiled in) or a rule (the work that it would leave out is done).
+// Shape   A rule is exact where it claims that no bit of the picture depends on it. The two that are not
+//         leave out light below --min-weight, and what is deeper than --depth.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,9 @@
-// What    `kdray bench accuracy`: time against error. A frame at each setting of samples, depth, least weight, reach of lights,
-//         traversal and tree, held against a reference; beside it POV-Ray's antialiasing.
-// Shape   Interleaved: a round is a frame at every setting; one before that is not counted, and gives the pictures that are
-//         judged. POV-Ray's pictures are made in the first rounds only, since they take so much longer;
-//         the one that is judged is timed too.
+// What    `kdray bench accuracy`: time against error. A frame at each setting of samples, depth, least
+//         weight, reach of lights, traversal and tree, held against a reference; beside it POV-Ray's
+//         antialiasing.
+// Shape   Interleaved: a round is a frame at every setting; one before that is not counted, and gives the
+//         pictures that are judged. POV-Ray's pictures are made in the first rounds only, since they take so
+//         much longer; the one that is judged is timed too.
 // Errors  As scene::load's, Renderer's and Povray's.
 #pragma once
 
@@ -48,8 +49,8 @@ struct AccuracyPoint {
 struct PovrayRun {
   std::vector<AccuracyPoint> points;
   film::Difference model_difference;  // of one ray through each pixel's centre, from kdray's
-  bool has_own_reference =
-      false;  // where that is not small: its points are not held against kdray's reference
+  // Where that is not small: its points are not held against kdray's reference.
+  bool has_own_reference = false;
 };
 
 struct AccuracyRun {

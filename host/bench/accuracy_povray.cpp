@@ -21,7 +21,8 @@ PovraySetting setting(int method, const char* threshold, int grid) {
 
 }  // namespace
 
-// From what comes out of the box to what is nearly its reference: the default threshold is 0.3, the default grid 3.
+// From what comes out of the box to what is nearly its reference: the default threshold is 0.3, the default
+// grid 3.
 std::vector<PovraySetting> povray_settings(bool quick) {
   if (quick) return {{"-A", {"-A"}, kDeep}, setting(2, "0.3", 3)};
   return {{"-A, depth 5", {"-A"}, kShallow},

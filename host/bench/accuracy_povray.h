@@ -1,8 +1,9 @@
 // What    POV-Ray's antialiasing settings as points beside kdray's, on the same scene.
-// Shape   One question comes first: do the two programs show the same scene? Both trace one ray through each pixel's centre; where
-//         these pictures agree, POV-Ray's are held against the same reference as kdray's. Where its model is another one, as
-//         with light that passes through glass, they are held against a reference of its own (4x4 as many pixels, each sampled
-//         4x4 times, shrunk), so that nothing counts but what its settings cost.
+// Shape   One question comes first: do the two programs show the same scene? Both trace one ray through each
+//         pixel's centre; where these pictures agree, POV-Ray's are held against the same reference as
+//         kdray's. Where its model is another one, as with light that passes through glass, they are held
+//         against a reference of its own (4x4 as many pixels, each sampled 4x4 times, shrunk), so that
+//         nothing counts but what its settings cost.
 // Errors  As Povray's.
 #pragma once
 

@@ -1,8 +1,9 @@
-// What    The picture that errors are measured from: many stratified samples, depth 16, every weight, in double where
-//         the device computes in it; and how far it may be off itself.
-// Shape   The mean of two pictures with half of the samples each, one of twice the frame's sides and one of four times, shrunk.
-//         Samples are scattered by the number of their pixel, so the two have nothing in common, and half of their RMSE is what
-//         the mean is off; nor have they anything in common with the pictures that are judged.
+// What    The picture that errors are measured from: many stratified samples, depth 16, every weight, in
+//         double where the device computes in it; and how far it may be off itself.
+// Shape   The mean of two pictures with half of the samples each, one of twice the frame's sides and one of
+//         four times, shrunk. Samples are scattered by the number of their pixel, so the two have nothing in
+//         common, and half of their RMSE is what the mean is off; nor have they anything in common with the
+//         pictures that are judged.
 #pragma once
 
 #include "film/image.h"

@@ -1,7 +1,8 @@
 // What    The settings that `kdray bench accuracy` holds against each other, as data.
-// Shape   A base of good quality (16 samples, depth 16, the default least weight), from which one thing at a time is changed;
-//         then combinations: kdray's default depth with all numbers of samples, and drafts. Adaptive sampling
-//         at targets a factor of two apart, so that what lies between them can be read off the line through them.
+// Shape   A base of good quality (16 samples, depth 16, the default least weight), from which one thing at a
+//         time is changed; then combinations: kdray's default depth with all numbers of samples, and drafts.
+//         Adaptive sampling at targets a factor of two apart, so that what lies between them can be read off
+//         the line through them.
 #pragma once
 
 #include <string>
@@ -19,8 +20,8 @@ struct Setting {
   int samples = 16, depth = 16;
   double adaptive_target = 0;  // above 0: adaptive sampling, whatever `samples`
   double min_weight = kDefaultMinWeight;
-  double light_reach =
-      0;  // lights end where they have become weaker than this; 0: nowhere but where the scene says
+  // Lights end where they have become weaker than this; 0: nowhere but where the scene says.
+  double light_reach = 0;
   Traversal traversal = Traversal::automatic;
   BuildQuality quality = BuildQuality::balanced;
   Precision precision = Precision::float32;
@@ -29,7 +30,8 @@ struct Setting {
 // Groups whose members all have the base's picture, bit for bit.
 bool keeps_the_picture(const std::string& group);
 
-// [0] is the base. Only what makes a difference: on a CPU all traversals, with lights that fade their reach, where there is double that.
+// [0] is the base. Only what makes a difference: on a CPU all traversals, with lights that fade their reach,
+// where there is double that.
 struct SettingsWanted {
   bool cpu = true, fading_lights = false, double_precision = false, quick = false;
 };

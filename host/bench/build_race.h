@@ -1,6 +1,6 @@
 // What    Builders of trees against each other: what each takes on the wall clock and of all cores' time.
-// Shape   A warm-up first, then rounds, in each of which every builder runs once: what slows the machine for a while slows
-//         all of them.
+// Shape   A warm-up first, then rounds, in each of which every builder runs once: what slows the machine for
+//         a while slows all of them.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,8 @@
 
 namespace kdray::bench {
 
-// Seconds. `tree` and `flatten` (to the forms that a device uses) are wall time, `cpu` the process' time for both.
+// Seconds. `tree` and `flatten` (to the forms that a device uses) are wall time, `cpu` the process' time for
+// both.
 struct BuildTimes {
   double tree = 0, flatten = 0, cpu = 0;
 };

@@ -11,8 +11,8 @@ namespace kdray::bench {
 // Hits that are not the same bits (t, primitive, u, v).
 std::size_t count_not_identical(std::span<const Hit> a, std::span<const Hit> b);
 
-// The share of rays that one of them lets pass, or for which they name different primitives at distances that differ by
-// more than 1e-4 of themselves: on a common edge both are right.
+// The share of rays that one of them lets pass, or for which they name different primitives at distances that
+// differ by more than 1e-4 of themselves: on a common edge both are right.
 double differing_share(std::span<const Hit> a, std::span<const Hit> b);
 
 }  // namespace kdray::bench

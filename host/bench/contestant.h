@@ -1,4 +1,5 @@
-// What    Someone who traces a class of rays and says how long it took: a traversal of kdray's, a mode of Embree's.
+// What    Someone who traces a class of rays and says how long it took: a traversal of kdray's, a mode of
+//         Embree's.
 #pragma once
 
 #include <functional>

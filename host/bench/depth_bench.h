@@ -1,7 +1,8 @@
-// What    `kdray bench depth`: the thesis' study of the maximum tree depth: what trees of every depth cost to build, to hold
-//         and to trace.
-// Shape   Depths from 0 in steps of 2 up to the usual one of the scene, then 4 and 8 beyond. Every round makes each of the
-//         trees anew, traces the same rays over it and forgets it. A tree whose expected cost is beyond kDearest is not
+// What    `kdray bench depth`: the thesis' study of the maximum tree depth: what trees of every depth cost to
+//         build, to hold and to trace.
+// Shape   Depths from 0 in steps of 2 up to the usual one of the scene, then 4 and 8 beyond. Every round
+//         makes each of the trees anew, traces the same rays over it and forgets it. A tree whose expected
+//         cost is beyond kDearest is not
 //         traced: it would take minutes.
 // Errors  As scene::load's and Renderer's. Hits that differ between depths are counted, not thrown.
 #pragma once

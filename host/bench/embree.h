@@ -1,10 +1,10 @@
-// What    Embree's modes as contestants: single rays, packets of 8 and of 16, streams of 16 packets of 16, each on a fast
-//         and on a robust scene, packets and streams with either flag for coherence.
+// What    Embree's modes as contestants: single rays, packets of 8 and of 16, streams of 16 packets of 16,
+//         each on a fast and on a robust scene, packets and streams with either flag for coherence.
 // Shape   Without Embree (no_embree.cpp) there are none, and embree_version() is empty.
-// Why     What each gets for its best: its own layout of rays, filled anew before each run and outside the timed part,
-//         since Embree writes hits into the rays; chunks of 4096 rays drawn by threads that already wait; denormals
-//         flushed; the vector width that the processor has (Embree's own default stays at 256 bits on some). Scenes
-//         are built with quality medium, Embree's default.
+// Why     What each gets for its best: its own layout of rays, filled anew before each run and outside the
+//         timed part, since Embree writes hits into the rays; chunks of 4096 rays drawn by threads that
+//         already wait; denormals flushed; the vector width that the processor has (Embree's own default
+//         stays at 256 bits on some). Scenes are built with quality medium, Embree's default.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
-// What    Embree 3 and 4 behind one interface: a query (what a thread hands over besides scene and rays), and calls for
-//         one ray, 8, 16 and a stream, closest and any hit, by number of rays.
-// Shape   Rays are Embree's own structs, N rays to one, seen through its RTCRayN accessors. KDRAY_EMBREE is the major
-//         version that was found. Embree 4 has no streams.
+// What    Embree 3 and 4 behind one interface: a query (what a thread hands over besides scene and rays), and
+//         calls for one ray, 8, 16 and a stream, closest and any hit, by number of rays.
+// Shape   Rays are Embree's own structs, N rays to one, seen through its RTCRayN accessors. KDRAY_EMBREE is
+//         the major version that was found. Embree 4 has no streams.
 #pragma once
 
 #if KDRAY_EMBREE == 4

@@ -1,6 +1,6 @@
 // What    Embree's build of a scene's primitives with quality medium, its default, for the clock.
-// Shape   Vertices and indices lie ready in shared buffers, the mesh indexed as the scene has it; the clock runs for
-//         rtcCommitScene alone.
+// Shape   Vertices and indices lie ready in shared buffers, the mesh indexed as the scene has it; the clock
+//         runs for rtcCommitScene alone.
 #pragma once
 
 #include "bench/build_race.h"

@@ -1,6 +1,8 @@
-// What    A scene's primitives in Embree, as a fast scene and as a robust one, and the numbers that its hits stand for.
-// Shape   Triangles are triangles, spheres SPHERE_POINTs, cones CONE_LINEAR_CURVEs whose segments are flagged as having
-//         neighbours, which leaves the end caps off. Coordinates are those of kdray's tree (scene/geometry.h).
+// What    A scene's primitives in Embree, as a fast scene and as a robust one, and the numbers that its hits
+//         stand for.
+// Shape   Triangles are triangles, spheres SPHERE_POINTs, cones CONE_LINEAR_CURVEs whose segments are flagged
+//         as having neighbours, which leaves the end caps off. Coordinates are those of kdray's tree
+//         (scene/geometry.h).
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
-// What    `kdray bench frames`: whole frames, scene by scene, with the time of each stage; beside them POV-Ray on the same
-//         picture (of NFF scenes), and Embree on the same primary rays.
-// Shape   Interleaved: a round is a frame of kdray's, the primary rays through Embree, a picture of POV-Ray's (in the
-//         first three rounds, since it takes so much longer). One of each before that is not counted.
+// What    `kdray bench frames`: whole frames, scene by scene, with the time of each stage; beside them
+//         POV-Ray on the same picture (of NFF scenes), and Embree on the same primary rays.
+// Shape   Interleaved: a round is a frame of kdray's, the primary rays through Embree, a picture of POV-Ray's
+//         (in the first three rounds, since it takes so much longer). One of each before that is not counted.
 #pragma once
 
 #include <functional>

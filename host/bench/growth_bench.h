@@ -1,5 +1,6 @@
-// What    `kdray bench build --growth`: how the time for each triangle and the memory grow with the size of a mesh, a
-//         displaced sphere of 10 thousand to 10 million triangles. The largest is built by all but `best`.
+// What    `kdray bench build --growth`: how the time for each triangle and the memory grow with the size of a
+//         mesh, a displaced sphere of 10 thousand to 10 million triangles. The largest is built by all but
+//         `best`.
 #pragma once
 
 #include <functional>

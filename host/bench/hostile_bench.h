@@ -1,5 +1,5 @@
-// What    `kdray bench build --hostile`: building over meshes made to break a builder, each against a plain mesh (a displaced
-//         sphere) of as many triangles in the same rounds.
+// What    `kdray bench build --hostile`: building over meshes made to break a builder, each against a plain
+//         mesh (a displaced sphere) of as many triangles in the same rounds.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,6 @@
 // What    kdray's traversals as contestants.
-// Shape   A traversal's time is the one that Renderer::statistics() gives: rays and scene already on the device.
+// Shape   A traversal's time is the one that Renderer::statistics() gives: rays and scene already on the
+//         device.
 #pragma once
 
 #include <memory>

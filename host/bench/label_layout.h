@@ -1,5 +1,7 @@
-// What    Places for labels beside their points, so that none covers another, a point or, where it can be helped, a line.
-// Shape   Pixels, y downwards. Greedy: the labels that matter most are placed first, each as near to its point as it can be.
+// What    Places for labels beside their points, so that none covers another, a point or, where it can be
+//         helped, a line.
+// Shape   Pixels, y downwards. Greedy: the labels that matter most are placed first, each as near to its
+//         point as it can be.
 #pragma once
 
 #include <optional>

@@ -2,8 +2,8 @@
 
 namespace kdray::bench {
 
-// The room of `boxes` in the evening: four lamps that fade with the distance, a polished shell, columns that are mirrors. What
-// depth, least weight and the lights' reach leave out can all be seen.
+// The room of `boxes` in the evening: four lamps that fade with the distance, a polished shell, columns that
+// are mirrors. What depth, least weight and the lights' reach leave out can all be seen.
 scene::Scene lamps() {
   constexpr std::size_t kShell = 12, kColumns = 30 * 12;  // the first triangles of boxes()
   scene::Scene scene = boxes();

@@ -17,8 +17,8 @@ inline scene::Scene displaced_sphere(std::uint32_t n) {
   for (std::uint32_t y = 0; y <= rows; ++y)
     for (std::uint32_t x = 0; x < columns; ++x) {
       const double theta = kPi * y / rows, phi = 2 * kPi * x / columns;
-      const double across =
-          y == 0 || y == rows ? 0 : std::sin(theta);  // the poles are points: the mesh is closed
+      // The poles are points: the mesh is closed.
+      const double across = y == 0 || y == rows ? 0 : std::sin(theta);
       const double ripple =
           0.2 * std::sin(9 * theta) * std::sin(11 * phi) + 0.02 * std::sin(90 * theta + 70 * phi);
       const double r = 1 + across * ripple;

@@ -1,10 +1,11 @@
-// What    `kdray bench modes`: the thesis' comparison. A frame by one core alone, by PDPRT's divisions and by ODPRT's balances,
-//         for growing numbers of queues; and what the model predicts for queues that are not there (modes_model.h).
-// Shape   Interleaved: a round is a frame of every row's; one before that is not counted. A queue has one core while there
-//         are cores; beyond that several queues share one, and the row says so. The rows of a scene each keep a Renderer, so
-//         that the rounds of a dynamic balance are the frames of a sequence.
-// Errors  A row that fails keeps the message and is not tried again; the others go on. Pixels that are not the bits of the
-//         first row's are counted, not thrown.
+// What    `kdray bench modes`: the thesis' comparison. A frame by one core alone, by PDPRT's divisions and by
+//         ODPRT's balances, for growing numbers of queues; and what the model predicts for queues that are
+//         not there (modes_model.h).
+// Shape   Interleaved: a round is a frame of every row's; one before that is not counted. A queue has one
+//         core while there are cores; beyond that several queues share one, and the row says so. The rows of
+//         a scene each keep a Renderer, so that the rounds of a dynamic balance are the frames of a sequence.
+// Errors  A row that fails keeps the message and is not tried again; the others go on. Pixels that are not
+//         the bits of the first row's are counted, not thrown.
 #pragma once
 
 #include <functional>
@@ -82,8 +83,8 @@ std::size_t count_differing_pixels(std::span<const ModesRun> runs);
 // Pixels whose colour is not the same bits; all of the larger picture's where the sizes differ.
 std::size_t differing_pixels(const Picture& a, const Picture& b);
 
-// How many times as long a balance of ODPRT takes as the bag of PDPRT: the geometric mean over the scenes that have both on
-// so many queues; nothing where none has.
+// How many times as long a balance of ODPRT takes as the bag of PDPRT: the geometric mean over the scenes
+// that have both on so many queues; nothing where none has.
 std::optional<double> odprt_over_pdprt(std::span<const ModesRun> runs, const std::string& balance,
                                        int queues);
 

@@ -1,11 +1,13 @@
-// What    Simulates ODPRT by discrete events: rays go from queue to queue, are served there one after another, and lead to others
-//         when they end.
-// Shape   A journey stands for `rays_per_journey` rays that stay together: they are a message of that many rays, and are served
-//         in one go. A queue serves the deepest journey that waits, of equal ones the first; eye rays all wait from the
-//         beginning, so they are begun when there is nothing else to do. Ports are one for each direction and queue, and carry
-//         one message after another; the latency is added on the way and holds up no one.
-// Why     Events, not rounds: no barrier makes all queues wait for the slowest after every hop, so this is what the division of
-//         the scene itself permits. Ties are broken by order of making: the same input gives the same bits.
+// What    Simulates ODPRT by discrete events: rays go from queue to queue, are served there one after
+//         another, and lead to others when they end.
+// Shape   A journey stands for `rays_per_journey` rays that stay together: they are a message of that many
+//         rays, and are served in one go. A queue serves the deepest journey that waits, of equal ones the
+//         first; eye rays all wait from the beginning, so they are begun when there is nothing else to do.
+//         Ports are one for each direction and queue, and carry one message after another; the latency is
+//         added on the way and holds up no one.
+// Why     Events, not rounds: no barrier makes all queues wait for the slowest after every hop, so this is
+//         what the division of the scene itself permits. Ties are broken by order of making: the same input
+//         gives the same bits.
 // Units   Seconds, bytes.
 #pragma once
 

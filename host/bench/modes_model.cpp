@@ -165,8 +165,8 @@ class Prophet {
     for (SampledRays& rays : model_.rays) rays.sampled *= model_.rays_per_sample;
   }
 
-  // Shares one core's seconds out: what it traced by the walks' costs, which are the same in every cut, the rest by the hits
-  // that it shaded.
+  // Shares one core's seconds out: what it traced by the walks' costs, which are the same in every cut, the
+  // rest by the hits that it shaded.
   void calibrate(const std::vector<LifeRay>& lives) {
     const odprt::Cut cut = odprt::cut(input_.prepared.flat, input_.prepared.wide, 1);
     double cost = 0;

@@ -1,7 +1,7 @@
 // What    Whose subtrees each ray passes on its way to its end, in order, and what it costs there.
-// Shape   A walk of the whole wide tree from near to far, as a device does it; since it is known where a ray ends, no primitive
-//         is tested. Subtrees have owners, their roots and the opened nodes above belong to the directory, as host/odprt/parts.h
-//         makes it: between two owners there may be a stay in it.
+// Shape   A walk of the whole wide tree from near to far, as a device does it; since it is known where a ray
+//         ends, no primitive is tested. Subtrees have owners, their roots and the opened nodes above belong
+//         to the directory, as host/odprt/parts.h makes it: between two owners there may be a stay in it.
 // Units   A visit of a node counts 1, a test of a block 2 (TreeOptions' own weights).
 #pragma once
 
@@ -31,13 +31,15 @@ struct Paths {
   }
 };
 
-// `owner_of` has the owner of each of the cut's subtrees; `center` is the scene's, which the form's coordinates are about.
+// `owner_of` has the owner of each of the cut's subtrees; `center` is the scene's, which the form's
+// coordinates are about.
 Paths find_paths(const flatten::WideForm& form, const odprt::Cut& cut,
                  std::span<const std::uint32_t> owner_of, std::span<const LifeRay> lives,
                  const dvec3& center);
 
-// What each owner has to do for all rays: the walks in what is its own, those through the directory from there on, and
-// `shade_cost` for each hit that is shaded. A ray that meets nothing belongs to the one where its parent ended.
+// What each owner has to do for all rays: the walks in what is its own, those through the directory from
+// there on, and `shade_cost` for each hit that is shaded. A ray that meets nothing belongs to the one where
+// its parent ended.
 std::vector<double> costs_of_owners(const Paths& paths, std::span<const LifeRay> lives, std::size_t n_owners,
                                     double shade_cost);
 

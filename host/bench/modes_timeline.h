@@ -1,6 +1,7 @@
-// What    The timelines of a scene's frames below each other, as SVG: what each queue of each scheme did and when.
-// Shape   From Renderer::timeline() (Chrome trace format). All frames of a scene share one axis, so that what a division
-//         leaves idle is seen as white.
+// What    The timelines of a scene's frames below each other, as SVG: what each queue of each scheme did and
+//         when.
+// Shape   From Renderer::timeline() (Chrome trace format). All frames of a scene share one axis, so that what
+//         a division leaves idle is seen as white.
 #pragma once
 
 #include <span>

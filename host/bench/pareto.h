@@ -1,6 +1,6 @@
 // What    The Pareto front of points that have two costs: those that no other one beats.
-// Shape   A point is beaten by one that is no worse in both costs and better in one; of equal points the first counts. What is
-//         not finite is never on the front.
+// Shape   A point is beaten by one that is no worse in both costs and better in one; of equal points the
+//         first counts. What is not finite is never on the front.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// What    The order in which rays through a picture's pixels are made: along Morton's curve, which keeps neighbours
-//         together in both directions, or line by line.
+// What    The order in which rays through a picture's pixels are made: along Morton's curve, which keeps
+//         neighbours together in both directions, or line by line.
 // Source  G. M. Morton, "A computer oriented geodetic data base", IBM 1966: the bits of x and y interleaved.
 #pragma once
 

@@ -1,6 +1,6 @@
 // What    Bar plots as SVG: panels below each other, in each groups of bars, one bar for each series.
-// Shape   A bar is a median with a whisker from min to max and its value above it; a series without a value in a group
-//         has no bar there. Every panel has a scale of its own from 0.
+// Shape   A bar is a median with a whisker from min to max and its value above it; a series without a value
+//         in a group has no bar there. Every panel has a scale of its own from 0.
 #pragma once
 
 #include <optional>

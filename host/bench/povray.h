@@ -1,5 +1,6 @@
 // What    POV-Ray as a program beside kdray: how long it takes for a picture, and the picture.
-// Shape   Its own "Trace Time": after parsing and building, no display. For times alone, no antialiasing and no file.
+// Shape   Its own "Trace Time": after parsing and building, no display. For times alone, no antialiasing and
+//         no file.
 // Errors  Without povray on the path there is none. One that fails is an Error that quotes its last words.
 #pragma once
 

@@ -1,8 +1,8 @@
 // What    Contestants against each other on one class of rays.
-// Shape   A warm-up first, in which every variant of a contestant runs twice (once, when there is to be one round) and its
-//         best is chosen; then rounds, in each
-//         of which every contestant runs once: what slows the machine for a while slows all of them. Hits are held
-//         against the reference in the warm-up, kdray's own in every round.
+// Shape   A warm-up first, in which every variant of a contestant runs twice (once, when there is to be one
+//         round) and its best is chosen; then rounds, in each
+//         of which every contestant runs once: what slows the machine for a while slows all of them. Hits are
+//         held against the reference in the warm-up, kdray's own in every round.
 #pragma once
 
 #include <span>

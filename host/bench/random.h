@@ -1,5 +1,5 @@
-// What    Random numbers that are the same everywhere, for scenes and rays: the standard's distributions may differ from
-//         library to library.
+// What    Random numbers that are the same everywhere, for scenes and rays: the standard's distributions may
+//         differ from library to library.
 // Source  Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014: splitmix64.
 #pragma once
 

@@ -1,8 +1,10 @@
-// What    The classes of rays that tracers are compared on, made once for a scene from its camera and its first light.
-// Shape   side x side pixels, a ray each, in Morton order (or line by line: "scanline"). Secondary rays begin at what
-//         the primary rays hit, in the primary rays' order, moved off the surface by `offset_of(scene)` along the normal:
-//         to the viewer's side, refracted ones to the other. They are made in double and rounded at the end. A class of
-//         rays that the scene has none of (no light, nothing in view) is empty.
+// What    The classes of rays that tracers are compared on, made once for a scene from its camera and its
+//         first light.
+// Shape   side x side pixels, a ray each, in Morton order (or line by line: "scanline"). Secondary rays begin
+//         at what the primary rays hit, in the primary rays' order, moved off the surface by
+//         `offset_of(scene)` along the normal: to the viewer's side, refracted ones to the other. They are
+//         made in double and rounded at the end. A class of rays that the scene has none of (no light,
+//         nothing in view) is empty.
 // Why     Directions have unit length: kdray doesn't ask for it, but Embree's cones are wrong without.
 #pragma once
 

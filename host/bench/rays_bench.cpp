@@ -92,7 +92,8 @@ class RaysScene {
             {}};
   }
 
-  // Once for all numbers of cores, on the whole device: the binary traversal is slow, and its hits are the same on each.
+  // Once for all numbers of cores, on the whole device: the binary traversal is slow, and its hits are the
+  // same on each.
   void make_rays() {
     if (!classes_.empty()) return;
     working_(fmt::format("{}: making rays", name_));

@@ -1,4 +1,5 @@
-// What    The results of `kdray bench ablation`, for people (a table), for programs (JSON) and for the eye (a plot).
+// What    The results of `kdray bench ablation`, for people (a table), for programs (JSON) and for the eye (a
+//         plot).
 // Units   Seconds; every key of the JSON is in docs/bench.md.
 #pragma once
 

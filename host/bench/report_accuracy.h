@@ -1,6 +1,7 @@
-// What    The results of `kdray bench accuracy` for people (a table), for programs (JSON) and for the eye (a plot).
-// Units   Errors in linear light, 1 is white; times in seconds, in tables and plots in milliseconds. Every key of the JSON is in
-//         docs/bench.md.
+// What    The results of `kdray bench accuracy` for people (a table), for programs (JSON) and for the eye (a
+//         plot).
+// Units   Errors in linear light, 1 is white; times in seconds, in tables and plots in milliseconds. Every
+//         key of the JSON is in docs/bench.md.
 #pragma once
 
 #include "bench/accuracy_bench.h"

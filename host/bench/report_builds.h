@@ -1,4 +1,5 @@
-// What    The results of the benches that build trees, for people (a table), for programs (JSON) and for the eye (a plot).
+// What    The results of the benches that build trees, for people (a table), for programs (JSON) and for the
+//         eye (a plot).
 // Units   Seconds; milliseconds in tables and plots. Every key of the JSON is in docs/bench.md.
 #pragma once
 

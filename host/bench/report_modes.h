@@ -1,4 +1,5 @@
-// What    The results of `kdray bench modes`, for people (tables), for programs (JSON) and for the eye (plots).
+// What    The results of `kdray bench modes`, for people (tables), for programs (JSON) and for the eye
+//         (plots).
 // Units   Seconds; every key of the JSON is in docs/bench.md.
 #pragma once
 
@@ -11,7 +12,8 @@ namespace kdray::bench {
 // How much faster the thesis found PDPRT than ODPRT.
 inline constexpr double kThesisLeast = 0.55, kThesisMost = 0.64;
 
-// What was predicted beside what was measured: seconds, where every queue has a core; of ODPRT rays that were sent, always.
+// What was predicted beside what was measured: seconds, where every queue has a core; of ODPRT rays that were
+// sent, always.
 struct Check {
   std::string scheme, what;
   int queues = 1;

@@ -1,6 +1,8 @@
-// What    Plots of labelled points over two logarithmic axes, with the fronts of those that nothing beats, as SVG.
-// Shape   Panels below each other; a series has one colour in all of them. Labels are placed where they cover nothing; those of
-//         lesser points are left out where there is no room. What is not finite or not positive is left out.
+// What    Plots of labelled points over two logarithmic axes, with the fronts of those that nothing beats, as
+//         SVG.
+// Shape   Panels below each other; a series has one colour in all of them. Labels are placed where they cover
+//         nothing; those of lesser points are left out where there is no room. What is not finite or not
+//         positive is left out.
 #pragma once
 
 #include <string>

@@ -1,7 +1,8 @@
-// What    The scenes of a bench: files, or built in by name. "boxes", an interior (a room with columns and heaps of small
-//         boxes, 307,572 triangles); "spheres", displaced spheres on uneven ground (897,500 triangles); "displaced", a displaced sphere of a million; "lamps", the
-//         room of "boxes" with four lamps that fade, a polished shell and columns of mirror; and the
-//         generators' scenes (balls, rings, ...) at their usual sizes.
+// What    The scenes of a bench: files, or built in by name. "boxes", an interior (a room with columns and
+//         heaps of small boxes, 307,572 triangles); "spheres", displaced spheres on uneven ground (897,500
+//         triangles); "displaced", a displaced sphere of a million; "lamps", the room of "boxes" with four
+//         lamps that fade, a polished shell and columns of mirror; and the generators' scenes (balls, rings,
+//         ...) at their usual sizes.
 // Errors  As scene::load's, for files; a name that is neither is told with the names there are.
 #pragma once
 

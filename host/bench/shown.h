@@ -1,5 +1,6 @@
 // What    Pictures as a display shows them, and where two differ.
-// Shape   Linear RGB in [0, 1]: brighter is shown as 1, since what is too bright for a display would outweigh all else.
+// Shape   Linear RGB in [0, 1]: brighter is shown as 1, since what is too bright for a display would outweigh
+//         all else.
 #pragma once
 
 #include "film/image.h"
@@ -16,8 +17,8 @@ film::Image shrunk(const film::Image& image, int factor);
 
 film::Image mean_of(film::Image a, const film::Image& b);
 
-// On the same scale for all pictures: a heat map of the square root of the largest channel's difference, so that 1/255 is
-// visible (6% of the scale) and 1 is the hottest.
+// On the same scale for all pictures: a heat map of the square root of the largest channel's difference, so
+// that 1/255 is visible (6% of the scale) and 1 is the hottest.
 film::Image error_picture(const film::Image& reference, const film::Image& image);
 
 }  // namespace kdray::bench

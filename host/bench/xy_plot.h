@@ -1,6 +1,8 @@
-// What    Plots of points and lines as SVG: panels below each other, each with two axes, linear from 0 or logarithmic.
-// Shape   A series has one colour in all panels; its points are joined by lines where the series says so, and have labels
-//         where they carry them. What is not finite, or not positive on a logarithmic axis, is left out.
+// What    Plots of points and lines as SVG: panels below each other, each with two axes, linear from 0 or
+//         logarithmic.
+// Shape   A series has one colour in all panels; its points are joined by lines where the series says so, and
+//         have labels where they carry them. What is not finite, or not positive on a logarithmic axis, is
+//         left out.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 // What    An axis of a plot: from values to pixels, linear from 0 or logarithmic.
-// Shape   It spans the values that it shows and a little more: on a logarithmic axis up to the next of about 1, 2, 5, 10.
+// Shape   It spans the values that it shows and a little more: on a logarithmic axis up to the next of about
+//         1, 2, 5, 10.
 #pragma once
 
 #include <vector>

@@ -1,8 +1,9 @@
-// What    Prepared scenes kept between runs: a scene that was read and built before is mapped from a file (entry.h) instead.
-// Shape   find() answers only where nothing that shaped the scene has changed: its file's content, the options, the code
-//         (key.h), and every file that was read or missed on the way.
-// Errors  What is wrong with an entry makes find() answer nothing, never throw. keep() throws kdray::Error, ErrorCode::input,
-//         when the folder can't be written.
+// What    Prepared scenes kept between runs: a scene that was read and built before is mapped from a file
+//         (entry.h) instead.
+// Shape   find() answers only where nothing that shaped the scene has changed: its file's content, the
+//         options, the code (key.h), and every file that was read or missed on the way.
+// Errors  What is wrong with an entry makes find() answer nothing, never throw. keep() throws kdray::Error,
+//         ErrorCode::input, when the folder can't be written.
 #pragma once
 
 #include <filesystem>

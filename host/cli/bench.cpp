@@ -1,6 +1,6 @@
 // What    kdray bench: measures rays, or whole frames, against the other ray tracers that are there.
-// Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to DIR/rays.json or
-//         DIR/frames.json and a plot beside it.
+// Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
+//         DIR/rays.json or DIR/frames.json and a plot beside it.
 // Errors  Hits that differ between kdray's traversals: exit code 1, after everything has been written.
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
 // What    kdray bench ablation: what each specialisation and each rule of skipping is worth.
-// Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to DIR/ablation.json and a
-//         plot beside it.
-// Errors  A picture that changes where a rule claims to be exact: exit code 1, after everything has been written.
+// Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
+//         DIR/ablation.json and a plot beside it.
+// Errors  A picture that changes where a rule claims to be exact: exit code 1, after everything has been
+//         written.
 #include "cli/bench_ablation.h"
 
 #include <fmt/format.h>

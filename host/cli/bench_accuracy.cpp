@@ -1,8 +1,9 @@
 // What    kdray bench accuracy: time against error of every setting, beside POV-Ray's antialiasing.
-// Shape   Tables go to stderr; with --report DIR the figures go to DIR/accuracy.json, the plot beside it, and to DIR/accuracy the
-//         references and where each picture differs from them. All of it as soon as a scene is done: a reference may take an
-//         hour, and a run that is stopped keeps the scenes before.
-// Errors  A traversal or tree whose picture is not the base's: exit code 1, after everything has been written.
+// Shape   Tables go to stderr; with --report DIR the figures go to DIR/accuracy.json, the plot beside it, and
+//         to DIR/accuracy the references and where each picture differs from them. All of it as soon as a
+//         scene is done: a reference may take an hour, and a run that is stopped keeps the scenes before.
+// Errors  A traversal or tree whose picture is not the base's: exit code 1, after everything has been
+//         written.
 #include "cli/bench_accuracy.h"
 
 #include <fmt/format.h>

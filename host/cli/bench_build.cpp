@@ -1,6 +1,7 @@
-// What    kdray bench build: what trees cost to build and what they gain, over scenes, over sizes, over hostile meshes.
-// Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to DIR/build.json (or
-//         growth, hostile) and a plot beside it.
+// What    kdray bench build: what trees cost to build and what they gain, over scenes, over sizes, over
+//         hostile meshes.
+// Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
+//         DIR/build.json (or growth, hostile) and a plot beside it.
 #include "cli/bench_build.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,9 @@
-// What    kdray bench modes: one core alone, PDPRT and ODPRT on growing numbers of queues, and a model of many more.
-// Shape   Tables go to stderr, each as soon as its scene is done, then the means over all scenes; with --report DIR the figures
-//         go to DIR/modes.json and plots beside it.
-// Errors  Pictures that are not the same bits: exit code 1, after everything has been written. A mode that fails is told.
+// What    kdray bench modes: one core alone, PDPRT and ODPRT on growing numbers of queues, and a model of
+//         many more.
+// Shape   Tables go to stderr, each as soon as its scene is done, then the means over all scenes; with
+//         --report DIR the figures go to DIR/modes.json and plots beside it.
+// Errors  Pictures that are not the same bits: exit code 1, after everything has been written. A mode that
+//         fails is told.
 #include "cli/bench_modes.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// What    What every `kdray bench` command does: scenes as arguments, tables to stderr, a folder for figures and a plot.
+// What    What every `kdray bench` command does: scenes as arguments, tables to stderr, a folder for figures
+//         and a plot.
 // Errors  ErrorCode::input for a folder that can't be made or written, before anything is measured.
 #pragma once
 

@@ -1,6 +1,7 @@
-// What    Tells that kernels are being compiled, once that has taken a second: on a terminal a line that counts the seconds and
-//         goes away, elsewhere one line.
-// Shape   begins and ends are told from any thread and may nest; a thread of its own waits for the second to pass.
+// What    Tells that kernels are being compiled, once that has taken a second: on a terminal a line that
+//         counts the seconds and goes away, elsewhere one line.
+// Shape   begins and ends are told from any thread and may nest; a thread of its own waits for the second to
+//         pass.
 #pragma once
 
 #include <condition_variable>
@@ -15,7 +16,8 @@ namespace kdray::cli {
 
 class BuildNotice {
  public:
-  // Without `draw` the line is said once; with it (a terminal) it is drawn again and again, and cleared by an empty one.
+  // Without `draw` the line is said once; with it (a terminal) it is drawn again and again, and cleared by an
+  // empty one.
   struct Output {
     std::function<void(const std::string&)> say;
     std::function<void(const std::string&)> draw;

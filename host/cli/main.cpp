@@ -1,5 +1,5 @@
 // What    The program: the command line to a command, what is thrown to an exit code.
-// Errors  0 done, 1 input, 2 usage, 3 no device, 4 out of memory (DESIGN.md section 2); always one line
+// Errors  0 done, 1 input, 2 usage, 3 no device, 4 out of memory (docs/cli.md); always one line
 //         on stderr.
 #include <fmt/format.h>
 #include <malloc.h>
@@ -78,8 +78,8 @@ int exit_code(ErrorCode code) {
 namespace kdray::cli {
 namespace {
 
-// What is freed stays with the process: the first touch of a page costs many times a later one (base/memory.h), and a frame's
-// film finds the pages that the build has left.
+// What is freed stays with the process: the first touch of a page costs many times a later one
+// (base/memory.h), and a frame's film finds the pages that the build has left.
 void keep_freed_memory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 2147483647);

@@ -1,6 +1,7 @@
-// What    The way to a prepared scene and an open device that render and trace share: the scene from the cache, or read and built,
-//         while the device is being opened beside it.
-// Errors  kdray::Error; but a cache that can't be written costs no picture: a warning where it was asked for by name.
+// What    The way to a prepared scene and an open device that render and trace share: the scene from the
+//         cache, or read and built, while the device is being opened beside it.
+// Errors  kdray::Error; but a cache that can't be written costs no picture: a warning where it was asked for
+//         by name.
 #pragma once
 
 #include <functional>
@@ -26,7 +27,8 @@ class OpenedScene {
   // What the Renderer is to be made with.
   const DeviceOptions& device() const { return device_; }
 
-  // Puts a scene and programs that were not found into the cache; after the picture is out, which it would only delay.
+  // Puts a scene and programs that were not found into the cache; after the picture is out, which it would
+  // only delay.
   void keep();
 
   const std::string& cache() const { return outcome_; }  // "hit", "miss" or "off"

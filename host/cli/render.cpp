@@ -32,8 +32,8 @@ namespace kdray::cli {
 namespace {
 
 constexpr int kPictureSideMax = 65536;
-constexpr long long kPicturePixelsMax =
-    1ll << 28;  // 16384 x 16384; memory.h refuses what this machine can't hold
+// 16384 x 16384; memory.h refuses what this machine can't hold.
+constexpr long long kPicturePixelsMax = 1ll << 28;
 
 struct RenderArgs {
   std::string scene, output, stats, timeline;

@@ -8,7 +8,7 @@ namespace kdray::cli {
 
 namespace {
 
-// The names of DESIGN.md section 2 in their order; what the renderer never reached is 0.
+// The names of docs/cli.md in their order; what the renderer never reached is 0.
 Json all_seconds(const Json& measured, const OwnSeconds& own) {
   Json seconds;
   seconds["cache"] = own.cache;

@@ -14,10 +14,12 @@ std::string stages_line(const Json& stats);
 // "1.05 M eye, 2.3 M shadow, ...: 12.3 Mrays/s"
 std::string rays_line(const Json& stats);
 
-// "no cones, no refraction; 1 of 10 programs built; 41% of 2.3 M shadow rays proven needless"; empty when nothing was left out.
+// "no cones, no refraction; 1 of 10 programs built; 41% of 2.3 M shadow rays proven needless"; empty when
+// nothing was left out.
 std::string left_out_line(const Json& stats);
 
-// "4.1 samples per pixel in 4 rounds; error believed to be 0.0069 RMSE, below the target 0.0075"; empty when not adaptive.
+// "4.1 samples per pixel in 4 rounds; error believed to be 0.0069 RMSE, below the target 0.0075"; empty when
+// not adaptive.
 std::string samples_line(const Json& stats);
 
 void print_render_summary(const Json& stats, std::size_t nan_values);

@@ -1,7 +1,10 @@
-// What    kdray tune: looks for the settings that render a scene fastest on a device, and keeps them for render and trace.
-// Shape   Scenes that share an entry of the database are tuned together; without a scene a built-in set is, for scenes that have no
-//         entry of their own. --check then races what was found against what kdray ships with.
-// Errors  A database of one's own that is of no use is begun anew, with a warning; one that is named by --merge is an error.
+// What    kdray tune: looks for the settings that render a scene fastest on a device, and keeps them for
+//         render and trace.
+// Shape   Scenes that share an entry of the database are tuned together; without a scene a built-in set is,
+//         for scenes that have no entry of their own. --check then races what was found against what kdray
+//         ships with.
+// Errors  A database of one's own that is of no use is begun anew, with a warning; one that is named by
+//         --merge is an error.
 #include <fmt/format.h>
 
 #include <algorithm>

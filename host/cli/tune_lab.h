@@ -1,6 +1,7 @@
-// What    The scenes that settings are tried on: renders them, compares every bit with the reference, takes times.
-// Shape   The reference is the picture of what kdray ships with, on this device, which has passed its self-test. Scenes of one key
-//         (tune/database.h) belong together: they share an entry.
+// What    The scenes that settings are tried on: renders them, compares every bit with the reference, takes
+//         times.
+// Shape   The reference is the picture of what kdray ships with, on this device, which has passed its
+//         self-test. Scenes of one key (tune/database.h) belong together: they share an entry.
 #pragma once
 
 #include <functional>

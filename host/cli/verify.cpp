@@ -1,6 +1,6 @@
 // What    kdray verify: whether a scene's mesh is sound, and whether kdray traces it soundly.
-// Errors  A mesh with holes is a finding, not an error: exit code 0. 1 when kdray itself went wrong, or for a file that can't be
-//         read.
+// Errors  A mesh with holes is a finding, not an error: exit code 0. 1 when kdray itself went wrong, or for a
+//         file that can't be read.
 #include "verify/verify.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// What    What goes with the building of programs: where they are kept, and who is told when a compiler is at work.
+// What    What goes with the building of programs: where they are kept, and who is told when a compiler is at
+//         work.
 #pragma once
 
 #include <functional>
@@ -11,8 +12,8 @@ class ProgramCache;
 
 struct Builds {
   std::shared_ptr<ProgramCache> cache = {};  // none: programs are built anew
-  std::function<void(bool)> watch =
-      {};  // true: a compiler begins its work; false: it ends. From any thread; may nest
+  // True: a compiler begins its work; false: it ends. From any thread; may nest.
+  std::function<void(bool)> watch = {};
 };
 
 // Tells `watch` of a compiler's work as long as it lives.

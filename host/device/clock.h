@@ -1,6 +1,7 @@
-// What    A queue's profiling times on the host's clock, so that what several devices did can be shown side by side.
-// Shape   The difference of the two clocks, from the shortest of a few commands: what lies between asking for it and its end
-//         bounds the error. Clocks that run apart afterwards (about 1e-4) are not followed.
+// What    A queue's profiling times on the host's clock, so that what several devices did can be shown side
+//         by side.
+// Shape   The difference of the two clocks, from the shortest of a few commands: what lies between asking for
+//         it and its end bounds the error. Clocks that run apart afterwards (about 1e-4) are not followed.
 #pragma once
 
 #include <chrono>

@@ -1,8 +1,8 @@
-// What    One OpenCL context on the chosen device and its queues: one queue on the whole device, or one per sub-device
-//         (clCreateSubDevices, equal shares) when several are asked for.
-// Why     What is opened stays open until the process ends, and the next Context of the same kind shares it: PoCL 3.1
-//         lets go of a command's event after the command is reported as done, and crashes when the queue has been
-//         released in between. OpenCL's queues may be used from several threads.
+// What    One OpenCL context on the chosen device and its queues: one queue on the whole device, or one per
+//         sub-device (clCreateSubDevices, equal shares) when several are asked for.
+// Why     What is opened stays open until the process ends, and the next Context of the same kind shares it:
+//         PoCL 3.1 lets go of a command's event after the command is reported as done, and crashes when the
+//         queue has been released in between. OpenCL's queues may be used from several threads.
 // Errors  Queues beyond what the device can be divided into share its parts in turn.
 #pragma once
 
@@ -47,22 +47,23 @@ class Context {
   // A source that is no file of kernels/, but may include them.
   cl::Program build_text(const std::string& name, const std::string& text, const std::string& options) const;
 
-  // Throws ErrorCode::out_of_memory, naming the device's limit, when a buffer of `bytes` is too large for it. A buffer
-  // of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
+  // Throws ErrorCode::out_of_memory, naming the device's limit, when a buffer of `bytes` is too large for it.
+  // A buffer of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
   cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // As buffer(), of which only pieces here and there are going to be used: large pages, each of which is cleared as a whole, are not
-  // asked for.
+  // As buffer(), of which only pieces here and there are going to be used: large pages, each of which is
+  // cleared as a whole, are not asked for.
   cl::Buffer sparse_buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // As buffer(), and its pages are made in the background where it lies in the host's memory: `made` ends when they are, all 0
-  // if that is asked for. (Or it is no future at all, and nothing is done.) No command may use it before. The device has to work in
-  // that very memory, as a CPU with CL_DEVICE_HOST_UNIFIED_MEMORY does: the 0s are written beside OpenCL.
+  // As buffer(), and its pages are made in the background where it lies in the host's memory: `made` ends
+  // when they are, all 0 if that is asked for. (Or it is no future at all, and nothing is done.) No command
+  // may use it before. The device has to work in that very memory, as a CPU with
+  // CL_DEVICE_HOST_UNIFIED_MEMORY does: the 0s are written beside OpenCL.
   cl::Buffer buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what, bool zeroed,
                                 std::future<void>& made) const;
 
-  // A buffer for reading of what lies at `data`: that memory itself where the device works in the host's, which `owner` then
-  // keeps as long as the buffer lives; elsewhere a copy.
+  // A buffer for reading of what lies at `data`: that memory itself where the device works in the host's,
+  // which `owner` then keeps as long as the buffer lives; elsewhere a copy.
   cl::Buffer upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,
                     const std::string& what) const;
   // A copy everywhere.
@@ -85,8 +86,9 @@ struct OpenOptions {
   std::function<void(const std::string&)> left_out = {};  // told why, where "auto" goes on to another device
 };
 
-// A context on each of the devices of `specs` (choose_device's, with commas between them). "auto" takes the next device where
-// one can't be opened or doesn't pass the check; a device that was asked for in another way throws what it threw.
+// A context on each of the devices of `specs` (choose_device's, with commas between them). "auto" takes the
+// next device where one can't be opened or doesn't pass the check; a device that was asked for in another way
+// throws what it threw.
 std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& options);
 std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units = 0);
 

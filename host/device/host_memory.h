@@ -1,5 +1,5 @@
-// What    Buffers of a device that works in the host's memory (CL_DEVICE_HOST_UNIFIED_MEMORY): memory of ours, used as it is,
-//         which the buffer keeps as long as it lives.
+// What    Buffers of a device that works in the host's memory (CL_DEVICE_HOST_UNIFIED_MEMORY): memory of
+//         ours, used as it is, which the buffer keeps as long as it lives.
 // Errors  cl::Error and std::bad_alloc.
 #pragma once
 

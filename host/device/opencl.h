@@ -1,4 +1,5 @@
-// What    OpenCL's C++ bindings, configured once: every call is checked and throws cl::Error (call name and code).
+// What    OpenCL's C++ bindings, configured once: every call is checked and throws cl::Error (call name and
+//         code).
 #pragma once
 
 #if defined(__GNUC__)

@@ -24,8 +24,8 @@ bool is_auto(const std::string& spec);
 // The numbers of the usable ones, as "auto" prefers them: GPUs, CPUs, others.
 std::vector<int> devices_by_preference();
 
-// spec: "auto" (a GPU if there is a usable one, else a CPU), "cpu", "gpu", a number, or a part of a device's or
-// platform's name. Throws ErrorCode::no_device, listing what there is.
+// spec: "auto" (a GPU if there is a usable one, else a CPU), "cpu", "gpu", a number, or a part of a device's
+// or platform's name. Throws ErrorCode::no_device, listing what there is.
 FoundDevice choose_device(const std::string& spec);
 
 }  // namespace kdray::device

@@ -14,7 +14,8 @@ namespace {
 constexpr const char* kEnding = ".program";
 constexpr const char* kPassed = "passed";
 
-// The binary of the program's first device; the others are parts of the same. Empty where the driver gives none.
+// The binary of the program's first device; the others are parts of the same. Empty where the driver gives
+// none.
 std::string binary_of(const cl::Program& program) {
   try {
     const std::vector<std::vector<unsigned char>> binaries = program.getInfo<CL_PROGRAM_BINARIES>();

@@ -1,7 +1,8 @@
 // What    An entry of the program cache: some bytes in a file, under a key.
-// Shape   A header (magic, version, size, key, a checksum of the bytes and one of the header), then the bytes.
-// Why     PoCL ends the process when it is given a binary that was cut or changed: nothing may reach it that is not byte for
-//         byte what was written.
+// Shape   A header (magic, version, size, key, a checksum of the bytes and one of the header), then the
+//         bytes.
+// Why     PoCL ends the process when it is given a binary that was cut or changed: nothing may reach it that
+//         is not byte for byte what was written.
 #pragma once
 
 #include <filesystem>

@@ -34,7 +34,8 @@ bool processor_has_avx512() {
 #endif
 }
 
-// The x86 form's kernel, or an empty one where the compiler refuses it: an answer, not an error, hence no report of it.
+// The x86 form's kernel, or an empty one where the compiler refuses it: an answer, not an error, hence no
+// report of it.
 cl::Kernel try_x86_build(const Opened& opened, const Builds& builds) {
   try {
     std::string log;
@@ -101,10 +102,10 @@ std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, cl::Kernel 
   return answers;
 }
 
-// In this order, each question making the next one safe to ask: code with instructions that the processor lacks may
-// well build (a compiler can be told any target) and then kills the process, which no self-test survives. The processor
-// asked is the one this runs on, which is a CPU device's own; a GPU's or an accelerator's compiler need not be bothered
-// with builtins that aren't its own.
+// In this order, each question making the next one safe to ask: code with instructions that the processor
+// lacks may well build (a compiler can be told any target) and then kills the process, which no self-test
+// survives. The processor asked is the one this runs on, which is a CPU device's own; a GPU's or an
+// accelerator's compiler need not be bothered with builtins that aren't its own.
 std::string why_no_x86(const FoundDevice& found, const Opened& opened, const Builds& builds) {
   if (!processor_has_avx512()) return "the processor has no AVX-512 (F, VL, DQ and BW)";
   if (found.info.kind != "cpu") return "the device is not a CPU";

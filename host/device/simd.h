@@ -1,8 +1,11 @@
-// What    Which form of common/simd.clh a device's kernels are built with: x86 AVX-512 builtins or portable OpenCL C.
-// Shape   Decided per device, once per process: by the processor's features, a probe build, and a self-test of every
-//         operation against answers made on the host (device/simd_answers.h). Never by a name.
-//         KDRAY_SIMD=portable or KDRAY_SIMD=x86 in the environment asks for a form; it has to pass all the same.
-// Errors  ErrorCode::no_device: no form passes, or the one asked for doesn't. ErrorCode::usage: KDRAY_SIMD is neither.
+// What    Which form of common/simd.clh a device's kernels are built with: x86 AVX-512 builtins or portable
+//         OpenCL C.
+// Shape   Decided per device, once per process: by the processor's features, a probe build, and a self-test
+//         of every operation against answers made on the host (device/simd_answers.h). Never by a name.
+//         KDRAY_SIMD=portable or KDRAY_SIMD=x86 in the environment asks for a form; it has to pass all the
+//         same.
+// Errors  ErrorCode::no_device: no form passes, or the one asked for doesn't. ErrorCode::usage: KDRAY_SIMD is
+//         neither.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What    The answers that every form of common/simd.clh must give, made on the host one lane at a time; and the cases of
-//         the self-test at start.
+// What    The answers that every form of common/simd.clh must give, made on the host one lane at a time; and
+//         the cases of the self-test at start.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@ namespace kdray::device {
 
 layout::SimdAnswers expected_answers(const layout::SimdCase& given);
 
-// Every pair of NaN, infinities, zeros of both signs, limits and common numbers, in every lane; every mask of 8 lanes.
+// Every pair of NaN, infinities, zeros of both signs, limits and common numbers, in every lane; every mask of
+// 8 lanes.
 std::vector<layout::SimdCase> known_cases();
 
 // The first operation whose answer differs by a bit ("compress16 of case 3"); empty when none does.

@@ -1,5 +1,5 @@
-// What    What is done with libpng's errors and warnings, reading and writing: the message goes to where the caller looks for it, and
-//         libpng returns to the caller's setjmp.
+// What    What is done with libpng's errors and warnings, reading and writing: the message goes to where the
+//         caller looks for it, and libpng returns to the caller's setjmp.
 #pragma once
 
 #include <png.h>

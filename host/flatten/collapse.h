@@ -1,8 +1,8 @@
-// What    Binary nodes collapsed into nodes of up to eight children: which nodes become children of which, in what order for
-//         each octant of directions, and where leaves' blocks go. Bounds and blocks are not here: they are written once, when
-//         all places are known (wide.cpp).
-// Shape   openings.h says which nodes become children; empty leaves are dropped. A leaf of several kinds of primitives becomes a child
-//         for each.
+// What    Binary nodes collapsed into nodes of up to eight children: which nodes become children of which, in
+//         what order for each octant of directions, and where leaves' blocks go. Bounds and blocks are not
+//         here: they are written once, when all places are known (wide.cpp).
+// Shape   openings.h says which nodes become children; empty leaves are dropped. A leaf of several kinds of
+//         primitives becomes a child for each.
 // Source  Dammertz, Hanika, Keller, EGSR 2008; Wald, Benthin, Boulos, RT 2008.
 #pragma once
 
@@ -46,7 +46,8 @@ struct CollapsedPart {
 CollapsedPart collapse(const kdtree::Tree& tree, const Openings& openings, const Subtree& root,
                        std::uint32_t block, std::uint32_t only_kind, std::uint32_t cut_at);
 
-// For a walk that pushes all children of a node, then pops the nearest; `cuts` are those of the parts cut off.
+// For a walk that pushes all children of a node, then pops the nearest; `cuts` are those of the parts cut
+// off.
 StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>& cuts);
 
 // A leaf's references of one kind. Within a leaf references ascend, so kinds follow each other.

@@ -49,7 +49,8 @@ Bounds bounds_of(const layout::Sphere& s) {
 
 Bounds bounds_of(const layout::Cone& c) {
   const vec3 base(c.base[0], c.base[1], c.base[2]), axis(c.axis[0], c.axis[1], c.axis[2]);
-  // A circle across the axis reaches this far along each coordinate, for a radius of 1; the axis is of unit length but for rounding.
+  // A circle across the axis reaches this far along each coordinate, for a radius of 1; the axis is of unit
+  // length but for rounding.
   const vec3 across = glm::sqrt(glm::max(vec3(1e-5f), vec3(1) - axis * axis));
   Bounds b = around(base, c.base_radius * across);
   const float apex_radius = c.base_radius + c.slope * c.height + 1e-6f * (c.base_radius + c.height);
@@ -111,7 +112,8 @@ Core core_of(const FlatScene& scene) {
   for (int k = 0; k < 3; ++k)
     if (all.lo[k] == all.hi[k] && all.lo[k] > 0.5f * (core.lo[k] + core.hi[k]))
       std::swap(sides.at[k][0], sides.at[k][1]);
-  // A plane whose triangles lie within the core anyway, as the top of a box does, is no face: they are part of the core.
+  // A plane whose triangles lie within the core anyway, as the top of a box does, is no face: they are part
+  // of the core.
   const auto is_face = [&](const Bounds& b) { return !b.empty() && !sides.inner.holds(b); };
   for (int k = 0; k < 3; ++k) {
     core.face_lo[k] = is_face(sides.at[k][0]) ? all.lo[k] : -kInfinity;

@@ -34,8 +34,8 @@ struct BinaryNodes {
   }
 };
 
-// The tree's nodes are in depth-first order with the lower child next to its parent, as the form wants; that they
-// are is checked, since a wrong tree would otherwise be a wrong picture.
+// The tree's nodes are in depth-first order with the lower child next to its parent, as the form wants; that
+// they are is checked, since a wrong tree would otherwise be a wrong picture.
 layout::KdNode pack(const kdtree::Tree& tree, std::uint32_t self, const BinaryNodes& all) {
   const kdtree::Node& node = tree.nodes[self];
   if (node.is_leaf() || node.has_groups()) {

@@ -1,8 +1,9 @@
-// What    Scene, geometry and tree -> the arrays of kernels/layout, ready to upload. The sole writer of those structs, but for triangles,
-//         which the geometry has made and shares with the form.
-// Shape   Primitive arrays keep Geometry's order, so that references need no translation. Filled in parallel, in memory that a
-//         CPU device uses as it is.
-// Errors  ErrorCode::input when the tree has more nodes, references or leaf entries than the 30 bits of the form hold.
+// What    Scene, geometry and tree -> the arrays of kernels/layout, ready to upload. The sole writer of those
+//         structs, but for triangles, which the geometry has made and shares with the form.
+// Shape   Primitive arrays keep Geometry's order, so that references need no translation. Filled in parallel,
+//         in memory that a CPU device uses as it is.
+// Errors  ErrorCode::input when the tree has more nodes, references or leaf entries than the 30 bits of the
+//         form hold.
 #pragma once
 
 #include "base/array.h"

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kDefaultSize = 1024, kDefaultDepth = 5, kMaxDepth = 64, kMaxSamples = 65536, kMaxSide = 65536;
 
-// Half of an 8-bit step where sRGB's curve is steepest (slope 12.92, in the dark): no smaller change shows in a PNG.
+// Half of an 8-bit step where sRGB's curve is steepest (slope 12.92, in the dark): no smaller change shows in
+// a PNG.
 constexpr double kDefaultMinWeight = 0.5 / 255 / 12.92;
 
 int pick(int option, const std::optional<int>& setting, int fallback) {
@@ -81,7 +82,8 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
   const dvec3 up = glm::cross(right, forward);
   const double half_height = std::tan(camera.vertical_fov / 2);
   const double half_width = half_height * o.width / o.height;
-  // The outermost samples of the corner grid lie on the picture's edges; with one pixel there is only one corner.
+  // The outermost samples of the corner grid lie on the picture's edges; with one pixel there is only one
+  // corner.
   const bool corners = o.grid == PixelGrid::corners;
   const double columns = std::max(1, o.width - (corners ? 1 : 0)),
                rows = std::max(1, o.height - (corners ? 1 : 0));

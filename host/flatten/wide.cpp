@@ -31,10 +31,11 @@ struct TriangleInBlock {
   }
 };
 
-// |n|_1 of the normal that the kernels compute in float, or more. With u = 2^-24, an edge is off by u of itself, a product of
-// two by 3u, a component by 3u of the products' sizes and u of itself: here and there together by less than 8u of `size` and
-// 4u of `sum`. What underflows is below 2^-140.
-// To it what sign_limit adds for the tilt (intersect/triangle.clh): at most 8 times the square of the edges' largest component.
+// |n|_1 of the normal that the kernels compute in float, or more. With u = 2^-24, an edge is off by u of
+// itself, a product of two by 3u, a component by 3u of the products' sizes and u of itself: here and there
+// together by less than 8u of `size` and 4u of `sum`. What underflows is below 2^-140.
+// To it what sign_limit adds for the tilt (intersect/triangle.clh): at most 8 times the square of the edges'
+// largest component.
 inline float normal_bound(const TriangleInBlock& t) {
   float e[2][3];
   for (int k = 0; k < 3; ++k) {

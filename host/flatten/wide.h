@@ -1,8 +1,10 @@
-// What    The wide form of a kd-tree (kernels/layout/wide.layout.h): collapsed nodes and leaf blocks, ready to upload.
-// Shape   openings.h says which nodes become whose children; empty leaves are dropped. A leaf that holds several kinds of primitives becomes a child for
-//         each of them. Within a node and a leaf the order is the tree's, so the form is the same on every machine.
-// Source  Kd cells are disjoint: one order for each octant of directions is front to back for all rays of it, without a sort; among a
-//         cell's groups it nearly is, and no walk relies on it.
+// What    The wide form of a kd-tree (kernels/layout/wide.layout.h): collapsed nodes and leaf blocks, ready
+//         to upload.
+// Shape   openings.h says which nodes become whose children; empty leaves are dropped. A leaf that holds
+//         several kinds of primitives becomes a child for each of them. Within a node and a leaf the order is
+//         the tree's, so the form is the same on every machine.
+// Source  Kd cells are disjoint: one order for each octant of directions is front to back for all rays of it,
+//         without a sort; among a cell's groups it nearly is, and no walk relies on it.
 // Errors  ErrorCode::input where the form has more nodes or blocks than its indices can name.
 #pragma once
 
@@ -25,7 +27,8 @@ struct WideForm {
 // `primitives` has the arrays that the tree's references name; `block` is 4 or 8.
 WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int block);
 
-// The block size for a tree: 8 where it takes at most half as many lanes again as 4 would, as for fine meshes, else 4.
+// The block size for a tree: 8 where it takes at most half as many lanes again as 4 would, as for fine
+// meshes, else 4.
 int choose_block(const kdtree::Tree& tree);
 
 }  // namespace kdray::flatten

@@ -20,8 +20,8 @@ namespace {
 constexpr double kFractalDimension = 2.2;
 constexpr std::uint32_t kMountain = 21;  // another number, another mountain
 constexpr double kCorner = -1, kWidth = 2;
-constexpr double kDiagonal =
-    1.4142136;  // to the root of 2: the published figure, whose rounding shows in low valleys
+// To the root of 2: the published figure, whose rounding shows in low valleys.
+constexpr double kDiagonal = 1.4142136;
 
 double normal_deviate(std::uint32_t seed) {
   constexpr std::uint32_t modulus = 134456, factor = 8121, increment = 28411;

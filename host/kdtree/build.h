@@ -1,7 +1,7 @@
-// What    Builds the kd-tree by the surface-area heuristic with perfect splits (primitives clipped to the cell),
-//         O(N log N), parallel over subtrees; the same tree for any number of threads.
-// Source  Wald and Havran, "On building fast kd-trees for ray tracing, and on doing that in O(N log N)", RT 2006;
-//         Havran's thesis (2000) for clipping and empty space. Flat cells are allowed.
+// What    Builds the kd-tree by the surface-area heuristic with perfect splits (primitives clipped to the
+//         cell), O(N log N), parallel over subtrees; the same tree for any number of threads.
+// Source  Wald and Havran, "On building fast kd-trees for ray tracing, and on doing that in O(N log N)", RT
+//         2006; Havran's thesis (2000) for clipping and empty space. Flat cells are allowed.
 #pragma once
 
 #include "kdtree/tree.h"
@@ -15,8 +15,8 @@ enum class Quality {
   best,      // the best of all planes, primitives clipped to the whole cell
 };
 
-// Where cells are split. The medians are the thesis' (chapter 5), for the bench; the exact builder knows all, the binned one
-// only the heuristic.
+// Where cells are split. The medians are the thesis' (chapter 5), for the bench; the exact builder knows all,
+// the binned one only the heuristic.
 enum class SplitRule { sah, spatial_median, object_median };
 
 struct BuildConfig {
@@ -25,11 +25,11 @@ struct BuildConfig {
   double cost_traverse = 1.0;   // Ct: one inner node
   double cost_intersect = 2.0;  // Ci: one test, of `block` primitives
   int block = 1;  // primitives tested at once, a power of two: a leaf of n costs Ci*ceil(n/block)
-  bool tight_cells =
-      true;  // costs are those of the contents' bounds; false: of the cell's, as in the thesis (exact builder)
+  // Costs are those of the contents' bounds; false: of the cell's, as in the thesis (exact builder).
+  bool tight_cells = true;
   double empty_bonus = 0.6;  // lambda: with loose cells, a split that cuts off empty space costs this share
-  // What is in a cell is divided further, by primitives (binned/group-inl.h). Cells are then larger, unless they are to stay as
-  // small as without: for the binary form, whose walk tests all that a cell holds.
+  // What is in a cell is divided further, by primitives (binned/group-inl.h). Cells are then larger, unless
+  // they are to stay as small as without: for the binary form, whose walk tests all that a cell holds.
   bool groups = false;
   bool small_cells = false;
   double group_traverse = 0.8;  // a division into groups, where a test costs 1, of which
@@ -41,8 +41,9 @@ struct BuildConfig {
 // What Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references.
 double traverse_factor(Quality quality);
 
-// The groups that the wide form's walks want of a scene of n primitives (docs/design/kdtree.md): few primitives for a clutter of
-// large and small, whole blocks for fine meshes, which wait for memory, and for what is to be built fast or has small cells.
+// The groups that the wide form's walks want of a scene of n primitives (docs/design/kdtree.md): few
+// primitives for a clutter of large and small, whole blocks for fine meshes, which wait for memory, and for
+// what is to be built fast or has small cells.
 BuildConfig suited(BuildConfig config, std::size_t n_primitives);
 
 // The deepest leaf that a tree of n primitives may have: what the config says, up to the traversal's stack.

@@ -26,8 +26,8 @@ std::span<Ref> add_leaf(std::size_t n, const Bounds& contents, int depth, Fragme
 // The references' numbers in ascending order.
 void write_sorted(std::span<const BoundedRef> refs, std::span<Ref> out);
 
-// Appends what is in a cell, as a leaf or, where the config says so, as groups (binned/group-inl.h); leaves the references in another
-// order. Returns `contents`, their hull.
+// Appends what is in a cell, as a leaf or, where the config says so, as groups (binned/group-inl.h); leaves
+// the references in another order. Returns `contents`, their hull.
 Box append_cell(std::span<BoundedRef> refs, const Bounds& contents, int depth, const BuildConfig& config,
                 Fragment& out);
 

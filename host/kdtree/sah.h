@@ -43,8 +43,8 @@ class LeafCost {
   explicit LeafCost(const BuildConfig& config)
       : block_(static_cast<std::uint32_t>(config.block)), each_(config.block > 1 ? kEach : 0) {}
 
-  // Tests that a leaf of n references takes. In blocks, a full one is a little dearer than one of a single reference, so
-  // that of two equal splits the one with fewer duplicates is taken.
+  // Tests that a leaf of n references takes. In blocks, a full one is a little dearer than one of a single
+  // reference, so that of two equal splits the one with fewer duplicates is taken.
   double operator()(std::uint32_t n) const { return (n + block_ - 1) / block_ + each_ * n; }
 
   // What no leaf of n references is below.

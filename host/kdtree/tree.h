@@ -1,8 +1,9 @@
 // What    A kd-tree over triangles, spheres and cones, as the builder leaves it and flatten/ packs it.
-// Shape   nodes[0] is the root; a leaf names a run of `refs`. A reference is the kind in the top two bits and the
-//         index into that kind's array of scene::Geometry below them; within a leaf they ascend.
-//         What is in a cell may be in *groups*: a subtree whose nodes part primitives, not space. Their contents may overlap, and
-//         they refer to each primitive of the cell once. Below groups there are no planes.
+// Shape   nodes[0] is the root; a leaf names a run of `refs`. A reference is the kind in the top two bits and
+//         the index into that kind's array of scene::Geometry below them; within a leaf they ascend.
+//         What is in a cell may be in *groups*: a subtree whose nodes part primitives, not space. Their
+//         contents may overlap, and they refer to each primitive of the cell once. Below groups there are no
+//         planes.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// What    Renders one band of the picture: a thread for each queue, which takes its turns until no ray is left anywhere.
+// What    Renders one band of the picture: a thread for each queue, which takes its turns until no ray is
+//         left anywhere.
 #pragma once
 
 #include <atomic>
@@ -28,7 +29,8 @@ class BandRun {
  public:
   BandRun(const Request& request, Crew& crew);
 
-  // Blocks until the band is done or a queue has failed. `progress` hears the share of the tiles that have been begun.
+  // Blocks until the band is done or a queue has failed. `progress` hears the share of the tiles that have
+  // been begun.
   void run(BandWork& band, const std::function<void(double)>& progress);
 
   const Exchange& exchange() const { return exchange_; }
@@ -50,8 +52,8 @@ class BandRun {
   std::condition_variable ended_;
   std::size_t n_serving_ = 0;
   std::vector<std::atomic<std::uint32_t>> tiles_left_;  // of those that a queue has taken
-  std::vector<std::vector<Mail>>
-      sent_;  // of each queue's last turn to each part; kept for the memory that it has
+  // Of each queue's last turn to each part; kept for the memory that it has.
+  std::vector<std::vector<Mail>> sent_;
 };
 
 }  // namespace kdray::odprt

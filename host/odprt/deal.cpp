@@ -73,8 +73,8 @@ double largest_cost(std::span<const PartLoad> loads) {
       ->cost;
 }
 
-// Cuts into runs of about equal cost and gives them, the costliest first, each to the part that has least so far and room for
-// it; empty where one has no room anywhere.
+// Cuts into runs of about equal cost and gives them, the costliest first, each to the part that has least so
+// far and room for it; empty where one has no room anywhere.
 std::vector<std::uint32_t> in_several_runs(std::span<const double> costs,
                                            std::span<const std::uint64_t> bytes, std::uint32_t n_parts,
                                            std::uint64_t most_bytes, std::uint32_t runs_per_part) {

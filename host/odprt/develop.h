@@ -1,4 +1,5 @@
-// What    The films of several queues -> linear RGB: the sums of each pixel added up, then divided by its samples.
+// What    The films of several queues -> linear RGB: the sums of each pixel added up, then divided by its
+//         samples.
 #pragma once
 
 #include <span>

@@ -1,11 +1,13 @@
-// What    What ODPRT's queues share: who serves which part, the rays that are on their way, the ledger of rays alive, and when the
-//         frame is done.
-// Shape   A queue takes turns: it waits until it has something to do, takes what has come for the part that it serves, launches,
-//         and hands over what the launch left. Rays for a part whose queue shares the sender's context lie in the sender's
-//         outbox until the receiver has read them; others come by the host's memory (mail). Where a queue has several
-//         parts, it goes on with one as long as there is something to do, then to the one for which most rays wait.
-// Why     A queue waits for another only when it has no outbox left that isn't being read, or no grant: receivers read
-//         before they launch and need nothing for it, so no ring of queues can wait for each other (ledger.h has the rest).
+// What    What ODPRT's queues share: who serves which part, the rays that are on their way, the ledger of
+//         rays alive, and when the frame is done.
+// Shape   A queue takes turns: it waits until it has something to do, takes what has come for the part that
+//         it serves, launches, and hands over what the launch left. Rays for a part whose queue shares the
+//         sender's context lie in the sender's outbox until the receiver has read them; others come by the
+//         host's memory (mail). Where a queue has several parts, it goes on with one as long as there is
+//         something to do, then to the one for which most rays wait.
+// Why     A queue waits for another only when it has no outbox left that isn't being read, or no grant:
+//         receivers read before they launch and need nothing for it, so no ring of queues can wait for each
+//         other (ledger.h has the rest).
 // Threads One for each queue.
 #pragma once
 

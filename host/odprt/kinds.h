@@ -1,4 +1,5 @@
-// What    The kinds of primitives in a wide form, by number: how many rows their blocks have, and where these are.
+// What    The kinds of primitives in a wide form, by number: how many rows their blocks have, and where these
+//         are.
 #pragma once
 
 #include <array>

@@ -1,12 +1,17 @@
-// What    How many rays are alive, for each slice and depth, over all queues; and how many each queue may make.
-// Shape   Level 0 is shadow rays on their way, level d rays of depth d. A level has a capacity for each slice; before a launch a
-//         queue is granted a share of what is left of it, and gives back what it didn't use. In the launch what it ends adds to the
+// What    How many rays are alive, for each slice and depth, over all queues; and how many each queue may
+//         make.
+// Shape   Level 0 is shadow rays on their way, level d rays of depth d. A level has a capacity for each
+//         slice; before a launch a queue is granted a share of what is left of it, and gives back what it
+//         didn't use. In the launch what it ends adds to the
 //         grant: what it makes less what it ends never exceeds what it was granted.
-// Why     (1) A level's rays never exceed its capacity, so every queue's pool can hold all of them, and receiving can't fail.
-//         (2) Some queue can always go on: rays of the greatest depth that is alive make rays of a depth of which none is, so all of
-//         its capacity can be granted; what other queues hold of it comes back when their launches end. Shadow rays
-//         make nothing. So the deepest rays go, then those above.
-//         (3) When every count is 0 and no queue has tiles left, the frame is done: nothing is on its way, since a ray is counted
+// Why     (1) A level's rays never exceed its capacity, so every queue's pool can hold all of them, and
+//         receiving can't fail.
+//         (2) Some queue can always go on: rays of the greatest depth that is alive make rays of a depth of
+//             which none is, so all of
+//         its capacity can be granted; what other queues hold of it comes back when their launches end.
+//         Shadow rays make nothing. So the deepest rays go, then those above.
+//         (3) When every count is 0 and no queue has tiles left, the frame is done: nothing is on its way,
+//             since a ray is counted
 //         from where it is made to where it ends.
 // Threads The caller locks.
 #pragma once
@@ -33,7 +38,8 @@ class Ledger {
 
   std::uint64_t alive() const { return alive_total_; }
 
-  // What has been granted or given back so often; a queue that had nothing to do need not look again before it changes.
+  // What has been granted or given back so often; a queue that had nothing to do need not look again before
+  // it changes.
   std::uint64_t version() const { return version_; }
 
  private:

@@ -1,5 +1,7 @@
-// What    Rays on their way through the host's memory: between contexts, and to parts that nobody serves at the moment.
-// Shape   For each slice the rays that wait, as structures of their fields (kernels/layout/rays.layout.h), taken from the end.
+// What    Rays on their way through the host's memory: between contexts, and to parts that nobody serves at
+//         the moment.
+// Shape   For each slice the rays that wait, as structures of their fields (kernels/layout/rays.layout.h),
+//         taken from the end.
 #pragma once
 
 #include <algorithm>
@@ -72,7 +74,8 @@ struct Mail {
   void take_all(Mail& other);
 };
 
-// Puts the n rays of a stream, as they are sent, into the mail of the parts that they go to; nullptr: they are left.
+// Puts the n rays of a stream, as they are sent, into the mail of the parts that they go to; nullptr: they
+// are left.
 void sort_rays(const float* stream, std::size_t capacity, std::size_t n, std::size_t slice,
                const std::function<Mail*(std::uint32_t)>& mail_of);
 void sort_shadow_rays(const float* stream, std::size_t capacity, std::size_t n, std::size_t slice,

@@ -1,7 +1,8 @@
-// What    What a queue's launch sends: rays packed by the part and the slice that they go to, or by the slice alone, in buffers on
-//         the device (kernels/odprt/send.clh), with their counts.
-// Shape   A queue has several, so that it can go on while others still read the last one. Receivers whose context is the same read
-//         the buffers themselves; for others, and for parts that nobody serves at the moment, the rays are copied (mail.h).
+// What    What a queue's launch sends: rays packed by the part and the slice that they go to, or by the slice
+//         alone, in buffers on the device (kernels/odprt/send.clh), with their counts.
+// Shape   A queue has several, so that it can go on while others still read the last one. Receivers whose
+//         context is the same read the buffers themselves; for others, and for parts that nobody serves at
+//         the moment, the rays are copied (mail.h).
 #pragma once
 
 #include <atomic>
@@ -32,7 +33,8 @@ class Outbox {
   const cl::Buffer& counts() const { return counts_; }
   std::size_t bytes() const;
 
-  // The counts as the last launch left them, read by the queue that sends: rays, then shadow rays, by place and slice.
+  // The counts as the last launch left them, read by the queue that sends: rays, then shadow rays, by place
+  // and slice.
   std::vector<layout::u32>& n() { return n_; }
   const std::vector<layout::u32>& n() const { return n_; }
   std::uint64_t n_rays(std::uint32_t place) const { return sum(place); }

@@ -1,4 +1,5 @@
-// What    The part that a queue's device holds: its only one, or, where memory is short, one at a time in room that is made once.
+// What    The part that a queue's device holds: its only one, or, where memory is short, one at a time in
+//         room that is made once.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +10,20 @@
 
 namespace kdray::odprt {
 
-// Of geometry in room for any part: of each array as much as the part with most of it has. Where parts are of different kinds of
-// primitives that is more than the largest part.
+// Of geometry in room for any part: of each array as much as the part with most of it has. Where parts are of
+// different kinds of primitives that is more than the largest part.
 std::size_t room_bytes(const Division& division);
 
 class PartStore {
  public:
-  // `streamed`: parts come and go; else they are used where they lie if the device works in the host's memory.
+  // `streamed`: parts come and go; else they are used where they lie if the device works in the host's
+  // memory.
   PartStore(const device::Context& context, cl::CommandQueue queue, const Division& division, const Cut& cut,
             bool streamed)
       : context_(context), queue_(std::move(queue)), division_(division), cut_(cut), streamed_(streamed) {}
 
-  // Loads the part if it isn't there; nothing may be running that reads the last one. What it returns stays until another is asked
-  // for.
+  // Loads the part if it isn't there; nothing may be running that reads the last one. What it returns stays
+  // until another is asked for.
   const LoadedPart& get(std::uint32_t part);
 
   std::size_t bytes() const;  // of geometry, with room that is not used

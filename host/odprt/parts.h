@@ -1,9 +1,11 @@
-// What    The parts of a divided scene: each holds the wide tree's top as far as it leads to its own subtrees, those subtrees, and
-//         the primitives in them; and the directory that tells rays which parts they meet.
-// Shape   A primitive that lies in subtrees of several parts is in all of those. A part's triangles begin with such ones, ordered
-//         by number, so that a shadow ray from elsewhere can name the one that it left. Materials and lights are everywhere.
-// Why     The whole form's stack, blocks and boxes stay what they are, so one program serves the whole and every part, and a
-//         ray meets in the parts what it would meet in the whole.
+// What    The parts of a divided scene: each holds the wide tree's top as far as it leads to its own
+//         subtrees, those subtrees, and the primitives in them; and the directory that tells rays which parts
+//         they meet.
+// Shape   A primitive that lies in subtrees of several parts is in all of those. A part's triangles begin
+//         with such ones, ordered by number, so that a shadow ray from elsewhere can name the one that it
+//         left. Materials and lights are everywhere.
+// Why     The whole form's stack, blocks and boxes stay what they are, so one program serves the whole and
+//         every part, and a ray meets in the parts what it would meet in the whole.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +34,9 @@ std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideFo
 std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
                              std::span<const std::uint32_t> part_of, std::uint32_t n_parts);
 
-// The bounds of what the parts hold, in the order of parts: of all that a part holds, and behind that, cell within cell, of the largest
-// nodes whose contents lie in that part, of what there is of the tree's top below, and of the children of the subtrees' roots.
+// The bounds of what the parts hold, in the order of parts: of all that a part holds, and behind that, cell
+// within cell, of the largest nodes whose contents lie in that part, of what there is of the tree's top
+// below, and of the children of the subtrees' roots.
 std::vector<layout::PartCell> make_directory(const flatten::WideForm& form, const Cut& cut,
                                              std::span<const std::uint32_t> part_of);
 

@@ -1,5 +1,5 @@
-// What    A small frame of the whole scene on one queue, which counts how many rays come to each subtree: what the subtrees' costs
-//         are estimated by before the scene is divided.
+// What    A small frame of the whole scene on one queue, which counts how many rays come to each subtree:
+//         what the subtrees' costs are estimated by before the scene is divided.
 #pragma once
 
 #include <cstdint>

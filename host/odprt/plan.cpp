@@ -35,9 +35,9 @@ std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uin
 }
 
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
-constexpr std::size_t kSentBytes =
-    kRayBytes + 2 * KDRAY_SENT_SHADOW_FIELDS * sizeof(float);  // with shadow rays
-constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;       // of memory that is short: that part of it
+// With shadow rays.
+constexpr std::size_t kSentBytes = kRayBytes + 2 * KDRAY_SENT_SHADOW_FIELDS * sizeof(float);
+constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;  // of memory that is short: that part of it
 
 // Rays for one place and slice.
 std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {
@@ -78,7 +78,8 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   plan.shadow_pool = r.streamed ? std::min(streamed, plan.capacity[0]) : plan.capacity[0];
 
   OutboxShape& out = plan.outbox;
-  // Where parts come and go all rays are copied, and few parts are what most of a launch's go to: they share the room.
+  // Where parts come and go all rays are copied, and few parts are what most of a launch's go to: they share
+  // the room.
   out.n_places = r.streamed ? 1 : r.n_parts;
   out.n_slices = plan.n_slices;
   out.rays = outbox_rays(r, plan.n_slices);

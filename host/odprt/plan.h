@@ -1,4 +1,5 @@
-// What    How large the pools and buffers of ODPRT's queues are. A choice changes time and memory, never the picture.
+// What    How large the pools and buffers of ODPRT's queues are. A choice changes time and memory, never the
+//         picture.
 #pragma once
 
 #include <cstdint>

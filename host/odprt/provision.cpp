@@ -18,8 +18,9 @@ constexpr std::size_t kLeastOutboxes = 3, kMostOutboxes = 8, kOutboxPlaces = 16;
 constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // of a queue; larger pictures go in bands
 // Of the directory of a scene that isn't streamed.
 constexpr std::size_t kMostDirectory = std::size_t{5120} * sizeof(layout::PartCell);
-// Of memory that is short. Each band goes through all parts, so the film is worth more than room for larger parts; and the more
-// parts there are, the more cells every ray is tested against, so there is room for one at a time only.
+// Of memory that is short. Each band goes through all parts, so the film is worth more than room for larger
+// parts; and the more parts there are, the more cells every ray is tested against, so there is room for one
+// at a time only.
 constexpr std::size_t kFilmEighths = 3;
 
 // Queues on the device that has most of them.
@@ -73,8 +74,8 @@ Error too_little(const Request& request, std::size_t needed) {
                   request.device_memory, (needed >> 20) + 1));
 }
 
-// The film gets a part of a queue's memory, its other buffers what they take, the parts the rest. Nothing, when that is too little
-// for any number of parts.
+// The film gets a part of a queue's memory, its other buffers what they take, the parts the rest. Nothing,
+// when that is too little for any number of parts.
 std::optional<Provision> try_streamed(const Request& request, std::size_t geometry_bytes,
                                       std::size_t of_queue, std::uint32_t least_parts) {
   const double geometry = kSpareGeometry * static_cast<double>(geometry_bytes);

@@ -1,5 +1,5 @@
-// What    What a frame gets of the devices' memory: pools and buffers, the picture's bands, the number of parts, and how many bytes
-//         of geometry a queue may hold at one time.
+// What    What a frame gets of the devices' memory: pools and buffers, the picture's bands, the number of
+//         parts, and how many bytes of geometry a queue may hold at one time.
 // Errors  ErrorCode::out_of_memory when a limit can't be kept, with the least that would do.
 #pragma once
 
@@ -14,7 +14,8 @@
 
 namespace kdray::odprt {
 
-// Of an equal share of the geometry, what a part is given room for: primitives that lie in several parts, and parts of unequal size.
+// Of an equal share of the geometry, what a part is given room for: primitives that lie in several parts, and
+// parts of unequal size.
 inline constexpr double kSpareGeometry = 1.3;
 
 struct Provision {
@@ -28,11 +29,12 @@ struct Provision {
   WorkRoom room;  // of a queue: the largest band, or a round's samples
 };
 
-// As many parts as queues where that fits; more of them, which come and go, where the request has a limit that is too little for
-// it; then at least `least_parts`.
+// As many parts as queues where that fits; more of them, which come and go, where the request has a limit
+// that is too little for it; then at least `least_parts`.
 Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts = 0);
 
-// Whether every part is one that a queue may hold. Throws when one is not and there are as many parts as there can be.
+// Whether every part is one that a queue may hold. Throws when one is not and there are as many parts as
+// there can be.
 bool fits(const Provision& provision, const Division& division, const Request& request);
 
 }  // namespace kdray::odprt

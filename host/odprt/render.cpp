@@ -16,7 +16,8 @@ namespace kdray::odprt {
 namespace {
 
 constexpr std::size_t kSubtreesPerPart = 16, kLeastSubtrees = 64, kMostSubtrees = 512;
-// Less is replicated where primitives in several parts take a queue beyond that of the geometry, over its equal share.
+// Less is replicated where primitives in several parts take a queue beyond that of the geometry, over its
+// equal share.
 constexpr double kMostSpare = 0.2;
 constexpr double kUnbalanced = 1.05;  // the busiest queue against the mean, from which on subtrees are moved
 constexpr std::uint32_t kCensusEvery = 16;
@@ -26,8 +27,8 @@ std::size_t subtrees_for(std::size_t n_parts) {
   return std::clamp(kSubtreesPerPart * n_parts, kLeastSubtrees, kMostSubtrees);
 }
 
-// With a limit nothing is held twice; where all parts stay, they keep to what has been provided for, and where they come and go
-// their size is checked.
+// With a limit nothing is held twice; where all parts stay, they keep to what has been provided for, and
+// where they come and go their size is checked.
 DivideOptions options_for(const Provision& provision, const Request& request) {
   if (request.device_memory == 0) return {provision.n_parts, kSpare, kReplicated};
   return {provision.n_parts,
@@ -72,7 +73,8 @@ void DividedScene::measure_costs(const Request& request) {
   weigh(run_pilot(request, whole, cut_));
 }
 
-// A subtree costs as much as rays came to it, times what one is expected to cost there, and what its hits are shaded for.
+// A subtree costs as much as rays came to it, times what one is expected to cost there, and what its hits are
+// shaded for.
 double DividedScene::cost_of(const SubtreeUse& use, std::size_t subtree) const {
   return static_cast<double>(use.visits) * cut_.subtrees[subtree].visit +
          kHitCost * static_cast<double>(use.hits);

@@ -1,7 +1,8 @@
-// What    ODPRT: renders a frame with the scene divided among queues: each holds some subtrees, and rays travel between them.
+// What    ODPRT: renders a frame with the scene divided among queues: each holds some subtrees, and rays
+//         travel between them.
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed parallel ray tracing.
-// Errors  A queue whose device fails is left out from then on: its subtrees go to the others, and the band of the picture that was
-//         in work is begun anew. The error itself when no queue is left.
+// Errors  A queue whose device fails is left out from then on: its subtrees go to the others, and the band of
+//         the picture that was in work is begun anew. The error itself when no queue is left.
 #pragma once
 
 #include <functional>
@@ -35,8 +36,8 @@ struct Request {
   layout::Frame frame;  // with tiles
   std::uint32_t features = 0;
   Traversal traversal = Traversal::automatic;
-  double adaptive_target =
-      0;  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one
+  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one.
+  double adaptive_target = 0;
   Balance balance = Balance::sah;
   std::uint32_t n_slices = 16;  // of each queue: enough for all of its compute units
   std::uint32_t ray_buffer = 0;

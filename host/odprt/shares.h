@@ -1,9 +1,10 @@
-// What    Which queue makes which eye rays. They need not travel where the queue holds what they meet first; which it is changes
-//         time, never the picture.
-// Shape   Each queue has entries (tiles, or runs of samples) of its own, and some are anyone's. A queue takes its own first, then
-//         anyone's, then those of the queue that has most left: rays travel sooner than a queue has nothing to do. All go all over the
-//         picture, in steps of the golden section: whatever part of the scene a piece of it shows, the queue that holds
-//         that has something to do all the time. (Along the curve half of the queues' time was lost.)
+// What    Which queue makes which eye rays. They need not travel where the queue holds what they meet first;
+//         which it is changes time, never the picture.
+// Shape   Each queue has entries (tiles, or runs of samples) of its own, and some are anyone's. A queue takes
+//         its own first, then anyone's, then those of the queue that has most left: rays travel sooner than a
+//         queue has nothing to do. All go all over the picture, in steps of the golden section: whatever part
+//         of the scene a piece of it shows, the queue that holds that has something to do all the time.
+//         (Along the curve half of the queues' time was lost.)
 #pragma once
 
 #include <cstddef>
@@ -38,8 +39,8 @@ class Shares {
 // Entries of any kind: all are anyone's.
 Shares share_evenly(std::span<const layout::u32> list, std::size_t n_queues);
 
-// Tiles: each belongs to the owner of the part that most of its rays enter first; those whose rays enter none are anyone's.
-// `owner`: the queue of each part.
+// Tiles: each belongs to the owner of the part that most of its rays enter first; those whose rays enter none
+// are anyone's. `owner`: the queue of each part.
 Shares share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
                      std::span<const layout::PartCell> directory, std::span<const std::size_t> owner);
 

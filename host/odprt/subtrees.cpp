@@ -114,7 +114,8 @@ class Cutter {
   };
   using Place = std::list<Item>::iterator;
 
-  // Puts a node's children before `place`, in the tree's order: front to back for rays with positive directions.
+  // Puts a node's children before `place`, in the tree's order: front to back for rays with positive
+  // directions.
   void open(Place place, std::uint32_t index) {
     const layout::WideNode& node = form_.nodes[index];
     const auto parent = static_cast<std::uint32_t>(cut_.top.size());

@@ -1,7 +1,9 @@
-// What    Cuts the wide form of a scene into subtrees of about equal expected cost: what ODPRT deals out to queues.
-// Shape   The costliest subtree is opened until there are enough. Subtrees come in the kd-tree's own order, so that neighbours
-//         in the list are neighbours in space; their cells are disjoint.
-// Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed. Costs: the surface-area heuristic.
+// What    Cuts the wide form of a scene into subtrees of about equal expected cost: what ODPRT deals out to
+//         queues.
+// Shape   The costliest subtree is opened until there are enough. Subtrees come in the kd-tree's own order,
+//         so that neighbours in the list are neighbours in space; their cells are disjoint.
+// Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed. Costs: the surface-area
+//         heuristic.
 #pragma once
 
 #include <array>

@@ -1,8 +1,9 @@
-// What    One queue of ODPRT on its device: its slices' pools and streams, its film, and the part of the scene that it serves at the
-//         moment. It does what it is told; who sends what to whom is decided in exchange.h.
-// Shape   Slice s of every worker handles the rays of the pixels whose tiles are slice s's in the list of the worker that makes
-//         their eye rays: within a worker no two slices touch one pixel. Each worker has a film of all the band's pixels;
-//         their sums add up to the picture.
+// What    One queue of ODPRT on its device: its slices' pools and streams, its film, and the part of the
+//         scene that it serves at the moment. It does what it is told; who sends what to whom is decided in
+//         exchange.h.
+// Shape   Slice s of every worker handles the rays of the pixels whose tiles are slice s's in the list of the
+//         worker that makes their eye rays: within a worker no two slices touch one pixel. Each worker has a
+//         film of all the band's pixels; their sums add up to the picture.
 // Errors  cl::Error and kdray::Error of the device; counters are handed out for the caller to check.
 #pragma once
 
@@ -36,7 +37,8 @@ struct LoadedPart {
   std::uint32_t n_subtrees = 0;
 };
 
-// What is rendered between two clearings of the film: tiles of a band of the picture, or runs of samples (frame.layout.h).
+// What is rendered between two clearings of the film: tiles of a band of the picture, or runs of samples
+// (frame.layout.h).
 struct Work {
   std::size_t first_pixel = 0, n_places = 0;  // of the film
   std::span<const layout::u32> samples = {};  // empty: tiles
@@ -67,7 +69,8 @@ class Worker {
   // `census_every`: visits to the part's subtrees are counted in one wave of so many; 0: in none.
   void serve(const LoadedPart& part, std::uint32_t census_every);
 
-  // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's time.
+  // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the
+  // frame's time.
   void warm_up(const LoadedPart& part, Outbox& outbox);
 
   // Takes the rays that a place of an outbox of this context has into the pools.
@@ -94,7 +97,8 @@ class Worker {
   std::span<const layout::i64> map_film();
   void unmap_film();
 
-  // Copies what an outbox of this queue has to the mail of the parts that it goes to; nullptr: not that part's.
+  // Copies what an outbox of this queue has to the mail of the parts that it goes to; nullptr: not that
+  // part's.
   void copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of);
 
   void add_cycles(std::map<std::string, double>& cycles) const;  // of the stages, in the band

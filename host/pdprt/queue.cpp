@@ -85,8 +85,9 @@ std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wave
   const std::size_t ahead = tiles.taken(number_).size() - progress.front;
   const bool measured = progress.taken > 0;
   if (measured) waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
-  // The launch that is running takes as much as it can of what there is. The one to be queued is to find all it can take,
-  // and more, when that is known: a slice that runs dry traces its last rays in batches that aren't full.
+  // The launch that is running takes as much as it can of what there is. The one to be queued is to find all
+  // it can take, and more, when that is known: a slice that runs dry traces its last rays in batches that
+  // aren't full.
   return tiles.take(number_, {.most = (measured ? 2 : 1) * tiles_of_launch() + n_slices_ - 1,
                               .least = shortest_launch(progress),
                               .ahead = ahead - std::min(ahead, tiles_of_launch())});

@@ -1,6 +1,7 @@
-// What    One of PDPRT's queues: takes tiles, keeps the device supplied with them, and puts them into the picture.
-// Shape   A queue has tiles for a few launches ahead, by the waves that its tiles have taken so far: enough that its slices
-//         don't run dry, and little enough that others don't wait for it at the end.
+// What    One of PDPRT's queues: takes tiles, keeps the device supplied with them, and puts them into the
+//         picture.
+// Shape   A queue has tiles for a few launches ahead, by the waves that its tiles have taken so far: enough
+//         that its slices don't run dry, and little enough that others don't wait for it at the end.
 // Threads One serves a queue; queues share Tiles and the picture, of which each writes its own tiles.
 #pragma once
 
@@ -16,7 +17,8 @@
 
 namespace kdray::pdprt {
 
-// What a list's tiles are: the picture's, of which the film begins with `first_pixel`, or runs of samples (frame.layout.h).
+// What a list's tiles are: the picture's, of which the film begins with `first_pixel`, or runs of samples
+// (frame.layout.h).
 struct Work {
   std::size_t first_pixel = 0;
   std::span<const layout::u32> samples = {};  // empty: tiles
@@ -24,7 +26,8 @@ struct Work {
 
 // What the queues of a frame share.
 struct Shared {
-  // Puts what a queue has of some tiles where it belongs; called by the queues' threads, each tile by one of them.
+  // Puts what a queue has of some tiles where it belongs; called by the queues' threads, each tile by one of
+  // them.
   std::function<void(const wavefront::FilmSums&, std::span<const layout::u32> tiles)> deliver;
   std::atomic<std::uint64_t> tiles_done{0};
   std::vector<double> tile_seconds;  // by row and column of tiles; empty: not wanted

@@ -187,8 +187,8 @@ void Frame::render_uniform() {
   render_bands();
 }
 
-// Runs of samples, as many at a time as the queues have room for. Their sums are set, not added to: a queue may fail when it
-// has delivered some.
+// Runs of samples, as many at a time as the queues have room for. Their sums are set, not added to: a queue
+// may fail when it has delivered some.
 void Frame::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
   constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN, kSums = 3 * KDRAY_SAMPLE_RUN;
   shared_.tiles_done = 0;

@@ -1,10 +1,11 @@
-// What    PDPRT: renders a frame with its pixels divided among the queues of any number of devices, each of which sees the
-//         whole scene.
-// Shape   The tiles of a band (the whole frame, unless its film is too large for a queue) along a curve; a thread for each
-//         queue takes tiles (tiles.h), keeps its queue's list filled, and puts the queue's tiles into the picture. Each queue
-//         has a film of its own; the one that took a tile last owns it.
-// Errors  A queue whose device fails is left alone from then on: the others render the tiles that it has not delivered.
-//         The error of the last queue, when all fail; a fault of kdray's own (ErrorCode::internal) ends the frame.
+// What    PDPRT: renders a frame with its pixels divided among the queues of any number of devices, each of
+//         which sees the whole scene.
+// Shape   The tiles of a band (the whole frame, unless its film is too large for a queue) along a curve; a
+//         thread for each queue takes tiles (tiles.h), keeps its queue's list filled, and puts the queue's
+//         tiles into the picture. Each queue has a film of its own; the one that took a tile last owns it.
+// Errors  A queue whose device fails is left alone from then on: the others render the tiles that it has not
+//         delivered. The error of the last queue, when all fail; a fault of kdray's own (ErrorCode::internal)
+//         ends the frame.
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: pixel-distributed, bag of tasks.
 #pragma once
 
@@ -32,15 +33,15 @@ struct Device {
   wavefront::Schedule schedule;
 };
 
-// Samples of one round of adaptive sampling that a queue's film has room for at least, so that small pictures don't take many
-// lists for one.
+// Samples of one round of adaptive sampling that a queue's film has room for at least, so that small pictures
+// don't take many lists for one.
 inline constexpr std::size_t kLeastSamples = std::size_t{1} << 18;
 
 struct Task {
   layout::Frame frame;  // without a schedule (flatten::make_frame)
   std::uint32_t features = 0;
-  double adaptive_target =
-      0;  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one
+  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one.
+  double adaptive_target = 0;
   Division division = Division::bag;
   std::function<void(double)> progress = {};  // called from render()'s thread with the share done
   device::Faults* faults = nullptr;

@@ -1,7 +1,8 @@
-// What    Who renders which tile: shares dealt out beforehand, or a bag from which whoever is free takes; and who has taken
-//         what, so that the tiles of a queue that fails are rendered by the others.
-// Shape   A tile is first in a queue's share or in the bag, then with the queue that took it, then done. What a queue that
-//         failed had goes into the bag, from which all take when their own share has come to an end.
+// What    Who renders which tile: shares dealt out beforehand, or a bag from which whoever is free takes; and
+//         who has taken what, so that the tiles of a queue that fails are rendered by the others.
+// Shape   A tile is first in a queue's share or in the bag, then with the queue that took it, then done. What
+//         a queue that failed had goes into the bag, from which all take when their own share has come to an
+//         end.
 // Threads Any number; a queue's calls come from one thread at a time.
 #pragma once
 
@@ -16,8 +17,8 @@
 
 namespace kdray::pdprt {
 
-// What a queue wants from the bag: a part of what is left there, so that all come to their end together, but no more than
-// `most` and no less than `least`; all of that together with the `ahead` that it has.
+// What a queue wants from the bag: a part of what is left there, so that all come to their end together, but
+// no more than `most` and no less than `least`; all of that together with the `ahead` that it has.
 struct Wanted {
   std::size_t most = 1, least = 1, ahead = 0;
 };
@@ -27,8 +28,8 @@ class Tiles {
   // `curve`: entries in the order of the curve.
   Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues);
 
-  // The next entries for the queue: its share as a whole; else from the bag, up to what is wanted. Perhaps none. The span
-  // is valid until the queue's next done() or give_back().
+  // The next entries for the queue: its share as a whole; else from the bag, up to what is wanted. Perhaps
+  // none. The span is valid until the queue's next done() or give_back().
   std::span<const layout::u32> take(std::size_t queue, const Wanted& wanted);
 
   // What the queue took since its last done().
@@ -40,7 +41,8 @@ class Tiles {
   // The queue has failed: what it took or would have got is for the others. How many tiles it had taken.
   std::size_t give_back(std::size_t queue);
 
-  // Waits until there are tiles for the queue (true), or will never be (false): all are done, or leave() was called.
+  // Waits until there are tiles for the queue (true), or will never be (false): all are done, or leave() was
+  // called.
   bool wait(std::size_t queue);
 
   void leave();

@@ -1,5 +1,7 @@
-// What    A scene ready to be traced: all that a renderer keeps of it. The rest of the scene may go once it is made.
-// Shape   Plain values and arrays that a CPU device uses as they are; the scene cache (host/cache) keeps them in a file.
+// What    A scene ready to be traced: all that a renderer keeps of it. The rest of the scene may go once it
+//         is made.
+// Shape   Plain values and arrays that a CPU device uses as they are; the scene cache (host/cache) keeps them
+//         in a file.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What    rays.npy in, hits.npy out (DESIGN.md section 2): NumPy's format, versions 1 to 3, little endian.
+// What    rays.npy in, hits.npy out (docs/cli.md): NumPy's format, versions 1 to 3, little endian.
 // Shape   Rays: float32, N x 8, C order: origin xyz, t_min, direction xyz, t_max (kdray::Ray's bytes; 0 rows
 //         allowed). Hits: structured [('t','<f4'),('primitive','<i4'),('u','<f4'),('v','<f4')], N.
 // Errors  kdray::Error, ErrorCode::input: not NumPy, wrong type, order or shape, cut short; the message says

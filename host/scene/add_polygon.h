@@ -1,6 +1,7 @@
-// What    Adds a polygon's triangles to a scene, numbered in file order; a concave one is cut by triangulate().
-// Shape   `corners` index scene.vertices, which must be there already when there are more than three; `normals`
-//         (into scene.normals) is empty or as long as `corners`.
+// What    Adds a polygon's triangles to a scene, numbered in file order; a concave one is cut by
+//         triangulate().
+// Shape   `corners` index scene.vertices, which must be there already when there are more than three;
+//         `normals` (into scene.normals) is empty or as long as `corners`.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What    Other mesh formats (3DS, COLLADA, FBX, OFF, ...) through assimp, where kdray was built with it: triangles,
-//         normals, and the diffuse colour, highlight and opacity of materials.
+// What    Other mesh formats (3DS, COLLADA, FBX, OFF, ...) through assimp, where kdray was built with it:
+//         triangles, normals, and the diffuse colour, highlight and opacity of materials.
 // Shape   The file is read from memory, so formats that spread over several files lack the others.
 // Errors  What assimp says of the file, in one line.
 #include <string>

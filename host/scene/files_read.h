@@ -1,6 +1,7 @@
-// What    Which files a scene was made of: all that were read while it was loaded, with a hash of each, and those that were
-//         looked for in vain, whose appearing would change the scene.
-// Shape   While a FilesRead lives, what its thread reads goes into it; they may be nested, and then the innermost records.
+// What    Which files a scene was made of: all that were read while it was loaded, with a hash of each, and
+//         those that were looked for in vain, whose appearing would change the scene.
+// Shape   While a FilesRead lives, what its thread reads goes into it; they may be nested, and then the
+//         innermost records.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +15,8 @@ namespace kdray::scene {
 
 struct FileRead {
   std::filesystem::path path;  // as it was opened
-  std::optional<Hash>
-      content;  // of the file's own bytes, packed ones as they are; none: there was no such file
+  // Of the file's own bytes, packed ones as they are; none: there was no such file.
+  std::optional<Hash> content;
   bool operator==(const FileRead&) const = default;
 };
 

@@ -119,8 +119,8 @@ DBox inner_box(std::vector<dvec3> middles) {
   return box;
 }
 
-// What the camera should show: the bounding box, unless a few far or huge primitives (a ground plane, a stray vertex)
-// would leave the scene itself a speck in it. Then it is the box of all the others, with a warning.
+// What the camera should show: the bounding box, unless a few far or huge primitives (a ground plane, a stray
+// vertex) would leave the scene itself a speck in it. Then it is the box of all the others, with a warning.
 DBox worth_showing(Scene& scene, const DBox& bounds) {
   constexpr double kSpeck = 4;
   constexpr std::size_t kFew = 100;  // with fewer primitives each of them matters

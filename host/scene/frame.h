@@ -1,5 +1,5 @@
 // What    Gives a scene without camera or lights a three-quarter view of its bounding box and two lights
-//         (DESIGN.md section 2), and leaves alone what the file said. Where a few primitives reach far beyond
+//         (docs/cli.md), and leaves alone what the file said. Where a few primitives reach far beyond
 //         the others (a ground plane), the others are framed.
 #pragma once
 

@@ -1,9 +1,9 @@
-// What    The primitives as the tree and the kernels see them: float, about the scene's own centre. The move is done
-//         in double (DESIGN.md section 6), so that a model at (1e6, 1e6, 1e6) keeps its bits.
-// Shape   One array per kind, in file order; `number` maps back to the file. Degenerate triangles (zero area after
-//         rounding, exactly decided) and spheres or cones whose radius rounds to 0 are dropped and counted.
-//         Triangles are as the kernels read them: a device that shares memory takes them from here, without a copy. Copies of a
-//         Geometry share them.
+// What    The primitives as the tree and the kernels see them: float, about the scene's own centre. The move
+//         is done in double (docs/design/numerics.md), so that a model at (1e6, 1e6, 1e6) keeps its bits.
+// Shape   One array per kind, in file order; `number` maps back to the file. Degenerate triangles (zero area
+//         after rounding, exactly decided) and spheres or cones whose radius rounds to 0 are dropped and
+//         counted. Triangles are as the kernels read them: a device that shares memory takes them from here,
+//         without a copy. Copies of a Geometry share them.
 #pragma once
 
 #include <cstdint>

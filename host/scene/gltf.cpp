@@ -1,5 +1,5 @@
-// What    glTF 2.0, .gltf and .glb: the default scene's meshes, lights and first perspective camera, placed by their
-//         nodes. Animations, skins and pictures are left out, with a warning.
+// What    glTF 2.0, .gltf and .glb: the default scene's meshes, lights and first perspective camera, placed
+//         by their nodes. Animations, skins and pictures are left out, with a warning.
 // Errors  A node that has two parents, or is its own ancestor, refuses the file; so does all that the parts'
 //         headers name.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021; KHR_lights_punctual.
@@ -92,7 +92,8 @@ class Reader {
     }
   }
 
-  // The nodes of the default scene, or of the first one. A file without scenes is a library: nothing is shown.
+  // The nodes of the default scene, or of the first one. A file without scenes is a library: nothing is
+  // shown.
   std::vector<JsonNode> roots() {
     const auto& scenes = document_.entries("scenes");
     const auto index = document_.root().find("scene");

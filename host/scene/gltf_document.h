@@ -1,8 +1,9 @@
-// What    A glTF 2.0 file taken apart: its JSON, whose arrays are at hand as nodes, and its buffers, which are read
-//         when they are first asked for (pictures never are).
-// Shape   .gltf or .glb, told by the first bytes. Buffers may be in the GLB itself, in data: URIs, or in files beside
-//         the scene or below.
-// Errors  kdray::Error: the JSON's line for what is not JSON, the value's path ("/accessors/3/count") otherwise.
+// What    A glTF 2.0 file taken apart: its JSON, whose arrays are at hand as nodes, and its buffers, which
+//         are read when they are first asked for (pictures never are).
+// Shape   .gltf or .glb, told by the first bytes. Buffers may be in the GLB itself, in data: URIs, or in
+//         files beside the scene or below.
+// Errors  kdray::Error: the JSON's line for what is not JSON, the value's path ("/accessors/3/count")
+//         otherwise.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021.
 #pragma once
 

@@ -1,7 +1,7 @@
 // What    The lights (KHR_lights_punctual) and the camera of a glTF scene, placed by their nodes.
-// Units   glTF's lights are photometric and leave the exposure to the viewer. Here the scene is exposed so that all
-//         lights together, unobstructed, give an illuminance of 1 at the middle of the scene: the same light as a
-//         light of intensity 1 without attenuation.
+// Units   glTF's lights are photometric and leave the exposure to the viewer. Here the scene is exposed so
+//         that all lights together, unobstructed, give an illuminance of 1 at the middle of the scene: the
+//         same light as a light of intensity 1 without attenuation.
 #pragma once
 
 #include <vector>

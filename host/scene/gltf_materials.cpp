@@ -9,11 +9,11 @@ namespace {
 
 constexpr std::uint64_t kDefault = ~std::uint64_t{0};
 constexpr float kAmbient = 0.1f;
-// The strength of a perfectly smooth dielectric's highlight. Physically it is 0.04 times a very large peak; a hard
-// Phong lobe of this height looks about like it.
+// The strength of a perfectly smooth dielectric's highlight. Physically it is 0.04 times a very large peak; a
+// hard Phong lobe of this height looks about like it.
 constexpr float kHighlight = 0.25f;
-// Where a picture would say how metallic and how rough a surface is, and pictures are not read: a plain, half-rough
-// dielectric. The factors alone (usually 1) would make it a perfect mirror or a black one.
+// Where a picture would say how metallic and how rough a surface is, and pictures are not read: a plain,
+// half-rough dielectric. The factors alone (usually 1) would make it a perfect mirror or a black one.
 constexpr float kUnknownRoughness = 0.5f;
 constexpr float kMostColor = 1e6f;
 
@@ -46,8 +46,8 @@ vec3 color(const JsonNode& object, std::string_view key, const vec3& otherwise, 
   return {part(0), part(1), part(2)};
 }
 
-// Phong's exponent for (R.V) with a lobe as wide as that of the GGX roughness: 2/alpha^2 - 2 is the exponent of
-// (N.H), and the half vector turns by a quarter of its lobe's solid angle.
+// Phong's exponent for (R.V) with a lobe as wide as that of the GGX roughness: 2/alpha^2 - 2 is the exponent
+// of (N.H), and the half vector turns by a quarter of its lobe's solid angle.
 float shine_of(float roughness) {
   const float alpha = std::max(roughness * roughness, 0.02f);
   return std::max(1.0f, (2 / (alpha * alpha) - 2) / 4);

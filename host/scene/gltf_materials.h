@@ -1,5 +1,5 @@
-// What    glTF materials in the terms of the Whitted model, and their numbers in the scene. docs/scenes-meshes.md tells
-//         users how they are mapped.
+// What    glTF materials in the terms of the Whitted model, and their numbers in the scene.
+//         docs/scenes-meshes.md tells users how they are mapped.
 // Source  glTF 2.0, appendix B (the metallic-roughness model); KHR_materials_ior, _transmission, _volume,
 //         _emissive_strength, _unlit, _pbrSpecularGlossiness.
 #pragma once

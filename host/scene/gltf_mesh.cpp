@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::uint64_t kTriangles = 4;  // 5 are strips
 constexpr std::uint64_t kFan = 6;
-// Instances may make more of a file than is in it, but a small file of nested instances must not fill the memory.
+// Instances may make more of a file than is in it, but a small file of nested instances must not fill the
+// memory.
 constexpr std::size_t kMostOfSmallFile = std::size_t{1} << 22;
 constexpr std::size_t kMostPerByte = 16;
 
@@ -36,15 +37,16 @@ void for_each_triangle(std::uint64_t mode, std::span<const std::uint32_t> corner
   }
 }
 
-// Room for `n` more elements. A bare reserve() would make a file of many small primitives copy all of them for each.
+// Room for `n` more elements. A bare reserve() would make a file of many small primitives copy all of them
+// for each.
 template <class Vector>
 void make_room(Vector& elements, std::size_t n) {
   const std::size_t wanted = elements.size() + n;
   if (wanted > elements.capacity()) elements.reserve(std::max(wanted, 2 * elements.capacity()));
 }
 
-// The matrix that moves normals: the inverse transpose, up to a positive factor. The cofactors are that even where
-// the transform is flat and has no inverse.
+// The matrix that moves normals: the inverse transpose, up to a positive factor. The cofactors are that even
+// where the transform is flat and has no inverse.
 dmat3 normal_matrix(const dmat3& m) {
   const dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return glm::determinant(m) < 0 ? -cofactors : cofactors;

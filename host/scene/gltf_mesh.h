@@ -1,7 +1,7 @@
-// What    Adds the primitives of a glTF mesh to a scene, moved by a node's transform; a mirroring transform turns the
-//         triangles over, so that their front stays where the normals point.
-// Shape   Strips and fans become triangles. Points and lines, morph targets and vertex colours are left out, with a
-//         warning.
+// What    Adds the primitives of a glTF mesh to a scene, moved by a node's transform; a mirroring transform
+//         turns the triangles over, so that their front stays where the normals point.
+// Shape   Strips and fans become triangles. Points and lines, morph targets and vertex colours are left out,
+//         with a warning.
 // Errors  As gltf_accessor.h; also when instances multiply a small file beyond all measure.
 #pragma once
 

@@ -11,8 +11,8 @@ namespace kdray::scene::gltf {
 // The bytes of "data:[type];base64,...", or nothing when it is not one.
 std::optional<std::string> decode_data_uri(std::string_view uri);
 
-// The path a relative URI names, percent-decoded; nothing for absolute paths, other schemes (http:), and what leads
-// out of the folder.
+// The path a relative URI names, percent-decoded; nothing for absolute paths, other schemes (http:), and what
+// leads out of the folder.
 std::optional<std::filesystem::path> relative_path_of(std::string_view uri);
 
 }  // namespace kdray::scene::gltf

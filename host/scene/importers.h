@@ -1,5 +1,6 @@
-// What    One reader per format, each in its own file (nff.cpp, ply.cpp, ...). `text` is the whole decompressed file;
-//         `file` names it in messages and is where other files (materials, buffers, meshes) are looked for.
+// What    One reader per format, each in its own file (nff.cpp, ply.cpp, ...). `text` is the whole
+//         decompressed file; `file` names it in messages and is where other files (materials, buffers,
+//         meshes) are looked for.
 // Errors  kdray::Error, ErrorCode::input, with file and line (byte offset for binary formats).
 #pragma once
 

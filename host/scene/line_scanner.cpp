@@ -69,7 +69,8 @@ bool LineScanner::next_line() {
 std::string_view LineScanner::word() {
   skip_space();
   if (at_ != end_ && *at_ == '#') {
-    // A comment is not joined to the next line: a backslash at its end is more likely the end of a Windows path.
+    // A comment is not joined to the next line: a backslash at its end is more likely the end of a Windows
+    // path.
     while (at_ != end_ && !is_end(*at_)) ++at_;
   }
   const char* first = at_;

@@ -1,7 +1,8 @@
-// What    Reads text in which a line is a statement (OBJ, MTL): a keyword, words and numbers, or a rest of line.
-// Shape   A backslash at the end of a line joins the next one to it. '#' at the start of a word ends the line's words,
-//         but not its rest(): names may hold one. Lines end in \n, \r\n or \r; the first is line 1. A UTF-8 byte order
-//         mark is skipped.
+// What    Reads text in which a line is a statement (OBJ, MTL): a keyword, words and numbers, or a rest of
+//         line.
+// Shape   A backslash at the end of a line joins the next one to it. '#' at the start of a word ends the
+//         line's words, but not its rest(): names may hold one. Lines end in \n, \r\n or \r; the first is
+//         line 1. A UTF-8 byte order mark is skipped.
 // Errors  "file:line: expected WHAT, found 'WORD'". UTF-16 is refused.
 #pragma once
 

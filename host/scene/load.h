@@ -1,6 +1,7 @@
-// What    Reads a scene file by its ending: .nff .obj .ply .stl .gltf .glb .json, and through assimp, where kdray was
-//         built with it, the other mesh formats; ".gz" and ".xz" after the ending of any format are decompressed on
-//         the way. Fills in what a renderer needs and the file lacks (camera, lights: frame.h).
+// What    Reads a scene file by its ending: .nff .obj .ply .stl .gltf .glb .json, and through assimp, where
+//         kdray was built with it, the other mesh formats; ".gz" and ".xz" after the ending of any format are
+//         decompressed on the way. Fills in what a renderer needs and the file lacks (camera, lights:
+//         frame.h).
 // Errors  kdray::Error with ErrorCode::input: "file:line: what; what to do".
 #pragma once
 

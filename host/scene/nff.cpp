@@ -129,8 +129,8 @@ class NffReader {
     Sphere s;
     s.material = material();
     s.center = in_.vector("a sphere's center (x y z)");
-    s.radius =
-        std::abs(in_.number("a sphere's radius"));  // below 0 means "seen from inside": ours are two-sided
+    // Below 0 means "seen from inside": ours are two-sided.
+    s.radius = std::abs(in_.number("a sphere's radius"));
     if (s.radius == 0) throw in_.error("a sphere with a radius of 0");
     s.number = next_number();
     scene_.spheres.push_back(s);

@@ -1,11 +1,11 @@
-// What    Wavefront OBJ: vertices, normals, polygons, and the materials of its MTL files. Groups, texture coordinates
-//         and vertex colours mean nothing to a Whitted ray tracer and are skipped; points, lines and free-form
-//         surfaces are left out with a warning.
+// What    Wavefront OBJ: vertices, normals, polygons, and the materials of its MTL files. Groups, texture
+//         coordinates and vertex colours mean nothing to a Whitted ray tracer and are skipped; points, lines
+//         and free-form surfaces are left out with a warning.
 // Shape   Materials are looked up after the last line, so `mtllib` may stand anywhere.
-// Errors  File and line of the word at fault. A normal that doesn't exist makes its face flat (a warning); a vertex
-//         that doesn't exist refuses the file.
-// Source  Alias Wavefront, "Object files", Appendix B1 of the Advanced Visualizer manual. Numbers are read exactly
-//         rounded, which the usual OBJ libraries don't do.
+// Errors  File and line of the word at fault. A normal that doesn't exist makes its face flat (a warning); a
+//         vertex that doesn't exist refuses the file.
+// Source  Alias Wavefront, "Object files", Appendix B1 of the Advanced Visualizer manual. Numbers are read
+//         exactly rounded, which the usual OBJ libraries don't do.
 #include <charconv>
 #include <string>
 #include <string_view>

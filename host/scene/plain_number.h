@@ -1,10 +1,12 @@
-// What    Reads the numbers that files are full of, such as -0.0125 or 871414, in one pass and without a call; whatever is
-//         longer, larger or odd is left to std::from_chars.
-// Shape   Each function returns where the number ends, or nullptr for "not a plain one: ask from_chars"; the value is
-//         then untouched. The caller looks at what follows the number.
-// Why     A scanner that first looks for a token's end and then parses it sees each digit twice, and pays two calls.
-// Source  W. D. Clinger, "How to read floating point numbers accurately", 1990: digits below 2^53 and a power of ten up to
-//         10^22 are doubles both, so that one division or product of them is the correctly rounded value.
+// What    Reads the numbers that files are full of, such as -0.0125 or 871414, in one pass and without a
+//         call; whatever is longer, larger or odd is left to std::from_chars.
+// Shape   Each function returns where the number ends, or nullptr for "not a plain one: ask from_chars"; the
+//         value is then untouched. The caller looks at what follows the number.
+// Why     A scanner that first looks for a token's end and then parses it sees each digit twice, and pays two
+//         calls.
+// Source  W. D. Clinger, "How to read floating point numbers accurately", 1990: digits below 2^53 and a power
+//         of ten up to 10^22 are doubles both, so that one division or product of them is the correctly
+//         rounded value.
 #pragma once
 
 #include <array>

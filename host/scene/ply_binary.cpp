@@ -7,8 +7,8 @@ namespace kdray::scene::ply {
 
 namespace {
 
-// Rows converted at a time: few enough that the bytes of a block stay in the first-level cache from one column to
-// the next.
+// Rows converted at a time: few enough that the bytes of a block stay in the first-level cache from one
+// column to the next.
 constexpr std::uint64_t kBlock = 512;
 constexpr std::size_t kTriangleBytes = 13;
 
@@ -25,8 +25,8 @@ bool convert(const unsigned char* bytes, std::size_t stride, std::uint64_t n, Ou
   return bad == 0;
 }
 
-// Goes through the rows of a block value by value, which throws at the one that is not finite. A double that is
-// too large for a normal's float gets through: settle_normals() sees to it.
+// Goes through the rows of a block value by value, which throws at the one that is not finite. A double that
+// is too large for a normal's float gets through: settle_normals() sees to it.
 template <bool swap>
 void refuse(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
             std::uint64_t first, std::uint64_t n) {

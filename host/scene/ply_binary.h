@@ -1,5 +1,6 @@
-// What    The fast paths of binary PLY files: vertices without lists, column by column, and faces that are nothing
-//         but triangles of 32-bit indices after a one-byte count. Everything else ply.cpp reads value by value.
+// What    The fast paths of binary PLY files: vertices without lists, column by column, and faces that are
+//         nothing but triangles of 32-bit indices after a one-byte count. Everything else ply.cpp reads value
+//         by value.
 #pragma once
 
 #include <cstdint>

@@ -122,8 +122,8 @@ class HeaderReader {
     return it->second;
   }
 
-  // Lines end in \n, \r\n or \r. After a lone \r the body begins at once, whatever its first byte: in a file whose
-  // first line ends in a lone \r, a \n there is data.
+  // Lines end in \n, \r\n or \r. After a lone \r the body begins at once, whatever its first byte: in a file
+  // whose first line ends in a lone \r, a \n there is data.
   bool next_line() {
     if (at_ >= text_.size()) return false;
     ++line_;

@@ -1,6 +1,7 @@
 // What    The header of a PLY file: which elements with which properties follow, and how they are stored.
 // Errors  kdray::Error with the header's line.
-// Source  G. Turk, "The PLY Polygon File Format", 1994; type names in the old and the sized spelling (int, int32).
+// Source  G. Turk, "The PLY Polygon File Format", 1994; type names in the old and the sized spelling (int,
+//         int32).
 #pragma once
 
 #include <cstddef>

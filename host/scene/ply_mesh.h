@@ -1,7 +1,9 @@
 // What    Collects what the rows of a PLY file say into a Scene, in whatever order the elements come.
-// Shape   Faces may come before the vertices: triangles are made at once, larger polygons get the numbers of their
-//         n - 2 triangles at once and are cut in finish(). Indices are checked against the header's vertex count.
-// Errors  None of its own: the functions return false for what a row may not hold; the caller knows the place.
+// Shape   Faces may come before the vertices: triangles are made at once, larger polygons get the numbers of
+//         their n - 2 triangles at once and are cut in finish(). Indices are checked against the header's
+//         vertex count.
+// Errors  None of its own: the functions return false for what a row may not hold; the caller knows the
+//         place.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +25,8 @@ class Mesh {
   PageVector<Triangle>& triangles() { return scene_.triangles; }
   std::uint32_t n_vertices() const { return n_vertices_; }
 
-  // One polygon; false when it has a corner that is no vertex. Fewer than three corners: counted and left out.
+  // One polygon; false when it has a corner that is no vertex. Fewer than three corners: counted and left
+  // out.
   bool add_face(std::span<const std::int64_t> corners);
   // Triangles over each three neighbours, every second one turned over; -1 starts a new strip.
   bool add_strip(std::span<const std::int64_t> corners);

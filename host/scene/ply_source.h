@@ -1,7 +1,7 @@
-// What    Where the values of a PLY file's rows come from: text (AsciiSource) or bytes (BinarySource). Both have the
-//         same functions, and ply.cpp reads rows from either.
-// Shape   number, integer and skip take the next value; list_length the next list's length, checked against what is
-//         left of the file, so that nothing is allocated for entries that aren't there.
+// What    Where the values of a PLY file's rows come from: text (AsciiSource) or bytes (BinarySource). Both
+//         have the same functions, and ply.cpp reads rows from either.
+// Shape   number, integer and skip take the next value; list_length the next list's length, checked against
+//         what is left of the file, so that nothing is allocated for entries that aren't there.
 // Errors  ascii: "file:line: ..."; binary: "file: element 'face' 17, byte 4711: ...".
 #pragma once
 

@@ -1,7 +1,8 @@
 // What    Room in a vector for all that the rest of a text will bring, should it go on as it began.
-// Shape   make() before each push_back(); the rate is measured from where the vector got its first element. Memory that is
-//         reserved and not used is never touched, so that too much costs nothing.
-// Why     Growing by doubling touches each element's memory twice and copies it: that took longer than reading the numbers.
+// Shape   make() before each push_back(); the rate is measured from where the vector got its first element.
+//         Memory that is reserved and not used is never touched, so that too much costs nothing.
+// Why     Growing by doubling touches each element's memory twice and copies it: that took longer than
+//         reading the numbers.
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,10 @@
-// What    A scene as read from a file: primitives in file order and double precision, materials, lights, camera.
-// Shape   Triangles index a shared pool of vertices and normals; every primitive carries its number, the 0-based
-//         place in file order over all kinds (a polygon's triangles count one each, in order).
+// What    A scene as read from a file: primitives in file order and double precision, materials, lights,
+//         camera.
+// Shape   Triangles index a shared pool of vertices and normals; every primitive carries its number, the
+//         0-based place in file order over all kinds (a polygon's triangles count one each, in order).
 // Units   World units of the file, linear RGB, angles in radians.
-// Errors  Loaders refuse NaN and infinity with file and line; what is in a Scene is finite, but a triangle may be
-//         degenerate (geometry.h drops and counts those).
+// Errors  Loaders refuse NaN and infinity with file and line; what is in a Scene is finite, but a triangle
+//         may be degenerate (geometry.h drops and counts those).
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ namespace kdray::scene {
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
-// The Whitted terms (DESIGN.md section 3), each with its colour multiplied in already:
+// The Whitted terms (docs/scenes.md), each with its colour multiplied in already:
 //   C = emission + ambient*Camb + sum_lights Clight*att*(diffuse*(N.L) + specular*(R.V)^shine)
 //     + reflect*C(reflected) + transmit*C(refracted)
 struct Material {
@@ -49,8 +50,8 @@ struct Light {
   float cos_inner = 1, cos_outer = -1;                     // spot: full inside inner, none outside outer
 };
 
-// A pinhole camera. `vertical_fov` spans the full height of the picture, from its lower to its upper edge; the
-// horizontal angle follows from the aspect ratio of the picture (square pixels).
+// A pinhole camera. `vertical_fov` spans the full height of the picture, from its lower to its upper edge;
+// the horizontal angle follows from the aspect ratio of the picture (square pixels).
 struct Camera {
   dvec3 from{0, 0, 5}, at{0}, up{0, 1, 0};
   double vertical_fov = 0.7853981633974483;

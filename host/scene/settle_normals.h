@@ -1,5 +1,5 @@
-// What    Makes the normals an importer read fit scene.h: all of unit length. A triangle that uses one without a
-//         direction is shaded flat, and the scene says so.
+// What    Makes the normals an importer read fit scene.h: all of unit length. A triangle that uses one
+//         without a direction is shaded flat, and the scene says so.
 // Shape   Called once, after the last triangle. Normals nobody asked for are dropped.
 #pragma once
 

@@ -1,7 +1,7 @@
-// What    STL, ascii and binary. Facets are flat: the normals in the file are ignored (many files have them wrong),
-//         as are colours in the attribute bytes.
-// Shape   A binary file is told by its size, which its facet count gives exactly: many binary files begin with the
-//         word "solid", too.
+// What    STL, ascii and binary. Facets are flat: the normals in the file are ignored (many files have them
+//         wrong), as are colours in the attribute bytes.
+// Shape   A binary file is told by its size, which its facet count gives exactly: many binary files begin
+//         with the word "solid", too.
 // Errors  ascii: file and line; binary: file and facet.
 #include <algorithm>
 #include <bit>

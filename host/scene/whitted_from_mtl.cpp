@@ -23,7 +23,8 @@ bool has_fresnel(int illum) {
   return illum == 5 || illum == 7;
 }
 
-// Schlick's reflectance averaged over a hemisphere of directions, for surfaces that can't vary it with the angle.
+// Schlick's reflectance averaged over a hemisphere of directions, for surfaces that can't vary it with the
+// angle.
 float mean_fresnel(float index) {
   const float r = (index - 1) / (index + 1);
   const float normal = r * r;

@@ -1,6 +1,7 @@
 // What    The self-test's scene, its rays, and the hits that every device must find, bit for bit.
-// Shape   A slanted quad behind a sphere and a cone, seen through a grid of rays; some hit each, some hit nothing. The answers
-//         are those of the kernels as they are meant to be: tests/selftest holds them against closed forms in double.
+// Shape   A slanted quad behind a sphere and a cone, seen through a grid of rays; some hit each, some hit
+//         nothing. The answers are those of the kernels as they are meant to be: tests/selftest holds them
+//         against closed forms in double.
 #pragma once
 
 #include <array>

@@ -1,9 +1,10 @@
-// What    Whether a device computes rightly: it traces rays of known hits through the tree, by the program that queries use,
-//         and every bit is compared.
-// Shape   It takes a program of its own, so that the outcome is kept beside built programs: a device that has passed with this
-//         driver and these kernels is not asked again by other processes. The vector operations are tested at every start
-//         (device/simd.h).
-//         A device that is no CPU may round otherwise (division, the order of a builtin's steps): there hits may be off by 1e-5.
+// What    Whether a device computes rightly: it traces rays of known hits through the tree, by the program
+//         that queries use, and every bit is compared.
+// Shape   It takes a program of its own, so that the outcome is kept beside built programs: a device that has
+//         passed with this driver and these kernels is not asked again by other processes. The vector
+//         operations are tested at every start (device/simd.h).
+//         A device that is no CPU may round otherwise (division, the order of a builtin's steps): there hits
+//         may be off by 1e-5.
 #pragma once
 
 #include <string>
@@ -18,11 +19,12 @@ namespace kdray::selftest {
 // What is wrong, in words; empty when nothing is. Looks at no outcome of before.
 std::string fault_of(const device::Context& context);
 
-// Throws ErrorCode::no_device, naming device and fault, unless it passes, or has passed before. `fail`: as if it computed
-// wrongly.
+// Throws ErrorCode::no_device, naming device and fault, unless it passes, or has passed before. `fail`: as if
+// it computed wrongly.
 void require(const device::Context& context, bool fail = false);
 
-// What the device answers to known_rays(): for the table of answers, when a change of the kernels is meant to change bits.
+// What the device answers to known_rays(): for the table of answers, when a change of the kernels is meant to
+// change bits.
 std::vector<Answer> answers_of(const device::Context& context);
 
 // What is wrong with these answers to known_rays().

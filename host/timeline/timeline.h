@@ -1,6 +1,8 @@
-// What    What the queues of a frame did and when: rows of spans, written in the Chrome trace format (Perfetto opens it).
-// Shape   A row for each queue; a span has a name, a beginning and an end in seconds since the timeline was made, and numbers
-//         of its own (rays in, rays out, tile). Spans of a row don't overlap; what lies between them was idle.
+// What    What the queues of a frame did and when: rows of spans, written in the Chrome trace format
+//         (Perfetto opens it).
+// Shape   A row for each queue; a span has a name, a beginning and an end in seconds since the timeline was
+//         made, and numbers of its own (rays in, rays out, tile). Spans of a row don't overlap; what lies
+//         between them was idle.
 // Threads Any number may add at once.
 // Source  "Trace Event Format", Google: complete events ("ph": "X"), times in microseconds.
 #pragma once

@@ -1,9 +1,10 @@
-// What    What `kdray tune` found, kept in a small JSON file: the settings for a device with its driver, these kernels, a schedule and a
-//         scene's feature mask.
-// Shape   { "kdray_tunings": 1, "entries": [ { key, "settings": {...}, what is known of them } ] }. An entry whose features are "any" serves
-//         scenes that have none of their own. Of two entries with one key the newer stays.
-// Errors  ErrorCode::input for a file that can't be read, isn't of this form, or names a value that isn't in the table of settings: the
-//         file may come from anywhere.
+// What    What `kdray tune` found, kept in a small JSON file: the settings for a device with its driver,
+//         these kernels, a schedule and a scene's feature mask.
+// Shape   { "kdray_tunings": 1, "entries": [ { key, "settings": {...}, what is known of them } ] }. An entry
+//         whose features are "any" serves scenes that have none of their own. Of two entries with one key the
+//         newer stays.
+// Errors  ErrorCode::input for a file that can't be read, isn't of this form, or names a value that isn't in
+//         the table of settings: the file may come from anywhere.
 #pragma once
 
 #include <cstdint>
@@ -57,8 +58,8 @@ class Database {
   std::vector<Entry> entries_;
 };
 
-// $KDRAY_TUNE_FILE, $XDG_DATA_HOME/kdray/tune.json or ~/.local/share/kdray/tune.json; empty where there is no home, or where
-// KDRAY_TUNE_FILE is set to nothing.
+// $KDRAY_TUNE_FILE, $XDG_DATA_HOME/kdray/tune.json or ~/.local/share/kdray/tune.json; empty where there is no
+// home, or where KDRAY_TUNE_FILE is set to nothing.
 std::filesystem::path default_file();
 
 }  // namespace kdray::tune

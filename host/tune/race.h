@@ -1,7 +1,8 @@
 // What    Candidates against a champion: rounds in which each renders once, until it is clear who is fastest.
-// Shape   A round's times are held against the champion's of the same round, since a machine's speed drifts; every second round runs
-//         backwards. A rival that is clearly slower is dropped at once, and of those that are left the slower half after some rounds
-//         more (successive halving), so that time goes to what may win.
+// Shape   A round's times are held against the champion's of the same round, since a machine's speed drifts;
+//         every second round runs backwards. A rival that is clearly slower is dropped at once, and of those
+//         that are left the slower half after some rounds more (successive halving), so that time goes to
+//         what may win.
 #pragma once
 
 #include <functional>
@@ -29,8 +30,8 @@ struct Rival {
   Tuning tuning;
   Verdict verdict = Verdict::no_better;
   std::string fault = {};  // of a wrong one
-  std::vector<double> ratios =
-      {};  // its time over the champion's, of each round: the geometric mean of the scenes
+  // Its time over the champion's, of each round: the geometric mean of the scenes.
+  std::vector<double> ratios = {};
   std::vector<std::vector<double>> of_scenes = {};  // the same of each scene, by rounds
 
   double ratio() const;                 // the median; 1 without a round

@@ -13,8 +13,8 @@ namespace {
 constexpr double kGuess = 0.02;  // what a setting gains that nobody has looked at
 constexpr double kEcho = 0.25;   // of what others gained since, that a setting may gain anew
 constexpr double kWorthwhile = 0.003;
-constexpr double kCompile =
-    1.5;  // seconds: what a program takes at least, until one was compiled here (the start's may be cached)
+// Seconds: what a program takes at least, until one was compiled here (the start's may be cached).
+constexpr double kCompile = 1.5;
 constexpr int kRounds = 9, kLastRounds = 15, kUsualLastRounds = 9, kLeastRounds = 5;
 constexpr double kLastShare = 0.25;  // of the budget, that the last race may take
 constexpr double kUsualRounds = 3;   // before most rivals are dropped

@@ -1,9 +1,11 @@
-// What    Looks for the fastest settings within a budget of seconds: coordinate descent, a race (race.h) at each step.
-// Shape   The next setting is the one of the largest expected gain for its cost. The cost is known from what frames and compiling took;
-//         the expected gain is a guess for a setting that wasn't raced, later a part of what other settings have gained since
-//         (what has not changed need not be asked again). It ends when no setting's expected gain, over the frames that
-//         are to come, is worth its race, or none fits into what is left of the budget.
-//         At last the winner meets the start in a race of more rounds; unless it is surely faster there, and on no scene slower, the start
+// What    Looks for the fastest settings within a budget of seconds: coordinate descent, a race (race.h) at
+//         each step.
+// Shape   The next setting is the one of the largest expected gain for its cost. The cost is known from what
+//         frames and compiling took; the expected gain is a guess for a setting that wasn't raced, later a
+//         part of what other settings have gained since (what has not changed need not be asked again). It
+//         ends when no setting's expected gain, over the frames that are to come, is worth its race, or none
+//         fits into what is left of the budget. At last the winner meets the start in a race of more rounds;
+//         unless it is surely faster there, and on no scene slower, the start
 //         stays: a search may find nothing, but should never make things worse.
 #pragma once
 

@@ -15,7 +15,8 @@ struct Shipped {
   Tuning tuning;
 };
 
-// What was measured on a device of the kind, against kdray's own choice; without a measurement nothing is set.
+// What was measured on a device of the kind, against kdray's own choice; without a measurement nothing is
+// set.
 const Shipped kShipped[] = {{"cpu", {}}, {"gpu", {}}, {"accelerator", {}}};
 
 }  // namespace

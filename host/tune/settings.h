@@ -1,8 +1,8 @@
 // What    The settings that may be tuned, in one table, and what kdray ships with for each kind of device.
-// Shape   Each is a whole number in Tuning (kdray.h); 0: kdray's own choice, by rules (api/renderer.cpp, wavefront/programs.cpp) or the
-//         kernels' own constant.
-// Why     Nothing in the table changes a bit of a picture: `kdray tune` may try anything, and a file of foreign settings can only cost
-//         time.
+// Shape   Each is a whole number in Tuning (kdray.h); 0: kdray's own choice, by rules (api/renderer.cpp,
+//         wavefront/programs.cpp) or the kernels' own constant.
+// Why     Nothing in the table changes a bit of a picture: `kdray tune` may try anything, and a file of
+//         foreign settings can only cost time.
 #pragma once
 
 #include <span>

@@ -21,7 +21,8 @@ double largest(const dvec3& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-// A direction that floats can hold, from one float point to another place; any other one where they are the same.
+// A direction that floats can hold, from one float point to another place; any other one where they are the
+// same.
 dvec3 towards(const vec3& from, const dvec3& to, Random& random) {
   const dvec3 way = to - dvec3(from);
   const vec3 held(way);

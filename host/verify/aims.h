@@ -1,7 +1,8 @@
 // What    The rays of a round: origins, and what they are aimed at.
-// Shape   From inside of watertight components: origins that are surely inside, found by moving in from faces, each used for many
-//         rays at the component's vertices and edges, along the axes and all around. From outside: from a sphere about the scene
-//         and from anywhere in it, at places of primitives.
+// Shape   From inside of watertight components: origins that are surely inside, found by moving in from
+//         faces, each used for many rays at the component's vertices and edges, along the axes and all
+//         around. From outside: from a sphere about the scene and from anywhere in it, at places of
+//         primitives.
 #pragma once
 
 #include <cstdint>

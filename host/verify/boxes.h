@@ -1,7 +1,7 @@
-// What    A tree of boxes about the triangles of a mesh: what touches a box, which pairs touch each other. The plainest kind,
-//         apart from kdray's kd-tree: what is checked must not be what checks it.
-// Shape   A perfect binary tree over the triangles in the order of their middles: node j of level l holds the triangles
-//         [n*j >> l, n*(j+1) >> l) of `order_`, and boxes_ has the levels one after the other.
+// What    A tree of boxes about the triangles of a mesh: what touches a box, which pairs touch each other.
+//         The plainest kind, apart from kdray's kd-tree: what is checked must not be what checks it.
+// Shape   A perfect binary tree over the triangles in the order of their middles: node j of level l holds the
+//         triangles [n*j >> l, n*(j+1) >> l) of `order_`, and boxes_ has the levels one after the other.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ class Boxes {
     if (!order_.empty()) touching_below(0, 0, box, visit);
   }
 
-  // Calls visit(i, j) once for all pairs of triangles whose boxes touch, in parallel where the levels are split; `visit` must
-  // be safe to be called by several threads.
+  // Calls visit(i, j) once for all pairs of triangles whose boxes touch, in parallel where the levels are
+  // split; `visit` must be safe to be called by several threads.
   template <class Visit>
   void touching_pairs(const Visit& visit) const;
 

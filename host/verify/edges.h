@@ -1,10 +1,11 @@
-// What    The mesh's topology: which edges have one face, more than two, or two that disagree about which side is the front; the
-//         components that faces form over common edges, and which of those are watertight.
-// Shape   A component is watertight when each of its edges has an even number of faces: then it parts space into an inside and
-//         an outside, whichever way its faces are turned. It is closed when it is watertight, each edge has two faces, and those
-//         agree.
-//         Flipped faces are the fewer of the two classes into which agreement divides the faces that are joined by edges of two; a
-//         surface with one side (a Moebius strip) has no such classes.
+// What    The mesh's topology: which edges have one face, more than two, or two that disagree about which
+//         side is the front; the components that faces form over common edges, and which of those are
+//         watertight.
+// Shape   A component is watertight when each of its edges has an even number of faces: then it parts space
+//         into an inside and an outside, whichever way its faces are turned. It is closed when it is
+//         watertight, each edge has two faces, and those agree.
+//         Flipped faces are the fewer of the two classes into which agreement divides the faces that are
+//         joined by edges of two; a surface with one side (a Moebius strip) has no such classes.
 #pragma once
 
 #include <array>

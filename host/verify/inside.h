@@ -1,8 +1,9 @@
-// What    Whether a point is inside a watertight component, decided exactly: by the number of its faces that the ray from the point
-//         along +x crosses (odd: inside).
-// Shape   `unsure` where the point is nearer to the component than `clearance`, or the ray meets an edge: never a guess.
-// Errors  None: the crossings are decided in the plane across x by exact predicates, before or behind the point by a sign whose
-//         error is bounded (and unsure within that bound).
+// What    Whether a point is inside a watertight component, decided exactly: by the number of its faces that
+//         the ray from the point along +x crosses (odd: inside).
+// Shape   `unsure` where the point is nearer to the component than `clearance`, or the ray meets an edge:
+//         never a guess.
+// Errors  None: the crossings are decided in the plane across x by exact predicates, before or behind the
+//         point by a sign whose error is bounded (and unsure within that bound).
 // Source  Shewchuk 1997 for the predicates (scene/predicates.h) and the error bound of the determinant.
 #pragma once
 

@@ -1,6 +1,8 @@
-// What    The triangles of a scene as a mesh: corners at one place are one point, whatever the file says. Places are those that
-//         rays see (float, about the scene's centre), so that a seam that is closed here is closed to every ray.
-// Shape   Triangles keep Geometry's order: triangle i here is Geometry::triangles[i]. Degenerate ones are not among them.
+// What    The triangles of a scene as a mesh: corners at one place are one point, whatever the file says.
+//         Places are those that rays see (float, about the scene's centre), so that a seam that is closed
+//         here is closed to every ray.
+// Shape   Triangles keep Geometry's order: triangle i here is Geometry::triangles[i]. Degenerate ones are not
+//         among them.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
-// What    A picture of where the findings are: the scene in faint grey, from its own camera and from the opposite side, the
-//         findings in colour, and a legend with their numbers.
-// Shape   What lies behind something shines through, weaker: no finding is hidden. Faces are filled and, small as they may be,
-//         marked by a dot; edges are lines; rays that kdray traced wrongly are crosses.
+// What    A picture of where the findings are: the scene in faint grey, from its own camera and from the
+//         opposite side, the findings in colour, and a legend with their numbers.
+// Shape   What lies behind something shines through, weaker: no finding is hidden. Faces are filled and,
+//         small as they may be, marked by a dot; edges are lines; rays that kdray traced wrongly are crosses.
 #pragma once
 
 #include "film/image.h"

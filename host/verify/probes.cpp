@@ -101,8 +101,8 @@ class Prober {
   }
 
  private:
-  // Where a ray of kdray's may go astray is within 2^-20 of the scene (docs/design/numerics.md); what is farther from a surface is
-  // surely on its side.
+  // Where a ray of kdray's may go astray is within 2^-20 of the scene (docs/design/numerics.md); what is
+  // farther from a surface is surely on its side.
   double clearance() const { return 0x1p-17 * reach_; }
 
   void find_origins(std::uint64_t n_rays) {
@@ -171,7 +171,8 @@ class Prober {
     if (!sure) count(&Probes::in_doubt);
   }
 
-  // Whether the hit is one of the component's and goes out through it. (Only a closed one says which way is out.)
+  // Whether the hit is one of the component's and goes out through it. (Only a closed one says which way is
+  // out.)
   bool leaves(const Ray& ray, const Hit& hit, std::uint32_t component) const {
     const std::optional<std::uint32_t> face = face_of(hit);
     if (!face || s_.topology.component_of[*face] != component) return false;
@@ -274,15 +275,16 @@ class Prober {
     how.push_back(leaving);
   }
 
-  // A ray that leaves a triangle never meets it again. One that leaves a sphere or cone outwards neither; inwards, not
-  // before it has crossed the inside.
+  // A ray that leaves a triangle never meets it again. One that leaves a sphere or cone outwards neither;
+  // inwards, not before it has crossed the inside.
   void check_self(const Ray& ray, const Leaving& how, const Hit& from, const Hit& found, std::size_t i) {
     if (!is_hit(found) || found.primitive != from.primitive) return;
     const Line line = line_of(ray);
     std::size_t place = place_of_[static_cast<std::size_t>(from.primitive)];
     const scene::Geometry& g = s_.geometry;
     if (place < g.triangles.size()) {
-      // A direction of our own may lie on the wrong side of the plane, by the rounding of the normal it was made from.
+      // A direction of our own may lie on the wrong side of the plane, by the rounding of the normal it was
+      // made from.
       const bool towards = side_of(line, g.triangles[place]) > 0;
       if ((how.how == Leaves::scattered || how.how == Leaves::grazing) && towards) return;
       return blame(Defect::self_hit, ray, found, i);

@@ -1,9 +1,12 @@
-// What    Rays through the user's scene, and what kdray did wrong with them: counts, and witnesses to look at.
-// Shape   Rounds of rays: some from inside of watertight components, at their vertices, edges and all around; some from outside
-//         and in between, at chosen places of all primitives; from each hit one that leaves it on its own side (mirrored, diffuse
-//         or grazing) and one that goes straight on. All are traced by every walk.
-// Errors  What counts against kdray is certain: decided exactly, or by more than the proven bounds of its own arithmetic. What can't
-//         be decided is counted as such. The same scene and number of rays give the same report.
+// What    Rays through the user's scene, and what kdray did wrong with them: counts, and witnesses to look
+//         at.
+// Shape   Rounds of rays: some from inside of watertight components, at their vertices, edges and all around;
+//         some from outside and in between, at chosen places of all primitives; from each hit one that leaves
+//         it on its own side (mirrored, diffuse or grazing) and one that goes straight on. All are traced by
+//         every walk.
+// Errors  What counts against kdray is certain: decided exactly, or by more than the proven bounds of its own
+//         arithmetic. What can't be decided is counted as such. The same scene and number of rays give the
+//         same report.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
-// What    The scene on a device as the probes ask it: the closest hit by any walk, and where the rays that leave a hit begin, by
-//         the code that renders. All in the tree's own space, about the scene's centre: origins are not rounded on the way.
+// What    The scene on a device as the probes ask it: the closest hit by any walk, and where the rays that
+//         leave a hit begin, by the code that renders. All in the tree's own space, about the scene's centre:
+//         origins are not rounded on the way.
 #pragma once
 
 #include <cstdint>

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kFilmSide = 256;
 
-// The scene's own view, small, with all that shading does. A render that comes upon what is no number, or a ray lost on its
-// stack, ends as an internal error.
+// The scene's own view, small, with all that shading does. A render that comes upon what is no number, or a
+// ray lost on its stack, ends as an internal error.
 Film look_through(const prepare::Prepared& prepared, const DeviceOptions& device) {
   Film film;
   Renderer renderer(PreparedScene(prepare::Prepared(prepared)), device);

@@ -1,7 +1,7 @@
-// What    All checks of a scene: the mesh itself (topology, duplicates), and how soundly kdray traces it (probes, and a picture
-//         that is looked through for what is no number).
-// Errors  What is wrong with the mesh or with kdray is found, not thrown; kdray::Error for what can't be checked: no device, no
-//         memory, a scene that can't be traced.
+// What    All checks of a scene: the mesh itself (topology, duplicates), and how soundly kdray traces it
+//         (probes, and a picture that is looked through for what is no number).
+// Errors  What is wrong with the mesh or with kdray is found, not thrown; kdray::Error for what can't be
+//         checked: no device, no memory, a scene that can't be traced.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,5 @@
-// What    Cuts a frame into bands of whole rows of tiles, so that a film need not hold all of a large picture.
+// What    Cuts a frame into bands of whole rows of tiles, so that a film need not hold all of a large
+//         picture.
 // Shape   The bands are in order, without gaps, of equal height but for the last.
 #pragma once
 

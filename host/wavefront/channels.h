@@ -12,7 +12,8 @@
 
 namespace kdray::wavefront {
 
-// `names` of "depth", "normal", "primitive", "cost"; throws ErrorCode::usage, naming what there is, for others.
+// `names` of "depth", "normal", "primitive", "cost"; throws ErrorCode::usage, naming what there is, for
+// others.
 std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
                                            Programs& programs, const layout::Frame& frame,
                                            std::uint32_t features, Precision precision,

@@ -32,8 +32,8 @@ class Curve {
  public:
   Curve(std::uint32_t first_row, std::size_t n_tiles) : first_row_(first_row) { tiles_.reserve(n_tiles); }
 
-  // Visits the rectangle with a corner in the tile `at` and the sides `along` and `across`, from `at` to the far end of
-  // `along`.
+  // Visits the rectangle with a corner in the tile `at` and the sides `along` and `across`, from `at` to the
+  // far end of `along`.
   void visit(Step at, Step along, Step across) {
     if (length(across) == 1) return run(at, along);
     if (length(along) == 1) return run(at, across);

@@ -1,4 +1,5 @@
-// What    From the film's 64-bit fixed-point sums (kernels/layout/frame.layout.h has the units) to linear RGB.
+// What    From the film's 64-bit fixed-point sums (kernels/layout/frame.layout.h has the units) to linear
+//         RGB.
 // Why     Integer addition is exact and has no order: bands, tiles and queues give the same bits.
 #pragma once
 
@@ -12,8 +13,9 @@ namespace kdray::wavefront {
 // The mean of `samples` samples for each of the pixels; three sums for each.
 void develop(std::span<const layout::i64> sums, int samples, std::span<vec3> pixels);
 
-// The same for the pixels of some tiles of a picture (entries of a list: KDRAY_TILE), the others left as they are. `sums`
-// begin with the picture's pixel `first_pixel`, the first of its row, and reach over all rows of the tiles.
+// The same for the pixels of some tiles of a picture (entries of a list: KDRAY_TILE), the others left as they
+// are. `sums` begin with the picture's pixel `first_pixel`, the first of its row, and reach over all rows of
+// the tiles.
 void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
                    std::span<const layout::u32> tiles, std::span<vec3> picture);
 

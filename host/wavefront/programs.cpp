@@ -24,13 +24,14 @@ constexpr std::uint32_t kShading = kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEAT
                                    KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND |
                                    KDRAY_FEATURE_FACES | KDRAY_KEEP_SHADING;
 
-// A wide form larger than this lies outside of the nearer caches, where fetching ahead is worth its instructions: a tenth is lost at
-// 1 and 3 MB, up to a third gained at 20 MB.
+// A wide form larger than this lies outside of the nearer caches, where fetching ahead is worth its
+// instructions: a tenth is lost at 1 and 3 MB, up to a third gained at 20 MB.
 constexpr std::size_t kNear = 4 << 20;
 
-// One larger than this is a fine mesh's, outside of all caches: rays part sooner, and where packets wait for memory batches do
-// something else. So they get groups that are a little less than alike (in percent; of four pairs). The dragon's mirror rays go 1.15
-// times as fast; in scenes of 38 MB and less the same costs up to a fifth. (64 MiB before groups, which made the dragon's form 61.)
+// One larger than this is a fine mesh's, outside of all caches: rays part sooner, and where packets wait for
+// memory batches do something else. So they get groups that are a little less than alike (in percent; of four
+// pairs). The dragon's mirror rays go 1.15 times as fast; in scenes of 38 MB and less the same costs up to a
+// fifth. (64 MiB before groups, which made the dragon's form 61.)
 constexpr std::size_t kFar = 48 << 20;
 constexpr int kFarSpread = 5, kFarPairs = 3;
 
@@ -119,8 +120,8 @@ Programs::Key Programs::key_of(const Wanted& w) const {
           w.traversal == Traversal::binary ? std::string() : walk_options_};
 }
 
-// By a thread each: compilers work on several programs at once, and where they don't they take turns. But Oclgrind 21.10's are not
-// safe in several threads, nor in another than the first: they crash.
+// By a thread each: compilers work on several programs at once, and where they don't they take turns. But
+// Oclgrind 21.10's are not safe in several threads, nor in another than the first: they crash.
 void Programs::build(const std::vector<Wanted>& wanted) {
   const Timer timer;
   const auto when = context_->info().platform == "Oclgrind" ? std::launch::deferred : std::launch::async;

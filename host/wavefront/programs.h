@@ -15,16 +15,18 @@ namespace kdray::wavefront {
 
 class Programs {
  public:
-  // `tree_depth` sizes the binary walk's stack, the wide form its own walks' and their blocks. `more_options`: for all builds.
+  // `tree_depth` sizes the binary walk's stack, the wide form its own walks' and their blocks.
+  // `more_options`: for all builds.
   Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
            std::string more_options = {});
 
   // The constants of the walks from now on; what was built with others is kept.
   void use(const Tuning& tuning);
 
-  // The kernel `name` of `file` ("traverse/trace_closest.cl"), built for the bits of `features` that the file reads.
-  // A new kernel object each time: arguments are the caller's own.
-  // `traversal` (never Traversal::automatic where a file is built for one walk) is for the files that walk the tree.
+  // The kernel `name` of `file` ("traverse/trace_closest.cl"), built for the bits of `features` that the file
+  // reads. A new kernel object each time: arguments are the caller's own.
+  // `traversal` (never Traversal::automatic where a file is built for one walk) is for the files that walk
+  // the tree.
   cl::Kernel kernel(const std::string& file, const std::string& name, std::uint32_t features,
                     Traversal traversal = Traversal::binary, Precision precision = Precision::float32);
 
@@ -42,8 +44,8 @@ class Programs {
   static std::size_t n_known();  // files that a program can be built of
 
  private:
-  using Key =
-      std::tuple<std::string, std::uint32_t, Traversal, Precision, std::string>;  // the last: walk_options_
+  // The last: walk_options_.
+  using Key = std::tuple<std::string, std::uint32_t, Traversal, Precision, std::string>;
 
   Key key_of(const Wanted& wanted) const;
   std::string options_for(std::uint32_t features, Traversal traversal, Precision precision) const;

@@ -49,8 +49,8 @@ float world_max(const Box& bounds) {
   return std::max({m.x, m.y, m.z});
 }
 
-// PoCL compiles a kernel for good at its first launch: here one of as many work-items that finds no rays, not in the time
-// of tracing.
+// PoCL compiles a kernel for good at its first launch: here one of as many work-items that finds no rays, not
+// in the time of tracing.
 template <class Launch>
 void warm_up(const device::Context& context, Stage& stage, cl_uint first_argument, const Launch& launch) {
   const device::AtWork compiling(context.builds());

@@ -1,5 +1,6 @@
-// What    A flattened scene on the device; shared by all queues of a context, read only. Where the device works in the host's
-//         memory, the buffers are the arrays themselves; or they are room that scenes are copied to, one after the other.
+// What    A flattened scene on the device; shared by all queues of a context, read only. Where the device
+//         works in the host's memory, the buffers are the arrays themselves; or they are room that scenes are
+//         copied to, one after the other.
 #pragma once
 
 #include <array>
@@ -27,7 +28,8 @@ struct SceneBuffers {
   // Copies a scene that there is room for, and waits for it.
   void copy(cl::CommandQueue& queue, const flatten::FlatScene& flat, const flatten::WideForm& wide);
 
-  // Sets KDRAY_SCENE_PARAMETERS (kernels/traverse/scene.clh) as the kernel's first arguments; the next free index.
+  // Sets KDRAY_SCENE_PARAMETERS (kernels/traverse/scene.clh) as the kernel's first arguments; the next free
+  // index.
   cl_uint set_tree_arguments(cl::Kernel& kernel) const;
 
  private:

@@ -1,4 +1,5 @@
-// What    One stage of the wavefront: a kernel with its arguments, launched on a queue, timed by the device's clock.
+// What    One stage of the wavefront: a kernel with its arguments, launched on a queue, timed by the device's
+//         clock.
 #pragma once
 
 #include <deque>
@@ -21,7 +22,8 @@ class Stage {
     (kernel_.setArg(index++, arguments), ...);
   }
 
-  // Runs `items` work-items in groups of `local`; the launch is rounded up to whole groups (kernels check their bound).
+  // Runs `items` work-items in groups of `local`; the launch is rounded up to whole groups (kernels check
+  // their bound).
   cl::Event launch(cl::CommandQueue& queue, std::size_t items, std::size_t local);
 
   // Leaves the launches so far out of the time.

@@ -180,7 +180,8 @@ void Wavefront::fill_streams(cl_uint word) {
     queue_.enqueueFillBuffer(*buffer, word, 0, buffer->getInfo<CL_MEM_SIZE>() / sizeof word * sizeof word);
 }
 
-// PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's time.
+// PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's
+// time.
 void Wavefront::warm_up() {
   const device::AtWork compiling(context_.builds());
   begin(0);

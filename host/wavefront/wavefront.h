@@ -1,12 +1,12 @@
-// What    Traces tiles of a frame on one queue, wave by wave: admit, trace closest, shade, trace shadow, add; in one
-//         launch for all stages (CPUs) or in one for each.
-// Shape   n_slices slices, each with a pool, a batch and shadow rays of its own (kernels/raygen/admit.clh has the bound on
-//         the pool). The queue's work is a list of tiles on the device, which grows: slice s takes the entries s,
-//         s + n_slices, ... as far as it goes. A wave serves all slices.
-//         The next launch, and more tiles for it, are queued before the host looks at what the last one left: the device
-//         never waits for the host, and runs one empty launch at the end.
-// Errors  Counters are read after every launch: a full stack or pool, or a NaN, ends the render with ErrorCode::internal,
-//         since the picture would be wrong. Whatever OpenCL says leaves as another code.
+// What    Traces tiles of a frame on one queue, wave by wave: admit, trace closest, shade, trace shadow, add;
+//         in one launch for all stages (CPUs) or in one for each.
+// Shape   n_slices slices, each with a pool, a batch and shadow rays of its own (kernels/raygen/admit.clh has
+//         the bound on the pool). The queue's work is a list of tiles on the device, which grows: slice s
+//         takes the entries s, s + n_slices, ... as far as it goes. A wave serves all slices.
+//         The next launch, and more tiles for it, are queued before the host looks at what the last one left:
+//         the device never waits for the host, and runs one empty launch at the end.
+// Errors  Counters are read after every launch: a full stack or pool, or a NaN, ends the render with
+//         ErrorCode::internal, since the picture would be wrong. Whatever OpenCL says leaves as another code.
 #pragma once
 
 #include <functional>
@@ -43,8 +43,8 @@ struct Schedule {
   // Writes tiles, batch, pool and light batch into the frame.
   void apply(layout::Frame& frame, std::uint32_t features) const;
 
-  // Fewer slices, and smaller batches where even one slice is too much, so that no buffer of a Wavefront for this frame (but
-  // the film) takes more than `max_bytes`: a device's limit for one allocation.
+  // Fewer slices, and smaller batches where even one slice is too much, so that no buffer of a Wavefront for
+  // this frame (but the film) takes more than `max_bytes`: a device's limit for one allocation.
   void fit(layout::Frame frame, std::uint32_t features, std::size_t max_bytes);
 };
 
@@ -64,13 +64,14 @@ struct Counters {
 struct Progress {
   std::uint32_t listed = 0;  // tiles in the list
   std::uint32_t taken = 0;   // of them those whose eye rays have all been traced
-  std::uint32_t front =
-      0;  // how far into the list the slice that is furthest has come, less a tile for each other slice
+  // How far into the list the slice that is furthest has come, less a tile for each other slice.
+  std::uint32_t front = 0;
   std::uint64_t waves = 0;  // that this took
   bool at_work = false;     // a slice has rays or tiles left
 };
 
-// A launch (all stages of a wave, or many waves fused) that has ended: when on the device's clock, what it did.
+// A launch (all stages of a wave, or many waves fused) that has ended: when on the device's clock, what it
+// did.
 struct LaunchDone {
   double start = 0, end = 0;  // seconds
   std::uint64_t waves = 0, tiles = 0, rays = 0;
@@ -91,7 +92,8 @@ struct FilmSums {
   std::size_t first;
 };
 
-// What a queue has room for: entries in a list, the film's pixels, samples of a round of adaptive sampling (whole runs).
+// What a queue has room for: entries in a list, the film's pixels, samples of a round of adaptive sampling
+// (whole runs).
 struct Room {
   std::size_t tiles = 0, pixels = 0, samples = 0;
 };
@@ -113,25 +115,26 @@ class Wavefront {
   // An empty list, of runs of these samples (frame.layout.h), whose places the film has.
   void begin_samples(std::span<const layout::u32> samples);
 
-  // Renders what `feed` gives, which is asked before each launch, until there is nothing left to do. False: was told to
-  // leave.
+  // Renders what `feed` gives, which is asked before each launch, until there is nothing left to do. False:
+  // was told to leave.
   bool render(const Feed& feed);
 
-  // Hands over `n` places of the film from the picture's pixel, or the sample, `first` on; what was rendered since begin()
-  // counts from then on.
+  // Hands over `n` places of the film from the picture's pixel, or the sample, `first` on; what was rendered
+  // since begin() counts from then on.
   void finish(std::size_t first, std::size_t n, const std::function<void(const FilmSums&)>& take_film);
   // Where nothing was rendered: the launches that found nothing count.
   void finish();
 
-  // Cycles charged to each tile of the list, when it has been rendered; empty, or all 0, where the device doesn't count them.
+  // Cycles charged to each tile of the list, when it has been rendered; empty, or all 0, where the device
+  // doesn't count them.
   std::vector<layout::u64> tile_cycles();
 
   // Of the lists that were finished.
   const Counters& counters() const { return counters_; }
   double busy_seconds() const { return busy_seconds_; }  // of all launches that have ended
   std::size_t device_bytes() const { return device_bytes_; }
-  // Device seconds per stage. Of fused waves they are shares of the launches' time, by the cycles that each stage took;
-  // empty where the device has no counter for them.
+  // Device seconds per stage. Of fused waves they are shares of the launches' time, by the cycles that each
+  // stage took; empty where the device has no counter for them.
   const std::map<std::string, double>& stage_seconds() const { return seconds_; }
 
  private:

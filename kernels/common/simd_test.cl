@@ -1,8 +1,8 @@
-// What    Every operation of simd.clh on given cases: the probe build and self-test of host/device/simd.h, and the test of
-//         both forms.
-// Shape   One work-item goes through all cases: the kernels that use simd.clh run one work-item to a vector, too.
-//         A compiler that says itself that its target has no AVX-512 gets no x86 kernel rather than a failed build, about
-//         which PoCL's would print a line.
+// What    Every operation of simd.clh on given cases: the probe build and self-test of host/device/simd.h,
+//         and the test of both forms.
+// Shape   One work-item goes through all cases: the kernels that use simd.clh run one work-item to a vector,
+//         too. A compiler that says itself that its target has no AVX-512 gets no x86 kernel rather than a
+//         failed build, about which PoCL's would print a line.
 #if !(defined(KDRAY_SIMD_X86) && KDRAY_SIMD_X86) || \
     (defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__))
 #include "common/simd.clh"

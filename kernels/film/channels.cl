@@ -1,6 +1,7 @@
 // What    The extra channels of a picture (AOVs) from one eye ray per pixel, through its centre (or corner).
-// Shape   One work-item per sixteen pixels; out_channels[pixel*6]: depth, normal x y z, primitive number, cost.
-//         Nothing hit: depth inf, normal 0, primitive -1. A failed walk: depth NaN, which the host takes for an error.
+// Shape   One work-item per sixteen pixels; out_channels[pixel*6]: depth, normal x y z, primitive number,
+//         cost. Nothing hit: depth inf, normal 0, primitive -1. A failed walk: depth NaN, which the host
+//         takes for an error.
 #include "layout/features.h"
 #include "layout/rays.layout.h"
 #include "raygen/primary.clh"
@@ -37,11 +38,11 @@ __kernel void channels(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_
   for (u32 i = 0; i < KDRAY_LANES; ++i) {
     refs[i] = KDRAY_REF_MISS;
     if (i >= n) continue;
-    const TreeRay r = make_tree_ray(eye, (real3)(dx.lane[i], dy.lane[i], dz.lane[i]), t_min.lane[i],
-                                    INFINITY, frame->world_max);
+    const TreeRay r = make_tree_ray(eye, (real3)(dx.lane[i], dy.lane[i], dz.lane[i]), t_min.lane[i], INFINITY,
+                                    frame->world_max);
     u32 steps = 0;
-    const Hit hit =
-        find_closest(&scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi), KDRAY_REF_MISS, &steps);
+    const Hit hit = find_closest(&scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi),
+                                 KDRAY_REF_MISS, &steps);
     const bool found = hit.ref < KDRAY_REF_INVALID;
     t.lane[i] = hit.ref == KDRAY_REF_INVALID ? NAN : hit.t;
     u.lane[i] = hit.u;

@@ -1,6 +1,7 @@
-// What    The feature mask: what a scene needs. The host ORs it together (host/flatten/features.h) and passes it as
-//         KDRAY_FEATURES; here it becomes KDRAY_HAS_X = 0 or 1, to be tested with #if. Undefined: everything on, so
-//         that each kernel compiles alone. Bits between those below are the rules' (rules.h).
+// What    The feature mask: what a scene needs. The host ORs it together (host/flatten/features.h) and passes
+//         it as KDRAY_FEATURES; here it becomes KDRAY_HAS_X = 0 or 1, to be tested with #if. Undefined:
+//         everything on, so that each kernel compiles alone. Bits between those below are the rules'
+//         (rules.h).
 #ifndef KDRAY_LAYOUT_FEATURES_H
 #define KDRAY_LAYOUT_FEATURES_H
 #include "layout/rules.h"
@@ -10,8 +11,8 @@
 #define KDRAY_FEATURE_SPHERES 0x00000002u
 #define KDRAY_FEATURE_CONES 0x00000004u
 #define KDRAY_FEATURE_SMOOTH 0x00000008u  // vertex normals; removes interpolation and the terminator's shift
-#define KDRAY_FEATURE_NUMBERS \
-  0x00000010u  // numbers in file order that differ from indices; removes looking them up
+// Numbers in file order that differ from indices; removes looking them up.
+#define KDRAY_FEATURE_NUMBERS 0x00000010u
 // Materials, bits 8-15.
 #define KDRAY_FEATURE_REFLECT 0x00000100u   // removes reflected rays (and, with TRANSMIT, the pool)
 #define KDRAY_FEATURE_TRANSMIT 0x00000200u  // removes refracted rays
@@ -22,8 +23,8 @@
 #define KDRAY_FEATURE_ATTENUATION 0x00020000u  // removes fall-off and range
 #define KDRAY_FEATURE_DIRECTIONAL 0x00040000u
 #define KDRAY_FEATURE_SPOT 0x00080000u
-#define KDRAY_FEATURE_FACES \
-  0x00400000u  // a core with faces around it; removes looking whether rays pass it by
+// A core with faces around it; removes looking whether rays pass it by.
+#define KDRAY_FEATURE_FACES 0x00400000u
 // Film, bits 24-27.
 #define KDRAY_FEATURE_BACKGROUND 0x01000000u   // a background other than black
 #define KDRAY_FEATURE_SUPERSAMPLE 0x02000000u  // more than one sample per pixel

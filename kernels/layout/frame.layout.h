@@ -3,8 +3,8 @@
 #define KDRAY_LAYOUT_FRAME_H
 #include "layout/base.layout.h"
 
-// The film holds sums in units of 2^-36: 64-bit integers, so that adding is exact and has no order. One contribution
-// is cut at 2^20; sums saturate at 2^27.
+// The film holds sums in units of 2^-36: 64-bit integers, so that adding is exact and has no order. One
+// contribution is cut at 2^20; sums saturate at 2^27.
 #define KDRAY_FILM_SCALE 68719476736.0f
 #define KDRAY_FILM_MAX 1048576.0f
 
@@ -43,11 +43,12 @@ typedef struct Frame {
   u32 light_batch;      // lights served between two waves of shadow rays
   u32 shadow_capacity;  // words per field of a slice's shadow rays
   u32 first_pixel;      // the film buffer begins with this pixel
-  u32 keep_weightless;  // 1: rays of no weight are traced too (--min-weight 0), as the SPD's ray counts have them
-  u32 open_lights;      // bit i: light i is on the inner side of all faces
-  u32 samples_at;  // adaptive rounds: where the samples begin in the list's buffer, in words; 0: whole tiles
-  // The box of all but the triangles that lie in faces: planes that bound the scene along an axis, infinite where there are
-  // none (host/flatten/core.h).
+  // 1: rays of no weight are traced too (--min-weight 0), as the SPD's ray counts have them.
+  u32 keep_weightless;
+  u32 open_lights;  // bit i: light i is on the inner side of all faces
+  u32 samples_at;   // adaptive rounds: where the samples begin in the list's buffer, in words; 0: whole tiles
+  // The box of all but the triangles that lie in faces: planes that bound the scene along an axis, infinite
+  // where there are none (host/flatten/core.h).
   float core_lo[3], core_hi[3];
   float face_lo[3], face_hi[3];
 } Frame;
@@ -60,14 +61,15 @@ KDRAY_ASSERT_OFFSET(Frame, width, 112)
 #define KDRAY_TILE_ROW(entry) ((entry) >> 16)
 #define KDRAY_TILE(column, row) ((column) | (row) << 16)
 
-// A round of adaptive sampling: the entries are the numbers of runs, each of so many samples, of which the buffer holds first
-// the pixels (column and row, as a tile's entry has them), then which of their pixel's sequence they are. Sample i adds to
-// place i of the film, which has room for the samples instead of the pixels: each sample's light is known by itself.
+// A round of adaptive sampling: the entries are the numbers of runs, each of so many samples, of which the
+// buffer holds first the pixels (column and row, as a tile's entry has them), then which of their pixel's
+// sequence they are. Sample i adds to place i of the film, which has room for the samples instead of the
+// pixels: each sample's light is known by itself.
 #define KDRAY_SAMPLE_RUN 256u
 #define KDRAY_NO_SAMPLE 0xffffffffu  // for a pixel: what fills the last run up
 
-// Slice s works through the entries s, s + tile_stride, ... of its queue's list, which grows. One work-item at a time
-// owns it, so its counters need no atomics; the host adds them up.
+// Slice s works through the entries s, s + tile_stride, ... of its queue's list, which grows. One work-item
+// at a time owns it, so its counters need no atomics; the host adds them up.
 typedef struct Slice {
   u64 next_place;   // the next pixel of the tile, in the order of raygen/place.clh
   u32 next_sample;  // ... and its next sample
@@ -90,8 +92,8 @@ typedef struct Slice {
   u64 n_nan;                 // contributions that were not numbers
   u64 n_pool_overflow;       // spawned rays that found no place: a broken bound
   u64 cycles_admit, cycles_closest, cycles_shade, cycles_shadow, cycles_add;  // wave.cl
-  // For closest hits and for any, by depth: how often the distance that a packet's rays may start apart was halved
-  // (traverse/learn.clh).
+  // For closest hits and for any, by depth: how often the distance that a packet's rays may start apart was
+  // halved (traverse/learn.clh).
   u8 halvings[2][KDRAY_MAX_DEPTH + 1];
   u8 pad2[62];  // no two slices share a line of a cache
 } Slice;

@@ -1,5 +1,6 @@
 // What    ODPRT: what a queue knows of the division of the scene, and what a slice keeps account of.
-// Shape   The scene is divided into parts; a ray carries a bit for each part that has been asked for its hit, in two words.
+// Shape   The scene is divided into parts; a ray carries a bit for each part that has been asked for its hit,
+//         in two words.
 #ifndef KDRAY_LAYOUT_ODPRT_H
 #define KDRAY_LAYOUT_ODPRT_H
 #include "layout/base.layout.h"
@@ -9,7 +10,8 @@
 #define KDRAY_NO_PART 255u
 
 KDRAY_LAYOUT_BEGIN
-// Bounds of some of a part's contents; the cells that follow, if any are below it, are bounds of less of them each, and tell more.
+// Bounds of some of a part's contents; the cells that follow, if any are below it, are bounds of less of them
+// each, and tell more.
 typedef struct PartCell {
   float lo[3];
   u32 part;
@@ -38,7 +40,8 @@ typedef struct Travel {
 } Travel;
 KDRAY_ASSERT_SIZE(Travel, 64)
 
-// What a slice may make in a launch beyond what it ends: [0] shadow rays that leave the part where they begin, [d] rays of depth d.
+// What a slice may make in a launch beyond what it ends: [0] shadow rays that leave the part where they
+// begin, [d] rays of depth d.
 typedef struct Grant {
   u32 rays[KDRAY_MAX_DEPTH + 1];
 } Grant;

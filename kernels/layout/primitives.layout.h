@@ -29,7 +29,8 @@ typedef struct Sphere {
 } Sphere;
 KDRAY_ASSERT_SIZE(Sphere, 32)
 
-// The points base + s*axis + (base_radius + slope*s)*n, 0 <= s <= height, n unit and at right angles to the axis.
+// The points base + s*axis + (base_radius + slope*s)*n, 0 <= s <= height, n unit and at right angles to the
+// axis.
 typedef struct Cone {
   float base[3];
   float base_radius;

@@ -1,9 +1,10 @@
-// What    Rays, hits and shadow rays as they lie in a slice's streams, and the rays and hits of `kdray trace`.
-// Shape   A stream is a structure of arrays of words in one buffer: floats, or doubles in a program of that precision
-//         (common/real.clh). Field f of ray i of slice s lies at [(s*FIELDS + f)*capacity + i]. The capacity (frame.layout.h)
-//         leaves KDRAY_LANES words behind the last ray of each field, so that whole vectors may be read and written at every
-//         ray. Integers are stored by their bits. The traced fields come first and in the same order in every stream that is
-//         traced.
+// What    Rays, hits and shadow rays as they lie in a slice's streams, and the rays and hits of `kdray
+//         trace`.
+// Shape   A stream is a structure of arrays of words in one buffer: floats, or doubles in a program of that
+//         precision (common/real.clh). Field f of ray i of slice s lies at [(s*FIELDS + f)*capacity + i]. The
+//         capacity (frame.layout.h) leaves KDRAY_LANES words behind the last ray of each field, so that whole
+//         vectors may be read and written at every ray. Integers are stored by their bits. The traced fields
+//         come first and in the same order in every stream that is traced.
 #ifndef KDRAY_LAYOUT_RAYS_H
 #define KDRAY_LAYOUT_RAYS_H
 #include "layout/base.layout.h"
@@ -17,25 +18,27 @@
 
 // The traced fields: the ray origin + t*direction with t_min < t < t_max.
 #define KDRAY_RAY_ORIGIN 0u  // x y z
-#define KDRAY_RAY_DIRECTION \
-  3u  // x y z; of unit length in a batch, from the origin to the light in a shadow stream
+// x y z; of unit length in a batch, from the origin to the light in a shadow stream.
+#define KDRAY_RAY_DIRECTION 3u
 #define KDRAY_RAY_T_MIN 6u
 #define KDRAY_RAY_T_MAX 7u
-// A batch: a ray that will add `weight` times what it finds to its pixel. All rays of a batch have one depth (Slice).
+// A batch: a ray that will add `weight` times what it finds to its pixel. All rays of a batch have one depth
+// (Slice).
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
 // ODPRT: the best hit so far, whose t is the float below t_max.
 #define KDRAY_RAY_NUMBER 12u  // u32: of its primitive, in file order
-#define KDRAY_RAY_FINDER \
-  13u  // u32: the part that holds it, or KDRAY_NO_PART; on its way, above that, depth << 8 and the part that it goes to << 16
+// u32: the part that holds it, or KDRAY_NO_PART; on its way, above that, depth << 8 and the part that it goes
+// to << 16.
+#define KDRAY_RAY_FINDER 13u
 #define KDRAY_RAY_VISITED 14u  // two u32: a bit for each part that was asked
 #define KDRAY_TRAVEL_RAY_FIELDS 16u
 #if KDRAY_ODPRT
 #define KDRAY_RAY_SKIP 0u  // none: a part may not know another's triangle
 #define KDRAY_RAY_FIELDS KDRAY_TRAVEL_RAY_FIELDS
 #else
-#define KDRAY_RAY_SKIP \
-  12u  // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS
+// u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
+#define KDRAY_RAY_SKIP 12u
 #define KDRAY_RAY_FIELDS 13u
 #endif
 
@@ -54,8 +57,8 @@
 #define KDRAY_SHADOW_FIELDS KDRAY_MADE_SHADOW_FIELDS
 #endif
 
-// Pooled rays wait for their batch; they begin at t = 0 and have no end. Those of ODPRT may have come from elsewhere, and are
-// kept as they are in a batch.
+// Pooled rays wait for their batch; they begin at t = 0 and have no end. Those of ODPRT may have come from
+// elsewhere, and are kept as they are in a batch.
 #define KDRAY_POOL_ORIGIN 0u
 #define KDRAY_POOL_DIRECTION 3u
 #if KDRAY_ODPRT

@@ -1,8 +1,10 @@
-// What    The rules by which kernels leave work out, each with a bit of the feature mask that switches it off: for `kdray bench
-//         ablation`, and for tests. A program built without such bits, as all others are, holds no switch.
-// Shape   KDRAY_SKIPS(BEHIND) is 1 where the rule holds, a constant. The rules that are numbers of Frame (least weight, depth)
-//         have no bit.
-// Why     All change time alone: no bit of a picture depends on them. docs/design/skipping.md tells why, and what each is worth.
+// What    The rules by which kernels leave work out, each with a bit of the feature mask that switches it
+//         off: for `kdray bench ablation`, and for tests. A program built without such bits, as all others
+//         are, holds no switch.
+// Shape   KDRAY_SKIPS(BEHIND) is 1 where the rule holds, a constant. The rules that are numbers of Frame
+//         (least weight, depth) have no bit.
+// Why     All change time alone: no bit of a picture depends on them. docs/design/skipping.md tells why, and
+//         what each is worth.
 #ifndef KDRAY_LAYOUT_RULES_H
 #define KDRAY_LAYOUT_RULES_H
 
@@ -13,8 +15,8 @@
 #define KDRAY_KEEP_BEYOND 0x00100000u    // children that a ray enters behind its best hit
 // Shading.
 #define KDRAY_KEEP_BEHIND 0x00001000u  // shadow rays towards lights behind the surface
-#define KDRAY_KEEP_UNLIT \
-  0x00002000u  // shadow rays whose light rounds to nothing on the film, or doesn't reach
+// Shadow rays whose light rounds to nothing on the film, or doesn't reach.
+#define KDRAY_KEEP_UNLIT 0x00002000u
 #define KDRAY_KEEP_WEIGHTLESS 0x00004000u  // secondary rays of no weight
 #define KDRAY_KEEP_LEFT 0x00008000u        // rays against the triangle that they leave
 #define KDRAY_KEEP_OPEN 0x00200000u        // rays that surely meet nothing (shade/open.clh)

@@ -1,5 +1,7 @@
-// What    One case of common/simd_test.cl and its answers: all operations of common/simd.clh on two vectors and a mask.
-// Shape   An answer bears the name of its operation. Vectors are kept by their bits, so that NaN and -0 can be compared.
+// What    One case of common/simd_test.cl and its answers: all operations of common/simd.clh on two vectors
+//         and a mask.
+// Shape   An answer bears the name of its operation. Vectors are kept by their bits, so that NaN and -0 can
+//         be compared.
 #ifndef KDRAY_LAYOUT_SIMD_TEST_H
 #define KDRAY_LAYOUT_SIMD_TEST_H
 #include "layout/base.layout.h"

@@ -1,6 +1,7 @@
 // What    The binary form of the kd-tree: 8 bytes a node, and the references its leaves hold.
 // Shape   nodes[0] is the root; an inner node's child below the plane follows it directly.
-//         inner: word0 = bits of the split coordinate, word1 = index of the child above the plane * 4 + axis (0, 1, 2)
+//         inner: word0 = bits of the split coordinate, word1 = index of the child above the plane * 4 + axis
+//         (0, 1, 2)
 //         leaf:  word0 = first reference,              word1 = number of references * 4 + 3
 //         A reference is the primitive's kind in its top two bits and its index below them.
 // Source  pbrt's and Havran's compact nodes; here the count and the child share one word.
@@ -16,8 +17,8 @@
 #define KDRAY_KIND_SPHERE 1u
 #define KDRAY_KIND_CONE 2u
 #define KDRAY_REF_MISS 0xffffffffu  // a ray that hits nothing
-#define KDRAY_REF_INVALID \
-  0xfffffffeu  // a ray whose traversal failed (stack): counted, never taken for a miss
+// A ray whose traversal failed (stack): counted, never taken for a miss.
+#define KDRAY_REF_INVALID 0xfffffffeu
 
 KDRAY_LAYOUT_BEGIN
 typedef struct KdNode {

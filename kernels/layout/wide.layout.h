@@ -1,13 +1,14 @@
-// What    The wide form of the kd-tree: three levels of the binary tree in one node of up to eight children, and leaves of
-//         blocks of KDRAY_BLOCK primitives of one kind as structures of arrays.
-// Shape   nodes[0] is the root. Child i of a node has the bounds lo, hi of its contents; a slot without child has lo = +inf,
-//         hi = -inf, which no ray meets. order[octant] lists the slots from far to near in 3 bits each, lowest first, for
-//         rays whose direction has the octant's signs (bit k: negative along axis k): pushed in that order, the nearest
-//         is popped first.
-//         child: a node's index, or KDRAY_WIDE_LEAF | kind << KDRAY_WIDE_KIND_SHIFT | first block of the kind's array.
-//         A leaf's blocks follow each other; the last of its primitives has KDRAY_WIDE_LAST in its index, and so have the
-//         empty lanes behind it, whose coordinates are NaN.
-// Source  Kd cells: Havran 2000. Collapsing binary trees: Dammertz, Hanika, Keller, EGSR 2008; Wald, Benthin, Boulos, RT 2008.
+// What    The wide form of the kd-tree: three levels of the binary tree in one node of up to eight children,
+//         and leaves of blocks of KDRAY_BLOCK primitives of one kind as structures of arrays.
+// Shape   nodes[0] is the root. Child i of a node has the bounds lo, hi of its contents; a slot without child
+//         has lo = +inf, hi = -inf, which no ray meets. order[octant] lists the slots from far to near in 3
+//         bits each, lowest first, for rays whose direction has the octant's signs (bit k: negative along
+//         axis k): pushed in that order, the nearest is popped first.
+//         child: a node's index, or KDRAY_WIDE_LEAF | kind << KDRAY_WIDE_KIND_SHIFT | first block of the
+//         kind's array. A leaf's blocks follow each other; the last of its primitives has KDRAY_WIDE_LAST in
+//         its index, and so have the empty lanes behind it, whose coordinates are NaN.
+// Source  Kd cells: Havran 2000. Collapsing binary trees: Dammertz, Hanika, Keller, EGSR 2008; Wald, Benthin,
+//         Boulos, RT 2008.
 #ifndef KDRAY_LAYOUT_WIDE_H
 #define KDRAY_LAYOUT_WIDE_H
 #include "layout/base.layout.h"

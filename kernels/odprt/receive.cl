@@ -1,13 +1,15 @@
 // What    Takes rays that another queue has sent into the slices' pools. One work-item per slice.
-// Shape   `place` of `n_places` in the outbox of the sender (odprt/send.clh), whose streams have these capacities.
+// Shape   `place` of `n_places` in the outbox of the sender (odprt/send.clh), whose streams have these
+//         capacities.
 // Cost    reads and writes 64 B per ray, 60 B per shadow ray; where they go to is known.
-// Errors  A pool that is full counts what finds no place (n_pool_overflow): a broken bound, which the host acts on.
+// Errors  A pool that is full counts what finds no place (n_pool_overflow): a broken bound, which the host
+//         acts on.
 #define KDRAY_ODPRT 1
 #include "odprt/send.clh"
 #include "wave/pool.clh"
 
-inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n, u32 slice_id, __global Slice* slice,
-                         __global float* pool) {
+inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n, u32 slice_id,
+                         __global Slice* slice, __global float* pool) {
   for (u32 i = 0; i < n; i += KDRAY_LANES) {
     const uint16 word = as_uint16(read16(from, KDRAY_RAY_FINDER, i));
     for (Distinct d = distinct_values(word >> 8u & 255u, lanes_up_to(n - i)); d.rest != 0;) {
@@ -25,8 +27,8 @@ inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n,
   }
 }
 
-inline void receive_shadow_rays(__constant const Travel* travel, ConstStream from, u32 n, __global Slice* slice,
-                                __global Traffic* traffic, Stream pool) {
+inline void receive_shadow_rays(__constant const Travel* travel, ConstStream from, u32 n,
+                                __global Slice* slice, __global Traffic* traffic, Stream pool) {
   if (traffic->n_shadow_pool + n > travel->shadow_pool) {
     slice->n_pool_overflow += n;
     return;
@@ -38,16 +40,17 @@ inline void receive_shadow_rays(__constant const Travel* travel, ConstStream fro
 }
 
 __kernel void receive(__constant const Frame* frame, __constant const Travel* travel, u32 place, u32 n_places,
-                      u32 ray_capacity, u32 shadow_capacity,
-                      __global const float* in_rays, __global const float* in_shadow_rays,
-                      __global const u32* in_counts, __global Slice* io_slices, __global Traffic* io_traffic,
-                      __global float* io_pool, __global float* io_shadow_pool) {
+                      u32 ray_capacity, u32 shadow_capacity, __global const float* in_rays,
+                      __global const float* in_shadow_rays, __global const u32* in_counts,
+                      __global Slice* io_slices, __global Traffic* io_traffic, __global float* io_pool,
+                      __global float* io_shadow_pool) {
   const u32 s = (u32)get_global_id(0);
   if (s >= travel->n_slices) return;
   const u32 from = place * travel->n_slices + s;
   receive_rays(frame, const_stream_of(in_rays, from, KDRAY_RAY_FIELDS, ray_capacity), in_counts[from], s,
                io_slices + s, io_pool);
-  receive_shadow_rays(travel, const_stream_of(in_shadow_rays, from, KDRAY_SENT_SHADOW_FIELDS, shadow_capacity),
+  receive_shadow_rays(travel,
+                      const_stream_of(in_shadow_rays, from, KDRAY_SENT_SHADOW_FIELDS, shadow_capacity),
                       in_counts[n_places * travel->n_slices + from], io_slices + s, io_traffic + s,
                       stream_of(io_shadow_pool, s, KDRAY_SHADOW_FIELDS, travel->shadow_pool_capacity));
 }

@@ -1,7 +1,8 @@
-// What    Some waves of ODPRT in one launch: a work-item takes its slice through them, tracing rays in its part of the scene, and
-//         puts those that go on elsewhere into the outbox.
-// Shape   One work-item per slice. The same stages as wave/wave.cl, and two more: rays are routed before and after their trace.
-//         It ends when a slice has done n_waves, has nothing left that it may do, or has no room for a batch in the outbox.
+// What    Some waves of ODPRT in one launch: a work-item takes its slice through them, tracing rays in its
+//         part of the scene, and puts those that go on elsewhere into the outbox.
+// Shape   One work-item per slice. The same stages as wave/wave.cl, and two more: rays are routed before and
+//         after their trace. It ends when a slice has done n_waves, has nothing left that it may do, or has
+//         no room for a batch in the outbox.
 // Errors  as the stages'; all counted in the slice and its traffic, which the host reads after each launch.
 #define KDRAY_ODPRT 1
 #include "film/add.clh"
@@ -27,8 +28,8 @@ typedef struct Shaders {
 } Shaders;
 
 #if KDRAY_HAS_LIGHTS
-inline void trace_shadow_rays(const Travels* t, __constant const Frame* frame, u32 slice_id, const Census* census,
-                              const Streams* s, bool made_here, u64* since) {
+inline void trace_shadow_rays(const Travels* t, __constant const Frame* frame, u32 slice_id,
+                              const Census* census, const Streams* s, bool made_here, u64* since) {
   const RaySource source = shadow_rays(frame, slice_id, s->shadow_rays, s->occluded);
   trace_all(t->scene, frame, &source, t->slice->n_shadow, false, t->slice);
   t->traffic->n_traced += t->slice->n_shadow;
@@ -39,13 +40,13 @@ inline void trace_shadow_rays(const Travels* t, __constant const Frame* frame, u
 }
 #endif
 
-inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32 slice_id, const Shaders* shaders,
-                            const Census* census, const Streams* s, u64* since) {
+inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32 slice_id,
+                            const Shaders* shaders, const Census* census, const Streams* s, u64* since) {
   u32 first_light = 0;
   do {
     const u32 before = t->slice->n_pool[t->slice->depth];
-    shade_batch(&shaders->surfaces, shaders->materials, shaders->lights, frame, slice_id, first_light, t->slice,
-                s->batch, s->hits, s->pool, s->shadow_rays, s->film);
+    shade_batch(&shaders->surfaces, shaders->materials, shaders->lights, frame, slice_id, first_light,
+                t->slice, s->batch, s->hits, s->pool, s->shadow_rays, s->film);
     const u32 made = t->slice->depth < frame->max_depth ? t->slice->n_pool[t->slice->depth] - before : 0;
     if (made > 0) {
       t->traffic->made[t->slice->depth + 1] += made;
@@ -59,8 +60,9 @@ inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32
   } while (KDRAY_HAS_LIGHTS && first_light < frame->n_lights);
 }
 
-inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32 slice_id, const Shaders* shaders,
-                            const Census* census, const Streams* s, bool eye, u64* since) {
+inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32 slice_id,
+                            const Shaders* shaders, const Census* census, const Streams* s, bool eye,
+                            u64* since) {
   const RaySource rays = batch_rays(frame, slice_id, s->batch, s->hits);
   const Stream batch = stream_of(s->batch, slice_id, KDRAY_RAY_FIELDS, frame->batch_capacity);
   const ConstStream hits = const_stream_of(s->hits, slice_id, KDRAY_HIT_FIELDS, frame->batch_capacity);
@@ -76,8 +78,8 @@ inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32
 }
 
 // False when nothing could be done.
-inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* frame, u32 slice_id, const Shaders* shaders,
-                     const Census* census, const Streams* s) {
+inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* frame, u32 slice_id,
+                     const Shaders* shaders, const Census* census, const Streams* s) {
   u64 since = cycles();
   const Account account = account_of(tiles, frame, t->slice, t->grant, t->traffic, &t->out);
   if (!has_room(&account, t->travel)) return false;
@@ -86,7 +88,8 @@ inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* f
   if (work.depth == 0) {
 #if KDRAY_HAS_LIGHTS
     admit_shadow_rays(
-        t, frame, work.n, const_stream_of(s->shadow_pool, slice_id, KDRAY_SHADOW_FIELDS, t->travel->shadow_pool_capacity),
+        t, frame, work.n,
+        const_stream_of(s->shadow_pool, slice_id, KDRAY_SHADOW_FIELDS, t->travel->shadow_pool_capacity),
         stream_of(s->shadow_rays, slice_id, KDRAY_SHADOW_FIELDS, frame->shadow_capacity), s->film);
     clock_stage(&t->slice->cycles_admit, &since);
     trace_shadow_rays(t, frame, slice_id, census, s, false, &since);
@@ -108,8 +111,9 @@ inline void begin_account(__global Traffic* traffic) {
 __kernel void travel_wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
                           __global const Material* in_materials, __global const Light* in_lights,
                           __constant const Frame* frame, __constant const Travel* travel,
-                          __global const PartCell* in_cells, __global const PartCell* in_subtrees, u32 n_waves, __global const u32* in_tiles,
-                          u32 n_tiles, __global Slice* io_slices, __global Grant* io_grants, __global Traffic* io_traffic, __global float* io_pool,
+                          __global const PartCell* in_cells, __global const PartCell* in_subtrees,
+                          u32 n_waves, __global const u32* in_tiles, u32 n_tiles, __global Slice* io_slices,
+                          __global Grant* io_grants, __global Traffic* io_traffic, __global float* io_pool,
                           __global float* io_batch, __global float* io_hits, __global float* io_shadow_rays,
                           __global uchar* io_occluded, __global float* io_shadow_pool, __global i64* io_film,
                           __global float* out_rays, __global float* out_shadow_rays, __global u32* out_counts,
@@ -126,7 +130,8 @@ __kernel void travel_wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* 
                      io_traffic + slice_id};
   const Shaders shaders = {{in_triangles, in_normals, in_spheres, in_cones}, in_materials, in_lights};
   const Streams streams = {io_pool, io_batch, io_hits, io_shadow_rays, io_shadow_pool, io_occluded, io_film};
-  const Census census = {in_subtrees, travel->n_subtrees, out_visits + (size_t)slice_id * 2 * travel->n_subtrees};
+  const Census census = {in_subtrees, travel->n_subtrees,
+                         out_visits + (size_t)slice_id * 2 * travel->n_subtrees};
   const TileList tiles = {in_tiles, n_tiles};
   begin_account(t.traffic);
   u32 n = 0;

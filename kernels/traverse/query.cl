@@ -1,4 +1,5 @@
-// What    Query rays: the closest hit of each, or with any_hit whether anything lies inside of its interval (t = 0, else inf).
+// What    Query rays: the closest hit of each, or with any_hit whether anything lies inside of its interval
+//         (t = 0, else inf).
 // Shape   Binary and wide: one ray to a work-item. Otherwise one work-item to KDRAY_CHUNK rays.
 // Cost    reads 32 B of the ray and the tree, writes 16 B.
 // Errors  a full stack (binary tree) gives primitive KDRAY_QUERY_INVALID; the host checks for it.
@@ -11,8 +12,8 @@
 #include "traverse/wide.clh"
 
 // The binary tree has its own ray and its own two forms.
-inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 i, real3 root_lo, real3 root_hi,
-                         float world_max) {
+inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 i, real3 root_lo,
+                         real3 root_hi, float world_max) {
   RayIn in;
   fetch_ray(source, i, &in);
   const real3 o = (real3)(in.origin[0], in.origin[1], in.origin[2]);
@@ -29,13 +30,15 @@ inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 
   }
 }
 
-__kernel void trace_query(KDRAY_SCENE_PARAMETERS, float4 root_lo, float4 root_hi, float4 center, float world_max, u32 n,
-                          u32 any_hit, __global const QueryRay* in_rays, __global QueryHit* out_hits) {
+__kernel void trace_query(KDRAY_SCENE_PARAMETERS, float4 root_lo, float4 root_hi, float4 center,
+                          float world_max, u32 n, u32 any_hit, __global const QueryRay* in_rays,
+                          __global QueryHit* out_hits) {
   const u32 item = (u32)get_global_id(0);
   const SceneArrays scene = KDRAY_SCENE_ARRAYS;
   const RaySource source = {&scene, in_rays, out_hits, {center.x, center.y, center.z}, any_hit};
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
-  if (item < n) query_binary(&scene, &source, item, convert_real3(root_lo.xyz), convert_real3(root_hi.xyz), world_max);
+  if (item < n)
+    query_binary(&scene, &source, item, convert_real3(root_lo.xyz), convert_real3(root_hi.xyz), world_max);
 #elif KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_WIDE
   (void)root_lo, (void)root_hi;
   if (item >= n) return;
@@ -49,6 +52,7 @@ __kernel void trace_query(KDRAY_SCENE_PARAMETERS, float4 root_lo, float4 root_hi
   (void)root_lo, (void)root_hi;
   const u32 first = item * KDRAY_CHUNK;
   if (first < n)
-    walk_rays(&scene, &source, first, min(n, first + KDRAY_CHUNK), world_max, false, KDRAY_COHERENT_DISTANCE * world_max);
+    walk_rays(&scene, &source, first, min(n, first + KDRAY_CHUNK), world_max, false,
+              KDRAY_COHERENT_DISTANCE * world_max);
 #endif
 }

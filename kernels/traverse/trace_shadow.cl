@@ -1,6 +1,6 @@
 // What    Decides for each shadow ray of the slices whether its light is hidden. One ray per work-item.
-// Shape   item i serves ray i % (batch_size*light_batch) of slice i / (batch_size*light_batch); its answer is byte
-//         slice*shadow_capacity + ray of out_occluded.
+// Shape   item i serves ray i % (batch_size*light_batch) of slice i / (batch_size*light_batch); its answer is
+//         byte slice*shadow_capacity + ray of out_occluded.
 // Cost    reads 36 B of the ray and the tree, writes 1 B.
 #include "traverse/trace_slice.clh"
 

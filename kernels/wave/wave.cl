@@ -1,9 +1,12 @@
 // What    A whole wave in one launch: a work-item takes its slice through all stages, admit to add.
-// Shape   One work-item per slice. The same functions as the stages' own kernels, so that pictures are the same.
-// Why     A slice's streams stay in the cache of the core that works on it: stage by stage, over all slices, they go
-//         through the last cache or memory between any two stages. No core waits for others between stages.
-// Cost    io_slices tells the cycles that each stage took, where the device has a cycle counter, and io_tile_cycles those
-//         of each entry of the list: a wave is charged to the tile that its slice had come to.
+// Shape   One work-item per slice. The same functions as the stages' own kernels, so that pictures are the
+//         same.
+// Why     A slice's streams stay in the cache of the core that works on it: stage by stage, over all slices,
+//         they go through the last cache or memory between any two stages. No core waits for others between
+//         stages.
+// Cost    io_slices tells the cycles that each stage took, where the device has a cycle counter, and
+//         io_tile_cycles those of each entry of the list: a wave is charged to the tile that its slice had
+//         come to.
 #include "film/add.clh"
 #include "raygen/admit.clh"
 #include "shade/shade.clh"

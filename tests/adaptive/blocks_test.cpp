@@ -1,4 +1,5 @@
-// The order of a picture's pixels: each once, block by block, four by four in sixteen; blocks know their neighbours.
+// The order of a picture's pixels: each once, block by block, four by four in sixteen; blocks know their
+// neighbours.
 #include "adaptive/blocks.h"
 
 #include <gtest/gtest.h>

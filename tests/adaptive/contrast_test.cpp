@@ -1,4 +1,5 @@
-// Contrast against closed forms: none on flat and evenly sloping pictures, the step beside an edge, whatever the rows to a task.
+// Contrast against closed forms: none on flat and evenly sloping pictures, the step beside an edge, whatever
+// the rows to a task.
 #include "adaptive/contrast.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Prices: classes keep their order and hold a price to a few percent; the limit is the highest that will do, found by trying all.
+// Prices: classes keep their order and hold a price to a few percent; the limit is the highest that will do,
+// found by trying all.
 #include "adaptive/plan.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Rounds over pictures of closed form, sampled here without a device: what is refined, how good the picture and the belief about
-// its error are, and that lists are what the kernels expect.
+// Rounds over pictures of closed form, sampled here without a device: what is refined, how good the picture
+// and the belief about its error are, and that lists are what the kernels expect.
 #include "adaptive/sampler.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ double half_plane(double x, double y) {
   return 0.3 * x + y > 50 ? 0.9 : 0.1;
 }
 
-// Sample k of a pixel: the centre, then Sobol' points from there on, shifted by a random number of the pixel's own.
+// Sample k of a pixel: the centre, then Sobol' points from there on, shifted by a random number of the
+// pixel's own.
 struct Point {
   double x, y;
 };
@@ -162,8 +163,8 @@ TEST(Sampler, TheTargetIsMetOrTheCapSaid) {
   EXPECT_LT(coarse.report.samples, fine.report.samples);
 }
 
-// What lies between the centres can't be known from them: a line that no centre is on isn't found. Where it crosses a pixel's
-// centre line somewhere, it is followed from there.
+// What lies between the centres can't be known from them: a line that no centre is on isn't found. Where it
+// crosses a pixel's centre line somewhere, it is followed from there.
 TEST(Sampler, ALineBetweenTheCentresIsFoundWhereOneIsOnIt) {
   const Outcome hidden = sample([](double x, double) { return std::abs(x - 40) < 0.2 ? 1.0 : 0.0; }, 0.001);
   EXPECT_EQ(hidden.report.samples, kPictureSize.pixels());

@@ -1,4 +1,5 @@
-// What double can't do is told in one line, with the code that fits: the device's fault is another than the user's.
+// What double can't do is told in one line, with the code that fits: the device's fault is another than the
+// user's.
 #include "precision.h"
 
 #include <gtest/gtest.h>

@@ -12,7 +12,8 @@
 namespace kdray {
 namespace {
 
-// A red emitting sphere of radius 1 at the origin, number 1, beside a triangle at z = -2, number 0; grey background.
+// A red emitting sphere of radius 1 at the origin, number 1, beside a triangle at z = -2, number 0; grey
+// background.
 Scene small_scene() {
   scene::Scene s;
   s.vertices = {{-9, -9, -2}, {9, -9, -2}, {0, 9, -2}};

@@ -1,5 +1,5 @@
-// What    kdray bench ablation as a user runs it, on a scene of three primitives: exit codes, the report's keys, and that no
-//         exact rule changes a bit. No time is asserted.
+// What    kdray bench ablation as a user runs it, on a scene of three primitives: exit codes, the report's
+//         keys, and that no exact rule changes a bit. No time is asserted.
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What    kdray bench accuracy as a user runs it, on tiny scenes: exit codes, the report, and what must hold of any errors. No time
-//         is asserted.
+// What    kdray bench accuracy as a user runs it, on tiny scenes: exit codes, the report, and what must hold
+//         of any errors. No time is asserted.
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -90,7 +90,8 @@ TEST(BenchAccuracy, ErrorsAreThoseThatTheSettingsPromise) {
   EXPECT_NE(folder.get("report/accuracy.svg").find("depth 2"), std::string::npos);
 }
 
-// The background alone: every setting has the reference's very picture, and a logarithmic axis nothing to show.
+// The background alone: every setting has the reference's very picture, and a logarithmic axis nothing to
+// show.
 TEST(BenchAccuracy, ThereIsNoErrorWhereThereIsNothingToSee) {
   KDRAY_NEED_DEVICE();
   const Folder folder;

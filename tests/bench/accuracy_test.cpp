@@ -1,4 +1,5 @@
-// What    The parts of bench accuracy that need no device: the settings, the lights' reach, pictures as they are shown, reports.
+// What    The parts of bench accuracy that need no device: the settings, the lights' reach, pictures as they
+//         are shown, reports.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -179,7 +180,8 @@ TEST(AccuracyReport, StaysFiniteWhereAClockStoodStill) {
   EXPECT_EQ(table_of(run).find("inf"), std::string::npos) << table_of(run);
 }
 
-// Time and error are both halved or doubled from point to point, so between them time times error is constant.
+// Time and error are both halved or doubled from point to point, so between them time times error is
+// constant.
 AccuracyRun run_with_adaptive() {
   AccuracyRun run = small_run();
   const std::string group = "adaptive at depth 16";

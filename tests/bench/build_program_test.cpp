@@ -1,5 +1,5 @@
-// What    kdray bench build and bench depth as a user runs them, on small scenes: exit codes, the reports' keys, every tree
-//         giving the same hits. No time is asserted.
+// What    kdray bench build and bench depth as a user runs them, on small scenes: exit codes, the reports'
+//         keys, every tree giving the same hits. No time is asserted.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

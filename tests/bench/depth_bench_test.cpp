@@ -1,4 +1,5 @@
-// What    The depths that are tried begin at a lone leaf, hold the usual one, and end within the traversal's stack.
+// What    The depths that are tried begin at a lone leaf, hold the usual one, and end within the traversal's
+//         stack.
 #include "bench/depth_bench.h"
 
 #include <gtest/gtest.h>

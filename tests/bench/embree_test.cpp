@@ -1,4 +1,5 @@
-// What    Embree sees the scene that kdray sees: triangles, spheres and open cones, in every mode. Skipped without Embree.
+// What    Embree sees the scene that kdray sees: triangles, spheres and open cones, in every mode. Skipped
+//         without Embree.
 #include "bench/embree.h"
 
 #include <gtest/gtest.h>

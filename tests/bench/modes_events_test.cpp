@@ -1,4 +1,5 @@
-// What    Simulated ODPRT, where the answer is known: pipelines, shares, latencies, full ports, chains of rays.
+// What    Simulated ODPRT, where the answer is known: pipelines, shares, latencies, full ports, chains of
+//         rays.
 #include "bench/modes_events.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +63,8 @@ TEST(SimulatedRays, PortsOfAReceiverTakeTurnsToo) {
   Traffic traffic = same(1, {{0, 1}, {2, 1}});
   traffic.journeys.push_back({{{1, 1}, {2, 1}}, {}, 1});
   traffic.first.push_back(1);
-  // Both arrive at once: the second has to wait for a second at the port, where the first has been served meanwhile.
+  // Both arrive at once: the second has to wait for a second at the port, where the first has been served
+  // meanwhile.
   EXPECT_DOUBLE_EQ(simulate(traffic, 3, narrow).seconds, 1 + 2 + 1);
 }
 
@@ -78,7 +80,8 @@ TEST(SimulatedRays, AChainOfRaysIsTheLeastThatItTakes) {
 }
 
 TEST(SimulatedRays, DeepOnesGoFirst) {
-  // Queue 0 has two eye rays; the first one's child has to go on to queue 1, which it does before the second is begun.
+  // Queue 0 has two eye rays; the first one's child has to go on to queue 1, which it does before the second
+  // is begun.
   Traffic traffic;
   traffic.journeys = {{{{0, 1}}, {2}, 1}, {{{0, 1}}, {}, 1}, {{{0, 1}, {1, 5}}, {}, 2}};
   traffic.first = {0, 1};

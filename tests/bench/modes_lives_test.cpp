@@ -1,5 +1,5 @@
-// What    Lives of rays in scenes whose every ray is known: a mirror, a lit floor, a pane of glass. Hits are computed by the
-//         test, from the scene's one plane.
+// What    Lives of rays in scenes whose every ray is known: a mirror, a lit floor, a pane of glass. Hits are
+//         computed by the test, from the scene's one plane.
 #include "bench/modes_lives.h"
 
 #include <gtest/gtest.h>

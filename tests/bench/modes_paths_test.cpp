@@ -1,5 +1,5 @@
-// What    The ways of rays through the subtrees of a real tree: from near to far, to where the ray ends, and their costs don't
-//         depend on the cut. Random rays have seed 5.
+// What    The ways of rays through the subtrees of a real tree: from near to far, to where the ray ends, and
+//         their costs don't depend on the cut. Random rays have seed 5.
 #include "bench/modes_paths.h"
 
 #include <gtest/gtest.h>

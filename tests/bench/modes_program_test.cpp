@@ -1,4 +1,5 @@
-// What    kdray bench modes as a user runs it, on a scene of three primitives: exit codes, the report's keys. No time is asserted.
+// What    kdray bench modes as a user runs it, on a scene of three primitives: exit codes, the report's keys.
+//         No time is asserted.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
-// What    What is made of measured rows: ratios, means, checks of the model, counts of differing pixels; and that rows that
-//         failed are told and left out.
+// What    What is made of measured rows: ratios, means, checks of the model, counts of differing pixels; and
+//         that rows that failed are told and left out.
 #include <gtest/gtest.h>
 
 #include "bench/report_modes.h"

@@ -1,4 +1,5 @@
-// What    Simulated PDPRT, where the answer is known: equal tiles, one heavy tile, a bag that is far away or slow.
+// What    Simulated PDPRT, where the answer is known: equal tiles, one heavy tile, a bag that is far away or
+//         slow.
 #include "bench/modes_tiles.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// What    Timelines as bench modes draws them: spans in order, from the frame's first on; rows without one are left out.
+// What    Timelines as bench modes draws them: spans in order, from the frame's first on; rows without one
+//         are left out.
 #include "bench/modes_timeline.h"
 
 #include <gtest/gtest.h>

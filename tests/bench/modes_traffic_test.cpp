@@ -1,4 +1,5 @@
-// What    Journeys of rays whose paths are written by hand: who is asked, in what order, how often, and where rays end.
+// What    Journeys of rays whose paths are written by hand: who is asked, in what order, how often, and where
+//         rays end.
 #include "bench/modes_traffic.h"
 
 #include <gtest/gtest.h>

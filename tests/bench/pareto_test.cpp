@@ -1,4 +1,5 @@
-// What    The Pareto front: against the definition, for all points of random sets, and in the cases where one may slip.
+// What    The Pareto front: against the definition, for all points of random sets, and in the cases where one
+//         may slip.
 #include "bench/pareto.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// What    kdray bench as a user runs it, on a scene of three primitives: exit codes, the report's keys. No time is asserted.
+// What    kdray bench as a user runs it, on a scene of three primitives: exit codes, the report's keys. No
+//         time is asserted.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"

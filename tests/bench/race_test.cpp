@@ -1,4 +1,5 @@
-// What    The race between contestants of known times: interleaved, warmed up, the best variant kept, hits compared.
+// What    The race between contestants of known times: interleaved, warmed up, the best variant kept, hits
+//         compared.
 #include "bench/race.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What    The rays of a bench are what their classes say: how many, where from, where to. The scene is a floor, z = 0,
-//         whose hits are known without tracing. No seed: the makers' own are fixed.
+// What    The rays of a bench are what their classes say: how many, where from, where to. The scene is a
+//         floor, z = 0, whose hits are known without tracing. No seed: the makers' own are fixed.
 #include "bench/rays.h"
 
 #include <gtest/gtest.h>

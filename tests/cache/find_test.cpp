@@ -1,4 +1,5 @@
-// What is found in the cache, and when not: changed, vanished and appearing files, options, limits, several at once.
+// What is found in the cache, and when not: changed, vanished and appearing files, options, limits, several
+// at once.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -204,7 +205,8 @@ TEST_F(FindTest, AFolderThatCannotBeMadeIsAnInputError) {
   EXPECT_FALSE(find(cache, folder / "balls.nff", {}));
 }
 
-// Whoever reads finds a whole entry or none, while others write it and a folder too small for both scenes is cleared.
+// Whoever reads finds a whole entry or none, while others write it and a folder too small for both scenes is
+// cleared.
 TEST_F(FindTest, SeveralAtOnce) {
   const auto a = folder.put("a.nff", test::nff("balls", 1)), b = folder.put("b.nff", test::nff("tetra", 3));
   const prepare::Prepared made[2] = {test::prepared_from(a), test::prepared_from(b)};

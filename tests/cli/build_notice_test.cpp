@@ -1,5 +1,5 @@
-// What    The notice of compiling: only when it takes long, once, and cleared. No test waits for real seconds to be right: patience
-//         is either none or endless.
+// What    The notice of compiling: only when it takes long, once, and cleared. No test waits for real seconds
+//         to be right: patience is either none or endless.
 #include "cli/build_notice.h"
 
 #include <gtest/gtest.h>

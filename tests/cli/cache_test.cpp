@@ -1,4 +1,5 @@
-// What    The scene cache through the real program: what a second run finds, and that no trouble with the cache costs a picture.
+// What    The scene cache through the real program: what a second run finds, and that no trouble with the
+//         cache costs a picture.
 #include <atomic>
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSeconds =
-    60;  // tells a hang: a busy machine may need 20 to compile for a kind of scene that it has not met
+// Tells a hang: a busy machine may need 20 to compile for a kind of scene that it has not met.
+constexpr double kSeconds = 60;
 constexpr long kPeakKib = 1 << 20;  // 1 GiB
 
 std::vector<fs::path> odd_files() {

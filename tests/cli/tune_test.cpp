@@ -1,5 +1,5 @@
-// What    kdray tune through the real program: what it keeps is used by render and told by --stats; wrong candidates are left out; files
-//         that are no tunings cost a warning, not the picture.
+// What    kdray tune through the real program: what it keeps is used by render and told by --stats; wrong
+//         candidates are left out; files that are no tunings cost a warning, not the picture.
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -97,7 +97,8 @@ TEST(Tune, AFileThatIsNoneCostsAWarning) {
 TEST(Tune, MergesFilesAndRefusesWhatIsNone) {
   const Folder folder;
   const std::string entry =
-      R"({"device":"d","driver":"v","kernels":"k","schedule":"slices","features":"any","settings":{"batch":256},)"
+      R"({"device":"d","driver":"v","kernels":"k","schedule":"slices","features":"any",)"
+      R"("settings":{"batch":256},)"
       R"("ratio":0.9,"seconds":1,"when":1,"scenes":[]})";
   folder.put("a.json", R"({"kdray_tunings":1,"entries":[)" + entry + "]}");
   folder.put("bad.json", "nonsense");

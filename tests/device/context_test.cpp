@@ -96,7 +96,8 @@ TEST_P(ContextTest, AnEmptyBufferIsNoError) {
   EXPECT_NO_THROW((void)context.buffer(CL_MEM_READ_ONLY, 0, "nothing"));
 }
 
-// Where the device works in the host's memory, a buffer is the memory itself, and keeps it; elsewhere a copy of it.
+// Where the device works in the host's memory, a buffer is the memory itself, and keeps it; elsewhere a copy
+// of it.
 TEST_P(ContextTest, UploadedMemoryIsUsedAsItIsOrCopied) {
   const Context context(GetParam(), 1);
   for (const std::size_t n : {std::size_t{3}, kLargePages / 4}) {

@@ -1,5 +1,6 @@
-// The structs of kernels/layout have the same size and offsets on the host and on each device: a kernel writes its own
-// back. (Both compilers assert sizes as well; this covers a device compiler that would ignore the assertions.)
+// The structs of kernels/layout have the same size and offsets on the host and on each device: a kernel
+// writes its own back. (Both compilers assert sizes as well; this covers a device compiler that would ignore
+// the assertions.)
 #include <gtest/gtest.h>
 
 #include "device/context.h"

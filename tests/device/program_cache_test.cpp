@@ -1,4 +1,5 @@
-// What    Programs kept in files: found again or built anew, whatever happens to the files, and never by another key.
+// What    Programs kept in files: found again or built anew, whatever happens to the files, and never by
+//         another key.
 #include "device/program_cache.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
-// The choice of the vectors' form: what each device gets, what the environment asks for, and that a compiler that refuses
-// or miscomputes the builtins costs the x86 form, not the run. Broken compilers are played by broken kernel sources.
+// The choice of the vectors' form: what each device gets, what the environment asks for, and that a compiler
+// that refuses or miscomputes the builtins costs the x86 form, not the run. Broken compilers are played by
+// broken kernel sources.
 #include "device/simd.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Which nodes are opened, against trying all ways: no wide form over the same binary tree is expected to have fewer of its nodes visited.
+// Which nodes are opened, against trying all ways: no wide form over the same binary tree is expected to have
+// fewer of its nodes visited.
 #include "flatten/openings.h"
 
 #include <gtest/gtest.h>
@@ -133,8 +134,8 @@ TEST(Openings, NorWithEmptyCells) {
   }
 }
 
-// Every inner node opens into eight slots, and each side gets one at least, whatever the surfaces are: none at all in one point,
-// endless where they overflow.
+// Every inner node opens into eight slots, and each side gets one at least, whatever the surfaces are: none
+// at all in one point, endless where they overflow.
 void expect_sound(const kdtree::Tree& tree) {
   const Openings openings(tree, kAnyKind);
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {

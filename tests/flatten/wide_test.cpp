@@ -1,5 +1,5 @@
-// The wide form against the binary tree that it is made of: the same leaves below the same boxes, all of them in an order
-// that is front to back, on a stack that is large enough; and the numbers in its blocks.
+// The wide form against the binary tree that it is made of: the same leaves below the same boxes, all of them
+// in an order that is front to back, on a stack that is large enough; and the numbers in its blocks.
 // (One file of over 600 lines: every check runs over the same 96 forms, which are made here.)
 #include "flatten/wide.h"
 
@@ -357,7 +357,8 @@ void expect_primitive(const FlatScene& flat, int kind, const Lane& lane) {
   }
 }
 
-// From the first that ends its leaf to the end of its block all lanes say so, and all but the first are empty.
+// From the first that ends its leaf to the end of its block all lanes say so, and all but the first are
+// empty.
 TEST(Wide, LanesHoldTheirPrimitiveOrNothing) {
   for_each_subject([](const Subject& s) {
     for (int kind = 0; kind < 3; ++kind) {
@@ -391,8 +392,8 @@ TEST(Wide, OrderWordsArePermutations) {
   });
 }
 
-// Whether a ray of the octant, along no plane, can leave a for b but not b for a: a point of b is ahead of one of a along
-// every axis, and all of b along one of them.
+// Whether a ray of the octant, along no plane, can leave a for b but not b for a: a point of b is ahead of
+// one of a along every axis, and all of b along one of them.
 bool must_precede(const Box& a, const Box& b, unsigned octant) {
   bool possible = true, apart = false;
   for (int k = 0; k < 3; ++k) {

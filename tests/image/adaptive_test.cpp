@@ -1,5 +1,5 @@
-// What    Adaptive sampling through the public interface: the same bits in every mode, samples where they are needed, an error
-//         that is what it is believed to be.
+// What    Adaptive sampling through the public interface: the same bits in every mode, samples where they are
+//         needed, an error that is what it is believed to be.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -78,8 +78,8 @@ TEST_P(Adaptive, TheSameBitsInEveryMode) {
   }
 }
 
-// A queue's share of the tiles brings about its first launch; whether it comes to a fourth is left to chance. The picture
-// is not.
+// A queue's share of the tiles brings about its first launch; whether it comes to a fourth is left to chance.
+// The picture is not.
 TEST_P(Adaptive, TheSameBitsWhateverQueuesFail) {
   const Shot first = render(scene, options_for(kTarget));
   for (const Mode mode : {Mode::pdprt, Mode::odprt})

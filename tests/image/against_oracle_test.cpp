@@ -17,8 +17,8 @@ namespace kdray::test {
 namespace {
 
 constexpr int kSize = 128;
-constexpr double kTolerance =
-    1e-3;  // a quarter of an 8-bit step; float and double are 1e-4 apart at the most
+// A quarter of an 8-bit step; float and double are 1e-4 apart at the most.
+constexpr double kTolerance = 1e-3;
 constexpr double kDifferingEdges = 0.005;  // share of all pixels
 
 struct Verdict {

@@ -1,5 +1,5 @@
-// What    The same picture bit for bit whatever the tiles, the work-group, the number of queues, how they divide the tiles,
-//         which of them fail, and the run (DESIGN.md section 1).
+// What    The same picture bit for bit whatever the tiles, the work-group, the number of queues, how they
+//         divide the tiles, which of them fail, and the run (docs/modes.md).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

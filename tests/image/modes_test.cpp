@@ -1,5 +1,6 @@
-// What    The same picture, bit for bit, and the same rays, whichever way the frame is divided among the queues: PDPRT, ODPRT by each
-//         balance, buffers of any size, a device that holds a part of the scene, queues that fail.
+// What    The same picture, bit for bit, and the same rays, whichever way the frame is divided among the
+//         queues: PDPRT, ODPRT by each balance, buffers of any size, a device that holds a part of the scene,
+//         queues that fail.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -196,7 +197,8 @@ TEST(Odprt, LessMemoryThanTheSceneTakes) {
   }
 }
 
-// Parts come and go, few rays have room on the way (so that each change of parts serves few), and a queue fails.
+// Parts come and go, few rays have room on the way (so that each change of parts serves few), and a queue
+// fails.
 TEST(Odprt, LessMemoryTinyBuffersAndAFault) {
   const Scene scene{many_triangles()};
   Way plain{"pdprt"};

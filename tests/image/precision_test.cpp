@@ -1,6 +1,6 @@
-// What    --precision double against the independent ray tracer, which sees the scene as it is stored: pictures to the last
-//         place of their floats, hits as well. And float against double: how far rounding moves a picture, with the pixels that
-//         hang on a hair told apart.
+// What    --precision double against the independent ray tracer, which sees the scene as it is stored:
+//         pictures to the last place of their floats, hits as well. And float against double: how far
+//         rounding moves a picture, with the pixels that hang on a hair told apart.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -70,8 +70,8 @@ Apart compare(const Picture& picture, const oracle::OracleResult& truth, double 
   return apart;
 }
 
-// Measured on these scenes: nothing beyond the rounding of the picture, but for one pixel of 7e-9 where a ray grazes a cone
-// (the root of 2^-53 is 1e-8). Float: RMSE 9e-9 to 2e-7.
+// Measured on these scenes: nothing beyond the rounding of the picture, but for one pixel of 7e-9 where a ray
+// grazes a cone (the root of 2^-53 is 1e-8). Float: RMSE 9e-9 to 2e-7.
 TEST_P(Precision64, PicturesAreTheOraclesToTheLastPlace) {
   constexpr int kSize = 64;
   for (const NamedScene& named : small_scenes()) {
@@ -95,8 +95,9 @@ TEST_P(Precision64, PicturesAreTheOraclesToTheLastPlace) {
   }
 }
 
-// The spread of a picture under a shift of the camera by `aside` of a pixel, right, left, up and down: a pixel whose colour moves by
-// more than `step` hangs on an edge: of an object, a shadow, or one seen in a mirror.
+// The spread of a picture under a shift of the camera by `aside` of a pixel, right, left, up and down: a
+// pixel whose colour moves by more than `step` hangs on an edge: of an object, a shadow, or one seen in a
+// mirror.
 std::vector<bool> hangs_on_a_hair(const scene::Scene& model, const Picture& picture,
                                   const RenderOptions& options, const std::string& device) {
   constexpr double kAside = 1e-3, kStep = 1e-3;

@@ -1,5 +1,5 @@
-// What    What exact rules of skipping leave out changes no bit of the picture, and they do leave something out
-//         (docs/design/skipping.md). Switched off by the mask that kernels are compiled with.
+// What    What exact rules of skipping leave out changes no bit of the picture, and they do leave something
+//         out (docs/design/skipping.md). Switched off by the mask that kernels are compiled with.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,8 @@ std::uint64_t skipped(const Renderer& renderer, const char* why) {
   return statistics_of(renderer)["rays"]["skipped"][why];
 }
 
-// A mirroring floor with a sphere and a cone on it, seen from just above; lights high and low, near and far, one below the floor.
+// A mirroring floor with a sphere and a cone on it, seen from just above; lights high and low, near and far,
+// one below the floor.
 scene::Scene floor_show() {
   scene::Material mirror = oracle::matte(vec3(0.5f));
   mirror.reflect = vec3(0.4f), mirror.specular = vec3(0.3f), mirror.shine = 20;
@@ -63,8 +64,8 @@ class AllRules : public testing::TestWithParam<NamedScene> {};
 
 TEST_P(AllRules, ChangeNoBit) {
   const scene::Scene model = GetParam().make();
-  const bool smooth =
-      !model.normals.empty() && !model.lights.empty();  // where a shadow ray may start behind its triangle
+  // Where a shadow ray may start behind its triangle.
+  const bool smooth = !model.normals.empty() && !model.lights.empty();
   const Scene scene{scene::Scene(model)};
   Renderer renderer(scene, {}, device_of());
   const Picture usual = renderer.render(keeping(0));

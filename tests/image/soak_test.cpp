@@ -1,7 +1,7 @@
-// What    A soak: random combinations of scene, mode, division, balance, queues, tiles, buffers, device memory and faults. None
-//         hangs (the test's time limit), loses a ray (exact counts) or changes a bit.
-// Shape   KDRAY_SOAK combinations, 20 by default; combination i has the seed kSeed + i, so each can be run alone
-//         (KDRAY_SOAK_FIRST). scripts/soak runs many.
+// What    A soak: random combinations of scene, mode, division, balance, queues, tiles, buffers, device
+//         memory and faults. None hangs (the test's time limit), loses a ray (exact counts) or changes a bit.
+// Shape   KDRAY_SOAK combinations, 20 by default; combination i has the seed kSeed + i, so each can be run
+//         alone (KDRAY_SOAK_FIRST). scripts/soak runs many.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,22 +1,24 @@
-// What    The scene as kdray stores it, rounded to float, as a model again: what an oracle must look at to tell the error of
-//         kdray's arithmetic from that of storing.
+// What    The scene as kdray stores it, rounded to float, as a model again: what an oracle must look at to
+//         tell the error of kdray's arithmetic from that of storing.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace kdray::test {
 
-// About kdray's own centre: the rays of a picture are the same, other rays' origins are to be moved by -center.
+// About kdray's own centre: the rays of a picture are the same, other rays' origins are to be moved by
+// -center.
 struct Stored {
   scene::Scene model;
   dvec3 center;
 };
 
-// Every unit vector is one again, in double. The camera of `scene` is kept: one whose numbers float holds is stored as it is.
+// Every unit vector is one again, in double. The camera of `scene` is kept: one whose numbers float holds is
+// stored as it is.
 Stored as_stored(const scene::Scene& scene);
 
-// A camera that looks along -z from z = `distance` and whose numbers float holds, pictures of 2^k pixels and the same width and
-// height assumed.
+// A camera that looks along -z from z = `distance` and whose numbers float holds, pictures of 2^k pixels and
+// the same width and height assumed.
 scene::Camera straight_camera(double height, double distance);
 
 }  // namespace kdray::test

@@ -172,8 +172,8 @@ TEST(Build, SenselessBlocksAreRefused) {
   }
 }
 
-// Blocks and tight cells move planes, never what a leaf must hold: the checks are those of any tree. More references than
-// one thread builds, so that the top is in it too.
+// Blocks and tight cells move planes, never what a leaf must hold: the checks are those of any tree. More
+// references than one thread builds, so that the top is in it too.
 TEST(Build, BlocksAndTightCells) {
   Random random(19);
   std::vector<scene::Geometry> geometries{

@@ -63,7 +63,8 @@ class ShapeCheck {
     visit(node.right, kdtree::above(cell, axis, node.split), depth + 1);
   }
 
-  // Both sides are in the whole cell; each of its primitives is in one of the groups, and the first has the smaller centres.
+  // Both sides are in the whole cell; each of its primitives is in one of the groups, and the first has the
+  // smaller centres.
   void check_groups(std::uint32_t index, const Bounds& cell, int depth) {
     const Node node = tree_.nodes[index];
     ASSERT_LT(node.order_axis(), 3u);

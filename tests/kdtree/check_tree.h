@@ -1,7 +1,8 @@
-// What    What every tree must be: well formed, with disjoint cells, contents inside their cells, and complete.
+// What    What every tree must be: well formed, with disjoint cells, contents inside their cells, and
+//         complete.
 // Shape   Complete means what traversal needs: for every point of a primitive's surface, at least one leaf
-//         whose closed cell and contents hold the point refers to the primitive. (A ray visits all cells that hold a
-//         point of it, widened by more than the rounding of the walk, so it visits that leaf.)
+//         whose closed cell and contents hold the point refers to the primitive. (A ray visits all cells that
+//         hold a point of it, widened by more than the rounding of the walk, so it visits that leaf.)
 #pragma once
 
 #include "kdtree/shapes.h"

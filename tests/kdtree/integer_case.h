@@ -1,5 +1,5 @@
-// What    Triangles, boxes and planes with small integer coordinates, about an offset and times a power of two: exact as
-//         floats and as integers.
+// What    Triangles, boxes and planes with small integer coordinates, about an offset and times a power of
+//         two: exact as floats and as integers.
 #pragma once
 
 #include "kdtree/exact_clip.h"

@@ -46,7 +46,8 @@ TEST(Statistics, CountsAndCostByHand) {
   EXPECT_DOUBLE_EQ(s.duplication, 1.5);
   // Half areas: root 4*2+2*1+1*4 = 14; left 1*2+2*1+1*1 = 5; right 3*2+2+3 = 11; its upper half 3*1+1+3 = 7.
   EXPECT_DOUBLE_EQ(s.sah_cost, 3 + 5 * 5.0 / 14 + 3 * 11.0 / 14 + 5 * 2 * 7.0 / 14);
-  // Half areas of contents: the root's are the cell; left 1*1, right 3*1 + 1 + 3 = 7, as are those of its upper half.
+  // Half areas of contents: the root's are the cell; left 1*1, right 3*1 + 1 + 3 = 7, as are those of its
+  // upper half.
   EXPECT_DOUBLE_EQ(s.tight_cost, 3 + 5 * 1.0 / 14 + 3 * 7.0 / 14 + 5 * 2 * 7.0 / 14);
 }
 

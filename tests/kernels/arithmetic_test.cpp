@@ -1,5 +1,5 @@
-// The small arithmetic that exactness rests on, against wider host arithmetic: difference of products (sign exact,
-// 1.5 ulp), signed volumes in pairs of floats, and rounding to whole numbers.
+// The small arithmetic that exactness rests on, against wider host arithmetic: difference of products (sign
+// exact, 1.5 ulp), signed volumes in pairs of floats, and rounding to whole numbers.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -114,7 +114,8 @@ TEST_P(ArithmeticTest, SignedVolumeDecidesPointsAFewUlpOffAPlane) {
   EXPECT_GT(near_zero, 50000);  // the cases are hard: float alone could not tell
 }
 
-// Halves, whose neighbours must be even, up to where reals have no more fractions; and reals of all exponents.
+// Halves, whose neighbours must be even, up to where reals have no more fractions; and reals of all
+// exponents.
 template <class Real, class Bits>
 std::vector<Real> around_wholes(unsigned seed, Real all_whole) {
   std::mt19937_64 random(seed);

@@ -1,5 +1,5 @@
-// The cone test: every root lies on the surface and within its length, and agrees in number with a scan in double; the
-// first beyond a distance is the same, whatever the distance.
+// The cone test: every root lies on the surface and within its length, and agrees in number with a scan in
+// double; the first beyond a distance is the same, whatever the distance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -132,8 +132,8 @@ TEST_P(ConeTest, RootsLieOnTheSurfaceAndNoneIsMissing) {
   EXPECT_GT(hits, 1500);
 }
 
-// Rays from near the surface of a cone a hundred times as wide as it is high, almost along its axis: the stress suite found a root
-// 0.85 off. They come nearest to the axis thousands of heights away.
+// Rays from near the surface of a cone a hundred times as wide as it is high, almost along its axis: the
+// stress suite found a root 0.85 off. They come nearest to the axis thousands of heights away.
 TEST_P(ConeTest, AlmostAlongTheAxisOfAFlatCone) {
   const unsigned seed = 32;
   SCOPED_TRACE(seed);
@@ -253,10 +253,10 @@ TEST_P(ConeTest, NearnessKeepsEveryLineThatHits) {
   EXPECT_GT(passed_by, misses / 8);
 }
 
-// cone_test refines the root that is the first, the other where that one is not beyond t_min after all. So no t_min, however near to
-// a root, may give anything but the first of the same two that are beyond it; also of lines that all but touch the cone, whose roots
-// may have gone past each other: occlusion and closest hits ask for one and the same (the stress suite once found a shadow ray
-// that was occluded by nothing).
+// cone_test refines the root that is the first, the other where that one is not beyond t_min after all. So no
+// t_min, however near to a root, may give anything but the first of the same two that are beyond it; also of
+// lines that all but touch the cone, whose roots may have gone past each other: occlusion and closest hits
+// ask for one and the same (the stress suite once found a shadow ray that was occluded by nothing).
 TEST_P(ConeTest, TheFirstHitBeyondAnyDistanceIsOneOfTheSameTwo) {
   const unsigned seed = 33;
   SCOPED_TRACE(seed);

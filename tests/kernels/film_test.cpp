@@ -1,5 +1,5 @@
-// What a kernel adds to the film, against sums in 128 bits: rounding, lanes that share a pixel, lanes that have none, colours that
-// are no numbers, and sums at their ends.
+// What a kernel adds to the film, against sums in 128 bits: rounding, lanes that share a pixel, lanes that
+// have none, colours that are no numbers, and sums at their ends.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,8 @@ __kernel void test(__global const Case* in, __global Result* out, uint n) {
   for (int k = 0; k < 18; ++k) out[i].film[k / 3][k % 3] = in[i].film[k / 3][k % 3];
   FilmLight sum = no_light();
   for (int k = 0; k < 2; ++k) {
-    const Real3x16 light = {convert_real16(vload16(0, in[i].light[k][0])), convert_real16(vload16(0, in[i].light[k][1])),
+    const Real3x16 light = {convert_real16(vload16(0, in[i].light[k][0])),
+                            convert_real16(vload16(0, in[i].light[k][1])),
                             convert_real16(vload16(0, in[i].light[k][2]))};
     add_light(&sum, convert_lanes16(vload16(0, in[i].in[k]) != 0), light);
   }

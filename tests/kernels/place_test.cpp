@@ -1,5 +1,5 @@
-// The order of a tile's pixels: each exactly once, whatever the tile's sides, in less than four times as many places; and
-// sixteen places in a row are 4x4 pixels where the tile is as large as that.
+// The order of a tile's pixels: each exactly once, whatever the tile's sides, in less than four times as many
+// places; and sixteen places in a row are 4x4 pixels where the tile is as large as that.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The highlights' power against the host's in extended precision: at most 2 ulp wherever the result is a normal number, 1 for
-// a base of 1 and an exponent of 0, and nothing below.
+// The highlights' power against the host's in extended precision: at most 2 ulp wherever the result is a
+// normal number, 1 for a base of 1 and an exponent of 0, and nothing below.
 #include <gtest/gtest.h>
 
 #include <cmath>

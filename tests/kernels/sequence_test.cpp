@@ -1,5 +1,5 @@
-// The sequence of adaptive sampling: its first sample is the pixel's centre; the first 4, 8, ... 64 have one sample in every
-// elementary interval, whatever the pixel; and pixels differ.
+// The sequence of adaptive sampling: its first sample is the pixel's centre; the first 4, 8, ... 64 have one
+// sample in every elementary interval, whatever the pixel; and pixels differ.
 #include <gtest/gtest.h>
 
 #include <cmath>

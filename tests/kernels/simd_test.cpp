@@ -1,5 +1,5 @@
-// The operations of common/simd.clh, both forms, against answers made on the host lane by lane: the hard values of the
-// self-test at start, and random bits under every mask of 16 lanes.
+// The operations of common/simd.clh, both forms, against answers made on the host lane by lane: the hard
+// values of the self-test at start, and random bits under every mask of 16 lanes.
 #include <gtest/gtest.h>
 
 #include <random>

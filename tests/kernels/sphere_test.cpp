@@ -1,4 +1,5 @@
-// The sphere test against long double, near and from far away, where the textbook's discriminant is all noise.
+// The sphere test against long double, near and from far away, where the textbook's discriminant is all
+// noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -103,8 +104,8 @@ TEST_P(SphereTest, ATangentFromTheSphereStaysWhereItTouches) {
   }
 }
 
-// An error of e across changes the square of half the chord by 2 r e: that is all a tangent has, so such errors decide whether
-// it has roots at all, and move them by up to sqrt(2 r e).
+// An error of e across changes the square of half the chord by 2 r e: that is all a tangent has, so such
+// errors decide whether it has roots at all, and move them by up to sqrt(2 r e).
 TEST_P(SphereTest, TangentsFromTheSphereAgreeWithDouble) {
   const unsigned seed = 22;
   SCOPED_TRACE(seed);

@@ -1,5 +1,5 @@
-// The triangle test: nothing escapes from closed meshes at edges and vertices, and a ray never hits the plane that it
-// starts in. (The full stress suites are elsewhere; these are the method's own tests.)
+// The triangle test: nothing escapes from closed meshes at edges and vertices, and a ray never hits the plane
+// that it starts in. (The full stress suites are elsewhere; these are the method's own tests.)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +50,8 @@ Case make_case(const vec3& o, const vec3& d, const std::array<vec3, 3>& triangle
   return c;
 }
 
-// The 8 faces of a random octahedron around the origin: closed, every edge shared by two, every vertex by four.
+// The 8 faces of a random octahedron around the origin: closed, every edge shared by two, every vertex by
+// four.
 std::vector<std::array<vec3, 3>> octahedron(std::mt19937& random) {
   std::uniform_real_distribution<float> length(0.1f, 10), bend(-0.2f, 0.2f);
   std::array<vec3, 6> v;
@@ -157,7 +158,8 @@ TEST_P(TriangleTest, AgreesWithDoubleAwayFromEdges) {
 
 // ---- Seen edge-on
 
-// t as the wide form's walks find it, in the lanes of a vector: NaN is in no interval. Both decisions on its sign.
+// t as the wide form's walks find it, in the lanes of a vector: NaN is in no interval. Both decisions on its
+// sign.
 const char* const kLanesSource =
     "#include \"intersect/triangle.clh\"\n"
     "typedef struct Case { float origin[3], direction[3]; float v[3][3]; } Case;\n"
@@ -197,8 +199,8 @@ std::string lanes_options(int n) {
   return "-DLANES=" + type + " -DEdgeTest=EdgeTest_" + form + " -DLANE(v)=" + lane;
 }
 
-// Triangles with a ray along one of their edges, from its end or from beyond. The edge's slopes are exact, so that both of its
-// corners project to 0 and the determinant is 0.
+// Triangles with a ray along one of their edges, from its end or from beyond. The edge's slopes are exact, so
+// that both of its corners project to 0 and the determinant is 0.
 std::vector<Case> edge_on_cases(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> step(-16, 16), corner(0, 2);

@@ -1,5 +1,5 @@
-// What    Dealing subtrees out: none lost, the largest part at most as large as the best of all ways to give each part one run of
-//         neighbours, bytes kept to; and several runs where one won't do.
+// What    Dealing subtrees out: none lost, the largest part at most as large as the best of all ways to give
+//         each part one run of neighbours, bytes kept to; and several runs where one won't do.
 #include "odprt/deal.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,8 @@ std::uint64_t largest_bytes(const Bytes& bytes, const std::vector<std::uint32_t>
   return *std::max_element(sums.begin(), sums.end());
 }
 
-// The least cost of the largest run over all ways to cut into at most n_parts runs that keep to the bytes; inf: there is none.
+// The least cost of the largest run over all ways to cut into at most n_parts runs that keep to the bytes;
+// inf: there is none.
 double best_of_all(const Costs& costs, const Bytes& bytes, std::uint32_t n_parts, std::uint64_t most_bytes) {
   double best = std::numeric_limits<double>::infinity();
   const auto try_cuts = [&](auto&& self, std::size_t first, std::uint32_t left, double largest) -> void {

@@ -1,5 +1,5 @@
-// What    The ledger of rays: grants never let a level pass its capacity, whatever queues do with them; some queue can always go
-//         on; and when all has ended nothing is left.
+// What    The ledger of rays: grants never let a level pass its capacity, whatever queues do with them; some
+//         queue can always go on; and when all has ended nothing is left.
 // Shape   A random play: queues take grants, make and end rays as a launch may, and settle in any order.
 #include "odprt/ledger.h"
 
@@ -34,8 +34,8 @@ struct Play {
     return sum;
   }
 
-  // Ends some rays that are alive and makes some, as far as the grant goes and what has ended makes room. Only rays that are settled
-  // may end elsewhere, so a queue ends rays that were alive before.
+  // Ends some rays that are alive and makes some, as far as the grant goes and what has ended makes room.
+  // Only rays that are settled may end elsewhere, so a queue ends rays that were alive before.
   void settle(std::size_t queue) {
     std::vector<layout::Traffic> traffic(kSlices);
     for (std::size_t s = 0; s < kSlices; ++s)

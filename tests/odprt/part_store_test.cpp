@@ -1,4 +1,5 @@
-// What    Parts that come and go: a device holds the one that was asked for, word for word, in room that is made once.
+// What    Parts that come and go: a device holds the one that was asked for, word for word, in room that is
+//         made once.
 #include "odprt/part_store.h"
 
 #include <gtest/gtest.h>

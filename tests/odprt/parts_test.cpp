@@ -1,6 +1,6 @@
-// What    The parts of a divided scene: together they hold every leaf of the whole, each once, with the same boxes and the same
-//         numbers in their blocks; primitives that lie in several parts are known to; the directory encloses what the
-//         parts hold.
+// What    The parts of a divided scene: together they hold every leaf of the whole, each once, with the same
+//         boxes and the same numbers in their blocks; primitives that lie in several parts are known to; the
+//         directory encloses what the parts hold.
 #include "odprt/parts.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// What    The scenes that the tests of a division are run on, prepared: empty, one primitive, all kinds, a mesh.
+// What    The scenes that the tests of a division are run on, prepared: empty, one primitive, all kinds, a
+//         mesh.
 #pragma once
 
 #include <string>

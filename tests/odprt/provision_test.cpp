@@ -1,4 +1,5 @@
-// What    What a frame takes of a device's memory is what was computed beforehand, and limits are kept or refused in words.
+// What    What a frame takes of a device's memory is what was computed beforehand, and limits are kept or
+//         refused in words.
 #include "odprt/provision.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// What    Which subtrees every part holds: those with most visits for their bytes, within the bytes that there are.
+// What    Which subtrees every part holds: those with most visits for their bytes, within the bytes that
+//         there are.
 #include "odprt/replicate.h"
 
 #include <gtest/gtest.h>

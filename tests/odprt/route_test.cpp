@@ -1,8 +1,8 @@
-// What    The part that a ray asks next (kernels/odprt/route.clh), on the device, against the definition in double: of the parts not
-//         asked yet, the one whose first cell the ray enters first before its end.
-// Shape   Random cells, also flat and touching ones, and rays of all kinds, axis-parallel ones too. Where entries differ by less than
-//         the widening either may come first, and a part may be named that the ray misses by that much; never the other
-//         way round.
+// What    The part that a ray asks next (kernels/odprt/route.clh), on the device, against the definition in
+//         double: of the parts not asked yet, the one whose first cell the ray enters first before its end.
+// Shape   Random cells, also flat and touching ones, and rays of all kinds, axis-parallel ones too. Where
+//         entries differ by less than the widening either may come first, and a part may be named that the
+//         ray misses by that much; never the other way round.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,9 @@ __kernel void test(__global const Batch* in, __global Answer* out, uint n) {
   const Real3x16 o = {vload16(0, f[0]), vload16(0, f[1]), vload16(0, f[2])};
   const Real3x16 d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
   const Visited visited = {vload16(0, v[0]), vload16(0, v[1])};
-  vstore16(next_part(&directory, (int16)(-1), o, d, vload16(0, f[6]), vload16(0, f[7]), visited), 0, out[i].part);
+  const int16 part =
+      next_part(&directory, (int16)(-1), o, d, vload16(0, f[6]), vload16(0, f[7]), visited);
+  vstore16(part, 0, out[i].part);
   vstore16(part_around(&directory, (int16)(-1), o, 24), 0, out[i].around);
 }
 )";
@@ -68,7 +70,8 @@ layout::PartCell bounds_of(const layout::PartCell* first, const layout::PartCell
   return bounds;
 }
 
-// Makes the first of [first, end), which are of one part, the bounds of all behind it; and so on among those, at random.
+// Makes the first of [first, end), which are of one part, the bounds of all behind it; and so on among those,
+// at random.
 void put_in_a_tree(layout::PartCell* first, layout::PartCell* end, std::mt19937_64& random) {
   if (end - first < 2) return;
   layout::PartCell* middle =

@@ -1,5 +1,5 @@
-// What    Which queue makes which eye rays: every entry is made once, whoever takes it; queues take their own first; tiles go to
-//         the owner of what their rays enter first.
+// What    Which queue makes which eye rays: every entry is made once, whoever takes it; queues take their own
+//         first; tiles go to the owner of what their rays enter first.
 #include "odprt/shares.h"
 
 #include <gtest/gtest.h>
@@ -77,8 +77,8 @@ layout::Frame frame_from_above() {
   return frame;
 }
 
-// Part 0 on the left, part 1 on the right; behind it all part 2, but for the lowest row of tiles, which sees nothing. Parts 0 and 2 are
-// queue 0's.
+// Part 0 on the left, part 1 on the right; behind it all part 2, but for the lowest row of tiles, which sees
+// nothing. Parts 0 and 2 are queue 0's.
 TEST(Shares, TilesGoToTheOwnerOfWhatTheySeeFirst) {
   const std::vector<layout::PartCell> directory = {
       {{-4, -1, 0}, 0, {-2, 2, 1}, 0},    {{2, -1, 0}, 1, {4, 2, 1}, 6},  // the bounds of the next six

@@ -1,5 +1,5 @@
-// What    The cut of the wide form: every leaf lies in exactly one subtree, costs and bounds add up, and there are as many as were
-//         asked for where the tree has them.
+// What    The cut of the wide form: every leaf lies in exactly one subtree, costs and bounds add up, and
+//         there are as many as were asked for where the tree has them.
 #include "odprt/subtrees.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What    The oracle's shading: a recursive Whitted ray tracer, one ray at a time, as DESIGN.md section 3
+// What    The oracle's shading: a recursive Whitted ray tracer, one ray at a time, as docs/scenes.md
 //         states the model; it returns colours upward, where kdray carries weights downward.
 // Source  T. Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980; shadow
 //         terminator: J. Hanika, "Hacking the shadow terminator", Ray Tracing Gems II, 2021.

@@ -1,5 +1,5 @@
-// PDPRT as a whole: whatever the division, queues, devices, tiles, bands and failures, the picture is the same and each of
-// its rays is counted once; and the timeline and costs say what happened.
+// PDPRT as a whole: whatever the division, queues, devices, tiles, bands and failures, the picture is the
+// same and each of its rays is counted once; and the timeline and costs say what happened.
 #include "pdprt/render.h"
 
 #include <fmt/format.h>
@@ -217,7 +217,8 @@ TEST_P(RenderTest, TheTimelineTellsOfEveryLaunch) {
   }
 }
 
-// More queues than tiles: some begin a list when there are tiles left, and find that another took them. Their launches count.
+// More queues than tiles: some begin a list when there are tiles left, and find that another took them. Their
+// launches count.
 TEST_P(RenderTest, LaunchesThatFindNothingAreToldOf) {
   constexpr int kQueues = 8;
   wavefront::Schedule schedule = kSmall;

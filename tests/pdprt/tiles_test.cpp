@@ -1,5 +1,5 @@
-// Every tile comes to one queue, whatever the division, the number of queues and threads, and which of them fail; static
-// shares are equal; and a bag evens out what shares can't.
+// Every tile comes to one queue, whatever the division, the number of queues and threads, and which of them
+// fail; static shares are equal; and a bag evens out what shares can't.
 #include "pdprt/tiles.h"
 
 #include <gtest/gtest.h>

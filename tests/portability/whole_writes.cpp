@@ -1,9 +1,10 @@
-// What    Loaded before kdray (LD_PRELOAD) where Oclgrind looks for uninitialised reads: writes and fills of a part of a buffer are
-//         made writes of the whole, with what the rest holds.
+// What    Loaded before kdray (LD_PRELOAD) where Oclgrind looks for uninitialised reads: writes and fills of
+//         a part of a buffer are made writes of the whole, with what the rest holds.
 // Why     Oclgrind 21.10 gives a buffer new shadow memory at each write by the host, as large as that write
-//         (Uninitialized::hostMemoryStore). What lies behind it counts as uninitialised from then on, whatever kernels store
-//         there; and a fill is a row of writes of one pattern each (docs/design/portability.md).
-//         So a buffer that the host writes a part of counts as initialised: there the check is blind.
+//         (Uninitialized::hostMemoryStore). What lies behind it counts as uninitialised from then on,
+//         whatever kernels store there; and a fill is a row of writes of one pattern each
+//         (docs/design/portability.md). So a buffer that the host writes a part of counts as initialised:
+//         there the check is blind.
 #include <dlfcn.h>
 
 #include <cstring>

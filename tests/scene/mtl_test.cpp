@@ -112,7 +112,8 @@ TEST(WhittedFromMtl, MakesSenseOfCommonNonsense) {
   EXPECT_EQ(whitted("Ks 0.9\nNs 0\nillum 2").specular, vec3(0));
   EXPECT_EQ(whitted("Kd -1 0.5 0.5").diffuse, vec3(0, 0.5f, 0.5f));
   EXPECT_EQ(whitted("Ni 0\nTf 1 1 1\nillum 6").index, 1);
-  // Glass that says it reflects and lets through everything: shared, as Fresnel's law does where the model has it.
+  // Glass that says it reflects and lets through everything: shared, as Fresnel's law does where the model
+  // has it.
   const Material half = whitted("Ks 1 1 1\nTf 1 1 1\nNi 1.5\nillum 4");
   expect_near(half.reflect, vec3(0.5f));
   expect_near(half.transmit, vec3(0.5f));

@@ -1,5 +1,5 @@
-// What    Files that are cut off anywhere, or with some bytes changed: each either loads, as a scene that keeps all
-//         promises, or is refused in one line. Most telling under the sanitizers.
+// What    Files that are cut off anywhere, or with some bytes changed: each either loads, as a scene that
+//         keeps all promises, or is refused in one line. Most telling under the sanitizers.
 #include <gtest/gtest.h>
 
 #include <filesystem>

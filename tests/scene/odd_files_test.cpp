@@ -1,5 +1,6 @@
-// What    Every file of the "odd" test data, against the list of what should become of it (odd_files.txt): the number
-//         of triangles, or the one line with which it is refused. No file may take long or much memory.
+// What    Every file of the "odd" test data, against the list of what should become of it (odd_files.txt):
+//         the number of triangles, or the one line with which it is refused. No file may take long or much
+//         memory.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 

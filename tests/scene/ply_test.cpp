@@ -86,7 +86,8 @@ TEST(Ply, ReadsBothByteOrders) {
   }
 }
 
-// Every scalar type as a coordinate, a list's length and a list's entries; other elements and properties between.
+// Every scalar type as a coordinate, a list's length and a list's entries; other elements and properties
+// between.
 TEST(Ply, ReadsAllTypesAndSkipsTheRest) {
   const std::string header =
       binary_header(false,

@@ -1,5 +1,5 @@
-// What    Every mesh of the test data loads, with as many triangles as its list of sources counted in it with other
-//         software.
+// What    Every mesh of the test data loads, with as many triangles as its list of sources counted in it with
+//         other software.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What    The self-test on each device: rightly built kernels pass, wrong ones don't, and an outcome is remembered only for the
-//         kernels that it is of.
+// What    The self-test on each device: rightly built kernels pass, wrong ones don't, and an outcome is
+//         remembered only for the kernels that it is of.
 #include "selftest/self_test.h"
 
 #include <fmt/format.h>
@@ -66,8 +66,8 @@ TEST_P(SelfTest, TheOutcomeIsKeptAndItsProgramIsNot) {
   EXPECT_EQ(cached.builds().cache->keep(), 0u);
 }
 
-// Not a test: writes the table anew, after a change of the kernels that is meant to change bits. KnownCase then holds it
-// against closed forms. --gtest_also_run_disabled_tests --gtest_filter='*WriteTheAnswers*/0'
+// Not a test: writes the table anew, after a change of the kernels that is meant to change bits. KnownCase
+// then holds it against closed forms. --gtest_also_run_disabled_tests --gtest_filter='*WriteTheAnswers*/0'
 TEST_P(SelfTest, DISABLED_WriteTheAnswers) {
   std::ofstream table(std::filesystem::path(KDRAY_SOURCE_DIR) / "host/selftest/known_answers.inc");
   for (const Answer& a : answers_of(context()))

@@ -1,6 +1,7 @@
 // What    Rays and primitives in exact arithmetic: the oracle of the stress suite.
-// Shape   Floats are sums of powers of two and so are their sums and products: with 1024 bits of mantissa all of those are
-//         exact for coordinates of 1e-12 to 1e12, and what is not (quotients, roots) is right to some 300 digits.
+// Shape   Floats are sums of powers of two and so are their sums and products: with 1024 bits of mantissa all
+//         of those are exact for coordinates of 1e-12 to 1e12, and what is not (quotients, roots) is right to
+//         some 300 digits.
 // Source  GMP's mpf.
 #pragma once
 

@@ -1,5 +1,6 @@
-// Nothing gets out of a closed mesh: rays from inside in all directions, at vertices and points of edges, along the axes, in
-// splitting planes and from them, for meshes of all scales and far from the origin; every traversal, and each like the others.
+// Nothing gets out of a closed mesh: rays from inside in all directions, at vertices and points of edges,
+// along the axes, in splitting planes and from them, for meshes of all scales and far from the origin; every
+// traversal, and each like the others.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -60,7 +61,8 @@ dvec3 on_plane(const ClosedMesh& mesh, Random& random, int* axis) {
   p[plane.axis] = plane.at;
   return p;
 }
-// Two coordinates of it are those of a vertex or of an edge's point, so that an axis-parallel ray goes through that.
+// Two coordinates of it are those of a vertex or of an edge's point, so that an axis-parallel ray goes
+// through that.
 dvec3 facing_vertex(const ClosedMesh& mesh, Random& random, int* axis) {
   const dvec3 target = random.bits() & 1 ? vertex_of(mesh, random) : edge_point_of(mesh, random);
   dvec3 p = within(mesh, random);

@@ -1,6 +1,7 @@
 // What    Closed meshes whose edges are shared by index, and points that are surely inside of them.
-// Why     Vertices shared by index are rounded to float once, together: whatever rounding moves, an edge stays one edge and
-//         the mesh stays closed. A mesh whose triangles bring their own corners would open where equal corners round apart.
+// Why     Vertices shared by index are rounded to float once, together: whatever rounding moves, an edge
+//         stays one edge and the mesh stays closed. A mesh whose triangles bring their own corners would open
+//         where equal corners round apart.
 #pragma once
 
 #include <cstdint>
@@ -52,11 +53,12 @@ class ClosedMesh {
   };
   const std::vector<Plane>& planes() const { return planes_; }  // the tree's
 
-  // The ray's origin in the world nearest to a point in the kernels' coordinates, and where the kernels then see it: exactly,
-  // or the point is of no use and the result false.
+  // The ray's origin in the world nearest to a point in the kernels' coordinates, and where the kernels then
+  // see it: exactly, or the point is of no use and the result false.
   bool to_world(const dvec3& local, vec3* world, dvec3* seen) const;
 
-  // By its winding number about the mesh as the kernels see it: 1 inside, 0 outside, a part of 1 on the surface.
+  // By its winding number about the mesh as the kernels see it: 1 inside, 0 outside, a part of 1 on the
+  // surface.
   bool is_inside(const dvec3& point) const;
 
  private:

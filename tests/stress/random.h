@@ -1,5 +1,5 @@
-// What    Random numbers by counter: the i-th number of a stream depends on its seed and i alone, so that rays can be made by
-//         any number of threads and a failing one named by its number.
+// What    Random numbers by counter: the i-th number of a stream depends on its seed and i alone, so that
+//         rays can be made by any number of threads and a failing one named by its number.
 // Source  SplitMix64: Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
 #pragma once
 

@@ -1,4 +1,5 @@
-// Rays that are none, in rays.npy through the program: one clear line and code 1 for each; and odd rays that are rays.
+// Rays that are none, in rays.npy through the program: one clear line and code 1 for each; and odd rays that
+// are rays.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,5 @@
-// Snell's law at all angles and about the critical one: which rays are refracted and where to, against double.
+// Snell's law at all angles and about the critical one: which rays are refracted and where to, against
+// double.
 #include <gtest/gtest.h>
 
 #include <algorithm>

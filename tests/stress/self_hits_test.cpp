@@ -1,8 +1,10 @@
-// What    No ray hits the surface that it leaves: reflected, refracted and shadow rays as kdray's shading spawns them, traced by
-//         every traversal. And how exact the hits are that they leave from: t and the hit point against exact arithmetic.
-// Shape   A triangle is flat: any hit of a ray's own triangle is wrong. From outside of a sphere or a cone as well; from
-//         inside, the hit must be one of the exact roots of a ray that starts inside, exactly, else it is wrong. Excepted and
-//         counted are spheres and cones that are thinner than a few of the float steps at their coordinates.
+// What    No ray hits the surface that it leaves: reflected, refracted and shadow rays as kdray's shading
+//         spawns them, traced by every traversal. And how exact the hits are that they leave from: t and the
+//         hit point against exact arithmetic.
+// Shape   A triangle is flat: any hit of a ray's own triangle is wrong. From outside of a sphere or a cone as
+//         well; from inside, the hit must be one of the exact roots of a ray that starts inside, exactly,
+//         else it is wrong. Excepted and counted are spheres and cones that are thinner than a few of the
+//         float steps at their coordinates.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -214,14 +216,14 @@ bool ends_at_the_surface(const Kind& surface, const Ray& ray, const Departure& d
 Verdict judge(const layout::Triangle& surface, const Ray& ray, const Hit&, const Departure& departure) {
   return ends_at_the_surface(surface, ray, departure) ? Verdict::excepted : Verdict::wrong;
 }
-// Whether a point of the surface that is moved inwards by the step may come out again: on the other side, or across, where the
-// blur is longer than half of the chord at that depth.
+// Whether a point of the surface that is moved inwards by the step may come out again: on the other side, or
+// across, where the blur is longer than half of the chord at that depth.
 bool may_come_out_again(const Departure& d) {
   return 4 * d.step > d.radius || d.blur * d.blur > d.step * (2 * d.radius - d.step);
 }
 
-// From inside: the hit is what is behind the ray's way, not what it left. (Grazing, rounding moves it far; what was left lies
-// behind the origin.)
+// From inside: the hit is what is behind the ray's way, not what it left. (Grazing, rounding moves it far;
+// what was left lies behind the origin.)
 template <class Curved>
 bool is_on_the_way(const Exact3& o, const Exact3& d, const Curved& surface, float t_found) {
   return std::ranges::any_of(roots(o, d, surface), [t_found](const Exact& root) {
@@ -244,7 +246,8 @@ template <class Curved>
 Verdict judge(const Curved& surface, const Ray& ray, const Hit& hit, const Departure& departure) {
   if (ends_at_the_surface(surface, ray, departure)) return Verdict::excepted;
   const Exact3 o = exactly(ray.origin), d = exactly(ray.direction);
-  // To the outside of a tip that is thinner than the blur, a normal may be so far off that even the exact ray meets it again.
+  // To the outside of a tip that is thinner than the blur, a normal may be so far off that even the exact ray
+  // meets it again.
   if (!departure.inwards)
     return 4 * departure.step > departure.radius && is_on_the_way(o, d, surface, hit.t) ? Verdict::excepted
                                                                                         : Verdict::wrong;

@@ -1,5 +1,5 @@
-// Smooth balls of few triangles: no black pixel where the interpolated normal faces the light, and no step of colour where two
-// triangles share an edge.
+// Smooth balls of few triangles: no black pixel where the interpolated normal faces the light, and no step of
+// colour where two triangles share an edge.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,7 +65,8 @@ TEST_P(Shading, NoBlackTerminatorAndNoSteps) {
         black.row(w).wrong += wanted > 0.01 && std::abs(found - wanted) > 0.05 * wanted + 1e-4;
         if (at % kSize + 1 == kSize || !on_ball(at + 1)) continue;
         ++steps.row(w).rays;
-        // Neighbours lie far apart on a triangle that is seen nearly edge-on: there colours may change quickly.
+        // Neighbours lie far apart on a triangle that is seen nearly edge-on: there colours may change
+        // quickly.
         const double apart = std::hypot(kPixel, depth[at + 1] - depth[at]);
         steps.row(w).wrong += std::abs(p.rgb[3 * at + 3] - found) > std::max(0.05, kLargestTurn * apart);
       }

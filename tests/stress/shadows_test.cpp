@@ -1,4 +1,5 @@
-// A light on a surface, just above it and just behind it: what it shines on is lit at every pixel, or at none.
+// A light on a surface, just above it and just behind it: what it shines on is lit at every pixel, or at
+// none.
 #include <gtest/gtest.h>
 
 #include <cmath>

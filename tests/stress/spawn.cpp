@@ -57,7 +57,8 @@ __kernel void spawn(__global const Triangle* triangles, __global const VertexNor
   out += i;
   const SurfaceArrays arrays = {triangles, normals, spheres, cones};
   const Real3x16 o = gather3(in->origin), d = gather3(in->direction), light = gather3(in->light);
-  const Hits hits = {gather(&in->t), as_uint16(gather((__global const float*)&in->ref)), gather(&in->u), gather(&in->v)};
+  const Hits hits = {gather(&in->t), as_uint16(gather((__global const float*)&in->ref)), gather(&in->u),
+                     gather(&in->v)};
   const lanes16 hit = hits.ref < KDRAY_REF_INVALID;
   Surface s;
   surfaces_at(&arrays, o, d, &hits, hit, &s);

@@ -1,5 +1,5 @@
-// What    The rays that kdray's shading spawns at given hits: its own kernel code (shade/surface.clh, shade/secondary.clh) in
-//         a kernel of the test's, which writes them out.
+// What    The rays that kdray's shading spawns at given hits: its own kernel code (shade/surface.clh,
+//         shade/secondary.clh) in a kernel of the test's, which writes them out.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// Spheres in spheres a float step apart, spheres that touch, and the same sphere twice: the nearest by exact arithmetic is hit,
-// the lower number where two are one. Excepted and counted: distances that differ by less than the error of a distance.
+// Spheres in spheres a float step apart, spheres that touch, and the same sphere twice: the nearest by exact
+// arithmetic is hit, the lower number where two are one. Excepted and counted: distances that differ by less
+// than the error of a distance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -91,7 +92,8 @@ class Spheres : public testing::Test {
     return near > -slack ? near : (far > -slack ? far : kInfinity);
   }
 
-  // Whether another answer could be right if every radius were off by the error that float coordinates of size `reach` bring.
+  // Whether another answer could be right if every radius were off by the error that float coordinates of
+  // size `reach` bring.
   static bool is_undecided(const std::vector<Ball>& balls, const Ray& ray, const Nearest& wanted,
                            double reach) {
     const dvec3 o(ray.origin[0], ray.origin[1], ray.origin[2]),

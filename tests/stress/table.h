@@ -1,7 +1,7 @@
-// What    The stress suite's results: how many rays each family may spend, and the table of what came out, printed when
-//         the program ends and written as JSON.
-// Shape   KDRAY_STRESS: unset, the quick part; "full" or a number, about that many traced rays for the leaks and as many for
-//         the re-hits. KDRAY_STRESS_JSON: a file for the table.
+// What    The stress suite's results: how many rays each family may spend, and the table of what came out,
+//         printed when the program ends and written as JSON.
+// Shape   KDRAY_STRESS: unset, the quick part; "full" or a number, about that many traced rays for the leaks
+//         and as many for the re-hits. KDRAY_STRESS_JSON: a file for the table.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ struct Errors {
   std::string family;
   std::uint64_t samples = 0;
   double t_ulps = 0;  // of t itself
-  double t_facing_ulps =
-      0;  // of the largest number in play; where the ray meets the surface at 45 degrees or more
-  double point_ulps =
-      0;  // the hit point's distance from the surface, in ulps of its largest coordinate in play
+  // Of the largest number in play; where the ray meets the surface at 45 degrees or more.
+  double t_facing_ulps = 0;
+  // The hit point's distance from the surface, in ulps of its largest coordinate in play.
+  double point_ulps = 0;
   double share_of_bound = 0;  // that distance over what the kernels allow for it: must stay below 1
 };
 

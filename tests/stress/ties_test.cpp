@@ -1,5 +1,6 @@
-// Triangles that overlap in one plane: wherever several are hit, the one with the lowest number is, whatever the others' shape
-// and order, in every traversal. Coinciding triangles in any plane; overlapping ones in planes across the axes.
+// Triangles that overlap in one plane: wherever several are hit, the one with the lowest number is, whatever
+// the others' shape and order, in every traversal. Coinciding triangles in any plane; overlapping ones in
+// planes across the axes.
 #include <gtest/gtest.h>
 
 #include <array>

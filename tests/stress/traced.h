@@ -1,7 +1,8 @@
-// What    Traces batches of rays with every traversal and asks a question of each hit; counts what is wrong and what differs
-//         between the traversals, which must not happen at all.
-// Shape   make(i) gives the i-th ray, wrong(i, ray, hit) whether its closest hit is wrong. Rays are made and hits looked at in
-//         parallel. Every fourth batch is traced for occlusion too, which must say what the closest hit says.
+// What    Traces batches of rays with every traversal and asks a question of each hit; counts what is wrong
+//         and what differs between the traversals, which must not happen at all.
+// Shape   make(i) gives the i-th ray, wrong(i, ray, hit) whether its closest hit is wrong. Rays are made and
+//         hits looked at in parallel. Every fourth batch is traced for occlusion too, which must say what the
+//         closest hit says.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -80,7 +81,8 @@ inline bool same_bits(const Hit& a, const Hit& b) {
 std::string in_words(const Ray& ray);
 std::string in_words(const Hit& hit);
 
-// Adds the rays whose hits differ from the binary walk's, or whose occlusion does from `hits`, and tells of the first.
+// Adds the rays whose hits differ from the binary walk's, or whose occlusion does from `hits`, and tells of
+// the first.
 template <class Differs>
 void count_differing(const std::vector<Ray>& rays, const std::vector<Hit>& found,
                      const std::vector<Hit>& reference, const std::string& walk, const Differs& differs,

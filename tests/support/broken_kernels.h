@@ -1,5 +1,5 @@
-// What    The kernels in a folder of their own, with one place of a file changed: for KDRAY_KERNEL_DIR, to play a device that
-//         computes wrongly.
+// What    The kernels in a folder of their own, with one place of a file changed: for KDRAY_KERNEL_DIR, to
+//         play a device that computes wrongly.
 #pragma once
 
 #include <gtest/gtest.h>

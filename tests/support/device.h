@@ -29,7 +29,8 @@ class EachDevice : public testing::TestWithParam<std::string> {};
 
 }  // namespace kdray::test
 
-// Instantiates the fixture once per device. Without a device the suite is empty, which gtest is told is no error.
+// Instantiates the fixture once per device. Without a device the suite is empty, which gtest is told is no
+// error.
 #define KDRAY_FOR_EACH_DEVICE(Fixture)                    \
   GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Fixture); \
   INSTANTIATE_TEST_SUITE_P(Device, Fixture, testing::ValuesIn(kdray::test::usable_devices()))

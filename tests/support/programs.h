@@ -1,5 +1,6 @@
-// What    Programs that tests keep in the folder KDRAY_TEST_PROGRAMS, where that is set: some runtimes compile for seconds what a
-//         test launches for milliseconds, and again for every context that it opens (scripts/portability).
+// What    Programs that tests keep in the folder KDRAY_TEST_PROGRAMS, where that is set: some runtimes
+//         compile for seconds what a test launches for milliseconds, and again for every context that it
+//         opens (scripts/portability).
 #pragma once
 
 #include <cstdlib>

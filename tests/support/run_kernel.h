@@ -1,4 +1,5 @@
-// What    Runs a small test kernel over arrays: one work-item per element of `in`, which writes one element of `out`.
+// What    Runs a small test kernel over arrays: one work-item per element of `in`, which writes one element
+//         of `out`.
 // Shape   The source defines `__kernel void test(__global const IN* in, __global OUT* out, uint n)`.
 #pragma once
 

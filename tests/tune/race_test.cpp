@@ -1,4 +1,5 @@
-// What    Races on a synthetic machine: the fastest wins, the slow are dropped early, the wrong are never timed.
+// What    Races on a synthetic machine: the fastest wins, the slow are dropped early, the wrong are never
+//         timed.
 #include <gtest/gtest.h>
 
 #include "tune/synthetic.h"

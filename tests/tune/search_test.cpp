@@ -1,4 +1,5 @@
-// What    Searches on a synthetic machine: the optimum within the budget, noise, wrong candidates, and when a search ends.
+// What    Searches on a synthetic machine: the optimum within the budget, noise, wrong candidates, and when a
+//         search ends.
 #include <gtest/gtest.h>
 
 #include "kdray/error.h"

@@ -1,5 +1,5 @@
-// What    A machine that is only a formula: the time of a frame is known for every setting, its noise is seeded, its clock is what
-//         frames and compiling would have taken.
+// What    A machine that is only a formula: the time of a frame is known for every setting, its noise is
+//         seeded, its clock is what frames and compiling would have taken.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// The checks as a whole: sound scenes of all kinds pass, on every device; and a check that is given wrong geometry does cry out.
+// The checks as a whole: sound scenes of all kinds pass, on every device; and a check that is given wrong
+// geometry does cry out.
 #include "verify/probes.h"
 
 #include <gtest/gtest.h>

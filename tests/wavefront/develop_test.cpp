@@ -1,4 +1,5 @@
-// The film's sums become values of the picture: each the sum times the scale in double, rounded to float, whatever the processor's vectors.
+// The film's sums become values of the picture: each the sum times the scale in double, rounded to float,
+// whatever the processor's vectors.
 #include "wavefront/develop.h"
 
 #include <gtest/gtest.h>

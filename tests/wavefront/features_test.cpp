@@ -1,7 +1,8 @@
-// A small picture for every feature mask that matters, by a launch per stage: every bit alone, every pair whose code meets, all.
-// The scene is made to have exactly the mask's features, so a mask that is left out of the table below is not tested.
-// Everything is called from one thread and the pictures are tiny, so that scripts/portability can run these under Oclgrind's
-// checks for memory errors, data races and uninitialised reads (docs/design/portability.md).
+// A small picture for every feature mask that matters, by a launch per stage: every bit alone, every pair
+// whose code meets, all. The scene is made to have exactly the mask's features, so a mask that is left out of
+// the table below is not tested. Everything is called from one thread and the pictures are tiny, so that
+// scripts/portability can run these under Oclgrind's checks for memory errors, data races and uninitialised
+// reads (docs/design/portability.md).
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -155,9 +156,9 @@ class Subject {
   std::uint32_t features_;
 };
 
-// As on GPUs: a launch per stage, a ray per work-item; batches that aren't full, several slices and groups. Streams are filled,
-// so that a checker of uninitialised reads says nothing of the lanes behind the last ray, which hold anything by design:
-// FreshMemoryDoesNotShow is about those.
+// As on GPUs: a launch per stage, a ray per work-item; batches that aren't full, several slices and groups.
+// Streams are filled, so that a checker of uninitialised reads says nothing of the lanes behind the last ray,
+// which hold anything by design: FreshMemoryDoesNotShow is about those.
 const Schedule kByStages{.tile_width = 4,
                          .tile_height = 4,
                          .batch_size = 24,

@@ -1,5 +1,6 @@
-// What    A scene that asks everything of a wavefront: glass and mirrors in a mirror box, every kind of primitive, more lights
-//         than a round serves; and renders of it by any schedule, to be held against each other.
+// What    A scene that asks everything of a wavefront: glass and mirrors in a mirror box, every kind of
+//         primitive, more lights than a round serves; and renders of it by any schedule, to be held against
+//         each other.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +19,8 @@
 
 namespace kdray::test {
 
-// Glass and mirror spheres and cones and a smooth sail in a mirror box: every ray spawns two, to the depth limit.
+// Glass and mirror spheres and cones and a smooth sail in a mirror box: every ray spawns two, to the depth
+// limit.
 inline scene::Scene hall_of_mirrors(int n_lights = 11) {
   scene::Scene s;
   s.vertices = {{-3, -3, -3}, {3, -3, -3}, {3, 3, -3}, {-3, 3, -3},

@@ -1,5 +1,6 @@
-// What    Packets of shadow rays go from the light on (kernels/traverse/packet_frustum.clh), and what stopped one is tried first on
-//         the next (packet.clh): it changes time, never which rays are stopped, whatever walk they take.
+// What    Packets of shadow rays go from the light on (kernels/traverse/packet_frustum.clh), and what stopped
+//         one is tried first on the next (packet.clh): it changes time, never which rays are stopped,
+//         whatever walk they take.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,8 +49,8 @@ std::vector<Ray> shadow_rays(const vec3& light) {
   return rays;
 }
 
-// Towards a light from all around it: half from side by side, the others from near and far, in the planes and on the axes through
-// the light, where a ray has components of 0.
+// Towards a light from all around it: half from side by side, the others from near and far, in the planes and
+// on the axes through the light, where a ray has components of 0.
 std::vector<Ray> rays_from_all_around(const vec3& light, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(-1, 1);

@@ -1,7 +1,7 @@
-// A schedule changes time and memory, never the picture: odd batch, tile, slice and light-batch sizes, one slice, batches
-// of one ray, full pools, a launch per stage or for all of them; with more lights than a round serves, every kind of
-// primitive, several samples, and pictures of one pixel. And the pool's bound is tight enough to be a bound and loose enough
-// to hold.
+// A schedule changes time and memory, never the picture: odd batch, tile, slice and light-batch sizes, one
+// slice, batches of one ray, full pools, a launch per stage or for all of them; with more lights than a round
+// serves, every kind of primitive, several samples, and pictures of one pixel. And the pool's bound is tight
+// enough to be a bound and loose enough to hold.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -194,7 +194,8 @@ TEST_P(ScheduleTest, APoolThatIsTooSmallIsAnErrorNotAWrongPicture) {
   }
 }
 
-// However little a device gives in one piece, a schedule that was made to fit has no larger buffer, and keeps what it can.
+// However little a device gives in one piece, a schedule that was made to fit has no larger buffer, and keeps
+// what it can.
 TEST(Schedule, FitsIntoWhatADeviceGivesInOnePiece) {
   const Hall hall;
   const RenderOptions options = flatten::resolved(Hall::options(), {});

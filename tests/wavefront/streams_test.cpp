@@ -1,6 +1,7 @@
-// The streams as the traversals get them, from a batch made by hand: shadow rays light by light, without gaps and in the
-// batch's order; spawned rays in the pool of their depth, sixteen hits' refracted rays before their reflected ones; and nothing
-// written beyond a stream's capacity. For batches around multiples of sixteen.
+// The streams as the traversals get them, from a batch made by hand: shadow rays light by light, without gaps
+// and in the batch's order; spawned rays in the pool of their depth, sixteen hits' refracted rays before
+// their reflected ones; and nothing written beyond a stream's capacity. For batches around multiples of
+// sixteen.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +34,8 @@ struct Words {
   cl_uint bits(cl_uint field, cl_uint ray) const { return std::bit_cast<cl_uint>(at(field, ray)); }
 };
 
-// Rays straight down onto a floor of tinted glass at z = 0, from above the pixel's place. Every fifth one misses.
+// Rays straight down onto a floor of tinted glass at z = 0, from above the pixel's place. Every fifth one
+// misses.
 class Batch {
  public:
   Batch(const std::string& device, cl_uint n, cl_uint capacity) : context_(device, 1), n_(n) {

@@ -1,6 +1,7 @@
-// A traversal changes time, never a hit: wide, packet, batch and automatic give the binary tree's t, primitive, u and v, bit
-// for bit, on every kind of scene and ray that has fooled a kd-tree; whatever rays lie beside a ray and however many there
-// are. And the binary tree's nearest hits are those of brute force in double.
+// A traversal changes time, never a hit: wide, packet, batch and automatic give the binary tree's t,
+// primitive, u and v, bit for bit, on every kind of scene and ray that has fooled a kd-tree; whatever rays
+// lie beside a ray and however many there are. And the binary tree's nearest hits are those of brute force in
+// double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +30,8 @@ constexpr Walk kWalks[] = {{"wide", Traversal::wide},
                            {"batch", Traversal::batch},
                            {"automatic", Traversal::automatic}};
 
-// ---- Scenes. Coordinates are multiples of 2^-10, so that rays can begin exactly on planes, edges and corners.
+// ---- Scenes. Coordinates are multiples of 2^-10, so that rays can begin exactly on planes, edges and
+// corners.
 
 double snapped(double x) {
   return std::round(x * 1024) / 1024;
@@ -168,7 +170,8 @@ class RayMaker {
     size_ = 0.5 * std::max({box.extent().x, box.extent().y, box.extent().z});
   }
 
-  // All kinds. The last n_along_surfaces() run along a surface, so that any rounding decides whether they meet it.
+  // All kinds. The last n_along_surfaces() run along a surface, so that any rounding decides whether they
+  // meet it.
   std::vector<Ray> all() {
     add_random(500);
     add_coherent(24);
@@ -211,7 +214,8 @@ class RayMaker {
       rays_.push_back(r);
     }
   }
-  // One or two coordinates are those of a place on a primitive, where splits are, and do not change along the ray.
+  // One or two coordinates are those of a place on a primitive, where splits are, and do not change along the
+  // ray.
   void add_in_planes(int n) {
     for (int i = 0; i < n; ++i) {
       Ray r = make_ray(inside(), random_.direction());
@@ -259,7 +263,8 @@ class RayMaker {
   std::vector<Ray> rays_;
 };
 
-// The same rays with intervals that end and begin exactly at, just before and just behind their hits; and odd ones.
+// The same rays with intervals that end and begin exactly at, just before and just behind their hits; and odd
+// ones.
 std::vector<Ray> cut(const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
   std::vector<Ray> all;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -395,8 +400,8 @@ void expect_cuts_honoured(const std::vector<Ray>& rays, const std::vector<Hit>& 
 
 constexpr double kRounding = 2e-6;  // some float steps
 
-// Whether the nearest hit depends on rounding: on a surface that the ray begins on, on where exactly the edges and
-// silhouettes are, or on where exactly the ray is. `step`: kRounding of the coordinates in play.
+// Whether the nearest hit depends on rounding: on a surface that the ray begins on, on where exactly the
+// edges and silhouettes are, or on where exactly the ray is. `step`: kRounding of the coordinates in play.
 bool hangs_on_rounding(const oracle::World& world, const oracle::Ray& ray, const oracle::Hit& hit,
                        double step) {
   const double speed = glm::length(ray.direction);
@@ -571,8 +576,8 @@ scene::Scene moved(scene::Scene s, double scale, const dvec3& offset) {
   return s;
 }
 
-// Far from the origin, huge and tiny. The second seed has a shadow ray of next to no length beside one of some length in a
-// huge scene: the frustum from their ends overflows.
+// Far from the origin, huge and tiny. The second seed has a shadow ray of next to no length beside one of
+// some length in a huge scene: the frustum from their ends overflows.
 TEST_P(TraversalTest, AnyPlaceAndScale) {
   for (const unsigned seed : {21u, 6021u}) {
     Random random(seed);

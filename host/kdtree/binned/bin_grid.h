@@ -1,7 +1,8 @@
 // What    32 equal bins along each axis of a cell's contents, and how many references begin and end in each.
-// Shape   Beginnings are counted from the lower end and ends from the upper one, both rounded towards their end: a bound on
-//         the plane between two bins then counts as a partition by that plane treats it. Counts may be off by one where
-//         rounding moves a bound across a plane: they choose a plane and decide nothing else.
+// Shape   Beginnings are counted from the lower end and ends from the upper one, both rounded towards their
+//         end: a bound on the plane between two bins then counts as a partition by that plane treats it.
+//         Counts may be off by one where rounding moves a bound across a plane: they choose a plane and
+//         decide nothing else.
 #pragma once
 
 #include <algorithm>

@@ -17,8 +17,8 @@ struct BinPair {
   alignas(16) std::int32_t begin[4], end[4];
 };
 
-// Floors of what is clamped to the bins. Between 32 and 64 a float's first five bits behind the leading one are what it has more
-// than 32, rounded down: cheaper than a conversion.
+// Floors of what is clamped to the bins. Between 32 and 64 a float's first five bits behind the leading one
+// are what it has more than 32, rounded down: cheaper than a conversion.
 HWY_ATTR inline hn::Vec<hn::Full128<std::int32_t>> bin_of(hn::Vec<hn::Full128<float>> x) {
   static_assert(kBins == 32);
   const hn::Full128<float> d;
@@ -58,7 +58,8 @@ HWY_ATTR inline void add_counts(const BinCounts& from, BinCounts& to) {
     }
 }
 
-// Two sets of counts: neighbours often fall into one bin, and a count that was just written is slow to be read again.
+// Two sets of counts: neighbours often fall into one bin, and a count that was just written is slow to be
+// read again.
 HWY_ATTR inline void count_bins(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride,
                                 BinCounts& counts) {
   BinCounts odd;

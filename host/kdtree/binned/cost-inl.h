@@ -1,6 +1,6 @@
 // What    The expected costs of planes across one axis of a cell, as many at once as a vector has lanes.
-// Shape   In floats without contraction: the same bits on every instruction set. Lengths are taken relative to the cell's
-//         longest, so that neither tiny nor huge scenes leave the range of floats.
+// Shape   In floats without contraction: the same bits on every instruction set. Lengths are taken relative
+//         to the cell's longest, so that neither tiny nor huge scenes leave the range of floats.
 #if defined(KDRAY_BINNED_COST_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_COST_INL_H
 #undef KDRAY_BINNED_COST_INL_H
@@ -91,9 +91,9 @@ class PlaneCosts {
     return hn::IfThenElse(inside, cost, hn::Set(d, std::numeric_limits<float>::infinity()));
   }
 
-  // False if no plane is as cheap as a leaf of n references, or as that cost. Both sides are tested, and tests for n references
-  // are shared by them: at best all but one reference's are on the side of the lesser chance, which is that of the face or more,
-  // and the chances add up to 1 and that of the face.
+  // False if no plane is as cheap as a leaf of n references, or as that cost. Both sides are tested, and
+  // tests for n references are shared by them: at best all but one reference's are on the side of the lesser
+  // chance, which is that of the face or more, and the chances add up to 1 and that of the face.
   bool may_beat(float cost, std::size_t n) const {
     const float one = tests_.of(1), rest = tests_.of(n) - one;
     const float least = traverse_ + intersect_ * (one + face_ * rest);
@@ -108,7 +108,8 @@ class PlaneCosts {
   bool usable_;
 };
 
-// The axes, that of the cell's longest edge first: the best plane is likely to lie across it, and rules out planes across others.
+// The axes, that of the cell's longest edge first: the best plane is likely to lie across it, and rules out
+// planes across others.
 inline std::array<int, 3> longest_first(const Bounds& b) {
   const auto length = [&](int axis) {
     const auto k = static_cast<std::size_t>(axis);

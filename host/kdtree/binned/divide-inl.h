@@ -1,7 +1,7 @@
-// What    Hands a cell's references to the two sides of a plane, without branches: each is written to all three places, and
-//         one of the places moves on.
-// Shape   A reference that ends at the plane or lies in it is below, one that begins there is above: at most one side gets
-//         it. What straddles is clipped into both.
+// What    Hands a cell's references to the two sides of a plane, without branches: each is written to all
+//         three places, and one of the places moves on.
+// Shape   A reference that ends at the plane or lies in it is below, one that begins there is above: at most
+//         one side gets it. What straddles is clipped into both.
 #if defined(KDRAY_BINNED_DIVIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_DIVIDE_INL_H
 #undef KDRAY_BINNED_DIVIDE_INL_H

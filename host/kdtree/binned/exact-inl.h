@@ -1,6 +1,7 @@
-// What    Exact costs of planes at the references' own bounds: of all of them in small cells, and of those near the best bin's
-//         plane in larger ones.
-// Shape   Lanes are planes; every lane runs over the references. No sort: for the few dozens that are here it is slower.
+// What    Exact costs of planes at the references' own bounds: of all of them in small cells, and of those
+//         near the best bin's plane in larger ones.
+// Shape   Lanes are planes; every lane runs over the references. No sort: for the few dozens that are here it
+//         is slower.
 #if defined(KDRAY_BINNED_EXACT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_EXACT_INL_H
 #undef KDRAY_BINNED_EXACT_INL_H
@@ -32,8 +33,8 @@ struct Candidates {
   }
 };
 
-// A reference is below a plane when it begins before it or lies in it, and above when it ends behind it: one that lies in a
-// plane begins, for this purpose, a step before it.
+// A reference is below a plane when it begins before it or lies in it, and above when it ends behind it: one
+// that lies in a plane begins, for this purpose, a step before it.
 inline float begin_of(float lo, float hi) {
   return lo == hi ? next_below(lo) : lo;
 }
@@ -85,8 +86,8 @@ HWY_ATTR inline void transpose(std::span<const BoundedRef> refs, BoundsByAxis& o
   }
 }
 
-// Counting compares two numbers of 16 bits in each lane: a plane's rank with where a reference begins, and their negatives with where it
-// ends.
+// Counting compares two numbers of 16 bits in each lane: a plane's rank with where a reference begins, and
+// their negatives with where it ends.
 using Shorts = hn::Repartition<std::int16_t, Floats>;
 using VS = hn::Vec<Shorts>;
 
@@ -94,8 +95,9 @@ HWY_ATTR inline VI pair_of(VI low, VI high) {
   return hn::Or(hn::And(low, hn::Set(Ints(), 0xffff)), hn::ShiftLeft<16>(high));
 }
 
-// Ranks are in the order of bounds, but for what differs by less than 1/32000 of the cell: as with bins, such counts choose a plane and
-// decide nothing else. What lies in a plane begins, for this purpose, a step before it.
+// Ranks are in the order of bounds, but for what differs by less than 1/32000 of the cell: as with bins, such
+// counts choose a plane and decide nothing else. What lies in a plane begins, for this purpose, a step before
+// it.
 struct Ranks {
   alignas(64) std::array<std::int32_t, 2 * kSmallCell + 2 * kMostLanes> planes;
   alignas(

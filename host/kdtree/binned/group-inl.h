@@ -1,9 +1,13 @@
-// What    Groups: what is in a cell divided further, by primitives and not by a plane, so that each group has tight bounds of its own.
-// Why     Where primitives lie in each other, a plane cuts most of what it parts, and cells stay large: of boxes in heaps a ray met
-//         three times the leaves and five times the triangles that it has to (docs/design/kdtree.md).
-// Shape   The order is that of the centres along one axis; lanes are places to part it, every lane runs over the references. Costs are
-//         floats without contraction in a fixed order: the same bits at every vector width.
-// Source  Stich, Friedrich, Dietrich, "Spatial splits in bounding volume hierarchies", HPG 2009: both kinds of splits in one tree.
+// What    Groups: what is in a cell divided further, by primitives and not by a plane, so that each group has
+//         tight bounds of its own.
+// Why     Where primitives lie in each other, a plane cuts most of what it parts, and cells stay large: of
+//         boxes in heaps a ray met three times the leaves and five times the triangles that it has to
+//         (docs/design/kdtree.md).
+// Shape   The order is that of the centres along one axis; lanes are places to part it, every lane runs over
+//         the references. Costs are floats without contraction in a fixed order: the same bits at every
+//         vector width.
+// Source  Stich, Friedrich, Dietrich, "Spatial splits in bounding volume hierarchies", HPG 2009: both kinds
+//         of splits in one tree.
 #if defined(KDRAY_BINNED_GROUP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_GROUP_INL_H
 #undef KDRAY_BINNED_GROUP_INL_H
@@ -20,7 +24,8 @@ namespace kdray::kdtree::binned::HWY_NAMESPACE {
 
 inline constexpr std::size_t kSmallGroup = 48;  // up to here all ways to part a group along an axis are tried
 inline constexpr std::size_t kGroupBins = 16;
-// Cells that a budget or a depth has ended stay whole, but for who would rather wait: a million needles take three times as long to build.
+// Cells that a budget or a depth has ended stay whole, but for who would rather wait: a million needles take
+// three times as long to build.
 inline constexpr std::size_t kMostGrouped = 1024;
 inline constexpr int kMostGroupLevels = 64;
 inline constexpr float kGroupSteps = 32000;  // of a small group's longest edge: its coordinates have 16 bits
@@ -87,8 +92,9 @@ class GroupCosts {
   bool usable_;
 };
 
-// A small group's bounds and centres by axis, in steps of the hull's longest edge; what is behind the last has its centre behind all.
-// As with bins, such numbers choose where a group is parted and decide nothing else.
+// A small group's bounds and centres by axis, in steps of the hull's longest edge; what is behind the last
+// has its centre behind all. As with bins, such numbers choose where a group is parted and decide nothing
+// else.
 struct SmallGroup {
   static constexpr std::size_t kRoom = (kSmallGroup + 4 * kMostLanes - 1) / (2 * kMostLanes) *
                                        (2 * kMostLanes);  // rows begin where vectors may

@@ -1,5 +1,5 @@
-// What    A leaf, its references in ascending order: each goes to the place of its rank, which takes no branch. A sort by comparisons
-//         guesses wrongly at every other one of the few that a leaf has.
+// What    A leaf, its references in ascending order: each goes to the place of its rank, which takes no
+//         branch. A sort by comparisons guesses wrongly at every other one of the few that a leaf has.
 #if defined(KDRAY_BINNED_LEAF_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_LEAF_INL_H
 #undef KDRAY_BINNED_LEAF_INL_H

@@ -1,7 +1,7 @@
-// What    Where the references of the tree's top lie: a cell's are in pieces, and a piece is divided where it lies, as quicksort
-//         does it. What a plane makes more of them goes to memory of its own.
-// Why     Memory that is touched for the first time costs many times what warm memory costs: two copies of each level took a tenth
-//         of the build.
+// What    Where the references of the tree's top lie: a cell's are in pieces, and a piece is divided where it
+//         lies, as quicksort does it. What a plane makes more of them goes to memory of its own.
+// Why     Memory that is touched for the first time costs many times what warm memory costs: two copies of
+//         each level took a tenth of the build.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace kdray::kdtree::binned {
 
 inline constexpr std::size_t kTaskRefs = 16384;  // references to a task, and to a piece, at most
 
-// References of one cell that lie together, and their hull. There is room for one more than the piece can have: partitions write there in
-// vain.
+// References of one cell that lie together, and their hull. There is room for one more than the piece can
+// have: partitions write there in vain.
 struct Piece {
   BoundedRef* first = nullptr;
   std::size_t n = 0, room = 0;

@@ -1,8 +1,9 @@
-// What    The vectorised parts of the binned builder, compiled for several instruction sets and chosen at run time.
-// Shape   Results are the same bits at every vector width: lanes never meet but in minima, and ties go to the smaller axis,
-//         then to the smaller position.
-// Source  Popov, Guenther, Seidel, Slusallek, "Experiences with streaming construction of SAH kd-trees", RT 2006 (bins);
-//         Wald and Havran, RT 2006 (clipping); docs/design/kdtree.md for what was measured.
+// What    The vectorised parts of the binned builder, compiled for several instruction sets and chosen at run
+//         time.
+// Shape   Results are the same bits at every vector width: lanes never meet but in minima, and ties go to the
+//         smaller axis, then to the smaller position.
+// Source  Popov, Guenther, Seidel, Slusallek, "Experiences with streaming construction of SAH kd-trees", RT
+//         2006 (bins); Wald and Havran, RT 2006 (clipping); docs/design/kdtree.md for what was measured.
 #pragma once
 
 #include <span>
@@ -43,27 +44,29 @@ struct Divided {
 // Adds the bins of every stride-th reference to the counts.
 void count(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride, BinCounts& counts);
 
-// The best of the planes between bins for a cell of n references, of which every sample_stride(n)-th was counted, where it is cheaper than a leaf.
+// The best of the planes between bins for a cell of n references, of which every sample_stride(n)-th was
+// counted, where it is cheaper than a leaf.
 Plane best_plane(const BinCounts& counts, const BinGrid& grid, const Bounds& contents, std::size_t n,
                  const BuildConfig& config);
 
 // How many references are on neither side of the plane.
 std::size_t n_straddling(std::span<const BoundedRef> refs, const Plane& plane);
 
-// Leaves the references' parts below the plane in front of `refs`, behind which there is room for one more, and those above it in
-// workspace.above.
+// Leaves the references' parts below the plane in front of `refs`, behind which there is room for one more,
+// and those above it in workspace.above.
 Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::span<BoundedRef> refs,
                const Plane& plane, Workspace& workspace);
 
 // Hull of the references' bounds.
 Bounds fast_hull_of(std::span<const BoundedRef> refs);
 
-// Appends the references of a cell that is not divided by a plane, as a leaf or as groups; leaves them in another order.
+// Appends the references of a cell that is not divided by a plane, as a leaf or as groups; leaves them in
+// another order.
 void append_groups(std::span<BoundedRef> refs, const Bounds& contents, int depth, const BuildConfig& config,
                    Fragment& out);
 
-// Builds the subtree over the first n references of the workspace's stack, which has more than n; the result is
-// workspace.fragment.
+// Builds the subtree over the first n references of the workspace's stack, which has more than n; the result
+// is workspace.fragment.
 void build_subtree(const scene::Geometry& geometry, const BuildConfig& config, int max_depth, std::size_t n,
                    const Cell& cell, Workspace& workspace);
 

@@ -1,6 +1,7 @@
 // What    Builds a subtree in one thread, on a stack of references that fits the cache.
-// Shape   A cell's references are the stack's top. Those above the plane stay, those below it go on top and are built first,
-//         so that nodes come out in preorder. Recursion is as deep as the tree: 64 levels at most.
+// Shape   A cell's references are the stack's top. Those above the plane stay, those below it go on top and
+//         are built first, so that nodes come out in preorder. Recursion is as deep as the tree: 64 levels at
+//         most.
 #if defined(KDRAY_BINNED_SUBTREE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_SUBTREE_INL_H
 #undef KDRAY_BINNED_SUBTREE_INL_H
@@ -35,8 +36,8 @@ HWY_ATTR inline Plane choose_plane(std::span<const BoundedRef> refs, const Bound
   return cheaper_than_leaf(best, refs.size(), config);
 }
 
-// Whether no split of n references can be cheaper than a leaf: both children would be tested, and their chances add up to 1
-// at least, so a split costs Ct + Ci or more. (The factor is for rounding.)
+// Whether no split of n references can be cheaper than a leaf: both children would be tested, and their
+// chances add up to 1 at least, so a split costs Ct + Ci or more. (The factor is for rounding.)
 inline bool is_leaf_anyway(std::size_t n, const BuildConfig& config) {
   return n <= 1 || (n <= static_cast<std::size_t>(config.block) &&
                     config.cost_traverse > 2e-3 * static_cast<double>(n) * config.cost_intersect);
@@ -53,7 +54,8 @@ class SubtreeBuilder {
         straddlers_(workspace.straddlers),
         out_(workspace.fragment) {}
 
-  // The references are stack[first, first + n), with nothing of use behind them. Returns the hull of what the leaves hold.
+  // The references are stack[first, first + n), with nothing of use behind them. Returns the hull of what the
+  // leaves hold.
   HWY_ATTR Box build(std::size_t first, std::size_t n, const Cell& cell) {
     const std::span<BoundedRef> refs(stack_.data() + first, n);
     if (is_leaf_anyway(n, config_) || cell.depth >= max_depth_) return append_leaf(refs, cell);

@@ -15,8 +15,8 @@ namespace kdray::kdtree::binned {
 
 namespace {
 
-// Cells of so many references, of n in all, are built in one thread: enough of them for any number of threads, each small
-// enough for a core's cache.
+// Cells of so many references, of n in all, are built in one thread: enough of them for any number of
+// threads, each small enough for a core's cache.
 std::size_t subtree_refs(std::size_t n) {
   return std::clamp<std::size_t>(n / 32, 2048, 32768);
 }
@@ -158,8 +158,8 @@ class TopBuilder {
     return planes;
   }
 
-  // A cell is divided where it lies, so that whether its parts fit the budget must be known before. Where even twice the references
-  // would fit, nothing need be counted.
+  // A cell is divided where it lies, so that whether its parts fit the budget must be known before. Where
+  // even twice the references would fit, nothing need be counted.
   static void drop_unaffordable(const std::vector<TopCell>& level, std::vector<Task>& tasks,
                                 std::vector<Plane>& planes) {
     const auto tight = [&](std::size_t c) {
@@ -180,8 +180,8 @@ class TopBuilder {
       if (tight(c) && !fits_budget(level[c].cell.budget, level[c].n, straddling[c])) planes[c] = {};
   }
 
-  // Pieces on one side go there as they are. Of others, what is below stays in front and what is above goes behind it; the task's
-  // other references above, one for each that straddles, to a piece of their own.
+  // Pieces on one side go there as they are. Of others, what is below stays in front and what is above goes
+  // behind it; the task's other references above, one for each that straddles, to a piece of their own.
   void divide_task(const TopCell& cell, const Plane& plane, Task& t) {
     Workspace& workspace = workspaces_.local();
     std::vector<BoundedRef>& others = workspace.others;

@@ -1,7 +1,7 @@
-// What    The binned builder: the top of the tree level by level with all threads at work on every level, then subtrees, the
-//         largest first, each in one thread.
-// Shape   The tree is the same for any number of threads and on any instruction set: what is chosen depends on the
-//         references and their order alone, which neither changes.
+// What    The binned builder: the top of the tree level by level with all threads at work on every level,
+//         then subtrees, the largest first, each in one thread.
+// Shape   The tree is the same for any number of threads and on any instruction set: what is chosen depends
+//         on the references and their order alone, which neither changes.
 #pragma once
 
 #include <memory>

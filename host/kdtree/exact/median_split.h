@@ -1,6 +1,7 @@
-// What    The splits of the thesis that look at no costs, for comparison: the middle of the cell, the median of what it holds.
-// Shape   A leaf is made of kMedianLeaf references or fewer, one full block of the wide form; else where the depth or the
-//         budget is used up, or no plane of the rule separates anything.
+// What    The splits of the thesis that look at no costs, for comparison: the middle of the cell, the median
+//         of what it holds.
+// Shape   A leaf is made of kMedianLeaf references or fewer, one full block of the wide form; else where the
+//         depth or the budget is used up, or no plane of the rule separates anything.
 // Source  Kaplan 1985 (spatial median); Bentley 1975 (object median).
 #pragma once
 

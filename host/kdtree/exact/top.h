@@ -1,4 +1,5 @@
-// What    The exact builder: every cell is split at the least of all planes' costs; large cells by all threads together.
+// What    The exact builder: every cell is split at the least of all planes' costs; large cells by all
+//         threads together.
 // Shape   Where a subtree begins depends on the number of references only, so threads never show in the tree.
 #pragma once
 

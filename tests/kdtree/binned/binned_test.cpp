@@ -1,5 +1,5 @@
-// The binned builder: the same tree on every instruction set, clipping that contains what is there, planes that are the best
-// there are.
+// The binned builder: the same tree on every instruction set, clipping that contains what is there, planes
+// that are the best there are.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -101,7 +101,8 @@ void expect_contains(const Bounds& found, const ExactBounds& exact, float offset
 }
 
 void expect_tight(const Bounds& found, const ExactBounds& exact, float offset, float scale, int size) {
-  // The pads: 8u of the edge, 4u of the coordinate, and the rounding of the result; and what is for underflow.
+  // The pads: 8u of the edge, 4u of the coordinate, and the rounding of the result; and what is for
+  // underflow.
   const long double loose =
       8.0L * std::numeric_limits<float>::epsilon() * (std::abs(offset) + 2 * size) + 0x1p-139L / scale;
   for (int k = 0; k < 3; ++k) {

@@ -97,7 +97,8 @@ BuildConfig grouped(int block, double each) {
   return c;
 }
 
-// Every node of the groups, from the whole cell down. The builder's numbers have 1/32000 of the hull's longest edge.
+// Every node of the groups, from the whole cell down. The builder's numbers have 1/32000 of the hull's
+// longest edge.
 TEST(Groups, NoOtherPartIsCheaper) {
   Random random(61);
   int n_parted = 0, n_whole = 0;
@@ -149,7 +150,8 @@ TEST(Groups, LargeHeapsComeApart) {
   }
 }
 
-// Such cells are there where a budget has ended the planes: the time that they would take is for `best` alone.
+// Such cells are there where a budget has ended the planes: the time that they would take is for `best`
+// alone.
 TEST(Groups, HugeCellsAreForThoseWhoWait) {
   Random random(64);
   const auto refs = random_refs(random, 1100, 0.5f);

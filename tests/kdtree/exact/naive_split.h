@@ -19,7 +19,8 @@ struct NaiveSplit {
   long double cost = std::numeric_limits<long double>::infinity();
 };
 
-// Tests that a leaf takes, in blocks of `block`: with blocks of several, a thousandth more for each reference.
+// Tests that a leaf takes, in blocks of `block`: with blocks of several, a thousandth more for each
+// reference.
 long double naive_tests(std::size_t n, const kdtree::BuildConfig& config);
 
 // The cost of one split; infinite where the plane doesn't cut the cell and nothing lies in it.
