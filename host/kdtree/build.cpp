@@ -35,7 +35,7 @@ void check(const BuildConfig& c, std::size_t n) {
 
 // How much more Ct counts where cells are divided into groups: what a plane would save of their tests, groups
 // save mostly. Cones are dear to test, and planes in the end the better fence around them
-// (docs/design/kdtree.md).
+// (docs/logbook/kdtree.md).
 double grouped_factor(const scene::Geometry& geometry, const BuildConfig& config) {
   constexpr double kGrouped = 6, kConesFactor = 7;
   if (!config.groups || config.small_cells) return 1;

@@ -8,7 +8,7 @@
 
 namespace kdray::kdtree {
 
-// How much time goes into a tree; docs/design/kdtree.md has what each costs and gains.
+// How much time goes into a tree; docs/logbook/kdtree.md has what each costs and gains.
 enum class Quality {
   fast,      // as balanced, but inner nodes count double: larger leaves, sooner
   balanced,  // planes between bins, and exact ones near the best of them, on cells as tight as their contents

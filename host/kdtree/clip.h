@@ -1,5 +1,5 @@
 // What    "Perfect splits": the bounds of the part of a primitive's surface inside a cell.
-// Shape   All bounds contain what they bound, whatever the rounding (docs/design/kdtree.md has the proofs);
+// Shape   All bounds contain what they bound, whatever the rounding (docs/design/clipping.md has the proofs);
 //         an empty result proves that the surface does not meet the closed cell.
 #pragma once
 

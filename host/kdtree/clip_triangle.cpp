@@ -3,7 +3,7 @@
 // Shape   The original triangle is clipped against the cell widened by kWiden*M, M its largest coordinate;
 //         the polygon is bounded, widened by the same and rounded outward to float. A computed crossing is
 //         off by less than 16*2^-53*M and at most seven planes follow each other, so the error stays below
-//         112*2^-53*M < kWiden*M (docs/design/kdtree.md). An empty polygon is therefore a proof.
+//         112*2^-53*M < kWiden*M (docs/design/clipping.md). An empty polygon is therefore a proof.
 
 #include <cmath>
 

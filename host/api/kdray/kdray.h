@@ -258,8 +258,8 @@ class Renderer {
   // RenderOptions::timeline asks for it.
   std::string timeline() const;
 
-  // JSON: seconds, rays, tree, memory, features, device, mode of what has been done so far (DESIGN.md section
-  // 2).
+  // JSON: seconds, rays, tree, memory, features, device and mode of what has been done so far
+  // (docs/cli.md, "Statistics").
   std::string statistics() const;
 
  private:

@@ -5,7 +5,7 @@
 // Error   A crossing a + t(b - a) in floats, t = (s - a_x)/(b_x - a_x) in [0, 1]: t has relative error 3u, b
 //         - a and the product u each, the sum u of itself; in all at most 5.1u|b - a| + u|p|, and taking the
 //           pad away adds u|p|. The pad
-//         is 8u|b - a| + 4u|p| + 2^-140 (u = 2^-24; the last for what underflows). docs/design/kdtree.md.
+//         is 8u|b - a| + 4u|p| + 2^-140 (u = 2^-24; the last for what underflows). docs/design/clipping.md.
 #if defined(KDRAY_BINNED_CLIP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_CLIP_INL_H
 #undef KDRAY_BINNED_CLIP_INL_H

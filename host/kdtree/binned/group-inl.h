@@ -2,7 +2,7 @@
 //         tight bounds of its own.
 // Why     Where primitives lie in each other, a plane cuts most of what it parts, and cells stay large: of
 //         boxes in heaps a ray met three times the leaves and five times the triangles that it has to
-//         (docs/design/kdtree.md).
+//         (docs/logbook/kdtree.md).
 // Shape   The order is that of the centres along one axis; lanes are places to part it, every lane runs over
 //         the references. Costs are floats without contraction in a fixed order: the same bits at every
 //         vector width.

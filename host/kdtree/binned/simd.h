@@ -3,7 +3,7 @@
 // Shape   Results are the same bits at every vector width: lanes never meet but in minima, and ties go to the
 //         smaller axis, then to the smaller position.
 // Source  Popov, Guenther, Seidel, Slusallek, "Experiences with streaming construction of SAH kd-trees", RT
-//         2006 (bins); Wald and Havran, RT 2006 (clipping); docs/design/kdtree.md for what was measured.
+//         2006 (bins); Wald and Havran, RT 2006 (clipping); docs/logbook/kdtree.md for what was measured.
 #pragma once
 
 #include <span>
