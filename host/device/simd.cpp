@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -17,8 +18,7 @@ namespace kdray::device {
 
 namespace {
 
-constexpr const char* kFile = "common/simd_test.cl";
-constexpr const char* kKernel = "simd_test";
+using SimdTest = kernels::SimdTest;
 
 std::string options_for(Simd form) {
   return "-cl-std=CL1.2 " + build_option(form);
@@ -34,20 +34,21 @@ bool processor_has_avx512() {
 #endif
 }
 
-// The x86 form's kernel, or an empty one where the compiler refuses it: an answer, not an error, hence no
-// report of it.
-cl::Kernel try_x86_build(const Opened& opened, const Builds& builds) {
+// The x86 form's kernel, or none where the compiler refuses it: an answer, not an error, hence no report of
+// it.
+std::optional<Kernel<SimdTest>> try_x86_build(const Opened& opened, const Builds& builds) {
   try {
     std::string log;
-    const cl::Program program =
-        try_build(opened.context, opened.devices, expand_source(kFile), options_for(Simd::x86), builds, log);
-    return program() == nullptr ? cl::Kernel() : cl::Kernel(program, kKernel);
-  } catch (const cl::Error&) {
-    return {};
+    const cl::Program program = try_build(opened.context, opened.devices, expand_source(SimdTest::kFile),
+                                          options_for(Simd::x86), builds, log);
+    if (program() != nullptr) return Kernel<SimdTest>(program);
+  } catch (const cl::Error&) {  // refused in another way
+  } catch (const Error&) {
   }
+  return std::nullopt;
 }
 
-std::string difference_in(const Opened& opened, const cl::Kernel& kernel) {
+std::string difference_in(const Opened& opened, Kernel<SimdTest>& kernel) {
   const std::vector<layout::SimdCase> cases = known_cases();
   return first_difference(cases, run_simd_test(opened, kernel, cases));
 }
@@ -64,9 +65,11 @@ std::string asked_for() {
 
 void check_portable(const FoundDevice& found, const Opened& opened, const Builds& builds) {
   const cl::Program program =
-      build_program(opened.context, opened.devices, kFile, options_for(Simd::portable), builds);
-  const std::string difference = checked("testing " + found.info.name,
-                                         [&] { return difference_in(opened, cl::Kernel(program, kKernel)); });
+      build_program(opened.context, opened.devices, SimdTest::kFile, options_for(Simd::portable), builds);
+  const std::string difference = checked("testing " + found.info.name, [&] {
+    Kernel<SimdTest> kernel(program);
+    return difference_in(opened, kernel);
+  });
   if (!difference.empty())
     throw Error(
         ErrorCode::no_device,
@@ -85,7 +88,7 @@ std::string build_option(Simd form) {
   return form == Simd::x86 ? "-DKDRAY_SIMD_X86=1" : "-DKDRAY_SIMD_X86=0";
 }
 
-std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, cl::Kernel kernel,
+std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, Kernel<SimdTest>& kernel,
                                                const std::vector<layout::SimdCase>& cases) {
   std::vector<layout::SimdAnswers> answers(cases.size());
   const std::size_t in_bytes = cases.size() * sizeof(layout::SimdCase);
@@ -93,11 +96,11 @@ std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, cl::Kernel 
   const cl::Buffer in(opened.context, CL_MEM_READ_ONLY, in_bytes);
   const cl::Buffer out(opened.context, CL_MEM_WRITE_ONLY, out_bytes);
   const cl::CommandQueue& queue = opened.queues.front();
-  kernel.setArg(0, in);
-  kernel.setArg(1, static_cast<cl_uint>(cases.size()));
-  kernel.setArg(2, out);
+  kernel.set(SimdTest::cases, in)
+      .set(SimdTest::n, static_cast<cl_uint>(cases.size()))
+      .set(SimdTest::answers, out);
   queue.enqueueWriteBuffer(in, CL_TRUE, 0, in_bytes, cases.data());
-  queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+  queue.enqueueNDRangeKernel(kernel.ready(), cl::NullRange, cl::NDRange(1), cl::NDRange(1));
   queue.enqueueReadBuffer(out, CL_TRUE, 0, out_bytes, answers.data());
   return answers;
 }
@@ -109,10 +112,10 @@ std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, cl::Kernel 
 std::string why_no_x86(const FoundDevice& found, const Opened& opened, const Builds& builds) {
   if (!processor_has_avx512()) return "the processor has no AVX-512 (F, VL, DQ and BW)";
   if (found.info.kind != "cpu") return "the device is not a CPU";
-  const cl::Kernel kernel = try_x86_build(opened, builds);
-  if (kernel() == nullptr) return "the device's compiler refuses the AVX-512 builtins";
+  std::optional<Kernel<SimdTest>> kernel = try_x86_build(opened, builds);
+  if (!kernel) return "the device's compiler refuses the AVX-512 builtins";
   try {
-    const std::string difference = difference_in(opened, kernel);
+    const std::string difference = difference_in(opened, *kernel);
     return difference.empty() ? "" : "the self-test fails at " + difference;
   } catch (const cl::Error& error) {
     return fmt::format("the self-test fails: {} gave {}", error.what(), code_name(error.err()));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "device/builds.h"
+#include "device/kernel.h"
 #include "device/platform.h"
 #include "layout/simd_test.layout.h"
 
@@ -34,7 +35,7 @@ Simd probe_simd(const FoundDevice& found, const Opened& opened, const Builds& bu
 std::string why_no_x86(const FoundDevice& found, const Opened& opened, const Builds& builds = {});
 
 // What the device answers to the cases, by the kernel of common/simd_test.cl. Throws cl::Error.
-std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, cl::Kernel kernel,
+std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, Kernel<kernels::SimdTest>& kernel,
                                                const std::vector<layout::SimdCase>& cases);
 
 }  // namespace kdray::device

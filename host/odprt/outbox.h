@@ -33,6 +33,12 @@ class Outbox {
   const cl::Buffer& counts() const { return counts_; }
   std::size_t bytes() const;
 
+  // For a kernel that fills the outbox, or takes rays out of it.
+  template <template <class> class Kernel, class K>
+  void set_arguments(Kernel<K>& kernel) const {
+    kernel.set(K::sent_rays, rays_).set(K::sent_shadow_rays, shadow_rays_).set(K::sent_counts, counts_);
+  }
+
   // The counts as the last launch left them, read by the queue that sends: rays, then shadow rays, by place
   // and slice.
   std::vector<layout::u32>& n() { return n_; }

@@ -10,8 +10,6 @@ namespace kdray::odprt {
 
 namespace {
 
-constexpr cl_uint kGeometryArguments = 9;  // KDRAY_SCENE_PARAMETERS
-
 // Entries, and behind them two words for each sample; what is read beyond the last is left out.
 std::size_t list_words(const WorkRoom& room) {
   return room.entries + (room.samples > 0 ? 2 * room.samples + KDRAY_LANES : 0);
@@ -66,9 +64,8 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
                                        true, film_made_)),
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
       inbox_(context, plan.inbox),
-      wave_("wave",
-            programs.kernel("odprt/wave.cl", "travel_wave", features | KDRAY_FEATURE_NUMBERS, traversal)),
-      receive_("receive", programs.kernel("odprt/receive.cl", "receive", 0)) {
+      wave_(programs.kernel<kernels::TravelWave>(features | KDRAY_FEATURE_NUMBERS, traversal)),
+      receive_(programs.kernel<kernels::Receive>(0)) {
   bytes_ += inbox_.bytes() + room.places * 3 * sizeof(layout::i64);
   if (!directory.empty())
     queue_.enqueueWriteBuffer(cells_, CL_TRUE, 0, directory.size_bytes(), directory.data());
@@ -81,6 +78,29 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
   travel_.out_shadow_capacity = plan.outbox.shadow_capacity;
   travel_.shadow_pool = plan.shadow_pool;
   travel_.shadow_pool_capacity = plan.shadow_pool + 2 * KDRAY_LANES;
+  set_arguments(wave_);
+  set_arguments(receive_);
+}
+
+// What doesn't change from launch to launch.
+template <class K>
+void Worker::set_arguments(wavefront::Stage<K>& stage) {
+  KDRAY_SET_WHERE_TAKEN(K, stage, frame, frame_buffer_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, travel, travel_buffer_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, n_waves, plan_.n_waves);
+  KDRAY_SET_WHERE_TAKEN(K, stage, cells, cells_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, tiles, tiles_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, slices, slice_buffer_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, grants, grant_buffer_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, traffic, traffic_buffer_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, pool, pool_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, batch, batch_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, hits, hits_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, shadow_rays, shadow_rays_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, occluded, occluded_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, shadow_pool, shadow_pool_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, film, film_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, visits, visit_buffer_);
 }
 
 // A command may still be running after an error.
@@ -142,10 +162,8 @@ void Worker::serve(const LoadedPart& part, std::uint32_t census_every) {
   travel_.n_subtrees = census_every > 0 ? part.n_subtrees : 0;
   travel_.census_every = std::max(census_every, 1u);
   queue_.enqueueWriteBuffer(travel_buffer_, CL_FALSE, 0, sizeof travel_, &travel_);
-  wave_.set_arguments(part.scene.set_tree_arguments(wave_.kernel()), part.scene.normals, part.scene.materials,
-                      part.scene.lights, frame_buffer_, travel_buffer_, cells_, part.subtrees,
-                      cl_uint{plan_.n_waves}, tiles_, cl_uint{0}, slice_buffer_, grant_buffer_,
-                      traffic_buffer_, pool_, batch_, hits_, shadow_rays_, occluded_, shadow_pool_, film_);
+  part.scene.set_arguments(wave_);
+  wave_.set(kernels::TravelWave::subtrees, part.subtrees);
 }
 
 void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
@@ -162,10 +180,11 @@ void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
 }
 
 void Worker::receive(const Outbox& outbox, std::uint32_t place) {
-  receive_.set_arguments(0, frame_buffer_, travel_buffer_, cl_uint{place}, cl_uint{outbox.shape().n_places},
-                         cl_uint{outbox.shape().ray_capacity}, cl_uint{outbox.shape().shadow_capacity},
-                         outbox.rays(), outbox.shadow_rays(), outbox.counts(), slice_buffer_, traffic_buffer_,
-                         pool_, shadow_pool_);
+  using K = kernels::Receive;
+  outbox.set_arguments(receive_);
+  receive_.set(K::place, place).set(K::n_places, outbox.shape().n_places);
+  receive_.set(K::ray_capacity, outbox.shape().ray_capacity);
+  receive_.set(K::shadow_capacity, outbox.shape().shadow_capacity);
   receive_.launch(queue_, plan_.n_slices, 1);
 }
 
@@ -204,11 +223,10 @@ std::uint64_t Worker::receive(Mail& mail) {
 }
 
 void Worker::launch(std::span<const layout::Grant> grants, Outbox& outbox) {
-  constexpr cl_uint kTilesArgument = kGeometryArguments + 9, kOutboxArguments = kGeometryArguments + 20;
   queue_.enqueueWriteBuffer(grant_buffer_, CL_FALSE, 0, grants.size_bytes(), grants.data());
   queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
-  wave_.set_arguments(kTilesArgument, static_cast<cl_uint>(list_.size()));
-  wave_.set_arguments(kOutboxArguments, outbox.rays(), outbox.shadow_rays(), outbox.counts(), visit_buffer_);
+  wave_.set(kernels::TravelWave::n_tiles, static_cast<cl_uint>(list_.size()));
+  outbox.set_arguments(wave_);
   wave_.launch(queue_, plan_.n_slices, 1);
   queue_.enqueueReadBuffer(outbox.counts(), CL_FALSE, 0, outbox.n().size() * sizeof(layout::u32),
                            outbox.n().data());

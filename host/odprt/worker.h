@@ -108,6 +108,8 @@ class Worker {
 
  private:
   cl::Buffer make(std::size_t bytes, const std::string& what);
+  template <class K>
+  void set_arguments(wavefront::Stage<K>& stage);
   cl::Buffer make_pool(std::size_t n_words);
   cl::Buffer make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
                          const std::string& what);
@@ -131,7 +133,8 @@ class Worker {
   std::vector<std::vector<float>>
       stashed_;   // what is being read of the pools: here, since after an error a read may go on
   Outbox inbox_;  // of one part: rays from the host's memory
-  wavefront::Stage wave_, receive_;
+  wavefront::Stage<kernels::TravelWave> wave_;
+  wavefront::Stage<kernels::Receive> receive_;
 };
 
 }  // namespace kdray::odprt

@@ -55,15 +55,17 @@ std::vector<layout::Departure> Tracer::departures(std::span<const Ray> rays, std
   std::vector<layout::KnownHit> known(hits.size());
   for (std::size_t i = 0; i < hits.size(); ++i)
     known[i] = {hits[i].t, ref_of_[static_cast<std::size_t>(hits[i].primitive)], hits[i].u, hits[i].v};
-  wavefront::Stage stage("depart", programs_.kernel("shade/depart.cl", "depart", scene_.features));
+  using K = kernels::Depart;
+  wavefront::Stage stage(programs_.kernel<K>(scene_.features));
   device::checked("finding where rays leave", [&] {
     const cl::Buffer in_rays = context_.upload_copy(rays.data(), rays.size_bytes(), "the rays");
     const cl::Buffer in_hits = context_.upload_copy(known.data(), known.size() * sizeof known[0], "the hits");
     const std::size_t bytes = departures.size() * sizeof departures[0];
     const cl::Buffer out = context_.buffer(CL_MEM_WRITE_ONLY, bytes, "the rays' origins");
     cl::CommandQueue queue = context_.queues().front();
-    stage.set_arguments(0, buffers_.triangles, buffers_.normals, buffers_.spheres, buffers_.cones,
-                        static_cast<cl_uint>(rays.size()), in_rays, in_hits, out);
+    buffers_.set_arguments(stage);
+    stage.set(K::n_rays, static_cast<cl_uint>(rays.size()));
+    stage.set(K::rays, in_rays).set(K::hits, in_hits).set(K::departures, out);
     stage.launch(queue, (rays.size() + KDRAY_LANES - 1) / KDRAY_LANES, 1);
     queue.enqueueReadBuffer(out, CL_TRUE, 0, bytes, departures.data());
   });

@@ -57,17 +57,17 @@ std::vector<film::Channel> render_channels(const device::Context& context, const
   const std::size_t chunk = std::min(n_pixels, kPixelsPerLaunch);
   const cl::Buffer out = context.buffer(CL_MEM_WRITE_ONLY, chunk * kPlanes * sizeof(float), "the channels");
   const cl::Buffer frame_buffer = context.buffer(CL_MEM_READ_ONLY, sizeof frame, "the frame");
-  Stage stage("channels", programs.kernel("film/channels.cl", "channels", features | KDRAY_FEATURE_COST,
-                                          Traversal::binary, precision));
+  using K = kernels::Channels;
+  Stage stage(programs.kernel<K>(features | KDRAY_FEATURE_COST, Traversal::binary, precision));
   cl::CommandQueue queue = context.queues().front();
   std::vector<float> values(chunk * kPlanes);
   device::checked("rendering the channels", [&] {
     queue.enqueueWriteBuffer(frame_buffer, CL_TRUE, 0, sizeof frame, &frame);
-    const cl_uint first_argument = scene.set_tree_arguments(stage.kernel());
+    scene.set_arguments(stage);
+    stage.set(K::frame, frame_buffer).set(K::channels, out);
     for (std::size_t first = 0; first < n_pixels; first += chunk) {
       const std::size_t n = std::min(chunk, n_pixels - first);
-      stage.set_arguments(first_argument, scene.normals, frame_buffer, static_cast<cl_uint>(first),
-                          static_cast<cl_uint>(n), out);
+      stage.set(K::first_pixel, static_cast<cl_uint>(first)).set(K::n_pixels, static_cast<cl_uint>(n));
       stage.launch(queue, (n + KDRAY_LANES - 1) / KDRAY_LANES, kWorkGroup);
       queue.enqueueReadBuffer(out, CL_TRUE, 0, n * kPlanes * sizeof(float), values.data());
       for (std::size_t i = 0; i < n; ++i)

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "base/timer.h"
-#include "device/opencl_error.h"
 #include "kernels.h"
 #include "layout/features.h"
 #include "layout/traversal.h"
@@ -139,12 +138,9 @@ void Programs::build(const std::vector<Wanted>& wanted) {
   build_seconds_ += timer.seconds();
 }
 
-cl::Kernel Programs::kernel(const std::string& file, const std::string& name, std::uint32_t features,
-                            Traversal traversal, Precision precision) {
-  const Wanted wanted{file, features, traversal, precision};
+const cl::Program& Programs::program(const Wanted& wanted) {
   build({wanted});
-  const cl::Program& program = programs_.at(key_of(wanted));
-  return device::checked("making the kernel " + name, [&] { return cl::Kernel(program, name.c_str()); });
+  return programs_.at(key_of(wanted));
 }
 
 }  // namespace kdray::wavefront

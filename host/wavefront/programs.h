@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "device/context.h"
+#include "device/kernel.h"
 #include "flatten/wide.h"
 #include "kdray/kdray.h"
 
@@ -23,12 +24,15 @@ class Programs {
   // The constants of the walks from now on; what was built with others is kept.
   void use(const Tuning& tuning);
 
-  // The kernel `name` of `file` ("traverse/trace_closest.cl"), built for the bits of `features` that the file
+  // The kernel that K describes (kernels::TraceClosest), built for the bits of `features` that its file
   // reads. A new kernel object each time: arguments are the caller's own.
   // `traversal` (never Traversal::automatic where a file is built for one walk) is for the files that walk
   // the tree.
-  cl::Kernel kernel(const std::string& file, const std::string& name, std::uint32_t features,
-                    Traversal traversal = Traversal::binary, Precision precision = Precision::float32);
+  template <class K>
+  device::Kernel<K> kernel(std::uint32_t features, Traversal traversal = Traversal::binary,
+                           Precision precision = Precision::float32) {
+    return device::Kernel<K>(program({K::kFile, features, traversal, precision}));
+  }
 
   struct Wanted {
     std::string file;
@@ -48,6 +52,7 @@ class Programs {
   using Key = std::tuple<std::string, std::uint32_t, Traversal, Precision, std::string>;
 
   Key key_of(const Wanted& wanted) const;
+  const cl::Program& program(const Wanted& wanted);
   std::string options_for(std::uint32_t features, Traversal traversal, Precision precision) const;
 
   const device::Context* context_;

@@ -17,7 +17,6 @@ namespace {
 
 static_assert(sizeof(Ray) == sizeof(layout::QueryRay) && sizeof(Hit) == sizeof(layout::QueryHit));
 
-constexpr cl_uint kCountArgument = 4;  // the number of rays, behind the tree's arguments
 constexpr std::int32_t kInvalid = -2;  // KDRAY_QUERY_INVALID of query.clh
 
 bool all_finite(const float (&v)[3]) {
@@ -52,9 +51,9 @@ float world_max(const Box& bounds) {
 // PoCL compiles a kernel for good at its first launch: here one of as many work-items that finds no rays, not
 // in the time of tracing.
 template <class Launch>
-void warm_up(const device::Context& context, Stage& stage, cl_uint first_argument, const Launch& launch) {
+void warm_up(const device::Context& context, Stage<kernels::TraceQuery>& stage, const Launch& launch) {
   const device::AtWork compiling(context.builds());
-  stage.set_arguments(first_argument + kCountArgument, cl_uint{0});
+  stage.set(kernels::TraceQuery::n_rays, cl_uint{0});
   launch();
 }
 
@@ -72,30 +71,28 @@ QueryResult trace_query(const device::Context& context, const SceneBuffers& scen
       {rays.size(), rays_per_launch, static_cast<std::size_t>(context.info().max_allocation / sizeof(Ray))});
   const cl::Buffer ray_buffer = context.buffer(CL_MEM_READ_ONLY, chunk * sizeof(Ray), "the rays");
   const cl::Buffer hit_buffer = context.buffer(CL_MEM_WRITE_ONLY, chunk * sizeof(Hit), "the hits");
-  Stage stage("trace_query",
-              programs.kernel("traverse/query.cl", "trace_query", features, traversal, precision));
+  using K = kernels::TraceQuery;
+  Stage stage(programs.kernel<K>(features, traversal, precision));
   const bool chunked = traversal != Traversal::binary && traversal != Traversal::wide;
   cl::CommandQueue queue = context.queues().front();
   device::checked("tracing rays", [&] {
-    const cl_uint first_argument = scene.set_tree_arguments(stage.kernel());
+    scene.set_arguments(stage);
+    stage.set(K::root_lo, float4(geometry.bounds.lo)).set(K::root_hi, float4(geometry.bounds.hi));
+    stage.set(K::center, float4(vec3(geometry.center))).set(K::world_max, world_max(geometry.bounds));
+    stage.set(K::any_hit, cl_uint{any_hit}).set(K::rays, ray_buffer).set(K::hits, hit_buffer);
     for (std::size_t first = 0; first < rays.size(); first += chunk) {
       const std::size_t n = std::min(chunk, rays.size() - first);
       queue.enqueueWriteBuffer(ray_buffer, CL_TRUE, 0, n * sizeof(Ray), rays.data() + first);
       // Memory that nobody has written to yet is handed out page by page, which is no part of tracing.
       queue.enqueueFillBuffer(hit_buffer, cl_int{0}, 0, n * sizeof(Hit));
       queue.finish();
-      stage.set_arguments(first_argument, float4(geometry.bounds.lo), float4(geometry.bounds.hi),
-                          float4(vec3(geometry.center)), world_max(geometry.bounds), static_cast<cl_uint>(n),
-                          cl_uint{any_hit}, ray_buffer, hit_buffer);
       const auto launch = [&] {
         chunked ? stage.launch(queue, (n + KDRAY_CHUNK - 1) / KDRAY_CHUNK, 1)
                 : stage.launch(queue, n, work_group);
         queue.finish();
       };
-      if (first == 0) {
-        warm_up(context, stage, first_argument, launch);
-        stage.set_arguments(first_argument + kCountArgument, static_cast<cl_uint>(n));
-      }
+      if (first == 0) warm_up(context, stage, launch);
+      stage.set(K::n_rays, static_cast<cl_uint>(n));
       for (double& seconds : result.seconds) {
         const Timer timer;
         launch();

@@ -1,23 +1,30 @@
 // What    A flattened scene on the device; shared by all queues of a context, read only. Where the device
 //         works in the host's memory, the buffers are the arrays themselves; or they are room that scenes are
 //         copied to, one after the other.
+// Shape   A buffer for each of KDRAY_SCENE_ARRAYS (kernels/layout/arguments.h), by the list's names.
 #pragma once
 
 #include <array>
 
 #include "device/context.h"
+#include "device/kernel.h"
 #include "flatten/flatten.h"
 #include "flatten/wide.h"
 
 namespace kdray::wavefront {
 
 struct SceneBuffers {
-  static constexpr std::size_t kArrays = 12;
-  using Sizes = std::array<std::size_t, kArrays>;  // bytes, in the order of the members
-  static constexpr std::size_t kMaterials = 6, kLights = 7;
+#define KDRAY_BUFFER(access, type, name) cl::Buffer name;
+  KDRAY_SCENE_ARRAYS(KDRAY_BUFFER)
+#undef KDRAY_BUFFER
 
-  cl::Buffer nodes, refs, triangles, normals, spheres, cones, materials, lights;
-  cl::Buffer wide_nodes, triangle_blocks, sphere_blocks, cone_blocks;
+  // The places of the arrays in the list.
+#define KDRAY_NAME(access, type, name) name,
+  struct Place {
+    enum : std::size_t { KDRAY_SCENE_ARRAYS(KDRAY_NAME) kArrays };
+  };
+#undef KDRAY_NAME
+  using Sizes = std::array<std::size_t, Place::kArrays>;  // bytes
 
   SceneBuffers(const device::Context& context, const flatten::FlatScene& flat, const flatten::WideForm& wide);
   // Room for arrays of these sizes.
@@ -28,12 +35,17 @@ struct SceneBuffers {
   // Copies a scene that there is room for, and waits for it.
   void copy(cl::CommandQueue& queue, const flatten::FlatScene& flat, const flatten::WideForm& wide);
 
-  // Sets KDRAY_SCENE_PARAMETERS (kernels/traverse/scene.clh) as the kernel's first arguments; the next free
-  // index.
-  cl_uint set_tree_arguments(cl::Kernel& kernel) const;
+  // Sets those of a kernel's arguments that are arrays of the scene. Kernel: device::Kernel<K>, or a stage of
+  // it.
+  template <template <class> class Kernel, class K>
+  void set_arguments(Kernel<K>& kernel) const {
+#define KDRAY_SET(access, type, name) KDRAY_SET_WHERE_TAKEN(K, kernel, name, name);
+    KDRAY_SCENE_ARRAYS(KDRAY_SET)
+#undef KDRAY_SET
+  }
 
  private:
-  std::array<cl::Buffer*, kArrays> all();
+  std::array<cl::Buffer*, Place::kArrays> all();
 };
 
 }  // namespace kdray::wavefront

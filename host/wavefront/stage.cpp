@@ -2,16 +2,17 @@
 
 namespace kdray::wavefront {
 
-cl::Event Stage::launch(cl::CommandQueue& queue, std::size_t items, std::size_t local) {
+cl::Event LaunchClock::launch(const cl::Kernel& kernel, cl::CommandQueue& queue, std::size_t items,
+                              std::size_t local) {
   const std::size_t groups = (items + local - 1) / local;
   cl::Event event;
-  queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * local), cl::NDRange(local), nullptr,
+  queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * local), cl::NDRange(local), nullptr,
                              &event);
   launches_.push_back(event);
   return event;
 }
 
-double Stage::collect_seconds() {
+double LaunchClock::collect_seconds() {
   while (!launches_.empty() &&
          launches_.front().getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() == CL_COMPLETE) {
     const cl::Event& event = launches_.front();

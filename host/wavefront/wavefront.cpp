@@ -180,6 +180,13 @@ void Wavefront::fill_streams(cl_uint word) {
     queue_.enqueueFillBuffer(*buffer, word, 0, buffer->getInfo<CL_MEM_SIZE>() / sizeof word * sizeof word);
 }
 
+// Calls `act` with every stage that is there.
+template <class Do>
+void Wavefront::for_each_stage(const Do& act) {
+  const auto act_on = [&](auto&... stages) { ((stages ? act(*stages) : void()), ...); };
+  act_on(wave_, admit_, trace_closest_, shade_, trace_shadow_, add_);
+}
+
 // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's
 // time.
 void Wavefront::warm_up() {
@@ -187,51 +194,54 @@ void Wavefront::warm_up() {
   begin(0);
   launch(launches_[0]);
   queue_.finish();
-  for (std::optional<Stage>* stage : {&wave_, &admit_, &trace_closest_, &shade_, &trace_shadow_, &add_})
-    if (*stage) (*stage)->forget_launches();
+  for_each_stage([](auto& stage) { stage.forget_launches(); });
+}
+
+// What doesn't change from launch to launch.
+template <class K>
+void Wavefront::set_arguments(Stage<K>& stage, const SceneBuffers& scene) {
+  scene.set_arguments(stage);
+  KDRAY_SET_WHERE_TAKEN(K, stage, frame, frame_buffer_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, n_slices, schedule_.n_slices);
+  KDRAY_SET_WHERE_TAKEN(K, stage, n_waves, schedule_.fused_waves);
+  KDRAY_SET_WHERE_TAKEN(K, stage, slices, slice_buffer_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, tiles, list_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, tile_cycles, tile_cycles_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, pool, pool_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, batch, batch_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, hits, hits_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, shadow_rays, shadow_rays_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, occluded, occluded_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, film, film_);
 }
 
 void Wavefront::make_wave(Programs& programs, const SceneBuffers& scene) {
-  wave_.emplace("wave",
-                programs.kernel("wave/wave.cl", "wave", features_, schedule_.traversal, schedule_.precision));
-  const cl_uint first = scene.set_tree_arguments(wave_->kernel());
-  list_argument_ = first + 8;
-  wave_->set_arguments(first, scene.normals, scene.materials, scene.lights, frame_buffer_,
-                       cl_uint{schedule_.n_slices}, cl_uint{schedule_.fused_waves}, slice_buffer_, list_,
-                       cl_uint{0}, tile_cycles_, pool_, batch_, hits_, shadow_rays_, occluded_, film_);
+  wave_.emplace(programs.kernel<kernels::Wave>(features_, schedule_.traversal, schedule_.precision));
+  set_arguments(*wave_, scene);
 }
 
 void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
-  const cl_uint n = schedule_.n_slices;
+  using namespace kernels;
+  const Traversal none = Traversal::binary;
   const Traversal walk = schedule_.traversal == Traversal::binary ? Traversal::binary : Traversal::wide;
-  const auto kernel = [&](const char* file, const char* name, Traversal traversal) {
-    return programs.kernel(file, name, features_, traversal, schedule_.precision);
-  };
   const bool lights = (features_ & KDRAY_FEATURE_LIGHTS) != 0;
-  std::vector<Programs::Wanted> wanted = {
-      {"raygen/admit.cl", features_, Traversal::binary, schedule_.precision},
-      {"traverse/trace_closest.cl", features_, walk, schedule_.precision},
-      {"shade/shade.cl", features_, Traversal::binary, schedule_.precision}};
-  if (lights) wanted.push_back({"traverse/trace_shadow.cl", features_, walk, schedule_.precision});
-  if (lights) wanted.push_back({"film/add.cl", features_, Traversal::binary, schedule_.precision});
+  std::vector<Programs::Wanted> wanted = {{Admit::kFile, features_, none, schedule_.precision},
+                                          {TraceClosest::kFile, features_, walk, schedule_.precision},
+                                          {Shade::kFile, features_, none, schedule_.precision}};
+  if (lights) wanted.push_back({TraceShadow::kFile, features_, walk, schedule_.precision});
+  if (lights) wanted.push_back({Add::kFile, features_, none, schedule_.precision});
   programs.build(wanted);
-  admit_.emplace("admit", kernel("raygen/admit.cl", "admit", Traversal::binary));
-  list_argument_ = 4;
-  admit_->set_arguments(0, frame_buffer_, n, slice_buffer_, list_, cl_uint{0}, pool_, batch_, film_);
-  trace_closest_.emplace("trace_closest", kernel("traverse/trace_closest.cl", "trace_closest", walk));
-  trace_closest_->set_arguments(scene.set_tree_arguments(trace_closest_->kernel()), frame_buffer_, n,
-                                slice_buffer_, batch_, hits_);
-  shade_.emplace("shade", kernel("shade/shade.cl", "shade", Traversal::binary));
-  shade_->set_arguments(0, scene.triangles, scene.normals, scene.spheres, scene.cones, scene.materials,
-                        scene.lights, frame_buffer_, n, cl_uint{0}, slice_buffer_, batch_, hits_, pool_,
-                        shadow_rays_, film_);
+  const auto make = [&]<class K>(std::optional<Stage<K>>& stage, Traversal traversal) {
+    stage.emplace(programs.kernel<K>(features_, traversal, schedule_.precision));
+    set_arguments(*stage, scene);
+  };
+  make(admit_, none);
+  make(trace_closest_, walk);
+  make(shade_, none);
   // Without lights these two are neither built nor launched.
   if (!lights) return;
-  trace_shadow_.emplace("trace_shadow", kernel("traverse/trace_shadow.cl", "trace_shadow", walk));
-  trace_shadow_->set_arguments(scene.set_tree_arguments(trace_shadow_->kernel()), frame_buffer_, n,
-                               slice_buffer_, shadow_rays_, occluded_);
-  add_.emplace("add", kernel("film/add.cl", "add", Traversal::binary));
-  add_->set_arguments(0, frame_buffer_, n, slice_buffer_, shadow_rays_, occluded_, film_);
+  make(trace_shadow_, walk);
+  make(add_, none);
 }
 
 Wavefront::~Wavefront() {
@@ -246,21 +256,22 @@ void Wavefront::settle() noexcept {
   }
 }
 
-cl::Event Wavefront::launch_per_slice(Stage& stage) {
+template <class K>
+cl::Event Wavefront::launch_per_slice(Stage<K>& stage) {
   return stage.launch(queue_, schedule_.n_slices, 1);
 }
 
-cl::Event Wavefront::launch_per_ray(Stage& stage, std::size_t rays_of_slice) {
+template <class K>
+cl::Event Wavefront::launch_per_ray(Stage<K>& stage, std::size_t rays_of_slice) {
   return stage.launch(queue_, schedule_.n_slices * rays_of_slice, schedule_.work_group);
 }
 
 // The event of the last.
 cl::Event Wavefront::launch_lights() {
-  constexpr cl_uint kFirstLight = 8;  // shade's argument
   cl_uint first = 0;
   cl::Event last;
   do {
-    shade_->set_arguments(kFirstLight, first);
+    shade_->set(kernels::Shade::first_light, first);
     last = launch_per_slice(*shade_);
     if (frame_.light_batch > 0) {
       launch_per_ray(*trace_shadow_, std::size_t{frame_.batch_size} * frame_.light_batch);
@@ -272,14 +283,14 @@ cl::Event Wavefront::launch_lights() {
 }
 
 void Wavefront::launch_stages(Launch& launch) {
-  admit_->set_arguments(list_argument_, cl_uint{n_listed_});
+  admit_->set(kernels::Admit::n_tiles, n_listed_);
   launch.first = launch_per_slice(*admit_);
   launch_per_ray(*trace_closest_, frame_.batch_size);
   launch.last = launch_lights();
 }
 
 void Wavefront::launch_wave(Launch& launch) {
-  wave_->set_arguments(list_argument_, cl_uint{n_listed_});
+  wave_->set(kernels::Wave::n_tiles, n_listed_);
   launch.first = launch.last = launch_per_slice(*wave_);
 }
 
@@ -432,8 +443,7 @@ std::vector<layout::u64> Wavefront::tile_cycles() {
 
 // With every launch, so that a long frame doesn't keep an event per launch.
 void Wavefront::collect() {
-  for (std::optional<Stage>* stage : {&wave_, &admit_, &trace_closest_, &shade_, &trace_shadow_, &add_})
-    if (*stage) seconds_[(*stage)->name()] = (*stage)->collect_seconds();
+  for_each_stage([&](auto& stage) { seconds_[stage.name()] = stage.collect_seconds(); });
 }
 
 // Divides the waves' time among their stages. Both reports are as good: the last launch found nothing to do.

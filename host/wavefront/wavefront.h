@@ -147,8 +147,14 @@ class Wavefront {
 
   cl::Buffer make(std::size_t bytes, const std::string& what);
   cl::Buffer make_stream(std::size_t n_fields, std::size_t capacity, const std::string& what);
-  cl::Event launch_per_slice(Stage& stage);
-  cl::Event launch_per_ray(Stage& stage, std::size_t rays_of_slice);
+  template <class K>
+  void set_arguments(Stage<K>& stage, const SceneBuffers& scene);
+  template <class K>
+  cl::Event launch_per_slice(Stage<K>& stage);
+  template <class K>
+  cl::Event launch_per_ray(Stage<K>& stage, std::size_t rays_of_slice);
+  template <class Do>
+  void for_each_stage(const Do& act);
   void make_wave(Programs& programs, const SceneBuffers& scene);
   void make_stages(Programs& programs, const SceneBuffers& scene);
   void fill_streams(cl_uint word);
@@ -182,8 +188,12 @@ class Wavefront {
   cl::Buffer frame_buffer_, slice_buffer_, list_, tile_cycles_, pool_, batch_, hits_, shadow_rays_, occluded_,
       film_;
   // Either the wave or the others are there.
-  std::optional<Stage> wave_, admit_, trace_closest_, shade_, trace_shadow_, add_;
-  cl_uint list_argument_ = 0;  // of the wave, or of admit: the list's length
+  std::optional<Stage<kernels::Wave>> wave_;
+  std::optional<Stage<kernels::Admit>> admit_;
+  std::optional<Stage<kernels::TraceClosest>> trace_closest_;
+  std::optional<Stage<kernels::Shade>> shade_;
+  std::optional<Stage<kernels::TraceShadow>> trace_shadow_;
+  std::optional<Stage<kernels::Add>> add_;
   // Of the present list, as of the last report (n_listed_: as of the last launch).
   std::uint32_t n_listed_ = 0, n_taken_ = 0;
   Counters list_counters_;

@@ -6,6 +6,7 @@
 #if !(defined(KDRAY_SIMD_X86) && KDRAY_SIMD_X86) || \
     (defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__))
 #include "common/simd.clh"
+#include "layout/arguments.h"
 #include "layout/simd_test.layout.h"
 
 inline void answer_scalars(__global const SimdCase* in, __global SimdAnswers* out) {
@@ -52,11 +53,11 @@ inline void answer8(__global const SimdCase* in, __global SimdAnswers* out) {
   vstore8(permuteu8(ua, index), 0, out->permuteu8);
 }
 
-__kernel void simd_test(__global const SimdCase* cases, uint n, __global SimdAnswers* answers) {
-  for (uint i = 0; i < n; ++i) {
-    answer_scalars(cases + i, answers + i);
-    answer16(cases + i, answers + i);
-    answer8(cases + i, answers + i);
+__kernel void simd_test(KDRAY_PARAMETERS(KDRAY_SIMD_TEST_ARGUMENTS)) {
+  for (u32 i = 0; i < n; ++i) {
+    answer_scalars(in_cases + i, out_answers + i);
+    answer16(in_cases + i, out_answers + i);
+    answer8(in_cases + i, out_answers + i);
   }
 }
 #endif

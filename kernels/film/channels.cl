@@ -2,6 +2,7 @@
 // Shape   One work-item per sixteen pixels; out_channels[pixel*6]: depth, normal x y z, primitive number,
 //         cost. Nothing hit: depth inf, normal 0, primitive -1. A failed walk: depth NaN, which the host
 //         takes for an error.
+#include "layout/arguments.h"
 #include "layout/features.h"
 #include "layout/rays.layout.h"
 #include "raygen/primary.clh"
@@ -19,13 +20,11 @@ inline Row row_of(real16 v) {
   return row;
 }
 
-__kernel void channels(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
-                       __constant const Frame* frame, u32 first_pixel, u32 n_pixels,
-                       __global float* out_channels) {
+__kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   const u32 first = (u32)get_global_id(0) * KDRAY_LANES;
   if (first >= n_pixels) return;
   const u32 n = min(n_pixels - first, KDRAY_LANES);
-  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
+  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
   const uint16 pixel = first_pixel + first + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   const Real2x16 middle = {(real16)(0.5f), (real16)(0.5f)};
   const Real3x16 d = normalize3(eye_direction(frame, pixel % frame->width, pixel / frame->width, middle));
@@ -52,7 +51,7 @@ __kernel void channels(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_
     cost.lane[i] = (real)steps;
   }
   const Hits hits = {vload16(0, t.lane), vload16(0, refs), vload16(0, u.lane), vload16(0, v.lane)};
-  const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
+  const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const lanes16 hit = hits.ref != KDRAY_REF_MISS;
   Surface s;
   surfaces_at(&arrays, splat3(eye), d, &hits, hit, &s);

@@ -5,6 +5,7 @@
 // Errors  A pool that is full counts what finds no place (n_pool_overflow): a broken bound, which the host
 //         acts on.
 #define KDRAY_ODPRT 1
+#include "layout/arguments.h"
 #include "odprt/send.clh"
 #include "wave/pool.clh"
 
@@ -39,18 +40,14 @@ inline void receive_shadow_rays(__constant const Travel* travel, ConstStream fro
   traffic->n_shadow_pool = first + n;
 }
 
-__kernel void receive(__constant const Frame* frame, __constant const Travel* travel, u32 place, u32 n_places,
-                      u32 ray_capacity, u32 shadow_capacity, __global const float* in_rays,
-                      __global const float* in_shadow_rays, __global const u32* in_counts,
-                      __global Slice* io_slices, __global Traffic* io_traffic, __global float* io_pool,
-                      __global float* io_shadow_pool) {
+__kernel void receive(KDRAY_PARAMETERS(KDRAY_RECEIVE_ARGUMENTS)) {
   const u32 s = (u32)get_global_id(0);
   if (s >= travel->n_slices) return;
   const u32 from = place * travel->n_slices + s;
-  receive_rays(frame, const_stream_of(in_rays, from, KDRAY_RAY_FIELDS, ray_capacity), in_counts[from], s,
-               io_slices + s, io_pool);
+  receive_rays(frame, const_stream_of(in_sent_rays, from, KDRAY_RAY_FIELDS, ray_capacity),
+               in_sent_counts[from], s, io_slices + s, io_pool);
   receive_shadow_rays(travel,
-                      const_stream_of(in_shadow_rays, from, KDRAY_SENT_SHADOW_FIELDS, shadow_capacity),
-                      in_counts[n_places * travel->n_slices + from], io_slices + s, io_traffic + s,
+                      const_stream_of(in_sent_shadow_rays, from, KDRAY_SENT_SHADOW_FIELDS, shadow_capacity),
+                      in_sent_counts[n_places * travel->n_slices + from], io_slices + s, io_traffic + s,
                       stream_of(io_shadow_pool, s, KDRAY_SHADOW_FIELDS, travel->shadow_pool_capacity));
 }

@@ -6,6 +6,7 @@
 // Errors  as the stages'; all counted in the slice and its traffic, which the host reads after each launch.
 #define KDRAY_ODPRT 1
 #include "film/add.clh"
+#include "layout/arguments.h"
 #include "odprt/admit.clh"
 #include "odprt/census.clh"
 #include "odprt/rays.clh"
@@ -108,27 +109,18 @@ inline void begin_account(__global Traffic* traffic) {
   traffic->n_lost = traffic->n_traced = 0;
 }
 
-__kernel void travel_wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
-                          __global const Material* in_materials, __global const Light* in_lights,
-                          __constant const Frame* frame, __constant const Travel* travel,
-                          __global const PartCell* in_cells, __global const PartCell* in_subtrees,
-                          u32 n_waves, __global const u32* in_tiles, u32 n_tiles, __global Slice* io_slices,
-                          __global Grant* io_grants, __global Traffic* io_traffic, __global float* io_pool,
-                          __global float* io_batch, __global float* io_hits, __global float* io_shadow_rays,
-                          __global uchar* io_occluded, __global float* io_shadow_pool, __global i64* io_film,
-                          __global float* out_rays, __global float* out_shadow_rays, __global u32* out_counts,
-                          __global u32* out_visits) {
+__kernel void travel_wave(KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARGUMENTS)) {
   const u32 slice_id = (u32)get_global_id(0);
   if (slice_id >= travel->n_slices) return;
-  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
+  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
   const Travels t = {&scene,
                      {in_cells, travel->n_cells, frame->world_max},
-                     {travel, slice_id, out_rays, out_shadow_rays, out_counts},
+                     {travel, slice_id, out_sent_rays, out_sent_shadow_rays, out_sent_counts},
                      travel,
                      io_slices + slice_id,
                      io_grants + slice_id,
                      io_traffic + slice_id};
-  const Shaders shaders = {{in_triangles, in_normals, in_spheres, in_cones}, in_materials, in_lights};
+  const Shaders shaders = {KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS), in_materials, in_lights};
   const Streams streams = {io_pool, io_batch, io_hits, io_shadow_rays, io_shadow_pool, io_occluded, io_film};
   const Census census = {in_subtrees, travel->n_subtrees,
                          out_visits + (size_t)slice_id * 2 * travel->n_subtrees};

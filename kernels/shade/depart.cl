@@ -3,6 +3,7 @@
 // Shape   in_rays[n], in_hits[n] (t, u, v and references) -> out_departures[n]; one work-item to sixteen
 //         hits. All hits are hits.
 // Cost    reads 48 B of ray and hit and the primitive, writes 40 B.
+#include "layout/arguments.h"
 #include "layout/rays.layout.h"
 #include "layout/verify.layout.h"
 #include "shade/surface.clh"
@@ -15,13 +16,10 @@ inline void store_lanes3(Real3x16 v, real* lanes) {
   vstore16(v.x, 0, lanes), vstore16(v.y, 1, lanes), vstore16(v.z, 2, lanes);
 }
 
-__kernel void depart(__global const Triangle* in_triangles, __global const VertexNormals* in_normals,
-                     __global const Sphere* in_spheres, __global const Cone* in_cones, u32 n,
-                     __global const QueryRay* in_rays, __global const KnownHit* in_hits,
-                     __global Departure* out_departures) {
+__kernel void depart(KDRAY_PARAMETERS(KDRAY_DEPART_ARGUMENTS)) {
   const u32 first = (u32)get_global_id(0) * KDRAY_LANES;
-  if (first >= n) return;
-  const u32 count = min(n - first, KDRAY_LANES);
+  if (first >= n_rays) return;
+  const u32 count = min(n_rays - first, KDRAY_LANES);
   real origin[3 * KDRAY_LANES], direction[3 * KDRAY_LANES], t[KDRAY_LANES], u[KDRAY_LANES], v[KDRAY_LANES];
   word ref[KDRAY_LANES];
   for (u32 lane = 0; lane < KDRAY_LANES; ++lane) {
@@ -32,7 +30,7 @@ __kernel void depart(__global const Triangle* in_triangles, __global const Verte
     }
     t[lane] = in_hits[i].t, ref[lane] = in_hits[i].ref, u[lane] = in_hits[i].u, v[lane] = in_hits[i].v;
   }
-  const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
+  const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const Hits hits = {vload16(0, t), vload16(0, ref), vload16(0, u), vload16(0, v)};
   Surface s;
   surfaces_at(&arrays, load_lanes3(origin), load_lanes3(direction), &hits, lanes_up_to(count), &s);

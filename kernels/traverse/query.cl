@@ -3,6 +3,7 @@
 // Shape   Binary and wide: one ray to a work-item. Otherwise one work-item to KDRAY_CHUNK rays.
 // Cost    reads 32 B of the ray and the tree, writes 16 B.
 // Errors  a full stack (binary tree) gives primitive KDRAY_QUERY_INVALID; the host checks for it.
+#include "layout/arguments.h"
 #include "layout/traversal.h"
 #include "traverse/any.clh"
 #include "traverse/query.clh"
@@ -30,18 +31,16 @@ inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 
   }
 }
 
-__kernel void trace_query(KDRAY_SCENE_PARAMETERS, float4 root_lo, float4 root_hi, float4 center,
-                          float world_max, u32 n, u32 any_hit, __global const QueryRay* in_rays,
-                          __global QueryHit* out_hits) {
+__kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
-  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
+  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
   const RaySource source = {&scene, in_rays, out_hits, {center.x, center.y, center.z}, any_hit};
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
-  if (item < n)
+  if (item < n_rays)
     query_binary(&scene, &source, item, convert_real3(root_lo.xyz), convert_real3(root_hi.xyz), world_max);
 #elif KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_WIDE
   (void)root_lo, (void)root_hi;
-  if (item >= n) return;
+  if (item >= n_rays) return;
   RayIn in;
   fetch_ray(&source, item, &in);
   WideRay r;
@@ -51,8 +50,8 @@ __kernel void trace_query(KDRAY_SCENE_PARAMETERS, float4 root_lo, float4 root_hi
 #else
   (void)root_lo, (void)root_hi;
   const u32 first = item * KDRAY_CHUNK;
-  if (first < n)
-    walk_rays(&scene, &source, first, min(n, first + KDRAY_CHUNK), world_max, false,
+  if (first < n_rays)
+    walk_rays(&scene, &source, first, min(n_rays, first + KDRAY_CHUNK), world_max, false,
               KDRAY_COHERENT_DISTANCE * world_max);
 #endif
 }

@@ -2,15 +2,14 @@
 // Shape   item i serves ray i % batch_size of slice i / batch_size; launch size >= n_slices * batch_size.
 // Cost    reads 36 B of the ray and the tree, writes 16 B.
 // Errors  a full stack (binary tree) marks the hit KDRAY_REF_INVALID; shade counts it.
+#include "layout/arguments.h"
 #include "traverse/trace_slice.clh"
 
-__kernel void trace_closest(KDRAY_SCENE_PARAMETERS, __constant const Frame* frame, u32 n_slices,
-                            __global const Slice* in_slices, __global const real* in_batch,
-                            __global real* out_hits) {
+__kernel void trace_closest(KDRAY_PARAMETERS(KDRAY_TRACE_CLOSEST_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
   const u32 slice = item / frame->batch_size, i = item % frame->batch_size;
   if (slice >= n_slices || i >= in_slices[slice].n_batch) return;
-  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
+  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
   const RaySource source = batch_rays(frame, slice, in_batch, out_hits);
   trace_one(&scene, frame, &source, i);
 }

@@ -2,16 +2,15 @@
 // Shape   item i serves ray i % (batch_size*light_batch) of slice i / (batch_size*light_batch); its answer is
 //         byte slice*shadow_capacity + ray of out_occluded.
 // Cost    reads 36 B of the ray and the tree, writes 1 B.
+#include "layout/arguments.h"
 #include "traverse/trace_slice.clh"
 
-__kernel void trace_shadow(KDRAY_SCENE_PARAMETERS, __constant const Frame* frame, u32 n_slices,
-                           __global const Slice* in_slices, __global const real* in_shadow_rays,
-                           __global uchar* out_occluded) {
+__kernel void trace_shadow(KDRAY_PARAMETERS(KDRAY_TRACE_SHADOW_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
   const u32 per_slice = frame->batch_size * frame->light_batch;
   const u32 slice = item / per_slice, i = item % per_slice;
   if (slice >= n_slices || i >= in_slices[slice].n_shadow) return;
-  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
+  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
   const RaySource source = shadow_rays(frame, slice, in_shadow_rays, out_occluded);
   trace_one(&scene, frame, &source, i);
 }

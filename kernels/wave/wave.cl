@@ -8,22 +8,18 @@
 //         io_tile_cycles those of each entry of the list: a wave is charged to the tile that its slice had
 //         come to.
 #include "film/add.clh"
+#include "layout/arguments.h"
 #include "raygen/admit.clh"
 #include "shade/shade.clh"
 #include "traverse/trace_slice.clh"
 #include "wave/clock.clh"
 
-__kernel void wave(KDRAY_SCENE_PARAMETERS, __global const VertexNormals* in_normals,
-                   __global const Material* in_materials, __global const Light* in_lights,
-                   __constant const Frame* frame, u32 n_slices, u32 n_waves, __global Slice* io_slices,
-                   __global const u32* in_tiles, u32 n_tiles, __global u64* io_tile_cycles,
-                   __global real* io_pool, __global real* io_batch, __global real* io_hits,
-                   __global real* io_shadow_rays, __global uchar* io_occluded, __global i64* io_film) {
+__kernel void wave(KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)) {
   const u32 slice_id = (u32)get_global_id(0);
   if (slice_id >= n_slices) return;
   __global Slice* slice = io_slices + slice_id;
-  const SceneArrays scene = KDRAY_SCENE_ARRAYS;
-  const SurfaceArrays arrays = {in_triangles, in_normals, in_spheres, in_cones};
+  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const TileList list = {in_tiles, n_tiles};
   for (u32 k = 0; k < n_waves; ++k) {
     u64 since = cycles();

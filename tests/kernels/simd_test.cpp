@@ -62,7 +62,8 @@ class SimdFormsTest : public test::EachDevice {
   void expect_right_on(const device::Context& context, const cl::Program& program,
                        const std::vector<SimdCase>& cases) {
     const std::vector<SimdAnswers> answers = device::checked("testing vectors", [&] {
-      return device::run_simd_test(context.opened(), cl::Kernel(program, "simd_test"), cases);
+      device::Kernel<kernels::SimdTest> kernel(program);
+      return device::run_simd_test(context.opened(), kernel, cases);
     });
     ASSERT_EQ(device::first_difference(cases, answers), "") << "first mask " << cases.front().mask;
   }

@@ -48,14 +48,14 @@ void scatter3(Real3x16 v, __global float* first) {
 }
 
 // n: a multiple of sixteen.
-__kernel void spawn(__global const Triangle* triangles, __global const VertexNormals* normals,
-                    __global const Sphere* spheres, __global const Cone* cones, __global const ToSpawn* in,
-                    __global Spawned* out, uint n) {
+#define SPAWN_ARGUMENTS(F, X) \
+  F(VALUE, u32, n) KDRAY_SURFACE_ARRAYS(X) X(IN, ToSpawn, hits) X(OUT, Spawned, spawned)
+__kernel void spawn(KDRAY_PARAMETERS(SPAWN_ARGUMENTS)) {
   const uint i = 16 * (uint)get_global_id(0);
   if (i >= n) return;
-  in += i;
-  out += i;
-  const SurfaceArrays arrays = {triangles, normals, spheres, cones};
+  __global const ToSpawn* in = in_hits + i;
+  __global Spawned* out = out_spawned + i;
+  const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const Real3x16 o = gather3(in->origin), d = gather3(in->direction), light = gather3(in->light);
   const Hits hits = {gather(&in->t), as_uint16(gather((__global const float*)&in->ref)), gather(&in->u),
                      gather(&in->v)};
@@ -93,19 +93,13 @@ std::string options_for(const device::Context& context, std::uint32_t features) 
   return options;
 }
 
-template <class Values>
-cl::Buffer copy_of(const device::Context& context, const Values& values) {
-  return context.upload_copy(values.data(), values.size() * sizeof(values[0]), "a scene");
-}
-
 }  // namespace
 
-Spawner::Spawner(const prepare::Prepared& scene) : context_("auto", 1) {
-  kernel_ =
-      cl::Kernel(context_.build_text("spawn.cl", kSource, options_for(context_, scene.features)), "spawn");
-  const flatten::FlatScene& flat = scene.flat;
-  arrays_ = {copy_of(context_, flat.triangles), copy_of(context_, flat.normals),
-             copy_of(context_, flat.spheres), copy_of(context_, flat.cones)};
+Spawner::Spawner(const prepare::Prepared& scene)
+    : context_("auto", 1),
+      scene_(context_, scene.flat, scene.wide),
+      spawn_(context_.build_text("spawn.cl", kSource, options_for(context_, scene.features))) {
+  scene_.set_arguments(spawn_);
 }
 
 std::vector<Spawned> Spawner::spawn(const std::vector<ToSpawn>& hits) {
@@ -117,11 +111,9 @@ std::vector<Spawned> Spawner::spawn(const std::vector<ToSpawn>& hits) {
         context_.buffer(CL_MEM_WRITE_ONLY, in.size() * sizeof(Spawned), "spawned rays");
     const cl::CommandQueue& queue = context_.queues().front();
     queue.enqueueWriteBuffer(in_buffer, CL_TRUE, 0, in.size() * sizeof(ToSpawn), in.data());
-    for (cl_uint i = 0; i < arrays_.size(); ++i) kernel_.setArg(i, arrays_[i]);
-    kernel_.setArg(4, in_buffer);
-    kernel_.setArg(5, out_buffer);
-    kernel_.setArg(6, static_cast<cl_uint>(in.size()));
-    queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(in.size() / 16), cl::NDRange(1));
+    using K = kernels::Spawn;
+    spawn_.set(K::n, static_cast<cl_uint>(in.size())).set(K::hits, in_buffer).set(K::spawned, out_buffer);
+    queue.enqueueNDRangeKernel(spawn_.ready(), cl::NullRange, cl::NDRange(in.size() / 16), cl::NDRange(1));
     std::vector<Spawned> out(in.size());
     queue.enqueueReadBuffer(out_buffer, CL_TRUE, 0, out.size() * sizeof(Spawned), out.data());
     out.resize(hits.size());

@@ -6,8 +6,20 @@
 #include <vector>
 
 #include "device/context.h"
+#include "device/kernel.h"
 #include "kdray/kdray.h"
 #include "prepare/prepared.h"
+#include "wavefront/scene_buffers.h"
+
+// As kSource of spawn.cpp has it.
+#define SPAWN_ARGUMENTS(F, X) \
+  F(VALUE, u32, n)            \
+  KDRAY_SURFACE_ARRAYS(X)     \
+  X(IN, ToSpawn, hits)        \
+  X(OUT, Spawned, spawned)
+namespace kdray::kernels {
+KDRAY_DECLARE_KERNEL(Spawn, "spawn.cl", spawn, SPAWN_ARGUMENTS)
+}  // namespace kdray::kernels
 
 namespace kdray::stress {
 
@@ -39,8 +51,8 @@ class Spawner {
 
  private:
   device::Context context_;
-  cl::Kernel kernel_;
-  std::vector<cl::Buffer> arrays_;
+  wavefront::SceneBuffers scene_;
+  device::Kernel<kernels::Spawn> spawn_;
 };
 
 }  // namespace kdray::stress

@@ -8,6 +8,7 @@
 
 #include "device/context.h"
 #include "device/opencl_error.h"
+#include "support/set_arguments.h"
 
 namespace kdray::test {
 
@@ -21,9 +22,7 @@ std::vector<Out> run_kernel(const std::string& device, const std::string& source
     const cl::Buffer out_buffer = context.buffer(CL_MEM_WRITE_ONLY, in.size() * sizeof(Out), "out");
     const cl::CommandQueue& queue = context.queues().front();
     queue.enqueueWriteBuffer(in_buffer, CL_TRUE, 0, in.size() * sizeof(In), in.data());
-    kernel.setArg(0, in_buffer);
-    kernel.setArg(1, out_buffer);
-    kernel.setArg(2, static_cast<cl_uint>(in.size()));
+    set_arguments(kernel, in_buffer, out_buffer, static_cast<cl_uint>(in.size()));
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange((in.size() + 63) / 64 * 64),
                                cl::NDRange(64));
     std::vector<Out> out(in.size());

@@ -120,25 +120,30 @@ class Batch {
                      pooled = upload(pool.words.data(), pool.words.size() * 4),
                      shadows = upload(shadow.words.data(), shadow.words.size() * 4),
                      sums = upload(film.data(), film.size() * sizeof(layout::i64));
-    cl::Kernel kernel(
-        context_.build("shade/shade.cl", "-cl-std=CL1.2 " + device::build_option(context_.simd())), "shade");
-    cl_uint index = 0;
-    for (const cl::Buffer* buffer : {&floors, &none, &none, &none, &glasses, &lamps, &frame})
-      kernel.setArg(index++, *buffer);
-    kernel.setArg(index++, cl_uint{1});
-    kernel.setArg(index++, cl_uint{0});
-    for (const cl::Buffer* buffer : {&slice, &rays, &found, &pooled, &shadows, &sums})
-      kernel.setArg(index++, *buffer);
+    using K = kernels::Shade;
+    device::Kernel<K> kernel(
+        context_.build(K::kFile, "-cl-std=CL1.2 " + device::build_option(context_.simd())));
+#define KDRAY_SET_NONE(access, type, name) kernel.set(K::name, none);
+    KDRAY_SURFACE_ARRAYS(KDRAY_SET_NONE)
+#undef KDRAY_SET_NONE
+    kernel.set(K::triangles, floors).set(K::materials, glasses).set(K::lights, lamps).set(K::frame, frame);
+    kernel.set(K::n_slices, cl_uint{1}).set(K::first_light, cl_uint{0}).set(K::slices, slice);
+    kernel.set(K::batch, rays).set(K::hits, found).set(K::pool, pooled).set(K::shadow_rays, shadows);
+    kernel.set(K::film, sums);
     const cl::CommandQueue& queue = context_.queues().front();
-    queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+    queue.enqueueNDRangeKernel(kernel.ready(), cl::NullRange, cl::NDRange(1), cl::NDRange(1));
     queue.enqueueReadBuffer(slice, CL_TRUE, 0, sizeof slice_, &slice_);
     queue.enqueueReadBuffer(pooled, CL_TRUE, 0, pool.words.size() * 4, pool.words.data());
     queue.enqueueReadBuffer(shadows, CL_TRUE, 0, shadow.words.size() * 4, shadow.words.data());
     queue.enqueueReadBuffer(sums, CL_TRUE, 0, film.size() * sizeof(layout::i64), film.data());
   }
 
-  static float light_x(cl_uint k) { return 10.0f * static_cast<float>(k) - 5; }
-  const layout::Slice& slice() const { return slice_; }
+  static float light_x(cl_uint k) {
+    return 10.0f * static_cast<float>(k) - 5;
+  }
+  const layout::Slice& slice() const {
+    return slice_;
+  }
 
   Words pool, shadow;
   std::vector<layout::i64> film;
