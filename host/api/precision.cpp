@@ -6,10 +6,6 @@
 
 namespace kdray::api {
 
-const char* name_of(Precision precision) {
-  return precision == Precision::float64 ? "double" : "float";
-}
-
 Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& device) {
   if (precision == Precision::float32) return wanted;
   if (wanted != Traversal::automatic && wanted != Traversal::binary)
@@ -23,8 +19,8 @@ Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& 
   return Traversal::binary;
 }
 
-void check_form(bool is_walked, bool is_there) {
-  if (is_walked && !is_there)
+void check_form(bool is_walked, const prepare::Prepared& scene) {
+  if (is_walked && scene.flat.nodes.empty())
     throw Error(
         ErrorCode::usage,
         "the scene was prepared without the tree's binary form, which the binary walk, double and channels "

@@ -3,17 +3,16 @@
 #pragma once
 
 #include "kdray/kdray.h"
+#include "prepare/prepared.h"
 
 namespace kdray::api {
-
-const char* name_of(Precision precision);
 
 // The walk of that precision. Throws ErrorCode::usage when there is no such walk in it, ErrorCode::no_device
 // when the device doesn't compute in it.
 Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& device);
 
 // Throws ErrorCode::usage where the binary form is walked and the scene was prepared without it.
-void check_form(bool is_walked, bool is_there);
+void check_form(bool is_walked, const prepare::Prepared& scene);
 
 // Throws ErrorCode::usage for what odprt would have to do in double.
 void check_division(const RenderOptions& options);

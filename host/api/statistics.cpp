@@ -1,7 +1,5 @@
 #include "statistics.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "flatten/features.h"
@@ -125,16 +123,6 @@ Json pdprt_memory_json(const pdprt::Result& result, std::size_t scene_bytes) {
     per_queue.push_back({{"geometry_bytes", scene_bytes}, {"work_bytes", queue.device_bytes}});
   }
   return {{"frame_bytes", frame_bytes}, {"per_queue", std::move(per_queue)}};
-}
-
-std::vector<std::string> warnings_of(const pdprt::Result& result) {
-  std::vector<std::string> warnings;
-  for (std::size_t i = 0; i < result.queues.size(); ++i)
-    if (const pdprt::QueueResult& queue = result.queues[i]; !queue.failure.empty())
-      warnings.push_back(
-          fmt::format("queue {} ({}) failed: {}; the other queues rendered the {} tiles it had taken", i,
-                      queue.device, queue.failure, queue.tiles_lost));
-  return warnings;
 }
 
 }  // namespace kdray::api

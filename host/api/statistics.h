@@ -25,7 +25,4 @@ Json samples_json(const layout::Frame& frame, const adaptive::Report* adaptive);
 Json pdprt_json(const pdprt::Result& result);
 Json pdprt_memory_json(const pdprt::Result& result, std::size_t scene_bytes);
 
-// One line for each queue that failed.
-std::vector<std::string> warnings_of(const pdprt::Result& result);
-
 }  // namespace kdray::api

@@ -1,9 +1,8 @@
-#include "odprt_mode.h"
-
-#include <fmt/format.h>
+#include "api/odprt_json.h"
 
 #include <numeric>
 
+#include "api/names.h"
 #include "layout/rays.layout.h"
 
 namespace kdray::api {
@@ -12,17 +11,6 @@ namespace {
 
 constexpr std::uint64_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
 constexpr std::uint64_t kShadowBytes = KDRAY_SENT_SHADOW_FIELDS * sizeof(float);
-
-const char* name_of(Balance balance) {
-  switch (balance) {
-    case Balance::sah:
-      return "sah";
-    case Balance::pilot:
-      return "pilot";
-    default:
-      return "dynamic";
-  }
-}
 
 // Rays of both kinds that a queue has sent to others (`out`) or had from them; not those that it sent to
 // itself.
@@ -73,15 +61,6 @@ Json exchange_json(const odprt::Result& r) {
 
 }  // namespace
 
-Traversal odprt_traversal(Traversal wanted, bool on_cpus) {
-  if (wanted == Traversal::binary)
-    throw Error(
-        ErrorCode::usage,
-        "odprt divides the wide form of the tree; take another --traversal than binary, or --mode pdprt");
-  // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
-  return wanted == Traversal::automatic && !on_cpus ? Traversal::wide : wanted;
-}
-
 Json odprt_mode_json(const odprt::Result& r, const RenderOptions& options, std::size_t bytes_of_whole) {
   Json mode = {{"name", "odprt"},
                {"balance", name_of(options.balance)},
@@ -107,14 +86,6 @@ Json odprt_memory_json(const odprt::Result& r) {
   for (const odprt::QueueReport& q : r.queues)
     queues.push_back({{"geometry_bytes", q.geometry_bytes}, {"work_bytes", q.work_bytes}});
   return queues;
-}
-
-std::vector<std::string> warnings_of(const odprt::Result& r) {
-  std::vector<std::string> warnings;
-  for (const odprt::Quarantined& q : r.quarantined)
-    warnings.push_back(
-        fmt::format("queue {} failed: {}; its subtrees went to the other queues", q.queue, q.what));
-  return warnings;
 }
 
 }  // namespace kdray::api

@@ -1,0 +1,94 @@
+#include "api/draw_odprt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "api/film_memory.h"
+#include "api/odprt_json.h"
+
+namespace kdray::api {
+
+namespace {
+
+// The wide form is what is divided, so that all walks but the binary tree's will do.
+Traversal traversal_of(Traversal wanted, bool on_cpus) {
+  if (wanted == Traversal::binary)
+    throw Error(
+        ErrorCode::usage,
+        "odprt divides the wide form of the tree; take another --traversal than binary, or --mode pdprt");
+  // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
+  return wanted == Traversal::automatic && !on_cpus ? Traversal::wide : wanted;
+}
+
+// Parts that fit into one piece of a device's memory, with all that goes with them, have no array that
+// doesn't.
+std::uint64_t memory_limit(const State& state, const RenderOptions& o) {
+  const Device* const small = too_small_for_an_array(state);
+  if (small == nullptr) return o.device_memory;
+  const std::uint64_t piece = small->context.info().max_allocation;
+  return o.device_memory > 0 ? std::min(o.device_memory, piece) : piece;
+}
+
+odprt::Request request_for(State& state, Job& job) {
+  const RenderOptions& o = job.options;
+  wavefront::Schedule schedule = state.scheduler.schedule_for(state.devices.first(), job);
+  schedule.apply(job.frame, job.features);
+  odprt::Request request;
+  for (Device& d : state.devices) {
+    schedule.n_slices = std::max(schedule.n_slices, state.scheduler.schedule_for(d, job).n_slices);
+    for (const cl::CommandQueue& queue : d.context.queues())
+      request.queues.push_back({&d.context, queue, &d.programs, request.queues.size()});
+  }
+  request.frame = job.frame;
+  request.features = job.features;
+  request.adaptive_target = o.adaptive_target;
+  request.traversal = traversal_of(o.traversal, !state.devices.first().global);
+  request.balance = o.balance;
+  request.n_slices = schedule.n_slices;
+  request.ray_buffer = static_cast<std::uint32_t>(o.ray_buffer);
+  request.device_memory = memory_limit(state, o);
+  request.timeline = job.timeline;
+  request.faults = &state.faults;
+  request.progress = o.progress;
+  return request;
+}
+
+// One line for each queue that failed.
+std::vector<std::string> warnings_of(const odprt::Result& r) {
+  std::vector<std::string> warnings;
+  for (const odprt::Quarantined& q : r.quarantined)
+    warnings.push_back(
+        fmt::format("queue {} failed: {}; its subtrees went to the other queues", q.queue, q.what));
+  return warnings;
+}
+
+}  // namespace
+
+Drawn draw_odprt(State& state, Job& job) {
+  const RenderOptions& o = job.options;
+  if (o.device_memory > 0 && !o.channels.empty())
+    throw Error(ErrorCode::usage, "--aov needs the whole scene on a device; leave --device-memory out");
+  const odprt::Request request = request_for(state, job);
+  if (!state.divided)
+    state.divided = std::make_unique<odprt::DividedScene>(state.scene.flat, state.scene.wide);
+  odprt::Result result = state.divided->render(request);
+  state.speeds.take(job.frame).odprt = mrays_per_s(result.counters.total(), result.render_seconds);
+  Json mode = odprt_mode_json(result, o, state.divided->geometry_bytes());
+  mode["queues"] = state.devices.n_queues();
+  mode["tile"] = {job.frame.tile_width, job.frame.tile_height};
+  mode["tiles"] = job.frame.n_tiles;
+  Drawn drawn;
+  drawn.warnings = warnings_of(result);
+  drawn.seconds = {{"divide", result.divide_seconds}, {"route", result.stage_seconds["route"]}};
+  drawn.mode = std::move(mode);
+  drawn.memory = {{"per_queue", odprt_memory_json(result)}};
+  drawn.image = std::move(result.image);
+  drawn.samples = std::move(result.samples);
+  drawn.counters = result.counters;
+  drawn.stage_seconds = std::move(result.stage_seconds);
+  drawn.render_seconds = result.render_seconds;
+  return drawn;
+}
+
+}  // namespace kdray::api

@@ -1,0 +1,65 @@
+#include "api/draw_pdprt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "api/film_memory.h"
+#include "api/names.h"
+#include "pdprt/render.h"
+
+namespace kdray::api {
+
+namespace {
+
+std::vector<pdprt::Device> places_on(State& state, const Job& job) {
+  std::vector<pdprt::Device> places;
+  for (Device& d : state.devices)
+    places.push_back({&d.context, &d.buffers(), &d.programs, state.scheduler.schedule_for(d, job)});
+  // The frame has one size of batches for all devices.
+  const auto batch = [](const pdprt::Device& place) { return place.schedule.batch_size; };
+  const std::uint32_t smallest = batch(*std::ranges::min_element(places, {}, batch));
+  for (pdprt::Device& place : places) place.schedule.batch_size = smallest;
+  return places;
+}
+
+// One line for each queue that failed.
+std::vector<std::string> warnings_of(const pdprt::Result& result) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < result.queues.size(); ++i)
+    if (const pdprt::QueueResult& queue = result.queues[i]; !queue.failure.empty())
+      warnings.push_back(
+          fmt::format("queue {} ({}) failed: {}; the other queues rendered the {} tiles it had taken", i,
+                      queue.device, queue.failure, queue.tiles_lost));
+  return warnings;
+}
+
+}  // namespace
+
+Drawn draw_pdprt(State& state, const Job& job) {
+  const std::size_t max_film_bytes = film_bytes(state, job);
+  pdprt::Result result = pdprt::render(places_on(state, job), {.frame = job.frame,
+                                                               .features = job.features,
+                                                               .adaptive_target = job.options.adaptive_target,
+                                                               .division = job.options.division,
+                                                               .progress = job.options.progress,
+                                                               .faults = &state.faults,
+                                                               .timeline = job.timeline,
+                                                               .max_film_bytes = max_film_bytes});
+  state.scheduler.remember(job.frame, result.tile_cost);
+  state.speeds.take(job.frame).pdprt = mrays_per_s(result.counters.total(), result.render_seconds);
+  Json mode = pdprt_json(result);
+  mode["division"] = name_of(job.options.division);
+  mode["schedule"] = state.devices.first().global ? "global" : "slices";
+  return {.image = std::move(result.image),
+          .samples = std::move(result.samples),
+          .warnings = warnings_of(result),
+          .counters = result.counters,
+          .stage_seconds = std::move(result.stage_seconds),
+          .render_seconds = result.render_seconds,
+          .mode = std::move(mode),
+          .memory = pdprt_memory_json(result, state.scene_bytes)};
+}
+
+}  // namespace kdray::api

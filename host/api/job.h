@@ -1,0 +1,48 @@
+// What    A frame that is to be rendered, in whichever mode, and what comes of rendering it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adaptive/report.h"
+#include "api/statistics.h"
+#include "film/image.h"
+#include "kdray/kdray.h"
+#include "layout/frame.layout.h"
+#include "timeline/timeline.h"
+#include "wavefront/wavefront.h"
+
+namespace kdray::api {
+
+struct Job {
+  RenderOptions options;  // with what they leave open filled in from the scene
+  layout::Frame frame;
+  std::uint32_t features;
+  timeline::Timeline* timeline;  // null: not wanted
+};
+
+struct Drawn {
+  film::Image image;
+  std::optional<adaptive::Report> samples;
+  std::vector<std::string> warnings;
+  wavefront::Counters counters;
+  std::map<std::string, double> stage_seconds;  // device time, added over the queues
+  double render_seconds = 0;
+  // What only this mode has to tell, for the statistics' parts of these names.
+  Json seconds = Json::object(), mode, memory;
+};
+
+struct State;
+
+// Fills in what the options leave open. Throws ErrorCode::usage for options that don't go together, or with
+// the scene as it was prepared.
+Job make_job(State& state, const RenderOptions& options, timeline::Timeline* timeline);
+
+inline double mrays_per_s(std::uint64_t rays, double seconds) {
+  return seconds > 0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0;
+}
+
+}  // namespace kdray::api

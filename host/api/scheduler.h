@@ -1,0 +1,40 @@
+// What    How each device cuts a frame up: the size of tiles and batches, how many slices are in flight, how
+//         much a launch does.
+// Why     A choice changes time and memory, never the picture; what the last frame of this size told of its
+//         tiles serves the next one.
+// Errors  ErrorCode::usage for tiles that hold too many samples.
+#pragma once
+
+#include <cstdint>
+
+#include "api/device.h"
+#include "api/job.h"
+#include "pdprt/tile_size.h"
+#include "wavefront/wavefront.h"
+
+namespace kdray::api {
+
+class Scheduler {
+ public:
+  // `devices` have to outlive the scheduler.
+  explicit Scheduler(const DeviceSet& devices) : devices_(devices) {}
+
+  wavefront::Schedule schedule_for(const Device& device, const Job& job) const;
+
+  // What the tiles of a frame cost.
+  void remember(const layout::Frame& frame, const pdprt::TileCost& cost);
+  void forget() { last_ = {}; }
+
+ private:
+  void choose_tiles(wavefront::Schedule& schedule, const Job& job) const;
+  std::uint32_t tile_side(const layout::Frame& frame) const;
+  void choose_slices(wavefront::Schedule& schedule, const Device& device) const;
+
+  const DeviceSet& devices_;
+  struct {
+    std::uint32_t width = 0, height = 0;
+    pdprt::TileCost cost;
+  } last_;
+};
+
+}  // namespace kdray::api

@@ -1,0 +1,51 @@
+// What    What a Renderer keeps between its frames: the scene, the devices, and what former frames have told.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "api/device.h"
+#include "api/scheduler.h"
+#include "device/faults.h"
+#include "flatten/core.h"
+#include "odprt/render.h"
+#include "prepare/prepared.h"
+
+namespace kdray::api {
+
+// Mrays/s of the last frames of one size, by mode; 0: not measured.
+struct Speeds {
+  std::uint32_t width = 0, height = 0;
+  double pdprt = 0, odprt = 0;
+
+  bool are_of(const layout::Frame& frame) const { return width == frame.width && height == frame.height; }
+  // Forgets those of another size.
+  Speeds& take(const layout::Frame& frame) {
+    if (!are_of(frame)) *this = {frame.width, frame.height, 0, 0};
+    return *this;
+  }
+};
+
+// Its parts refer to each other, so it stays where it was made.
+struct State {
+  State(const prepare::Prepared& prepared, const DeviceOptions& options)
+      : scene(prepared),
+        scene_bytes(scene.bytes()),
+        devices(options, scene),
+        scheduler(devices),
+        faults(options.faults) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  prepare::Prepared scene;
+  std::size_t scene_bytes;  // of its arrays, on a device that has all of it
+  DeviceSet devices;
+  Scheduler scheduler;
+  device::Faults faults;
+  std::unique_ptr<odprt::DividedScene> divided;  // once a frame was rendered in ODPRT
+  Speeds speeds;
+  std::optional<flatten::Core> core;  // looked for with the first frame that could make use of it
+};
+
+}  // namespace kdray::api
