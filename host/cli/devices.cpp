@@ -24,7 +24,9 @@ std::string as_text(const std::vector<DeviceInfo>& devices) {
         fmt::format("   {}, {}, driver {}\n", one_line(d.platform), one_line(d.version), one_line(d.driver));
     if (d.usable)
       text +=
-          fmt::format("   vectors: {}; double precision: {}\n", d.vectors, d.double_precision ? "yes" : "no");
+          fmt::format("   vectors: {}{}; double precision: {}\n", d.vectors,
+                      d.vectors_refused.empty() ? "" : fmt::format(" (not {})", one_line(d.vectors_refused)),
+                      d.double_precision ? "yes" : "no");
     if (!d.usable) text += fmt::format("   not usable: {}\n", one_line(d.why_not));
   }
   return text;
@@ -43,6 +45,7 @@ std::string as_json(const std::vector<DeviceInfo>& devices) {
                     {"global_memory", d.global_memory},
                     {"max_allocation", d.max_allocation},
                     {"vectors", d.vectors},
+                    {"vectors_refused", d.vectors_refused},
                     {"double_precision", d.double_precision},
                     {"usable", d.usable},
                     {"why_not", d.why_not}});

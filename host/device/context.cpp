@@ -83,8 +83,10 @@ Context::Context(const std::string& device_spec, int n_queues, int compute_units
     found_.info.compute_units =
         std::min(found_.info.compute_units, static_cast<std::uint32_t>(compute_units));
   checked("opening " + found_.info.name, [&] { opened_ = &opened_before_or_now(found_, n_queues); });
-  simd_ = choose_simd(found_, *opened_, builds_);
+  const SimdChoice simd = choose_simd(found_, *opened_, builds_);
+  simd_ = simd.form;
   found_.info.vectors = in_words(simd_);
+  found_.info.vectors_refused = simd.refused_in_words();
 }
 
 Context Context::without_cache() const {

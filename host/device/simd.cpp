@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <mutex>
@@ -24,23 +25,50 @@ std::string options_for(Simd form) {
   return "-cl-std=CL1.2 " + build_option(form);
 }
 
-bool processor_has_avx512() {
+// A form that needs more than OpenCL C: its name in KDRAY_SIMD and in words, and what the processor must
+// have.
+struct Form {
+  Simd form;
+  const char* asked;
+  const char* words;
+  bool (*processor_has)();
+  const char* needs;
+};
+
+bool has_avx2() {
 #if defined(__x86_64__) && defined(__GNUC__)
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("avx512f") &&
-         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512bw");
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #else
   return false;
 #endif
 }
 
-// The x86 form's kernel, or none where the compiler refuses it: an answer, not an error, hence no report of
-// it.
-std::optional<Kernel<SimdTest>> try_x86_build(const Opened& opened, const Builds& builds) {
+bool has_avx512() {
+#if defined(__x86_64__) && defined(__GNUC__)
+  return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+#else
+  return false;
+#endif
+}
+
+// From the best on; the last is what every device must be able to.
+constexpr Form kForms[] = {
+    {Simd::avx512, "avx512", "x86 AVX-512", has_avx512, "AVX-512 (F, VL, DQ and BW)"},
+    {Simd::avx2, "avx2", "x86 AVX2", has_avx2, "AVX2 and FMA"},
+    {Simd::portable, "portable", "portable", nullptr, nullptr},
+};
+
+const Form& described(Simd form) {
+  return *std::ranges::find(kForms, form, &Form::form);
+}
+
+// The form's kernel, or none where the compiler refuses it: an answer, not an error, hence no report of it.
+std::optional<Kernel<SimdTest>> try_probe_build(Simd form, const Opened& opened, const Builds& builds) {
   try {
     std::string log;
     const cl::Program program = try_build(opened.context, opened.devices, expand_source(SimdTest::kFile),
-                                          options_for(Simd::x86), builds, log);
+                                          options_for(form), builds, log);
     if (program() != nullptr) return Kernel<SimdTest>(program);
   } catch (const cl::Error&) {  // refused in another way
   } catch (const Error&) {
@@ -53,14 +81,15 @@ std::string difference_in(const Opened& opened, Kernel<SimdTest>& kernel) {
   return first_difference(cases, run_simd_test(opened, kernel, cases));
 }
 
-// "portable", "x86", or empty: whatever is best.
-std::string asked_for() {
+// What KDRAY_SIMD asks for; none: whatever is best.
+const Form* asked_for() {
   const char* value = std::getenv("KDRAY_SIMD");
-  const std::string_view form = value == nullptr ? "" : value;
-  if (!form.empty() && form != "portable" && form != "x86")
-    throw Error(ErrorCode::usage,
-                fmt::format("KDRAY_SIMD is '{}'; it may be portable or x86, or unset", form));
-  return std::string(form);
+  const std::string_view asked = value == nullptr ? "" : value;
+  if (asked.empty()) return nullptr;
+  for (const Form& form : kForms)
+    if (asked == form.asked) return &form;
+  throw Error(ErrorCode::usage,
+              fmt::format("KDRAY_SIMD is '{}'; it may be portable, avx2 or avx512, or unset", asked));
 }
 
 void check_portable(const FoundDevice& found, const Opened& opened, const Builds& builds) {
@@ -81,11 +110,18 @@ void check_portable(const FoundDevice& found, const Opened& opened, const Builds
 }  // namespace
 
 const char* in_words(Simd form) {
-  return form == Simd::x86 ? "x86 AVX-512" : "portable";
+  return described(form).words;
 }
 
 std::string build_option(Simd form) {
-  return form == Simd::x86 ? "-DKDRAY_SIMD_X86=1" : "-DKDRAY_SIMD_X86=0";
+  return fmt::format("-DKDRAY_SIMD={}", static_cast<int>(form));
+}
+
+std::string SimdChoice::refused_in_words() const {
+  std::string text;
+  for (const Refusal& refusal : refused)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", in_words(refusal.form), refusal.why);
+  return text;
 }
 
 std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, Kernel<SimdTest>& kernel,
@@ -109,11 +145,13 @@ std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, Kernel<Simd
 // lacks may well build (a compiler can be told any target) and then kills the process, which no self-test
 // survives. The processor asked is the one this runs on, which is a CPU device's own; a GPU's or an
 // accelerator's compiler need not be bothered with builtins that aren't its own.
-std::string why_no_x86(const FoundDevice& found, const Opened& opened, const Builds& builds) {
-  if (!processor_has_avx512()) return "the processor has no AVX-512 (F, VL, DQ and BW)";
+std::string why_not(Simd form, const FoundDevice& found, const Opened& opened, const Builds& builds) {
+  const Form& wanted = described(form);
+  if (!wanted.processor_has) return "";
+  if (!wanted.processor_has()) return fmt::format("the processor has no {}", wanted.needs);
   if (found.info.kind != "cpu") return "the device is not a CPU";
-  std::optional<Kernel<SimdTest>> kernel = try_x86_build(opened, builds);
-  if (!kernel) return "the device's compiler refuses the AVX-512 builtins";
+  std::optional<Kernel<SimdTest>> kernel = try_probe_build(form, opened, builds);
+  if (!kernel) return fmt::format("the device's compiler refuses the {} builtins", wanted.words);
   try {
     const std::string difference = difference_in(opened, *kernel);
     return difference.empty() ? "" : "the self-test fails at " + difference;
@@ -122,22 +160,27 @@ std::string why_no_x86(const FoundDevice& found, const Opened& opened, const Bui
   }
 }
 
-Simd probe_simd(const FoundDevice& found, const Opened& opened, const Builds& builds) {
-  const std::string asked = asked_for();
-  if (asked != "portable") {
-    const std::string why_not = why_no_x86(found, opened, builds);
-    if (why_not.empty()) return Simd::x86;
-    if (asked == "x86")
-      throw Error(ErrorCode::no_device,
-                  fmt::format("KDRAY_SIMD=x86 can't be had on {}: {}; unset it", found.info.name, why_not));
+SimdChoice probe_simd(const FoundDevice& found, const Opened& opened, const Builds& builds) {
+  const Form* const asked = asked_for();
+  SimdChoice choice;
+  for (const Form& form : kForms) {
+    if (asked && asked != &form) continue;
+    choice.form = form.form;
+    if (form.form == Simd::portable) break;
+    const std::string why = why_not(form.form, found, opened, builds);
+    if (why.empty()) return choice;
+    if (asked)
+      throw Error(ErrorCode::no_device, fmt::format("KDRAY_SIMD={} can't be had on {}: {}; unset it",
+                                                    form.asked, found.info.name, why));
+    choice.refused.push_back({form.form, why});
   }
   check_portable(found, opened, builds);
-  return Simd::portable;
+  return choice;
 }
 
-Simd choose_simd(const FoundDevice& found, const Opened& opened, const Builds& builds) {
+SimdChoice choose_simd(const FoundDevice& found, const Opened& opened, const Builds& builds) {
   static std::mutex mutex;
-  static std::map<std::pair<int, std::string>, Simd> chosen;
+  static std::map<std::pair<int, const Form*>, SimdChoice> chosen;
   const std::lock_guard lock(mutex);
   const std::pair key{found.info.number, asked_for()};
   auto place = chosen.find(key);

@@ -1,10 +1,25 @@
 // What    Every operation of simd.clh on given cases: the probe build and self-test of host/device/simd.h,
-//         and the test of both forms.
+//         and the test of all forms.
 // Shape   One work-item goes through all cases: the kernels that use simd.clh run one work-item to a vector,
-//         too. A compiler that says itself that its target has no AVX-512 gets no x86 kernel rather than a
-//         failed build, about which PoCL's would print a line.
-#if !(defined(KDRAY_SIMD_X86) && KDRAY_SIMD_X86) || \
-    (defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__))
+//         too. A compiler that says itself that its target lacks the form's instructions gets no kernel
+//         rather than a failed build, about which PoCL's would print a line.
+#include "layout/simd.h"
+#ifndef KDRAY_SIMD
+#define KDRAY_SIMD KDRAY_SIMD_PORTABLE
+#endif
+#if KDRAY_SIMD == KDRAY_SIMD_AVX512
+#if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
+#define KDRAY_TARGET_HAS_IT 1
+#endif
+#elif KDRAY_SIMD == KDRAY_SIMD_AVX2
+#if defined(__AVX2__) && defined(__FMA__)
+#define KDRAY_TARGET_HAS_IT 1
+#endif
+#else
+#define KDRAY_TARGET_HAS_IT 1
+#endif
+
+#ifdef KDRAY_TARGET_HAS_IT
 #include "common/simd.clh"
 #include "layout/arguments.h"
 #include "layout/simd_test.layout.h"
@@ -27,8 +42,10 @@ inline void answer16(__global const SimdCase* in, __global SimdAnswers* out) {
   out->negative16 = negative16(a);
   vstore16(as_uint16(select16(mask, a, b)), 0, out->select16);
   vstore16(selectu16(mask, ua, ub), 0, out->selectu16);
-  vstore16(as_uint16(compress16(mask, a)), 0, out->compress16);
-  vstore16(compressu16(mask, ua), 0, out->compressu16);
+  // What lies behind the packed lanes is anything.
+  const mask16 packed = lanes_below(count_lanes(mask));
+  vstore16(as_uint16(select16(packed, compress16(mask, a), zero)), 0, out->compress16);
+  vstore16(selectu16(packed, compressu16(mask, ua), (uint16)(0)), 0, out->compressu16);
   prefetch_line(in->b);
   vstore16(as_uint16(gather16((__global const float*)in->b, index)), 0, out->gather16);
   vstore16(gatheru16(in->b, index), 0, out->gatheru16);
@@ -47,8 +64,9 @@ inline void answer8(__global const SimdCase* in, __global SimdAnswers* out) {
   out->equal8 = equal8(a, b);
   out->less4 = less4(a.lo, b.lo);
   out->less_equal4 = less_equal4(a.lo, b.lo);
-  vstore8(as_uint8(compress8(mask, a)), 0, out->compress8);
-  vstore8(compressu8(mask, ua), 0, out->compressu8);
+  const int8 packed = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < (int8)((int)count_lanes(mask));
+  vstore8(packed ? as_uint8(compress8(mask, a)) : (uint8)(0), 0, out->compress8);
+  vstore8(packed ? compressu8(mask, ua) : (uint8)(0), 0, out->compressu8);
   vstore8(as_uint8(permute8(a, index)), 0, out->permute8);
   vstore8(permuteu8(ua, index), 0, out->permuteu8);
 }

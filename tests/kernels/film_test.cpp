@@ -131,15 +131,14 @@ void expect_exact_sums(const std::string& device, const std::string& options) {
   EXPECT_GT(saturated, 100);
 }
 
-TEST_P(FilmTest, SumsAreExact) {
-  expect_exact_sums(GetParam(), device::build_option(device::Simd::portable));
-}
-
-TEST_P(FilmTest, SumsAreExactWithX86sBuiltins) {
-  const std::string why_not =
-      device::why_no_x86(device::choose_device(GetParam()), device::Context(GetParam(), 1).opened());
-  if (!why_not.empty()) GTEST_SKIP() << why_not;
-  expect_exact_sums(GetParam(), device::build_option(device::Simd::x86));
+TEST_P(FilmTest, SumsAreExactInEveryFormOfVectors) {
+  const device::FoundDevice found = device::choose_device(GetParam());
+  const device::Context context(GetParam(), 1);
+  for (const device::Simd form : {device::Simd::portable, device::Simd::avx2, device::Simd::avx512})
+    if (device::why_not(form, found, context.opened()).empty()) {
+      SCOPED_TRACE(device::in_words(form));
+      expect_exact_sums(GetParam(), device::build_option(form));
+    }
 }
 
 TEST_P(FilmTest, SumsAreExactInDouble) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Every kernel passes an offline OpenCL C 1.2 compile, no device needed: with all features on (every warning an error), for
 # each traversal where there is a choice; with none, and with each bit alone (where code that is switched off leaves
-# unused names behind). Kernels with explicit vectors pass for x86-64 with AVX-512 too, in both forms of common/simd.clh, down
+# unused names behind). Kernels with explicit vectors pass for x86-64 with AVX-512 too, in all forms of common/simd.clh, down
 # to LLVM's code: whether the target has a builtin is not asked before. In double (KDRAY_PRECISION=64) the kernels of the binary
 # walk pass: not odprt's, nor the test of float's vectors.
 set -u
@@ -10,6 +10,7 @@ common="-cl-std=CL1.2 -Xclang -finclude-default-header -Wall -Wextra -Wundef -We
 plain="-target spir64 -fsyntax-only $common"
 x86="-target x86_64-linux-gnu -march=icelake-server -c -emit-llvm -o /dev/null $common"
 bits=$(sed -nE 's/^#define KDRAY_(FEATURE|KEEP)_[A-Z]+ (0x[0-9a-f]+)u.*/\2/p' "$kernels"/layout/{features,rules}.h)
+forms=$(sed -nE 's/^#define KDRAY_SIMD_[A-Z0-9]+ ([0-9]+).*/\1/p' "$kernels/layout/simd.h")
 walks=$(sed -nE 's/^#define KDRAY_TRAVERSAL_[A-Z]+ ([0-9]+)$/\1/p' "$kernels/layout/traversal.h")
 compiles() {
   for file in "$kernels"/*/*.cl; do
@@ -22,7 +23,7 @@ compiles() {
     for walk in $choices; do
       echo "$plain -DKDRAY_TRAVERSAL=$walk $file"
       [[ $text == *common/simd.clh* ]] || continue
-      for form in 0 1; do echo "$x86 -DKDRAY_TRAVERSAL=$walk -DKDRAY_SIMD_X86=$form $file"; done
+      for form in $forms; do echo "$x86 -DKDRAY_TRAVERSAL=$walk -DKDRAY_SIMD=$form $file"; done
     done
     [[ $file == */odprt/* || $file == */simd_test.cl ]] && continue
     double="-DKDRAY_PRECISION=64 $file"

@@ -1,4 +1,4 @@
-// The operations of common/simd.clh, both forms, against answers made on the host lane by lane: the hard
+// The operations of common/simd.clh, all forms, against answers made on the host lane by lane: the hard
 // values of the self-test at start, and random bits under every mask of 16 lanes.
 #include <gtest/gtest.h>
 
@@ -42,10 +42,8 @@ class SimdFormsTest : public test::EachDevice {
   // The answers of the device, with the program built once for all cases.
   void expect_right(Simd form) {
     const device::Context context(GetParam(), 1);
-    if (form == Simd::x86) {
-      const std::string why_not = device::why_no_x86(device::choose_device(GetParam()), context.opened());
-      if (!why_not.empty()) GTEST_SKIP() << why_not;
-    }
+    const std::string why_not = device::why_not(form, device::choose_device(GetParam()), context.opened());
+    if (!why_not.empty()) GTEST_SKIP() << why_not;
     const cl::Program program =
         context.build("common/simd_test.cl", "-cl-std=CL1.2 " + device::build_option(form));
     expect_right_on(context, program, device::known_cases());
@@ -73,8 +71,12 @@ TEST_P(SimdFormsTest, PortableFormGivesTheAnswersOfTheHost) {
   expect_right(Simd::portable);
 }
 
-TEST_P(SimdFormsTest, X86FormGivesTheAnswersOfTheHost) {
-  expect_right(Simd::x86);
+TEST_P(SimdFormsTest, Avx2FormGivesTheAnswersOfTheHost) {
+  expect_right(Simd::avx2);
+}
+
+TEST_P(SimdFormsTest, Avx512FormGivesTheAnswersOfTheHost) {
+  expect_right(Simd::avx512);
 }
 
 KDRAY_FOR_EACH_DEVICE(SimdFormsTest);
