@@ -39,7 +39,7 @@ class Blocks {
     }
   }
 
-  // In rows, where their order is all the same.
+  // The same, row by row, for what doesn't depend on the order.
   template <class Take>
   void for_each_by_rows(std::size_t block, const Take& take) const {
     const Corner corner = corners_[block];
@@ -49,7 +49,7 @@ class Blocks {
       for (std::uint32_t x = corner.x; x < end_x; ++x) take(std::size_t{y} * size_.width + x, x, y);
   }
 
-  // The blocks that touch it, and itself.
+  // The block itself and those that touch it.
   std::vector<std::size_t> around(std::size_t block) const;
 
  private:

@@ -29,8 +29,8 @@ void read_row(std::span<const layout::i64> sums, Size size, std::size_t y, Row& 
   }
 }
 
-// Of a row between two others. The four lines' squares are summed over the channels before the largest is
-// taken.
+// Estimates the variances of a row of pixels, given the rows above and below it. The squares of the four
+// lines' differences are summed over the channels before the largest is taken.
 void contrast_of_row(const Row& above, const Row& row, const Row& below, std::span<float> variance) {
   const auto square = [&](std::size_t x, std::size_t c, const Row& first, std::size_t a, const Row& last,
                           std::size_t b) {

@@ -12,7 +12,8 @@
 
 namespace kdray::adaptive {
 
-// `sums`: of one sample of each pixel, three channels. `variance`: mean of the channels, for each pixel.
+// `sums` has one sample of each pixel, in three channels; `variance` gets each pixel's, as the mean over the
+// channels.
 void contrast(std::span<const layout::i64> sums, Size size, std::span<float> variance);
 
 }  // namespace kdray::adaptive

@@ -1,6 +1,6 @@
 // What    Sums of a value over each pixel's eight neighbours, for the pixels of a block.
-// Shape   By columns of three, each of which serves three pixels. Outside of the picture the value is 0, so
-//         that borders need no cases of their own.
+// Shape   Sums are made by columns of three, each of which serves three pixels. Outside of the picture the
+//         value is 0, so that borders need no cases of their own.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace kdray::adaptive {
 
 class Neighbours {
  public:
-  // value(pixel), of the block's pixels and those around them.
+  // Calls value(pixel) for the pixels of the block and those around it.
   template <class Value>
   Neighbours(const Blocks& blocks, std::size_t block, const Value& value) : corner_(blocks.corner(block)) {
     const Size size = blocks.size();
@@ -31,7 +31,7 @@ class Neighbours {
         columns_[row][x] = values_[row - 1][x] + values_[row][x] + values_[row + 1][x];
   }
 
-  // Of a pixel of the block.
+  // The sum over the neighbours of a pixel of the block.
   float sum(std::uint32_t x, std::uint32_t y) const {
     const std::uint32_t u = x - corner_.x + 1, v = y - corner_.y + 1;
     return columns_[v][u - 1] + columns_[v][u + 1] + (values_[v - 1][u] + values_[v + 1][u]);
@@ -45,7 +45,7 @@ class Neighbours {
   Rows values_{}, columns_{};
 };
 
-// How many a pixel has: 8 but at the picture's borders.
+// How many neighbours a pixel has: 8, but fewer at the picture's borders.
 inline std::uint32_t neighbours_of(std::uint32_t x, std::uint32_t y, Size size) {
   const auto in_a_line = [](std::uint32_t at, std::uint32_t n) { return 1u + (at > 0) + (at + 1 < n); };
   return in_a_line(x, size.width) * in_a_line(y, size.height) - 1;

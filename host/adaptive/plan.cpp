@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLittle = 1.1;
 
-// Of the price, by one step from each level.
+// For each level, the share of a pixel's price that is left when it goes one level up.
 std::array<double, kLevels - 1> left_by_step() {
   std::array<double, kLevels - 1> left{};
   for (int level = 0; level + 1 < kLevels; ++level) {

@@ -31,7 +31,7 @@ class Prices {
  public:
   static constexpr std::uint32_t kClasses = 2048;
 
-  // 0: no error.
+  // The class 0 means that there is no error.
   static std::uint32_t class_of(float price) { return std::bit_cast<std::uint32_t>(price) >> 20; }
   static float price_of(std::uint32_t number) {
     return number == 0 ? 0.0f : std::bit_cast<float>(number << 20 | 1u << 19);
@@ -43,11 +43,12 @@ class Prices {
 
   std::uint64_t pixels(int level) const;
 
-  // The squared errors of all pixels, if those above a limit were refined.
+  // The sum of all pixels' squared errors, if those whose price is above the limit were refined.
   double sum_for(std::uint32_t limit) const;
   double sum() const { return sum_for(kClasses); }
 
-  // The limit for a sum of `wanted`; where that can't be had, one that leaves little more than must be left.
+  // The limit at which that sum becomes `wanted`. Where it can't, the limit leaves little more than what must
+  // be left anyway.
   std::uint32_t limit_for(double wanted) const;
 
  private:

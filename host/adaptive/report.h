@@ -8,7 +8,8 @@
 
 namespace kdray::adaptive {
 
-// Of refinement. Two samples tell next to nothing of their spread.
+// How many samples a pixel has at each level of refinement. There is no level of two, which tell next to
+// nothing of their spread.
 constexpr std::array<std::uint32_t, 6> kSamples = {1, 4, 8, 16, 32, 64};
 constexpr int kLevels = kSamples.size();
 

@@ -36,7 +36,7 @@ std::size_t place_of(std::size_t i) {
   return i / KDRAY_SAMPLE_RUN * 2 * KDRAY_SAMPLE_RUN + i % KDRAY_SAMPLE_RUN;
 }
 
-// As the kernels add.
+// Adds as the kernels do: a sum that is too large stays at the end of the range.
 layout::i64 add_saturated(layout::i64 a, layout::i64 b) {
   layout::i64 sum = 0;
   if (!__builtin_add_overflow(a, b, &sum)) return sum;
@@ -52,7 +52,7 @@ double square_of(const layout::i64* sums) {
   return square;
 }
 
-// Unbiased, of one sample, mean of the channels.
+// The unbiased estimate of a single sample's variance, as the mean over the channels.
 float variance_of(const layout::i64* sums, double squares, double n) {
   return static_cast<float>(std::max(0.0, squares - square_of(sums) / n) / (3 * (n - 1)));
 }
@@ -77,8 +77,8 @@ void Sampler::begin() {
   std::iota(changed_.begin(), changed_.end(), std::size_t{0});
 }
 
-// The squared error of the mean of a block's pixels' samples. Few samples may agree by chance: the
-// neighbours' count as some more.
+// Tells the squared error of the mean of a pixel's samples, for the pixels of a block. Few samples may agree
+// by chance, so the neighbours' variance counts like some more.
 class Sampler::Errors {
  public:
   Errors(const Sampler& sampler, std::size_t block)
@@ -103,7 +103,7 @@ class Sampler::Errors {
   const Neighbours variances_, refined_;
 };
 
-// error_of(pixel, x, y), of all its pixels.
+// Counts the block's pixels anew, by the prices that follow from error_of(pixel, x, y).
 template <class ErrorOf>
 void Sampler::estimate_block(std::size_t block, Prices& changes, const ErrorOf& error_of) {
   const bool first = rounds_ == 1;
@@ -144,8 +144,8 @@ bool Sampler::refined_around(std::size_t block) const {
   return std::any_of(around.begin(), around.end(), [&](std::size_t other) { return refined_[other] != 0; });
 }
 
-// What the next round brings the pixel to: as far as the limit says, since samples of one pixel that are
-// traced together cost less than those of several rounds.
+// The level that the next round brings the pixel to. It goes as far as the limit says, since samples of one
+// pixel that are traced together cost less than those of several rounds.
 int Sampler::next_level(std::size_t pixel) const {
   const int level = level_[pixel];
   if (class_[pixel] <= limit_) return level;

@@ -26,16 +26,16 @@ namespace kdray::adaptive {
 
 class Sampler {
  public:
-  // `target`: the RMSE that is wanted, over all channels of linear RGB.
+  // `target` is the RMSE that is wanted, over all channels of linear RGB.
   Sampler(Size size, double target);
 
-  // Where the first round's sums go: three for each pixel.
+  // The first round's sums are written here, three for each pixel.
   std::span<layout::i64> first_sums() { return sums_; }
 
-  // The next round's samples, in whole runs; none: the picture is done.
+  // The next round's samples, in whole runs. When there are none, the picture is done.
   std::span<const layout::u32> next();
 
-  // What the last round's samples have come to: three sums for each place of its runs.
+  // Takes the light of the last round's samples: three sums for each place of its runs.
   void take(std::span<const layout::i64> sums);
 
   std::vector<vec3> picture() const;

@@ -40,7 +40,7 @@ struct Header {
 };
 static_assert(sizeof(Header) <= kPage && std::is_trivially_copyable_v<Header>);
 
-// What is kept as it lies in memory, in the order of the sections behind the facts.
+// Visits the arrays that an entry keeps as they lie in memory, in the order of the sections behind the facts.
 template <class Prepared, class Visit>
 void for_each_array(Prepared& p, const Visit& visit) {
   auto& [nodes, refs, triangles, normals, spheres, cones, materials, lights] = p.flat;
@@ -54,7 +54,7 @@ std::size_t to_page(std::size_t bytes) {
   return (bytes + kPage - 1) / kPage * kPage;
 }
 
-// The hash of the hashes of its pieces, which all cores work on.
+// The hash of the hashes of the pieces, which all cores work on.
 Hash checksum(std::string_view bytes) {
   std::vector<Hash> pieces((bytes.size() + kPiece - 1) / kPiece);
   tbb::parallel_for(std::size_t{0}, pieces.size(),
@@ -114,7 +114,7 @@ bool is_sound(const Header& header, const Hash& key, std::string_view file) {
   return true;
 }
 
-// Used in place, as long as the mapping lives.
+// The array uses the mapping's bytes in place; the mapping lives as long as the array does.
 template <class T>
 void take(Array<T>& array, std::string_view bytes, const std::shared_ptr<void>& owner) {
   if (bytes.empty()) return;

@@ -18,10 +18,10 @@ namespace kdray::cache {
 // The size of the entry's file.
 std::uint64_t entry_bytes(const prepare::Prepared& prepared);
 
-// Whole or not at all. Throws kdray::Error, ErrorCode::input, when it can't be written.
+// Writes the entry whole or not at all. Throws kdray::Error, ErrorCode::input, when it can't be written.
 void write_entry(const std::filesystem::path& file, const Hash& key, const prepare::Prepared& prepared);
 
-// Nothing where there is no entry, or it is damaged, of another form or of another key.
+// Returns nothing where there is no entry, or where it is damaged, of another form or of another key.
 std::optional<prepare::Prepared> read_entry(const std::filesystem::path& file, const Hash& key);
 
 }  // namespace kdray::cache

@@ -9,7 +9,7 @@
 namespace kdray::cache {
 
 Hash key_of(const std::filesystem::path& file, const Hash& content, const TreeOptions& options) {
-  // All of them: an option that is added fails to compile here.
+  // All options are named here, so that one that is added fails to compile.
   const auto& [quality, max_depth, cost_traverse, cost_intersect, memory_bytes, binary_form] = options;
   // The ending decides how bytes are read; numbers are written so that no bit is lost.
   const std::string text = fmt::format(

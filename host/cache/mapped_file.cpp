@@ -22,7 +22,7 @@ std::optional<MappedFile> map(int descriptor) {
 }  // namespace
 
 std::optional<MappedFile> map_file(const std::filesystem::path& file) {
-  // Not to wait for the other end of a pipe.
+  // O_NONBLOCK: the file may be a pipe, whose other end would be waited for.
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return std::nullopt;
   std::optional<MappedFile> mapped = map(descriptor);

@@ -17,7 +17,7 @@ struct MappedFile {
   std::string_view bytes() const { return {static_cast<const char*>(memory.get()), size}; }
 };
 
-// Nothing where there is no such file, it is no regular file, or it can't be read.
+// Returns nothing where there is no such file, it is no regular file, or it can't be read.
 std::optional<MappedFile> map_file(const std::filesystem::path& file);
 
 }  // namespace kdray::cache

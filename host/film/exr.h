@@ -10,13 +10,14 @@
 
 namespace kdray::film {
 
-// The colour as R G B, `channels` under the names they have in an EXR (exr_name).
+// Colour goes out as R, G and B, `channels` under the names that they have in an EXR (exr_name).
 std::string encode_exr(const Image& image, std::span<const Channel> channels);
 
-// R G B, or grey from Y alone. The picture is the file's data window; other channels are passed over.
+// Reads R, G and B, or grey from Y alone. The picture is the file's data window; other channels are passed
+// over.
 Image decode_exr(std::string_view bytes, const std::string& file);
 
-// "depth" -> "Z", "normal.x" -> "N.X", others as they are.
+// "depth" becomes "Z", "normal.x" becomes "N.X"; others stay as they are.
 std::string exr_name(const std::string& channel);
 
 }  // namespace kdray::film

@@ -1,5 +1,6 @@
-// What    decode_exr. A header's size is not believed: sides are limited, and rows are read and appended a
-//         block at a time, so that a header that promises too much fails before much is allocated for it.
+// What    Defines decode_exr. A header's size is not believed: sides are limited, and rows are read and
+//         appended a block at a time, so that a header that promises too much fails before much is allocated
+//         for it.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>

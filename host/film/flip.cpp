@@ -14,7 +14,7 @@ struct Size {
   int width, height;
 };
 
-// Sum over the taps of values[x + tap], the border repeated outwards.
+// The sum over the taps of values[x + tap]; beyond its ends a row goes on with its last value.
 Plane filter_rows(const Plane& in, Size size, const Taps& taps) {
   const int radius = static_cast<int>(taps.size() / 2);
   Plane out(in.size());

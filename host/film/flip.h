@@ -19,7 +19,7 @@ std::vector<float> flip_map(const Image& reference, const Image& test,
                             double pixels_per_degree = kPixelsPerDegree);
 double mean_flip(const Image& reference, const Image& test, double pixels_per_degree = kPixelsPerDegree);
 
-// The metric's parts, for its tests.
+// The parts of the metric are declared for its tests.
 namespace flip {
 dvec3 ycxcz(const dvec3& linear_rgb);
 dvec3 linear_rgb(const dvec3& ycxcz);

@@ -8,7 +8,7 @@
 
 namespace kdray::film {
 
-// State: what the error pointer points to, with a string `error`.
+// State is what the error pointer points to; it has a string `error`.
 template <class State>
 [[noreturn]] void keep_error(png_structp png, png_const_charp message) {
   static_cast<State*>(png_get_error_ptr(png))->error = message;

@@ -1,5 +1,5 @@
-// What    decode_png. The pixels are allocated only after the header's size has been held against the bytes
-//         that are there: Deflate can't expand by more than 1032 to 1. As in png_write.cpp, only plain
+// What    Defines decode_png. The pixels are allocated only after the header's size has been held against the
+//         bytes that are there: Deflate can't expand by more than 1032 to 1. As in png_write.cpp, only plain
 //         variables live across setjmp.
 #include <png.h>
 
@@ -34,7 +34,7 @@ struct Reader {
   ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-// Header and transformations; the rows that follow are RGB with 8 or 16 bits.
+// Reads the header and sets the transformations; the rows that follow are RGB with 8 or 16 bits.
 bool start(png_structp png, png_infop info, Source& source) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_read_fn(png, &source, take);

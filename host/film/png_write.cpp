@@ -1,5 +1,5 @@
-// What    encode_png. libpng reports errors with longjmp, which skips destructors: between setjmp and the end
-//         of encode_rows only plain variables live, everything else belongs to the caller.
+// What    Defines encode_png. libpng reports errors with longjmp, which skips destructors: between setjmp and
+//         the end of encode_rows only plain variables live, everything else belongs to the caller.
 #include <png.h>
 
 #include <csetjmp>
@@ -43,7 +43,7 @@ void set_comment(png_structp png, png_infop info, const char* comment) {
   png_set_text(png, info, &text, 1);
 }
 
-// Big endian, as PNG wants it.
+// PNG wants its numbers big-endian.
 void pack_row(const std::uint16_t* samples, std::size_t n_samples, int bits, png_bytep row) {
   for (std::size_t i = 0; i < n_samples; ++i) {
     if (bits == 16) *row++ = static_cast<png_byte>(samples[i] >> 8);

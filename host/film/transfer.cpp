@@ -28,7 +28,8 @@ Quantizer::Quantizer(const Transfer& transfer, std::uint32_t maximum)
   check(transfer);
   for (std::uint32_t code = 0; code < maximum; ++code) {
     const double exact = decode(transfer, (code + 0.5) / maximum);
-    // Rounded up, since the first float at or above the exact boundary is the first that gets the next code.
+    // It is rounded up, since the first float at or above the exact boundary is the first that gets the next
+    // code.
     const float rounded = static_cast<float>(exact);
     begin_[code] =
         rounded < exact ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;

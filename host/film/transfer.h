@@ -23,7 +23,7 @@ class Quantizer {
  public:
   Quantizer(const Transfer& transfer, std::uint32_t maximum);  // maximum: 255 or 65535
 
-  // Clamped to [0, maximum]; NaN gives 0.
+  // The result is clamped to [0, maximum]; NaN gives 0.
   std::uint32_t operator()(float linear) const;
 
  private:

@@ -25,7 +25,7 @@ PngPixels quantized(const Image& image, const Transfer& transfer, int bits) {
   return pixels;
 }
 
-// "a/out.png", "depth" -> "a/out.depth.png".
+// The name of a channel's own file: "a/out.png" and "depth" give "a/out.depth.png".
 fs::path beside(const fs::path& file, const std::string& channel) {
   fs::path path = file;
   return path.replace_filename(file.stem().string() + "." + channel + file.extension().string());

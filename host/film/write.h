@@ -31,10 +31,10 @@ struct Written {
   std::size_t nan_values = 0;                // of the colour: 0 in a PNG, kept in an EXR
 };
 
-// By the ending of `file`: .png or .exr. Channels go into the EXR itself ("Z", "N.X" "N.Y" "N.Z",
-// "primitive", "cost"), or beside a PNG as NAME.depth.png (16 bit grey, near white to far black, background
-// black), NAME.normal.png (8 bit, 0.5 + 0.5*n), NAME.primitive.png (a colour per number), NAME.cost.png (heat
-// map).
+// The ending of `file`, .png or .exr, decides the format. Channels go into the EXR itself ("Z", "N.X" "N.Y"
+// "N.Z", "primitive", "cost"), or beside a PNG as NAME.depth.png (16 bit grey, near white to far black,
+// background black), NAME.normal.png (8 bit, 0.5 + 0.5*n), NAME.primitive.png (a colour for each number),
+// NAME.cost.png (a heat map).
 Written write_picture(const std::filesystem::path& file, const Image& image,
                       std::span<const Channel> channels, const WriteOptions& options);
 

@@ -25,7 +25,7 @@ struct Gear {
   double outer_radius, inner_radius, thickness;
 };
 
-// The outline at the height z; `sense` -1 goes round the other way, for the lower face.
+// The outline at the height z. For the lower face `sense` is -1, and it goes round the other way.
 std::vector<dvec3> outline(const Gear& g, double z, int sense) {
   constexpr double tooth = 2 * pi / kTeeth;
   struct Corner {
@@ -60,7 +60,7 @@ double fraction(double x) {
   return x - std::floor(x);
 }
 
-// Looks random, is not: sevenths by the gear's place, made as bright as they go.
+// The colours look random but follow from the gear's place, in sevenths, made as bright as they go.
 Surface surface_of(int x, int y, int z) {
   const dvec3 raw(0.01 + fraction((x * 3 + y * 2 + z + 1) * 5 / 7.0),
                   0.01 + fraction((y * 3 + z * 2 + x + 1) * 3 / 7.0),

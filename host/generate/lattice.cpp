@@ -15,7 +15,7 @@ namespace {
 constexpr double kBallRadius = 1.0 / 4, kRodRadius = 1.0 / 16;  // radii, in cells
 
 void write_view_and_lights(NffWriter& nff, int size) {
-  // Looks down a corridor from the middle of a cell.
+  // The camera looks down a corridor from the middle of a cell.
   const double x = (size / 2 + 0.5) / size, back = 1 / (2.0 * size);
   nff.view({.from = {x, 1, 1 - back}, .at = {x, -1, -1 - back}, .up = {0.2, 1, 0}, .angle = 60, .hither = 0});
   for (int axis = 0; axis < 3; ++axis)

@@ -20,7 +20,7 @@ namespace {
 constexpr double kFractalDimension = 2.2;
 constexpr std::uint32_t kMountain = 21;  // another number, another mountain
 constexpr double kCorner = -1, kWidth = 2;
-// To the root of 2: the published figure, whose rounding shows in low valleys.
+// This stands for the root of 2. It is the published figure, whose rounding shows in low valleys.
 constexpr double kDiagonal = 1.4142136;
 
 double normal_deviate(std::uint32_t seed) {
@@ -48,7 +48,8 @@ class Mountain {
     roughness_ = std::sqrt(ratio * ratio - 1);
   }
 
-  // The square of `width` cells from (x, y); heights of its corners counter-clockwise from there.
+  // Divides the square of `width` cells from (x, y) on; z has the heights of its corners, counter-clockwise
+  // from there.
   void grow(int width, int x, int y, const std::array<double, 4>& z) {
     if (width == 1) return write_cell(x, y, z);
     const int h = width / 2;

@@ -15,7 +15,7 @@ constexpr double kNoise = 1e-12;
 
 }  // namespace
 
-// to_chars, since a stream's << follows the locale and may write a decimal comma.
+// std::to_chars writes a decimal point whatever the locale; a stream's << might write a comma.
 void NffWriter::number(double value) {
   if (std::abs(value) < kNoise) value = 0;
   std::array<char, 32> text;

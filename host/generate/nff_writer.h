@@ -22,7 +22,7 @@ struct View {
   int resolution = 512;  // square
 };
 
-// The `f` entity.
+// What an `f` entity says of a surface.
 struct Surface {
   dvec3 color;
   double diffuse, specular;

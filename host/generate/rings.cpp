@@ -49,7 +49,7 @@ void write_object(NffWriter& nff, const Object& object, const dvec3& offset) {
   }
 }
 
-// Just fills the 45 degree view.
+// The wall just fills the view of 45 degrees.
 void write_wall(NffWriter& nff, const dvec3& eye, double y) {
   const double half = 1.01 * (y - eye.y) * std::tan(pi / 8);
   nff.surface({.color = {1, 1, 1}, .diffuse = 1, .specular = 0});

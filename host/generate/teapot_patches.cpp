@@ -43,7 +43,7 @@ constexpr std::array kSpout{
 
 enum class Sense { clockwise, counter_clockwise };  // seen from above
 
-// Exact quarter turns: no rounding, so patches meet in the same numbers.
+// Quarter turns are exact: without rounding, neighbouring patches meet in the same numbers.
 dvec3 quarter_turns(dvec3 p, int turns, Sense sense) {
   for (int i = 0; i < turns; ++i)
     p = sense == Sense::clockwise ? dvec3(p.y, -p.x, p.z) : dvec3(-p.y, p.x, p.z);
@@ -58,7 +58,7 @@ std::array<dvec3, 4> quarter_arc(const ProfilePoint& p, Sense sense) {
           {0, side * p.radius, p.z}};
 }
 
-// Every three points further along the profile a ring of four patches; neighbours share a row.
+// Adds a ring of four patches for every three points along the profile; neighbours share a row.
 void add_round(std::vector<BezierPatch>& patches, std::span<const ProfilePoint> profile, Sense sense) {
   for (std::size_t first = 0; first + 3 < profile.size(); first += 3)
     for (int quarter = 0; quarter < 4; ++quarter) {

@@ -16,7 +16,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kThickness = 0.15;  // of the trunk, whose length is 1
 constexpr double kTaper = 0.67;
 
-// From a branch's own frame, where it runs along z to (0, 0, 1), to the tree's.
+// How a branch's own frame, in which it runs along z to (0, 0, 1), lies in the tree's.
 struct Frame {
   dmat3 turn{1};
   dvec3 origin{0};

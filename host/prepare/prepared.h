@@ -21,7 +21,7 @@ struct Counts {
   std::uint64_t triangles = 0, spheres = 0, cones = 0;  // that can be hit
 };
 
-// Wall time.
+// These are wall times.
 struct Seconds {
   double load = 0, build = 0, flatten = 0;
   double total() const { return load + build + flatten; }
@@ -49,7 +49,7 @@ kdtree::BuildConfig config_of(const TreeOptions& options, std::size_t n_primitiv
 
 Prepared prepare(const scene::Scene& scene, const TreeOptions& options);
 
-// The same with a tree of any kind; `geometry` is the scene's. Its tree_options are left at their defaults.
+// The same with a tree of any kind, for the scene's `geometry`. Its tree_options are left at their defaults.
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
                  const kdtree::BuildConfig& config, bool binary_form = true);
 

@@ -8,7 +8,7 @@
 
 namespace kdray::prepare {
 
-// In the order of BuildQuality.
+// The names come in the order of BuildQuality.
 inline constexpr std::array<std::string_view, 3> kQualityNames = {"fast", "balanced", "best"};
 
 constexpr std::string_view name_of(BuildQuality quality) {

@@ -25,14 +25,14 @@ struct NpyPreamble {
   std::size_t header_bytes = 0;  // of the dictionary's text, which follows
 };
 
-// From the first bytes of a file, kPreambleBytes of them or the whole file if it is shorter.
+// `start` holds the first bytes of a file: kPreambleBytes of them, or the whole file if it is shorter.
 NpyPreamble parse_preamble(std::string_view start, const std::string& file);
 
-// The dictionary: its keys in any order, any spaces between.
+// Parses the dictionary, whose keys may come in any order with any spaces between.
 NpyHeader parse_header(std::string_view text, const std::string& file);
 
-// Magic, version 1.0 and the dictionary, padded with spaces so that the data begins at a multiple of 64
-// bytes.
+// Makes the magic number, version 1.0 and the dictionary, padded with spaces so that the data begins at a
+// multiple of 64 bytes.
 std::string make_header(std::string_view type, std::uint64_t n_items);
 
 }  // namespace kdray::rays

@@ -34,7 +34,7 @@ scene::Scene known_scene() {
   return scene;
 }
 
-// From one eye through the points of a grid, past the scene's edges; none goes along an axis.
+// The rays go from one eye through the points of a grid, past the scene's edges; none goes along an axis.
 std::vector<Ray> known_rays() {
   std::vector<Ray> rays;
   for (int y = 0; y < kDown; ++y)

@@ -17,7 +17,7 @@ namespace kdray::selftest {
 scene::Scene known_scene();
 std::vector<Ray> known_rays();
 
-// Of a hit: its floats as bits.
+// A hit, its floats as bits.
 struct Answer {
   std::uint32_t t;
   std::int32_t primitive;

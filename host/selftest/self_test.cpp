@@ -48,7 +48,7 @@ std::string check_occlusion(const std::vector<Hit>& hits) {
   return "";
 }
 
-// Of the device with its driver, and of the kernels.
+// The key is of the device with its driver, and of the kernels.
 Hash key_of(const device::Context& context) {
   const std::string identity = device::checked(
       "asking " + context.info().name, [&] { return device::identity_of(context.opened().devices.front()); });
@@ -70,7 +70,7 @@ std::string first_fault(const std::vector<Hit>& hits, bool exact) {
 
 namespace {
 
-// Rays on a device of their own scene.
+// Traces rays through the known scene, on a device with buffers of its own for it.
 class Known {
  public:
   explicit Known(const device::Context& context)

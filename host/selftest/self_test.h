@@ -16,15 +16,15 @@
 
 namespace kdray::selftest {
 
-// What is wrong, in words; empty when nothing is. Looks at no outcome of before.
+// What is wrong, in words; empty when nothing is. It tests anew, whatever the outcome was before.
 std::string fault_of(const device::Context& context);
 
-// Throws ErrorCode::no_device, naming device and fault, unless it passes, or has passed before. `fail`: as if
-// it computed wrongly.
+// Throws ErrorCode::no_device, naming device and fault, unless the device passes, or has passed before. With
+// `fail` it does as if the device computed wrongly.
 void require(const device::Context& context, bool fail = false);
 
-// What the device answers to known_rays(): for the table of answers, when a change of the kernels is meant to
-// change bits.
+// What the device answers to known_rays(). The table of answers is made of this, when a change of the kernels
+// is meant to change bits.
 std::vector<Answer> answers_of(const device::Context& context);
 
 // What is wrong with these answers to known_rays().

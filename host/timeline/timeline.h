@@ -37,7 +37,7 @@ class Timeline {
   void name_row(int row, const std::string& name);
   void add(int row, const std::string& name, double start, double end, Numbers numbers = {});
 
-  // Of the row, in the order of their beginnings.
+  // The spans of a row, in the order of their beginnings.
   std::vector<Span> spans(int row) const;
 
   std::string json() const;

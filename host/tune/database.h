@@ -45,7 +45,7 @@ class Database {
 
   const std::vector<Entry>& entries() const { return entries_; }
 
-  // With these features, or else for any.
+  // The entry for these features, or else the one for any.
   const Entry* find(const Key& key) const;
 
   void put(const Entry& entry);

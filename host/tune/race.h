@@ -15,7 +15,7 @@ namespace kdray::tune {
 
 // How candidates are looked at. The first look at one may compile.
 struct Lab {
-  // Renders once and compares with the reference: what is wrong, or nothing.
+  // Renders once and compares with the reference. Returns what is wrong, or an empty text.
   std::function<std::string(const Tuning&)> fault;
   // Seconds of a frame of each scene.
   std::function<std::vector<double>(const Tuning&)> measure;
@@ -30,7 +30,7 @@ struct Rival {
   Tuning tuning;
   Verdict verdict = Verdict::no_better;
   std::string fault = {};  // of a wrong one
-  // Its time over the champion's, of each round: the geometric mean of the scenes.
+  // The rival's time over the champion's for each round, as the geometric mean over the scenes.
   std::vector<double> ratios = {};
   std::vector<std::vector<double>> of_scenes = {};  // the same of each scene, by rounds
 

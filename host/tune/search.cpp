@@ -13,7 +13,7 @@ namespace {
 constexpr double kGuess = 0.02;  // what a setting gains that nobody has looked at
 constexpr double kEcho = 0.25;   // of what others gained since, that a setting may gain anew
 constexpr double kWorthwhile = 0.003;
-// Seconds: what a program takes at least, until one was compiled here (the start's may be cached).
+// What a program takes at least, in seconds, until one was compiled here (the start's may come from a cache).
 constexpr double kCompile = 1.5;
 constexpr int kRounds = 9, kLastRounds = 15, kUsualLastRounds = 9, kLeastRounds = 5;
 constexpr double kLastShare = 0.25;  // of the budget, that the last race may take
@@ -78,7 +78,7 @@ class Search {
 
   double reserve() const { return std::min(kLastShare * options_.budget, 2 * kUsualLastRounds * round_); }
 
-  // Also says why there is none.
+  // Chooses the next setting; where there is none, says why.
   const Setting* choose() {
     const Setting* best = nullptr;
     double best_worth = 0;

@@ -15,8 +15,7 @@ struct Shipped {
   Tuning tuning;
 };
 
-// What was measured on a device of the kind, against kdray's own choice; without a measurement nothing is
-// set.
+// Only what was measured on a device of the kind, against kdray's own choice, may be set here.
 const Shipped kShipped[] = {{"cpu", {}}, {"gpu", {}}, {"accelerator", {}}};
 
 }  // namespace

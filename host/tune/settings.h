@@ -1,6 +1,6 @@
 // What    The settings that may be tuned, in one table, and what kdray ships with for each kind of device.
-// Shape   Each is a whole number in Tuning (kdray.h); 0: kdray's own choice, by rules (api/renderer.cpp,
-//         wavefront/programs.cpp) or the kernels' own constant.
+// Shape   Each is a whole number in Tuning (kdray.h). 0 leaves it to kdray's own choice, which rules make
+//         (api/renderer.cpp, wavefront/programs.cpp) or constants of the kernels.
 // Why     Nothing in the table changes a bit of a picture: `kdray tune` may try anything, and a file of
 //         foreign settings can only cost time.
 #pragma once
@@ -25,18 +25,19 @@ struct Setting {
   bool compiles() const { return !programs.empty(); }
 };
 
-// Those worth trying first come first: what costs no compiling.
+// They come in the order in which they are worth trying: first what costs no compiling.
 std::span<const Setting> settings();
 
 const Setting* find_setting(std::string_view name);
 
-// For a kind of device, as DeviceInfo has it.
+// `kind` is the device's, as DeviceInfo has it.
 Tuning shipped(std::string_view kind);
 
-// `over`, and where it has 0 `under`.
+// The settings of `over`, and those of `under` where `over` has 0.
 Tuning merged(const Tuning& under, const Tuning& over);
 
-// "batch 1024, packets 16"; what is left to kdray isn't named; "kdray's own" where all is.
+// For example "batch 1024, packets 16": what is left to kdray isn't named. Where all is, it says "kdray's
+// own".
 std::string in_words(const Tuning& tuning);
 
 }  // namespace kdray::tune

@@ -45,7 +45,7 @@ HWY_ATTR inline void add_bins(const BinPair& bins, BinCounts& counts) {
   }
 }
 
-// As BinCounts::add, in the widest vectors: a small cell has fewer references than bins.
+// The same as BinCounts::add, in the widest vectors: a small cell has fewer references than bins.
 HWY_ATTR inline void add_counts(const BinCounts& from, BinCounts& to) {
   const hn::CappedTag<std::uint32_t, 16> d;
   for (std::size_t k = 0; k < 3; ++k)
@@ -58,8 +58,8 @@ HWY_ATTR inline void add_counts(const BinCounts& from, BinCounts& to) {
     }
 }
 
-// Two sets of counts: neighbours often fall into one bin, and a count that was just written is slow to be
-// read again.
+// Two sets of counts are kept in turn: neighbours often fall into one bin, and a count that was just written
+// is slow to be read again.
 HWY_ATTR inline void count_bins(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride,
                                 BinCounts& counts) {
   BinCounts odd;
@@ -96,7 +96,7 @@ inline SideCounts side_counts(const BinCounts& counts, std::size_t axis) {
   return sides;
 }
 
-// Of a cell of n references.
+// The best of the planes between bins, for a cell of n references.
 HWY_ATTR inline Best best_between_bins(const BinCounts& counts, const BinGrid& grid, const Bounds& contents,
                                        std::size_t n, const BuildConfig& config) {
   const Floats d;
@@ -110,7 +110,7 @@ HWY_ATTR inline Best best_between_bins(const BinCounts& counts, const BinGrid& g
     const SideCounts sides = side_counts(counts, k);
     BestOfAxis best_here;
     for (std::size_t b = 0; b < kBins; b += hn::Lanes(d)) {
-      // As BinGrid::plane. The plane in front of the first bin is not inside.
+      // The planes lie where BinGrid::plane has them. The one in front of the first bin is not inside.
       const V share = hn::Mul(hn::Iota(d, static_cast<float>(b)), hn::Set(d, 1.0f / kBins));
       const V plane = hn::Add(hn::Set(d, grid.lo[k]), hn::Mul(hn::Set(d, grid.hi[k] - grid.lo[k]), share));
       const V below = hn::Mul(hn::ConvertTo(d, hn::Load(di, &sides.below[b])), stride);

@@ -31,7 +31,7 @@ struct Span {
   }
 };
 
-// What a triangle leaves on both sides; across the plane it is of no use.
+// What is left of a triangle on both sides of the plane. Along the plane's own axis the spans are of no use.
 struct Parts {
   Span below, above;
 };

@@ -1,6 +1,6 @@
 // What    The expected costs of planes across one axis of a cell, as many at once as a vector has lanes.
-// Shape   In floats without contraction: the same bits on every instruction set. Lengths are taken relative
-//         to the cell's longest, so that neither tiny nor huge scenes leave the range of floats.
+// Shape   Costs are floats without contraction: the same bits on every instruction set. Lengths are taken
+//         relative to the cell's longest, so that neither tiny nor huge scenes leave the range of floats.
 #if defined(KDRAY_BINNED_COST_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_COST_INL_H
 #undef KDRAY_BINNED_COST_INL_H
@@ -33,7 +33,7 @@ class TestCost {
  public:
   explicit TestCost(int block) : TestCost(block, 1, block > 1 ? 1e-3f : 0.0f) {}
 
-  // So much for each block, and for each reference.
+  // A leaf costs `whole` for each block, and `each` for each reference.
   TestCost(int block, float whole, float each)
       : inverse_block_(1.0f / static_cast<float>(block)),
         round_up_(static_cast<float>(block - 1)),

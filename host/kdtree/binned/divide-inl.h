@@ -34,7 +34,7 @@ struct Sorted {
   std::size_t n_below = 0, n_above = 0, n_straddling = 0;
 };
 
-// In one piece where vectors are wide enough.
+// Copies a reference in one piece, where vectors are wide enough.
 HWY_ATTR inline void copy_ref(const BoundedRef& from, BoundedRef* to) {
   const hn::CappedTag<float, 8> d;
   const float* const in = from.lo.data();
@@ -42,7 +42,7 @@ HWY_ATTR inline void copy_ref(const BoundedRef& from, BoundedRef* to) {
   for (std::size_t i = 0; i < 8; i += hn::Lanes(d)) hn::StoreU(hn::LoadU(d, in + i), d, out + i);
 }
 
-// On which side a reference is, as numbers: a branch would be mispredicted for every other one.
+// The side of a reference as a number: a branch would be mispredicted for every other one.
 inline std::size_t is_below(const BoundedRef& r, std::size_t axis, float position) {
   return r.hi[axis] <= position ? 1 : 0;
 }
@@ -102,7 +102,7 @@ HWY_ATTR inline void clip_straddling(const scene::Geometry& geometry, const Buil
   if (config.clip) {
     const bool mixed = !geometry.spheres.empty() || !geometry.cones.empty();
     n_triangles = mixed ? triangles_first(refs) : refs.size();
-    // They lie anywhere in memory: all are on their way before the first is needed.
+    // The triangles lie anywhere in memory, so all are on their way before the first is needed.
     for (const BoundedRef& r : refs.first(n_triangles)) hwy::Prefetch(&geometry.triangles[ref_index(r.ref)]);
     for (const BoundedRef& r : refs.first(n_triangles))
       clip_triangle(geometry.triangles[ref_index(r.ref)], r, plane, below, above, sides);

@@ -106,7 +106,7 @@ struct Ranks {
   HWY_ATTR Ranks(const float* bounds, std::size_t n, const PlaneCosts& costs) {
     const Floats d;
     const Ints di;
-    // No more than fits where the cell is hardly wider than nothing.
+    // The scale is limited where the cell is hardly wider than nothing.
     const float scale = std::min(32000 / (costs.hi() - costs.lo()), std::numeric_limits<float>::max());
     for (std::size_t p = 0; p < 2 * n; p += hn::Lanes(d)) {
       const V bound = hn::Load(d, bounds + p);
@@ -169,7 +169,7 @@ HWY_ATTR inline Best best_of_all(std::span<const BoundedRef> refs, const Bounds&
     const PlaneCosts costs(config, contents, axis);
     if (!costs.usable() || !costs.may_beat(best.cost, refs.size())) continue;
     auto& bounds = by_axis.bounds[static_cast<std::size_t>(axis)];
-    // Behind the last are planes that are not inside.
+    // The lanes behind the last bound get planes that are not inside.
     std::fill_n(bounds.begin() + static_cast<std::ptrdiff_t>(2 * refs.size()), 2 * kMostLanes, costs.lo());
     offer_bounds(bounds.data(), refs.size(), costs, axis, best);
   }

@@ -129,7 +129,7 @@ struct SmallGroup {
   }
 };
 
-// Hulls, lane by lane.
+// Several hulls, one in each lane.
 template <class D>
 struct Hulls {
   hn::Vec<D> lo[3], hi[3];
@@ -288,7 +288,7 @@ class Grouper {
     return n <= (config_.group_each > 0 ? 1 : static_cast<std::size_t>(config_.block));
   }
 
-  // How many of the references go first, along which axis; 0: all stay together.
+  // Orders the references and returns how many of them go first; 0 where all stay together.
   HWY_ATTR std::size_t part_small(std::span<BoundedRef> refs, const Bounds& hull, const GroupCosts& costs) {
     const SmallGroup group(refs, hull, costs);
     const GroupSplit split = best_of_all_parts(group, costs);

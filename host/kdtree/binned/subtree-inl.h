@@ -103,7 +103,8 @@ class SubtreeBuilder {
     return static_cast<double>(sides.n_below + sides.n_above + 2 * n_straddling) <= budget;
   }
 
-  // For all references below the plane, behind the cell's own, and one that is written in vain in each place.
+  // The stack needs room behind the cell for all references that may go below the plane, and for one in each
+  // place that is written in vain.
   void make_room(std::size_t first, std::size_t n) {
     if (stack_.size() < first + 2 * n + 2) stack_.resize(2 * (first + 2 * n + 2));
     if (straddlers_.size() < n + 1) straddlers_.resize(2 * n + 1);

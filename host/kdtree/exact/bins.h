@@ -42,7 +42,7 @@ struct Histogram {
   }
 };
 
-// About 16 references to a bin: enough to skip most of them, few enough to be cheap to bound.
+// There are about 16 references to a bin: bins enough to skip most of them, few enough to be cheap to bound.
 inline int bins_for(std::size_t n) {
   int bins = 32;
   while (bins < kMaxBins && static_cast<std::size_t>(bins) * 16 < n) bins *= 2;

@@ -13,7 +13,7 @@ namespace kdray::kdtree {
 
 inline constexpr std::size_t kMedianLeaf = 8;
 
-// By BuildConfig::split_rule, which is not SplitRule::sah.
+// Which of the medians is meant is BuildConfig::split_rule's to say; it must not be SplitRule::sah.
 Split median_split(std::span<const BoundedRef> refs, const Bounds& cell, SplitRule rule);
 
 }  // namespace kdray::kdtree

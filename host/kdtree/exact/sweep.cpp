@@ -1,9 +1,9 @@
 // What    The split of a large cell, in two passes over its references instead of a sort: counts in bins give
 //         each bin's planes a lower bound of their cost and the cell an upper bound of its best cost; only in
 //         bins whose lower bound is not above it are the events collected, sorted and swept.
-// Shape   Exact: bins decide where to look, never which plane wins. Counts are integers and events are
-//         sorted, so the result does not depend on the order of references or on threads. O(n) where costs
-//         are spread, O(n log n) where they are all in one bin.
+// Shape   The result is exact: bins decide where to look, never which plane wins. Counts are integers and
+//         events are sorted, so the result does not depend on the order of references or on threads. A cell
+//         takes O(n) where costs are spread, O(n log n) where they are all in one bin.
 // Source  The sweep: Wald and Havran 2006, algorithm 4. Bounding by bins: branch and bound.
 
 #include <tbb/parallel_for.h>
@@ -143,7 +143,7 @@ class Sweep {
     }
   }
 
-  // below_end: references with lo in this bin or before; above_end: with hi in a later bin.
+  // `below_end` counts references with lo in this bin or before, `above_end` those with hi in a later bin.
   void bound_bin(int axis, int b, std::uint32_t below_end, std::uint32_t above_end) {
     const AxisCosts& costs = costs_[axis];
     AxisBins& bins = bins_[axis];
@@ -171,7 +171,7 @@ class Sweep {
     }
   }
 
-  // All positions of the bin are inside the cell, not on its boundary.
+  // Whether all positions of the bin lie inside the cell, none of them on its boundary.
   bool has_inner_plane(int axis, int b) const {
     const BinMap& map = maps_[axis];
     return map.n_bins > 1 && map.lower_edge(b) > costs_[axis].lo() && map.upper_edge(b) < costs_[axis].hi();
