@@ -6,7 +6,7 @@ namespace kdray {
 
 namespace {
 
-// What only an opened device can tell: the form of its vectors, and whether it computes rightly at all.
+// Adds what only an opened device can tell: the form of its vectors, and whether it computes rightly at all.
 DeviceInfo opened(const DeviceInfo& listed, const DeviceOptions& options) {
   if (!listed.usable) return listed;
   try {

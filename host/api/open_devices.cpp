@@ -14,7 +14,7 @@ namespace kdray::api {
 
 namespace {
 
-// One for all who name this folder, so that what any of them has built is kept.
+// There is one cache for all who name this folder, so that what any of them has built is kept.
 std::shared_ptr<device::ProgramCache> cache_in(const std::filesystem::path& folder) {
   static std::mutex mutex;
   static std::map<std::filesystem::path, std::shared_ptr<device::ProgramCache>> caches;

@@ -26,13 +26,14 @@ bool is_entry(const std::string& name, std::string_view ending) {
          name.find_first_not_of("0123456789abcdef") == 32;
 }
 
-// As write_atomically names its temporaries. No writer takes an hour.
+// Temporaries are named by write_atomically. One that has not changed for an hour is nobody's any more, since
+// no writer takes that long.
 bool is_left_behind(const std::string& name, std::string_view ending, fs::file_time_type changed) {
   return name.starts_with(".kdray-") && name.ends_with(ending) &&
          fs::file_time_type::clock::now() - changed > std::chrono::hours(1);
 }
 
-// The entries, while others come and go.
+// Lists the entries. Others may come and go at the same time, which is no error.
 std::vector<Entry> entries_in(const fs::path& folder, std::string_view ending) {
   std::vector<Entry> entries;
   std::error_code error;

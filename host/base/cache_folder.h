@@ -12,7 +12,7 @@
 
 namespace kdray {
 
-// `ending`: ".scene".
+// `ending` is the entries' own, as ".scene".
 std::filesystem::path entry_file(const std::filesystem::path& folder, const Hash& key,
                                  std::string_view ending);
 

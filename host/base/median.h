@@ -7,7 +7,7 @@
 
 namespace kdray {
 
-// Of one value at least.
+// There must be one value at least.
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;

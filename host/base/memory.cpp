@@ -20,14 +20,14 @@ std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
   return (bytes + unit - 1) / unit * unit;
 }
 
-// Below the first, freed memory stays with malloc anyway (cli/main.cpp; glibc's own limit).
+// Smaller blocks stay with malloc when they are freed anyway (cli/main.cpp; glibc's own limit).
 constexpr std::size_t kLeastKept = std::size_t{32} << 20, kMostKept = std::size_t{256} << 20;
 constexpr std::size_t kBlocksKept = 2;
 
-// What was freed last.
+// Keeps the blocks that were freed last, to hand them out again.
 class Kept {
  public:
-  // Never destroyed: what owns memory may outlive it.
+  // The instance is never destroyed, since what owns memory may outlive it.
   static Kept& all() {
     static Kept* const kept = new Kept;
     return *kept;
@@ -91,7 +91,7 @@ void make_pages(void* memory, std::size_t bytes) {
   const auto address = reinterpret_cast<std::uintptr_t>(memory);
   const std::size_t before = rounded_up(address, kSmallPage) - address;
   if (bytes < before + kSmallPage) return;
-  // Where the system doesn't know the request, they are made when they are touched.
+  // A system that doesn't know this request makes the pages when they are touched.
   madvise(static_cast<char*>(memory) + before, (bytes - before) / kSmallPage * kSmallPage,
           MADV_POPULATE_WRITE);
 #else

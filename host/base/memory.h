@@ -15,18 +15,18 @@ namespace kdray {
 // From this size on memory comes in large pages.
 inline constexpr std::size_t kLargePages = std::size_t{4} << 20;
 
-// Of 32 to 256 MiB, what was freed last is kept for the next that asks for as much, two blocks at most: the
-// ray pools of deep frames, which would be mapped and touched anew for each.
+// Blocks of 32 to 256 MiB are kept when they are freed, two at most, and serve the next request of the same
+// size: the ray pools of deep frames would otherwise be mapped and touched anew for each.
 std::shared_ptr<void> allocate(std::size_t bytes);
 
 // Asks for large pages where memory of another allocator is large, before it is touched.
 void prefer_large_pages(void* memory, std::size_t bytes);
 
-// Has the pages made that lie wholly within, which are about to be written for the first time: by another
-// thread, while this one has something else to do. What they hold stays or becomes 0.
+// Has the system make the pages that lie wholly within, and are about to be written for the first time, while
+// this thread has something else to do. What they hold stays, or becomes 0.
 void make_pages(void* memory, std::size_t bytes);
 
-// The same for one owner, to be given to std::free.
+// The same for a single owner, who gives it to std::free.
 void* allocate_pages(std::size_t bytes);
 
 }  // namespace kdray

@@ -19,14 +19,14 @@ std::optional<std::uint64_t> resident(const std::string& name) {
   return std::nullopt;
 }
 
-// Lets the kernel count the most that is resident anew.
+// Has the kernel count the peak of resident memory anew.
 bool forget_peak() {
   std::ofstream out("/proc/self/clear_refs");
   out << "5" << std::flush;
   return static_cast<bool>(out);
 }
 
-// What malloc keeps for later would be counted as held already.
+// Gives back what malloc keeps for later, which would count as held already.
 void give_back_free_memory() {
 #if defined(__GLIBC__)
   ::malloc_trim(0);

@@ -2,7 +2,7 @@
 //         away: time, rays, time to compile, and whether the picture changes.
 // Shape   One renderer for a scene, which compiles anew for this run whatever it compiled before. A round is
 //         a frame of each variant, each with a usual frame right before it.
-// Errors  As scene::load's and Renderer's. Pictures that differ where none may are counted, not thrown.
+// Errors  Those of scene::load and Renderer. Pictures that differ where none may are counted, not thrown.
 #pragma once
 
 #include <functional>

@@ -47,7 +47,7 @@ class AccuracyScene {
   }
 
  private:
-  // One for each scene as a setting has it: the same lights, the same tree.
+  // There is one renderer for each scene that a setting asks for: the same lights, the same tree.
   Renderer& renderer(const Setting& s) {
     auto& made = renderers_[{s.quality, s.light_reach}];
     if (made) return *made;
@@ -88,7 +88,7 @@ class AccuracyScene {
     calls_.picture(run_.scene, "reference", reference_);
   }
 
-  // `plain`: kdray's picture of one sample at depth 16.
+  // `plain` is kdray's picture of one sample at depth 16.
   void make_povray(const film::Image& plain) {
     if (!options_.povray || !has_povray() || !pov_has_words_for(scene_)) return;
     calls_.working(run_.scene + ": POV-Ray");
@@ -139,7 +139,7 @@ class AccuracyScene {
       seconds_.resize(run_.points.size());
       calls_.working(run_.scene + ": times");
     }
-    // Not counted: after POV-Ray's processes a frame takes up to a third longer.
+    // This frame is not counted: after POV-Ray's processes a frame takes up to a third longer.
     render(run_.points.front().setting);
     for (std::size_t i = 0; i < run_.points.size(); ++i)
       seconds_[i].push_back(render(run_.points[i].setting).seconds());

@@ -4,7 +4,7 @@
 // Shape   Interleaved: a round is a frame at every setting; one before that is not counted, and gives the
 //         pictures that are judged. POV-Ray's pictures are made in the first rounds only, since they take so
 //         much longer; the one that is judged is timed too.
-// Errors  As scene::load's, Renderer's and Povray's.
+// Errors  Those of scene::load, Renderer and Povray.
 #pragma once
 
 #include <functional>

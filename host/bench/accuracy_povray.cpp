@@ -21,8 +21,8 @@ PovraySetting setting(int method, const char* threshold, int grid) {
 
 }  // namespace
 
-// From what comes out of the box to what is nearly its reference: the default threshold is 0.3, the default
-// grid 3.
+// The settings go from what comes out of the box to what is nearly POV-Ray's reference: its default threshold
+// is 0.3, its default grid 3.
 std::vector<PovraySetting> povray_settings(bool quick) {
   if (quick) return {{"-A", {"-A"}, kDeep}, setting(2, "0.3", 3)};
   return {{"-A, depth 5", {"-A"}, kShallow},

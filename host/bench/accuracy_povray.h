@@ -4,7 +4,7 @@
 //         kdray's. Where its model is another one, as with light that passes through glass, they are held
 //         against a reference of its own (4x4 as many pixels, each sampled 4x4 times, shrunk), so that
 //         nothing counts but what its settings cost.
-// Errors  As Povray's.
+// Errors  Those of Povray.
 #pragma once
 
 #include <functional>
@@ -27,7 +27,7 @@ std::vector<PovraySetting> povray_settings(bool quick);
 
 class PovrayPoints {
  public:
-  // `plain`: one sample at each pixel's centre, by kdray.
+  // `plain` is kdray's picture of one sample at each pixel's centre.
   PovrayPoints(const scene::Scene& scene, const film::Image& reference, const film::Image& plain, int threads,
                bool quick);
 

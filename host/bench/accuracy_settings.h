@@ -30,8 +30,8 @@ struct Setting {
 // Groups whose members all have the base's picture, bit for bit.
 bool keeps_the_picture(const std::string& group);
 
-// [0] is the base. Only what makes a difference: on a CPU all traversals, with lights that fade their reach,
-// where there is double that.
+// Element [0] is the base. The others are what makes a difference: on a CPU all traversals, with lights that
+// fade their reach, and double where there is double.
 struct SettingsWanted {
   bool cpu = true, fading_lights = false, double_precision = false, quick = false;
 };

@@ -2,7 +2,7 @@
 //         beside Embree's medium build; with `variants` the builders of the thesis' chapter 5 too.
 // Shape   All builders of a scene take turns; so do their trees with each class of rays. Every tree has to
 //         give the hits of the balanced one, bit for bit.
-// Errors  As scene::load's and Renderer's. Hits that differ are counted, not thrown.
+// Errors  Those of scene::load and Renderer. Hits that differ are counted, not thrown.
 #pragma once
 
 #include <functional>

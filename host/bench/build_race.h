@@ -26,7 +26,7 @@ struct BuildSpreads {
   Spread tree, flatten, total, cpu;
 };
 
-// In the order of `builds`.
+// Returns the spreads in the order of `builds`.
 std::vector<BuildSpreads> race_builds(std::span<const TimedBuild> builds, int rounds);
 
 BuildSpreads spreads_of(std::span<const BuildTimes> times);

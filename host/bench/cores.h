@@ -7,7 +7,8 @@
 
 namespace kdray::bench {
 
-// `device` as in Renderer::statistics(). A GPU's compute units say nothing of the cores that others may use.
+// `device` is what Renderer::statistics() has under that key. A GPU's compute units say nothing of the cores
+// that others may use.
 inline int cores_of(const nlohmann::json& device) {
   const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return device.at("kind") == "cpu" ? std::min(all, device.at("compute_units").get<int>()) : all;

@@ -67,7 +67,7 @@ class DepthScene {
     for (const RayClass& c : classes_) hits_.push_back(usual.trace(c.rays, c.any_hit, 1, Traversal::binary));
   }
 
-  // One round of a depth; the first warms up and is not counted.
+  // Measures one round of a depth; the first warms up and is not counted.
   void measure(DepthRow& row, bool counts, Measured& measured) const {
     const BuildTimes times = time_build(scene_, geometry_, config(row.max_depth));
     if (counts) measured.builds.push_back(times);

@@ -4,7 +4,7 @@
 //         makes each of the trees anew, traces the same rays over it and forgets it. A tree whose expected
 //         cost is beyond kDearest is not
 //         traced: it would take minutes.
-// Errors  As scene::load's and Renderer's. Hits that differ between depths are counted, not thrown.
+// Errors  Those of scene::load and Renderer. Hits that differ between depths are counted, not thrown.
 #pragma once
 
 #include <functional>

@@ -22,7 +22,7 @@ class EmbreeScenes;
 // The scene's primitives, in the space and precision that kdray's tree has them in. Null without Embree.
 std::shared_ptr<EmbreeScenes> make_embree_scenes(const scene::Scene& scene);
 
-// None without Embree.
+// There are none without Embree.
 std::vector<Contestant> embree_contestants(const std::shared_ptr<EmbreeScenes>& scenes, int threads);
 
 // Closest hits with packets of 16 flagged as coherent, on the fast scene: what whole frames are scaled by.

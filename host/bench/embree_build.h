@@ -7,7 +7,7 @@
 
 namespace kdray::bench {
 
-// Empty without Embree. The scene and its geometry may go.
+// What it returns is empty without Embree. The scene and its geometry may go.
 TimedBuild embree_build(const scene::Scene& scene, const scene::Geometry& geometry);
 
 }  // namespace kdray::bench

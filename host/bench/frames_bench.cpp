@@ -62,7 +62,7 @@ class FrameBench {
                }).front();
   }
 
-  // Round -1 warms up.
+  // Round -1 warms up and is not counted.
   void run_round(int round) {
     RenderOptions o;
     o.width = options_.width, o.height = options_.height, o.depth = options_.depth;

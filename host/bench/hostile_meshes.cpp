@@ -76,7 +76,7 @@ scene::Scene point(std::uint32_t n) {
   return scene;
 }
 
-// Of any direction, from anywhere in a cube of 2; `width` across.
+// Needles of any direction, from anywhere in a cube of 2, and `width` across.
 scene::Scene needles_of(std::uint32_t n, double length, double width, std::uint64_t seed) {
   Random random(seed);
   scene::Scene scene = empty_mesh();

@@ -26,7 +26,7 @@ class LabelLayout {
     Box box;
     bool far;  // so far from its point that a line should lead there
   };
-  // Nothing where there is no room within `farthest` pixels.
+  // Returns nothing where there is no room within `farthest` pixels.
   std::optional<Place> place(double x, double y, double width, double height, double farthest,
                              bool may_cover_lines = true);
 

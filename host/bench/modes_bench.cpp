@@ -24,7 +24,7 @@ std::optional<double> number_at(const nlohmann::json& json, const std::string& p
   return json.at(pointer).get<double>();
 }
 
-// Those that the entries of a list have under a key.
+// The numbers that the entries of a list have under a key.
 std::vector<double> numbers_of(const nlohmann::json& json, const std::string& path, const std::string& key) {
   std::vector<double> found;
   const nlohmann::json::json_pointer pointer(path);
@@ -145,7 +145,7 @@ class ModesScene {
   }
 
  private:
-  // As many cores as queues, where the device has them.
+  // A device with as many cores as queues, where it has them.
   DeviceOptions device(int queues, bool whole) const {
     const int cores = !whole && divisible_ && queues < run_.cores ? queues : 0;
     return {.device = options_.device, .queues = queues, .compute_units = cores};

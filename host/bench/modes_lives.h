@@ -3,9 +3,9 @@
 //         rays where the material has them.
 // Shape   Level by level, parents before children; a ray ends at what it hits. Shadow rays end at the first
 //         thing in their way, since that is where a walk from cell to cell ends.
-// Why     Not the frame's own rays, which never leave the device; but made by its rules. Normals are those of
-//         the surfaces (not interpolated), and a cone of light is taken for a sphere: modes_model.h holds
-//         their numbers against the frame's.
+// Why     The rays are not the frame's own, which never leave the device, but are made by its rules. Normals
+//         are those of the surfaces (not interpolated), and a cone of light is taken for a sphere:
+//         modes_model.h holds their numbers against the frame's.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ struct TimelineSpan {
   double start = 0, end = 0;  // in seconds since the frame's first span began
 };
 
-// In the order of the queues and of time. Throws Error (internal) for what is no timeline.
+// Returns the spans in the order of the queues and of time. Throws Error (internal) for what is no timeline.
 std::vector<TimelineSpan> spans_of(const std::string& chrome_trace);
 
 // Empty where no row has a timeline.

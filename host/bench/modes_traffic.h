@@ -16,13 +16,13 @@
 
 namespace kdray::bench {
 
-// Of a single ray.
+// What the parts of a single ray's life cost.
 struct Rates {
   double seconds_of_cost = 0;   // of a path's unit
   double seconds_of_shade = 0;  // of a hit
 };
 
-// `paths`: of the lives, by queues.
+// `paths` are those of the lives, by queues.
 Traffic make_traffic(std::span<const LifeRay> lives, const Paths& paths, std::uint32_t n_queues,
                      const Rates& rates, double rays_per_journey);
 

@@ -13,7 +13,7 @@ struct Cost {
   double seconds = 0, error = 0;
 };
 
-// Their places in `costs`, from the fastest to the one of the least error.
+// The places in `costs` of the points on the front, from the fastest to the one of the least error.
 std::vector<std::size_t> pareto_front(std::span<const Cost> costs);
 
 }  // namespace kdray::bench

@@ -95,7 +95,7 @@ double Povray::trace_seconds(int threads) const {
   return run_with(threads, {"-A", "-F"});
 }
 
-// As EXR: a PNG would cut off what is brighter than white, before anyone can take a mean.
+// The picture is an EXR: a PNG would cut off what is brighter than white, before anyone can take a mean.
 Povray::Traced Povray::trace(int threads, const std::vector<std::string>& flags) const {
   const std::filesystem::path file = folder_ / "picture.exr";
   std::vector<std::string> all = flags;

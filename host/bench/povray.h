@@ -1,6 +1,6 @@
 // What    POV-Ray as a program beside kdray: how long it takes for a picture, and the picture.
-// Shape   Its own "Trace Time": after parsing and building, no display. For times alone, no antialiasing and
-//         no file.
+// Shape   What it measures is POV-Ray's own "Trace Time": after parsing and building, with no display. For
+//         times alone, there is no antialiasing and no file.
 // Errors  Without povray on the path there is none. One that fails is an Error that quotes its last words.
 #pragma once
 
@@ -29,7 +29,7 @@ class Povray {
     double seconds = 0;
     film::Image image;  // linear, as it is: values above 1 too
   };
-  // With antialiasing as `flags` have it: "+AM2", "+A0.1", ...
+  // Antialiasing is as `flags` have it: "+AM2", "+A0.1", ...
   Traced trace(int threads, const std::vector<std::string>& flags) const;
 
  private:

@@ -42,7 +42,7 @@ dvec3 double_of(const float (&v)[3]) {
   return {v[0], v[1], v[2]};
 }
 
-// Through the pixels' centres, from `hither` along the view direction on.
+// Primary rays go through the pixels' centres, from `hither` along the view direction on.
 std::vector<Ray> primary(const scene::Camera& camera, const std::vector<Pixel>& pixels, int side) {
   const dvec3 forward = glm::normalize(camera.at - camera.from);
   const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
@@ -72,7 +72,7 @@ std::vector<Meeting> meetings(const scene::Scene& scene, const std::vector<Ray>&
   return found;
 }
 
-// Up to the first light; a renderer does not ask for lights behind the surface.
+// Shadow rays go to the first light; a renderer does not ask for lights behind the surface.
 std::vector<Ray> shadow(const scene::Scene& scene, const std::vector<Meeting>& met, double offset) {
   std::vector<Ray> rays;
   if (scene.lights.empty()) return rays;

@@ -1,6 +1,6 @@
 // What    `kdray bench rays`: the same rays through kdray's traversals and Embree's modes, scene by scene, on
 //         one core and on all.
-// Errors  As scene::load's and Renderer's. Hits that differ between kdray's traversals are counted, not
+// Errors  Those of scene::load and Renderer. Hits that differ between kdray's traversals are counted, not
 //         thrown.
 #pragma once
 

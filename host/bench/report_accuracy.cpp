@@ -89,7 +89,7 @@ Json povray_json(const AccuracyRun& run) {
   return json;
 }
 
-// In what share of the base's time, and against POV-Ray, in a line.
+// One line: in what share of the base's time, and how many times as long POV-Ray takes.
 std::string answers_of(const AccuracyRun& run) {
   if (std::none_of(run.points.begin(), run.points.end(), [](const auto& p) { return is_adaptive(p.group); }))
     return "";

@@ -34,7 +34,7 @@ std::string megabytes(std::size_t bytes) {
   return fmt::format("{:>9.1f}", static_cast<double>(bytes) * 1e-6);
 }
 
-// How many times as long as Embree's, by medians.
+// How many times as long kdray takes as Embree, by medians.
 struct BuildRatios {
   double wall, cpu;
 };

@@ -15,7 +15,7 @@ namespace kdray::bench {
 Json json_of(const BuildSpreads& seconds);
 Json json_of(const TreeFacts& tree);
 
-// In plots: of the i-th series, which is a builder's or a scene's; Embree is grey.
+// The colour in plots of the i-th series, which is a builder's or a scene's; Embree is grey.
 std::string color_of(std::size_t i, const std::string& name);
 
 std::string table_of(const BuildRun& run);

@@ -14,7 +14,8 @@ double nanoseconds_each(const GrowthResult& result, const GrowthRow& row) {
   return 1e9 * row.seconds.total.median / static_cast<double>(result.n_triangles);
 }
 
-// Of the smallest size that has been measured with this builder, for each triangle and each doubling of them.
+// How much longer each triangle takes than at the smallest size that was measured with this builder, for each
+// doubling of their number.
 double growth(std::span<const GrowthResult> results, const GrowthResult& result, const GrowthRow& row) {
   const auto each = [&](const GrowthResult& r, const GrowthRow& b) {
     return nanoseconds_each(r, b) / std::log2(static_cast<double>(r.n_triangles));

@@ -52,7 +52,7 @@ const std::vector<BuiltIn>& all_built_in() {
   return all;
 }
 
-// None of that name: null.
+// Null where none has that name.
 const BuiltIn* find_built_in(const std::string& name) {
   const auto found = std::ranges::find(all_built_in(), name, &BuiltIn::name);
   return found == all_built_in().end() ? nullptr : &*found;

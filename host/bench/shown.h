@@ -17,8 +17,8 @@ film::Image shrunk(const film::Image& image, int factor);
 
 film::Image mean_of(film::Image a, const film::Image& b);
 
-// On the same scale for all pictures: a heat map of the square root of the largest channel's difference, so
-// that 1/255 is visible (6% of the scale) and 1 is the hottest.
+// The errors on the same scale for all pictures: a heat map of the square root of the largest channel's
+// difference, so that 1/255 is visible (6% of the scale) and 1 is the hottest.
 film::Image error_picture(const film::Image& reference, const film::Image& image);
 
 }  // namespace kdray::bench

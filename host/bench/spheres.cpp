@@ -8,7 +8,7 @@ namespace kdray::bench {
 
 namespace {
 
-// In [0, 1), from a point of the integer lattice.
+// A number in [0, 1) that belongs to a point of the integer lattice.
 double lattice_value(const dvec3& p) {
   std::uint64_t key = 0;
   for (int k = 0; k < 3; ++k)

@@ -9,7 +9,7 @@ struct Spread {
   double median = 0, min = 0, max = 0;
 };
 
-// All 0 of no values; the mean of the middle two of an even number.
+// Of no values, all is 0; of an even number, the median is the mean of the middle two.
 Spread spread_of(std::vector<double> values);
 
 double sum(const std::vector<double>& values);

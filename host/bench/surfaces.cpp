@@ -11,7 +11,7 @@ dvec3 normal_of(const scene::Scene& scene, const scene::Triangle& t) {
   return glm::cross(scene.vertices[t.vertex[1]] - a, scene.vertices[t.vertex[2]] - a);
 }
 
-// Across the slanted side: away from the axis, and back along it where the cone widens.
+// The normal points across the slanted side: away from the axis, and back along it where the cone widens.
 dvec3 normal_of(const scene::Cone& c, const dvec3& point) {
   const double height = glm::length(c.apex - c.base);
   const dvec3 axis = (c.apex - c.base) / height;

@@ -42,7 +42,7 @@ class Drawing {
   }
 
  private:
-  // Moves `top` below itself.
+  // Draws the legend and moves `top` below it.
   std::string legend(double& top) const {
     std::string out;
     double x = kLeft, y = top + 10;

@@ -44,7 +44,7 @@ class BuildNotice {
   std::thread thread_;  // the last member: it uses the others
 };
 
-// On stderr.
+// The notice goes to stderr.
 BuildNotice::Output notice_on_stderr(bool quiet);
 
 }  // namespace kdray::cli

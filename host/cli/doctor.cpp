@@ -86,7 +86,7 @@ void check_platforms() {
         "set POCL_CACHE_DIR to a folder of yours; without it kernels are compiled again in every run");
 }
 
-// What is thrown on one device must not hide the others.
+// Tells what the test throws, so that a fault of one device doesn't hide the others.
 std::string tried(const std::function<std::string()>& test) {
   try {
     return test();
@@ -95,7 +95,7 @@ std::string tried(const std::function<std::string()>& test) {
   }
 }
 
-// How many devices are usable and pass the self-test.
+// Returns how many devices are usable and pass the self-test.
 int check_devices() {
   int passed = 0;
   for (const DeviceInfo& d : devices()) {

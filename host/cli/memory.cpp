@@ -15,8 +15,9 @@ namespace kdray::cli {
 
 namespace {
 
-// Measured as the growth of the process between 1024x1024 and 4096x4096 pixels, on the CPU: 55 bytes for
-// a pixel and 50 for its six floats of all channels: the film, the picture, what is being written of it.
+// The bytes were measured as the growth of the process between 1024x1024 and 4096x4096 pixels, on the CPU: 55
+// for a pixel and 50 for the six floats of all its channels, for the film, the picture, and what is being
+// written of it.
 constexpr std::uint64_t kPixelBytes = 56;
 constexpr std::uint64_t kChannelBytes = 9;
 

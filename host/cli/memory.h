@@ -9,7 +9,8 @@
 
 namespace kdray::cli {
 
-// What this process may still take: free memory, or what is left of its own limit. All there is when unknown.
+// What this process may still take: free memory, or what is left of its own limit. When nothing is known, it
+// is all that there is.
 std::uint64_t free_memory();
 
 // `n_channels` floats for each pixel beside the colour.

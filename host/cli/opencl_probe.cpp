@@ -39,7 +39,7 @@ Driver inspect(const fs::path& file) {
     const char* const reason = ::dlerror();
     driver.why_not = reason ? reason : "unknown reason";
   }
-  // Not closed again: the loader is about to open the same library, and drivers dislike being unloaded.
+  // The library is not closed again: the loader is about to open it too, and drivers dislike being unloaded.
   return driver;
 }
 
@@ -106,7 +106,7 @@ std::string pocl_cache_folder() {
 }
 
 bool is_writable(const std::string& folder, std::string& why_not) {
-  // What does not exist yet will be made: its nearest ancestor counts.
+  // A folder that does not exist yet will be made, so its nearest ancestor counts.
   std::error_code error;
   fs::path place = fs::absolute(folder, error);
   while (!fs::exists(place, error) && place != place.parent_path()) place = place.parent_path();

@@ -8,10 +8,10 @@
 
 namespace kdray::cli {
 
-// Several lines, each "[ok]", "[note]" (of the mesh) or "[bad]" (of kdray).
+// Several lines, each beginning with "[ok]", "[note]" (about the mesh) or "[bad]" (about kdray).
 std::string findings_in_words(const verify::Findings& found);
 
-// One line: what it comes to.
+// One line that says what it all comes to.
 std::string verdict(const verify::Findings& found);
 
 // Places are the file's; of each kind of finding the first hundred.

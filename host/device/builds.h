@@ -12,7 +12,8 @@ class ProgramCache;
 
 struct Builds {
   std::shared_ptr<ProgramCache> cache = {};  // none: programs are built anew
-  // True: a compiler begins its work; false: it ends. From any thread; may nest.
+  // Is told true when a compiler begins its work and false when it ends. Calls come from any thread and may
+  // nest.
   std::function<void(bool)> watch = {};
 };
 

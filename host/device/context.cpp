@@ -63,7 +63,7 @@ std::vector<std::string> split(const std::string& specs) {
   return parts;
 }
 
-// Never destroyed, on purpose: see the header.
+// What is opened is never destroyed, on purpose: see the header.
 const Opened& opened_before_or_now(const FoundDevice& found, int n_queues) {
   static std::mutex mutex;
   static auto* all = new std::map<std::tuple<int, int, cl_uint>, Opened>;

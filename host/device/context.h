@@ -51,8 +51,8 @@ class Context {
   // A buffer of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
   cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // As buffer(), of which only pieces here and there are going to be used: large pages, each of which is
-  // cleared as a whole, are not asked for.
+  // The same as buffer(), where only pieces here and there are going to be used: no large pages are asked
+  // for, since each of those is cleared as a whole.
   cl::Buffer sparse_buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
   // As buffer(), and its pages are made in the background where it lies in the host's memory: `made` ends
@@ -66,7 +66,7 @@ class Context {
   // which `owner` then keeps as long as the buffer lives; elsewhere a copy.
   cl::Buffer upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,
                     const std::string& what) const;
-  // A copy everywhere.
+  // Uploads a copy of the data, also where the device could use it in place.
   cl::Buffer upload_copy(const void* data, std::size_t bytes, const std::string& what) const;
 
  private:

@@ -30,7 +30,7 @@ std::string kind_of(cl_device_type type) {
   return "accelerator";
 }
 
-// What kdray's kernels can't do without.
+// Why kdray's kernels can't do with this device; empty where they can.
 std::string why_unusable(const cl::Device& device) {
   if (!device.getInfo<CL_DEVICE_AVAILABLE>()) return "not available";
   if (!device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>()) return "has no compiler";

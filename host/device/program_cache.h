@@ -33,7 +33,8 @@ class ProgramCache {
 
   void built(const Hash& key, const cl::Program& program);
 
-  // How many entries it wrote. The least recently used go where the folder gets too large.
+  // Writes the new entries and returns their number. The least recently used entries go where the folder gets
+  // too large.
   std::size_t keep();
 
   // Whether something of this key was found right before: the self-test's outcome needs no binary.

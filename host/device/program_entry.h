@@ -14,10 +14,10 @@
 
 namespace kdray::device {
 
-// Whole or not at all. Throws kdray::Error, ErrorCode::input, when it can't be written.
+// Writes the entry whole or not at all. Throws kdray::Error, ErrorCode::input, when it can't be written.
 void write_entry(const std::filesystem::path& file, const Hash& key, std::string_view bytes);
 
-// Nothing where there is no entry, or it is damaged, of another form or of another key.
+// Returns nothing where there is no entry, or where it is damaged, of another form or of another key.
 std::optional<std::string> read_entry(const std::filesystem::path& file, const Hash& key);
 
 }  // namespace kdray::device

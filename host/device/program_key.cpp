@@ -12,7 +12,7 @@ namespace kdray::device {
 
 namespace {
 
-// As Linux tells of the first core; empty elsewhere.
+// What Linux tells of the first core; empty elsewhere.
 std::string processor() {
   std::ifstream in("/proc/cpuinfo");
   std::string text;
@@ -22,7 +22,7 @@ std::string processor() {
   return text;
 }
 
-// Those that say where things are kept don't matter.
+// PoCL's variables, but for those that only say where things are kept.
 std::string pocl_environment() {
   std::vector<std::string> set;
   for (char** variable = environ; *variable; ++variable) {

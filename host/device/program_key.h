@@ -11,7 +11,7 @@
 
 namespace kdray::device {
 
-// All of it but source and options, as text. Throws cl::Error.
+// All that a key is made of but source and options, as text. Throws cl::Error.
 std::string identity_of(const cl::Device& device);
 
 Hash program_key(const std::string& identity, const std::string& source, const std::string& options);

@@ -11,8 +11,8 @@ namespace kdray::device {
 
 layout::SimdAnswers expected_answers(const layout::SimdCase& given);
 
-// Every pair of NaN, infinities, zeros of both signs, limits and common numbers, in every lane; every mask of
-// 8 lanes.
+// The cases are every pair of NaN, infinities, zeros of both signs, limits and common numbers, in every lane,
+// and every mask of 8 lanes.
 std::vector<layout::SimdCase> known_cases();
 
 // The first operation whose answer differs by a bit ("compress16 of case 3"); empty when none does.

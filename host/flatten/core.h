@@ -14,7 +14,8 @@ struct Core {
   vec3 face_lo = vec3(0), face_hi = vec3(0);  // infinite where no triangle lies in the plane
   bool has_faces = false;                     // whose triangles are not in the core
 
-  // Into the frame, with the lights that are on the inner side of all faces, by a thousandth of the scene.
+  // Writes them into the frame, with the lights that are on the inner side of all faces by a thousandth of
+  // the scene.
   void apply(layout::Frame& frame, const Array<layout::Light>& lights) const;
 };
 

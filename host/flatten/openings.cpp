@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// What wide nodes below a subtree are expected to cost where it may fill 1, 2, ... slots of one.
+// What the wide nodes below a subtree are expected to cost where it may fill 1, 2, ... slots of one.
 using Costs = std::array<float, kWidth>;
 
 class Solver {
@@ -20,7 +20,7 @@ class Solver {
   Solver(const kdtree::Tree& tree, std::uint32_t only_kind, RawVector<std::uint32_t>& shares)
       : tree_(tree), only_kind_(only_kind), shares_(shares) {}
 
-  // Of the nodes [node, end).
+  // The costs of the subtree of the nodes [node, end).
   Costs solve(std::uint32_t node, std::uint32_t end) {
     const kdtree::Node& split = tree_.nodes[node];
     if (split.is_leaf()) return of_leaf(node);

@@ -15,8 +15,8 @@ enum class Quality {
   best,      // the best of all planes, primitives clipped to the whole cell
 };
 
-// Where cells are split. The medians are the thesis' (chapter 5), for the bench; the exact builder knows all,
-// the binned one only the heuristic.
+// How the place of a split is chosen. The medians are the thesis' (chapter 5), for the bench; the exact
+// builder knows all three, the binned one only the heuristic.
 enum class SplitRule { sah, spatial_median, object_median };
 
 struct BuildConfig {

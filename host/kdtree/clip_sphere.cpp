@@ -44,7 +44,7 @@ Bounds clip_sphere(const scene::SphereGeometry& s, const Bounds& region) {
     out.hi[k] = std::min(out.hi[k], round_up(c[k] + outer + pad));
     const double inner2 = r * r * (1 - kRelative) - far2;
     if (!(inner2 > 0)) continue;
-    // No surface strictly between c - inner and c + inner.
+    // There is no surface strictly between c - inner and c + inner.
     const double inner = std::sqrt(inner2);
     const float gap_lo = round_up(c[k] - inner + pad), gap_hi = round_down(c[k] + inner - pad);
     if (out.lo[k] > gap_lo) out.lo[k] = std::max(out.lo[k], gap_hi);

@@ -47,7 +47,7 @@ class LeafCost {
   // reference, so that of two equal splits the one with fewer duplicates is taken.
   double operator()(std::uint32_t n) const { return (n + block_ - 1) / block_ + each_ * n; }
 
-  // What no leaf of n references is below.
+  // A lower bound for the cost of any leaf of n references.
   double at_least(std::uint32_t n) const { return static_cast<double>(n) / block_ + each_ * n; }
 
  private:
@@ -83,7 +83,7 @@ class AxisCosts {
     return n_below == 0 || n_above == 0 ? bonus_ * cost : cost;
   }
 
-  // Of tests weighted by their cells' areas.
+  // What it costs to pass the node and make these tests, weighted by their cells' areas.
   double sum(double weighted_tests) const { return traverse_ + intersect_ * weighted_tests; }
   const LeafCost& tests() const { return tests_; }
 

@@ -89,7 +89,7 @@ void BandRun::take_turns(std::size_t queue, Shares& shares) {
     take_turn(queue, *turn, shares, state, pending);
 }
 
-// As many as a launch may begin, and fewer when the end is near.
+// Takes as many entries as a launch may begin, and fewer when the end is near.
 void BandRun::take_entries(std::size_t queue, Shares& shares) {
   Worker& worker = *crew_.workers[queue];
   const std::size_t n = std::min<std::size_t>(worker.launch_tiles(), shares.left() / (4 * shares.n_queues()));

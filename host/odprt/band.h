@@ -52,7 +52,7 @@ class BandRun {
   std::condition_variable ended_;
   std::size_t n_serving_ = 0;
   std::vector<std::atomic<std::uint32_t>> tiles_left_;  // of those that a queue has taken
-  // Of each queue's last turn to each part; kept for the memory that it has.
+  // The mail of each queue's last turn to each part. It stays here for the memory that it has.
   std::vector<std::vector<Mail>> sent_;
 };
 

@@ -43,7 +43,7 @@ std::vector<std::uint32_t> balanced(std::span<const double> costs, std::span<con
   return best;
 }
 
-// One run for each part; the bytes' bound is raised until it can be kept.
+// Deals one run to each part. The bound on a part's bytes is raised until it can be kept.
 std::vector<std::uint32_t> in_runs(std::span<const double> costs, std::span<const std::uint64_t> bytes,
                                    std::uint32_t n_parts, std::uint64_t most_bytes) {
   for (;; most_bytes += most_bytes / 8 + 1) {
@@ -117,7 +117,7 @@ std::vector<std::uint32_t> deal(std::span<const double> costs, std::span<const s
   for (std::uint32_t runs = 2; runs <= kMostRuns && least > even; runs *= 2) {
     std::vector<std::uint32_t> parts = in_several_runs(costs, bytes, n_parts, most_bytes, runs);
     if (parts.empty()) continue;
-    // More runs are more rays that travel: they must be worth it.
+    // More runs make more rays travel, so they must be worth it.
     const double largest = largest_cost(loads_of(costs, bytes, parts, n_parts));
     if (largest > 0.95 * least) continue;
     least = largest;

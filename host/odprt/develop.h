@@ -9,7 +9,7 @@
 
 namespace kdray::odprt {
 
-// Three sums for each pixel in every film. Adding saturates, as the kernels' does.
+// Each film has three sums for each pixel. Adding saturates, as it does in the kernels.
 void develop(std::span<const std::span<const layout::i64>> films, int samples, std::span<vec3> pixels);
 
 // The sums alone, added up.

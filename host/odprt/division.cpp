@@ -26,7 +26,7 @@ std::size_t largest_bytes(const Division& division) {
 
 namespace {
 
-// Those that every part is to hold.
+// Chooses the subtrees that every part is to hold.
 std::vector<bool> choose_replicated(const Cut& cut, std::span<const double> costs, const DivideOptions& o) {
   std::vector<std::uint64_t> bytes;
   std::vector<double> visits;

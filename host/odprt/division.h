@@ -20,7 +20,7 @@ struct Division {
   std::vector<std::uint32_t> subtrees_of(std::uint32_t part) const;
 };
 
-// Of the largest part's geometry.
+// The bytes of the geometry of the largest part.
 std::size_t largest_bytes(const Division& division);
 
 struct DivideOptions {
@@ -31,7 +31,8 @@ struct DivideOptions {
   bool operator==(const DivideOptions&) const = default;
 };
 
-// What a part may take of the geometry where memory is not short.
+// The share of the geometry that a part may take beyond its equal one, where memory is not short; and what of
+// that may be held by every part.
 inline constexpr double kSpare = 0.19, kReplicated = 0.16;
 
 // The part of each subtree, or kEveryPart. `costs` of the subtrees, of any unit.

@@ -29,7 +29,7 @@ Outbox* Exchange::free_outbox(std::size_t queue) const {
   return nullptr;
 }
 
-// What a queue has may be held up by its grants until others give some back.
+// Whether a launch may do something. One that did nothing is not repeated before the ledger has changed.
 bool Exchange::may_launch(std::size_t queue, const QueueState& state) const {
   return (state.has_rays || state.has_tiles) &&
          (state.progressed || ledger_.version() != seen_version_[queue]);
@@ -85,7 +85,7 @@ void Exchange::end_turn(std::size_t queue, const Turn& turn, std::span<const lay
   for (const Letter& letter : turn.letters) --letter.outbox->n_readers;
   has_tiles_[queue] = state.has_tiles;
   if (turn.outbox) {
-    // Its own settling is no news to it.
+    // A queue's own settling changes the ledger, but tells it nothing new.
     const bool news = ledger_.version() != seen_version_[queue];
     ledger_.settle(queue, traffic);
     if (!news) seen_version_[queue] = ledger_.version();

@@ -28,7 +28,7 @@
 
 namespace kdray::odprt {
 
-// What came for a part in an outbox of its queue's own context.
+// Rays that have come for a part, still in an outbox of a queue of the same context.
 struct Letter {
   Outbox* outbox = nullptr;
   std::size_t from = 0;
@@ -63,7 +63,7 @@ class Exchange {
   Exchange(const Plan& plan, std::vector<std::size_t> owner, std::vector<std::vector<bool>> direct,
            std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes);
 
-  // Blocks. Nothing: the frame is done, or a queue has failed.
+  // Blocks until there is something to do. Returns nothing when the frame is done or a queue has failed.
   std::optional<Turn> next_turn(std::size_t queue, const QueueState& state);
 
   // Takes over what came by mail for the part of the turn.
@@ -71,7 +71,8 @@ class Exchange {
   // Hands back what a queue has had of a part's mail, or of its rays.
   void put_mail(std::uint32_t part, Mail& from);
 
-  // After the turn's commands have ended. `sent` has the mail of each part that is not reached directly.
+  // Called when the commands of the turn have ended. `sent` has the mail for each part that is not reached
+  // directly.
   void end_turn(std::size_t queue, const Turn& turn, std::span<const layout::Traffic> traffic,
                 const QueueState& state, std::vector<Mail>& sent);
 

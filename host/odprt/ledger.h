@@ -30,7 +30,7 @@ class Ledger {
   Ledger(std::size_t n_slices, std::vector<std::uint32_t> capacity, std::vector<std::uint32_t> least,
          std::size_t n_queues);
 
-  // What the slices may make in the queue's next launch.
+  // Grants what the slices may make in the queue's next launch.
   void grant(std::size_t queue, std::span<layout::Grant> grants);
 
   // Takes over what the launch made and ended, and takes its grants back.
@@ -38,8 +38,8 @@ class Ledger {
 
   std::uint64_t alive() const { return alive_total_; }
 
-  // What has been granted or given back so often; a queue that had nothing to do need not look again before
-  // it changes.
+  // Counts how often something was granted or given back. A queue that had nothing to do need not look again
+  // before it changes.
   std::uint64_t version() const { return version_; }
 
  private:

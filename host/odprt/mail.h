@@ -52,7 +52,7 @@ class RayPile {
   std::vector<float> words_;
 };
 
-// What waits for a part.
+// The rays that wait for a part.
 struct Mail {
   std::vector<RayPile<KDRAY_TRAVEL_RAY_FIELDS>> rays;            // by slice
   std::vector<RayPile<KDRAY_TRAVEL_SHADOW_FIELDS>> shadow_rays;  // by slice

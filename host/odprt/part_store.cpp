@@ -10,7 +10,7 @@ namespace {
 
 using wavefront::SceneBuffers;
 
-// Of each array what the part with most of it has.
+// For each array the size that it has in the part that has most of it.
 SceneBuffers::Sizes largest_sizes(const Division& division) {
   SceneBuffers::Sizes most{};
   for (const Part& part : division.parts) {

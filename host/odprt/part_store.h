@@ -10,13 +10,13 @@
 
 namespace kdray::odprt {
 
-// Of geometry in room for any part: of each array as much as the part with most of it has. Where parts are of
-// different kinds of primitives that is more than the largest part.
+// The bytes of buffers that any part's geometry fits into: each array as large as the part with most of it
+// needs. Where parts hold different kinds of primitives, that is more than the largest part.
 std::size_t room_bytes(const Division& division);
 
 class PartStore {
  public:
-  // `streamed`: parts come and go; else they are used where they lie if the device works in the host's
+  // With `streamed` parts come and go; else they are used where they lie, if the device works in the host's
   // memory.
   PartStore(const device::Context& context, cl::CommandQueue queue, const Division& division, const Cut& cut,
             bool streamed)

@@ -24,7 +24,8 @@ struct Part {
   flatten::WideForm wide;
   std::uint32_t n_shared = 0;  // triangles that other parts hold too
 
-  // Of what there is of the scene's geometry: the same everywhere, materials and lights are no part of it.
+  // The bytes of the part's share of the geometry. Materials and lights don't count, since every part has
+  // them.
   std::size_t geometry_bytes() const;
 };
 

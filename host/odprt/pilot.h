@@ -10,7 +10,7 @@
 
 namespace kdray::odprt {
 
-// `whole` has one part. The visits and hits of each subtree.
+// `whole` is the scene in one part. Returns the visits and hits of each subtree.
 std::vector<SubtreeUse> run_pilot(const Request& request, const Division& whole, const Cut& cut);
 
 }  // namespace kdray::odprt

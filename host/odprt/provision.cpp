@@ -13,14 +13,14 @@ namespace kdray::odprt {
 
 namespace {
 
-// Of a queue, for all parts: with few a queue waits for the others to read.
+// A queue has so many outboxes, and with many parts fewer: with too few it waits for the others to read.
 constexpr std::size_t kLeastOutboxes = 3, kMostOutboxes = 8, kOutboxPlaces = 16;
 constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // of a queue; larger pictures go in bands
-// Of the directory of a scene that isn't streamed.
+// The most that the directory may take of a scene that isn't streamed.
 constexpr std::size_t kMostDirectory = std::size_t{5120} * sizeof(layout::PartCell);
-// Of memory that is short. Each band goes through all parts, so the film is worth more than room for larger
-// parts; and the more parts there are, the more cells every ray is tested against, so there is room for one
-// at a time only.
+// The film's share of memory that is short. Each band goes through all parts, so the film is worth more than
+// room for larger parts; and the more parts there are, the more cells every ray is tested against, so there
+// is room for one at a time only.
 constexpr std::size_t kFilmEighths = 3;
 
 // Queues on the device that has most of them.
@@ -31,14 +31,14 @@ std::size_t queues_on_a_device(const Request& request) {
   return most;
 }
 
-// As many samples of a round as the largest band has pixels.
+// A round gets places for as many samples as the largest band has pixels.
 void add_samples(WorkRoom& room) {
   const std::size_t n_runs = (room.places + KDRAY_SAMPLE_RUN - 1) / KDRAY_SAMPLE_RUN;
   room.samples = room.places = n_runs * KDRAY_SAMPLE_RUN;
   room.entries = std::max(room.entries, n_runs);
 }
 
-// `of_queue`: a queue's memory, when streamed.
+// `of_queue` is the memory of a queue where parts are streamed.
 Provision provide_for(const Request& request, std::uint32_t n_parts, bool streamed, std::size_t film_bytes,
                       std::size_t of_queue = 0) {
   Provision p;
@@ -50,7 +50,7 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
   p.plan = make_plan(p.frame, {.features = request.features,
                                .n_parts = n_parts,
                                .n_queues = static_cast<std::uint32_t>(request.queues.size()),
-                               // Of memory that is short: no more slices than there are compute units, about.
+                               // Where memory is short, there are no more slices than compute units, about.
                                .n_slices = streamed ? (request.n_slices + 15) / 16 : request.n_slices,
                                .ray_buffer = request.ray_buffer,
                                .memory = of_queue,

@@ -14,8 +14,8 @@
 
 namespace kdray::odprt {
 
-// Of an equal share of the geometry, what a part is given room for: primitives that lie in several parts, and
-// parts of unequal size.
+// A part is given room for this multiple of an equal share of the geometry, since some primitives lie in
+// several parts and parts are of unequal size.
 inline constexpr double kSpareGeometry = 1.3;
 
 struct Provision {
@@ -29,8 +29,8 @@ struct Provision {
   WorkRoom room;  // of a queue: the largest band, or a round's samples
 };
 
-// As many parts as queues where that fits; more of them, which come and go, where the request has a limit
-// that is too little for it; then at least `least_parts`.
+// There are as many parts as queues where that fits, and more, which come and go, where the request's limit
+// is too small for it; then `least_parts` at least.
 Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts = 0);
 
 // Whether every part is one that a queue may hold. Throws when one is not and there are as many parts as

@@ -8,7 +8,7 @@
 
 namespace kdray::odprt {
 
-// In Division::part_of: a subtree that every part holds.
+// Stands in Division::part_of for a subtree that every part holds.
 inline constexpr std::uint32_t kEveryPart = 0xffffffffu;
 
 // A flag for each subtree. `visits`: how many rays come to it (a hit counts as some more), in any unit;

@@ -22,7 +22,7 @@ class Shares {
 
   Shares(std::vector<Entries> of_queues, Entries anyones);
 
-  // At most n entries for a queue; none: none are left anywhere. Called by any thread.
+  // Takes at most n entries for a queue. None means that none are left anywhere. Any thread may call it.
   Entries take(std::size_t queue, std::size_t n);
 
   std::size_t left() const;

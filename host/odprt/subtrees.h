@@ -33,7 +33,7 @@ struct Opened {
   static constexpr std::int32_t kEmpty = INT32_MIN;
 
   std::uint32_t node = 0;
-  // Per slot: the number of an opened node; -1 - the number of a subtree; or kEmpty.
+  // For each slot the number of an opened node, or -1 - the number of a subtree, or kEmpty.
   std::array<std::int32_t, 8> below{};
 };
 
@@ -42,10 +42,10 @@ struct Cut {
   std::vector<Subtree> subtrees;  // in the order of the tree
 };
 
-// At least `n` subtrees, if the tree has as many that can be told apart.
+// Cuts the form into at least `n` subtrees, if the tree has as many that can be told apart.
 Cut cut(const flatten::FlatScene& scene, const flatten::WideForm& form, std::size_t n);
 
-// A leaf's blocks.
+// The number of blocks of a leaf.
 std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf);
 
 // Bounds of a node's child.

@@ -64,7 +64,7 @@ class Queue {
   std::uint32_t compute_units_;
   std::optional<device::Clock> clock_;
   wavefront::Wavefront wavefront_;
-  // Of the present list.
+  // These are about the present list.
   std::uint64_t n_told_ = 0;  // of tiles_done
   double busy_before_ = 0;
   std::uint64_t n_tiles_ = 0;

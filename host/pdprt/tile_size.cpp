@@ -15,7 +15,8 @@ bool enough_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t side,
   return columns * rows >= kTilesPerUnit * n_units;
 }
 
-// As if cost were spread evenly over the costliest tile: halves of it can't cost less on average.
+// Whether tiles of this side would be cheap enough, if cost were spread evenly over the costliest tile:
+// halves of it can't cost less on average.
 bool cheap_enough(const TileCost& cost, std::uint32_t side, std::uint32_t n_units) {
   const double part = static_cast<double>(side) * side / static_cast<double>(cost.tile_pixels);
   return cost.costliest * part * n_units <= kLargestPart * cost.total;

@@ -8,7 +8,7 @@
 
 namespace kdray::pdprt {
 
-// Of a frame that was rendered.
+// What the tiles of a rendered frame cost.
 struct TileCost {
   std::uint64_t tile_pixels = 0;
   double costliest = 0, total = 0;  // seconds of a compute unit

@@ -6,7 +6,8 @@ namespace kdray::pdprt {
 
 namespace {
 
-// That the bag is for each queue: the last to come find so little that none keeps the others waiting.
+// A queue takes from the bag one in so many of its share of what is left: the last to come find so little
+// that none keeps the others waiting.
 constexpr std::size_t kPartsPerQueue = 4;
 
 std::vector<std::vector<layout::u32>> deal(const std::vector<layout::u32>& curve, Division division,
@@ -27,7 +28,7 @@ void append(std::vector<layout::u32>& to, std::span<const layout::u32> from) {
 
 Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues)
     : taken_(n_queues), n_undone_(curve.size()), n_queues_(n_queues) {
-  // What is taken must not move: the device may still be reading it.
+  // Entries that were taken must not move: the device may still be reading them.
   for (auto& tiles : taken_) tiles.reserve(curve.size());
   if (division == Division::bag) {
     shares_.resize(n_queues);

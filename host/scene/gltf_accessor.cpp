@@ -108,7 +108,7 @@ std::uint64_t sparse_index(const Elements& indices, std::uint64_t i) {
   return static_cast<std::uint64_t>(indices.at(i, 0));
 }
 
-// What an accessor is read into: elements of kParts components each.
+// The elements that an accessor is read into, of kParts components each.
 struct Vectors {
   using Element = dvec3;
   static constexpr std::size_t kParts = 3;
@@ -122,7 +122,7 @@ struct Indices {
   }
 };
 
-// All of `from`, one loop for each component type.
+// Copies all of `from`, by one loop for each type of component.
 template <class Kind>
 void copy_elements(const Elements& from, RawVector<typename Kind::Element>& out) {
   with_component(from.component, [&]<class T>(T) {

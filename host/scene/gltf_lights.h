@@ -18,7 +18,7 @@ Light read_light(const JsonNode& light, const dmat4& to_world);
 // Scales the lights' colours as said above. The scene's geometry must be there.
 void expose(Scene& scene);
 
-// Nothing, and a warning, for a camera that isn't perspective or has no view direction.
+// Returns nothing, and warns, for a camera that isn't perspective or has no view direction.
 std::optional<Camera> read_camera(const JsonNode& camera, const dmat4& to_world,
                                   std::vector<std::string>& warnings);
 

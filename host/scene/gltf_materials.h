@@ -19,7 +19,7 @@ class Materials {
 
   // The scene's number of the material that a primitive names, or of glTF's default material.
   std::uint32_t number_of(const JsonNode& primitive);
-  // After the last primitive: what was left out.
+  // Called after the last primitive: warns of what was left out.
   void warn();
 
  private:

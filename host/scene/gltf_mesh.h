@@ -2,7 +2,8 @@
 //         turns the triangles over, so that their front stays where the normals point.
 // Shape   Strips and fans become triangles. Points and lines, morph targets and vertex colours are left out,
 //         with a warning.
-// Errors  As gltf_accessor.h; also when instances multiply a small file beyond all measure.
+// Errors  The errors are those of gltf_accessor.h; one more is that instances multiply a small file beyond
+//         all measure.
 #pragma once
 
 #include <set>
@@ -20,9 +21,9 @@ class MeshReader {
   MeshReader(Document& document, Scene& scene);
 
   void add(const JsonNode& mesh, const dmat4& to_world);
-  // After the last mesh.
+  // Called after the last mesh.
   void finish();
-  // One line per kind of thing left out, however often it comes.
+  // There is one warning for each kind of thing that is left out, however often it comes.
   void warn(const std::string& what) { left_out_.insert(what); }
 
  private:

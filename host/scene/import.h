@@ -1,6 +1,6 @@
 // What    Reads a file by its ending as load() does, but leaves the scene as the file has it: no camera or
 //         lights are made up. For files that include others.
-// Errors  As load().
+// Errors  The errors are those of load().
 #pragma once
 
 #include <filesystem>

@@ -30,7 +30,7 @@ class LineScanner {
   std::string_view rest();
   // The next word as a finite number; `what` says what the number is.
   double number(std::string_view what);
-  // Like number(); false, with nothing taken, when the line has no more words.
+  // The same as number(), but returns false, with nothing taken, when the line has no more words.
   bool try_number(std::string_view what, double& value);
 
   std::uint32_t line() const { return line_; }

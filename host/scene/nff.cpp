@@ -129,7 +129,7 @@ class NffReader {
     Sphere s;
     s.material = material();
     s.center = in_.vector("a sphere's center (x y z)");
-    // Below 0 means "seen from inside": ours are two-sided.
+    // A radius below 0 means "seen from inside", but spheres here are two-sided.
     s.radius = std::abs(in_.number("a sphere's radius"));
     if (s.radius == 0) throw in_.error("a sphere with a radius of 0");
     s.number = next_number();
@@ -202,7 +202,7 @@ class NffReader {
   std::optional<std::uint32_t> add_normals() {
     const auto first = static_cast<std::uint32_t>(scene_.normals.size());
     for (const dvec3& n : normals_) {
-      // Scaled first, so that no square overflows or vanishes.
+      // The vector is scaled first, so that no square overflows or vanishes.
       const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
       if (!(largest > 0)) {
         ++unset_normals_;

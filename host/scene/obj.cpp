@@ -97,7 +97,7 @@ class ObjReader {
     scene_.normals.push_back(direction_of(three_numbers("a normal of three numbers")));
   }
 
-  // One corner: v, v/vt, v//vn or v/vt/vn; false at the end of the line.
+  // Reads one corner: v, v/vt, v//vn or v/vt/vn. Returns false at the end of the line.
   bool read_corner() {
     std::int64_t value = 0;
     if (const std::string_view plain = in_.plain_whole(value); !plain.empty()) {

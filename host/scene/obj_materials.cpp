@@ -66,7 +66,7 @@ bool ObjMaterials::read_library(const std::filesystem::path& path) {
   return true;
 }
 
-// One name, perhaps with spaces in it, or several names.
+// The text is one name, perhaps with spaces in it, or several names.
 void ObjMaterials::add_library(std::string_view text, std::uint32_t line) {
   std::string names(text);
   std::ranges::replace(names, '\0', '?');

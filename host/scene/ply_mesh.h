@@ -19,14 +19,14 @@ class Mesh {
  public:
   explicit Mesh(std::uint32_t n_vertices) : n_vertices_(n_vertices) {}
 
-  // To be filled with all vertices; a normal for each, or none.
+  // The caller fills in all vertices, and a normal for each or none.
   RawVector<dvec3>& vertices() { return scene_.vertices; }
   RawVector<vec3>& normals() { return scene_.normals; }
   PageVector<Triangle>& triangles() { return scene_.triangles; }
   std::uint32_t n_vertices() const { return n_vertices_; }
 
-  // One polygon; false when it has a corner that is no vertex. Fewer than three corners: counted and left
-  // out.
+  // Adds one polygon. Returns false when it has a corner that is no vertex. One of fewer than three corners
+  // is counted and left out.
   bool add_face(std::span<const std::int64_t> corners);
   // Triangles over each three neighbours, every second one turned over; -1 starts a new strip.
   bool add_strip(std::span<const std::int64_t> corners);

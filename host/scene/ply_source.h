@@ -38,7 +38,7 @@ class AsciiSource {
     element_ = &element, row_ = row;
   }
   [[nodiscard]] Error error(const std::string& what, const std::string& remedy = "") const;
-  // After the last row: whether only white space is left.
+  // Called after the last row: whether only white space is left.
   bool at_end() {
     finish_line();
     return skip_space();
@@ -143,7 +143,7 @@ class BinarySource {
   bool at_end() const { return at_ == end_; }
   static constexpr bool has_extra_values() { return false; }
 
-  // For the fast paths: the bytes not yet taken.
+  // The bytes not yet taken, for the fast paths.
   const unsigned char* at() const { return at_; }
   const unsigned char* end() const { return end_; }
   void advance(std::size_t n) { at_ += n; }

@@ -17,7 +17,7 @@ class Room {
     const std::size_t n = elements.size();
     if (n < elements.capacity()) return;
     if (n == 0) first_ = bytes_left;
-    // So few say little about the rest, and are cheap to copy.
+    // So few elements say little about the rest, and are cheap to copy.
     if (n < kFew || first_ <= bytes_left) return;
     const double bytes_each = static_cast<double>(first_ - bytes_left) / static_cast<double>(n);
     const auto more = static_cast<std::size_t>(kSpare * static_cast<double>(bytes_left) / bytes_each);

@@ -28,7 +28,8 @@ std::size_t flatten(Scene& scene) {
 }  // namespace
 
 vec3 direction_of(const dvec3& v) {
-  // Scaled first, so that the squares of very short and very long vectors don't vanish or overflow.
+  // The vector is scaled first, so that the squares of very short and very long ones don't vanish or
+  // overflow.
   const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (!(largest > 0)) return vec3(0);
   const dvec3 scaled = v / largest;

@@ -87,7 +87,7 @@ class AsciiReader {
   void read_facet() {
     expect("facet");
     expect("normal");
-    // Its numbers may be anything, even "1.#IND".
+    // The numbers of a normal may be anything, even "1.#IND".
     const std::uint32_t line = in_.line();
     while (!in_.at_end() && in_.line() == line && !same_word(in_.peek(), "outer")) in_.word("a normal");
     expect("outer");

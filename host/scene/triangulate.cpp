@@ -167,8 +167,8 @@ class EarClipper {
     return next_[c];
   }
 
-  // In a polygon without an ear (it touches or crosses itself): a corner without area, else one that turns
-  // left.
+  // The corner to cut in a polygon without an ear, which touches or crosses itself: one without area, else
+  // one that turns left.
   std::uint32_t least_bad(std::uint32_t at) const {
     std::uint32_t best = at;
     for (std::uint32_t i = 0, b = at; i < left_; ++i, b = next_[b]) {

@@ -30,10 +30,10 @@ struct InsideOrigin {
 
 class Aims {
  public:
-  // `clearance`: how far origins keep from their component.
+  // `clearance` is how far origins keep from their component.
   Aims(const Subject& subject, const Insides& insides, double clearance, std::uint64_t seed);
 
-  // All origins inside, at most `n`; found in parallel.
+  // Finds all origins inside, `n` at most, in parallel.
   std::vector<InsideOrigin> find_origins(std::size_t n);
   Aimed from_inside(const InsideOrigin& origin);
   Aimed from_outside();

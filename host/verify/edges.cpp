@@ -148,7 +148,7 @@ class Finder {
       Component& c = component_of(i);
       if (c.faces++ == 0) c.first = i;
       c.bounds.grow(mesh_.bounds_of(i));
-      // About a point of the component's own, so that its place costs no digits.
+      // The volume is taken about a point of the component's own, so that its place costs no digits.
       const dvec3 from(mesh_.corner(c.first, 0));
       c.volume += glm::dot(dvec3(mesh_.corner(i, 0)) - from, mesh_.normal(i)) / 6;
     }

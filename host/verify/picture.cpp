@@ -16,7 +16,7 @@ namespace kdray::verify {
 
 namespace {
 
-// Linear light.
+// Colours are linear light.
 constexpr vec3 kPaper{0.91f, 0.91f, 0.9f}, kInk{0.02f, 0.02f, 0.02f};
 constexpr vec3 kOpen{0.8f, 0.0f, 0.0f}, kCrowded{0.0f, 0.12f, 0.85f}, kFlipped{0.95f, 0.3f, 0.0f},
     kDoubled{0.55f, 0.0f, 0.6f}, kOverlapping{0.0f, 0.35f, 0.12f}, kDefect{0.0f, 0.0f, 0.0f};
@@ -82,7 +82,7 @@ std::vector<View> views_of(const prepare::Prepared& scene, int height) {
   return views;
 }
 
-// One view within the picture.
+// One of the views in the picture.
 class Panel {
  public:
   Panel(film::Image& image, int x, int width, int height, const View& view)
@@ -140,7 +140,7 @@ class Panel {
       }
   }
 
-  // Its points are closer together than this many pixels.
+  // Whether the face's points are closer together than this many pixels.
   bool is_smaller_than(const Mesh& mesh, std::uint32_t face, double pixels) const {
     const std::optional<Place> place = project(dvec3(mesh.corner(face, 0)));
     if (!place) return true;
@@ -191,7 +191,7 @@ class Panel {
     return Place{static_cast<int>(x), static_cast<int>(y), glm::length(way)};
   }
 
-  // Nothing is before it, but for its own surface about it.
+  // Whether nothing is in front of the place but its own surface about it.
   bool is_visible(const Place& place) const {
     for (int v = std::max(place.y - 1, 0); v <= std::min(place.y + 1, height_ - 1); ++v)
       for (int u = std::max(place.x - 1, 0); u <= std::min(place.x + 1, width_ - 1); ++u)

@@ -16,7 +16,7 @@ struct Band {
   std::size_t first_pixel = 0, n_pixels = 0;  // of the picture
 };
 
-// As high as a film of `max_film_bytes` allows, and one row of tiles at least.
+// Bands are as high as a film of `max_film_bytes` allows, and one row of tiles at least.
 std::vector<Band> bands_of(const layout::Frame& frame, std::size_t max_film_bytes);
 
 }  // namespace kdray::wavefront

@@ -59,9 +59,9 @@ void for_each_row(const layout::Frame& frame, std::span<const layout::u32> tiles
   });
 }
 
-// Compiled for vectors of eight as well, where the processor has them: the conversions of 64-bit whole
-// numbers are instructions there, of eight at once. Each operation is rounded by itself, so the values are
-// the same.
+// This is compiled for vectors of eight as well, where the processor has them: the conversions of 64-bit
+// whole numbers are instructions there, of eight at once. Each operation is rounded by itself, so the values
+// are the same.
 #if defined(__x86_64__) && defined(__linux__) && !defined(KDRAY_SANITIZED)
 __attribute__((target_clones("arch=x86-64-v4", "default")))
 #endif

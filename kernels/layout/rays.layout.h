@@ -11,7 +11,7 @@
 
 #define KDRAY_LANES 16u  // rays to a vector
 
-// 1: the kernels of ODPRT, whose rays carry what another queue needs to go on with them.
+// This is 1 in the kernels of ODPRT, whose rays carry what another queue needs to go on with them.
 #ifndef KDRAY_ODPRT
 #define KDRAY_ODPRT 0
 #endif
@@ -26,7 +26,7 @@
 // (Slice).
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
-// ODPRT: the best hit so far, whose t is the float below t_max.
+// In ODPRT a ray brings the best hit so far, whose t is the float below t_max.
 #define KDRAY_RAY_NUMBER 12u  // u32: of its primitive, in file order
 // u32: the part that holds it, or KDRAY_NO_PART; on its way, above that, depth << 8 and the part that it goes
 // to << 16.

@@ -1,8 +1,8 @@
 // What    Some waves of ODPRT in one launch: a work-item takes its slice through them, tracing rays in its
 //         part of the scene, and puts those that go on elsewhere into the outbox.
-// Shape   One work-item per slice. The same stages as wave/wave.cl, and two more: rays are routed before and
-//         after their trace. It ends when a slice has done n_waves, has nothing left that it may do, or has
-//         no room for a batch in the outbox.
+// Shape   One work-item per slice. The stages are those of wave/wave.cl, and two more: rays are routed before
+//         and after their trace. It ends when a slice has done n_waves, has nothing left that it may do, or
+//         has no room for a batch in the outbox.
 // Errors  as the stages'; all counted in the slice and its traffic, which the host reads after each launch.
 #define KDRAY_ODPRT 1
 #include "film/add.clh"

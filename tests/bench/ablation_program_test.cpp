@@ -28,7 +28,7 @@ void expect_numbers(const Json& spread) {
   }
 }
 
-// Before the first scene is measured, which would be for nothing.
+// The missing scene is told before the first one is measured, which would be for nothing.
 TEST(BenchAblation, AMissingSceneIsToldAtOnce) {
   const Outcome run = kdray({"bench", "ablation", "boxes", "no_such_scene"});
   EXPECT_TRUE(fails_with(run, 1, "no_such_scene: neither a file nor a built-in scene"));

@@ -50,7 +50,7 @@ TEST(HostileMeshes, AreAsBadAsTheySay) {
   const scene::Scene point = made("point");
   for (const dvec3& v : point.vertices) near += glm::length(v) < 0x1p-29;
   EXPECT_EQ(near, 3 * (kTriangles - 1));
-  // Still apart as floats.
+  // The points are still apart as floats.
   EXPECT_EQ(scene::make_geometry(point).dropped_degenerate, 0u);
 }
 

@@ -72,7 +72,7 @@ TEST(Povray, KnowsWhatItHasNoWordsFor) {
   EXPECT_FALSE(pov_has_words_for(s));
 }
 
-// Above white too, which a PNG would cut off.
+// The light goes above white, where a PNG would cut it off.
 TEST(Povray, GivesItsPictureInLinearLight) {
   if (!has_povray()) GTEST_SKIP() << "povray is not installed";
   scene::Scene s = small_scene();

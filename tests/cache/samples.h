@@ -32,7 +32,7 @@ std::string bytes_of_values(const Values& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(*values.data())};
 }
 
-// All that a renderer reads of it, byte for byte; the list of its files is not among that.
+// Everything that a renderer reads of it, byte for byte; the list of its files is not among that.
 inline std::string everything(const prepare::Prepared& p) {
   prepare::Prepared bare = p;
   bare.settings.files.clear();

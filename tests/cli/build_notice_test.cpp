@@ -22,7 +22,7 @@ struct Heard {
     lines.push_back(line);
     changed.notify_all();
   }
-  // Until something was heard, in any case not for ever.
+  // Waits until something was heard, but not for ever.
   std::string first() {
     std::unique_lock lock(mutex);
     changed.wait_for(lock, std::chrono::seconds(60), [&] { return !lines.empty(); });

@@ -3,7 +3,7 @@
 
 namespace kdray::test {
 
-// Primitives: 0 and 1 the square's triangles, 2 the sphere of radius 1 about (0, 0, 1).
+// The primitives are 0 and 1, the square's triangles, and 2, the sphere of radius 1 about (0, 0, 1).
 inline constexpr const char* kSphereOnSquare =
     "v\nfrom 0 -6 3\nat 0 0 1\nup 0 0 1\nangle 40\nhither 0.1\nresolution 48 32\n"
     "b 0.1 0.2 0.4\n"

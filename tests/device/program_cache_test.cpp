@@ -229,7 +229,7 @@ TEST_P(ProgramCacheTest, PartsOfADeviceShareItsEntries) {
   }
 }
 
-// Each thread with a cache of its own, as processes have.
+// Each thread has a cache of its own, as processes have.
 TEST_P(ProgramCacheTest, SeveralAtOnce) {
   std::vector<Builds> caches;
   for (int i = 0; i < 4; ++i) caches.push_back({std::make_shared<ProgramCache>(folder_.path()), {}});

@@ -98,7 +98,7 @@ TEST(Core, KnowsWhichLightsAreInside) {
   const Core core = core_of(flat_of({floor_at(0)}, {sphere({1, 0, 2}, 1)}));
   EXPECT_EQ(open_lights(core, lights_at({{0, 0, 5}, {0, 0, -5}, {0, 0, 0}, {0, 0, 1e-4f}, {99, 99, 1}})),
             0b10001u);
-  // More than 32: those beyond are traced.
+  // There are more than 32 lights, and those beyond are traced.
   EXPECT_EQ(open_lights(core, lights_at(std::vector<vec3>(40, {0, 0, 5}))), 0xffffffffu);
   Array<layout::Light> sun = lights_at({{0, 0, 5}});
   sun[0].kind = KDRAY_LIGHT_DIRECTIONAL;

@@ -25,7 +25,7 @@ double area_of(const Box& b) {
   return b.empty() ? 0 : static_cast<double>(b.area());
 }
 
-// All ways to choose up to eight children of each wide node.
+// Tries all ways to choose up to eight children of each wide node.
 class AllWays {
  public:
   explicit AllWays(const kdtree::Tree& tree) : tree_(tree) {}
@@ -100,7 +100,7 @@ void expect_least(const scene::Geometry& g, const kdtree::BuildConfig& config) {
   EXPECT_NEAR(surface_of(wide, tree), least, 1e-5 * least) << tree.nodes.size() << " binary nodes";
 }
 
-// Small enough that all ways can be tried: they grow as 2 to the leaves.
+// The trees are so small that all ways can be tried, which grow as 2 to the number of leaves.
 TEST(Openings, NoOtherWayIsCheaper) {
   Random random(kSeed);
   std::size_t n_deep = 0;

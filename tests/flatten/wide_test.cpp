@@ -79,7 +79,7 @@ struct Subject {
   WideForm wide;
 };
 
-// Every scene, by every kind of tree, in blocks of 4 and of 8.
+// The subjects are every scene, by every kind of tree, in blocks of 4 and of 8.
 const std::vector<Subject>& subjects() {
   static const std::vector<Subject> all = [] {
     std::vector<Subject> made;
@@ -114,7 +114,7 @@ void for_each_subject(Check check) {
   }
 }
 
-// Without groups, whose bounds may overlap.
+// These are the trees without groups, whose bounds may overlap.
 template <class Check>
 void for_each_of_planes(Check check) {
   for_each_subject([&](const Subject& s) {
@@ -239,7 +239,7 @@ TEST(Wide, EveryNodeButTheRootHasOneParentBeforeIt) {
   });
 }
 
-// With the test above: a path from the root leads to each of them, and no other.
+// Together with the test above: a path from the root leads to each of them, and no other path to any.
 TEST(Wide, LeavesAreThoseOfTheBinaryTreeByKind) {
   std::size_t largest = 0;
   for_each_subject([&](const Subject& s) {
@@ -518,7 +518,7 @@ float diff_of_products(float a, float b, float c, float d) {
   return std::fma(a, b, -w) + std::fma(-c, d, w);
 }
 
-// As sign_limit in kernels/intersect/triangle.clh has it.
+// The normal is computed as sign_limit in kernels/intersect/triangle.clh does it.
 float normal_in_float(const layout::Triangle& t) {
   float e[3], f[3];
   for (int k = 0; k < 3; ++k) {
@@ -625,7 +625,7 @@ TEST(ChooseBlock, EightWhereLeavesFillThemAtLeastHalf) {
   EXPECT_EQ(choose_block(leaves_of_size({1, 1, 30, 30})), 8);
 }
 
-// As many lanes either way: a test of eight takes no longer than two of four.
+// It takes as many lanes either way, and a test of eight takes no longer than two of four.
 TEST(ChooseBlock, EightWhereFourSavesNothing) {
   EXPECT_EQ(choose_block(leaves_of_size({5, 5, 13})), 8);
   EXPECT_EQ(choose_block(kdtree::build({})), 8);

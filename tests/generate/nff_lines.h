@@ -16,7 +16,7 @@ namespace kdray::test {
 
 using Words = std::vector<std::string>;
 
-// Without comments and empty lines.
+// The lines without comments and empty ones.
 inline std::vector<Words> nff_lines(std::string_view text) {
   std::vector<Words> lines;
   std::istringstream in{std::string(text)};

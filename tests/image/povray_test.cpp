@@ -26,7 +26,8 @@ TEST_P(Povray, SeesTheSame) {
   const Picture picture = renderer.render(exact_options(1024, 1024));
   film::Image found{picture.width, picture.height, {}};
   found.pixels.reserve(picture.rgb.size() / 3);
-  // As a PNG would hold it: else POV-Ray's own rounding to 8 bits, 1e-3 in the mean, is all that is measured.
+  // Values are rounded as a PNG holds them: else POV-Ray's own rounding to 8 bits, 1e-3 in the mean, would be
+  // all that is measured.
   for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
     const vec3 pixel(picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]);
     found.pixels.push_back(glm::round(glm::clamp(pixel, vec3(0), vec3(1)) * 255.0f) / 255.0f);

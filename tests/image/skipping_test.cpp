@@ -1,5 +1,5 @@
 // What    What exact rules of skipping leave out changes no bit of the picture, and they do leave something
-//         out (docs/design/skipping.md). Switched off by the mask that kernels are compiled with.
+//         out (docs/design/skipping.md). They are switched off by the mask that kernels are compiled with.
 #include <gtest/gtest.h>
 
 #include <algorithm>

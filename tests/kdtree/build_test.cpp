@@ -26,7 +26,7 @@ int default_depth(std::size_t n) {
 
 constexpr Quality kQualities[] = {Quality::fast, Quality::balanced, Quality::best};
 
-// Trees of all builders.
+// Checks the trees of all builders.
 void check_tree(const scene::Geometry& g, BuildConfig config = {}) {
   for (const Quality quality : kQualities)
     for (const bool groups : {false, true}) {

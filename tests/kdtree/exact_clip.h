@@ -21,7 +21,8 @@ struct ExactBounds {
   std::array<Fraction, 3> lo, hi;
 };
 
-// Nothing when the triangle and the closed box have no point in common. The triangle is not degenerate.
+// Returns nothing when the triangle and the closed box have no point in common. The triangle must not be
+// degenerate.
 std::optional<ExactBounds> exact_clip(const std::array<Point, 3>& triangle, const Point& lo, const Point& hi);
 
 }  // namespace kdray::test

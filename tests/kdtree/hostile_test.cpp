@@ -32,7 +32,7 @@ void check_hostile(const scene::Geometry& g) {
     check_hostile(g, quality);
 }
 
-// From anywhere to anywhere in the scene, one edge about as short as `width`.
+// Needles go from anywhere to anywhere in the scene, one edge about as short as `width`.
 void add_needles(scene::Geometry& g, Random& random, int n, float width) {
   for (int i = 0; i < n; ++i) {
     const vec3 a = random_vec3(random, -8, 8);

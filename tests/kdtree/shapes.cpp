@@ -44,7 +44,7 @@ void add_cones(scene::Geometry& g, Random& random, int n, float size) {
     const vec3 base = random_vec3(random, -8, 8);
     vec3 apex = base + random_vec3(random, -size, size);
     if (apex == base) apex.x += size;
-    // Pointed, tapered, and some cylinders.
+    // Some cones are pointed, some tapered, and some are cylinders.
     const float apex_radius = i % 3 == 0 ? 0 : uniform(random, 0, size);
     const float base_radius = i % 5 == 1 ? apex_radius + 0.01f : uniform(random, 0.01f, size);
     g.cones.push_back({base, apex, base_radius, i % 5 == 1 ? base_radius : apex_radius,

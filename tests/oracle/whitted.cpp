@@ -157,7 +157,7 @@ dvec3 Whitted::light(const Shading& s, const scene::Light& light, Tree& tree) co
   const double highlight = aligned > 0 ? std::pow(aligned, static_cast<double>(m.shine)) : 0;
   const dvec3 color =
       factor * dvec3(light.color) * (cosine * dvec3(m.diffuse) + highlight * dvec3(m.specular));
-  // What cannot be seen needs no shadow ray: out of reach, or nothing that a light could show.
+  // What cannot be seen needs no shadow ray: a light out of reach, or one that could show nothing.
   if (!(largest(color) > 0)) return tree.path.push_back(kOutOfReach), dvec3(0);
 
   Ray ray;

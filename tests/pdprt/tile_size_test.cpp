@@ -25,7 +25,7 @@ TEST(TileSize, ACostlyTileIsCutUp) {
   EXPECT_EQ(with(0.9), 8u);
 }
 
-// Or sizes would change from frame to frame.
+// Otherwise sizes would change from frame to frame.
 TEST(TileSize, ACostlyTileThatWasCutUpStaysSo) {
   EXPECT_EQ(choose_tile_side(1024, 1024, 2, TileCost{16 * 16, 0.005, 1.0}), 16u);
 }

@@ -34,7 +34,7 @@ void hit_triangle(const scene::Scene& scene, std::size_t i, const dvec3& o, cons
     nearer(best, glm::dot(e2, glm::cross(s, e1)) / det, static_cast<int>(scene.triangles[i].number));
 }
 
-// Both roots of a*t^2 + 2*b*t + c.
+// Visits both roots of a*t^2 + 2*b*t + c.
 template <class Visit>
 void for_each_root(double a, double b, double c, const Visit& visit) {
   const double discriminant = b * b - a * c;

@@ -54,7 +54,7 @@ TEST_P(SelfTest, ToldToFailItFailsThoughItHasPassed) {
   EXPECT_TRUE(test::fails([&] { require(context(), true); }, "fails the self-test", ErrorCode::no_device));
 }
 
-// Of kernels that this process hasn't tested before: else there is nothing to be written.
+// The kernels are some that this process hasn't tested before: else there would be nothing to write.
 TEST_P(SelfTest, TheOutcomeIsKeptAndItsProgramIsNot) {
   const std::filesystem::path folder = broken_ / "programs";
   (void)context();  // the vectors' test, which a process makes once and whose program is kept

@@ -17,7 +17,7 @@ Exact3 cross(const Exact3& a, const Exact3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Of a t^2 + 2 b t + c.
+// The roots of a t^2 + 2 b t + c.
 std::vector<Exact> quadratic(const Exact& a, const Exact& b, const Exact& c) {
   if (sgn(a) == 0) {
     if (sgn(b) == 0) return {};

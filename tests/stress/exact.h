@@ -24,7 +24,7 @@ struct Exact3 {
 };
 Exact3 exactly(const float (&v)[3]);
 
-// All t, negative ones too, where the line meets the primitive as stored.
+// All t where the line meets the primitive as stored, negative ones too.
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Triangle& triangle);
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Sphere& sphere);
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Cone& cone);

@@ -37,7 +37,7 @@ dvec3 edge_point_of(const ClosedMesh& mesh, Random& random) {
   const std::size_t triangle = random.below(mesh.triangles());
   const int k = static_cast<int>(random.below(3));
   const dvec3 a = mesh.corner(triangle, k), b = mesh.corner(triangle, (k + 1) % 3);
-  // Near its ends too.
+  // Points near the ends of the edge are drawn too.
   const double s = random.bits() & 1 ? random.uniform() : random.log_uniform(1e-9, 1);
   return a + s * (b - a);
 }

@@ -23,7 +23,7 @@ class Random {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
   double sign() { return bits() >> 63 ? 1.0 : -1.0; }
-  // Every order of magnitude alike.
+  // Every order of magnitude is as likely as the others.
   double log_uniform(double lo, double hi) { return lo * std::pow(hi / lo, uniform()); }
   double signed_log_uniform(double lo, double hi) { return sign() * log_uniform(lo, hi); }
 
@@ -31,7 +31,7 @@ class Random {
     const double z = uniform(-1, 1), phi = uniform(0, 2 * std::numbers::pi), r = std::sqrt(1 - z * z);
     return {r * std::cos(phi), r * std::sin(phi), z};
   }
-  // Of points on a triangle, evenly: the weights of its corners.
+  // Weights of the corners that spread points evenly over a triangle.
   dvec3 weights() {
     double u = uniform(), v = uniform();
     if (u + v > 1) u = 1 - u, v = 1 - v;

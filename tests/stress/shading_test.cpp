@@ -48,7 +48,7 @@ TEST_P(Shading, NoBlackTerminatorAndNoSteps) {
   Tally steps("shading", "steps of colour, " + std::to_string(rows) + " rows");
   for (std::uint64_t i = 0; i < (is_full() ? 24 : 2); ++i) {
     Random random(kSeed, i);
-    // From the side, where the terminator is seen.
+    // The light comes from the side, where the terminator is seen.
     const dvec3 to_light = glm::normalize(random.direction() * dvec3(1, 1, 0.4));
     for (std::size_t w = 0; w < kWalks.size(); ++w) {
       const Picture p = picture_of(rows, to_light, kWalks[w].traversal);

@@ -36,7 +36,7 @@ struct Nearest {
   double t = kInfinity;
 };
 
-// Of those at the same distance, the lowest number.
+// Of spheres at the same distance it is the one with the lowest number.
 Nearest nearest(const std::vector<Ball>& balls, const Ray& ray) {
   Nearest best;
   Exact best_t;

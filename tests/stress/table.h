@@ -21,7 +21,8 @@ struct Errors {
   std::string family;
   std::uint64_t samples = 0;
   double t_ulps = 0;  // of t itself
-  // Of the largest number in play; where the ray meets the surface at 45 degrees or more.
+  // The largest error of t, in ulps of the largest number in play, where the ray meets the surface at 45
+  // degrees or more.
   double t_facing_ulps = 0;
   // The hit point's distance from the surface, in ulps of its largest coordinate in play.
   double point_ulps = 0;

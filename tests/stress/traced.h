@@ -31,7 +31,7 @@ inline constexpr std::array<Walk, 5> kWalks{{{Traversal::binary, "binary"},
                                              {Traversal::automatic, "auto"}}};
 inline constexpr std::size_t kBatch = std::size_t{1} << 18;
 
-// What came of a family, a row per traversal.
+// Collects what came of a family, with a row for each traversal.
 class Tally {
  public:
   Tally(std::string figure, std::string family) {

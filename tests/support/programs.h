@@ -12,13 +12,13 @@
 
 namespace kdray::test {
 
-// Empty: nothing is kept.
+// Where the variable is empty, nothing is kept.
 inline std::filesystem::path programs_folder() {
   const char* const folder = std::getenv("KDRAY_TEST_PROGRAMS");
   return folder != nullptr ? folder : "";
 }
 
-// For a new context. What those before it had to build is written down now.
+// The cache that a new context is given. What those before it had to build is written down now.
 inline device::Builds kept_programs() {
   static const auto cache = programs_folder().empty()
                                 ? std::shared_ptr<device::ProgramCache>()

@@ -32,7 +32,7 @@ Real tests_of(std::size_t n, const BuildConfig& c) {
          each * static_cast<Real>(n);
 }
 
-// Of a division into these two, relative to their hull.
+// The cost of a division into these two, relative to their hull.
 Real cost_of(std::span<const BoundedRef> first, std::span<const BoundedRef> second, const Bounds& hull,
              const BuildConfig& c) {
   const Real sum = size_of(kdtree::hull_of(first)) * tests_of(first.size(), c) +
@@ -40,7 +40,7 @@ Real cost_of(std::span<const BoundedRef> first, std::span<const BoundedRef> seco
   return static_cast<Real>(c.group_traverse) + sum / size_of(hull);
 }
 
-// Of all divisions by the order of centres along an axis.
+// The least cost of all divisions by the order of centres along an axis.
 Real least_cost(std::vector<BoundedRef> refs, const Bounds& hull, const BuildConfig& c) {
   Real least = std::numeric_limits<Real>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {

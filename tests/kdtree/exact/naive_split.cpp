@@ -36,7 +36,7 @@ long double naive_cost(const std::vector<BoundedRef>& refs, const Bounds& cell, 
   }
   constexpr long double kNever = std::numeric_limits<long double>::infinity();
   if (position < cell.lo[axis] || position > cell.hi[axis]) return kNever;
-  // On the boundary: only to give what lies there a flat cell of its own.
+  // A plane on the boundary is allowed only to give what lies there a flat cell of its own.
   if (position == cell.lo[axis] && (n_planar == 0 || !planar_below)) return kNever;
   if (position == cell.hi[axis] && (n_planar == 0 || planar_below)) return kNever;
   Bounds below = cell, above = cell;
