@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "device/opencl_error.h"
+#include "odprt/queue_failure.h"
 
 namespace kdray::odprt {
 
@@ -38,9 +38,9 @@ void add_worker(const Request& request, const Provision& provision, const Divisi
 Crew make_crew(const Request& request, const Provision& provision, const Division& division, const Cut& cut) {
   Crew crew;
   crew.plan = provision.plan;
-  device::checked("setting up the queues", [&] {
-    for (const Queue& queue : request.queues) add_worker(request, provision, division, cut, queue, crew);
-  });
+  for (std::size_t q = 0; q < request.queues.size(); ++q)
+    on_queue(q, "setting up the queues",
+             [&] { add_worker(request, provision, division, cut, request.queues[q], crew); });
   for (std::uint32_t part = 0; part < provision.n_parts; ++part)
     crew.owner.push_back(part % request.queues.size());
   crew.direct.resize(crew.workers.size());
@@ -53,12 +53,11 @@ Crew make_crew(const Request& request, const Provision& provision, const Divisio
 
 void load_parts(Crew& crew, const Provision& provision) {
   if (provision.streamed) return;
-  device::checked("loading the parts of the scene", [&] {
-    for (std::uint32_t part = 0; part < crew.owner.size(); ++part) {
-      const std::size_t q = crew.owner[part];
-      crew.workers[q]->warm_up(crew.stores[q]->get(part), *crew.outboxes[q].front());
-    }
-  });
+  for (std::uint32_t part = 0; part < crew.owner.size(); ++part) {
+    const std::size_t q = crew.owner[part];
+    on_queue(q, "loading the parts of the scene",
+             [&] { crew.workers[q]->warm_up(crew.stores[q]->get(part), *crew.outboxes[q].front()); });
+  }
 }
 
 }  // namespace kdray::odprt

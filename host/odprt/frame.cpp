@@ -8,31 +8,19 @@
 
 #include "adaptive/sampler.h"
 #include "base/timer.h"
-#include "device/opencl_error.h"
 #include "odprt/band.h"
 #include "odprt/develop.h"
+#include "odprt/queue_failure.h"
 #include "wavefront/curve.h"
 
 namespace kdray::odprt {
 
 namespace {
 
-// What a device said of a queue; anything else is thrown.
-QueueFailure failure_of(std::size_t queue, std::exception_ptr error) {
-  try {
-    std::rethrow_exception(error);
-  } catch (const cl::Error& e) {
-    const Error translated = device::translate(e, "rendering");
-    return {queue, std::make_exception_ptr(translated), translated.what()};
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::no_device && e.code() != ErrorCode::out_of_memory) throw;
-    return {queue, error, e.what()};
-  }
-}
-
 void check(const Exchange& exchange) {
   std::vector<QueueFailure> failures;
-  for (const auto& [queue, error] : exchange.failures()) failures.push_back(failure_of(queue, error));
+  for (const auto& [queue, error] : exchange.failures())
+    failures.push_back({queue, device::error_of_queue(error, "rendering")});
   if (!failures.empty()) throw QueueFailures(std::move(failures));
 }
 
@@ -40,15 +28,11 @@ using Films = std::span<const std::span<const layout::i64>>;
 
 void take_films(Crew& crew, const std::function<void(Films)>& take) {
   std::vector<std::span<const layout::i64>> films;
-  for (std::size_t q = 0; q < crew.workers.size(); ++q) {
-    try {
-      films.push_back(crew.workers[q]->map_film());
-    } catch (...) {
-      throw QueueFailures({failure_of(q, std::current_exception())});
-    }
-  }
+  for (std::size_t q = 0; q < crew.workers.size(); ++q)
+    films.push_back(on_queue(q, "reading the film", [&] { return crew.workers[q]->map_film(); }));
   take(films);
-  for (const auto& worker : crew.workers) worker->unmap_film();
+  for (std::size_t q = 0; q < crew.workers.size(); ++q)
+    on_queue(q, "giving back the film", [&] { crew.workers[q]->unmap_film(); });
 }
 
 void add_counts(const std::vector<std::vector<std::uint64_t>>& from,
@@ -67,7 +51,8 @@ void add_band(const Crew& crew, const Exchange& exchange, Result& result) {
 
 void add_visits(const Crew& crew, const Division& division, Result& result) {
   for (std::size_t q = 0; q < crew.workers.size(); ++q) {
-    const std::vector<SubtreeUse> visits = crew.workers[q]->visits();
+    const std::vector<SubtreeUse> visits =
+        on_queue(q, "reading the visits", [&] { return crew.workers[q]->visits(); });
     const std::vector<std::uint32_t> subtrees = division.subtrees_of(static_cast<std::uint32_t>(q));
     for (std::size_t i = 0; i < visits.size(); ++i) {
       result.visits[subtrees[i]].visits += visits[i].visits;
@@ -90,7 +75,8 @@ void share_out_seconds(const Crew& crew, Result& result) {
 void finish(Crew& crew, const Division& division, Result& result) {
   for (std::size_t q = 0; q < crew.workers.size(); ++q) {
     QueueReport& report = crew.reports[q];
-    report.busy_seconds = crew.workers[q]->busy_seconds();
+    report.busy_seconds =
+        on_queue(q, "reading the queue's clock", [&] { return crew.workers[q]->busy_seconds(); });
     report.n_loads = crew.stores[q]->n_loads();
     report.geometry_bytes = crew.stores[q]->bytes();
     result.counters.waves += report.waves;
@@ -216,7 +202,7 @@ Result render_frame(const Request& request, const Provision& provision, const Di
   FrameRun run(request, provision, division, crew, result);
   request.adaptive_target > 0 ? run.render_adaptive() : run.render_uniform();
   result.render_seconds = timer.seconds();
-  device::checked("reading the queues' clocks", [&] { finish(crew, division, result); });
+  finish(crew, division, result);
   return result;
 }
 

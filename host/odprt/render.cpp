@@ -9,6 +9,7 @@
 #include "base/timer.h"
 #include "odprt/frame.h"
 #include "odprt/pilot.h"
+#include "odprt/queue_failure.h"
 #include "odprt/replicate.h"
 
 namespace kdray::odprt {
@@ -154,10 +155,10 @@ Result DividedScene::render(const Request& asked) {
     } catch (const QueueFailures& e) {
       // The last first, so that the places of the others stay.
       for (auto failure = e.failures.rbegin(); failure != e.failures.rend(); ++failure) {
-        quarantined.push_back({request.queues[failure->queue].number, failure->what});
+        quarantined.push_back({request.queues[failure->queue].number, failure->error.what()});
         request.queues.erase(request.queues.begin() + static_cast<std::ptrdiff_t>(failure->queue));
       }
-      if (request.queues.empty()) std::rethrow_exception(e.failures.front().error);
+      if (request.queues.empty()) throw Error(e.failures.front().error);
     }
   }
 }

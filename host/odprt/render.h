@@ -1,8 +1,9 @@
 // What    ODPRT: renders a frame with the scene divided among queues: each holds some subtrees, and rays
 //         travel between them.
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed parallel ray tracing.
-// Errors  A queue whose device fails is left out from then on: its subtrees go to the others, and the band of
-//         the picture that was in work is begun anew. The error itself when no queue is left.
+// Errors  A queue whose device fails, or has too little memory, is left out from then on: the scene is
+//         divided among the others, and the frame begun anew. The error itself when no queue is left. Any
+//         other error ends the frame (device/opencl_error.h).
 #pragma once
 
 #include <functional>

@@ -11,6 +11,7 @@
 
 #include "adaptive/sampler.h"
 #include "base/timer.h"
+#include "device/opencl_error.h"
 #include "pdprt/queue.h"
 #include "wavefront/bands.h"
 #include "wavefront/curve.h"
@@ -38,7 +39,7 @@ class Frame {
   void render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
   void render_list(std::vector<layout::u32> list, const Work& work);
   void run(std::size_t number, Tiles& tiles, const Work& work);
-  void fail(std::size_t number, const Error& error);
+  void leave_out(std::size_t number);
   void wait(Tiles& tiles);
   std::size_t n_working() const;
   Result collect(double seconds);
@@ -57,7 +58,7 @@ class Frame {
   std::mutex mutex_;                 // of the following
   std::condition_variable changed_;
   std::size_t n_running_ = 0;
-  std::exception_ptr fault_;  // of kdray: ends the frame
+  std::exception_ptr fault_;  // for which no other queue may take over: ends the frame
 };
 
 Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), frame_(task.frame) {
@@ -91,16 +92,16 @@ void Frame::open(const Device& device, std::size_t number_of_device) {
   try {
     place.queue =
         std::make_unique<Queue>(number, device, device.context->queues()[number_of_device], task_, room_);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::internal) throw;
-    fail(number, error);
+  } catch (...) {
+    leave_out(number);
   }
 }
 
-// From a handler of `error`.
-void Frame::fail(std::size_t number, const Error& error) {
+// From a handler of what the queue has thrown, which is thrown on where no other queue may take over.
+void Frame::leave_out(std::size_t number) {
+  const Error error = device::error_of_queue(std::current_exception(), "rendering");
   places_[number].result.failure = error.what();
-  last_failure_ = std::current_exception();
+  last_failure_ = std::make_exception_ptr(error);
 }
 
 std::size_t Frame::n_working() const {
@@ -114,20 +115,16 @@ void Frame::run(std::size_t number, Tiles& tiles, const Work& work) {
   Place& place = places_[number];
   try {
     place.queue->serve(tiles, work, shared_);
-  } catch (const Error& error) {
-    const std::lock_guard lock(mutex_);
-    if (error.code() == ErrorCode::internal) {
-      fault_ = std::current_exception();
-      tiles.leave();
-    } else {
-      fail(number, error);
-      place.queue->withdraw(shared_);
-      place.result.tiles_lost = tiles.give_back(number);
-    }
   } catch (...) {
     const std::lock_guard lock(mutex_);
-    fault_ = std::current_exception();
-    tiles.leave();
+    try {
+      leave_out(number);
+      place.queue->withdraw(shared_);
+      place.result.tiles_lost = tiles.give_back(number);
+    } catch (...) {
+      fault_ = std::current_exception();
+      tiles.leave();
+    }
   }
   const std::lock_guard lock(mutex_);
   --n_running_;

@@ -3,9 +3,9 @@
 // Shape   The tiles of a band (the whole frame, unless its film is too large for a queue) along a curve; a
 //         thread for each queue takes tiles (tiles.h), keeps its queue's list filled, and puts the queue's
 //         tiles into the picture. Each queue has a film of its own; the one that took a tile last owns it.
-// Errors  A queue whose device fails is left alone from then on: the others render the tiles that it has not
-//         delivered. The error of the last queue, when all fail; a fault of kdray's own (ErrorCode::internal)
-//         ends the frame.
+// Errors  A queue whose device fails, or has too little memory, is left alone from then on: the others render
+//         the tiles that it has not delivered. The error of the last queue, when all fail. Any other error
+//         ends the frame (device/opencl_error.h).
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: pixel-distributed, bag of tasks.
 #pragma once
 

@@ -260,6 +260,19 @@ TEST(RenderCommand, WhenEveryQueueFailsThereIsNoPicture) {
   EXPECT_EQ(folder.n_entries(), 1u);
 }
 
+TEST(RenderCommand, ABugIsToldAsKdraysInBothModes) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  for (const std::string mode : {"pdprt", "odprt"}) {
+    const Outcome run = kdray({"render", scene, "-o", folder / "a.png", "--queues", "2", "--mode", mode,
+                               "--division", "contiguous", "--inject-fault", "1@1:bug", "-q"});
+    EXPECT_TRUE(fails_with(run, 1, "this is a fault of kdray, please report this line"));
+    EXPECT_EQ(run.err.find("doctor"), std::string::npos) << run.err;
+    EXPECT_EQ(folder.n_entries(), 1u);
+  }
+}
+
 TEST(RenderCommand, TheTimelineHasARowForEachQueue) {
   KDRAY_NEED_DEVICE();
   const Folder folder;

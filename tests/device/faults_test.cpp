@@ -5,6 +5,7 @@
 
 #include "device/opencl.h"
 #include "kdray/error.h"
+#include "support/errors.h"
 
 namespace kdray::test {
 namespace {
@@ -22,6 +23,23 @@ TEST(Faults, NamedLaunchesFail) {
   EXPECT_NO_THROW(faults.launch(7));
 }
 
+TEST(Faults, FailInTheWayThatIsAskedFor) {
+  Faults faults("0@1:device,0@2:memory,0@3:bug,0@4:input,1@1");
+  const auto code_of_next = [&](std::size_t queue) -> cl_int {
+    try {
+      faults.launch(queue);
+    } catch (const cl::Error& error) {
+      return error.err();
+    }
+    return CL_SUCCESS;
+  };
+  EXPECT_EQ(code_of_next(0), CL_OUT_OF_RESOURCES);
+  EXPECT_EQ(code_of_next(0), CL_MEM_OBJECT_ALLOCATION_FAILURE);
+  EXPECT_EQ(code_of_next(0), CL_INVALID_KERNEL_ARGS);
+  EXPECT_TRUE(fails([&] { faults.launch(0); }, "fault on purpose"));
+  EXPECT_EQ(code_of_next(1), CL_OUT_OF_RESOURCES);
+}
+
 TEST(Faults, NamedDevicesFailTheSelfTest) {
   const Faults faults("self-test@1,0@1,self-test@3");
   for (int device = 0; device < 5; ++device)
@@ -35,8 +53,9 @@ TEST(Faults, NoneByDefault) {
 }
 
 TEST(Faults, WhatNamesNoFaultIsRefused) {
-  for (const char* const text : {"1", "@", "1@", "@1", "1@0", "a@1", "1@2x", "1@1,,2@2", "-1@2", "self-test",
-                                 "self-test@", "self-test@x", "self@1"}) {
+  for (const char* const text :
+       {"1", "@", "1@", "@1", "1@0", "a@1", "1@2x", "1@1,,2@2", "-1@2", "self-test", "self-test@",
+        "self-test@x", "self@1", "1@2:", "1@2:none", "1@2:bug:bug", "1:bug@2", "self-test@1:bug"}) {
     try {
       Faults faults(text);
       ADD_FAILURE() << text;

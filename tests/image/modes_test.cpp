@@ -8,6 +8,7 @@
 
 #include "image/render.h"
 #include "image/scenes.h"
+#include "support/errors.h"
 
 namespace kdray::test {
 namespace {
@@ -105,6 +106,27 @@ TEST_P(Modes, OdprtThatFailsEverywhereSaysSo) {
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::no_device) << e.what();
   }
+}
+
+TEST_P(Modes, OdprtGoesOnWhereAQueueHasTooLittleMemory) {
+  Way way = odprt(3, Balance::sah);
+  way.faults = "1@1:memory";
+  const Shot got = render(scene, way);
+  EXPECT_TRUE(same_bits(first.picture.rgb, got.picture.rgb));
+  ASSERT_EQ(got.picture.warnings.size(), 1u);
+  EXPECT_NE(got.picture.warnings[0].find("memory does not suffice"), std::string::npos)
+      << got.picture.warnings[0];
+  way.faults = "0@1:memory,1@1:memory,2@1:memory";
+  EXPECT_TRUE(fails([&] { render(scene, way); }, "memory does not suffice", ErrorCode::out_of_memory));
+}
+
+// No queue is left out: the next would do the same.
+TEST_P(Modes, OdprtEndsWithABugOrAnErrorOfKdraysOwn) {
+  Way way = odprt(2, Balance::sah);
+  way.faults = "1@1:bug";
+  EXPECT_TRUE(fails([&] { render(scene, way); }, "this is a fault of kdray", ErrorCode::internal));
+  way.faults = "1@1:input";
+  EXPECT_TRUE(fails([&] { render(scene, way); }, "fault on purpose", ErrorCode::input));
 }
 
 TEST_P(Modes, ASequenceOfFramesThatMovesSubtrees) {

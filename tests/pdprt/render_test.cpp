@@ -12,6 +12,7 @@
 #include "kdray/error.h"
 #include "layout/features.h"
 #include "support/device.h"
+#include "support/errors.h"
 #include "support/programs.h"
 #include "wavefront/curve.h"
 #include "wavefront/hall_of_mirrors.h"
@@ -175,6 +176,34 @@ TEST_P(RenderTest, WhenAllQueuesFailSoDoesTheFrame) {
     }
     expect_whole(render(n_queues, kSmall, hall.task()));  // leaves nothing behind
   }
+}
+
+TEST_P(RenderTest, OtherQueuesTakeOverWhereMemoryIsTooLittle) {
+  device::Faults faults("0@2:memory");
+  Task task = hall.task();
+  task.faults = &faults;
+  task.division = Division::interleaved;
+  const Result result = render(2, kSmall, task);
+  expect_whole(result);
+  EXPECT_NE(result.queues[0].failure.find("memory does not suffice"), std::string::npos)
+      << result.queues[0].failure;
+  device::Faults on_all("0@2:memory,1@1:memory");
+  task.faults = &on_all;
+  EXPECT_TRUE(test::fails([&] { (void)render(2, kSmall, task); }, "memory does not suffice",
+                          ErrorCode::out_of_memory));
+}
+
+TEST_P(RenderTest, ABugOrAnErrorOfKdraysOwnEndsTheFrame) {
+  const auto ends = [&](const std::string& specification, const std::string& text, ErrorCode code) {
+    device::Faults faults(specification);
+    Task task = hall.task();
+    task.faults = &faults;
+    task.division = Division::interleaved;
+    return test::fails([&] { (void)render(3, kSmall, task); }, text, code);
+  };
+  EXPECT_TRUE(ends("1@2:bug", "CL_INVALID_KERNEL_ARGS; this is a fault of kdray", ErrorCode::internal));
+  EXPECT_TRUE(ends("1@2:input", "fault on purpose", ErrorCode::input));
+  EXPECT_TRUE(ends("0@1,1@2:bug", "CL_INVALID_KERNEL_ARGS", ErrorCode::internal));
 }
 
 TEST_P(RenderTest, ProgressThatThrowsEndsTheFrame) {
