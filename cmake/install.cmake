@@ -1,4 +1,4 @@
-# cmake --install: bin/kdray, the rooms as static libraries, the two public headers, and the package that
+# cmake --install: bin/kdray, bin/kdray-bench beside it (which `kdray bench` starts; a package may leave it out), the rooms as static libraries, the two public headers, and the package that
 # find_package(kdray) finds, with the target kdray::kdray. tests/consumer uses what is installed.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -16,9 +16,11 @@ install(TARGETS kdray ${rooms} EXPORT kdray
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES host/api/kdray/kdray.h host/base/kdray/error.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kdray)
-if(TARGET kdray_cli)
-  install(TARGETS kdray_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-endif()
+foreach(program kdray_cli kdray_bench_program)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
+endforeach()
 
 # The program holds the kernels; as text they are there to be read, and to be changed under KDRAY_KERNEL_DIR.
 install(DIRECTORY kernels/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kdray/kernels

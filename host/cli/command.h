@@ -23,6 +23,5 @@ Command add_generate(CLI::App& kdray);
 Command add_compare(CLI::App& kdray);
 Command add_verify(CLI::App& kdray);
 Command add_tune(CLI::App& kdray);
-Command add_bench(CLI::App& kdray);
 
 }  // namespace kdray::cli

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/timer.h"
-#include "bench/scenes.h"
+#include "generate/built_in.h"
 
 namespace kdray::cli {
 
@@ -32,7 +32,7 @@ std::string difference(const Picture& picture, const Picture& reference) {
 TuneScene::TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render)
     : name_(name),
       options_(render),
-      renderer_(PreparedScene(Scene(bench::load_scene(name)),
+      renderer_(PreparedScene(Scene(generate::load_scene(name)),
                               {.binary_form = takes_binary_form(render.traversal, render.precision)}),
                 device),
       reference_(TuneScene::render({})) {}

@@ -17,7 +17,7 @@ namespace kdray::cli {
 
 class TuneScene {
  public:
-  // A file, or a scene that is built in (bench/scenes.h).
+  // A file, or a scene that is built in (generate/built_in.h).
   TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render);
 
   const std::string& name() const { return name_; }

@@ -57,7 +57,7 @@ class Capture {
   std::vector<char*> argv{const_cast<char*>("kdray")};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
-  ::execv(KDRAY_PROGRAM, argv.data());
+  ::execv(options.program.empty() ? KDRAY_PROGRAM : options.program.c_str(), argv.data());
   ::_exit(127);
 }
 
@@ -121,6 +121,10 @@ Outcome kdray(const std::vector<std::string>& arguments, const RunOptions& optio
 bool has_device() {
   static const bool has = kdray({"devices"}).code == 0;
   return has;
+}
+
+bool has_bench() {
+  return std::filesystem::exists(std::filesystem::path(KDRAY_PROGRAM).replace_filename("kdray-bench"));
 }
 
 }  // namespace kdray::test

@@ -22,6 +22,7 @@ struct Outcome {
 };
 
 struct RunOptions {
+  std::filesystem::path program = {};                   // empty: the built kdray
   std::filesystem::path folder = {};                    // to run in; empty: where the test runs
   std::map<std::string, std::string> environment = {};  // set on top of the test's own
   std::filesystem::path stdout_file = {};               // instead of Outcome::out
@@ -42,6 +43,9 @@ std::string without_notice(std::string err);
 ::testing::AssertionResult succeeds(const Outcome& run);
 
 bool has_device();
+
+// Whether kdray-bench was built, without which `kdray bench` only says that it is missing.
+bool has_bench();
 
 }  // namespace kdray::test
 

@@ -1,4 +1,4 @@
-# Run by the CTest of test.cmake with BUILD, SOURCE, SCENE, WORK, GENERATOR, CONFIG and CXX; stops at the first failure.
+# Run by the CTest of test.cmake with BUILD, SOURCE, SCENE, WORK, GENERATOR, BENCH (is kdray-bench to be there), CONFIG and CXX; stops at the first failure.
 file(REMOVE_RECURSE ${WORK})
 
 function(step)
@@ -19,3 +19,6 @@ step(${CMAKE_COMMAND} --build ${WORK}/build)
 step(${WORK}/build/consumer ${SCENE})
 # The installed program finds all it needs, without the source tree.
 step(${CMAKE_COMMAND} -E chdir ${WORK} ${WORK}/moved/bin/kdray --version)
+if(BENCH)
+  step(${CMAKE_COMMAND} -E chdir ${WORK} ${WORK}/moved/bin/kdray bench --help)
+endif()

@@ -7,6 +7,7 @@ if(TARGET kdray_api AND NOT KDRAY_SANITIZE)
                    -DSOURCE=${CMAKE_CURRENT_LIST_DIR}
                    -DSCENE=${PROJECT_SOURCE_DIR}/scenes/balls.nff
                    -DWORK=${PROJECT_BINARY_DIR}/consumer
+                   -DBENCH=$<TARGET_EXISTS:kdray_bench_program>
                    -DGENERATOR=${CMAKE_GENERATOR}
                    -DCONFIG=$<CONFIG>
                    -DCXX=${CMAKE_CXX_COMPILER}

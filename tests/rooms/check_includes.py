@@ -1,45 +1,61 @@
 #!/usr/bin/env python3
 """The rooms of host/ see each other one way only: cli -> api -> pdprt -> wavefront -> device, flatten -> kdtree, scene
--> math, base. Checks every #include of a room's header against the links that the room's CMakeLists.txt states, so
-that a wrong include fails even where the include path would let it through."""
+-> math, base; bench/ sees them and none of them sees it. Checks every #include of a room's header against the links
+that the room's CMakeLists.txt states, so that a wrong include fails even where the include path would let it through.
+The folders of bench/ are one library, and they see each other one way only as well."""
 
 import pathlib
 import re
 import sys
 
-root = pathlib.Path(sys.argv[1]) / "host"
-rooms = sorted(p.parent.name for p in root.glob("*/CMakeLists.txt"))
-
-
-def links(room):
-    text = (root / room / "CMakeLists.txt").read_text()
-    return {name for name in re.findall(r"kdray::(\w+)", text) if name != room}
-
-
-direct = {room: links(room) for room in rooms}
+root = pathlib.Path(sys.argv[1])
+folder_of = {p.parent.name: p.parent for p in root.glob("host/*/CMakeLists.txt")} | {"bench": root / "bench"}
+rooms = sorted(folder_of)
+cmake = {room: (folder_of[room] / "CMakeLists.txt").read_text() for room in rooms}
+# A room may hold libraries of other names.
+owner = {alias: room for room in rooms for alias in re.findall(r"add_library\(kdray::(\w+) ALIAS", cmake[room])}
+owner |= {room: room for room in rooms}
+owner["interface"] = "interface"
+direct = {room: {owner.get(name, name) for name in re.findall(r"kdray::(\w+)", cmake[room])} - {room} for room in rooms}
 direct.setdefault("interface", {"base"})
 
 
-def reachable(room, seen=None):
-    seen = set() if seen is None else seen
-    for other in direct.get(room, ()):
+def reachable(start, links):
+    seen, todo = set(), list(links.get(start, ()))
+    while todo:
+        other = todo.pop()
         if other not in seen:
             seen.add(other)
-            reachable(other, seen)
+            todo.extend(links.get(other, ()))
     return seen
+
+
+def includes(folder):
+    """The file, the line and the path of each #include of a kdray header."""
+    for file in sorted(folder.rglob("*")):
+        if file.suffix in (".h", ".cpp"):
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                if include := re.match(r'#include "([^"]+)"', line):
+                    yield file, number, pathlib.PurePath(include[1])
 
 
 faults = []
 for room in rooms:
-    allowed = reachable(room) | {room}
-    for file in sorted((root / room).rglob("*")):
-        if file.suffix not in (".h", ".cpp"):
-            continue
-        for number, line in enumerate(file.read_text().splitlines(), 1):
-            include = re.match(r'#include "(\w+)/', line)
-            if include and include[1] in rooms and include[1] not in allowed:
-                faults.append(f"{file}:{number}: room {room} includes {include[1]}/, which it doesn't link")
-    if room in reachable(room):
-        faults.append(f"{root / room}: the room depends on itself by way of others")
+    allowed = reachable(room, direct) | {room}
+    for file, number, path in includes(folder_of[room]):
+        if path.parts[0] in rooms and path.parts[0] not in allowed:
+            faults.append(f"{file}:{number}: room {room} includes {path.parts[0]}/, which it doesn't link")
+    if room in reachable(room, direct):
+        faults.append(f"{folder_of[room]}: the room depends on itself by way of others")
+
+seen_by = {}
+for file, number, path in includes(root / "bench"):
+    own = file.relative_to(root / "bench").parts[0]
+    if path.parts[0] == "bench" and path.parts[1] != own:
+        seen_by.setdefault(own, {})[path.parts[1]] = f"{file}:{number}"
+for folder, places in sorted(seen_by.items()):
+    for other, place in sorted(places.items()):
+        if folder in reachable(other, seen_by):
+            faults.append(f"{place}: bench/{folder} and bench/{other} include each other")
 print("\n".join(faults) or f"{len(rooms)} rooms, no include against their links")
 sys.exit(bool(faults))

@@ -1,0 +1,159 @@
+#include "bench/ablation/bench.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/timer.h"
+#include "flatten/features.h"
+#include "generate/built_in.h"
+
+namespace kdray::bench {
+
+namespace {
+
+// A definition that nothing reads and no program was ever built with: caches of programs don't know it.
+std::string unheard_of() {
+  static int n = 0;
+  return fmt::format("-DKDRAY_ANEW={}_{}_{}", ::getpid(),
+                     std::chrono::system_clock::now().time_since_epoch().count(), n++);
+}
+
+struct Frame {
+  Picture picture;
+  double wall = 0, render = 0;  // seconds of the call; of the frame alone
+  nlohmann::json statistics;
+
+  double beside() const { return wall - render; }
+};
+
+class AblationScene {
+ public:
+  AblationScene(const AblationOptions& options, const std::string& name)
+      : options_(options),
+        name_(name),
+        scene_(Scene(generate::load_scene(name)), {.binary_form = false}),
+        renderer_(scene_, {.device = options.device, .build_options = unheard_of()}) {}
+
+  AblationRun run() {
+    warm_up();
+    AblationRow usual = first_frames({.name = "nothing"});
+    AblationRun run = describe();
+    run.rows.push_back(std::move(usual));
+    for (const Ablation& a : ablations_for(mask_of(run.on))) run.rows.push_back(first_frames(a));
+    std::vector<std::vector<double>> seconds(run.rows.size()), ratios(run.rows.size());
+    for (int round = 0; round < options_.repeat; ++round)
+      for (std::size_t i = 1; i < run.rows.size(); ++i) {
+        seconds[0].push_back(frame(run.rows[0].ablation).render);
+        seconds[i].push_back(frame(run.rows[i].ablation).render);
+        ratios[i].push_back(seconds[i].back() / seconds[0].back());
+      }
+    ratios[0] = {1.0};
+    for (std::size_t i = 0; i < run.rows.size(); ++i) {
+      run.rows[i].seconds = spread_of(seconds[i]);
+      run.rows[i].ratio = spread_of(ratios[i]);
+    }
+    return run;
+  }
+
+ private:
+  // These include the features of the last frame.
+  AblationRun describe() const {
+    const nlohmann::json facts = nlohmann::json::parse(renderer_.statistics());
+    return {name_,
+            facts.at("device").at("name"),
+            facts.at("scene").at("primitives"),
+            facts.at("features").at("on"),
+            facts.at("features").at("off"),
+            {}};
+  }
+
+  static std::uint32_t mask_of(const std::vector<std::string>& names) {
+    std::uint32_t mask = 0;
+    for (const flatten::Feature& f : flatten::features())
+      if (std::find(names.begin(), names.end(), f.name) != names.end()) mask |= f.bit;
+    return mask;
+  }
+
+  Frame frame(const Ablation& ablation) {
+    const Timer timer;
+    Frame f;
+    f.picture = renderer_.render(with(ablation, {.width = options_.width,
+                                                 .height = options_.height,
+                                                 .depth = options_.depth,
+                                                 .samples = 1,
+                                                 .mode = Mode::pdprt}));
+    f.wall = timer.seconds();
+    f.statistics = nlohmann::json::parse(renderer_.statistics());
+    f.render = f.statistics.at("seconds").at("render");
+    return f;
+  }
+
+  // The first frame compiles, the last of it at the first launch, which belongs to no frame: what it takes
+  // longer than the second, beside rendering, is the time to compile.
+  AblationRow first_frames(const Ablation& ablation) {
+    const bool usual = ablation.kind == Ablation::Kind::none, compiles = usual || ablation.keep != 0;
+    const Frame first = frame(ablation), second = frame(ablation);
+    AblationRow row;
+    row.ablation = ablation;
+    if (compiles) row.compile_seconds = std::max(0.0, first.beside() - second.beside());
+    for (const char* const kind : {"primary", "shadow", "reflected", "refracted", "total"})
+      row.rays[kind] = second.statistics.at("rays").at(kind);
+    if (usual) usual_ = second.picture;
+    compare(second.picture, row);
+    return row;
+  }
+
+  // The scene goes to the device before the first frame that counts, by a ray.
+  void warm_up() {
+    const Ray ray = {{0, 0, 0}, 0, {0, 0, 1}, 1};
+    renderer_.trace(std::span(&ray, 1));
+  }
+
+  void compare(const Picture& picture, AblationRow& row) const {
+    for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
+      const float a = usual_.rgb[i], b = picture.rgb[i];
+      if (std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b)) continue;
+      ++row.n_differing;
+      row.largest_difference = std::max(row.largest_difference, std::abs(double{a} - double{b}));
+    }
+  }
+
+  const AblationOptions& options_;
+  std::string name_;
+  PreparedScene scene_;
+  Renderer renderer_;
+  Picture usual_;
+};
+
+}  // namespace
+
+std::vector<AblationRun> bench_ablation(const AblationOptions& options,
+                                        const std::function<void(const AblationRun&)>& done,
+                                        const std::function<void(const std::string&)>& working) {
+  static const std::vector<std::string> kDefault = {"balls", "gears", "mount", "rings",  "teapot",
+                                                    "tetra", "tree",  "boxes", "spheres"};
+  std::vector<AblationRun> runs;
+  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
+    working(name);
+    runs.push_back(AblationScene(options, name).run());
+    done(runs.back());
+  }
+  return runs;
+}
+
+std::size_t count_inexact(std::span<const AblationRun> runs) {
+  std::size_t n = 0;
+  for (const AblationRun& run : runs)
+    n += static_cast<std::size_t>(std::count_if(run.rows.begin(), run.rows.end(), [](const AblationRow& r) {
+      return r.ablation.exact && r.n_differing > 0;
+    }));
+  return n;
+}
+
+}  // namespace kdray::bench

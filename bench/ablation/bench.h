@@ -1,0 +1,51 @@
+// What    `kdray bench ablation`: what each specialisation and each rule of skipping is worth, by taking it
+//         away: time, rays, time to compile, and whether the picture changes.
+// Shape   One renderer for a scene, which compiles anew for this run whatever it compiled before. A round is
+//         a frame of each variant, each with a usual frame right before it.
+// Errors  Those of scene::load and Renderer. Pictures that differ where none may are counted, not thrown.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/ablation/ablations.h"
+#include "bench/measure/spread.h"
+
+namespace kdray::bench {
+
+struct AblationOptions {
+  std::vector<std::string> scenes = {};  // empty: the built-in ones
+  int width = 1024, height = 1024, depth = 5;
+  int repeat = 5;  // rounds
+  std::string device = "auto";
+};
+
+struct AblationRow {
+  Ablation ablation;
+  Spread seconds;                             // seconds.render
+  Spread ratio;                               // over the usual frame right before
+  std::optional<double> compile_seconds;      // none: the same kernels as with nothing taken away
+  std::map<std::string, std::uint64_t> rays;  // by kind, and "total"
+  std::size_t n_differing = 0;                // values of the picture with other bits
+  double largest_difference = 0;
+};
+
+struct AblationRun {
+  std::string scene, device;
+  std::size_t n_primitives = 0;
+  std::vector<std::string> on, off;  // features
+  std::vector<AblationRow> rows;     // the first: nothing taken away
+};
+
+std::vector<AblationRun> bench_ablation(const AblationOptions& options,
+                                        const std::function<void(const AblationRun&)>& done,
+                                        const std::function<void(const std::string&)>& working);
+
+// Rows that claim to be exact and are not.
+std::size_t count_inexact(std::span<const AblationRun> runs);
+
+}  // namespace kdray::bench

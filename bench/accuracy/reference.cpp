@@ -1,0 +1,34 @@
+#include "bench/accuracy/reference.h"
+
+#include <nlohmann/json.hpp>
+
+#include "bench/accuracy/shown.h"
+#include "film/compare.h"
+
+namespace kdray::bench {
+
+namespace {
+
+constexpr int kDepth = 16;
+
+}  // namespace
+
+Reference make_reference(Renderer& renderer, int width, int height, int samples, Precision precision) {
+  Reference r;
+  const auto render = [&](int scale, int n) {
+    RenderOptions o;
+    o.width = scale * width, o.height = scale * height;
+    o.samples = n, o.depth = kDepth, o.min_weight = 0;
+    o.precision = precision;
+    o.mode = Mode::pdprt;
+    film::Image image = image_of(renderer.render(o));
+    r.seconds += nlohmann::json::parse(renderer.statistics()).at("seconds").at("render").get<double>();
+    return image;
+  };
+  const film::Image one = shrunk(render(2, samples / 8), 2), other = shrunk(render(4, samples / 32), 4);
+  r.image = shown(mean_of(one, other));
+  r.own_error = film::compare(shown(one), shown(other)).rmse / 2;
+  return r;
+}
+
+}  // namespace kdray::bench

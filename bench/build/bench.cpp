@@ -1,0 +1,153 @@
+#include "bench/build/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/build/builders.h"
+#include "bench/embree/build.h"
+#include "bench/embree/embree.h"
+#include "bench/measure/cores.h"
+#include "bench/race/kdray_contestants.h"
+#include "bench/race/race.h"
+#include "bench/workload/rays.h"
+#include "generate/built_in.h"
+#include "prepare/prepared.h"
+
+namespace kdray::bench {
+
+namespace {
+
+class BuildScene {
+ public:
+  BuildScene(const BuildOptions& options, const std::string& name)
+      : options_(options),
+        name_(name),
+        scene_(generate::load_scene(name)),
+        geometry_(scene::make_geometry(scene_)) {
+    if (geometry_.size() == 0)
+      throw Error(ErrorCode::input, name + ": nothing to build a tree of; the scene is empty");
+    builders_ = quality_builders(geometry_.size());
+    if (options.variants)
+      for (Builder& b : thesis_builders(geometry_.size())) builders_.push_back(std::move(b));
+  }
+
+  BuildRun run(const std::function<void(const std::string&)>& working) {
+    BuildRun run{name_, geometry_.triangles.size(), geometry_.spheres.size(), geometry_.cones.size(), {}, 0,
+                 {}};
+    working(name_ + ": building");
+    time_builds(run);
+    working(name_ + ": tracing");
+    time_traces(run);
+    return run;
+  }
+
+ private:
+  void time_builds(BuildRun& run) const {
+    std::vector<TimedBuild> builds;
+    for (const Builder& b : builders_) {
+      run.builders.push_back({b.name, {}, {}, {}});
+      builds.push_back([this, &b] { return time_build(scene_, geometry_, b.config); });
+    }
+    if (TimedBuild embree = options_.embree ? embree_build(scene_, geometry_) : TimedBuild{}) {
+      run.builders.push_back({kEmbreeBuilder, {}, {}, {}});
+      builds.push_back(std::move(embree));
+    }
+    const std::vector<BuildSpreads> seconds = race_builds(builds, options_.repeat);
+    for (std::size_t i = 0; i < seconds.size(); ++i) run.builders[i].seconds = seconds[i];
+  }
+
+  void time_traces(BuildRun& run) const {
+    std::vector<std::shared_ptr<Renderer>> renderers;
+    std::vector<Contestant> contestants;
+    for (std::size_t i = 0; i < builders_.size(); ++i) {
+      prepare::Prepared made = prepare::prepare(scene_, geometry_, builders_[i].config);
+      run.builders[i].tree = facts_of(made);
+      renderers.push_back(std::make_shared<Renderer>(PreparedScene(std::move(made)), device()));
+      Contestant contestant = kdray_contestant(renderers.back(), "auto");
+      contestant.mode = builders_[i].name;
+      contestants.push_back(std::move(contestant));
+    }
+    const auto facts = nlohmann::json::parse(renderers.front()->statistics()).at("device");
+    run.device = facts.at("name");
+    run.cores = cores_of(facts);
+    if (options_.embree)
+      for (Contestant& c : embree_contestants(make_embree_scenes(scene_), run.cores))
+        if (c.family == Family::embree_fast) contestants.push_back(std::move(c));
+    race_classes(*renderers[balanced()], contestants, run);
+  }
+
+  std::size_t balanced() const {
+    const auto found = std::find_if(builders_.begin(), builders_.end(),
+                                    [](const Builder& b) { return b.name == "balanced"; });
+    return static_cast<std::size_t>(found - builders_.begin());
+  }
+
+  void race_classes(Renderer& reference, const std::vector<Contestant>& contestants, BuildRun& run) const {
+    const int side = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(options_.rays))));
+    const std::vector<RayClass> classes = make_classes(
+        scene_, build_classes(), side, [&](std::span<const Ray> rays) { return reference.trace(rays); });
+    for (const RayClass& c : classes) {
+      if (c.rays.empty()) continue;
+      const std::vector<Hit> hits = reference.trace(c.rays, c.any_hit, 1, Traversal::binary);
+      const std::vector<Outcome> outcomes = race(c, hits, contestants, options_.repeat);
+      for (BuilderResult& b : run.builders) {
+        const Outcome* const o = b.builder == kEmbreeBuilder ? best_of(outcomes, Family::embree_fast)
+                                                             : find(outcomes, Family::kdray, b.builder);
+        b.traces.push_back({c.name, c.rays.size(), o->seconds, o->n_not_identical});
+      }
+    }
+  }
+
+  DeviceOptions device() const { return {.device = options_.device}; }
+
+  const BuildOptions& options_;
+  std::string name_;
+  scene::Scene scene_;
+  scene::Geometry geometry_;
+  std::vector<Builder> builders_;
+};
+
+}  // namespace
+
+double BuilderResult::trace_seconds() const {
+  double seconds = 0;
+  for (const TraceTimes& t : traces) seconds += 1e6 * t.seconds.median / static_cast<double>(t.n_rays);
+  return seconds;
+}
+
+const BuilderResult* BuildRun::embree() const {
+  for (const BuilderResult& b : builders)
+    if (b.builder == kEmbreeBuilder) return &b;
+  return nullptr;
+}
+
+std::span<const std::string> build_classes() {
+  static const std::vector<std::string> names = {"primary", "diffuse", "random"};
+  return names;
+}
+
+std::vector<BuildRun> bench_build(const BuildOptions& options,
+                                  const std::function<void(const BuildRun&)>& done,
+                                  const std::function<void(const std::string&)>& working) {
+  static const std::vector<std::string> kDefault = {"boxes", "spheres", "balls", "rings", "displaced"};
+  std::vector<BuildRun> runs;
+  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
+    runs.push_back(BuildScene(options, name).run(working));
+    done(runs.back());
+  }
+  return runs;
+}
+
+std::size_t count_not_identical(std::span<const BuildRun> runs) {
+  std::size_t n = 0;
+  for (const BuildRun& run : runs)
+    for (const BuilderResult& b : run.builders)
+      for (const TraceTimes& t : b.traces) n += b.tree ? t.n_not_identical : 0;
+  return n;
+}
+
+}  // namespace kdray::bench

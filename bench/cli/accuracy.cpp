@@ -1,0 +1,98 @@
+// What    kdray bench accuracy: time against error of every setting, beside POV-Ray's antialiasing.
+// Shape   Tables go to stderr; with --report DIR the figures go to DIR/accuracy.json, the plot beside it, and
+//         to DIR/accuracy the references and where each picture differs from them. All of it as soon as a
+//         scene is done: a reference may take an hour, and a run that is stopped keeps the scenes before.
+// Errors  A traversal or tree whose picture is not the base's: exit code 1, after everything has been
+//         written.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "bench/accuracy/reference.h"
+#include "bench/accuracy/report.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/limits.h"
+#include "bench/cli/report_files.h"
+#include "bench/povray/povray.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/parse.h"
+#include "film/write.h"
+
+namespace kdray::cli {
+
+namespace {
+
+constexpr int kReferenceSideMax = 16384, kSamplesMax = 65536;
+constexpr long long kReferencePixelsMax = 1 << 24;  // a reference takes 16 times as many
+constexpr const char* kName = "accuracy";
+
+struct AccuracyCommand {
+  bench::AccuracyOptions options;
+  std::string report;
+};
+
+void prepare_pictures(const std::string& report) {
+  if (report.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(report) / kName;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw input_error(folder.string(), 0, "can't be made a folder: " + error.message(),
+                      "choose another --report");
+}
+
+int run(const AccuracyCommand& c) {
+  require_scenes(c.options.scenes);
+  prepare_report(c.report, kName);
+  prepare_pictures(c.report);
+  if (c.options.povray && !bench::has_povray()) say("povray is not installed: its points are left out");
+  const bench::AccuracyCalls calls = {
+      .done =
+          [&](std::span<const bench::AccuracyRun> runs) {
+            print_table(bench::table_of(runs.back()));
+            write_report(c.report, kName, bench::json_of(runs, c.options),
+                         to_svg(bench::plot_of(runs, c.options)));
+          },
+      .working = [](const std::string& what) { say(what); },
+      .picture =
+          [&](const std::string& scene, const std::string& name, const film::Image& image) {
+            if (c.report.empty()) return;
+            const auto folder = std::filesystem::path(c.report) / kName;
+            film::write_picture(folder / bench::picture_name(scene, name), image, {}, {});
+          }};
+  const auto runs = bench::bench_accuracy(c.options, calls);
+  if (const std::size_t n = bench::count_unlike_base(runs); n > 0)
+    throw Error(ErrorCode::internal, fmt::format("{} traversals or trees don't give the base's picture", n));
+  return 0;
+}
+
+int parse_samples(const std::string& text) {
+  const int samples = parse_int("--reference-samples", text, bench::kReferenceStep, kSamplesMax);
+  if (samples % bench::kReferenceStep != 0)
+    throw usage_error("--reference-samples", text, fmt::format("a multiple of {}", bench::kReferenceStep));
+  return samples;
+}
+
+}  // namespace
+
+Command add_bench_accuracy(CLI::App& bench) {
+  CLI::App* const app = bench.add_subcommand(
+      kName, "Time against error: samples, depth, least weight and the rest, and POV-Ray's antialiasing");
+  const auto c = std::make_shared<AccuracyCommand>();
+  bench::AccuracyOptions& o = c->options;
+  add_scenes(*app, o.scenes, "balls gears lamps");
+  add_size(*app, "Pixels across and down (default 512x512)", kReferenceSideMax, kReferencePixelsMax, o.width,
+           o.height);
+  add_int(*app, "--repeat", "Rounds to take the median of (default 5)", 1, kRepeatMax, o.repeat);
+  add_text(*app, "--reference-samples", "N",
+           "Samples per pixel of the reference, a multiple of 32 (default 256)",
+           [&o](const std::string& text) { o.reference_samples = parse_samples(text); });
+  app->add_flag_callback(
+      "--no-povray", [&o] { o.povray = false; }, "Leave POV-Ray out");
+  app->add_flag("--quick", o.quick, "A few settings only");
+  add_report(*app, c->report);
+  return {app, [c] { return run(*c); }};
+}
+
+}  // namespace kdray::cli

@@ -1,0 +1,18 @@
+// What    The commands of `kdray bench`, one file each: cli/command.h says what a command is.
+#pragma once
+
+#include "cli/command.h"
+
+namespace kdray::cli {
+
+Command add_bench(CLI::App& kdray);
+
+Command add_bench_rays(CLI::App& bench);
+Command add_bench_frames(CLI::App& bench);
+Command add_bench_build(CLI::App& bench);
+Command add_bench_depth(CLI::App& bench);
+Command add_bench_modes(CLI::App& bench);
+Command add_bench_accuracy(CLI::App& bench);
+Command add_bench_ablation(CLI::App& bench);
+
+}  // namespace kdray::cli

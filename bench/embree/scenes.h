@@ -1,0 +1,46 @@
+// What    A scene's primitives in Embree, as a fast scene and as a robust one, and the numbers that its hits
+//         stand for.
+// Shape   Triangles are triangles, spheres SPHERE_POINTs, cones CONE_LINEAR_CURVEs whose segments are flagged
+//         as having neighbours, which leaves the end caps off. Coordinates are those of kdray's tree
+//         (scene/geometry.h).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bench/embree/api.h"
+#include "scene/geometry.h"
+#include "scene/scene.h"
+
+namespace kdray::bench {
+
+// Throws ErrorCode::internal where Embree gives none.
+RTCDevice open_embree();
+
+// A curve's flags without end caps.
+inline constexpr std::uint8_t kOpenCone = RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
+
+class EmbreeScenes {
+ public:
+  explicit EmbreeScenes(const scene::Scene& scene);
+  ~EmbreeScenes();
+  EmbreeScenes(const EmbreeScenes&) = delete;
+  EmbreeScenes& operator=(const EmbreeScenes&) = delete;
+
+  RTCScene get(bool robust) const { return robust ? robust_ : fast_; }
+  const vec3& center() const { return center_; }  // what rays are to be moved by
+  std::int32_t number_of(unsigned geometry, unsigned primitive) const {
+    return static_cast<std::int32_t>(numbers_[geometry][primitive]);
+  }
+
+ private:
+  RTCScene build(const scene::Geometry& geometry, RTCSceneFlags flags);
+
+  vec3 center_;
+  std::array<std::vector<std::uint32_t>, 3> numbers_;  // by kind, Embree's geomID
+  RTCDevice device_;
+  RTCScene fast_, robust_;
+};
+
+}  // namespace kdray::bench

@@ -1,0 +1,129 @@
+#include "bench/frames/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/embree/embree.h"
+#include "bench/measure/cores.h"
+#include "bench/povray/povray.h"
+#include "bench/workload/rays.h"
+#include "generate/built_in.h"
+#include "generate/generate.h"
+#include "kdray/kdray.h"
+
+namespace kdray::bench {
+
+namespace {
+
+constexpr int kPovrayRounds = 3;
+constexpr double kMinWeight = 0.5 / 255 / 12.92;  // kdray's default: what can't change an 8-bit picture
+// What statistics() has in `seconds` beside the stages of a frame.
+constexpr std::array kNotStages = {"load",    "build",  "flatten", "upload",
+                                   "compile", "render", "write",   "total"};
+
+// Scenes whose materials are NFF's, and so POV-Ray's as well.
+bool is_nff(const std::string& name) {
+  if (name.find(".nff") != std::string::npos) return true;
+  const auto all = generate::generators();
+  return std::any_of(all.begin(), all.end(), [&](const generate::Generator& g) { return g.name == name; });
+}
+
+class FrameBench {
+ public:
+  FrameBench(const FramesOptions& options, const std::string& name)
+      : options_(options), name_(name), scene_(generate::load_scene(name)) {
+    DeviceOptions device;
+    device.device = options.device;
+    renderer_ = std::make_unique<Renderer>(scene_, TreeOptions{.binary_form = false}, device);
+    facts_ = nlohmann::json::parse(renderer_->statistics()).at("device");
+    cores_ = cores_of(facts_);
+    embree_ = make_embree_scenes(scene_.model());
+    if (embree_) make_primary();
+    if (has_povray() && is_nff(name))
+      povray_ =
+          std::make_unique<Povray>(scene_.model(), options.width, options.height, options.depth, kMinWeight);
+  }
+
+  FrameResult run() {
+    for (int round = -1; round < options_.repeat; ++round) run_round(round);
+    return result();
+  }
+
+ private:
+  void make_primary() {
+    const std::string wanted = "primary";
+    const int side = static_cast<int>(std::sqrt(static_cast<double>(options_.width) * options_.height));
+    primary_ = make_classes(scene_.model(), std::span(&wanted, 1), side, [](std::span<const Ray> rays) {
+                 return std::vector<Hit>(rays.size(), Hit{0, -1, 0, 0});  // no hits are needed for these
+               }).front();
+  }
+
+  // Round -1 warms up and is not counted.
+  void run_round(int round) {
+    RenderOptions o;
+    o.width = options_.width, o.height = options_.height, o.depth = options_.depth;
+    renderer_->render(o);
+    const auto statistics = nlohmann::json::parse(renderer_->statistics());
+    const double embree = embree_ ? trace_embree16(embree_, primary_, cores_).seconds : 0;
+    const bool with_povray = povray_ && round < kPovrayRounds;
+    const double povray = with_povray ? povray_->trace_seconds(cores_) : 0;
+    if (round < 0) return;
+    for (const auto& [stage, seconds] : statistics.at("seconds").items()) seconds_[stage].push_back(seconds);
+    rays_ = statistics.at("rays");
+    if (embree_) embree_seconds_.push_back(embree);
+    if (with_povray) povray_seconds_.push_back(povray);
+  }
+
+  FrameResult result() const {
+    const scene::Scene& model = scene_.model();
+    FrameResult r;
+    r.scene = name_;
+    r.n_triangles = model.triangles.size(), r.n_spheres = model.spheres.size(),
+    r.n_cones = model.cones.size();
+    r.cores = cores_;
+    r.device = facts_.at("name");
+    r.seconds = spread_of(seconds_.at("render"));
+    for (const auto& [stage, seconds] : seconds_)
+      if (std::find(kNotStages.begin(), kNotStages.end(), stage) == kNotStages.end())
+        r.stages.emplace_back(stage, spread_of(seconds));
+    for (const char* const kind : {"primary", "shadow", "reflected", "refracted", "total"})
+      r.rays[kind] = rays_.at(kind);
+    if (embree_) r.embree_seconds = spread_of(embree_seconds_), r.n_embree_rays = primary_.rays.size();
+    if (povray_) r.povray_seconds = spread_of(povray_seconds_);
+    return r;
+  }
+
+  const FramesOptions& options_;
+  std::string name_;
+  Scene scene_;
+  std::unique_ptr<Renderer> renderer_;
+  nlohmann::json facts_, rays_;
+  int cores_ = 0;
+  std::shared_ptr<EmbreeScenes> embree_;
+  RayClass primary_;
+  std::unique_ptr<Povray> povray_;
+  std::map<std::string, std::vector<double>> seconds_;
+  std::vector<double> embree_seconds_, povray_seconds_;
+};
+
+}  // namespace
+
+std::vector<FrameResult> bench_frames(const FramesOptions& options,
+                                      const std::function<void(const FrameResult&)>& done,
+                                      const std::function<void(const std::string&)>& working) {
+  static const std::vector<std::string> kDefault = {"balls",  "gears", "mount", "rings",
+                                                    "teapot", "tetra", "tree"};
+  std::vector<FrameResult> results;
+  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
+    working(name);
+    results.push_back(FrameBench(options, name).run());
+    done(results.back());
+  }
+  return results;
+}
+
+}  // namespace kdray::bench

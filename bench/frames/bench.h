@@ -1,0 +1,43 @@
+// What    `kdray bench frames`: whole frames, scene by scene, with the time of each stage; beside them
+//         POV-Ray on the same picture (of NFF scenes), and Embree on the same primary rays.
+// Shape   Interleaved: a round is a frame of kdray's, the primary rays through Embree, a picture of POV-Ray's
+//         (in the first three rounds, since it takes so much longer). One of each before that is not counted.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/measure/spread.h"
+
+namespace kdray::bench {
+
+struct FramesOptions {
+  std::vector<std::string> scenes;  // empty: the generators' that are measured elsewhere too
+  int width = 1024, height = 1024, depth = 5;
+  int repeat = 7;
+  std::string device = "auto";
+};
+
+struct FrameResult {
+  std::string scene;
+  std::size_t n_triangles = 0, n_spheres = 0, n_cones = 0;
+  int cores = 0;
+  std::string device;
+  Spread seconds;                                      // seconds.render
+  std::vector<std::pair<std::string, Spread>> stages;  // device seconds by stage
+  std::map<std::string, std::uint64_t> rays;           // by kind, and "total"
+  std::optional<Spread> povray_seconds;
+  std::optional<Spread> embree_seconds;  // for n_embree_rays primary rays, 16 coherent, fast scene
+  std::size_t n_embree_rays = 0;
+
+  std::size_t n_rays() const { return rays.at("total"); }
+};
+
+std::vector<FrameResult> bench_frames(const FramesOptions& options,
+                                      const std::function<void(const FrameResult&)>& done,
+                                      const std::function<void(const std::string&)>& working);
+
+}  // namespace kdray::bench

@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include "bench/embree/embree.h"
+#include "bench/frames/report.h"
+#include "bench/measure/short_name.h"
+
+namespace kdray::bench {
+
+namespace {
+
+// What POV-Ray would need to trace as many rays as kdray did for the same picture.
+std::optional<Spread> povray_rate(const FrameResult& f) {
+  if (!f.povray_seconds) return std::nullopt;
+  return mrays_per_s(f.n_rays(), *f.povray_seconds);
+}
+
+std::optional<Spread> embree_rate(const FrameResult& f) {
+  if (!f.embree_seconds) return std::nullopt;
+  return mrays_per_s(f.n_embree_rays, *f.embree_seconds);
+}
+
+Json optional_json(const std::optional<Spread>& spread) {
+  return spread ? json_of(*spread) : Json();
+}
+
+Json json_of(const FrameResult& f) {
+  Json json = {{"scene", f.scene},
+               {"primitives", {{"triangles", f.n_triangles}, {"spheres", f.n_spheres}, {"cones", f.n_cones}}},
+               {"cores", f.cores},
+               {"device", f.device},
+               {"seconds", json_of(f.seconds)},
+               {"mrays_per_s", json_of(mrays_per_s(f.n_rays(), f.seconds))},
+               {"stages", Json::object()},
+               {"rays", Json::object()},
+               {"povray_seconds", optional_json(f.povray_seconds)},
+               {"povray_ratio", Json()},
+               {"embree_primary_mrays_per_s", optional_json(embree_rate(f))}};
+  for (const auto& [stage, seconds] : f.stages) json["stages"][stage] = json_of(seconds);
+  for (const auto& [kind, n] : f.rays) json["rays"][kind] = n;
+  if (f.povray_seconds) json["povray_ratio"] = f.povray_seconds->median / f.seconds.median;
+  return json;
+}
+
+std::string in_millions(std::uint64_t n) {
+  return fmt::format("{:.2f}", static_cast<double>(n) * 1e-6);
+}
+
+}  // namespace
+
+std::string table_of(const FrameResult& f) {
+  const auto rays = [&](const char* kind) { return in_millions(f.rays.at(kind)); };
+  std::string out = fmt::format(
+      "{}: {:.4f} s ({:.4f} to {:.4f}), {:.1f} Mrays/s; {} core{}\n"
+      "  rays (M): primary {}, shadow {}, reflected {}, refracted {}, total {}\n  stages (device s):",
+      short_name(f.scene), f.seconds.median, f.seconds.min, f.seconds.max,
+      mrays_per_s(f.n_rays(), f.seconds).median, f.cores, f.cores == 1 ? "" : "s", rays("primary"),
+      rays("shadow"), rays("reflected"), rays("refracted"), rays("total"));
+  for (const auto& [stage, seconds] : f.stages) out += fmt::format(" {} {:.4f}", stage, seconds.median);
+  if (f.povray_seconds)
+    out += fmt::format("\n  POV-Ray: {:.3f} s, {:.1f} times as long", f.povray_seconds->median,
+                       f.povray_seconds->median / f.seconds.median);
+  if (const auto embree = embree_rate(f))
+    out += fmt::format("\n  Embree, primary rays in coherent packets of 16: {:.1f} Mrays/s", embree->median);
+  return out + "\n";
+}
+
+Json json_of(std::span<const FrameResult> frames, const FramesOptions& options) {
+  const std::string embree = embree_version();
+  Json json = {{"command", "bench frames"},
+               {"embree", embree.empty() ? Json() : Json(embree)},
+               {"size", {options.width, options.height}},
+               {"depth", options.depth},
+               {"repeat", options.repeat},
+               {"frames", Json::array()}};
+  for (const FrameResult& f : frames) json["frames"].push_back(json_of(f));
+  return json;
+}
+
+Plot plot_of(std::span<const FrameResult> frames, const FramesOptions& options) {
+  Plot plot{"Whole frames",
+            fmt::format("{}x{}, depth {}; {}; median of {} rounds, whiskers from the slowest to the fastest",
+                        options.width, options.height, options.depth,
+                        frames.empty() ? "" : frames.front().device, options.repeat),
+            "Mrays/s",
+            {{"kdray, all rays of the frame", "#c4504f"}},
+            {}};
+  bool with_embree = false, with_povray = false;
+  for (const FrameResult& f : frames) {
+    with_embree |= f.embree_seconds.has_value();
+    with_povray |= f.povray_seconds.has_value();
+  }
+  if (with_embree) plot.series.push_back({"Embree, the primary rays alone", "#b3b3b3"});
+  if (with_povray) plot.series.push_back({"POV-Ray: kdray's rays in its time", "#4e9bd4"});
+  Panel panel{"", {}, {}};
+  for (const FrameResult& f : frames) {
+    panel.groups.push_back(short_name(f.scene));
+    auto& bars = panel.bars.emplace_back();
+    bars.push_back(mrays_per_s(f.n_rays(), f.seconds));
+    if (with_embree) bars.push_back(embree_rate(f));
+    if (with_povray) bars.push_back(povray_rate(f));
+  }
+  plot.panels.push_back(std::move(panel));
+  return plot;
+}
+
+}  // namespace kdray::bench

@@ -1,0 +1,363 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "bench/measure/short_name.h"
+#include "bench/modes/report.h"
+
+namespace kdray::bench {
+
+namespace {
+
+const std::vector<std::string> kBalances = {"odprt sah", "odprt pilot", "odprt dynamic"};
+const std::vector<std::string> kPredicted = {"pdprt contiguous", "pdprt interleaved", "pdprt bag",
+                                             "odprt sah", "odprt pilot"};
+
+const char* color_of(const std::string& scheme) {
+  static const std::map<std::string, const char*> kColors = {
+      {"pdprt contiguous", "#9cc9ea"}, {"pdprt interleaved", "#4e9bd4"}, {"pdprt bag", "#1f5f91"},
+      {"odprt sah", "#f2b8a0"},        {"odprt pilot", "#e0703f"},       {"odprt dynamic", "#a33b1b"}};
+  const auto found = kColors.find(scheme);
+  return found == kColors.end() ? "#7a7a7a" : found->second;
+}
+
+// A column, or a dash where there is nothing to tell.
+std::string cell(const std::optional<double>& value, double factor, int decimals, int width) {
+  if (!value) return fmt::format("{:>{}}", "-", width);
+  return fmt::format("{:>{}.{}f}", *value * factor, width, decimals);
+}
+
+std::optional<double> median_of(const std::optional<Spread>& spread) {
+  if (!spread) return std::nullopt;
+  return spread->median;
+}
+
+Json json_of(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
+std::string line_of(const ModesRun& run, const ModesRow& row) {
+  return fmt::format("  {:>6}{} {:<21}{:>9.4f}{:>9.4f}{:>9.4f}{}{}{}{}{}{}\n", row.queues,
+                     row.shares_cores() ? '*' : ' ', row.scheme, row.seconds.median, row.seconds.min,
+                     row.seconds.max, cell(run.speed_up(row), 1, 2, 10),
+                     cell(median_of(row.idle_share), 100, 1, 8), cell(row.rays_exchanged, 1e-6, 2, 9),
+                     cell(row.bytes_exchanged, 1e-6, 1, 9), cell(row.geometry_share, 100, 1, 9),
+                     cell(row.work_bytes, 1e-6, 1, 9));
+}
+
+// Rows that failed, those of one message in one line.
+std::string failures_of(const ModesRun& run) {
+  std::map<std::string, std::string> by_message;
+  for (const ModesRow& row : run.rows)
+    if (!row.failure.empty())
+      by_message[row.failure] +=
+          fmt::format("{}{} on {}", by_message[row.failure].empty() ? "" : ", ", row.scheme, row.queues);
+  std::string out;
+  for (const auto& [message, rows] : by_message) out += fmt::format("  failed: {}: {}\n", rows, message);
+  return out;
+}
+
+// The fewest queues within 1% of the shortest time; nullptr where there is no prediction.
+const Prediction* fastest(const Model& model, const std::string& scheme) {
+  const Prediction* best = nullptr;
+  for (const Prediction& p : model.predictions)
+    if (p.scheme == scheme && (best == nullptr || p.seconds < 0.99 * best->seconds)) best = &p;
+  return best;
+}
+
+std::string model_table(const ModesRun& run, const ModelOptions& options) {
+  const Model& model = *run.model;
+  std::string out = fmt::format(
+      "  simulation, not measured: efficiency in % of one core's time; links of {:g} GB/s, {:g} us; a sample "
+      "ray stands for {:.4g}\n  {:>7}{:>12}{:>13}{:>8}{:>12}{:>13} |{:>9}{:>10}{:>12}{:>11}{:>10}\n",
+      options.gigabytes_per_second, options.latency_us, model.rays_per_sample, "queues", "contiguous",
+      "interleaved", "bag", "odprt sah", "odprt pilot", "balance", "port us", "longest us", "sent/ray",
+      "geometry");
+  std::set<int> queues;
+  for (const Prediction& p : model.predictions) queues.insert(p.queues);
+  double rays = 0;
+  for (const SampledRays& r : model.rays) rays += r.sampled;
+  for (const int n : queues) {
+    const auto efficiency = [&](const char* scheme) -> std::optional<double> {
+      const Prediction* const p = model.find(scheme, n);
+      if (p == nullptr) return std::nullopt;
+      return p->efficiency;
+    };
+    out += fmt::format("  {:>7}{}{}{}{}{}", n, cell(efficiency("pdprt contiguous"), 100, 1, 12),
+                       cell(efficiency("pdprt interleaved"), 100, 1, 13),
+                       cell(efficiency("pdprt bag"), 100, 1, 8), cell(efficiency("odprt sah"), 100, 1, 12),
+                       cell(efficiency("odprt pilot"), 100, 1, 13));
+    if (const Prediction* const p = model.find("odprt pilot", n))
+      out += fmt::format(" |{:>9.1f}{:>10.1f}{:>12.1f}{:>11.2f}{:>10.2f}", 100 * p->balance,
+                         1e6 * p->port_seconds, 1e6 * p->critical_path, p->rays_sent / std::max(1.0, rays),
+                         100 * p->largest_geometry);
+    out += "\n";
+  }
+  for (const Check& c : checks_of(run))
+    out += fmt::format("  checked: {:<18}{:>3} queue{} {} predicted {:.4g}, measured {:.4g}, {:+.1f}%\n",
+                       c.scheme, c.queues, c.queues == 1 ? ": " : "s:", c.what, c.predicted, c.measured,
+                       100 * c.error());
+  out += "  at the most:";
+  for (const char* const scheme : {"pdprt bag", "odprt pilot"})
+    if (const Prediction* const p = fastest(model, scheme))
+      out += fmt::format(" {} {:.1f} times one core, on {} queues;", scheme, p->efficiency * p->queues,
+                         p->queues);
+  out.back() = '\n';
+  if (model.tile_width == 0) out += "  no PDPRT predictions: the statistics have no tile_seconds\n";
+  out += fmt::format("  ODPRT's own overhead, on one queue: {:.3f}{}\n", model.odprt_overhead,
+                     model.overhead_measured ? ", measured" : ", assumed: not measured");
+  return out;
+}
+
+Json json_of(const ModesRun& run, const ModesRow& row) {
+  return {{"scheme", row.scheme},
+          {"queues", row.queues},
+          {"sub_devices", row.sub_devices},
+          {"shares_cores", row.shares_cores()},
+          {"failure", row.failure.empty() ? Json() : Json(row.failure)},
+          {"seconds", row.rounds.empty() ? Json() : json_of(row.seconds)},
+          {"rounds", row.rounds},
+          {"speed_up", json_of(run.speed_up(row))},
+          {"idle_share", row.idle_share ? json_of(*row.idle_share) : Json()},
+          {"busy_seconds", json_of(row.busy_seconds)},
+          {"rays_exchanged", json_of(row.rays_exchanged)},
+          {"bytes_exchanged", json_of(row.bytes_exchanged)},
+          {"geometry_bytes", json_of(row.geometry_bytes)},
+          {"geometry_share", json_of(row.geometry_share)},
+          {"work_bytes", json_of(row.work_bytes)},
+          {"differing_pixels", row.differing_pixels}};
+}
+
+Json json_of(const Prediction& p) {
+  Json json = {
+      {"scheme", p.scheme}, {"queues", p.queues}, {"seconds", p.seconds}, {"efficiency", p.efficiency}};
+  if (p.tiles > 0) json["tiles"] = p.tiles;
+  if (p.subtrees > 0) {
+    json["subtrees"] = p.subtrees;
+    json["balance"] = p.balance;
+    json["port_seconds"] = p.port_seconds;
+    json["critical_path_seconds"] = p.critical_path;
+    json["rays_sent"] = p.rays_sent;
+    json["bytes_sent"] = p.bytes_sent;
+    json["largest_geometry_share"] = p.largest_geometry;
+  }
+  if (!p.exchange.empty()) {
+    const auto n = static_cast<std::size_t>(p.queues);
+    json["exchange_rays"] = Json::array();
+    for (std::size_t from = 0; from < n; ++from)
+      json["exchange_rays"].push_back(
+          std::vector<double>(p.exchange.begin() + static_cast<std::ptrdiff_t>(from * n),
+                              p.exchange.begin() + static_cast<std::ptrdiff_t>((from + 1) * n)));
+  }
+  return json;
+}
+
+Json model_json(const ModesRun& run) {
+  if (!run.model) return run.model_failure.empty() ? Json() : Json{{"failure", run.model_failure}};
+  const Model& model = *run.model;
+  Json json = {{"simulation", true},
+               {"rays_per_sample", model.rays_per_sample},
+               {"tile", {model.tile_width, model.tile_height}},
+               {"tiles_over_sequential", model.tiles_over_sequential},
+               {"odprt_overhead", model.odprt_overhead},
+               {"odprt_overhead_measured", model.overhead_measured},
+               {"rays", Json::array()},
+               {"checks", Json::array()},
+               {"predictions", Json::array()}};
+  for (const SampledRays& r : model.rays)
+    json["rays"].push_back({{"kind", r.kind}, {"sampled", r.sampled}, {"measured", r.measured}});
+  for (const Check& c : checks_of(run))
+    json["checks"].push_back({{"scheme", c.scheme},
+                              {"queues", c.queues},
+                              {"what", c.what},
+                              {"predicted", c.predicted},
+                              {"measured", c.measured},
+                              {"error", c.error()}});
+  for (const Prediction& p : model.predictions) json["predictions"].push_back(json_of(p));
+  return json;
+}
+
+Json json_of(const ModesRun& run) {
+  Json json = {{"scene", run.scene},      {"device", run.device},           {"primitives", run.n_primitives},
+               {"cores", run.cores},      {"scene_bytes", run.scene_bytes}, {"rows", Json::array()},
+               {"model", model_json(run)}};
+  for (const ModesRow& row : run.rows) json["rows"].push_back(json_of(run, row));
+  return json;
+}
+
+std::vector<int> queues_of(std::span<const ModesRun> runs) {
+  std::set<int> queues;
+  for (const ModesRun& run : runs)
+    for (const ModesRow& row : run.rows) queues.insert(row.queues);
+  return {queues.begin(), queues.end()};
+}
+
+std::string subtitle(std::span<const ModesRun> runs, const ModesOptions& options) {
+  return fmt::format("{}x{}, depth {}; {}; medians of {} rounds", options.width, options.height,
+                     options.depth, runs.empty() ? "" : runs.front().device, options.repeat);
+}
+
+}  // namespace
+
+std::vector<Check> checks_of(const ModesRun& run) {
+  std::vector<Check> checks;
+  if (!run.model) return checks;
+  for (const Prediction& p : run.model->predictions) {
+    const ModesRow* const row = run.find(p.scheme, p.queues);
+    if (row == nullptr) continue;
+    if (row->queues <= run.cores)
+      checks.push_back({p.scheme, "seconds", p.queues, p.seconds, row->seconds.median});
+    if (p.rays_sent > 0 && row->rays_exchanged.value_or(0) > 0)
+      checks.push_back({p.scheme, "rays sent", p.queues, p.rays_sent, *row->rays_exchanged});
+  }
+  return checks;
+}
+
+std::string table_of(const ModesRun& run, const ModesOptions& options) {
+  std::string out = fmt::format(
+      "{}: {} primitives, {:.1f} MB, {} core{}\n  {:>6}  "
+      "{:<21}{:>9}{:>9}{:>9}{:>10}{:>8}{:>9}{:>9}{:>9}{:>9}\n",
+      short_name(run.scene), run.n_primitives, run.scene_bytes * 1e-6, run.cores, run.cores == 1 ? "" : "s",
+      "queues", "", "s", "least", "most", "speed-up", "idle %", "M rays", "MB", "geom. %", "work MB");
+  bool shared = false;
+  for (const ModesRow& row : run.rows) {
+    if (row.failure.empty()) out += line_of(run, row);
+    shared |= row.failure.empty() && row.shares_cores();
+  }
+  if (shared) out += "  * several queues share a core: no speed-up can come of them\n";
+  out += failures_of(run);
+  for (const ModesRow& row : run.rows)
+    if (row.differing_pixels > 0)
+      out += fmt::format("  {} on {}: {} pixels are not the bits of the first picture\n", row.scheme,
+                         row.queues, row.differing_pixels);
+  if (run.model) out += model_table(run, options.model_options);
+  if (!run.model_failure.empty()) out += fmt::format("  no model: {}\n", run.model_failure);
+  return out;
+}
+
+std::string summary_of(std::span<const ModesRun> runs) {
+  std::string out = fmt::format(
+      "PDPRT's bag against ODPRT, geometric means over the scenes (the thesis found PDPRT {:g} to {:g}% "
+      "faster)\n",
+      100 * kThesisLeast, 100 * kThesisMost);
+  for (const int queues : queues_of(runs)) {
+    std::string line;
+    for (const std::string& balance : kBalances)
+      if (const auto ratio = odprt_over_pdprt(runs, balance, queues))
+        line += fmt::format("{} {}: PDPRT {:.0f}% {}", line.empty() ? "" : ";", balance,
+                            100 * std::abs(*ratio - 1), *ratio >= 1 ? "faster" : "slower");
+    if (!line.empty()) out += fmt::format("  {:>3} queue{} {}\n", queues, queues == 1 ? ": " : "s:", line);
+  }
+  return out;
+}
+
+Json json_of(std::span<const ModesRun> runs, const ModesOptions& options) {
+  const ModelOptions& m = options.model_options;
+  Json json = {{"command", "bench modes"},
+               {"size", {options.width, options.height}},
+               {"depth", options.depth},
+               {"repeat", options.repeat},
+               {"queues", options.queues},
+               {"differing_pixels", count_differing_pixels(runs)},
+               {"thesis_pdprt_faster", {kThesisLeast, kThesisMost}},
+               {"odprt_over_pdprt", Json::array()},
+               {"network",
+                {{"gigabytes_per_second", m.gigabytes_per_second},
+                 {"latency_us", m.latency_us},
+                 {"service_us", m.service_us},
+                 {"bytes_per_ray", m.bytes_per_ray},
+                 {"subtrees_per_queue", m.subtrees_per_queue}}},
+               {"runs", Json::array()}};
+  for (const int queues : queues_of(runs))
+    for (const std::string& balance : kBalances)
+      if (const auto ratio = odprt_over_pdprt(runs, balance, queues))
+        json["odprt_over_pdprt"].push_back({{"balance", balance}, {"queues", queues}, {"ratio", *ratio}});
+  for (const ModesRun& run : runs) json["runs"].push_back(json_of(run));
+  return json;
+}
+
+XyPlot plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
+  XyPlot plot{"PDPRT and ODPRT: speed-up over one core alone", subtitle(runs, options), {}, true, {}};
+  for (const Scheme& scheme : schemes()) plot.series.push_back({scheme.name, color_of(scheme.name)});
+  for (const ModesRun& run : runs) {
+    XyPanel panel{fmt::format("{}, {} cores", short_name(run.scene), run.cores),
+                  {"queues", false},
+                  {"times one core's speed", false},
+                  {}};
+    for (const Scheme& scheme : schemes()) {
+      auto& points = panel.points.emplace_back();
+      for (const ModesRow& row : run.rows)
+        if (const auto speed_up = run.speed_up(row); speed_up && row.scheme == scheme.name)
+          points.push_back({static_cast<double>(row.queues), *speed_up});
+    }
+    plot.panels.push_back(std::move(panel));
+  }
+  return plot;
+}
+
+XyPlot model_plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
+  const ModelOptions& m = options.model_options;
+  XyPlot plot{"Simulation: efficiency of one core to a queue",
+              fmt::format("predicted for links of {:g} GB/s and {:g} us; black and grey: measured, where "
+                          "queues don't share cores",
+                          m.gigabytes_per_second, m.latency_us),
+              {},
+              true,
+              {}};
+  for (const std::string& scheme : kPredicted)
+    plot.series.push_back({scheme + ", simulated", color_of(scheme)});
+  plot.series.push_back({"pdprt bag, measured", "#333333"});
+  plot.series.push_back({"odprt pilot, measured", "#999999"});
+  for (const ModesRun& run : runs) {
+    if (!run.model) continue;
+    XyPanel panel{short_name(run.scene), {"queues", true}, {"efficiency, %", false}, {}};
+    for (const std::string& scheme : kPredicted) {
+      auto& points = panel.points.emplace_back();
+      for (const Prediction& p : run.model->predictions)
+        if (p.scheme == scheme) points.push_back({static_cast<double>(p.queues), 100 * p.efficiency});
+    }
+    for (const char* const scheme : {"pdprt bag", "odprt pilot"}) {
+      auto& points = panel.points.emplace_back();
+      for (const ModesRow& row : run.rows)
+        if (const auto speed_up = run.speed_up(row);
+            speed_up && row.scheme == scheme && row.queues <= run.cores)
+          points.push_back({static_cast<double>(row.queues), 100 * *speed_up / row.queues});
+    }
+    plot.panels.push_back(std::move(panel));
+  }
+  return plot;
+}
+
+Plot time_plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
+  Plot plot{
+      "Where ODPRT's time goes (balance pilot)",
+      subtitle(runs, options) + "; the bars of a scene add up to ODPRT's time over PDPRT's",
+      "of PDPRT's time",
+      {{"busy, as PDPRT's queues are", "#1f5f91"}, {"busy beyond that", "#e0703f"}, {"idle", "#b3b3b3"}},
+      {}};
+  for (const int queues : queues_of(runs)) {
+    Panel panel{fmt::format("{} queue{}", queues, queues == 1 ? "" : "s"), {}, {}};
+    bool shared = false;
+    for (const ModesRun& run : runs) {
+      const ModesRow *odprt = run.find("odprt pilot", queues), *pdprt = run.find("pdprt bag", queues);
+      if (odprt == nullptr || pdprt == nullptr || !odprt->busy_seconds || !pdprt->busy_seconds) continue;
+      const double whole = queues * pdprt->seconds.median;
+      const auto bar = [&](double seconds) {
+        return Spread{seconds / whole, seconds / whole, seconds / whole};
+      };
+      panel.groups.push_back(short_name(run.scene));
+      panel.bars.push_back({bar(std::min(*pdprt->busy_seconds, *odprt->busy_seconds)),
+                            bar(std::max(0.0, *odprt->busy_seconds - *pdprt->busy_seconds)),
+                            bar(std::max(0.0, queues * odprt->seconds.median - *odprt->busy_seconds))});
+      shared |= odprt->shares_cores();
+    }
+    if (shared) panel.title += ", several share a core";
+    if (!panel.groups.empty()) plot.panels.push_back(std::move(panel));
+  }
+  return plot;
+}
+
+}  // namespace kdray::bench

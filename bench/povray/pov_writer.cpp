@@ -1,0 +1,115 @@
+#include "bench/povray/pov_writer.h"
+
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kdray::bench {
+
+namespace {
+
+template <class Vec>
+std::string vector(const Vec& v) {
+  return fmt::format("<{:.9g},{:.9g},{:.9g}>", v.x, v.y, v.z);
+}
+
+float largest(const vec3& v) {
+  return std::max({v.x, v.y, v.z});
+}
+
+// POV-Ray colours a surface once and scales that; kdray's terms have their colours multiplied in already.
+void write_material(std::ostream& out, const scene::Material& m, std::size_t number) {
+  const vec3 colored = largest(m.diffuse) > 0 ? m.diffuse : largest(m.transmit) > 0 ? m.transmit : m.ambient;
+  const float scale = largest(colored) > 0 ? largest(colored) : 1;
+  const float filter = std::min(1.0f, largest(m.transmit));
+  // What is let through is taken from the surface's own light.
+  const float opaque = std::max(1 - filter, 1e-3f);
+  fmt::print(
+      out,
+      "#declare T{} = texture {{ pigment {{ rgbf <{:.9g},{:.9g},{:.9g},{:.9g}> }}\n"
+      "  finish {{ ambient {:.9g} diffuse {:.9g} phong {:.9g} phong_size {:.9g} reflection rgb {} }} }}\n",
+      number, colored.x / scale, colored.y / scale, colored.z / scale, filter, largest(m.ambient) / opaque,
+      largest(m.diffuse) / opaque, largest(m.specular), m.shine, vector(m.reflect));
+  fmt::print(out, "#declare I{} = interior {{ ior {:.9g} }}\n", number, m.index);
+}
+
+// POV-Ray's space is left-handed: `right` points the other way. `angle` is the horizontal one.
+void write_camera(std::ostream& out, const scene::Camera& c, double aspect) {
+  const double horizontal = 2 * std::atan(std::tan(c.vertical_fov / 2) * aspect) * 180 / std::numbers::pi;
+  fmt::print(out, "camera {{ location {} right <{:.9g},0,0> up <0,1,0> sky {} angle {:.9g} look_at {} }}\n",
+             vector(c.from), -aspect, vector(c.up), horizontal, vector(c.at));
+}
+
+void write_light(std::ostream& out, const scene::Light& light) {
+  if (light.kind == scene::LightKind::directional) {
+    fmt::print(out, "light_source {{ {} rgb {} parallel point_at <0,0,0> }}\n",
+               vector(-1e6 * light.direction), vector(light.color));
+  } else if (const vec3& a = light.attenuation; a.x > 0 && a.z > 0) {
+    // POV-Ray's lights fade by 2 / (1 + (d / fade_distance)^2).
+    fmt::print(out, "light_source {{ {} rgb {} fade_distance {:.9g} fade_power 2 }}\n",
+               vector(light.position), vector(light.color / (2 * a.x)), std::sqrt(a.x / a.z));
+  } else {
+    fmt::print(out, "light_source {{ {} rgb {} }}\n", vector(light.position), vector(light.color));
+  }
+}
+
+bool has_words_for(const scene::Light& light) {
+  if (light.kind == scene::LightKind::directional) return true;
+  const vec3& a = light.attenuation;
+  const bool fades = a.z > 0 && a.x > 0 && a.y == 0, stays = a == vec3(1, 0, 0);
+  return light.kind == scene::LightKind::point && std::isinf(light.range) && (fades || stays);
+}
+
+std::string material(std::uint32_t number) {
+  return fmt::format("texture {{ T{0} }} interior {{ I{0} }}", number);
+}
+
+void write_triangle(std::ostream& out, const scene::Scene& scene, const scene::Triangle& t) {
+  const bool smooth = t.normal[0] != scene::kNone;
+  out << (smooth ? "smooth_triangle {" : "triangle {");
+  for (std::size_t k = 0; k < 3; ++k) {
+    out << (k > 0 ? "," : "") << vector(scene.vertices[t.vertex[k]]);
+    if (smooth) out << ',' << vector(scene.normals[t.normal[k]]);
+  }
+  out << "}\n";
+}
+
+// A mesh for each material: a texture per triangle would cost POV-Ray memory, and interiors are a mesh's own.
+void write_meshes(std::ostream& out, const scene::Scene& scene) {
+  std::vector<std::vector<const scene::Triangle*>> by_material(scene.materials.size());
+  for (const scene::Triangle& t : scene.triangles) by_material[t.material].push_back(&t);
+  for (std::uint32_t m = 0; m < by_material.size(); ++m) {
+    if (by_material[m].empty()) continue;
+    out << "mesh {\n";
+    for (const scene::Triangle* t : by_material[m]) write_triangle(out, scene, *t);
+    out << material(m) << " }\n";
+  }
+}
+
+}  // namespace
+
+bool pov_has_words_for(const scene::Scene& scene) {
+  const auto glows = [](const scene::Material& m) { return largest(m.emission) > 0; };
+  return std::all_of(scene.lights.begin(), scene.lights.end(), has_words_for) &&
+         std::none_of(scene.materials.begin(), scene.materials.end(), glows);
+}
+
+void write_pov(std::ostream& out, const scene::Scene& scene, double aspect, int depth, double min_weight) {
+  fmt::print(out,
+             "#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level {} adc_bailout {:.9g} }}\n",
+             depth, min_weight);
+  fmt::print(out, "background {{ rgb {} }}\n", vector(scene.background));
+  write_camera(out, scene.camera.value_or(scene::Camera{}), aspect);
+  for (const scene::Light& light : scene.lights) write_light(out, light);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) write_material(out, scene.materials[i], i);
+  for (const scene::Sphere& s : scene.spheres)
+    fmt::print(out, "sphere {{ {},{:.9g} {} }}\n", vector(s.center), s.radius, material(s.material));
+  for (const scene::Cone& c : scene.cones)
+    fmt::print(out, "cone {{ {},{:.9g},{},{:.9g} open {} }}\n", vector(c.base), c.base_radius, vector(c.apex),
+               c.apex_radius, material(c.material));
+  write_meshes(out, scene);
+}
+
+}  // namespace kdray::bench

@@ -1,0 +1,123 @@
+#include "bench/povray/povray.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "base/error.h"
+#include "bench/povray/pov_writer.h"
+#include "film/read.h"
+
+extern char** environ;
+
+namespace kdray::bench {
+
+namespace {
+
+// Runs a program from the path, what it says going to `log`. Its exit code, or -1 when it can't be run.
+int run(std::vector<std::string> arguments, const std::filesystem::path& log) {
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&files, 2, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  pid_t child = -1;
+  const int fault = ::posix_spawnp(&child, words[0], &files, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (fault != 0) return -1;
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of(" \r\n");
+  if (end == std::string::npos) return "it said nothing";
+  const std::size_t start = text.find_last_of('\n', end);
+  return text.substr(start == std::string::npos ? 0 : start + 1, end - start);
+}
+
+std::filesystem::path new_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "kdray-bench-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw input_error(name, 0, "a temporary folder can't be made", "set TMPDIR to one that can be written");
+  return name;
+}
+
+}  // namespace
+
+bool has_povray() {
+  static const bool there = run({"povray", "--version"}, "/dev/null") == 0;
+  return there;
+}
+
+// "Trace Time:   0 hours  0 minutes  1 seconds (1.350 seconds)"
+double trace_time_in(const std::string& output) {
+  const std::size_t line = output.find("Trace Time:");
+  const std::size_t bracket = line == std::string::npos ? line : output.find('(', line);
+  if (bracket == std::string::npos || bracket > output.find('\n', line)) return -1;
+  double seconds = -1;
+  std::from_chars(output.data() + bracket + 1, output.data() + output.size(), seconds);
+  return seconds;
+}
+
+Povray::Povray(const scene::Scene& scene, int width, int height, int depth, double min_weight)
+    : folder_(new_folder()), width_(width), height_(height) {
+  std::ofstream out(folder_ / "scene.pov");
+  write_pov(out, scene, static_cast<double>(width) / height, depth, min_weight);
+  out.close();
+  if (!out) throw input_error((folder_ / "scene.pov").string(), 0, "can't be written", "is the disk full?");
+}
+
+Povray::~Povray() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+double Povray::trace_seconds(int threads) const {
+  return run_with(threads, {"-A", "-F"});
+}
+
+// The picture is an EXR: a PNG would cut off what is brighter than white, before anyone can take a mean.
+Povray::Traced Povray::trace(int threads, const std::vector<std::string>& flags) const {
+  const std::filesystem::path file = folder_ / "picture.exr";
+  std::vector<std::string> all = flags;
+  all.insert(all.end(), {"+FE", "+O" + file.string()});
+  const double seconds = run_with(threads, all);
+  return {seconds, film::read_picture(file, {})};
+}
+
+double Povray::run_with(int threads, const std::vector<std::string>& flags) const {
+  const std::filesystem::path log = folder_ / "log";
+  std::vector<std::string> arguments = {"povray",
+                                        "+I" + (folder_ / "scene.pov").string(),
+                                        fmt::format("+W{}", width_),
+                                        fmt::format("+H{}", height_),
+                                        "-D",
+                                        fmt::format("+WT{}", threads)};
+  arguments.insert(arguments.end(), flags.begin(), flags.end());
+  const int code = run(arguments, log);
+  const std::string output = text_of(log);
+  const double seconds = trace_time_in(output);
+  if (code != 0 || seconds < 0) throw Error(ErrorCode::internal, "povray failed: " + last_line(output));
+  return seconds;
+}
+
+}  // namespace kdray::bench

@@ -1,0 +1,35 @@
+#include "bench/race/compare_hits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace kdray::bench {
+
+namespace {
+
+bool differ(const Hit& a, const Hit& b) {
+  if (std::isfinite(a.t) != std::isfinite(b.t)) return true;
+  if (!std::isfinite(a.t) || a.primitive == b.primitive) return false;
+  return std::abs(a.t - b.t) > 1e-4f * std::max(std::abs(a.t), std::abs(b.t));
+}
+
+template <class Differ>
+std::size_t count(std::span<const Hit> a, std::span<const Hit> b, Differ&& differ) {
+  std::size_t n = std::max(a.size(), b.size()) - std::min(a.size(), b.size());
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) n += differ(a[i], b[i]) ? 1 : 0;
+  return n;
+}
+
+}  // namespace
+
+std::size_t count_not_identical(std::span<const Hit> a, std::span<const Hit> b) {
+  return count(a, b, [](const Hit& x, const Hit& y) { return std::memcmp(&x, &y, sizeof(Hit)) != 0; });
+}
+
+double differing_share(std::span<const Hit> a, std::span<const Hit> b) {
+  const std::size_t n = std::max(a.size(), b.size());
+  return n == 0 ? 0 : static_cast<double>(count(a, b, differ)) / static_cast<double>(n);
+}
+
+}  // namespace kdray::bench

@@ -1,0 +1,80 @@
+#include "bench/race/race.h"
+
+#include <algorithm>
+
+#include "bench/race/compare_hits.h"
+
+namespace kdray::bench {
+
+namespace {
+
+constexpr int kWarmUps = 2;  // at the most: no more than rounds
+
+struct Runner {
+  const Variant* variant = nullptr;
+  std::vector<double> seconds;
+};
+
+void hold_against(std::span<const Hit> reference, const std::vector<Hit>& hits, Outcome& outcome) {
+  if (outcome.family == Family::kdray)
+    outcome.n_not_identical = std::max(outcome.n_not_identical, count_not_identical(reference, hits));
+}
+
+Runner warm_up(const RayClass& rays, std::span<const Hit> reference, const Contestant& contestant, int runs,
+               Outcome& outcome) {
+  Runner runner;
+  double least = 0;
+  for (const Variant& variant : contestant.variants)
+    for (int i = 0; i < runs; ++i) {
+      const Traced traced = variant.trace(rays);
+      hold_against(reference, traced.hits, outcome);
+      if (runner.variant != nullptr && traced.seconds >= least) continue;
+      runner.variant = &variant;
+      least = traced.seconds;
+      outcome.differing_share = differing_share(reference, traced.hits);
+    }
+  outcome.variant = runner.variant->name;
+  return runner;
+}
+
+template <class Accept>
+const Outcome* fastest(std::span<const Outcome> outcomes, Accept&& accept) {
+  const Outcome* best = nullptr;
+  for (const Outcome& o : outcomes)
+    if (accept(o) && (best == nullptr || o.seconds.median < best->seconds.median)) best = &o;
+  return best;
+}
+
+}  // namespace
+
+std::vector<Outcome> race(const RayClass& rays, std::span<const Hit> reference,
+                          const std::vector<Contestant>& contestants, int rounds) {
+  std::vector<Outcome> outcomes;
+  std::vector<Runner> runners;
+  for (const Contestant& c : contestants) {
+    outcomes.push_back({.family = c.family, .mode = c.mode, .variant = {}, .seconds = {}});
+    runners.push_back(warm_up(rays, reference, c, std::min(rounds, kWarmUps), outcomes.back()));
+  }
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+      const Traced traced = runners[i].variant->trace(rays);
+      hold_against(reference, traced.hits, outcomes[i]);
+      runners[i].seconds.push_back(traced.seconds);
+    }
+  for (std::size_t i = 0; i < runners.size(); ++i) outcomes[i].seconds = spread_of(runners[i].seconds);
+  return outcomes;
+}
+
+const Outcome* best_of(std::span<const Outcome> outcomes, Family family) {
+  return fastest(outcomes, [&](const Outcome& o) { return o.family == family; });
+}
+
+const Outcome* best_fixed(std::span<const Outcome> outcomes) {
+  return fastest(outcomes, [](const Outcome& o) { return o.family == Family::kdray && o.mode != "auto"; });
+}
+
+const Outcome* find(std::span<const Outcome> outcomes, Family family, std::string_view mode) {
+  return fastest(outcomes, [&](const Outcome& o) { return o.family == family && o.mode == mode; });
+}
+
+}  // namespace kdray::bench

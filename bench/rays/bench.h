@@ -1,0 +1,48 @@
+// What    `kdray bench rays`: the same rays through kdray's traversals and Embree's modes, scene by scene, on
+//         one core and on all.
+// Errors  Those of scene::load and Renderer. Hits that differ between kdray's traversals are counted, not
+//         thrown.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/race/race.h"
+
+namespace kdray::bench {
+
+struct RaysOptions {
+  std::vector<std::string> scenes;                         // empty: the built-in ones
+  std::vector<std::string> classes = {}, traversals = {};  // empty: all
+  int rays = 1 << 20;                                      // of a class, at the most
+  int repeat = 7;                                          // rounds
+  std::vector<int> cores = {};                             // 0: all; empty: 1 and all, on a GPU all
+  bool embree = true;                                      // beside kdray, where there is one
+  std::string device = "auto";
+};
+
+struct ClassResult {
+  std::string name;
+  bool any_hit = false;
+  std::size_t n_rays = 0, n_hits = 0;
+  std::vector<Outcome> outcomes;
+};
+
+// A scene on a number of cores.
+struct RaysRun {
+  std::string scene;
+  std::size_t n_triangles = 0, n_spheres = 0, n_cones = 0;
+  int cores = 0;  // as used
+  std::string device, vectors;
+  std::vector<ClassResult> classes;
+};
+
+// `done` hears of every run as soon as it has ended, `working` what is being measured.
+std::vector<RaysRun> bench_rays(const RaysOptions& options, const std::function<void(const RaysRun&)>& done,
+                                const std::function<void(const std::string&)>& working);
+
+// kdray's hits that were not those of its binary traversal, over all runs.
+std::size_t count_not_identical(std::span<const RaysRun> runs);
+
+}  // namespace kdray::bench

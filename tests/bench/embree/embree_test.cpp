@@ -1,0 +1,49 @@
+// What    Embree sees the scene that kdray sees: triangles, spheres and open cones, in every mode. Skipped
+//         without Embree.
+#include "bench/embree/embree.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "bench/race/compare_hits.h"
+#include "cli/program.h"
+#include "generate/built_in.h"
+
+namespace kdray::bench {
+namespace {
+
+// 33 x 33 rays: no whole number of packets or streams.
+std::vector<RayClass> classes_of(const scene::Scene& scene, Renderer& renderer) {
+  const std::vector<std::string> names(class_names().begin(), class_names().end());
+  return make_classes(scene, names, 33, [&](std::span<const Ray> rays) {
+    return renderer.trace(rays, false, 1, Traversal::binary);
+  });
+}
+
+class SeesTheSame : public testing::TestWithParam<const char*> {};
+
+TEST_P(SeesTheSame, InEveryMode) {
+  if (embree_version().empty()) GTEST_SKIP() << "built without Embree";
+  KDRAY_NEED_DEVICE();
+  const Scene scene(generate::load_scene(GetParam()));
+  Renderer renderer(scene);
+  const auto scenes = make_embree_scenes(scene.model());
+  for (const RayClass& c : classes_of(scene.model(), renderer)) {
+    const std::vector<Hit> wanted = renderer.trace(c.rays, c.any_hit, 1, Traversal::binary);
+    for (const Contestant& contestant : embree_contestants(scenes, 2))
+      for (const Variant& v : contestant.variants) {
+        const Traced traced = v.trace(c);
+        ASSERT_EQ(traced.hits.size(), c.rays.size());
+        // The fast mode loses rays at edges and corners.
+        EXPECT_LE(differing_share(wanted, traced.hits), 5e-3)
+            << c.name << " " << contestant.mode << " " << v.name;
+      }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SeesTheSame, testing::Values("tetra", "balls", "rings", "tree"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace kdray::bench
