@@ -63,7 +63,7 @@ inline bool is_level(const TriangleInBlock& t) {
   return level != 0;
 }
 
-// Row 9 of a block of kLanes triangles; the compiler makes vectors of it.
+// The limits of a block of kLanes triangles; the compiler makes vectors of it.
 template <std::uint32_t kLanes>
 void write_normal_bounds(layout::u32* rows) {
   std::array<layout::u32, kLanes> bounds;
@@ -72,7 +72,7 @@ void write_normal_bounds(layout::u32* rows) {
     const float bound = normal_bound(t);
     bounds[lane] = bits(is_level(t) ? -bound : bound);
   }
-  std::copy(bounds.begin(), bounds.end(), rows + 9 * kLanes);
+  std::copy(bounds.begin(), bounds.end(), rows + KDRAY_ROW_TRIANGLE_LIMIT * kLanes);
 }
 
 // The rows of a primitive in its block, without the index, and without a triangle's bound.
@@ -130,7 +130,8 @@ void write_blocks(const kdtree::Tree& tree, const kdtree::RefRun& run, const Arr
     if (n < block) clear_lanes(n, block, kRows, words);
     if (!kTriangles) continue;
     write_normal_bounds(block, words);
-    std::fill(words + 9 * block + n, words + 10 * block, bits(NAN));
+    layout::u32* const limits = words + KDRAY_ROW_TRIANGLE_LIMIT * block;
+    std::fill(limits + n, limits + block, bits(NAN));
   }
 }
 

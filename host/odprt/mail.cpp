@@ -20,7 +20,7 @@ std::uint64_t Mail::n_rays() const {
 }
 
 void Mail::put_ray(std::size_t slice, const float* stream, std::size_t capacity, std::size_t i) {
-  deepest = std::max(deepest, word_at(stream, capacity, KDRAY_RAY_FINDER, i) >> 8 & 255u);
+  deepest = std::max(deepest, KDRAY_FINDER_DEPTH(word_at(stream, capacity, KDRAY_RAY_FINDER, i)));
   rays[slice].put(stream, capacity, i);
   ++n;
 }
@@ -34,7 +34,7 @@ void Mail::put_pooled_rays(std::size_t slice, float* stream, std::size_t capacit
                            std::uint32_t depth) {
   float* const words = stream + KDRAY_RAY_FINDER * capacity;
   for (std::size_t i = 0; i < n_rays; ++i) {
-    words[i] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(words[i]) | depth << 8);
+    words[i] = std::bit_cast<float>(KDRAY_FINDER(std::bit_cast<std::uint32_t>(words[i]), depth));
     put_ray(slice, stream, capacity, i);
   }
 }
@@ -53,7 +53,7 @@ void Mail::take_all(Mail& other) {
 void sort_rays(const float* stream, std::size_t capacity, std::size_t n, std::size_t slice,
                const std::function<Mail*(std::uint32_t)>& mail_of) {
   for (std::size_t i = 0; i < n; ++i)
-    if (Mail* const mail = mail_of(word_at(stream, capacity, KDRAY_RAY_FINDER, i) >> 16))
+    if (Mail* const mail = mail_of(KDRAY_FINDER_GOES_TO(word_at(stream, capacity, KDRAY_RAY_FINDER, i))))
       mail->put_ray(slice, stream, capacity, i);
 }
 

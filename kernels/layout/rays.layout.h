@@ -27,10 +27,8 @@
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
 // In ODPRT a ray brings the best hit so far, whose t is the float below t_max.
-#define KDRAY_RAY_NUMBER 12u  // u32: of its primitive, in file order
-// u32: the part that holds it, or KDRAY_NO_PART; on its way, above that, depth << 8 and the part that it goes
-// to << 16.
-#define KDRAY_RAY_FINDER 13u
+#define KDRAY_RAY_NUMBER 12u   // u32: of its primitive, in file order
+#define KDRAY_RAY_FINDER 13u   // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
 #define KDRAY_RAY_VISITED 14u  // two u32: a bit for each part that was asked
 #define KDRAY_TRAVEL_RAY_FIELDS 16u
 #if KDRAY_ODPRT
@@ -41,6 +39,15 @@
 #define KDRAY_RAY_SKIP 12u
 #define KDRAY_RAY_FIELDS 13u
 #endif
+
+// The word of KDRAY_RAY_FINDER: the part that holds the best hit, a byte; on the ray's way its depth in the
+// byte above and, from bit 16 on, the part that it goes to. For u32 and vectors of them. A ray that is there
+// has the part alone.
+#define KDRAY_FINDER(part, depth) ((part) | (depth) << 8)
+#define KDRAY_FINDER_TO(word, to) ((word) | (to) << 16)
+#define KDRAY_FINDER_PART(word) ((word)&255u)
+#define KDRAY_FINDER_DEPTH(word) ((word) >> 8 & 255u)
+#define KDRAY_FINDER_GOES_TO(word) ((word) >> 16)
 
 // Shadow rays: each adds `contribution` to its pixel unless something lies inside of its interval.
 #define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS

@@ -18,10 +18,39 @@
 #define KDRAY_WIDE_FIRST_MASK 0x1fffffffu
 #define KDRAY_WIDE_LAST 0x80000000u
 
-// Rows of KDRAY_BLOCK words in a block.
-#define KDRAY_TRIANGLE_ROWS 11  // v[0..2] x y z; |n|_1 + 8|edge|^2 for sign_limit, < 0: across an axis; index
-#define KDRAY_SPHERE_ROWS 5     // center x y z, radius, index
-#define KDRAY_CONE_ROWS 10      // base x y z, axis x y z, base radius, height, slope, index
+// The rows of KDRAY_BLOCK words in a block. The last row of every kind holds the primitives' indices.
+#define KDRAY_ROW_TRIANGLE_PX 0  // the corners p, q and r
+#define KDRAY_ROW_TRIANGLE_PY 1
+#define KDRAY_ROW_TRIANGLE_PZ 2
+#define KDRAY_ROW_TRIANGLE_QX 3
+#define KDRAY_ROW_TRIANGLE_QY 4
+#define KDRAY_ROW_TRIANGLE_QZ 5
+#define KDRAY_ROW_TRIANGLE_RX 6
+#define KDRAY_ROW_TRIANGLE_RY 7
+#define KDRAY_ROW_TRIANGLE_RZ 8
+#define KDRAY_ROW_TRIANGLE_LIMIT \
+  9  // |n|_1 + 8|edge|^2 for sign_limit (triangle.clh); < 0: lies across an axis
+#define KDRAY_ROW_TRIANGLE_INDEX 10
+#define KDRAY_TRIANGLE_ROWS 11
+
+#define KDRAY_ROW_SPHERE_X 0  // the centre
+#define KDRAY_ROW_SPHERE_Y 1
+#define KDRAY_ROW_SPHERE_Z 2
+#define KDRAY_ROW_SPHERE_RADIUS 3
+#define KDRAY_ROW_SPHERE_INDEX 4
+#define KDRAY_SPHERE_ROWS 5
+
+#define KDRAY_ROW_CONE_X 0  // the base's centre
+#define KDRAY_ROW_CONE_Y 1
+#define KDRAY_ROW_CONE_Z 2
+#define KDRAY_ROW_CONE_AXIS_X 3
+#define KDRAY_ROW_CONE_AXIS_Y 4
+#define KDRAY_ROW_CONE_AXIS_Z 5
+#define KDRAY_ROW_CONE_RADIUS 6  // of the base
+#define KDRAY_ROW_CONE_HEIGHT 7
+#define KDRAY_ROW_CONE_SLOPE 8
+#define KDRAY_ROW_CONE_INDEX 9
+#define KDRAY_CONE_ROWS 10
 
 KDRAY_LAYOUT_BEGIN
 typedef struct WideNode {

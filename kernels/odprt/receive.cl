@@ -13,7 +13,7 @@ inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n,
                          __global Slice* slice, __global float* pool) {
   for (u32 i = 0; i < n; i += KDRAY_LANES) {
     const uint16 word = as_uint16(read16(from, KDRAY_RAY_FINDER, i));
-    for (Distinct d = distinct_values(word >> 8u & 255u, lanes_up_to(n - i)); d.rest != 0;) {
+    for (Distinct d = distinct_values(KDRAY_FINDER_DEPTH(word), lanes_up_to(n - i)); d.rest != 0;) {
       const mask16 same = next_lanes(&d);
       __global u32* n_pool = &slice->n_pool[d.value - 1];
       if (*n_pool + count_lanes(same) > frame->pool_size) {
@@ -22,7 +22,8 @@ inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n,
       }
       const Stream to = pool_of_depth(pool, frame, slice_id, d.value);
       for (u32 f = 0; f < KDRAY_RAY_FIELDS; ++f)
-        append16(to, f, *n_pool, same, f == KDRAY_RAY_FINDER ? as_float16(word & 255u) : read16(from, f, i));
+        append16(to, f, *n_pool, same,
+                 f == KDRAY_RAY_FINDER ? as_float16(KDRAY_FINDER_PART(word)) : read16(from, f, i));
       *n_pool += count_lanes(same);
     }
   }

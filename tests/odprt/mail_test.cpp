@@ -25,7 +25,7 @@ std::vector<float> stream(std::uint32_t n_fields, std::uint32_t depth) {
   for (std::uint32_t f = 0; f < n_fields; ++f)
     for (std::size_t i = 0; i < kCapacity; ++i) words[f * kCapacity + i] = static_cast<float>(i + 100 * f);
   for (std::size_t i = 0; i < kCapacity; ++i)
-    words[KDRAY_RAY_FINDER * kCapacity + i] = std::bit_cast<float>(KDRAY_NO_PART | depth << 8);
+    words[KDRAY_RAY_FINDER * kCapacity + i] = std::bit_cast<float>(KDRAY_FINDER(KDRAY_NO_PART, depth));
   return words;
 }
 
@@ -61,7 +61,7 @@ TEST(Mail, RaysAreSortedByTheirParts) {
   std::vector<float> rays = stream(KDRAY_TRAVEL_RAY_FIELDS, 2), shadow = stream(KDRAY_SENT_SHADOW_FIELDS, 0);
   for (std::uint32_t i = 0; i < 20; ++i) {
     float& word = rays[KDRAY_RAY_FINDER * kCapacity + i];
-    word = std::bit_cast<float>(std::bit_cast<std::uint32_t>(word) | (i % 3) << 16);
+    word = std::bit_cast<float>(KDRAY_FINDER_TO(std::bit_cast<std::uint32_t>(word), i % 3));
     shadow[KDRAY_SENT_SHADOW_TO * kCapacity + i] = std::bit_cast<float>(i % 3);
   }
   std::vector<Mail> mails(3, Mail(2));
@@ -87,7 +87,8 @@ TEST(Mail, PooledRaysGetTheirDepth) {
   std::vector<float> out(KDRAY_TRAVEL_RAY_FIELDS * kCapacity);
   mail.rays[0].take(out.data(), kCapacity, 0, 5);
   for (std::size_t i = 0; i < 5; ++i)
-    EXPECT_EQ(std::bit_cast<std::uint32_t>(out[KDRAY_RAY_FINDER * kCapacity + i]), KDRAY_NO_PART | 4u << 8);
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(out[KDRAY_RAY_FINDER * kCapacity + i]),
+              KDRAY_FINDER(KDRAY_NO_PART, 4u));
 }
 
 TEST(Mail, TakingAllMovesAndEmpties) {

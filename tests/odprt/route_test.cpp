@@ -53,7 +53,7 @@ __kernel void test(__global const Batch* in, __global Answer* out, uint n) {
   const Real3x16 o = {vload16(0, f[0]), vload16(0, f[1]), vload16(0, f[2])};
   const Real3x16 d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
   const Visited visited = {vload16(0, v[0]), vload16(0, v[1])};
-  const int16 part =
+  const uint16 part =
       next_part(&directory, (int16)(-1), o, d, vload16(0, f[6]), vload16(0, f[7]), visited);
   vstore16(part, 0, out[i].part);
   vstore16(part_around(&directory, (int16)(-1), o, 24), 0, out[i].around);
