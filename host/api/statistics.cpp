@@ -51,20 +51,13 @@ Json features_json(std::uint32_t mask) {
   return {{"on", names.on}, {"off", names.off}};
 }
 
-Json rays_json(const wavefront::Counters& c) {
-  return {{"primary", c.primary},
-          {"primary_hit", c.primary_hit},
-          {"shadow", c.shadow},
-          {"reflected", c.reflected},
-          {"refracted", c.refracted},
-          {"total", c.total()},
-          {"skipped",
-           {{"light_behind", c.skipped_behind},
-            {"light_of_no_weight", c.skipped_unlit},
-            {"light_in_the_open", c.skipped_open},
-            {"of_the_background", c.skipped_background},
-            {"below_min_weight", c.skipped_weight},
-            {"too_deep", c.skipped_depth}}}};
+Json rays_json(const wavefront::Counters& counters) {
+#define KDRAY_KEY(name, field, key) {key, counters.name},
+  Json rays = {KDRAY_COUNTERS_OF_TRACED(KDRAY_KEY)};
+  rays["total"] = counters.total();
+  rays["skipped"] = {KDRAY_COUNTERS_OF_SKIPPED(KDRAY_KEY)};
+#undef KDRAY_KEY
+  return rays;
 }
 
 Json samples_json(const layout::Frame& frame, const adaptive::Report* adaptive) {

@@ -15,16 +15,9 @@ namespace kdray::odprt {
 namespace {
 
 void check(const Worker& worker) {
-  wavefront::Counters sum;
-  for (const layout::Slice& slice : worker.slices()) sum.add(slice);
   const auto n_lost = std::accumulate(worker.traffic().begin(), worker.traffic().end(), std::uint64_t{0},
                                       [](std::uint64_t n, const layout::Traffic& t) { return n + t.n_lost; });
-  if (sum.invalid + sum.nan + sum.pool_overflow + n_lost == 0) return;
-  throw Error(ErrorCode::internal,
-              fmt::format("{} rays overflowed the traversal's stack, {} the ray pool, {} lost their hit, and "
-                          "{} contributions were not "
-                          "numbers; this is a fault of kdray, please report it with the scene",
-                          sum.invalid, sum.pool_overflow, n_lost, sum.nan));
+  wavefront::check(wavefront::sum_of(worker.slices()), n_lost);
 }
 
 std::uint64_t sum_of(std::span<const layout::Traffic> traffic, layout::u32 layout::Traffic::*count) {

@@ -9,9 +9,9 @@
 #include "adaptive/sampler.h"
 #include "base/timer.h"
 #include "odprt/band.h"
-#include "odprt/develop.h"
 #include "odprt/queue_failure.h"
 #include "wavefront/curve.h"
+#include "wavefront/develop.h"
 
 namespace kdray::odprt {
 
@@ -24,7 +24,7 @@ void check(const Exchange& exchange) {
   if (!failures.empty()) throw QueueFailures(std::move(failures));
 }
 
-using Films = std::span<const std::span<const layout::i64>>;
+using wavefront::Films;
 
 void take_films(Crew& crew, const std::function<void(Films)>& take) {
   std::vector<std::span<const layout::i64>> films;
@@ -142,7 +142,8 @@ void FrameRun::render_bands(const std::function<void(const wavefront::Band&, Fil
 void FrameRun::render_uniform() {
   const auto samples = static_cast<int>(provision_.frame.n_samples);
   render_bands([&](const wavefront::Band& band, Films films) {
-    develop(films, samples, std::span(result_.image.pixels).subspan(band.first_pixel, band.n_pixels));
+    wavefront::develop(films, samples,
+                       std::span(result_.image.pixels).subspan(band.first_pixel, band.n_pixels));
   });
 }
 
@@ -157,8 +158,9 @@ void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<la
     std::iota(runs.begin(), runs.end(), 0u);
     BandWork work{share_evenly(runs, crew_.workers.size()), 0, n_places,
                   samples.subspan(first * kWords, n * kWords)};
-    render(work, static_cast<double>(first) / all, static_cast<double>(first + n) / all,
-           [&](Films films) { add_up(films, sums.subspan(3 * first * KDRAY_SAMPLE_RUN, 3 * n_places)); });
+    render(work, static_cast<double>(first) / all, static_cast<double>(first + n) / all, [&](Films films) {
+      wavefront::add_up(films, sums.subspan(3 * first * KDRAY_SAMPLE_RUN, 3 * n_places));
+    });
   }
 }
 
@@ -166,7 +168,7 @@ void FrameRun::render_adaptive() {
   adaptive::Sampler sampler({provision_.frame.width, provision_.frame.height}, request_.adaptive_target);
   to_ = 0.5;
   render_bands([&](const wavefront::Band& band, Films films) {
-    add_up(films, sampler.first_sums().subspan(3 * band.first_pixel, 3 * band.n_pixels));
+    wavefront::add_up(films, sampler.first_sums().subspan(3 * band.first_pixel, 3 * band.n_pixels));
   });
   std::vector<layout::i64> sums;
   for (auto samples = sampler.next(); !samples.empty(); samples = sampler.next()) {

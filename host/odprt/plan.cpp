@@ -4,10 +4,13 @@
 
 #include "layout/features.h"
 #include "layout/rays.layout.h"
+#include "wavefront/slice_buffers.h"
 
 namespace kdray::odprt {
 
 namespace {
+
+using wavefront::capacity_for, wavefront::spawned_per_ray;
 
 constexpr std::uint32_t kBatch = 512;                     // large batches keep packets full
 constexpr std::uint32_t kWaves = 16, kLaunchWaves = 256;  // of a slice in a launch, and of all slices
@@ -15,17 +18,6 @@ constexpr std::uint32_t kWaves = 16, kLaunchWaves = 256;  // of a slice in a lau
 constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
 // Where parts come and go: rays that may wait in the host's memory, in a queue's pool, and in the outbox.
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
-
-// Words per field of a stream of n rays (kernels/layout/rays.layout.h).
-std::uint32_t capacity_for(std::uint32_t n) {
-  return (n + 2 * KDRAY_LANES - 1) / KDRAY_LANES * KDRAY_LANES;
-}
-
-// Rays that one ray can put into the pool.
-std::uint32_t spawned(std::uint32_t features) {
-  if (features & KDRAY_FEATURE_TRANSMIT) return 2;
-  return features & KDRAY_FEATURE_REFLECT ? 1 : 0;
-}
 
 // Of a level: enough that no queue waits for what others hold, or a few of the buffers that were asked for.
 std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uint32_t n_slices) {
@@ -67,7 +59,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   frame.light_batch = std::min<std::uint32_t>(n_lights, KDRAY_MAX_LIGHT_BATCH);
   frame.shadow_capacity = std::max(frame.light_batch, 1u) * frame.batch_capacity;
 
-  plan.least.assign(frame.max_depth + 1, std::max(spawned(r.features), 1u));
+  plan.least.assign(frame.max_depth + 1, std::max(spawned_per_ray(r.features), 1u));
   plan.least[0] = n_lights;
   for (const std::uint32_t least : plan.least)
     plan.capacity.push_back(level_capacity(r, least, plan.n_slices));

@@ -8,29 +8,9 @@
 
 namespace kdray::odprt {
 
-namespace {
-
-// Entries, and behind them two words for each sample; what is read beyond the last is left out.
-std::size_t list_words(const WorkRoom& room) {
-  return room.entries + (room.samples > 0 ? 2 * room.samples + KDRAY_LANES : 0);
-}
-
-}  // namespace
-
-cl::Buffer Worker::make(std::size_t bytes, const std::string& what) {
+cl::Buffer Worker::make(std::size_t bytes, const char* what) {
   bytes_ += bytes;
   return context_.buffer(CL_MEM_READ_WRITE, bytes, what);
-}
-
-cl::Buffer Worker::make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
-                               const std::string& what) {
-  return make(n_streams * n_fields * capacity * sizeof(float), what);
-}
-
-// Of each depth's many rays few are there at a time.
-cl::Buffer Worker::make_pool(std::size_t n_words) {
-  bytes_ += n_words * sizeof(float);
-  return context_.sparse_buffer(CL_MEM_READ_WRITE, n_words * sizeof(float), "the ray pools");
 }
 
 Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
@@ -44,29 +24,20 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       slices_(plan.n_slices),
       traffic_(plan.n_slices),
       visits_(2 * plan.n_slices * max_subtrees),
-      frame_buffer_(make(sizeof(layout::Frame), "the frame")),
+      buffers_(context, frame, {plan.n_slices, room.entries, room.samples, room.places},
+               wavefront::StreamForm::of_odprt(frame)),
       travel_buffer_(make(sizeof(layout::Travel), "the division")),
       cells_(make(directory.size_bytes(), "the directory")),
-      tiles_(make(list_words(room) * sizeof(layout::u32), "the list of tiles")),
-      slice_buffer_(make(plan.n_slices * sizeof(layout::Slice), "the slices")),
       grant_buffer_(make(plan.n_slices * sizeof(layout::Grant), "the slices' grants")),
       traffic_buffer_(make(plan.n_slices * sizeof(layout::Traffic), "the slices' accounts")),
-      pool_(make_pool(std::size_t{plan.n_slices} * frame.max_depth * KDRAY_TRAVEL_RAY_FIELDS *
-                      frame.pool_capacity)),
-      batch_(make_stream(plan.n_slices, KDRAY_TRAVEL_RAY_FIELDS, frame.batch_capacity, "the ray batches")),
-      hits_(make_stream(plan.n_slices, KDRAY_HIT_FIELDS, frame.batch_capacity, "the hits")),
-      shadow_rays_(
-          make_stream(plan.n_slices, KDRAY_TRAVEL_SHADOW_FIELDS, frame.shadow_capacity, "the shadow rays")),
-      occluded_(make(std::size_t{plan.n_slices} * frame.shadow_capacity, "the occlusion flags")),
-      shadow_pool_(make_stream(plan.n_slices, KDRAY_TRAVEL_SHADOW_FIELDS, plan.shadow_pool + 2 * KDRAY_LANES,
-                               "the waiting shadow rays")),
-      film_(context.buffer_made_beside(CL_MEM_READ_WRITE, room.places * 3 * sizeof(layout::i64), "the film",
-                                       true, film_made_)),
+      shadow_pool_(make(
+          plan.n_slices * KDRAY_TRAVEL_SHADOW_FIELDS * (plan.shadow_pool + 2 * KDRAY_LANES) * sizeof(float),
+          "the waiting shadow rays")),
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
       inbox_(context, plan.inbox),
       wave_(programs.kernel<kernels::TravelWave>(features | KDRAY_FEATURE_NUMBERS, traversal)),
       receive_(programs.kernel<kernels::Receive>(0)) {
-  bytes_ += inbox_.bytes() + room.places * 3 * sizeof(layout::i64);
+  bytes_ += inbox_.bytes() + buffers_.bytes;
   if (!directory.empty())
     queue_.enqueueWriteBuffer(cells_, CL_TRUE, 0, directory.size_bytes(), directory.data());
   travel_.n_places = plan.outbox.n_places;
@@ -85,21 +56,13 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
 // What doesn't change from launch to launch.
 template <class K>
 void Worker::set_arguments(wavefront::Stage<K>& stage) {
-  KDRAY_SET_WHERE_TAKEN(K, stage, frame, frame_buffer_);
+  buffers_.set_arguments(stage);
   KDRAY_SET_WHERE_TAKEN(K, stage, travel, travel_buffer_);
   KDRAY_SET_WHERE_TAKEN(K, stage, n_waves, plan_.n_waves);
   KDRAY_SET_WHERE_TAKEN(K, stage, cells, cells_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, tiles, tiles_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, slices, slice_buffer_);
   KDRAY_SET_WHERE_TAKEN(K, stage, grants, grant_buffer_);
   KDRAY_SET_WHERE_TAKEN(K, stage, traffic, traffic_buffer_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, pool, pool_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, batch, batch_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, hits, hits_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, shadow_rays, shadow_rays_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, occluded, occluded_);
   KDRAY_SET_WHERE_TAKEN(K, stage, shadow_pool, shadow_pool_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, film, film_);
   KDRAY_SET_WHERE_TAKEN(K, stage, visits, visit_buffer_);
 }
 
@@ -118,24 +81,21 @@ void Worker::begin(const Work& work) {
   in_runs_ = !work.samples.empty();
   list_.clear();
   list_.reserve(room_.entries);  // what is added stays where it is while it is being copied
-  std::fill(slices_.begin(), slices_.end(), layout::Slice{});
+  const std::vector<layout::Slice> fresh = wavefront::fresh_slices(plan_.n_slices);
+  std::copy(fresh.begin(), fresh.end(), slices_.begin());
   std::fill(traffic_.begin(), traffic_.end(), layout::Traffic{});
-  for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
-    slices_[s].tile = s;
-    slices_[s].tile_stride = plan_.n_slices;
-  }
-  queue_.enqueueWriteBuffer(frame_buffer_, CL_FALSE, 0, sizeof frame_, &frame_);
+  queue_.enqueueWriteBuffer(buffers_.frame, CL_FALSE, 0, sizeof frame_, &frame_);
   if (!work.samples.empty())
-    queue_.enqueueWriteBuffer(tiles_, CL_FALSE, room_.entries * sizeof(layout::u32),
+    queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, room_.entries * sizeof(layout::u32),
                               work.samples.size_bytes(), work.samples.data());
-  queue_.enqueueWriteBuffer(slice_buffer_, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
+  queue_.enqueueWriteBuffer(buffers_.slices, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
                             slices_.data());
   queue_.enqueueWriteBuffer(traffic_buffer_, CL_FALSE, 0, traffic_.size() * sizeof(layout::Traffic),
                             traffic_.data());
-  if (n_places_ > 0 && film_made_.valid())
-    film_made_.get();  // 0 already
+  if (n_places_ > 0 && buffers_.film_made.valid())
+    buffers_.film_made.get();  // 0 already
   else if (n_places_ > 0)
-    queue_.enqueueFillBuffer(film_, cl_long{0}, 0, n_places_ * 3 * sizeof(layout::i64));
+    queue_.enqueueFillBuffer(buffers_.film, cl_long{0}, 0, n_places_ * 3 * sizeof(layout::i64));
   if (!visits_.empty())
     queue_.enqueueFillBuffer(visit_buffer_, cl_uint{0}, 0, visits_.size() * sizeof(layout::u32));
   queue_.finish();
@@ -145,7 +105,7 @@ void Worker::add(std::span<const layout::u32> entries) {
   if (entries.empty()) return;
   const std::size_t first = list_.size();
   list_.insert(list_.end(), entries.begin(), entries.end());
-  queue_.enqueueWriteBuffer(tiles_, CL_FALSE, first * sizeof(layout::u32), entries.size_bytes(),
+  queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, first * sizeof(layout::u32), entries.size_bytes(),
                             &list_[first]);
 }
 
@@ -234,7 +194,7 @@ void Worker::launch(std::span<const layout::Grant> grants, Outbox& outbox) {
 }
 
 void Worker::finish() {
-  queue_.enqueueReadBuffer(slice_buffer_, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
+  queue_.enqueueReadBuffer(buffers_.slices, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
                            slices_.data());
   queue_.enqueueReadBuffer(traffic_buffer_, CL_TRUE, 0, traffic_.size() * sizeof(layout::Traffic),
                            traffic_.data());
@@ -260,7 +220,7 @@ void Worker::stash(Mail& mail) {
   };
   for_each_in_use(
       [&](std::uint32_t s, std::uint32_t depth, layout::u32) {
-        begin_reading(pool_, std::size_t{s} * frame_.max_depth + (depth - 1), pool_words);
+        begin_reading(buffers_.pool, std::size_t{s} * frame_.max_depth + (depth - 1), pool_words);
       },
       [&](std::uint32_t s, layout::u32) { begin_reading(shadow_pool_, s, shadow_words); });
   queue_.finish();
@@ -277,7 +237,7 @@ void Worker::stash(Mail& mail) {
         n = 0;
       });
   stashed_.clear();
-  queue_.enqueueWriteBuffer(slice_buffer_, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
+  queue_.enqueueWriteBuffer(buffers_.slices, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
                             slices_.data());
   queue_.enqueueWriteBuffer(traffic_buffer_, CL_FALSE, 0, traffic_.size() * sizeof(layout::Traffic),
                             traffic_.data());
@@ -305,13 +265,7 @@ void Worker::copy_out(const Outbox& outbox, const std::function<Mail*(std::uint3
 }
 
 void Worker::add_cycles(std::map<std::string, double>& cycles) const {
-  for (const layout::Slice& slice : slices_) {
-    cycles["admit"] += static_cast<double>(slice.cycles_admit);
-    cycles["trace_closest"] += static_cast<double>(slice.cycles_closest);
-    cycles["shade"] += static_cast<double>(slice.cycles_shade);
-    cycles["trace_shadow"] += static_cast<double>(slice.cycles_shadow);
-    cycles["add"] += static_cast<double>(slice.cycles_add);
-  }
+  wavefront::add_cycles(slices_, cycles);
   for (const layout::Traffic& traffic : traffic_)
     cycles["route"] += static_cast<double>(traffic.cycles_route);
 }
@@ -345,12 +299,12 @@ std::vector<SubtreeUse> Worker::visits() const {
 
 std::span<const layout::i64> Worker::map_film() {
   const std::size_t n = n_places_ * 3;
-  mapped_film_ = queue_.enqueueMapBuffer(film_, CL_TRUE, CL_MAP_READ, 0, n * sizeof(layout::i64));
+  mapped_film_ = queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ, 0, n * sizeof(layout::i64));
   return {static_cast<const layout::i64*>(mapped_film_), n};
 }
 
 void Worker::unmap_film() {
-  queue_.enqueueUnmapMemObject(film_, mapped_film_);
+  queue_.enqueueUnmapMemObject(buffers_.film, mapped_film_);
   mapped_film_ = nullptr;
 }
 

@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <future>
 #include <map>
 #include <span>
 #include <string>
@@ -24,6 +23,7 @@
 #include "odprt/subtrees.h"
 #include "wavefront/programs.h"
 #include "wavefront/scene_buffers.h"
+#include "wavefront/slice_buffers.h"
 #include "wavefront/stage.h"
 
 namespace kdray::odprt {
@@ -107,12 +107,9 @@ class Worker {
   double busy_seconds() { return wave_.collect_seconds() + receive_.collect_seconds(); }
 
  private:
-  cl::Buffer make(std::size_t bytes, const std::string& what);
+  cl::Buffer make(std::size_t bytes, const char* what);
   template <class K>
   void set_arguments(wavefront::Stage<K>& stage);
-  cl::Buffer make_pool(std::size_t n_words);
-  cl::Buffer make_stream(std::size_t n_streams, std::size_t n_fields, std::size_t capacity,
-                         const std::string& what);
 
   const device::Context& context_;
   cl::CommandQueue queue_;
@@ -126,9 +123,8 @@ class Worker {
   std::vector<layout::Slice> slices_;
   std::vector<layout::Traffic> traffic_;
   std::vector<layout::u32> visits_;
-  std::future<void> film_made_;
-  cl::Buffer frame_buffer_, travel_buffer_, cells_, tiles_, slice_buffer_, grant_buffer_, traffic_buffer_,
-      pool_, batch_, hits_, shadow_rays_, occluded_, shadow_pool_, film_, visit_buffer_;
+  wavefront::SliceBuffers buffers_;
+  cl::Buffer travel_buffer_, cells_, grant_buffer_, traffic_buffer_, shadow_pool_, visit_buffer_;
   void* mapped_film_ = nullptr;
   std::vector<std::vector<float>>
       stashed_;   // what is being read of the pools: here, since after an error a read may go on

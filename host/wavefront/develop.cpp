@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 // Which of several forms of a function is taken is asked before a sanitizer is ready.
@@ -69,6 +70,19 @@ void scale_sums(const layout::i64* sums, std::size_t n, double scale, float* val
   for (std::size_t i = 0; i < n; ++i) values[i] = static_cast<float>(static_cast<double>(sums[i]) * scale);
 }
 
+// The films' sums from `first` on.
+void add_pieces(Films films, std::size_t first, std::span<layout::i64> sums) {
+  constexpr auto kLeast = std::numeric_limits<layout::i64>::min(),
+                 kMost = std::numeric_limits<layout::i64>::max();
+  const auto begin = films.front().begin() + static_cast<std::ptrdiff_t>(first);
+  std::copy(begin, begin + static_cast<std::ptrdiff_t>(sums.size()), sums.begin());
+  for (const auto& film : films.subspan(1))
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const layout::i64 more = film[first + i];
+      if (__builtin_add_overflow(sums[i], more, &sums[i])) sums[i] = more < 0 ? kLeast : kMost;
+    }
+}
+
 class Developer {
  public:
   explicit Developer(std::uint32_t samples)
@@ -85,10 +99,20 @@ class Developer {
 
 }  // namespace
 
-void develop(std::span<const layout::i64> sums, int samples, std::span<vec3> pixels) {
+void develop(Films films, int samples, std::span<vec3> pixels) {
   const Developer developed(static_cast<std::uint32_t>(samples));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kGrain), [&](const auto& range) {
-    developed(sums.subspan(3 * range.begin(), 3 * range.size()), pixels.subspan(range.begin(), range.size()));
+    const auto to = pixels.subspan(range.begin(), range.size());
+    if (films.size() == 1) return developed(films.front().subspan(3 * range.begin(), 3 * range.size()), to);
+    std::vector<layout::i64> sums(3 * range.size());
+    add_pieces(films, 3 * range.begin(), sums);
+    developed(sums, to);
+  });
+}
+
+void add_up(Films films, std::span<layout::i64> sums) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sums.size(), kGrain), [&](const auto& range) {
+    add_pieces(films, range.begin(), sums.subspan(range.begin(), range.size()));
   });
 }
 

@@ -1,7 +1,5 @@
 #include "wavefront/wavefront.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "device/opencl_error.h"
@@ -12,25 +10,9 @@ namespace kdray::wavefront {
 
 namespace {
 
-// Rays that one ray can put into the pool. Where one is refracted another may be reflected, if of no weight.
-std::uint32_t spawned_per_ray(std::uint32_t features) {
-  if (features & KDRAY_FEATURE_TRANSMIT) return 2;
-  return features & KDRAY_FEATURE_REFLECT ? 1 : 0;
-}
-
-// A stream's words per field for `n` rays: whole vectors, and one behind the last ray (rays.layout.h).
-std::uint32_t capacity_for(std::uint32_t n) {
-  return (n + 2 * KDRAY_LANES - 1) / KDRAY_LANES * KDRAY_LANES;
-}
-
 bool at_work(const layout::Slice& slice, std::uint32_t n_listed) {
   return slice.tile < n_listed || slice.n_batch > 0 ||
          std::any_of(std::begin(slice.n_pool), std::end(slice.n_pool), [](layout::u32 n) { return n > 0; });
-}
-
-// Entries, and behind them two words for each sample; what is read beyond the last is left out.
-std::size_t list_words(const Room& room) {
-  return room.tiles + (room.samples > 0 ? 2 * room.samples + KDRAY_LANES : 0);
 }
 
 double seconds_of(const cl::Event& event, cl_profiling_info moment) {
@@ -39,13 +21,9 @@ double seconds_of(const cl::Event& event, cl_profiling_info moment) {
   return 1e-9 * static_cast<double>(nanoseconds);
 }
 
-void check(const Counters& sum) {
-  if (sum.invalid + sum.nan + sum.pool_overflow == 0) return;
-  throw Error(
-      ErrorCode::internal,
-      fmt::format("{} rays overflowed the traversal's stack, {} the ray pool, and {} contributions were not "
-                  "numbers; this is a fault of kdray, please report it with the scene",
-                  sum.invalid, sum.pool_overflow, sum.nan));
+// In which each stage's reals are computed.
+std::size_t word_of(Precision precision) {
+  return precision == Precision::float64 ? sizeof(double) : sizeof(float);
 }
 
 }  // namespace
@@ -68,80 +46,16 @@ void Schedule::apply(layout::Frame& frame, std::uint32_t features) const {
 }
 
 std::size_t Schedule::stream_bytes(const layout::Frame& frame) const {
-  const std::size_t word = precision == Precision::float64 ? sizeof(double) : sizeof(float);
-  const std::size_t pooled_depths = frame.pool_size > 0 ? frame.max_depth - 1 : 0;
-  const std::size_t words = pooled_depths * KDRAY_POOL_FIELDS * frame.pool_capacity +
-                            std::size_t{KDRAY_RAY_FIELDS + KDRAY_HIT_FIELDS} * frame.batch_capacity +
-                            std::size_t{KDRAY_SHADOW_FIELDS} * frame.shadow_capacity;
-  return n_slices * (sizeof(layout::Slice) + words * word + frame.shadow_capacity);
+  return n_slices * StreamForm::of_device(frame, word_of(precision)).bytes(frame);
 }
-
-namespace {
-
-std::size_t largest_buffer_of_a_slice(const layout::Frame& frame) {
-  const std::size_t pooled_depths = frame.pool_size > 0 ? frame.max_depth - 1 : 0;
-  return std::max({sizeof(layout::Slice),
-                   pooled_depths * KDRAY_POOL_FIELDS * frame.pool_capacity * sizeof(float),
-                   std::size_t{KDRAY_RAY_FIELDS} * frame.batch_capacity * sizeof(float),
-                   std::size_t{KDRAY_SHADOW_FIELDS} * frame.shadow_capacity * sizeof(float)});
-}
-
-}  // namespace
 
 void Schedule::fit(layout::Frame frame, std::uint32_t features, std::size_t max_bytes) {
   for (;; batch_size /= 2) {
     apply(frame, features);
-    const std::size_t of_slice = largest_buffer_of_a_slice(frame);
+    const std::size_t of_slice = StreamForm::of_device(frame, sizeof(float)).largest(frame);
     n_slices = static_cast<std::uint32_t>(std::clamp<std::size_t>(max_bytes / of_slice, 1, n_slices));
     if (of_slice <= max_bytes || batch_size == 1) return;
   }
-}
-
-void Counters::add(const layout::Slice& s) {
-  primary += s.n_primary;
-  primary_hit += s.n_primary_hit;
-  shadow += s.n_shadow_rays;
-  reflected += s.n_reflected;
-  refracted += s.n_refracted;
-  skipped_behind += s.n_skipped_behind;
-  skipped_unlit += s.n_skipped_unlit;
-  skipped_open += s.n_skipped_open;
-  skipped_background += s.n_skipped_background;
-  skipped_weight += s.n_skipped_weight;
-  skipped_depth += s.n_skipped_depth;
-  invalid += s.n_invalid;
-  nan += s.n_nan;
-  pool_overflow += s.n_pool_overflow;
-  waves += s.n_waves;
-}
-
-void Counters::add(const Counters& o) {
-  primary += o.primary;
-  primary_hit += o.primary_hit;
-  shadow += o.shadow;
-  reflected += o.reflected;
-  refracted += o.refracted;
-  skipped_behind += o.skipped_behind;
-  skipped_unlit += o.skipped_unlit;
-  skipped_open += o.skipped_open;
-  skipped_background += o.skipped_background;
-  skipped_weight += o.skipped_weight;
-  skipped_depth += o.skipped_depth;
-  invalid += o.invalid;
-  nan += o.nan;
-  pool_overflow += o.pool_overflow;
-  waves += o.waves;
-  launches += o.launches;
-}
-
-cl::Buffer Wavefront::make(std::size_t bytes, const std::string& what) {
-  device_bytes_ += bytes;
-  return context_.buffer(CL_MEM_READ_WRITE, bytes, what);
-}
-
-cl::Buffer Wavefront::make_stream(std::size_t n_fields, std::size_t capacity, const std::string& what) {
-  const std::size_t word = schedule_.precision == Precision::float64 ? sizeof(double) : sizeof(float);
-  return make(schedule_.n_slices * n_fields * capacity * word, what);
 }
 
 Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
@@ -154,30 +68,15 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       features_(features),
       room_{std::max(room.tiles, room.samples / KDRAY_SAMPLE_RUN), std::max(room.pixels, room.samples),
             room.samples},
-      frame_buffer_(make(sizeof(layout::Frame), "the frame")),
-      slice_buffer_(make(schedule.n_slices * sizeof(layout::Slice), "the slices")),
-      list_(make(list_words(room_) * sizeof(layout::u32), "the list of tiles")),
-      tile_cycles_(make(schedule.fused ? room_.tiles * sizeof(layout::u64) : 0, "the tiles' cycles")),
-      pool_(make_stream(frame.pool_size > 0 ? (frame.max_depth - 1) * KDRAY_POOL_FIELDS : 0,
-                        frame.pool_capacity, "the ray pools")),
-      batch_(make_stream(KDRAY_RAY_FIELDS, frame.batch_capacity, "the ray batches")),
-      hits_(make_stream(KDRAY_HIT_FIELDS, frame.batch_capacity, "the hits")),
-      shadow_rays_(make_stream(KDRAY_SHADOW_FIELDS, frame.shadow_capacity, "the shadow rays")),
-      occluded_(make(std::size_t{schedule.n_slices} * frame.shadow_capacity, "the occlusion flags")),
-      film_(context.buffer_made_beside(CL_MEM_READ_WRITE, room_.pixels * 3 * sizeof(layout::i64), "the film",
-                                       false, film_made_)) {
-  device_bytes_ += room_.pixels * 3 * sizeof(layout::i64);
+      buffers_(context, frame, {schedule.n_slices, room_.tiles, room_.samples, room_.pixels},
+               StreamForm::of_device(frame, word_of(schedule.precision))),
+      tile_cycles_(context.buffer(CL_MEM_READ_WRITE, tile_cycle_bytes(), "the tiles' cycles")) {
   device::checked("setting up the kernels", [&] {
-    if (schedule.fill) fill_streams(*schedule.fill);
+    if (schedule.fill) buffers_.fill(queue_, *schedule.fill);
     schedule.fused ? make_wave(programs, scene) : make_stages(programs, scene);
     warm_up();
-    if (film_made_.valid()) film_made_.get();
+    if (buffers_.film_made.valid()) buffers_.film_made.get();
   });
-}
-
-void Wavefront::fill_streams(cl_uint word) {
-  for (const cl::Buffer* buffer : {&pool_, &batch_, &hits_, &shadow_rays_, &occluded_, &film_})
-    queue_.enqueueFillBuffer(*buffer, word, 0, buffer->getInfo<CL_MEM_SIZE>() / sizeof word * sizeof word);
 }
 
 // Calls `act` with every stage that is there.
@@ -201,18 +100,10 @@ void Wavefront::warm_up() {
 template <class K>
 void Wavefront::set_arguments(Stage<K>& stage, const SceneBuffers& scene) {
   scene.set_arguments(stage);
-  KDRAY_SET_WHERE_TAKEN(K, stage, frame, frame_buffer_);
+  buffers_.set_arguments(stage);
   KDRAY_SET_WHERE_TAKEN(K, stage, n_slices, schedule_.n_slices);
   KDRAY_SET_WHERE_TAKEN(K, stage, n_waves, schedule_.fused_waves);
-  KDRAY_SET_WHERE_TAKEN(K, stage, slices, slice_buffer_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, tiles, list_);
   KDRAY_SET_WHERE_TAKEN(K, stage, tile_cycles, tile_cycles_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, pool, pool_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, batch, batch_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, hits, hits_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, shadow_rays, shadow_rays_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, occluded, occluded_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, film, film_);
 }
 
 void Wavefront::make_wave(Programs& programs, const SceneBuffers& scene) {
@@ -297,7 +188,7 @@ void Wavefront::launch_wave(Launch& launch) {
 void Wavefront::launch(Launch& launch) {
   launch.listed = n_listed_;
   wave_ ? launch_wave(launch) : launch_stages(launch);
-  queue_.enqueueReadBuffer(slice_buffer_, CL_FALSE, 0, launch.slices.size() * sizeof(layout::Slice),
+  queue_.enqueueReadBuffer(buffers_.slices, CL_FALSE, 0, launch.slices.size() * sizeof(layout::Slice),
                            launch.slices.data(), nullptr, &launch.arrived);
   queue_.flush();
 }
@@ -312,8 +203,8 @@ void Wavefront::begin_samples(std::span<const layout::u32> samples) {
   frame_.first_pixel = 0;
   frame_.samples_at = static_cast<layout::u32>(room_.tiles);
   device::checked("writing the samples", [&] {
-    queue_.enqueueWriteBuffer(list_, CL_FALSE, room_.tiles * sizeof(layout::u32), samples.size_bytes(),
-                              samples.data());
+    queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, room_.tiles * sizeof(layout::u32),
+                              samples.size_bytes(), samples.data());
   });
   begin_list();
 }
@@ -321,16 +212,12 @@ void Wavefront::begin_samples(std::span<const layout::u32> samples) {
 void Wavefront::begin_list() {
   n_listed_ = n_taken_ = 0;
   list_counters_ = {};
-  std::vector<layout::Slice> slices(schedule_.n_slices);
-  for (std::uint32_t s = 0; s < schedule_.n_slices; ++s) {
-    slices[s].tile = s;
-    slices[s].tile_stride = schedule_.n_slices;
-  }
+  const std::vector<layout::Slice> slices = fresh_slices(schedule_.n_slices);
   for (Launch& launch : launches_) launch.slices.resize(schedule_.n_slices);
   device::checked("beginning a list of tiles", [&] {
     if (wave_) queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, 0, room_.tiles * sizeof(layout::u64));
-    queue_.enqueueWriteBuffer(frame_buffer_, CL_TRUE, 0, sizeof frame_, &frame_);
-    queue_.enqueueWriteBuffer(slice_buffer_, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
+    queue_.enqueueWriteBuffer(buffers_.frame, CL_TRUE, 0, sizeof frame_, &frame_);
+    queue_.enqueueWriteBuffer(buffers_.slices, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
                               slices.data());
   });
 }
@@ -341,7 +228,8 @@ bool Wavefront::enlist(const Feed& feed, const Progress& progress) {
   if (!more) return false;
   if (more->empty()) return true;
   const std::size_t first = n_listed_;
-  queue_.enqueueWriteBuffer(list_, CL_FALSE, first * sizeof(layout::u32), more->size_bytes(), more->data());
+  queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, first * sizeof(layout::u32), more->size_bytes(),
+                            more->data());
   n_listed_ += static_cast<std::uint32_t>(more->size());
   return true;
 }
@@ -370,8 +258,7 @@ void Wavefront::tell_of(const Launch& launch, const Counters& sum, std::uint32_t
 Progress Wavefront::wait_for(Launch& launch) {
   launch.arrived.wait();
   collect();
-  Counters sum;
-  for (const layout::Slice& slice : launch.slices) sum.add(slice);
+  Counters sum = sum_of(launch.slices);
   check(sum);
   sum.launches = list_counters_.launches + 1;
   const std::uint32_t taken = tiles_taken(launch);
@@ -418,10 +305,10 @@ void Wavefront::finish(std::size_t first, std::size_t n,
                        const std::function<void(const FilmSums&)>& take_film) {
   device::checked("reading the film", [&] {
     constexpr std::size_t kPlace = 3 * sizeof(layout::i64);
-    void* const sums = queue_.enqueueMapBuffer(film_, CL_TRUE, CL_MAP_READ,
+    void* const sums = queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ,
                                                (first - frame_.first_pixel) * kPlace, n * kPlace);
     take_film({{static_cast<const layout::i64*>(sums), n * 3}, first});
-    queue_.enqueueUnmapMemObject(film_, sums);
+    queue_.enqueueUnmapMemObject(buffers_.film, sums);
   });
   finish();
 }
@@ -448,13 +335,7 @@ void Wavefront::collect() {
 
 // Divides the waves' time among their stages. Both reports are as good: the last launch found nothing to do.
 void Wavefront::share_out_seconds() {
-  for (const layout::Slice& s : launches_[0].slices) {
-    cycles_["admit"] += static_cast<double>(s.cycles_admit);
-    cycles_["trace_closest"] += static_cast<double>(s.cycles_closest);
-    cycles_["shade"] += static_cast<double>(s.cycles_shade);
-    cycles_["trace_shadow"] += static_cast<double>(s.cycles_shadow);
-    cycles_["add"] += static_cast<double>(s.cycles_add);
-  }
+  add_cycles(launches_[0].slices, cycles_);
   double sum = 0;
   for (const auto& [stage, cycles] : cycles_) sum += cycles;
   if (sum == 0) return;

@@ -10,7 +10,6 @@
 #pragma once
 
 #include <functional>
-#include <future>
 #include <map>
 #include <optional>
 #include <span>
@@ -18,8 +17,10 @@
 #include <vector>
 
 #include "layout/frame.layout.h"
+#include "wavefront/counters.h"
 #include "wavefront/programs.h"
 #include "wavefront/scene_buffers.h"
+#include "wavefront/slice_buffers.h"
 #include "wavefront/stage.h"
 
 namespace kdray::wavefront {
@@ -37,7 +38,7 @@ struct Schedule {
   Precision precision = Precision::float32;    // float64: binary alone
   std::optional<cl_uint> fill = {};  // for tests: what streams and film hold before they are written
 
-  // Of a queue's slices and their streams, in a frame that the schedule was applied to.
+  // Bytes of a queue's slices and their streams, in a frame that the schedule was applied to.
   std::size_t stream_bytes(const layout::Frame& frame) const;
 
   // Writes tiles, batch, pool and light batch into the frame.
@@ -46,18 +47,6 @@ struct Schedule {
   // Fewer slices, and smaller batches where even one slice is too much, so that no buffer of a Wavefront for
   // this frame (but the film) takes more than `max_bytes`: a device's limit for one allocation.
   void fit(layout::Frame frame, std::uint32_t features, std::size_t max_bytes);
-};
-
-struct Counters {
-  std::uint64_t primary = 0, primary_hit = 0, shadow = 0, reflected = 0, refracted = 0;
-  std::uint64_t skipped_behind = 0, skipped_unlit = 0, skipped_open = 0, skipped_background = 0,
-                skipped_weight = 0, skipped_depth = 0;
-  std::uint64_t invalid = 0, nan = 0, pool_overflow = 0;
-  std::uint64_t waves = 0, launches = 0;  // waves: of one slice, with rays in them
-
-  std::uint64_t total() const { return primary + shadow + reflected + refracted; }
-  void add(const layout::Slice& slice);
-  void add(const Counters& other);
 };
 
 // How far a queue is with its list, by its last report.
@@ -132,7 +121,7 @@ class Wavefront {
   // Of the lists that were finished.
   const Counters& counters() const { return counters_; }
   double busy_seconds() const { return busy_seconds_; }  // of all launches that have ended
-  std::size_t device_bytes() const { return device_bytes_; }
+  std::size_t device_bytes() const { return buffers_.bytes + tile_cycle_bytes(); }
   // Device seconds per stage. Of fused waves they are shares of the launches' time, by the cycles that each
   // stage took; empty where the device has no counter for them.
   const std::map<std::string, double>& stage_seconds() const { return seconds_; }
@@ -145,8 +134,7 @@ class Wavefront {
     std::uint32_t listed = 0;
   };
 
-  cl::Buffer make(std::size_t bytes, const std::string& what);
-  cl::Buffer make_stream(std::size_t n_fields, std::size_t capacity, const std::string& what);
+  std::size_t tile_cycle_bytes() const { return schedule_.fused ? room_.tiles * sizeof(layout::u64) : 0; }
   template <class K>
   void set_arguments(Stage<K>& stage, const SceneBuffers& scene);
   template <class K>
@@ -157,7 +145,6 @@ class Wavefront {
   void for_each_stage(const Do& act);
   void make_wave(Programs& programs, const SceneBuffers& scene);
   void make_stages(Programs& programs, const SceneBuffers& scene);
-  void fill_streams(cl_uint word);
   void warm_up();
   void begin_list();
   bool enlist(const Feed& feed, const Progress& progress);
@@ -183,10 +170,8 @@ class Wavefront {
   Room room_;
   Watch watch_;
   Launch launches_[2];
-  std::size_t device_bytes_ = 0;
-  std::future<void> film_made_;
-  cl::Buffer frame_buffer_, slice_buffer_, list_, tile_cycles_, pool_, batch_, hits_, shadow_rays_, occluded_,
-      film_;
+  SliceBuffers buffers_;
+  cl::Buffer tile_cycles_;  // of fused waves
   // Either the wave or the others are there.
   std::optional<Stage<kernels::Wave>> wave_;
   std::optional<Stage<kernels::Admit>> admit_;
