@@ -19,9 +19,9 @@
 
 namespace kdray::device {
 
-// An argument by its place among the kernel's, and the type of what it is set to. Places of different kernels
-// are of different types.
-template <auto kPlace, class Value>
+// An argument by its index among the kernel's, and the type of what it is set to. Indices of different
+// kernels are of different types.
+template <auto kIndex, class Value>
 struct Argument {};
 
 // What is the same for all kernels.
@@ -38,16 +38,16 @@ class AnyKernel {
   AnyKernel(const cl::Program& program, const char* name, std::span<const char* const> parameters);
 
   template <class Value>
-  void set_at(cl_uint place, const Value& value) {
-    kernel_.setArg(place, value);
-    unset_ &= ~(std::uint64_t{1} << place);
+  void set_at(cl_uint index, const Value& value) {
+    kernel_.setArg(index, value);
+    unset_ &= ~(std::uint64_t{1} << index);
   }
 
  private:
   cl::Kernel kernel_;
   const char* name_;
   std::span<const char* const> parameters_;
-  std::uint64_t unset_;  // a bit for each place
+  std::uint64_t unset_;  // a bit for each argument
 };
 
 // The kernel that K describes (KDRAY_DECLARE_KERNEL).
@@ -56,12 +56,12 @@ class Kernel : public AnyKernel {
  public:
   explicit Kernel(const cl::Program& program) : AnyKernel(program, K::kFunction, K::kParameters) {}
 
-  template <auto kPlace, class Value, class Given>
-  Kernel& set(Argument<kPlace, Value>, const Given& value) {
-    static_assert(std::is_same_v<std::remove_const_t<decltype(kPlace)>, typename K::Place>,
+  template <auto kIndex, class Value, class Given>
+  Kernel& set(Argument<kIndex, Value>, const Given& value) {
+    static_assert(std::is_same_v<std::remove_const_t<decltype(kIndex)>, typename K::Index>,
                   "this is another kernel's argument");
     static_assert(std::is_same_v<Value, Given>, "the kernel's list has another type for this argument");
-    set_at(static_cast<cl_uint>(kPlace), value);
+    set_at(static_cast<cl_uint>(kIndex), value);
     return *this;
   }
 };
@@ -76,16 +76,16 @@ class Kernel : public AnyKernel {
 // Declares a struct that describes a kernel, from its list: see KDRAY_KERNELS.
 #define KDRAY_DECLARE_KERNEL(Name, file, function, LIST)                                  \
   struct Name {                                                                           \
-    enum class Place : cl_uint { LIST(KDRAY_PLACE, KDRAY_PLACE) kCount };                 \
+    enum class Index : cl_uint { LIST(KDRAY_INDEX, KDRAY_INDEX) kCount };                 \
     LIST(KDRAY_ARGUMENT, KDRAY_ARGUMENT)                                                  \
     static constexpr const char* kFile = file;                                            \
     static constexpr const char* kFunction = #function;                                   \
     static constexpr const char* kParameters[] = {LIST(KDRAY_SPELT, KDRAY_SPELT)};        \
     static_assert(std::size(kParameters) <= 64, "AnyKernel has a bit for each argument"); \
   };
-#define KDRAY_PLACE(access, type, name) name,
+#define KDRAY_INDEX(access, type, name) name,
 #define KDRAY_ARGUMENT(access, type, name) \
-  static constexpr kdray::device::Argument<Place::name, KDRAY_TYPE_##access(type)> name{};
+  static constexpr kdray::device::Argument<Index::name, KDRAY_TYPE_##access(type)> name{};
 #define KDRAY_TYPE_IN(type) cl::Buffer
 #define KDRAY_TYPE_OUT(type) cl::Buffer
 #define KDRAY_TYPE_IO(type) cl::Buffer

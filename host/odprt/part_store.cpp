@@ -24,7 +24,7 @@ SceneBuffers::Sizes largest_sizes(const Division& division) {
 
 std::size_t room_bytes(const Division& division) {
   SceneBuffers::Sizes sizes = largest_sizes(division);
-  for (const std::size_t no_geometry : {SceneBuffers::Place::materials, SceneBuffers::Place::lights})
+  for (const std::size_t no_geometry : {SceneBuffers::Slot::materials, SceneBuffers::Slot::lights})
     sizes[no_geometry] = 0;
   return std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
 }

@@ -37,10 +37,10 @@ void for_each_triangle(std::uint64_t mode, std::span<const std::uint32_t> corner
   }
 }
 
-// Room for `n` more elements. A bare reserve() would make a file of many small primitives copy all of them
-// for each.
+// Reserves memory for `n` more elements. A bare reserve() would make a file of many small primitives copy all
+// of them for each.
 template <class Vector>
-void make_room(Vector& elements, std::size_t n) {
+void reserve_more(Vector& elements, std::size_t n) {
   const std::size_t wanted = elements.size() + n;
   if (wanted > elements.capacity()) elements.reserve(std::max(wanted, 2 * elements.capacity()));
 }
@@ -75,7 +75,7 @@ void MeshReader::check_size(const JsonNode& primitive) const {
 
 void MeshReader::add_vertices(const JsonNode& accessor, const dmat4& to_world) {
   const auto positions = read_vectors(document_, accessor);
-  make_room(scene_.vertices, positions.size());
+  reserve_more(scene_.vertices, positions.size());
   for (const dvec3& p : positions) {
     const dvec3 moved = dvec3(to_world * glm::dvec4(p, 1));
     if (!is_finite(moved)) throw accessor.error("a node's transform makes a position infinite");
@@ -132,7 +132,7 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
   }
   const bool mirrored = glm::determinant(dmat3(to_world)) < 0;
   const std::uint32_t material = materials_.number_of(primitive);
-  make_room(scene_.triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
+  reserve_more(scene_.triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
   for_each_triangle(mode, corners, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (mirrored) std::swap(b, c);
     Triangle t{.vertex = {first_vertex + a, first_vertex + b, first_vertex + c}};

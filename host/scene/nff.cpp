@@ -13,7 +13,7 @@
 #include "scene/check_scene.h"
 #include "scene/importers.h"
 #include "scene/material_table.h"
-#include "scene/room.h"
+#include "scene/reserve_ahead.h"
 #include "scene/text_scanner.h"
 #include "scene/triangulate.h"
 
@@ -171,15 +171,15 @@ class NffReader {
 
   std::size_t add_vertices(std::uint32_t n) {
     const std::size_t first = scene_.vertices.size();
-    check_room(first + n);
+    check_capacity(first + n);
     for (std::uint32_t i = 0; i < n; ++i) {
-      vertex_room_.make(scene_.vertices, in_.bytes_left());
+      vertex_reserve_.reserve(scene_.vertices, in_.bytes_left());
       scene_.vertices.push_back(in_.vector("a corner of a polygon (x y z)"));
     }
     return first;
   }
 
-  void check_room(std::size_t n) const {
+  void check_capacity(std::size_t n) const {
     if (n >= kNone) throw in_.error("more than 2^32 corners", "split the scene into several files");
   }
 
@@ -187,10 +187,10 @@ class NffReader {
     const std::uint32_t mat = material();
     const std::uint32_t n = corner_count(6);
     const std::size_t first = scene_.vertices.size();
-    check_room(first + n);
+    check_capacity(first + n);
     normals_.clear();
     for (std::uint32_t i = 0; i < n; ++i) {
-      vertex_room_.make(scene_.vertices, in_.bytes_left());
+      vertex_reserve_.reserve(scene_.vertices, in_.bytes_left());
       scene_.vertices.push_back(in_.vector("a corner of a patch (x y z)"));
       normals_.push_back(in_.vector("a normal of a patch (x y z)"));
     }
@@ -209,7 +209,7 @@ class NffReader {
         scene_.normals.resize(first);
         return std::nullopt;
       }
-      normal_room_.make(scene_.normals, in_.bytes_left());
+      normal_reserve_.reserve(scene_.normals, in_.bytes_left());
       scene_.normals.emplace_back(glm::normalize(n / largest));
     }
     return first;
@@ -226,7 +226,7 @@ class NffReader {
       }
       t.material = mat;
       t.number = next_number();
-      triangle_room_.make(scene_.triangles, in_.bytes_left());
+      triangle_reserve_.reserve(scene_.triangles, in_.bytes_left());
       scene_.triangles.push_back(t);
     };
     if (n == 3) return add({0, 1, 2});  // most are, and need no list
@@ -298,7 +298,7 @@ class NffReader {
   TextScanner in_;
   Scene scene_;
   MaterialTable materials_;
-  Room vertex_room_, normal_room_, triangle_room_;
+  ReserveAhead vertex_reserve_, normal_reserve_, triangle_reserve_;
   std::optional<std::uint32_t> material_;  // of the last 'f'
   std::vector<bool> has_color_;            // per light
   std::vector<dvec3> normals_;             // of the patch being read

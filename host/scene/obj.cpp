@@ -17,7 +17,7 @@
 #include "scene/line_scanner.h"
 #include "scene/obj_materials.h"
 #include "scene/plain_number.h"
-#include "scene/room.h"
+#include "scene/reserve_ahead.h"
 #include "scene/settle_normals.h"
 #include "scene/text_scanner.h"
 
@@ -88,12 +88,12 @@ class ObjReader {
   }
 
   void read_vertex() {
-    vertex_room_.make(scene_.vertices, in_.bytes_left());
+    vertex_reserve_.reserve(scene_.vertices, in_.bytes_left());
     scene_.vertices.push_back(three_numbers("a vertex of three numbers"));
   }
 
   void read_normal() {
-    normal_room_.make(scene_.normals, in_.bytes_left());
+    normal_reserve_.reserve(scene_.normals, in_.bytes_left());
     scene_.normals.push_back(direction_of(three_numbers("a normal of three numbers")));
   }
 
@@ -162,7 +162,7 @@ class ObjReader {
     bool smooth = true;
     for (const std::uint32_t n : normals_) smooth = smooth && n != kNone;
     if (!smooth) normals_.clear();
-    triangle_room_.make(scene_.triangles, in_.bytes_left());
+    triangle_reserve_.reserve(scene_.triangles, in_.bytes_left());
     add_polygon(scene_, corners_, normals_, materials_.current());
   }
 
@@ -183,7 +183,7 @@ class ObjReader {
   LineScanner in_;
   Scene scene_;
   ObjMaterials materials_;
-  Room vertex_room_, normal_room_, triangle_room_;
+  ReserveAhead vertex_reserve_, normal_reserve_, triangle_reserve_;
   std::vector<std::uint32_t> corners_, normals_;
   LeftOut small_faces_, missing_normals_, points_and_lines_, free_forms_, unknown_;
   std::size_t n_statements_ = 0;

@@ -19,22 +19,22 @@ class Sets {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
 
-  struct Place {
+  struct Member {
     std::uint32_t root;
     bool turned;
   };
-  Place find(std::uint32_t face) const {
-    Place place{face, false};
-    while (parent_[place.root] != place.root) {
-      place.turned ^= turned_[place.root] != 0;
-      place.root = parent_[place.root];
+  Member find(std::uint32_t face) const {
+    Member member{face, false};
+    while (parent_[member.root] != member.root) {
+      member.turned ^= turned_[member.root] != 0;
+      member.root = parent_[member.root];
     }
-    return place;
+    return member;
   }
 
   // False when the two are in one set already and stand otherwise to each other.
   bool join(std::uint32_t a, std::uint32_t b, bool turned) {
-    Place p = find(a), q = find(b);
+    Member p = find(a), q = find(b);
     const bool between = p.turned ^ q.turned ^ turned;
     if (p.root == q.root) return !between;
     if (size_[p.root] < size_[q.root]) std::swap(p, q);
@@ -165,15 +165,15 @@ class Finder {
     std::vector<std::array<std::uint32_t, 2>> faces(n);
     std::vector<std::uint8_t> one_sided(n);
     for (std::uint32_t i = 0; i < n; ++i) {
-      const Sets::Place place = agreeing_.find(i);
-      ++faces[place.root][place.turned];
+      const Sets::Member member = agreeing_.find(i);
+      ++faces[member.root][member.turned];
     }
     for (const std::uint32_t face : contradicted_) one_sided[agreeing_.find(face).root] = 1;
     for (std::uint32_t i = 0; i < n; ++i) {
-      const Sets::Place place = agreeing_.find(i);
-      const auto& [straight, turned] = faces[place.root];
-      if (turned == 0 || one_sided[place.root]) continue;
-      if (place.turned != (turned > straight)) {
+      const Sets::Member member = agreeing_.find(i);
+      const auto& [straight, turned] = faces[member.root];
+      if (turned == 0 || one_sided[member.root]) continue;
+      if (member.turned != (turned > straight)) {
         out_.flipped.push_back(i);
         ++component_of(i).flipped;
       }

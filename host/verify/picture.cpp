@@ -113,17 +113,17 @@ class Panel {
 
   // A disc of this radius, where the point is to be seen.
   void dot(const dvec3& point, double radius, const vec3& color) {
-    const std::optional<Place> place = project(point);
-    if (!place) return;
-    const bool hidden = !is_visible(*place);
+    const std::optional<Projected> at = project(point);
+    if (!at) return;
+    const bool hidden = !is_visible(*at);
     const int r = static_cast<int>(std::ceil(radius));
     for (int v = -r; v <= r; ++v)
       for (int u = -r; u <= r; ++u)
-        if (u * u + v * v <= radius * radius) paint(place->x + u, place->y + v, color, hidden);
+        if (u * u + v * v <= radius * radius) paint(at->x + u, at->y + v, color, hidden);
   }
 
   void line(const dvec3& a, const dvec3& b, const vec3& color) {
-    const std::optional<Place> p = project(a), q = project(b);
+    const std::optional<Projected> p = project(a), q = project(b);
     const double length = p && q ? std::max(std::abs(p->x - q->x), std::abs(p->y - q->y)) : 2.0 * width_;
     const int steps = static_cast<int>(std::min(std::ceil(length), 4.0 * width_));
     for (int i = 0; i <= steps; ++i)
@@ -131,21 +131,21 @@ class Panel {
   }
 
   void cross(const dvec3& point, const vec3& color) {
-    const std::optional<Place> place = project(point);
-    if (!place) return;
+    const std::optional<Projected> at = project(point);
+    if (!at) return;
     for (int i = -6; i <= 6; ++i)
       for (int thick = 0; thick < 2; ++thick) {
-        paint(place->x + i + thick, place->y + i, color, false);
-        paint(place->x + i + thick, place->y - i, color, false);
+        paint(at->x + i + thick, at->y + i, color, false);
+        paint(at->x + i + thick, at->y - i, color, false);
       }
   }
 
   // Whether the face's points are closer together than this many pixels.
   bool is_smaller_than(const Mesh& mesh, std::uint32_t face, double pixels) const {
-    const std::optional<Place> place = project(dvec3(mesh.corner(face, 0)));
-    if (!place) return true;
+    const std::optional<Projected> at = project(dvec3(mesh.corner(face, 0)));
+    if (!at) return true;
     const double size = glm::length(dvec3(mesh.bounds_of(face).extent()));
-    return size / place->distance * view_.scale < pixels;
+    return size / at->distance * view_.scale < pixels;
   }
 
   // Puts the marks onto the picture. Where several lie the last that is not hidden is seen.
@@ -160,7 +160,7 @@ class Panel {
     vec3 color{0};
     float seen = 0;
   };
-  struct Place {
+  struct Projected {
     int x, y;
     double distance;
   };
@@ -181,21 +181,21 @@ class Panel {
     return {{o.x, o.y, o.z}, 0, {f.x, f.y, f.z}, std::numeric_limits<float>::infinity()};
   }
 
-  std::optional<Place> project(const dvec3& point) const {
+  std::optional<Projected> project(const dvec3& point) const {
     const dvec3 way = point - view_.eye;
     const double ahead = glm::dot(way, view_.forward);
     if (!(ahead > 0)) return {};
     const double x = 0.5 * width_ + view_.scale * glm::dot(way, view_.right) / ahead;
     const double y = 0.5 * height_ - view_.scale * glm::dot(way, view_.up) / ahead;
     if (!(x >= 0 && x < width_ && y >= 0 && y < height_)) return {};
-    return Place{static_cast<int>(x), static_cast<int>(y), glm::length(way)};
+    return Projected{static_cast<int>(x), static_cast<int>(y), glm::length(way)};
   }
 
   // Whether nothing is in front of the place but its own surface about it.
-  bool is_visible(const Place& place) const {
-    for (int v = std::max(place.y - 1, 0); v <= std::min(place.y + 1, height_ - 1); ++v)
-      for (int u = std::max(place.x - 1, 0); u <= std::min(place.x + 1, width_ - 1); ++u)
-        if (place.distance <= 1.002 * depth_[index(u, v)]) return true;
+  bool is_visible(const Projected& at) const {
+    for (int v = std::max(at.y - 1, 0); v <= std::min(at.y + 1, height_ - 1); ++v)
+      for (int u = std::max(at.x - 1, 0); u <= std::min(at.x + 1, width_ - 1); ++u)
+        if (at.distance <= 1.002 * depth_[index(u, v)]) return true;
     return false;
   }
 

@@ -24,8 +24,8 @@ struct WideNodes {
   const Array<layout::WideNode>& wide_nodes;
 };
 
-std::array<Piece, SceneBuffers::Place::kArrays> pieces_of(const flatten::FlatScene& flat_scene,
-                                                          const flatten::WideForm& wide_form) {
+std::array<Piece, SceneBuffers::Slot::kArrays> pieces_of(const flatten::FlatScene& flat_scene,
+                                                         const flatten::WideForm& wide_form) {
   // An array of the list is a member of that name of one of the three.
 #define KDRAY_PIECE(access, type, name)                               \
   [](const auto& flat, const auto& wide, const auto& nodes_of_wide) { \
@@ -47,7 +47,7 @@ const char* const kNames[] = {KDRAY_SCENE_ARRAYS(KDRAY_WORDS)};
 
 }  // namespace
 
-std::array<cl::Buffer*, SceneBuffers::Place::kArrays> SceneBuffers::all() {
+std::array<cl::Buffer*, SceneBuffers::Slot::kArrays> SceneBuffers::all() {
 #define KDRAY_ADDRESS(access, type, name) &name,
   return {KDRAY_SCENE_ARRAYS(KDRAY_ADDRESS)};
 #undef KDRAY_ADDRESS
@@ -57,20 +57,20 @@ SceneBuffers::SceneBuffers(const device::Context& context, const flatten::FlatSc
                            const flatten::WideForm& wide) {
   const auto pieces = pieces_of(flat, wide);
   const auto buffers = all();
-  for (std::size_t i = 0; i < Place::kArrays; ++i)
+  for (std::size_t i = 0; i < Slot::kArrays; ++i)
     *buffers[i] = context.upload(pieces[i].data, pieces[i].bytes, pieces[i].owner, kNames[i]);
 }
 
 SceneBuffers::SceneBuffers(const device::Context& context, const Sizes& sizes) {
   const auto buffers = all();
-  for (std::size_t i = 0; i < Place::kArrays; ++i)
+  for (std::size_t i = 0; i < Slot::kArrays; ++i)
     *buffers[i] = context.buffer(CL_MEM_READ_ONLY, sizes[i], kNames[i]);
 }
 
 SceneBuffers::Sizes SceneBuffers::sizes_of(const flatten::FlatScene& flat, const flatten::WideForm& wide) {
   Sizes sizes;
   const auto pieces = pieces_of(flat, wide);
-  for (std::size_t i = 0; i < Place::kArrays; ++i) sizes[i] = pieces[i].bytes;
+  for (std::size_t i = 0; i < Slot::kArrays; ++i) sizes[i] = pieces[i].bytes;
   return sizes;
 }
 
@@ -79,7 +79,7 @@ void SceneBuffers::copy(cl::CommandQueue& queue, const flatten::FlatScene& flat,
   const auto pieces = pieces_of(flat, wide);
   const auto buffers = all();
   device::checked("uploading the scene", [&] {
-    for (std::size_t i = 0; i < Place::kArrays; ++i)
+    for (std::size_t i = 0; i < Slot::kArrays; ++i)
       if (pieces[i].bytes > 0)
         queue.enqueueWriteBuffer(*buffers[i], CL_FALSE, 0, pieces[i].bytes, pieces[i].data);
     queue.finish();

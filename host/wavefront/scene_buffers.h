@@ -18,13 +18,13 @@ struct SceneBuffers {
   KDRAY_SCENE_ARRAYS(KDRAY_BUFFER)
 #undef KDRAY_BUFFER
 
-  // The places of the arrays in the list.
+  // Each array has a slot in the list.
 #define KDRAY_NAME(access, type, name) name,
-  struct Place {
+  struct Slot {
     enum : std::size_t { KDRAY_SCENE_ARRAYS(KDRAY_NAME) kArrays };
   };
 #undef KDRAY_NAME
-  using Sizes = std::array<std::size_t, Place::kArrays>;  // bytes
+  using Sizes = std::array<std::size_t, Slot::kArrays>;  // bytes
 
   SceneBuffers(const device::Context& context, const flatten::FlatScene& flat, const flatten::WideForm& wide);
   // Room for arrays of these sizes.
@@ -45,7 +45,7 @@ struct SceneBuffers {
   }
 
  private:
-  std::array<cl::Buffer*, Place::kArrays> all();
+  std::array<cl::Buffer*, Slot::kArrays> all();
 };
 
 }  // namespace kdray::wavefront

@@ -11,7 +11,7 @@
 namespace kdray {
 namespace {
 
-struct Place {
+struct Query {
   cl_uint width, height, place;
 };
 struct Pixel {
@@ -22,11 +22,11 @@ struct Pixel {
 
 class PlaceTest : public test::EachDevice {
  protected:
-  std::vector<Pixel> pixels_at(const std::vector<Place>& places) {
+  std::vector<Pixel> pixels_at(const std::vector<Query>& places) {
     return test::run_kernel<Pixel>(GetParam(), R"(#include "raygen/place.clh"
-typedef struct Place { uint width, height, place; } Place;
+typedef struct Query { uint width, height, place; } Query;
 typedef struct Pixel { uint x, y, bits; } Pixel;
-__kernel void test(__global const Place* in, __global Pixel* out, uint n) {
+__kernel void test(__global const Query* in, __global Pixel* out, uint n) {
   const uint i = get_global_id(0);
   if (i >= n) return;
   const TileOrder order = tile_order(in[i].width, in[i].height);
@@ -40,7 +40,7 @@ __kernel void test(__global const Place* in, __global Pixel* out, uint n) {
   }
 
   std::vector<Pixel> all_of(cl_uint width, cl_uint height) {
-    std::vector<Place> places(std::size_t{1} << pixels_at({{width, height, 0}})[0].bits);
+    std::vector<Query> places(std::size_t{1} << pixels_at({{width, height, 0}})[0].bits);
     for (cl_uint i = 0; i < places.size(); ++i) places[i] = {width, height, i};
     return pixels_at(places);
   }

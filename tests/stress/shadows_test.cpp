@@ -50,16 +50,16 @@ std::uint64_t wrong_pixels(const scene::Scene& model, bool lit, Traversal traver
   return wrong;
 }
 
-struct Place {
+struct Lamp {
   const char* name;
   double height;
   bool lit, ball;
 };
-void PrintTo(const Place& p, std::ostream* out) {
+void PrintTo(const Lamp& p, std::ostream* out) {
   *out << p.name;
 }
 
-class Shadows : public testing::TestWithParam<Place> {
+class Shadows : public testing::TestWithParam<Lamp> {
  protected:
   void SetUp() override {
     if (devices().empty()) GTEST_SKIP() << "no OpenCL device";
@@ -67,8 +67,8 @@ class Shadows : public testing::TestWithParam<Place> {
 };
 
 TEST_P(Shadows, OfALightNearASurface) {
-  const Place& place = GetParam();
-  Tally tally("shadows", std::string("a light ") + place.name);
+  const Lamp& lamp = GetParam();
+  Tally tally("shadows", std::string("a light ") + lamp.name);
   for (std::uint64_t i = 0; i < (is_full() ? 40 : 2); ++i) {
     Random random(kSeed, i);
     Room r{random.log_uniform(1e-4, 1e4), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -77,10 +77,10 @@ TEST_P(Shadows, OfALightNearASurface) {
       r.right = glm::normalize(glm::cross(r.up, random.direction()));
       r.forward = glm::cross(r.right, r.up);
     }
-    const scene::Scene model = room(r, place.height, place.ball);
+    const scene::Scene model = room(r, lamp.height, lamp.ball);
     for (std::size_t w = 0; w < kWalks.size(); ++w) {
       tally.row(w).rays += kSize * kSize;
-      tally.row(w).wrong += wrong_pixels(model, place.lit, kWalks[w].traversal);
+      tally.row(w).wrong += wrong_pixels(model, lamp.lit, kWalks[w].traversal);
     }
   }
   tally.publish();
@@ -88,12 +88,12 @@ TEST_P(Shadows, OfALightNearASurface) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Light, Shadows,
-                         testing::Values(Place{"on the ceiling", 1, true, false},
-                                         Place{"just below the ceiling", 1 - 0x1p-17, true, false},
-                                         Place{"just above the ceiling", 1 + 0x1p-15, false, false},
-                                         Place{"on a ball", 1, true, true},
-                                         Place{"just inside of a ball", 1 + 0x1p-14, false, true},
-                                         Place{"just below the floor", -0x1p-15, false, false}),
+                         testing::Values(Lamp{"on the ceiling", 1, true, false},
+                                         Lamp{"just below the ceiling", 1 - 0x1p-17, true, false},
+                                         Lamp{"just above the ceiling", 1 + 0x1p-15, false, false},
+                                         Lamp{"on a ball", 1, true, true},
+                                         Lamp{"just inside of a ball", 1 + 0x1p-14, false, true},
+                                         Lamp{"just below the floor", -0x1p-15, false, false}),
                          [](const auto& info) {
                            std::string name(info.param.name);
                            for (char& c : name) c = c == ' ' ? '_' : c;

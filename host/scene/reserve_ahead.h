@@ -1,6 +1,6 @@
 // What    Room in a vector for all that the rest of a text will bring, should it go on as it began.
-// Shape   make() before each push_back(); the rate is measured from where the vector got its first element.
-//         Memory that is reserved and not used is never touched, so that too much costs nothing.
+// Shape   reserve() before each push_back(); the rate is measured from where the vector got its first
+//         element. Memory that is reserved and not used is never touched, so that too much costs nothing.
 // Why     Growing by doubling touches each element's memory twice and copies it: that took longer than
 //         reading the numbers.
 #pragma once
@@ -10,10 +10,10 @@
 
 namespace kdray::scene {
 
-class Room {
+class ReserveAhead {
  public:
   template <class Vector>
-  void make(Vector& elements, std::size_t bytes_left) {
+  void reserve(Vector& elements, std::size_t bytes_left) {
     const std::size_t n = elements.size();
     if (n < elements.capacity()) return;
     if (n == 0) first_ = bytes_left;
