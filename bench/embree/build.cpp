@@ -22,8 +22,10 @@ struct Buffers {
 Buffers triangle_buffers(const scene::Scene& scene, const scene::Geometry& geometry) {
   Buffers b;
   b.vertices.reserve(3 * scene.vertices.size() + kPadding);
-  for (const dvec3& v : scene.vertices)
-    for (int k = 0; k < 3; ++k) b.vertices.push_back(static_cast<float>(v[k] - geometry.center[k]));
+  for (const dvec3& v : scene.vertices) {
+    const vec3 local(geometry.space.local(v));
+    b.vertices.insert(b.vertices.end(), {local.x, local.y, local.z});
+  }
   b.indices.reserve(3 * geometry.triangles.size());
   for (const std::uint32_t source : geometry.sources)
     for (const std::uint32_t v : scene.triangles[source].vertex) b.indices.push_back(v);

@@ -53,15 +53,17 @@ double on_threads(int n_threads, std::size_t n, std::size_t chunk, const TraceCh
   return timer.seconds();
 }
 
-void set_ray(RTCRayN* rays, unsigned n, unsigned i, const Ray& ray, const vec3& center) {
-  RTCRayN_org_x(rays, n, i) = ray.origin[0] - center.x;
-  RTCRayN_org_y(rays, n, i) = ray.origin[1] - center.y;
-  RTCRayN_org_z(rays, n, i) = ray.origin[2] - center.z;
+void set_ray(RTCRayN* rays, unsigned n, unsigned i, const Ray& ray, const LocalSpace& space) {
+  const vec3 center(space.center);
+  const auto scale = static_cast<float>(space.scale);
+  RTCRayN_org_x(rays, n, i) = (ray.origin[0] - center.x) * scale;
+  RTCRayN_org_y(rays, n, i) = (ray.origin[1] - center.y) * scale;
+  RTCRayN_org_z(rays, n, i) = (ray.origin[2] - center.z) * scale;
   RTCRayN_dir_x(rays, n, i) = ray.direction[0];
   RTCRayN_dir_y(rays, n, i) = ray.direction[1];
   RTCRayN_dir_z(rays, n, i) = ray.direction[2];
-  RTCRayN_tnear(rays, n, i) = ray.t_min;
-  RTCRayN_tfar(rays, n, i) = ray.t_max;
+  RTCRayN_tnear(rays, n, i) = ray.t_min * scale;
+  RTCRayN_tfar(rays, n, i) = ray.t_max * scale;
   RTCRayN_time(rays, n, i) = 0;
   RTCRayN_mask(rays, n, i) = ~0u;
   RTCRayN_flags(rays, n, i) = 0;
@@ -106,7 +108,7 @@ class Tracer {
     const auto lane = static_cast<unsigned>(i % N);
     Ray ray = rays[std::min(i, rays.size() - 1)];
     if (i >= rays.size()) ray.t_min = kInfinity, ray.t_max = -kInfinity;
-    set_ray(ray_n(i / N), N, lane, ray, scenes_.center());
+    set_ray(ray_n(i / N), N, lane, ray, scenes_.space());
     if constexpr (!any_hit) {
       RTCHitN* const hit = RTCRayHitN_HitN(reinterpret_cast<RTCRayHitN*>(&packed_[i / N]), N);
       RTCHitN_geomID(hit, N, lane) = RTC_INVALID_GEOMETRY_ID;
@@ -132,7 +134,8 @@ class Tracer {
       RTCHitN* const hit = RTCRayHitN_HitN(reinterpret_cast<RTCRayHitN*>(&packed_[i / N]), N);
       const unsigned geometry = RTCHitN_geomID(hit, N, lane);
       if (geometry == RTC_INVALID_GEOMETRY_ID) return {kInfinity, -1, 0, 0};
-      return {t, scenes_.number_of(geometry, RTCHitN_primID(hit, N, lane)), RTCHitN_u(hit, N, lane),
+      return {static_cast<float>(scenes_.space().world_length(t)),
+              scenes_.number_of(geometry, RTCHitN_primID(hit, N, lane)), RTCHitN_u(hit, N, lane),
               RTCHitN_v(hit, N, lane)};
     }
   }

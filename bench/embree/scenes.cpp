@@ -81,7 +81,7 @@ RTCDevice open_embree() {
 
 EmbreeScenes::EmbreeScenes(const scene::Scene& scene) : device_(open_embree()) {
   const scene::Geometry geometry = scene::make_geometry(scene);
-  center_ = vec3(geometry.center);
+  space_ = geometry.space;
   numbers_ = {numbers_of(geometry.triangles), numbers_of(scene.spheres, geometry.spheres),
               numbers_of(scene.cones, geometry.cones)};
   fast_ = build(geometry, RTC_SCENE_FLAG_NONE);

@@ -29,7 +29,7 @@ class EmbreeScenes {
   EmbreeScenes& operator=(const EmbreeScenes&) = delete;
 
   RTCScene get(bool robust) const { return robust ? robust_ : fast_; }
-  const vec3& center() const { return center_; }  // what rays are to be moved by
+  const LocalSpace& space() const { return space_; }  // that rays are to be traced in
   std::int32_t number_of(unsigned geometry, unsigned primitive) const {
     return static_cast<std::int32_t>(numbers_[geometry][primitive]);
   }
@@ -37,7 +37,7 @@ class EmbreeScenes {
  private:
   RTCScene build(const scene::Geometry& geometry, RTCSceneFlags flags);
 
-  vec3 center_;
+  LocalSpace space_;
   std::array<std::vector<std::uint32_t>, 3> numbers_;  // by kind, Embree's geomID
   RTCDevice device_;
   RTCScene fast_, robust_;

@@ -155,7 +155,7 @@ class Prophet {
 
   Paths paths_of(const odprt::Cut& cut, const std::vector<std::uint32_t>& owner_of,
                  const std::vector<LifeRay>& lives) const {
-    return find_paths(input_.prepared.wide, cut, owner_of, lives, input_.prepared.geometry.center);
+    return find_paths(input_.prepared.wide, cut, owner_of, lives, input_.prepared.geometry.space);
   }
 
   void compare_rays(const std::vector<LifeRay>& lives) {

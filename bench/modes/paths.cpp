@@ -13,15 +13,17 @@ using layout::u32;
 
 constexpr double kVisitCost = 1, kBlockCost = 2;
 
-// A ray about the scene's centre.
+// A ray in the scene's own space.
 struct Line {
   double origin[3], inverse[3];
   double t_min, t_max;
   u32 octant = 0;
 
-  Line(const Ray& ray, const dvec3& center) : t_min(ray.t_min), t_max(ray.t_max * (1 + 1e-6)) {
+  Line(const Ray& ray, const LocalSpace& space)
+      : t_min(space.local_length(ray.t_min)), t_max(space.local_length(ray.t_max) * (1 + 1e-6)) {
+    const dvec3 from = space.local({ray.origin[0], ray.origin[1], ray.origin[2]});
     for (int k = 0; k < 3; ++k) {
-      origin[k] = ray.origin[k] - center[k];
+      origin[k] = from[k];
       const double along = ray.direction[k];
       inverse[k] = 1 / (std::abs(along) < 1e-18 ? std::copysign(1e-18, along) : along);
       if (std::signbit(along)) octant |= 1u << k;
@@ -108,10 +110,10 @@ class Walk {
 
 Paths find_paths(const flatten::WideForm& form, const odprt::Cut& cut,
                  std::span<const std::uint32_t> owner_of, std::span<const LifeRay> lives,
-                 const dvec3& center) {
+                 const LocalSpace& space) {
   Paths paths;
   Walk walk(form, cut, owner_of, paths);
-  for (const LifeRay& life : lives) walk.run(Line(life.ray, center));
+  for (const LifeRay& life : lives) walk.run(Line(life.ray, space));
   return paths;
 }
 

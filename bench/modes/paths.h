@@ -31,11 +31,11 @@ struct Paths {
   }
 };
 
-// `owner_of` has the owner of each of the cut's subtrees; `center` is the scene's, which the form's
+// `owner_of` has the owner of each of the cut's subtrees; `space` is the scene's, which the form's
 // coordinates are about.
 Paths find_paths(const flatten::WideForm& form, const odprt::Cut& cut,
                  std::span<const std::uint32_t> owner_of, std::span<const LifeRay> lives,
-                 const dvec3& center);
+                 const LocalSpace& space);
 
 // What each owner has to do for all rays: the walks in what is its own, those through the directory from
 // there on, and `shade_cost` for each hit that is shaded. A ray that meets nothing belongs to the one where

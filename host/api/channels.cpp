@@ -22,8 +22,9 @@ std::vector<film::Channel> channels_of(State& state, const Job& job, Drawn& draw
   std::vector<film::Channel> channels;
   if (!traced.empty()) {
     Device& device = state.devices.first();
-    channels = wavefront::render_channels(device.context, device.buffers(), device.programs, job.frame,
-                                          job.features, job.options.precision, traced);
+    channels =
+        wavefront::render_channels(device.context, device.buffers(), device.programs, job.frame,
+                                   state.scene.geometry.space, job.features, job.options.precision, traced);
   }
   if (counted) channels.push_back(samples_channel(job, drawn));
   return channels;

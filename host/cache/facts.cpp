@@ -123,7 +123,8 @@ std::string to_bytes(const prepare::Prepared& p) {
                       {"background", of(background)},
                       {"ambient", of(ambient)},
                       {"settings", of(settings)},
-                      {"center", of(geometry.center)},
+                      {"center", of(geometry.space.center)},
+                      {"scale", geometry.space.scale},
                       {"lo", of(geometry.bounds.lo)},
                       {"hi", of(geometry.bounds.hi)},
                       {"dropped", geometry.dropped_degenerate},
@@ -149,7 +150,8 @@ void from_bytes(std::string_view bytes, prepare::Prepared& p) {
   get(facts.at("background"), s.background);
   get(facts.at("ambient"), s.ambient);
   get(facts.at("settings"), s.settings);
-  get(facts.at("center"), p.geometry.center);
+  get(facts.at("center"), p.geometry.space.center);
+  facts.at("scale").get_to(p.geometry.space.scale);
   get(facts.at("lo"), p.geometry.bounds.lo);
   get(facts.at("hi"), p.geometry.bounds.hi);
   facts.at("dropped").get_to(p.geometry.dropped_degenerate);

@@ -28,7 +28,7 @@ Json scene_arrays(const scene::Scene& scene) {
 }
 
 Json geometry_arrays(const scene::Geometry& geometry) {
-  const auto& [center, triangles, sources, n_smooth, spheres, cones, bounds, dropped] = geometry;
+  const auto& [space, triangles, sources, n_smooth, spheres, cones, bounds, dropped, lost, fine] = geometry;
   // Its triangles are the flat form's.
   return {{"sources", bytes_of(sources)}, {"spheres", bytes_of(spheres)}, {"cones", bytes_of(cones)}};
 }
@@ -131,6 +131,8 @@ Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
   report["lights"] = lights_report(scene);
   report["materials"] = materials_report(scene);
   report["warnings"] = scene.warnings;
+  if (const std::string warning = scene::range_warning(geometry); !warning.empty())
+    report["warnings"].push_back(warning);
   return report;
 }
 

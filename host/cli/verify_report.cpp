@@ -138,7 +138,7 @@ void tell_tracing(const Findings& f, Words& words) {
 }
 
 Json place(const Findings& f, const vec3& p) {
-  const dvec3 world = dvec3(p) + f.center;
+  const dvec3 world = f.space.world(dvec3(p));
   return {world.x, world.y, world.z};
 }
 
@@ -158,6 +158,11 @@ Json faces_json(const Findings& f, const std::vector<std::uint32_t>& faces) {
   return json;
 }
 
+double world_volume(const Findings& f, double local) {
+  for (int k = 0; k < 3; ++k) local = f.space.world_length(local);
+  return local;
+}
+
 Json components_json(const Findings& f) {
   Json json = Json::array();
   for (std::size_t i = 0; i < std::min(f.topology.components.size(), kShown); ++i) {
@@ -170,7 +175,7 @@ Json components_json(const Findings& f) {
                     {"open_edges", c.open_edges},
                     {"crowded_edges", c.crowded_edges},
                     {"flipped_faces", c.flipped},
-                    {"volume", c.closed() ? Json(c.volume) : Json()}});
+                    {"volume", c.closed() ? Json(world_volume(f, c.volume)) : Json()}});
   }
   return json;
 }

@@ -78,7 +78,7 @@ std::uint32_t material_features(const scene::Scene& scene, const scene::Geometry
 }
 
 bool attenuated(const scene::Light& l) {
-  return l.attenuation != vec3(1, 0, 0) || std::isfinite(l.range);
+  return l.attenuation != dvec3(1, 0, 0) || std::isfinite(l.range);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 
@@ -132,16 +133,46 @@ layout::u32 kind_of(scene::LightKind kind) {
   }
 }
 
-layout::Light pack(const scene::Light& light, const dvec3& center) {
+float within_float(double value) {
+  return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
+}
+
+// Fall-off for local distances: a.x + a.y*d + a.z*d^2 with d = local / scale.
+vec3 local_attenuation(const dvec3& a, const LocalSpace& space) {
+  return {within_float(a.x), within_float(space.world_length(a.y)),
+          within_float(space.world_length(space.world_length(a.z)))};
+}
+
+// Beyond this, in local lengths, a light's direction is the same all over the scene, and products of its
+// distance may leave the range of float.
+constexpr double kFarLight = 0x1p40 * kLocalReach;
+
+// A light so far away is taken to be at kFarLight, in its direction, and to have lost what its true distance
+// costs.
+void bring_near(layout::Light& out, const scene::Light& light, const dvec3& way) {
+  const double distance = safe_length(way);
+  const dvec3& a = light.attenuation;
+  const double fall_off = a.x + a.y * distance + a.z * distance * distance;
+  const bool reaches = distance <= light.range && std::isfinite(fall_off);
+  set(out.position, vec3(safe_normalize(way) * kFarLight));
+  set(out.color, reaches ? vec3(dvec3(light.color) / fall_off) : vec3(0));
+  set(out.attenuation, vec3(1, 0, 0));
+  out.range = std::numeric_limits<float>::infinity();
+}
+
+layout::Light pack(const scene::Light& light, const LocalSpace& space) {
   layout::Light out{};
-  set(out.position, vec3(light.position - center));
+  const dvec3 position = space.local(light.position);
+  set(out.position, vec3(position));
   set(out.direction, vec3(light.direction));
   set(out.color, light.color);
-  set(out.attenuation, light.attenuation);
+  set(out.attenuation, local_attenuation(light.attenuation, space));
   out.kind = kind_of(light.kind);
-  out.range = static_cast<float>(light.range);
+  out.range = static_cast<float>(space.local_length(light.range));
   out.cos_inner = light.cos_inner;
   out.cos_outer = light.cos_outer;
+  if (light.kind != scene::LightKind::directional && largest_component(position) > kFarLight)
+    bring_near(out, light, light.position - space.center);
   return out;
 }
 
@@ -167,7 +198,7 @@ FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, co
   flat.materials = filled<layout::Material>(
       scene.materials.size(), [&](std::size_t i) { return pack(scene.materials[i], scene.ambient); });
   flat.lights = filled<layout::Light>(scene.lights.size(),
-                                      [&](std::size_t i) { return pack(scene.lights[i], geometry.center); });
+                                      [&](std::size_t i) { return pack(scene.lights[i], geometry.space); });
   return flat;
 }
 

@@ -40,6 +40,17 @@ void set(float (&out)[3], const dvec3& v) {
   for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(v[k]);
 }
 
+// From farther off than this, in local lengths, no direction that floats tell from the next one meets another
+// part of the scene: the eye is taken to be there, since products of larger distances leave the range of
+// float.
+constexpr double kFarthestEye = 0x1p60;
+
+dvec3 local_eye(const LocalSpace& space, const dvec3& from) {
+  const dvec3 eye = space.local(from);
+  if (largest_component(eye) <= kFarthestEye) return eye;
+  return safe_normalize(from * 0.5 - space.center * 0.5) * kFarthestEye;
+}
+
 }  // namespace
 
 RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings& settings) {
@@ -77,8 +88,9 @@ double radiance_bound(const scene::Scene& scene, int depth) {
 
 layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geometry, const RenderOptions& o) {
   const scene::Camera camera = scene.camera.value_or(scene::Camera{});
-  const dvec3 forward = glm::normalize(camera.at - camera.from);
-  const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+  const dvec3 forward = safe_normalize(camera.at - camera.from);
+  const dvec3 right =
+      glm::normalize(glm::cross(forward, camera.up * scale_to_one(largest_component(camera.up))));
   const dvec3 up = glm::cross(right, forward);
   const double half_height = std::tan(camera.vertical_fov / 2);
   const double half_width = half_height * o.width / o.height;
@@ -89,12 +101,12 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
                rows = std::max(1, o.height - (corners ? 1 : 0));
 
   layout::Frame f{};
-  set(f.eye, camera.from - geometry.center);
+  set(f.eye, local_eye(geometry.space, camera.from));
   set(f.forward, forward);
   set(f.right, right);
   set(f.up, up);
   set(f.background, dvec3(scene.background));
-  f.hither = static_cast<float>(camera.hither);
+  f.hither = static_cast<float>(geometry.space.local_length(camera.hither));
   f.x_scale = static_cast<float>(2 * half_width / columns);
   f.x_offset = static_cast<float>(-half_width);
   f.y_scale = static_cast<float>(-2 * half_height / rows);

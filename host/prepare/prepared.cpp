@@ -127,9 +127,11 @@ Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
   made.wide = flatten::make_wide(tree, made.flat, flatten::choose_block(tree));
   made.seconds.flatten = step.seconds();
 
-  made.geometry.center = geometry.center;
+  made.geometry.space = geometry.space;
   made.geometry.bounds = tree.bounds;
   made.geometry.dropped_degenerate = geometry.dropped_degenerate;
+  if (const std::string warning = scene::range_warning(geometry); !warning.empty())
+    made.settings.warnings.push_back(warning);
   made.counts = {scene.primitive_count(), geometry.triangles.size(), geometry.spheres.size(),
                  geometry.cones.size()};
   made.features = flatten::features_of(scene, geometry);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "math/local_space.h"
 
 namespace kdray::scene {
 
@@ -114,12 +115,11 @@ void check_scene(const Scene& scene) {
 const char* fault_of(const Camera& c) {
   if (!is_finite(c.from) || !is_finite(c.at) || !is_finite(c.up)) return "a coordinate is not finite";
   const dvec3 forward = c.at - c.from;
-  const double length = glm::length(forward);
-  if (!(length > 0)) return "'from' and 'at' are the same point";
-  const double up = glm::length(c.up);
-  if (!(up > 0)) return "'up' has no length";
+  if (!is_finite(forward)) return "'from' and 'at' are farther apart than double precision goes";
+  if (forward == dvec3(0)) return "'from' and 'at' are the same point";
+  if (c.up == dvec3(0)) return "'up' has no length";
   // Nearer to parallel than this, the sideways direction would be made of rounding errors.
-  if (glm::length(glm::cross(forward / length, c.up / up)) < 1e-9)
+  if (glm::length(glm::cross(safe_normalize(forward), safe_normalize(c.up))) < 1e-9)
     return "'up' is parallel to the view direction";
   if (!(c.vertical_fov > 0 && c.vertical_fov < 3.14159265))
     return "the angle of view is not between 0 and 180 degrees";
@@ -142,8 +142,9 @@ const char* fault_of(const Light& l) {
   const bool has_direction = l.kind != LightKind::point;
   if (has_direction && !(std::abs(glm::length(l.direction) - 1) < 1e-6))
     return "the direction has no unit length";
-  const vec3 a = l.attenuation;
-  if (!at_least_zero(a) || !(a.x + a.y + a.z > 0)) return "the attenuation is not finite, below 0, or all 0";
+  const dvec3 a = l.attenuation;
+  if (!is_finite(a) || glm::any(glm::lessThan(a, dvec3(0))) || !(a.x + a.y + a.z > 0))
+    return "the attenuation is not finite, below 0, or all 0";
   if (!(l.range > 0)) return "the range is not above 0";
   if (!(l.cos_outer >= -1 && l.cos_outer <= l.cos_inner && l.cos_inner <= 1)) {
     return "the spot's inner angle is wider than its outer one";

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "math/local_space.h"
+
 namespace kdray::scene {
 
 namespace {
@@ -18,8 +20,9 @@ struct Basis {
 };
 
 Basis basis_of(const Camera& camera) {
-  const dvec3 forward = glm::normalize(camera.at - camera.from);
-  const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+  const dvec3 forward = safe_normalize(camera.at - camera.from);
+  const dvec3 right =
+      glm::normalize(glm::cross(forward, camera.up * scale_to_one(largest_component(camera.up))));
   return {right, glm::cross(right, forward), forward};
 }
 
@@ -29,8 +32,11 @@ double aspect_of(const RenderSettings& settings) {
 }
 
 // A view from the front, the right and above (y is up, as in glTF and most OBJ files) onto the middle of the
-// box, from as near as lets all eight corners into the picture.
-Camera three_quarter_view(const DBox& box, double aspect) {
+// box, from as near as lets all eight corners into the picture. The camera is made for the box at a size of
+// about 1.
+Camera three_quarter_view(const DBox& world, double aspect) {
+  const double scale = scale_to_one(std::max(largest_component(world.lo), largest_component(world.hi)));
+  const DBox box{world.lo * scale, world.hi * scale};
   Camera camera;
   camera.at = box.center();
   camera.vertical_fov = kFov;
@@ -48,8 +54,9 @@ Camera three_quarter_view(const DBox& box, double aspect) {
     const double upward = std::abs(glm::dot(p, view.up)) / tan_up;
     distance = std::max(distance, std::max(sideways, upward) - glm::dot(p, view.forward));
   }
-  if (!(distance > 0)) distance = 1;  // a single point
-  camera.from = camera.at + distance * away;
+  if (!(distance > 0)) distance = scale;  // a single point
+  camera.from = (camera.at + distance * away) / scale;
+  camera.at /= scale;
   return camera;
 }
 
@@ -79,7 +86,7 @@ void add_lights(Scene& scene, const DBox& box) {
   const Basis view = basis_of(*scene.camera);
   const dvec3 eye = scene.camera->from;
   if (contains(box, eye)) {
-    const double step = 0.02 * glm::length(box.extent());
+    const double step = 0.02 * safe_length(box.extent());
     scene.lights.push_back(point(eye, kKey));
     scene.lights.push_back(point(eye + step * view.up, kFill));
   } else {
@@ -128,7 +135,7 @@ DBox worth_showing(Scene& scene, const DBox& bounds) {
   DBox box = inner_box(sampled_middles(scene));
   const dvec3 margin = 0.05 * box.extent();
   box = intersection(DBox{box.lo - margin, box.hi + margin}, bounds);
-  if (glm::length(box.extent()) * kSpeck > glm::length(bounds.extent())) return bounds;
+  if (safe_length(box.extent()) * kSpeck > safe_length(bounds.extent())) return bounds;
   scene.warnings.push_back("a few primitives reach far beyond the others: the camera looks at the others");
   return box;
 }

@@ -1,5 +1,6 @@
 #include "scene/geometry.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ double center_along(double lo, double hi, double size) {
   const double middle = lo + (hi - lo) * 0.5;
   if (std::abs(middle) <= 1.5 * size) return 0;
   if (!(size > 0)) return middle;  // everything is in one point
-  const double step = std::exp2(std::floor(std::log2(size)));
+  const double step = std::ldexp(1.0, std::ilogb(size));
   const double rounded = std::round(middle / step) * step;
   return std::isfinite(rounded) ? rounded : middle;
 }
@@ -60,6 +61,34 @@ dvec3 center_of(const DBox& box) {
   const double size = std::max({extent.x, extent.y, extent.z});
   return {center_along(box.lo.x, box.hi.x, size), center_along(box.lo.y, box.hi.y, size),
           center_along(box.lo.z, box.hi.z, size)};
+}
+
+LocalSpace space_of(const DBox& box) {
+  if (box.empty()) return {};
+  const dvec3 center = center_of(box);
+  const double reach = std::max(largest_component(box.lo - center), largest_component(box.hi - center));
+  return {center, scale_to_one(reach / kLocalReach)};
+}
+
+// Smaller than this, in local lengths, a primitive is less than the distance that rays may be moved by when
+// they leave a surface (8u of its largest coordinate, docs/design/numerics.md), so that its shadow may be
+// lost.
+constexpr float kFine = static_cast<float>(0x1p-20 * kLocalReach);
+
+// A share of fine primitives that is no cause for a warning: scanned meshes have a few tiny triangles among
+// others, whose shadows hide theirs.
+constexpr double kFewFine = 0.01;
+
+bool is_fine(const Box& box) {
+  const vec3 extent = box.extent();
+  return std::max({extent.x, extent.y, extent.z}) < kFine;
+}
+
+// Whether a triangle of the file has an area that is more than the rounding of its decimals.
+bool has_area(const dvec3& a, const dvec3& b, const dvec3& c) {
+  const double scale = scale_to_one(std::max(largest_component(b - a), largest_component(c - a)));
+  const dvec3 e = (b - a) * scale, f = (c - a) * scale;
+  return glm::length(glm::cross(e, f)) > 0x1p-40 * glm::length(e) * glm::length(f);
 }
 
 // Whether a triangle of floats has exactly no area: its three projections all have none.
@@ -83,9 +112,11 @@ void for_each_grain(std::size_t n, const Work& work) {
 class Maker {
  public:
   explicit Maker(const Scene& scene) : scene_(scene) {
-    bounds_ = scene.bounds();
-    out_.center = center_of(bounds_);
-    check_range();
+    const DBox bounds = scene.bounds();
+    out_.space = space_of(bounds);
+    if (!bounds.empty() && !is_finite(bounds.extent()))
+      throw input_error(scene_.name, 0, "coordinates beyond the range of double precision (1.8e308)",
+                        "scale the scene down");
   }
 
   Geometry make() {
@@ -96,22 +127,8 @@ class Maker {
   }
 
  private:
-  // All vertices and centers are inside the bounds, so it takes no test per primitive.
-  void check_range() const {
-    if (bounds_.empty()) return;
-    constexpr double kLargest = std::numeric_limits<float>::max();
-    const dvec3 lo = glm::abs(bounds_.lo - out_.center);
-    const dvec3 hi = glm::abs(bounds_.hi - out_.center);
-    const double reach = std::max({lo.x, lo.y, lo.z, hi.x, hi.y, hi.z});
-    if (!(reach <= kLargest)) throw out_of_range();
-  }
-
-  Error out_of_range() const {
-    return input_error(scene_.name, 0, "coordinates beyond the range of single precision (3.4e38)",
-                       "scale the scene down");
-  }
-
-  vec3 local(const dvec3& p) const { return vec3(p - out_.center); }
+  vec3 local(const dvec3& p) const { return vec3(out_.space.local(p)); }
+  float local_length(double length) const { return static_cast<float>(out_.space.local_length(length)); }
 
   TriangleGeometry triangle(const RawVector<vec3>& vertices, std::size_t i) const {
     const Triangle& from = scene_.triangles[i];
@@ -128,26 +145,46 @@ class Maker {
     const RawVector<vec3> vertices = local_vertices();
     const std::size_t n = scene_.triangles.size(), n_grains = (n + kGrain - 1) / kGrain;
     std::vector<std::size_t> kept(n_grains);
-    std::vector<Box> bounds(n_grains);
+    std::vector<GrainFacts> facts(n_grains);
     out_.triangles = Array<TriangleGeometry>(n);
     out_.sources.resize(n);
     for_each_grain(n, [&](std::size_t first, std::size_t last) {
       std::size_t end = first;
-      Box box;
+      GrainFacts found;
       for (std::size_t i = first; i < last; ++i) {
         const TriangleGeometry t = triangle(vertices, i);
-        if (is_flat(t)) continue;
+        if (is_flat(t)) {
+          found.lost += has_area(i);
+          continue;
+        }
         out_.triangles[end] = t;
         out_.sources[end++] = static_cast<std::uint32_t>(i);
-        box.grow(bounds_of(t));
+        const Box box = bounds_of(t);
+        found.bounds.grow(box);
+        found.fine += is_fine(box);
       }
       kept[first / kGrain] = end - first;
-      bounds[first / kGrain] = box;
+      facts[first / kGrain] = found;
     });
     close_gaps(kept);
     out_.dropped_degenerate += static_cast<std::uint32_t>(n - out_.triangles.size());
-    for (const Box& box : bounds) out_.bounds.grow(box);
+    for (const GrainFacts& found : facts) {
+      out_.bounds.grow(found.bounds);
+      out_.lost += found.lost;
+      out_.fine += found.fine;
+    }
     if (!scene_.normals.empty()) number_normals();
+  }
+
+  // What is known of a grain of triangles, and added up afterwards.
+  struct GrainFacts {
+    Box bounds;
+    std::uint32_t lost = 0, fine = 0;
+  };
+
+  bool has_area(std::size_t i) const {
+    const auto& v = scene_.triangles[i].vertex;
+    return scene::has_area(scene_.vertices[v[0]], scene_.vertices[v[1]], scene_.vertices[v[2]]);
   }
 
   // Moves together the triangles that each grain kept at its beginning.
@@ -195,7 +232,7 @@ class Maker {
     out_.spheres.reserve(scene_.spheres.size());
     for (std::uint32_t i = 0; i < scene_.spheres.size(); ++i) {
       const Sphere& s = scene_.spheres[i];
-      const SphereGeometry g{local(s.center), static_cast<float>(s.radius), i};
+      const SphereGeometry g{local(s.center), local_length(s.radius), i};
       keep(out_.spheres, g, g.radius > 0);
     }
   }
@@ -204,10 +241,8 @@ class Maker {
     out_.cones.reserve(scene_.cones.size());
     for (std::uint32_t i = 0; i < scene_.cones.size(); ++i) {
       const Cone& c = scene_.cones[i];
-      const ConeGeometry g{local(c.base), local(c.apex), static_cast<float>(c.base_radius),
-                           static_cast<float>(c.apex_radius), i};
-      // A disc's radius can be larger than what its bounds reach along any axis.
-      if (!std::isfinite(g.base_radius) || !std::isfinite(g.apex_radius)) throw out_of_range();
+      const ConeGeometry g{local(c.base), local(c.apex), local_length(c.base_radius),
+                           local_length(c.apex_radius), i};
       keep(out_.cones, g, g.base != g.apex && (g.base_radius > 0 || g.apex_radius > 0));
     }
   }
@@ -216,14 +251,16 @@ class Maker {
   void keep(std::vector<Primitive>& into, const Primitive& primitive, bool has_area) {
     if (has_area) {
       into.push_back(primitive);
-      out_.bounds.grow(bounds_of(primitive));
+      const Box box = bounds_of(primitive);
+      out_.bounds.grow(box);
+      out_.fine += is_fine(box);
     } else {
       ++out_.dropped_degenerate;
+      ++out_.lost;  // the file's have a radius, and a height
     }
   }
 
   const Scene& scene_;
-  DBox bounds_;
   Geometry out_;
 };
 
@@ -231,6 +268,20 @@ class Maker {
 
 Geometry make_geometry(const Scene& scene) {
   return Maker(scene).make();
+}
+
+std::string range_warning(const Geometry& geometry) {
+  const auto kept = static_cast<double>(geometry.size());
+  const bool many = geometry.fine > kFewFine * kept;
+  if (geometry.lost == 0 && !many) return "";
+  std::string what;
+  if (geometry.lost > 0)
+    what = fmt::format("{} of the primitives are too small for it to see", geometry.lost);
+  if (many)
+    what += fmt::format("{}{} primitives are smaller than a millionth of it, and may lose their shadows",
+                        what.empty() ? "" : " and ", geometry.fine);
+  return "the scene ranges wider than single precision: " + what +
+         "; take out what lies far off, or what is huge, or split the scene";
 }
 
 Box bounds_of(const TriangleGeometry& t) {

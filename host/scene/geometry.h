@@ -1,5 +1,7 @@
-// What    The primitives as the tree and the kernels see them: float, about the scene's own centre. The move
-//         is done in double (docs/design/numerics.md), so that a model at (1e6, 1e6, 1e6) keeps its bits.
+// What    The primitives as the tree and the kernels see them: float, about the scene's own centre, at a size
+//         that is the same for all scenes (math/local_space.h). The move and the scaling, by a power of two,
+//         are done in double (docs/design/numerics.md), so that a model at (1e6, 1e6, 1e6) keeps its bits,
+//         and so does one that is 2^k times as large.
 // Shape   One array per kind, in file order; `number` maps back to the file. Degenerate triangles (zero area
 //         after rounding, exactly decided) and spheres or cones whose radius rounds to 0 are dropped and
 //         counted. Triangles are as the kernels read them: a device that shares memory takes them from here,
@@ -7,12 +9,14 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/array.h"
 #include "base/raw_vector.h"
 #include "layout/primitives.layout.h"
 #include "math/box.h"
+#include "math/local_space.h"
 #include "scene/scene.h"
 
 namespace kdray::scene {
@@ -36,7 +40,7 @@ struct ConeGeometry {
 };
 
 struct Geometry {
-  dvec3 center{0};  // world = local + center
+  LocalSpace space;
   Array<TriangleGeometry> triangles;
   RawVector<std::uint32_t> sources;  // of each triangle, the index into Scene::triangles
   std::uint32_t n_smooth = 0;        // triangles with vertex normals, which their `normals` number in order
@@ -44,11 +48,16 @@ struct Geometry {
   std::vector<ConeGeometry> cones;
   Box bounds;  // contains every primitive
   std::uint32_t dropped_degenerate = 0;
+  std::uint32_t lost = 0;  // of the dropped, those that have an area before rounding
+  std::uint32_t fine = 0;  // of the others, those smaller than what floats tell apart over the whole scene
 
   std::size_t size() const { return triangles.size() + spheres.size() + cones.size(); }
 };
 
 Geometry make_geometry(const Scene& scene);
+
+// What the user should know of a scene that ranges too wide for floats, in one line; empty: nothing.
+std::string range_warning(const Geometry& geometry);
 
 // Bounds that contain the primitive, rounded outward.
 Box bounds_of(const TriangleGeometry& t);

@@ -60,7 +60,7 @@ Light read_light(const JsonNode& light, const dmat4& to_world) {
   if (out.kind != LightKind::point) out.direction = direction_or(-dvec3(to_world[2]), dvec3(0, 0, -1));
   if (out.kind == LightKind::spot) read_cone(light, out);
   if (out.kind != LightKind::directional) {
-    out.attenuation = vec3(0, 0, 1);
+    out.attenuation = dvec3(0, 0, 1);
     const double range = number_or(light, "range", 0);
     if (range > 0) out.range = range;
   }

@@ -47,8 +47,10 @@ RenderSettings read_settings(const JsonNode& node) {
 void read_reach(const JsonNode& node, Light& light) {
   if (const auto range = node.find("range")) light.range = range->number_above(0);
   if (const auto attenuation = node.find("attenuation")) {
-    light.attenuation = attenuation->color();
-    if (!attenuation->is_array() || light.attenuation == vec3(0)) {
+    light.attenuation = attenuation->vector();
+    if (glm::any(glm::lessThan(light.attenuation, dvec3(0)))) throw attenuation->error("a value below 0");
+    light.attenuation.x = static_cast<float>(light.attenuation.x);  // it is no length
+    if (light.attenuation == dvec3(0)) {
       throw attenuation->expected("[constant, linear, quadratic], not all 0");
     }
   }

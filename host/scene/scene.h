@@ -42,10 +42,10 @@ enum class LightKind { point, directional, spot };
 
 struct Light {
   LightKind kind = LightKind::point;
-  dvec3 position{0};          // point, spot
-  dvec3 direction{0, 0, -1};  // directional, spot: the way the light travels, unit length
-  vec3 color{1};              // linear RGB intensity
-  vec3 attenuation{1, 0, 0};  // att(d) = 1 / (a.x + a.y*d + a.z*d^2); sum > 0, all >= 0
+  dvec3 position{0};           // point, spot
+  dvec3 direction{0, 0, -1};   // directional, spot: the way the light travels, unit length
+  vec3 color{1};               // linear RGB intensity
+  dvec3 attenuation{1, 0, 0};  // att(d) = 1 / (a.x + a.y*d + a.z*d^2); sum > 0, all >= 0
   double range = std::numeric_limits<double>::infinity();  // no light beyond this distance
   float cos_inner = 1, cos_outer = -1;                     // spot: full inside inner, none outside outer
 };

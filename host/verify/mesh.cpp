@@ -17,10 +17,11 @@ struct Place {
 };
 
 // The point of each of the file's vertices, as a number; fills `points`. -0 and 0 are one place.
-std::vector<std::uint32_t> weld(const scene::Scene& scene, const dvec3& center, std::vector<vec3>& points) {
+std::vector<std::uint32_t> weld(const scene::Scene& scene, const LocalSpace& space,
+                                std::vector<vec3>& points) {
   std::vector<Place> places(scene.vertices.size());
   tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    places[i] = {vec3(scene.vertices[i] - center) + vec3(0.0f), static_cast<std::uint32_t>(i)};
+    places[i] = {vec3(space.local(scene.vertices[i])) + vec3(0.0f), static_cast<std::uint32_t>(i)};
   });
   tbb::parallel_sort(places, [](const Place& a, const Place& b) { return a.key() < b.key(); });
   std::vector<std::uint32_t> point_of(places.size());
@@ -46,7 +47,7 @@ Box Mesh::bounds_of(std::size_t triangle) const {
 
 Mesh make_mesh(const scene::Scene& scene, const scene::Geometry& geometry) {
   Mesh mesh;
-  const std::vector<std::uint32_t> point_of = weld(scene, geometry.center, mesh.points);
+  const std::vector<std::uint32_t> point_of = weld(scene, geometry.space, mesh.points);
   mesh.triangles.resize(geometry.triangles.size());
   mesh.numbers.resize(geometry.triangles.size());
   tbb::parallel_for(std::size_t{0}, mesh.triangles.size(), [&](std::size_t i) {

@@ -20,12 +20,14 @@ void name_refs(const Array<Primitive>& primitives, std::uint32_t kind, std::vect
 
 }  // namespace
 
-prepare::Prepared about_center(prepare::Prepared prepared) {
+prepare::Prepared in_local_space(prepare::Prepared prepared) {
   if (auto& camera = prepared.settings.camera) {
-    camera->from -= prepared.geometry.center;
-    camera->at -= prepared.geometry.center;
+    const LocalSpace& space = prepared.geometry.space;
+    camera->from = space.local(camera->from);
+    camera->at = space.local(camera->at);
+    camera->hither = space.local_length(camera->hither);
   }
-  prepared.geometry.center = dvec3(0);
+  prepared.geometry.space = {};
   return prepared;
 }
 

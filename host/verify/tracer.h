@@ -1,5 +1,5 @@
 // What    The scene on a device as the probes ask it: the closest hit by any walk, and where the rays that
-//         leave a hit begin, by the code that renders. All in the tree's own space, about the scene's centre:
+//         leave a hit begin, by the code that renders. All in the scene's own space (math/local_space.h):
 //         origins are not rounded on the way.
 #pragma once
 
@@ -15,12 +15,12 @@
 
 namespace kdray::verify {
 
-// `prepared` as if the file had been about its own centre: world and tree have one space.
-prepare::Prepared about_center(prepare::Prepared prepared);
+// `prepared` as if the file had been in the scene's own space, which is then the world's.
+prepare::Prepared in_local_space(prepare::Prepared prepared);
 
 class Tracer {
  public:
-  // `scene`: about_center's; it must live as long.
+  // `scene`: in_local_space's; it must live as long.
   Tracer(const prepare::Prepared& scene, const DeviceOptions& device);
 
   std::vector<Hit> closest(std::span<const Ray> rays, Traversal traversal = Traversal::automatic);

@@ -35,7 +35,7 @@ struct Seconds {
 };
 
 struct Findings {
-  dvec3 center{0};                                    // of the scene; places here are about it
+  LocalSpace space;                                   // that places, areas and volumes here are in
   std::size_t triangles = 0, spheres = 0, cones = 0;  // that can be hit
   std::uint32_t dropped = 0;                          // that are degenerate
   Mesh mesh;

@@ -46,8 +46,8 @@ std::vector<Plane> wanted_planes(std::span<const std::string> names) {
 
 std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
                                            Programs& programs, const layout::Frame& frame,
-                                           std::uint32_t features, Precision precision,
-                                           std::span<const std::string> names) {
+                                           const LocalSpace& space, std::uint32_t features,
+                                           Precision precision, std::span<const std::string> names) {
   const std::vector<Plane> planes = wanted_planes(names);
   const std::size_t n_pixels = std::size_t{frame.width} * frame.height;
   std::vector<film::Channel> channels;
@@ -70,10 +70,13 @@ std::vector<film::Channel> render_channels(const device::Context& context, const
       stage.set(K::first_pixel, static_cast<cl_uint>(first)).set(K::n_pixels, static_cast<cl_uint>(n));
       stage.launch(queue, (n + KDRAY_LANES - 1) / KDRAY_LANES, kWorkGroup);
       queue.enqueueReadBuffer(out, CL_TRUE, 0, n * kPlanes * sizeof(float), values.data());
-      for (std::size_t i = 0; i < n; ++i)
-        if (std::isnan(values[i * kPlanes]))
+      for (std::size_t i = 0; i < n; ++i) {
+        float& depth = values[i * kPlanes];
+        if (std::isnan(depth))
           throw Error(ErrorCode::internal,
                       "a ray overflowed the traversal's stack; please report it with the scene");
+        depth = static_cast<float>(space.world_length(depth));
+      }
       for (std::size_t c = 0; c < planes.size(); ++c)
         for (std::size_t i = 0; i < n; ++i)
           channels[c].values[first + i] = values[i * kPlanes + planes[c].index];

@@ -7,16 +7,17 @@
 
 #include "film/image.h"
 #include "layout/frame.layout.h"
+#include "math/local_space.h"
 #include "wavefront/programs.h"
 #include "wavefront/scene_buffers.h"
 
 namespace kdray::wavefront {
 
 // `names` of "depth", "normal", "primitive", "cost"; throws ErrorCode::usage, naming what there is, for
-// others.
+// others. Depths are the world's; the frame's lengths are those of `space`.
 std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
                                            Programs& programs, const layout::Frame& frame,
-                                           std::uint32_t features, Precision precision,
-                                           std::span<const std::string> names);
+                                           const LocalSpace& space, std::uint32_t features,
+                                           Precision precision, std::span<const std::string> names);
 
 }  // namespace kdray::wavefront

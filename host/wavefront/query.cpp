@@ -9,6 +9,7 @@
 #include "device/opencl_error.h"
 #include "layout/rays.layout.h"
 #include "layout/traversal.h"
+#include "wavefront/near_rays.h"
 #include "wavefront/stage.h"
 
 namespace kdray::wavefront {
@@ -38,8 +39,8 @@ void check(std::span<const Ray> rays) {
       throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault));
 }
 
-cl_float4 float4(const vec3& v) {
-  return cl_float4{{v.x, v.y, v.z, 0}};
+cl_float4 float4(const vec3& v, float w = 0) {
+  return cl_float4{{v.x, v.y, v.z, w}};
 }
 
 float world_max(const Box& bounds) {
@@ -75,14 +76,18 @@ QueryResult trace_query(const device::Context& context, const SceneBuffers& scen
   Stage stage(programs.kernel<K>(features, traversal, precision));
   const bool chunked = traversal != Traversal::binary && traversal != Traversal::wide;
   cl::CommandQueue queue = context.queues().front();
+  NearRays near_rays(geometry.space);
+  const LocalSpace& space = near_rays.kernel_space();
   device::checked("tracing rays", [&] {
     scene.set_arguments(stage);
     stage.set(K::root_lo, float4(geometry.bounds.lo)).set(K::root_hi, float4(geometry.bounds.hi));
-    stage.set(K::center, float4(vec3(geometry.center))).set(K::world_max, world_max(geometry.bounds));
+    stage.set(K::space, float4(vec3(space.center), static_cast<float>(space.scale)));
+    stage.set(K::world_max, world_max(geometry.bounds));
     stage.set(K::any_hit, cl_uint{any_hit}).set(K::rays, ray_buffer).set(K::hits, hit_buffer);
     for (std::size_t first = 0; first < rays.size(); first += chunk) {
       const std::size_t n = std::min(chunk, rays.size() - first);
-      queue.enqueueWriteBuffer(ray_buffer, CL_TRUE, 0, n * sizeof(Ray), rays.data() + first);
+      const std::span<const Ray> taken = near_rays.take(rays.subspan(first, n));
+      queue.enqueueWriteBuffer(ray_buffer, CL_TRUE, 0, n * sizeof(Ray), taken.data());
       // Memory that nobody has written to yet is handed out page by page, which is no part of tracing.
       queue.enqueueFillBuffer(hit_buffer, cl_int{0}, 0, n * sizeof(Hit));
       queue.finish();
@@ -99,6 +104,7 @@ QueryResult trace_query(const device::Context& context, const SceneBuffers& scen
         seconds += timer.seconds();
       }
       queue.enqueueReadBuffer(hit_buffer, CL_TRUE, 0, n * sizeof(Hit), result.hits.data() + first);
+      near_rays.give_back(std::span(result.hits).subspan(first, n));
     }
   });
   if (std::any_of(result.hits.begin(), result.hits.end(),

@@ -130,7 +130,7 @@
 #define KDRAY_TRACE_QUERY_ARGUMENTS(F, X) \
   F(VALUE, float4, root_lo)               \
   X(VALUE, float4, root_hi)               \
-  X(VALUE, float4, center)                \
+  X(VALUE, float4, space)                 \
   X(VALUE, float, world_max)              \
   X(VALUE, u32, n_rays)                   \
   X(VALUE, u32, any_hit)                  \

@@ -1,5 +1,5 @@
 // What    Query rays: the closest hit of each, or with any_hit whether anything lies inside of its interval
-//         (t = 0, else inf).
+//         (t = 0, else inf). `space`: the scene's centre and scale (host/math/local_space.h).
 // Shape   Binary and wide: one ray to a work-item. Otherwise one work-item to KDRAY_CHUNK rays.
 // Cost    reads 32 B of the ray and the tree, writes 16 B.
 // Errors  a full stack (binary tree) gives primitive KDRAY_QUERY_INVALID; the host checks for it.
@@ -34,7 +34,7 @@ inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 
 __kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
   const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
-  const RaySource source = {&scene, in_rays, out_hits, {center.x, center.y, center.z}, any_hit};
+  const RaySource source = ray_source(&scene, in_rays, out_hits, space, any_hit);
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
   if (item < n_rays)
     query_binary(&scene, &source, item, convert_real3(root_lo.xyz), convert_real3(root_hi.xyz), world_max);
@@ -52,6 +52,6 @@ __kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   const u32 first = item * KDRAY_CHUNK;
   if (first < n_rays)
     walk_rays(&scene, &source, first, min(n_rays, first + KDRAY_CHUNK), world_max, false,
-              KDRAY_COHERENT_DISTANCE * world_max);
+              KDRAY_COHERENT_DISTANCE * world_max * power_of_two(-source.exponent));
 #endif
 }

@@ -16,7 +16,7 @@ prepare::Prepared with_everything() {
   p.settings.background = vec3(0.1f, 1e-40f, 3e38f);
   p.settings.settings.width = 640;
   p.settings.settings.min_weight = 0.1;
-  p.geometry.center = {1.0 / 3, 1e6 + 0.1, -7};
+  p.geometry.space = {{1.0 / 3, 1e6 + 0.1, -7}, 0x1p-900};
   p.geometry.bounds = {vec3(-1.1f), vec3(2.2f)};
   p.geometry.dropped_degenerate = 3;
   p.counts = {10, 5, 2, 1};
@@ -43,7 +43,7 @@ TEST(Facts, ComeBackBitForBit) {
   EXPECT_EQ(back.settings.background.y, 1e-40f);
   EXPECT_EQ(back.settings.settings.width, 640);
   EXPECT_FALSE(back.settings.settings.height);
-  EXPECT_EQ(back.geometry.center.x, 1.0 / 3);
+  EXPECT_EQ(back.geometry.space, with_everything().geometry.space);
   EXPECT_EQ(back.tree.sah_cost, 1.0 / 7);
 }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
+#include <limits>
 
 #include "kdray/error.h"
 
@@ -44,13 +46,63 @@ TEST(Flatten, KeepsNumbersMaterialsAndNormals) {
   EXPECT_EQ(flat.triangles[1].number, 3u);
   ASSERT_EQ(flat.triangles[1].normals, 0u);
   EXPECT_EQ(flat.normals[0].n[1][1], 1.0f);
-  EXPECT_EQ(flat.spheres[0].radius, 0.5f);
+  const auto scale = static_cast<float>(g.space.scale);
+  EXPECT_EQ(flat.spheres[0].radius, 0.5f * scale);
   EXPECT_EQ(flat.spheres[0].number, 0u);
-  EXPECT_EQ(flat.cones[0].height, 4.0f);
+  EXPECT_EQ(flat.cones[0].height, 4.0f * scale);
   EXPECT_EQ(flat.cones[0].slope, -0.25f);
   EXPECT_EQ(flat.cones[0].axis[2], 1.0f);
   EXPECT_EQ(flat.materials[0].unshadowed[0], 0.5f);  // emission + ambient * Camb
   EXPECT_EQ(flat.materials[1].index, 1.5f);
+}
+
+scene::Light lamp(double scale, const dvec3& position) {
+  scene::Light light;
+  light.position = position * scale;
+  light.attenuation = {0.5, 0.25 / scale, 0.125 / scale / scale};
+  light.range = 3 * scale;
+  return light;
+}
+
+// Whatever the scene's size, a light is where it was among its primitives, and as bright there.
+TEST(Flatten, LightsFollowTheScenesScale) {
+  for (const int exponent : {-500, -300, -100, 0, 3, 100, 300, 500}) {
+    SCOPED_TRACE(exponent);
+    const double scale = std::ldexp(1.0, exponent);
+    scene::Scene s;
+    s.spheres = {{.center = {3 * scale, 0, 0}, .radius = 2 * scale}};
+    s.materials.resize(1);
+    s.lights = {lamp(scale, {1, 2, 3})};
+    const scene::Geometry g = scene::make_geometry(s);
+    ASSERT_EQ(g.spheres.size(), 1u);
+    const layout::Light light = flatten(s, g, {}).lights[0];
+    // The farthest coordinate, 5, becomes 1280: one unit is 256.
+    EXPECT_EQ(light.position[0], 256.0f);
+    EXPECT_EQ(light.position[2], 768.0f);
+    EXPECT_EQ(light.range, 768.0f);
+    EXPECT_EQ(light.attenuation[0], 0.5f);
+    EXPECT_EQ(light.attenuation[1], 0x1p-10f);
+    EXPECT_EQ(light.attenuation[2], 0x1p-19f);
+  }
+}
+
+// A sun given as a point: its direction and what is left of its light at the scene are right, though the
+// square of its distance is no float.
+TEST(Flatten, AVeryFarLightIsBroughtNear) {
+  scene::Scene s;
+  s.spheres = {{.center = dvec3(0), .radius = 1}};
+  s.materials.resize(1);
+  s.lights = {scene::Light{.position = {3e200, 4e200, 0}, .color = vec3(8)}, lamp(1, {0, 0, 1e30})};
+  s.lights[1].range = 1e31;
+  s.lights[1].attenuation = {2, 2e-30, 0};
+  const FlatScene flat = flatten(s, scene::make_geometry(s), {});
+  const layout::Light& sun = flat.lights[0];
+  EXPECT_FLOAT_EQ(sun.position[1] / sun.position[0], 4.0f / 3);
+  EXPECT_LT(sun.position[1] * sun.position[1], std::numeric_limits<float>::infinity());
+  EXPECT_EQ(sun.color[0], 8.0f);
+  EXPECT_FLOAT_EQ(flat.lights[1].color[0], 0.25f);
+  s.lights[1].range = 9e29;
+  EXPECT_EQ(flatten(s, scene::make_geometry(s), {}).lights[1].color[0], 0.0f) << "out of reach";
 }
 
 TEST(Flatten, PacksInnerNodesAndLeaves) {

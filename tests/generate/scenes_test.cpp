@@ -59,7 +59,7 @@ TEST(Scenes, MaterialsHasOneOfEverything) {
   bool attenuated = false, ranged = false, soft_spot = false;
   for (const Light& l : s.lights) {
     lights.insert(l.kind);
-    attenuated |= l.attenuation != vec3(1, 0, 0);
+    attenuated |= l.attenuation != dvec3(1, 0, 0);
     ranged |= std::isfinite(l.range);
     soft_spot |= l.kind == LightKind::spot && l.cos_inner > l.cos_outer;
   }

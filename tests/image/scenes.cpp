@@ -159,8 +159,8 @@ scene::Scene moved(scene::Scene model, double scale, const dvec3& offset) {
   for (scene::Light& l : model.lights) {
     place(l.position);
     l.range *= scale;
-    l.attenuation.y = static_cast<float>(l.attenuation.y / scale);
-    l.attenuation.z = static_cast<float>(l.attenuation.z / (scale * scale));
+    l.attenuation.y /= scale;
+    l.attenuation.z /= scale * scale;
   }
   place(model.camera->from), place(model.camera->at);
   model.camera->hither *= scale;

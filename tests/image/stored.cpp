@@ -63,7 +63,7 @@ Stored as_stored(const scene::Scene& scene) {
   const scene::Geometry geometry = scene::make_geometry(scene);
   const flatten::FlatScene flat = flatten::flatten(scene, geometry, kdtree::build(geometry));
   Stored stored;
-  stored.center = geometry.center;
+  stored.space = geometry.space;
   scene::Scene& out = stored.model;
   add_triangles(flat, out);
   add_curved(flat, out);
@@ -73,12 +73,14 @@ Stored as_stored(const scene::Scene& scene) {
     light.position = vector(flat.lights[i].position);
     light.direction = glm::normalize(vector(flat.lights[i].direction));
     light.range = flat.lights[i].range;
+    light.attenuation = vector(flat.lights[i].attenuation);
     out.lights.push_back(light);
   }
   out.background = scene.background;
   out.camera = scene.camera;
-  out.camera->from -= geometry.center;
-  out.camera->at -= geometry.center;
+  out.camera->from = geometry.space.local(out.camera->from);
+  out.camera->at = geometry.space.local(out.camera->at);
+  out.camera->hither = geometry.space.local_length(out.camera->hither);
   return stored;
 }
 

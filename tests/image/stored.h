@@ -2,15 +2,16 @@
 //         tell the error of kdray's arithmetic from that of storing.
 #pragma once
 
+#include "math/local_space.h"
 #include "scene/scene.h"
 
 namespace kdray::test {
 
-// About kdray's own centre: the rays of a picture are the same, other rays' origins are to be moved by
-// -center.
+// In the scene's own space: the rays of a picture are the same, other rays' origins and distances are to be
+// taken there.
 struct Stored {
   scene::Scene model;
-  dvec3 center;
+  LocalSpace space;
 };
 
 // Every unit vector is one again, in double. The camera of `scene` is kept: one whose numbers float holds is

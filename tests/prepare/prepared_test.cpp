@@ -47,7 +47,7 @@ TEST(Prepared, IsTheTreeOfTheGeometry) {
   EXPECT_EQ(p.counts.spheres, 1u);
   EXPECT_EQ(p.counts.cones, 0u);
   EXPECT_EQ(p.geometry.dropped_degenerate, 1u);
-  EXPECT_EQ(p.geometry.center, geometry.center);
+  EXPECT_EQ(p.geometry.space, geometry.space);
   EXPECT_TRUE(p.geometry.bounds.contains(geometry.bounds));
   EXPECT_EQ(p.features, flatten::features_of(small_scene(), geometry));
   EXPECT_LE(p.tree_depth, 1);

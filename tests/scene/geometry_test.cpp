@@ -31,16 +31,20 @@ Scene scene_of(const Cone& cone) {
   return s;
 }
 
+dvec3 world(const Geometry& g, const vec3& local) {
+  return g.space.world(dvec3(local));
+}
+
 TEST(MakeGeometry, KeepsFloatsNearTheOriginAsTheyAre) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> coordinate(-1, 3);  // the middle is not at the origin
   std::vector<dvec3> corners(300);
   for (dvec3& p : corners) p = dvec3(coordinate(random), coordinate(random), coordinate(random));
   const Geometry g = make_geometry(triangle_scene(corners));
-  EXPECT_EQ(g.center, dvec3(0));
+  EXPECT_EQ(g.space.center, dvec3(0));
   ASSERT_EQ(g.triangles.size(), 100u);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    EXPECT_EQ(dvec3(vertex(g.triangles[i / 3], static_cast<int>(i % 3))), corners[i]);
+    EXPECT_EQ(world(g, vertex(g.triangles[i / 3], static_cast<int>(i % 3))), corners[i]);
   }
 }
 
@@ -60,7 +64,7 @@ TEST(MakeGeometry, MovesFarFloatsWithoutLoss) {
     const Geometry g = make_geometry(triangle_scene(corners));
     for (const TriangleGeometry& t : g.triangles) {
       for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(dvec3(vertex(t, i)) + g.center, corners[t.number * 3 + i]) << "size " << size;
+        EXPECT_EQ(world(g, vertex(t, i)), corners[t.number * 3 + i]) << "size " << size;
       }
     }
   }
@@ -72,10 +76,10 @@ TEST(MakeGeometry, KeepsTheShapeOfAModelAMillionAway) {
   std::vector<dvec3> corners(300);
   for (dvec3& p : corners) p = dvec3(1e6) + dvec3(unit(random), unit(random), unit(random));
   const Geometry g = make_geometry(triangle_scene(corners));
-  EXPECT_NEAR(g.center.x, 1e6, 1);
+  EXPECT_NEAR(g.space.center.x, 1e6, 1);
   for (const TriangleGeometry& t : g.triangles) {
     for (int i = 0; i < 3; ++i) {
-      const dvec3 back = dvec3(vertex(t, i)) + g.center;
+      const dvec3 back = world(g, vertex(t, i));
       EXPECT_LT(glm::length(back - corners[t.number * 3 + i]), 1e-7) << "float at 1e6 would be off by 0.03";
     }
   }
@@ -136,7 +140,7 @@ TEST(MakeGeometry, KeepsTheOrderAroundDroppedTrianglesOfALargeScene) {
     ASSERT_EQ(g.triangles[i].number, kept[i]);
     ASSERT_EQ(g.triangles[i].material, kept[i] % 2);
     ASSERT_EQ(g.triangles[i].normals, kept[i] % 5 == 0 ? n_smooth++ : KDRAY_NO_NORMALS);
-    ASSERT_EQ(dvec3(vertex(g.triangles[i], 1)) + g.center, dvec3(kept[i] + 1.0, 0, 0));
+    ASSERT_EQ(world(g, vertex(g.triangles[i], 1)), dvec3(kept[i] + 1.0, 0, 0));
     bounds.grow(bounds_of(g.triangles[i]));
   }
   EXPECT_EQ(g.bounds.lo, bounds.lo);
@@ -170,24 +174,87 @@ TEST(MakeGeometry, DropsSpheresAndConesThatVanishInFloat) {
   EXPECT_EQ(g.size(), 2u);
 }
 
-TEST(MakeGeometry, RefusesWhatFloatCannotHold) {
+TEST(MakeGeometry, RefusesWhatDoubleCannotHold) {
   const auto refused = [](const Scene& s) {
-    return refusal([&] { make_geometry(s); }).find("single precision") != std::string::npos;
+    return refusal([&] { make_geometry(s); }).find("double precision") != std::string::npos;
   };
-  EXPECT_TRUE(refused(triangle_scene({{-1e39, 0, 0}, {1e39, 0, 0}, {0, 1e39, 0}})));
-  EXPECT_TRUE(refused(scene_of(Sphere{.center = dvec3(0), .radius = 1e39})));
+  EXPECT_TRUE(refused(triangle_scene({{-1e308, 0, 0}, {1e308, 0, 0}, {0, 1e308, 0}})));
+  EXPECT_TRUE(refused(scene_of(Sphere{.center = dvec3(0), .radius = 1e308})));
   EXPECT_TRUE(
-      refused(scene_of(Cone{.base = dvec3(0), .apex = dvec3(1), .base_radius = 1e39, .apex_radius = 1})));
+      refused(scene_of(Cone{.base = dvec3(0), .apex = dvec3(1), .base_radius = 1.5e308, .apex_radius = 1})));
   // Far away but small is no trouble.
   EXPECT_EQ(make_geometry(scene_of(Sphere{.center = dvec3(1e60), .radius = 1e50 * 0 + 1})).spheres.size(),
             1u);
+}
+
+// One mesh, sphere and cone at a thousand sizes: the same floats, bit for bit.
+TEST(MakeGeometry, HasTheSameFloatsAtAnySize) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<dvec3> corners(30);
+  for (dvec3& p : corners) p = dvec3(5) + dvec3(unit(random), unit(random), unit(random));
+  const auto made = [&](double scale) {
+    std::vector<dvec3> scaled(corners);
+    for (dvec3& p : scaled) p *= scale;
+    Scene s = triangle_scene(scaled);
+    s.spheres = {{.center = dvec3(5.1 * scale), .radius = 0.3 * scale}};
+    s.cones = {
+        {.base = dvec3(4 * scale), .apex = dvec3(5 * scale), .base_radius = 0.1 * scale, .apex_radius = 0}};
+    return make_geometry(s);
+  };
+  const Geometry one = made(1);
+  EXPECT_GE(largest_component(glm::max(glm::abs(dvec3(one.bounds.lo)), glm::abs(dvec3(one.bounds.hi)))),
+            kLocalReach);
+  EXPECT_LT(largest_component(glm::max(glm::abs(dvec3(one.bounds.lo)), glm::abs(dvec3(one.bounds.hi)))),
+            2 * kLocalReach);
+  for (const int exponent : {-1000, -500, -133, -127, -40, -1, 1, 40, 100, 127, 500, 1000}) {
+    SCOPED_TRACE(exponent);
+    const double scale = std::ldexp(1.0, exponent);
+    const Geometry g = made(scale);
+    EXPECT_EQ(g.space.center, one.space.center * scale);
+    EXPECT_EQ(g.space.scale * scale, one.space.scale);
+    ASSERT_EQ(g.size(), one.size());
+    for (std::size_t i = 0; i < g.triangles.size(); ++i)
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(vertex(g.triangles[i], k), vertex(one.triangles[i], k));
+    EXPECT_EQ(g.spheres[0].center, one.spheres[0].center);
+    EXPECT_EQ(g.spheres[0].radius, one.spheres[0].radius);
+    EXPECT_EQ(g.cones[0].apex, one.cones[0].apex);
+    EXPECT_EQ(g.cones[0].base_radius, one.cones[0].base_radius);
+  }
+}
+
+TEST(RangeWarning, CountsWhatFloatsLose) {
+  const std::vector<dvec3> floor = {{-1e10, 0, -1e10}, {1e10, 0, -1e10}, {0, 1e9, 1e10}};
+  EXPECT_EQ(range_warning(make_geometry(triangle_scene(floor))), "");
+  // Beside it, one triangle of size 1 near the origin, and one that vanishes far from it.
+  std::vector<dvec3> corners(floor);
+  corners.insert(corners.end(), {{0, 1, 0}, {1, 1, 0}, {0, 1, 1}});
+  corners.insert(corners.end(), {{9.1e9, 1, 0}, {9.1e9 + 1, 1, 0}, {9.1e9, 1.5, 1}});
+  const Geometry g = make_geometry(triangle_scene(corners));
+  EXPECT_EQ(g.fine, 1u);
+  EXPECT_EQ(g.lost, 1u);
+  EXPECT_EQ(g.dropped_degenerate, 1u);
+  EXPECT_NE(range_warning(g).find("ranges wider than single precision"), std::string::npos);
+  // What has no area in the file is not lost.
+  const Geometry flat = make_geometry(triangle_scene({{0, 0, 0},
+                                                      {1, 0, 0},
+                                                      {0, 1, 0},
+                                                      {0.1, 0.1, 0},
+                                                      {0.2, 0.2, 0},
+                                                      {0.7, 0.7, 0},
+                                                      {1, 1, 1},
+                                                      {1, 1, 1},
+                                                      {0, 0, 1}}));
+  EXPECT_EQ(flat.dropped_degenerate, 2u);
+  EXPECT_EQ(flat.lost, 0u);
+  EXPECT_EQ(range_warning(flat), "");
 }
 
 TEST(MakeGeometry, TakesAnEmptyScene) {
   const Geometry g = make_geometry(Scene{});
   EXPECT_EQ(g.size(), 0u);
   EXPECT_TRUE(g.bounds.empty());
-  EXPECT_EQ(g.center, dvec3(0));
+  EXPECT_EQ(g.space, LocalSpace{});
 }
 
 TEST(SceneBounds, LeaveOutVerticesThatNoTriangleUses) {

@@ -327,7 +327,7 @@ TEST(Gltf, ReadsAndExposesLights) {
   EXPECT_EQ(s.lights[1].kind, LightKind::spot);
   EXPECT_EQ(s.lights[1].range, 9);
   EXPECT_NEAR(s.lights[1].cos_outer, std::cos(0.3), 1e-6);
-  EXPECT_EQ(s.lights[2].attenuation, vec3(0, 0, 1));
+  EXPECT_EQ(s.lights[2].attenuation, dvec3(0, 0, 1));
   EXPECT_EQ(s.lights[2].position, dvec3(0.5, 0.5, 10));
   // All together give 1 at the middle, and keep their shares.
   const double sum = s.lights[0].color.x + (s.lights[1].color.x + s.lights[2].color.x) / 100;

@@ -50,7 +50,7 @@ TEST(Json, ReadsAWholeScene) {
 
   ASSERT_EQ(s.lights.size(), 3u);
   EXPECT_EQ(s.lights[0].kind, LightKind::point);
-  EXPECT_EQ(s.lights[0].attenuation, vec3(0, 1, 2));
+  EXPECT_EQ(s.lights[0].attenuation, dvec3(0, 1, 2));
   EXPECT_EQ(s.lights[0].range, 30);
   EXPECT_EQ(s.lights[0].color, vec3(0.5f));
   EXPECT_EQ(s.lights[1].kind, LightKind::directional);

@@ -77,7 +77,7 @@ TEST(CheckScene, HoldsImportersToTheirPromises) {
   broken(input, [&](Scene& s) { s.materials[0].index = 0; });
   broken(input, [&](Scene& s) { s.materials[0].shine = -1; });
   broken(input, [&](Scene& s) { s.lights[0].position.x = nan; });
-  broken(input, [&](Scene& s) { s.lights[0].attenuation = vec3(0); });
+  broken(input, [&](Scene& s) { s.lights[0].attenuation = dvec3(0); });
   broken(input,
          [&](Scene& s) { s.lights[0].kind = LightKind::spot, s.lights[0].direction = dvec3(2, 0, 0); });
   broken(input, [&](Scene& s) { s.lights[0].range = nan; });

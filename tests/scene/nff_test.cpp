@@ -64,7 +64,7 @@ TEST(Nff, SharesLightAmongLightsWithoutAColour) {
   EXPECT_EQ(s.lights[0].position, dvec3(1, 2, 3));
   EXPECT_EQ(s.lights[1].color, vec3(0.5f, 0.25f, 0));
   EXPECT_EQ(s.lights[2].color, vec3(0.5f));
-  EXPECT_EQ(s.lights[3].attenuation, vec3(1, 0, 0));
+  EXPECT_EQ(s.lights[3].attenuation, dvec3(1, 0, 0));
 }
 
 TEST(Nff, NumbersPrimitivesInFileOrderOverAllKinds) {

@@ -134,7 +134,7 @@ scene::Scene placed(scene::Scene scene, double scale, const dvec3& offset) {
 ClosedMesh::ClosedMesh(scene::Scene scene)
     : prepared_(Scene{std::move(scene)}),
       renderer_(prepared_),
-      center_(prepared_.prepared().geometry.center),
+      space_(prepared_.prepared().geometry.space),
       lo_(prepared_.prepared().geometry.bounds.lo),
       hi_(prepared_.prepared().geometry.bounds.hi) {
   for (const layout::KdNode& node : prepared_.prepared().flat.nodes)
@@ -147,10 +147,11 @@ dvec3 ClosedMesh::corner(std::size_t triangle, int k) const {
 }
 
 bool ClosedMesh::to_world(const dvec3& local, vec3* world, dvec3* seen) const {
-  *world = vec3(local + center_);
-  const vec3 back = *world - vec3(center_);
-  *seen = dvec3(back);
-  return dvec3(vec3(center_)) == center_ && dvec3(*world) - center_ == *seen;
+  const vec3 center(space_.center);
+  *world = vec3(space_.world(local));
+  const vec3 back = *world - center;
+  *seen = dvec3(back) * space_.scale;
+  return dvec3(center) == space_.center && space_.local(dvec3(*world)) == *seen;
 }
 
 bool ClosedMesh::is_inside(const dvec3& point) const {

@@ -64,7 +64,8 @@ class ClosedMesh {
  private:
   PreparedScene prepared_;
   Renderer renderer_;
-  dvec3 center_, lo_, hi_;
+  LocalSpace space_;
+  dvec3 lo_, hi_;
   std::vector<Plane> planes_;
 };
 

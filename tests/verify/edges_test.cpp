@@ -16,7 +16,7 @@ TEST(Edges, ACubeIsClosed) {
   ASSERT_EQ(m.topology.components.size(), 1u);
   EXPECT_TRUE(m.topology.components[0].closed());
   EXPECT_EQ(m.topology.components[0].faces, 12u);
-  EXPECT_DOUBLE_EQ(m.topology.components[0].volume, 1);
+  EXPECT_DOUBLE_EQ(m.volume(0), 1);
 }
 
 TEST(Edges, InsideOutItsVolumeIsNegative) {
@@ -25,7 +25,7 @@ TEST(Edges, InsideOutItsVolumeIsNegative) {
   for (scene::Triangle& t : b.scene().triangles) turn_over(t);
   const Meshed m(b);
   ASSERT_TRUE(m.topology.components.at(0).closed());
-  EXPECT_DOUBLE_EQ(m.topology.components[0].volume, -8);
+  EXPECT_DOUBLE_EQ(m.volume(0), -8);
 }
 
 TEST(Edges, AMissingSideLeavesFourOpenEdgesInOnePiece) {

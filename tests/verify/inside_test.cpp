@@ -19,7 +19,7 @@ TEST(Inside, ACubeIsWhereItIs) {  // seed 1
   for (int i = 0; i < 20000; ++i) {
     const dvec3 p(random.between(-2, 2), random.between(-2, 2), random.between(-2, 2));
     const double depth = 1 - std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    const Side side = insides.side_of(p, 0, 1e-3);
+    const Side side = insides.side_of(m.local(p), 0, m.local(1e-3));
     if (std::abs(depth) > 2e-3) {
       if (side == Side::unsure) continue;  // in the plane of a face, or in line with an edge
       EXPECT_EQ(side, depth > 0 ? Side::inside : Side::outside);
@@ -36,7 +36,8 @@ TEST(Inside, NeverAGuessInLineWithEdgesAndCorners) {
   const Insides insides(m.mesh, m.boxes, m.topology);
   for (const dvec3& p :
        {dvec3(0, 0, 0), dvec3(-3, 1, 0), dvec3(-3, 1, 1), dvec3(-3, 0.25, 0.25), dvec3(0.5, 1, 1)})
-    EXPECT_NE(insides.side_of(p, 0, 1e-6), p == dvec3(0, 0, 0) ? Side::outside : Side::inside);
+    EXPECT_NE(insides.side_of(m.local(p), 0, m.local(1e-6)),
+              p == dvec3(0, 0, 0) ? Side::outside : Side::inside);
 }
 
 // A ball in a ball, each a component of its own; turned faces don't matter. (Seed 2.)
@@ -51,7 +52,7 @@ TEST(Inside, ComponentsAreToldApartAndTurnsDoNotMatter) {
     const dvec3 p(random.between(-2.5, 2.5), random.between(-2.5, 2.5), random.between(-2.5, 2.5));
     const double far[2] = {glm::length(p) / 2, glm::length(p - dvec3(0.5, 0, 0))};
     for (std::uint32_t c = 0; c < 2; ++c) {
-      const Side side = insides.side_of(p, c, 1e-4);
+      const Side side = insides.side_of(m.local(p), c, m.local(1e-4));
       if (far[c] < 0.9) {
         EXPECT_NE(side, Side::outside);
       }

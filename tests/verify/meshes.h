@@ -98,6 +98,13 @@ struct Meshed {
         topology(find_topology(mesh)) {}
   explicit Meshed(Builder& b) : Meshed(b.scene()) {}
 
+  // Of the scene, in the space that the mesh is in; and back.
+  dvec3 local(const dvec3& p) const { return geometry.space.local(p); }
+  double local(double length) const { return geometry.space.local_length(length); }
+  double volume(std::size_t component) const {
+    return topology.components[component].volume / std::pow(geometry.space.scale, 3);
+  }
+
   scene::Geometry geometry;
   Mesh mesh;
   Boxes boxes;

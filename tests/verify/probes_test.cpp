@@ -105,7 +105,7 @@ TEST_P(Verify, AHoleInTheTracedSceneIsALeakAndALostHit) {
   for (const std::uint32_t v : gone.vertex)
     holed.scene().vertices[v] = dvec3(0) + 1e-6 * dvec3(v % 3 == 0, v % 3 == 1, 0);
   const Meshed m(whole);
-  const prepare::Prepared traced = about_center(prepare::prepare(holed.scene(), TreeOptions{}));
+  const prepare::Prepared traced = in_local_space(prepare::prepare(holed.scene(), TreeOptions{}));
   Tracer tracer(traced, {.device = GetParam()});
   const Probes p = probe({whole.scene(), m.geometry, m.mesh, m.boxes, m.topology}, tracer, 20000);
   EXPECT_GT(p.count[static_cast<std::size_t>(Defect::leak)], 10u);
@@ -120,7 +120,7 @@ TEST_P(Verify, AHoleIsALeakThoughSomethingLiesBehindIt) {
   for (const std::uint32_t v : holed.scene().triangles[100].vertex)
     holed.scene().vertices[v] = dvec3(2.9) + 1e-6 * dvec3(v % 3 == 0, v % 3 == 1, 0);
   const Meshed m(whole);
-  const prepare::Prepared traced = about_center(prepare::prepare(holed.scene(), TreeOptions{}));
+  const prepare::Prepared traced = in_local_space(prepare::prepare(holed.scene(), TreeOptions{}));
   Tracer tracer(traced, {.device = GetParam()});
   const Probes p = probe({whole.scene(), m.geometry, m.mesh, m.boxes, m.topology}, tracer, 20000);
   EXPECT_GT(p.count[static_cast<std::size_t>(Defect::leak)], 10u);

@@ -140,7 +140,8 @@ class Subject {
     layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
     Schedule{}.apply(frame, features_);
     const std::vector<std::string> names = {"depth", "normal", "primitive", "cost"};
-    return render_channels(context_, buffers_, programs_, frame, features_, Precision::float32, names);
+    return render_channels(context_, buffers_, programs_, frame, geometry_.space, features_,
+                           Precision::float32, names);
   }
 
  private:

@@ -385,7 +385,9 @@ void expect_cuts_honoured(const std::vector<Ray>& rays, const std::vector<Hit>& 
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Hit& h = cut_hits[i];
     if (h.primitive >= 0) {
-      ASSERT_GT(h.t, cut_rays[i].t_min) << "ray " << i << " " << in_words(cut_rays[i]);
+      // Below the normal numbers two distances may round to one.
+      ASSERT_TRUE(h.t > cut_rays[i].t_min || (h.t == cut_rays[i].t_min && h.t < 0x1p-126f))
+          << "ray " << i << " " << in_words(cut_rays[i]);
       ASSERT_LT(h.t, cut_rays[i].t_max) << "ray " << i << " " << in_words(cut_rays[i]);
     }
     if (whole[i].primitive < 0) continue;

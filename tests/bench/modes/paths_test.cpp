@@ -42,7 +42,7 @@ odprt::Cut cut_ball(std::size_t n) {
 Paths paths_of(const odprt::Cut& cut, std::span<const LifeRay> lives) {
   std::vector<std::uint32_t> itself(cut.subtrees.size());
   std::iota(itself.begin(), itself.end(), 0u);
-  return find_paths(ball().wide, cut, itself, lives, ball().geometry.center);
+  return find_paths(ball().wide, cut, itself, lives, ball().geometry.space);
 }
 
 double sum_of(const Paths& paths) {
@@ -67,17 +67,20 @@ TEST(PathsOfRays, GoFromNearToFar) {
   for (const LifeRay& life : random_lives(300)) {
     const Paths paths = paths_of(cut, std::span(&life, 1));
     double before = -std::numeric_limits<double>::infinity();
+    const dvec3 from =
+        ball().geometry.space.local({life.ray.origin[0], life.ray.origin[1], life.ray.origin[2]});
     for (const Visit& v : paths.of(0)) {
       if (v.owner == kDirectory) continue;
       const Box& box = cut.subtrees[v.owner].bounds;
       double enter = 0, leave = std::numeric_limits<double>::infinity();
       for (int k = 0; k < 3; ++k) {
-        const double origin = life.ray.origin[k] - ball().geometry.center[k], along = life.ray.direction[k];
+        const double origin = from[k], along = life.ray.direction[k];
         const double a = (box.lo[k] - origin) / along, b = (box.hi[k] - origin) / along;
         enter = std::max(enter, std::min(a, b)), leave = std::min(leave, std::max(a, b));
       }
       EXPECT_LE(enter, leave * (1 + 1e-6));
-      EXPECT_GE(enter, before - 1e-5);  // cells are disjoint; contents reach them but for rounding
+      EXPECT_GE(enter,
+                before - 1e-5 * kLocalReach);  // cells are disjoint; contents reach them but for rounding
       before = enter;
     }
   }
@@ -103,7 +106,7 @@ TEST(PathsOfRays, AreTheOwnersBelowTheRootsOfSubtrees) {
   const odprt::Cut cut = cut_ball(40);
   const std::vector<LifeRay> lives = random_lives(100);
   const Paths paths = find_paths(ball().wide, cut, std::vector<std::uint32_t>(cut.subtrees.size(), 7), lives,
-                                 ball().geometry.center);
+                                 ball().geometry.space);
   ASSERT_EQ(paths.n_rays(), 100u);
   std::size_t n_stays = 0;
   for (std::size_t i = 0; i < paths.n_rays(); ++i) {
