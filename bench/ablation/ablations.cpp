@@ -7,35 +7,35 @@ namespace kdray::bench {
 
 namespace {
 
-constexpr std::uint32_t kSecondary = KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT;
+constexpr layout::Features kSecondary = KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT;
 // Above 0, which asks for rays of no weight too, and below what any ray weighs.
 constexpr double kNoWeight = 1e-30;
 
 struct Rule {
-  std::uint32_t bit;
+  std::uint64_t bit;
   const char* name;
-  std::uint32_t any_of;  // features without which it has nothing to do; 0: it always has
+  layout::Features any_of;  // features without which it has nothing to do; 0: it always has
 };
 constexpr Rule kRules[] = {
     {KDRAY_KEEP_FRUSTUM, "children that a packet's frustum misses", 0},
     {KDRAY_KEEP_BEYOND, "children behind the best hit", 0},
-    {KDRAY_KEEP_NEARNESS, "roots of cones passed by", KDRAY_FEATURE_CONES},
+    {KDRAY_KEEP_NEARNESS, "roots of cones passed by", KDRAY_FEATURE_KIND(CONE)},
     {KDRAY_KEEP_OCCLUDER, "walks that the last occluder ends", KDRAY_FEATURE_LIGHTS},
     {KDRAY_KEEP_BEHIND, "shadow rays to lights behind", KDRAY_FEATURE_LIGHTS},
     {KDRAY_KEEP_UNLIT, "shadow rays of no light", KDRAY_FEATURE_LIGHTS},
     {KDRAY_KEEP_OPEN, "rays that pass the core by", KDRAY_FEATURE_FACES},
-    {KDRAY_KEEP_LEFT, "the triangle a ray leaves", KDRAY_FEATURE_TRIANGLES},
+    {KDRAY_KEEP_LEFT, "the triangle a ray leaves", KDRAY_FEATURE_KIND(TRIANGLE)},
     {KDRAY_KEEP_WEIGHTLESS, "secondary rays of no weight", kSecondary},
 };
 
-bool applies(const Rule& rule, std::uint32_t features) {
+bool applies(const Rule& rule, layout::Features features) {
   if (rule.bit == KDRAY_KEEP_LEFT && !(features & (KDRAY_FEATURE_LIGHTS | kSecondary))) return false;
   return rule.any_of == 0 || (features & rule.any_of) != 0;
 }
 
 // Shadow rays of a smooth triangle begin on the curve that it stands for, which may lie behind it.
-bool is_exact(const Rule& rule, std::uint32_t features) {
-  constexpr std::uint32_t kSmoothAndLit = KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_LIGHTS;
+bool is_exact(const Rule& rule, layout::Features features) {
+  constexpr layout::Features kSmoothAndLit = KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_LIGHTS;
   return rule.bit != KDRAY_KEEP_LEFT || (features & kSmoothAndLit) != kSmoothAndLit;
 }
 
@@ -54,9 +54,9 @@ const char* name_of(Ablation::Kind kind) {
   }
 }
 
-std::vector<Ablation> ablations_for(std::uint32_t features) {
+std::vector<Ablation> ablations_for(layout::Features features) {
   std::vector<Ablation> all;
-  std::uint32_t code = 0, work = 0;
+  std::uint64_t code = 0, work = 0;
   for (const flatten::Feature& f : flatten::features()) {
     if (features & f.bit) continue;
     all.push_back(

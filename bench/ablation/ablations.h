@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kdray/kdray.h"
+#include "layout/features.h"
 
 namespace kdray::bench {
 
@@ -16,7 +17,7 @@ struct Ablation {
   std::string name;  // of what is taken away
   enum class Kind { none, specialisation, rule, everything } kind = Kind::none;
   bool exact = true;
-  std::uint32_t keep = 0;       // RenderOptions::keep
+  std::uint64_t keep = 0;       // RenderOptions::keep
   bool min_weight_off = false;  // rays are spawned whatever they weigh, unless nothing
   bool twice_as_deep = false;
 };
@@ -24,7 +25,7 @@ struct Ablation {
 const char* name_of(Ablation::Kind kind);
 
 // All that can be taken from frames with this mask of features; last everything that is exact at once.
-std::vector<Ablation> ablations_for(std::uint32_t features);
+std::vector<Ablation> ablations_for(layout::Features features);
 
 RenderOptions with(const Ablation& ablation, RenderOptions options);
 

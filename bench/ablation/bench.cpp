@@ -73,8 +73,8 @@ class AblationScene {
             {}};
   }
 
-  static std::uint32_t mask_of(const std::vector<std::string>& names) {
-    std::uint32_t mask = 0;
+  static layout::Features mask_of(const std::vector<std::string>& names) {
+    layout::Features mask = 0;
     for (const flatten::Feature& f : flatten::features())
       if (std::find(names.begin(), names.end(), f.name) != names.end()) mask |= f.bit;
     return mask;

@@ -13,7 +13,7 @@ namespace {
 // The box that tells of rays that nothing can be in the way of them. Nobody asks where no light and no
 // further ray is traced, or where such rays are to be traced all the same.
 void use_core(State& state, Job& job) {
-  constexpr std::uint32_t kTraces = KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT;
+  constexpr layout::Features kTraces = KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT;
   if (!(job.features & kTraces) || job.frame.keep_weightless) return;
   if (!state.core) state.core = flatten::core_of(state.scene.flat);
   state.core->apply(job.frame, state.scene.flat.lights);
@@ -27,7 +27,7 @@ Job make_job(State& state, const RenderOptions& options, timeline::Timeline* tim
   const RenderOptions o = flatten::resolved(options, scene.settings.settings);
   check_division(o);
   check_form(takes_binary_form(o.traversal, o.precision, o.channels), scene);
-  const std::uint32_t features =
+  const layout::Features features =
       scene.features | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | o.keep;
   Job job{o, flatten::make_frame(scene.settings, scene.geometry, o), features, timeline};
   use_core(state, job);

@@ -20,7 +20,7 @@ namespace kdray::api {
 struct Job {
   RenderOptions options;  // with what they leave open filled in from the scene
   layout::Frame frame;
-  std::uint32_t features;
+  layout::Features features;
   timeline::Timeline* timeline;  // null: not wanted
 };
 

@@ -8,13 +8,12 @@
 namespace kdray::api {
 
 Json scene_json(const prepare::Prepared& scene) {
-  return {{"primitives", scene.counts.primitives},
-          {"triangles", scene.counts.triangles},
-          {"spheres", scene.counts.spheres},
-          {"cones", scene.counts.cones},
-          {"lights", scene.settings.lights.size()},
-          {"materials", scene.settings.materials.size()},
-          {"dropped_degenerate", scene.geometry.dropped_degenerate}};
+  Json json = {{"primitives", scene.counts.primitives},
+               {"lights", scene.settings.lights.size()},
+               {"materials", scene.settings.materials.size()},
+               {"dropped_degenerate", scene.geometry.dropped_degenerate}};
+  primitives::for_each_kind([&](auto kind) { json[kind.kNames] = decltype(kind)::of(scene.counts); });
+  return json;
 }
 
 Json tree_json(const prepare::Prepared& scene) {
@@ -46,7 +45,7 @@ Json device_json(const DeviceInfo& info) {
           {"double_precision", info.double_precision}};
 }
 
-Json features_json(std::uint32_t mask) {
+Json features_json(layout::Features mask) {
   const flatten::FeatureNames names = flatten::feature_names(mask);
   return {{"on", names.on}, {"off", names.off}};
 }

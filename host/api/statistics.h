@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kdray/kdray.h"
+#include "layout/features.h"
 #include "pdprt/render.h"
 #include "prepare/prepared.h"
 
@@ -15,7 +16,7 @@ using Json = nlohmann::json;
 Json scene_json(const prepare::Prepared& scene);
 Json tree_json(const prepare::Prepared& scene);
 Json device_json(const DeviceInfo& info);
-Json features_json(std::uint32_t mask);
+Json features_json(layout::Features mask);
 Json rays_json(const wavefront::Counters& counters);
 
 // `adaptive`: null where all pixels have the frame's samples.

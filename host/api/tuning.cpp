@@ -8,7 +8,7 @@
 
 namespace kdray::api {
 
-tune::Key tuning_key(const device::Context& context, bool global, std::uint32_t features) {
+tune::Key tuning_key(const device::Context& context, bool global, layout::Features features) {
   const DeviceInfo& info = context.info();
   return {.device = fmt::format("{}, {} units", info.name, info.compute_units),
           .driver = fmt::format("{}, {}, {}", info.platform, info.version, info.driver),
@@ -28,7 +28,7 @@ tune::Database read_tunings(const DeviceOptions& options) {
   }
 }
 
-Tuned tuned_for(const device::Context& context, bool global, std::uint32_t features,
+Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
                 const tune::Database& tunings, const std::string& file) {
   Tuned tuned{tune::shipped(context.info().kind), tuning_key(context, global, features), "shipped"};
   if (const tune::Entry* const entry = tunings.find(tuned.key)) {

@@ -7,12 +7,13 @@
 #include <string>
 
 #include "device/context.h"
+#include "layout/features.h"
 #include "statistics.h"
 #include "tune/database.h"
 
 namespace kdray::api {
 
-tune::Key tuning_key(const device::Context& context, bool global, std::uint32_t features);
+tune::Key tuning_key(const device::Context& context, bool global, layout::Features features);
 
 struct Tuned {
   Tuning settings;
@@ -23,7 +24,7 @@ struct Tuned {
 // The file's entries; none where it is of no use, of which the options' tunings_ignored is told.
 tune::Database read_tunings(const DeviceOptions& options);
 
-Tuned tuned_for(const device::Context& context, bool global, std::uint32_t features,
+Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
                 const tune::Database& tunings, const std::string& file);
 
 Json tuning_json(const Tuned& tuned);

@@ -22,7 +22,10 @@ constexpr std::array<char, 8> kMagic = {'k', 'd', 'r', 'a', 'y', 's', 'c', '\n'}
 constexpr std::uint32_t kVersion = 2;  // of the form of entries
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kPiece = std::size_t{1} << 20;  // hashed by one thread
-constexpr std::size_t kSections = 15;
+
+// The facts; materials, lights and the arrays of the flat form but for the shapes' own; the wide form's
+// nodes; and for each shape its array, for each kind its blocks.
+constexpr std::size_t kSections = 1 + 2 + 6 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
 
 struct Section {
   std::uint64_t offset, bytes;
@@ -43,11 +46,10 @@ static_assert(sizeof(Header) <= kPage && std::is_trivially_copyable_v<Header>);
 // Visits the arrays that an entry keeps as they lie in memory, in the order of the sections behind the facts.
 template <class Prepared, class Visit>
 void for_each_array(Prepared& p, const Visit& visit) {
-  auto& [nodes, refs, triangles, normals, spheres, cones, materials, lights] = p.flat;
-  const auto visit_all = [&visit](auto&... arrays) { (visit(arrays), ...); };
-  visit_all(p.settings.materials, p.settings.lights);
-  visit_all(nodes, refs, triangles, normals, spheres, cones, materials, lights);
-  visit_all(p.wide.nodes, p.wide.triangle_blocks, p.wide.sphere_blocks, p.wide.cone_blocks);
+  visit(p.settings.materials);
+  visit(p.settings.lights);
+  flatten::for_each_flat_array(p.flat, visit);
+  flatten::for_each_wide_array(p.wide, visit);
 }
 
 std::size_t to_page(std::size_t bytes) {

@@ -98,22 +98,21 @@ void get(const Json& from, kdtree::Statistics& s) {
 }
 
 Json of(const prepare::Counts& c) {
-  const auto& [primitives, triangles, spheres, cones] = c;
-  return {primitives, triangles, spheres, cones};
+  Json counts = {c.primitives};
+  primitives::for_each_kind([&](auto kind) { counts.push_back(decltype(kind)::of(c)); });
+  return counts;
 }
 
 void get(const Json& from, prepare::Counts& c) {
   from.at(0).get_to(c.primitives);
-  from.at(1).get_to(c.triangles);
-  from.at(2).get_to(c.spheres);
-  from.at(3).get_to(c.cones);
+  primitives::for_each_kind([&](auto kind) { from.at(1 + kind.kNumber).get_to(decltype(kind)::of(c)); });
 }
 
 }  // namespace
 
 std::string to_bytes(const prepare::Prepared& p) {
-  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, unlit, camera,
-               background, ambient, settings, warnings, files] = p.settings;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
+               camera, background, ambient, settings, warnings, files] = p.settings;
   const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, tree_options,
                seconds] = p;
   const Json facts = {{"name", name},

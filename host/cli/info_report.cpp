@@ -16,21 +16,30 @@ std::uint64_t bytes_of(const Values& v) {
   return v.size() * sizeof(*v.data());
 }
 
+template <class Holder>
+void add_kinds(const Holder& holder, Json& arrays) {
+  primitives::for_each_kind([&](auto kind) { arrays[kind.kNames] = bytes_of(decltype(kind)::of(holder)); });
+}
+
 // The structs are taken apart into all their arrays, so that one that is added can't be forgotten.
 
 Json scene_arrays(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, unlit, camera,
-               background, ambient, settings, warnings, files] = scene;
-  return {{"vertices", bytes_of(vertices)},   {"normals", bytes_of(normals)},
-          {"triangles", bytes_of(triangles)}, {"spheres", bytes_of(spheres)},
-          {"cones", bytes_of(cones)},         {"materials", bytes_of(materials)},
-          {"lights", bytes_of(lights)}};
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
+               camera, background, ambient, settings, warnings, files] = scene;
+  Json arrays = {{"vertices", bytes_of(vertices)}, {"normals", bytes_of(normals)}};
+  add_kinds(scene, arrays);
+  arrays.update({{"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
+  return arrays;
 }
 
 Json geometry_arrays(const scene::Geometry& geometry) {
-  const auto& [space, triangles, sources, n_smooth, spheres, cones, bounds, dropped, lost, fine] = geometry;
+  const auto& [space, triangles, sources, n_smooth, KDRAY_SHAPES(KDRAY_KIND_PLURAL) bounds, dropped, lost, fine] =
+      geometry;
   // Its triangles are the flat form's.
-  return {{"sources", bytes_of(sources)}, {"spheres", bytes_of(spheres)}, {"cones", bytes_of(cones)}};
+  Json arrays = {{"sources", bytes_of(sources)}};
+  primitives::for_each_shape(
+      [&](auto kind) { arrays[kind.kNames] = bytes_of(decltype(kind)::of(geometry)); });
+  return arrays;
 }
 
 Json tree_arrays(const kdtree::Tree& tree) {
@@ -39,18 +48,20 @@ Json tree_arrays(const kdtree::Tree& tree) {
 }
 
 Json flat_arrays(const flatten::FlatScene& flat) {
-  const auto& [nodes, refs, triangles, normals, spheres, cones, materials, lights] = flat;
-  return {{"nodes", bytes_of(nodes)},         {"references", bytes_of(refs)},
-          {"triangles", bytes_of(triangles)}, {"normals", bytes_of(normals)},
-          {"spheres", bytes_of(spheres)},     {"cones", bytes_of(cones)},
-          {"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}};
+  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights] = flat;
+  Json arrays = {{"nodes", bytes_of(nodes)}, {"references", bytes_of(refs)}};
+  add_kinds(flat, arrays);
+  arrays.update(
+      {{"normals", bytes_of(normals)}, {"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
+  return arrays;
 }
 
 Json wide_arrays(const flatten::WideForm& wide) {
-  return {{"nodes", bytes_of(wide.nodes)},
-          {"triangle_blocks", bytes_of(wide.triangle_blocks)},
-          {"sphere_blocks", bytes_of(wide.sphere_blocks)},
-          {"cone_blocks", bytes_of(wide.cone_blocks)}};
+  Json arrays = {{"nodes", bytes_of(wide.nodes)}};
+  primitives::for_each_kind([&](auto kind) {
+    arrays[std::string(kind.kName) + "_blocks"] = bytes_of(decltype(kind)::blocks_of(wide));
+  });
+  return arrays;
 }
 
 std::uint64_t sum(const Json& arrays) {
@@ -77,7 +88,7 @@ Json materials_report(const scene::Scene& scene) {
     for (const auto& p : primitives)
       if (p.material < uses.size()) ++uses[p.material];
   };
-  count(scene.triangles), count(scene.spheres), count(scene.cones);
+  primitives::for_each_kind([&](auto kind) { count(decltype(kind)::of(scene)); });
   Json list = Json::array();
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     list.push_back(material_report(scene.materials[i], uses[i]));
@@ -118,13 +129,12 @@ Json camera_report(const scene::Scene& scene) {
 Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
   Json report;
   report["scene"] = scene.name;
-  report["primitives"] = {{"total", scene.primitive_count()},
-                          {"triangles", scene.triangles.size()},
-                          {"spheres", scene.spheres.size()},
-                          {"cones", scene.cones.size()},
-                          {"dropped_degenerate", geometry.dropped_degenerate},
-                          {"vertices", scene.vertices.size()},
-                          {"normals", scene.normals.size()}};
+  Json counts = {{"total", scene.primitive_count()}};
+  primitives::for_each_kind([&](auto kind) { counts[kind.kNames] = decltype(kind)::of(scene).size(); });
+  counts.update({{"dropped_degenerate", geometry.dropped_degenerate},
+                 {"vertices", scene.vertices.size()},
+                 {"normals", scene.normals.size()}});
+  report["primitives"] = counts;
   report["bounds"] = bounds_report(scene);
   report["camera"] = camera_report(scene);
   report["background"] = as_json(scene.background);

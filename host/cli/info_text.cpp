@@ -35,9 +35,9 @@ std::string color_text(const char* name, const Json& v) {
 
 std::string primitives_text(const Json& p) {
   const std::uint64_t dropped = p["dropped_degenerate"];
-  std::string text = fmt::format("{}: {} triangles, {} spheres, {} cones", p["total"].get<std::uint64_t>(),
-                                 p["triangles"].get<std::uint64_t>(), p["spheres"].get<std::uint64_t>(),
-                                 p["cones"].get<std::uint64_t>());
+  std::string text = fmt::format(
+      "{}: {}", p["total"].get<std::uint64_t>(),
+      primitives::counts_in_words([&](auto kind) { return p[kind.kNames].template get<std::uint64_t>(); }));
   if (dropped > 0) text += fmt::format("; {} degenerate dropped", dropped);
   return text;
 }

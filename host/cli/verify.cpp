@@ -49,7 +49,8 @@ void check_options(const VerifyArgs& o) {
 Json stats_of(const VerifyArgs& o, const verify::Findings& found, double load, double total) {
   const verify::Seconds& s = found.seconds;
   Json stats = {{"kdray", KDRAY_VERSION}, {"command", "verify"}, {"scene", {{"file", o.scene}}}};
-  stats["scene"].update({{"triangles", found.triangles}, {"spheres", found.spheres}, {"cones", found.cones}});
+  primitives::for_each_kind(
+      [&](auto kind) { stats["scene"][kind.kNames] = decltype(kind)::of(found.counts); });
   stats.update(findings_as_json(found));
   stats["seconds"] = {
       {"load", load},       {"build", s.build}, {"mesh", s.mesh},       {"duplicates", s.duplicates},

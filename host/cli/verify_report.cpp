@@ -234,13 +234,17 @@ Json tracing_json(const Findings& f) {
   return json;
 }
 
+std::string counted(const Findings& f) {
+  return primitives::counts_in_words([&](auto kind) { return decltype(kind)::of(f.counts); });
+}
+
 }  // namespace
 
 std::string findings_in_words(const Findings& f) {
   Words words;
-  words.plain("scene", fmt::format("{} triangles, {} spheres, {} cones; {} points, {} edges", f.triangles,
-                                   f.spheres, f.cones, f.mesh.points.size(), f.topology.n_edges));
-  if (f.triangles > 0) tell_mesh(f, words);
+  words.plain("scene",
+              fmt::format("{}; {} points, {} edges", counted(f), f.mesh.points.size(), f.topology.n_edges));
+  if (f.counts.triangles > 0) tell_mesh(f, words);
   words.note(
       f.dropped, "degenerate",
       fmt::format("{} without area, which no ray can hit: neighbours of a triangle among them may gape",
@@ -255,8 +259,8 @@ std::string verdict(const Findings& f) {
         "kdray itself is at fault: {} of {} rays went wrong{}; please report it with the scene",
         f.probes.defects(), f.probes.rays(),
         f.film.fault.empty() && f.film.not_finite == 0 ? "" : ", and a picture's values");
-  if (f.triangles + f.spheres + f.cones == 0) return "there is nothing to hit in this scene";
-  return fmt::format("kdray traces this scene soundly, {}", f.triangles == 0 ? "and it has no mesh"
+  if (counted(f) == "nothing") return "there is nothing to hit in this scene";
+  return fmt::format("kdray traces this scene soundly, {}", f.counts.triangles == 0 ? "and it has no mesh"
                                                             : f.mesh_is_sound()
                                                                 ? "and its mesh is sound"
                                                                 : "but see the notes on its mesh");

@@ -8,7 +8,7 @@ namespace kdray::flatten {
 
 namespace {
 
-constexpr std::uint32_t kKinds = 3;
+using primitives::kKinds;
 constexpr std::uint32_t kNone = ~0u;
 
 // A subtree, or, of a leaf, its references of one kind.
@@ -158,7 +158,7 @@ class Collapse {
         inner[n_inner++] = child.subtree;
       }
     }
-    if (first + n_inner > KDRAY_WIDE_FIRST_MASK)
+    if (first + n_inner > KDRAY_WIDE_NODE_MAX)
       throw Error(ErrorCode::input, "the kd-tree has over 2^29 wide nodes");
     out_.nodes.resize(first + n_inner);
     out_.nodes[index] = node;
@@ -172,7 +172,8 @@ class Collapse {
     const std::uint32_t n_refs =
         only_kind_ != kAnyKind ? tree_.nodes[leaf].right : leaf_run(tree_, leaf, child.kind).n;
     n += (n_refs + block_ - 1) / block_;
-    if (n > KDRAY_WIDE_FIRST_MASK) throw Error(ErrorCode::input, "the kd-tree has over 2^29 leaf blocks");
+    if (n > KDRAY_WIDE_FIRST_MASK)
+      throw Error(ErrorCode::input, "the kd-tree has over 2^27 leaf blocks of one kind");
     return KDRAY_WIDE_LEAF | child.kind << KDRAY_WIDE_KIND_SHIFT | first;
   }
 

@@ -39,7 +39,7 @@ struct CollapsedPart {
 
   std::vector<CollapsedNode> nodes;  // [0] is the root; children behind their parents
   std::vector<Subtree> cuts;         // where other parts begin
-  std::array<std::size_t, 3> n_blocks{};
+  std::array<std::size_t, primitives::kKinds> n_blocks{};
 };
 
 // `cut_at`: subtrees of at most so many nodes, other than the root, are left to other parts; 0: none is.

@@ -10,10 +10,10 @@ namespace kdray::flatten {
 namespace {
 
 constexpr Feature kFeatures[] = {
-    {KDRAY_FEATURE_TRIANGLES, "triangles"},
-    {KDRAY_FEATURE_SPHERES, "spheres"},
-    {KDRAY_FEATURE_CONES, "cones"},
-    {KDRAY_FEATURE_SMOOTH, "smooth normals"},
+#define KDRAY_NAMED_KIND(NAME, name, names, Struct) {KDRAY_FEATURE_OF_KIND(KDRAY_KIND_##NAME), #names},
+    KDRAY_KINDS(KDRAY_NAMED_KIND)
+#undef KDRAY_NAMED_KIND
+        {KDRAY_FEATURE_SMOOTH, "smooth normals"},
     {KDRAY_FEATURE_NUMBERS, "primitive numbers"},
     {KDRAY_FEATURE_REFLECT, "reflection"},
     {KDRAY_FEATURE_TRANSMIT, "refraction"},
@@ -29,7 +29,7 @@ constexpr Feature kFeatures[] = {
     {KDRAY_FEATURE_ADAPTIVE, "adaptive sampling"},
 };
 
-std::uint32_t when(bool needed, std::uint32_t bit) {
+Features when(bool needed, Features bit) {
   return needed ? bit : 0;
 }
 bool any(const vec3& color) {
@@ -48,26 +48,33 @@ bool numbers_are_indices(const scene::Scene& scene, const scene::Geometry& geome
       if (number_of(kept[i]) != i) return false;
     return true;
   };
-  return in_order(geometry.triangles, [](const auto& t) { return t.number; }) &&
-         in_order(geometry.spheres, [&](const auto& s) { return scene.spheres[s.source].number; }) &&
-         in_order(geometry.cones, [&](const auto& c) { return scene.cones[c.source].number; });
+  bool all = in_order(geometry.triangles, [](const auto& t) { return t.number; });
+  primitives::for_each_shape([&](auto kind) {
+    const auto& sources = decltype(kind)::of(scene);
+    all = all &&
+          in_order(decltype(kind)::of(geometry), [&](const auto& s) { return sources[s.source].number; });
+  });
+  return all;
 }
 
-std::uint32_t geometry_features(const scene::Scene& scene, const scene::Geometry& geometry) {
-  return when(!numbers_are_indices(scene, geometry), KDRAY_FEATURE_NUMBERS) |
-         when(!geometry.triangles.empty(), KDRAY_FEATURE_TRIANGLES) |
-         when(!geometry.spheres.empty(), KDRAY_FEATURE_SPHERES) |
-         when(!geometry.cones.empty(), KDRAY_FEATURE_CONES) |
-         when(geometry.n_smooth > 0, KDRAY_FEATURE_SMOOTH);
+Features geometry_features(const scene::Scene& scene, const scene::Geometry& geometry) {
+  Features mask = when(!numbers_are_indices(scene, geometry), KDRAY_FEATURE_NUMBERS) |
+                  when(geometry.n_smooth > 0, KDRAY_FEATURE_SMOOTH);
+  primitives::for_each_kind([&](auto kind) {
+    mask |= when(!decltype(kind)::of(geometry).empty(), KDRAY_FEATURE_OF_KIND(decltype(kind)::kNumber));
+  });
+  return mask;
 }
 
 // A material counts only when a primitive wears it.
-std::uint32_t material_features(const scene::Scene& scene, const scene::Geometry& geometry) {
+Features material_features(const scene::Scene& scene, const scene::Geometry& geometry) {
   std::vector<bool> used(scene.materials.size(), false);
   for (const auto& t : geometry.triangles) used[t.material] = true;
-  for (const auto& s : geometry.spheres) used[scene.spheres[s.source].material] = true;
-  for (const auto& c : geometry.cones) used[scene.cones[c.source].material] = true;
-  std::uint32_t mask = 0;
+  primitives::for_each_shape([&](auto kind) {
+    for (const auto& s : decltype(kind)::of(geometry))
+      used[decltype(kind)::of(scene)[s.source].material] = true;
+  });
+  Features mask = 0;
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     const scene::Material& m = scene.materials[i];
@@ -83,9 +90,9 @@ bool attenuated(const scene::Light& l) {
 
 }  // namespace
 
-std::uint32_t features_of(const scene::Scene& scene, const scene::Geometry& geometry) {
-  std::uint32_t mask = geometry_features(scene, geometry) | material_features(scene, geometry) |
-                       when(any(scene.background), KDRAY_FEATURE_BACKGROUND);
+Features features_of(const scene::Scene& scene, const scene::Geometry& geometry) {
+  Features mask = geometry_features(scene, geometry) | material_features(scene, geometry) |
+                  when(any(scene.background), KDRAY_FEATURE_BACKGROUND);
   if (!(mask & (KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_SPECULAR)))
     return mask;  // nothing that light could change
   for (const scene::Light& light : scene.lights)
@@ -95,7 +102,7 @@ std::uint32_t features_of(const scene::Scene& scene, const scene::Geometry& geom
   return mask;
 }
 
-std::uint32_t features_of_samples(int samples, bool adaptive) {
+Features features_of_samples(int samples, bool adaptive) {
   return when(samples > 1, KDRAY_FEATURE_SUPERSAMPLE) | when(adaptive, KDRAY_FEATURE_ADAPTIVE);
 }
 
@@ -103,7 +110,7 @@ std::span<const Feature> features() {
   return kFeatures;
 }
 
-FeatureNames feature_names(std::uint32_t mask) {
+FeatureNames feature_names(Features mask) {
   FeatureNames names;
   for (const Feature& f : kFeatures) (mask & f.bit ? names.on : names.off).push_back(f.name);
   return names;

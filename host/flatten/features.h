@@ -6,20 +6,23 @@
 #include <string>
 #include <vector>
 
+#include "layout/features.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
 
 namespace kdray::flatten {
 
+using layout::Features;
+
 // What the scene needs, whatever the render's settings.
-std::uint32_t features_of(const scene::Scene& scene, const scene::Geometry& geometry);
+Features features_of(const scene::Scene& scene, const scene::Geometry& geometry);
 
 // What a render adds.
-std::uint32_t features_of_samples(int samples, bool adaptive = false);
+Features features_of_samples(int samples, bool adaptive = false);
 
 // A bit of the mask that a scene may do without.
 struct Feature {
-  std::uint32_t bit;
+  Features bit;
   const char* name;
 };
 std::span<const Feature> features();
@@ -27,6 +30,6 @@ std::span<const Feature> features();
 struct FeatureNames {
   std::vector<std::string> on, off;
 };
-FeatureNames feature_names(std::uint32_t mask);
+FeatureNames feature_names(Features mask);
 
 }  // namespace kdray::flatten

@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "base/error.h"
+#include "primitives/pack.h"
+#include "primitives/shapes.h"
 
 namespace kdray::flatten {
 
@@ -16,9 +18,7 @@ namespace {
 
 constexpr std::size_t kGrain = 8192;  // items that one task packs
 
-void set(float (&out)[3], const vec3& v) {
-  for (int k = 0; k < 3; ++k) out[k] = v[k];
-}
+using primitives::pack, primitives::set;
 
 // The nodes that this form has, which knows planes alone: a cell's groups are one leaf.
 struct BinaryNodes {
@@ -85,29 +85,6 @@ Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene
                       }
                     });
   return normals;
-}
-
-layout::Sphere pack(const scene::SphereGeometry& g, const scene::Sphere& source) {
-  layout::Sphere s{};
-  set(s.center, g.center);
-  s.radius = g.radius;
-  s.number = source.number;
-  s.material = source.material;
-  return s;
-}
-
-layout::Cone pack(const scene::ConeGeometry& g, const scene::Cone& source) {
-  layout::Cone c{};
-  const dvec3 axis = dvec3(g.apex) - dvec3(g.base);
-  const double height = glm::length(axis);
-  set(c.base, g.base);
-  set(c.axis, vec3(axis / height));
-  c.base_radius = g.base_radius;
-  c.height = static_cast<float>(height);
-  c.slope = static_cast<float>((double(g.apex_radius) - double(g.base_radius)) / height);
-  c.number = source.number;
-  c.material = source.material;
-  return c;
 }
 
 layout::Material pack(const scene::Material& m, const vec3& ambient_light) {
@@ -179,8 +156,9 @@ layout::Light pack(const scene::Light& light, const LocalSpace& space) {
 }  // namespace
 
 std::size_t FlatScene::bytes() const {
-  return nodes.bytes() + refs.bytes() + triangles.bytes() + normals.bytes() + spheres.bytes() +
-         cones.bytes() + materials.bytes() + lights.bytes();
+  std::size_t sum = 0;
+  for_each_flat_array(*this, [&](const auto& array) { sum += array.bytes(); });
+  return sum;
 }
 
 FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree,
@@ -189,11 +167,16 @@ FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, co
   if (binary_form) pack_binary(tree, flat);
   flat.triangles = geometry.triangles;
   flat.normals = pack_normals(scene, geometry);
-  flat.spheres = filled<layout::Sphere>(geometry.spheres.size(), [&](std::size_t i) {
-    return pack(geometry.spheres[i], scene.spheres[geometry.spheres[i].source]);
-  });
-  flat.cones = filled<layout::Cone>(geometry.cones.size(), [&](std::size_t i) {
-    return pack(geometry.cones[i], scene.cones[geometry.cones[i].source]);
+  primitives::for_each_shape([&](auto kind) {
+    using Kind = decltype(kind);
+    const auto& shapes = Kind::of(geometry);
+    Kind::of(flat) = filled<typename Kind::Layout>(shapes.size(), [&](std::size_t i) {
+      const auto& source = Kind::of(scene)[shapes[i].source];
+      typename Kind::Layout packed = pack(shapes[i]);
+      packed.number = source.number;
+      packed.material = source.material;
+      return packed;
+    });
   });
   flat.materials = filled<layout::Material>(
       scene.materials.size(), [&](std::size_t i) { return pack(scene.materials[i], scene.ambient); });

@@ -8,6 +8,7 @@
 
 #include "base/array.h"
 #include "kdtree/tree.h"
+#include "layout/kinds.h"
 #include "layout/primitives.layout.h"
 #include "layout/shading.layout.h"
 #include "layout/tree.layout.h"
@@ -21,13 +22,23 @@ struct FlatScene {
   Array<layout::u32> refs;
   Array<layout::Triangle> triangles;
   Array<layout::VertexNormals> normals;
-  Array<layout::Sphere> spheres;
-  Array<layout::Cone> cones;
+#define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) Array<layout::Struct> names;
+  KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
+#undef KDRAY_SHAPE_ARRAY
   Array<layout::Material> materials;
   Array<layout::Light> lights;
 
   std::size_t bytes() const;
 };
+
+// visit(array) for each of them, in the order of the members. The struct is taken apart, so that one that is
+// added can't be forgotten.
+template <class Flat, class Visit>
+void for_each_flat_array(Flat& flat, const Visit& visit) {
+  auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights] = flat;
+  const auto visit_all = [&visit](auto&... arrays) { (visit(arrays), ...); };
+  visit_all(nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights);
+}
 
 // The binary form, `nodes` and `refs`, is for the binary walk alone: without it these are empty.
 FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree,

@@ -14,10 +14,12 @@
 
 #include "base/raw_vector.h"
 #include "kdtree/tree.h"
+#include "primitives/kinds.h"
 
 namespace kdray::flatten {
 
 inline constexpr std::uint32_t kWidth = 8;
+static_assert(primitives::kKinds <= kWidth, "a leaf of all kinds has a child for each in one node");
 
 // The one kind of primitives that a tree holds, or:
 inline constexpr std::uint32_t kAnyKind = ~0u;

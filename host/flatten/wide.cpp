@@ -7,11 +7,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <tuple>
-#include <type_traits>
 
 #include "base/error.h"
 #include "flatten/collapse.h"
+#include "primitives/shapes.h"
 
 namespace kdray::flatten {
 
@@ -79,12 +78,7 @@ void write_normal_bounds(layout::u32* rows) {
 std::array<float, KDRAY_TRIANGLE_ROWS - 2> rows_of(const layout::Triangle& t) {
   return {t.v[0][0], t.v[0][1], t.v[0][2], t.v[1][0], t.v[1][1], t.v[1][2], t.v[2][0], t.v[2][1], t.v[2][2]};
 }
-std::array<float, KDRAY_SPHERE_ROWS - 1> rows_of(const layout::Sphere& s) {
-  return {s.center[0], s.center[1], s.center[2], s.radius};
-}
-std::array<float, KDRAY_CONE_ROWS - 1> rows_of(const layout::Cone& c) {
-  return {c.base[0], c.base[1], c.base[2], c.axis[0], c.axis[1], c.axis[2], c.base_radius, c.height, c.slope};
-}
+using primitives::rows_of;
 
 // References that are read soon: those of the next leaves follow this one's.
 constexpr std::uint32_t kAhead = 16;
@@ -95,9 +89,6 @@ void prefetch(const kdtree::Tree& tree, std::size_t ref, const Array<Primitive>&
   const std::size_t index = kdtree::ref_index(tree.refs[ref]);
   if (index < primitives.size()) __builtin_prefetch(primitives.data() + index);  // it may be of another kind
 }
-
-template <class Primitive>
-constexpr std::size_t kRowsOf = std::tuple_size_v<decltype(rows_of(Primitive()))>;
 
 // Lanes without primitive: NaN but for the index.
 void clear_lanes(std::uint32_t first, std::uint32_t block, std::size_t n_rows, layout::u32* words) {
@@ -112,11 +103,11 @@ void write_normal_bounds(std::uint32_t block, layout::u32* words) {
 }
 
 // Writes a leaf's blocks of one kind, from `words` on.
-template <class Primitive>
-void write_blocks(const kdtree::Tree& tree, const kdtree::RefRun& run, const Array<Primitive>& primitives,
-                  std::uint32_t block, layout::u32* words) {
-  constexpr bool kTriangles = std::is_same_v<Primitive, layout::Triangle>;
-  constexpr std::size_t kRows = kRowsOf<Primitive> + (kTriangles ? 1 : 0);
+template <class Kind>
+void write_blocks(Kind, const kdtree::Tree& tree, const kdtree::RefRun& run,
+                  const Array<typename Kind::Layout>& primitives, std::uint32_t block, layout::u32* words) {
+  constexpr bool kTriangles = !Kind::kIsShape;
+  constexpr std::size_t kRows = Kind::kRows - 1;  // but for the index
   for (std::uint32_t done = 0; done < run.n; done += block, words += (kRows + 1) * block) {
     const std::uint32_t n = std::min(block, run.n - done);
     for (std::uint32_t lane = 0; lane < n; ++lane) {
@@ -138,11 +129,11 @@ void write_blocks(const kdtree::Tree& tree, const kdtree::RefRun& run, const Arr
 // Where a part's nodes and blocks begin in the form.
 struct Places {
   std::size_t first_node = 0;
-  std::array<std::size_t, 3> first_block{};
+  std::array<std::size_t, primitives::kKinds> first_block{};
 
   void skip(const CollapsedPart& part) {
     first_node += part.nodes.size();
-    for (std::size_t kind = 0; kind < 3; ++kind) first_block[kind] += part.n_blocks[kind];
+    for (std::size_t kind = 0; kind < primitives::kKinds; ++kind) first_block[kind] += part.n_blocks[kind];
   }
 };
 
@@ -176,7 +167,7 @@ class Writer {
   layout::u32 child_word(layout::u32 child, std::uint32_t item, const Places& places,
                          const Places* cuts) const {
     if (child & KDRAY_WIDE_LEAF) {
-      const std::uint32_t kind = child >> KDRAY_WIDE_KIND_SHIFT & 3u;
+      const std::uint32_t kind = leaf_kind(child);
       const std::size_t first = (child & KDRAY_WIDE_FIRST_MASK) + places.first_block[kind];
       write_leaf(item, kind, first);
       return (child & ~KDRAY_WIDE_FIRST_MASK) | static_cast<layout::u32>(first);
@@ -186,17 +177,13 @@ class Writer {
     return child + static_cast<layout::u32>(places.first_node);
   }
 
-  void write_leaf(std::uint32_t leaf, std::uint32_t kind, std::size_t first) const {
-    const kdtree::RefRun run = leaf_run(tree_, leaf, kind);
-    if (kind == 0)
-      write_blocks(tree_, run, primitives_.triangles, block_,
-                   form_.triangle_blocks.data() + first * KDRAY_TRIANGLE_ROWS * block_);
-    if (kind == 1)
-      write_blocks(tree_, run, primitives_.spheres, block_,
-                   form_.sphere_blocks.data() + first * KDRAY_SPHERE_ROWS * block_);
-    if (kind == 2)
-      write_blocks(tree_, run, primitives_.cones, block_,
-                   form_.cone_blocks.data() + first * KDRAY_CONE_ROWS * block_);
+  void write_leaf(std::uint32_t leaf, std::uint32_t number, std::size_t first) const {
+    const kdtree::RefRun run = leaf_run(tree_, leaf, number);
+    primitives::with_kind(number, [&](auto kind) {
+      using Kind = decltype(kind);
+      write_blocks(kind, tree_, run, Kind::of(primitives_), block_,
+                   Kind::blocks_of(form_).data() + first * Kind::kRows * block_);
+    });
   }
 
   const kdtree::Tree& tree_;
@@ -213,9 +200,13 @@ struct Parts {
 };
 
 std::uint32_t only_kind(const FlatScene& scene) {
-  const bool some[] = {!scene.triangles.empty(), !scene.spheres.empty(), !scene.cones.empty()};
-  if (some[0] + some[1] + some[2] != 1) return kAnyKind;
-  return some[0] ? 0 : some[1] ? 1 : 2;
+  std::uint32_t n = 0, only = kAnyKind;
+  primitives::for_each_kind([&](auto kind) {
+    if (decltype(kind)::of(scene).empty()) return;
+    ++n;
+    only = decltype(kind)::kNumber;
+  });
+  return n == 1 ? only : kAnyKind;
 }
 
 Parts collapse_in_parts(const kdtree::Tree& tree, std::uint32_t block, std::uint32_t kind) {
@@ -236,16 +227,18 @@ Parts collapse_in_parts(const kdtree::Tree& tree, std::uint32_t block, std::uint
 }
 
 void check_sizes(const Places& all) {
-  if (all.first_node > KDRAY_WIDE_FIRST_MASK)
+  if (all.first_node > KDRAY_WIDE_NODE_MAX)
     throw Error(ErrorCode::input, "the kd-tree has over 2^29 wide nodes");
   if (*std::max_element(all.first_block.begin(), all.first_block.end()) > KDRAY_WIDE_FIRST_MASK)
-    throw Error(ErrorCode::input, "the kd-tree has over 2^29 leaf blocks");
+    throw Error(ErrorCode::input, "the kd-tree has over 2^27 leaf blocks of one kind");
 }
 
 }  // namespace
 
 std::size_t WideForm::bytes() const {
-  return nodes.bytes() + triangle_blocks.bytes() + sphere_blocks.bytes() + cone_blocks.bytes();
+  std::size_t sum = 0;
+  for_each_wide_array(*this, [&](const auto& array) { sum += array.bytes(); });
+  return sum;
 }
 
 WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int block) {
@@ -263,9 +256,10 @@ WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int bl
   }
   check_sizes(all);
   form.nodes = Array<layout::WideNode>(all.first_node);
-  form.triangle_blocks = Array<layout::u32>(all.first_block[0] * KDRAY_TRIANGLE_ROWS * width);
-  form.sphere_blocks = Array<layout::u32>(all.first_block[1] * KDRAY_SPHERE_ROWS * width);
-  form.cone_blocks = Array<layout::u32>(all.first_block[2] * KDRAY_CONE_ROWS * width);
+  primitives::for_each_kind([&](auto kind) {
+    using Kind = decltype(kind);
+    Kind::blocks_of(form) = Array<layout::u32>(all.first_block[Kind::kNumber] * Kind::kRows * width);
+  });
   const Writer writer(tree, primitives, form);
   writer.write(parts.top, Places(), places.data());
   tbb::parallel_for(std::size_t{0}, parts.below.size(),

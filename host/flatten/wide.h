@@ -11,6 +11,7 @@
 #include "base/array.h"
 #include "flatten/flatten.h"
 #include "kdtree/tree.h"
+#include "layout/kinds.h"
 #include "layout/wide.layout.h"
 
 namespace kdray::flatten {
@@ -18,11 +19,27 @@ namespace kdray::flatten {
 struct WideForm {
   int block = 8;  // primitives to a block
   Array<layout::WideNode> nodes;
-  Array<layout::u32> triangle_blocks, sphere_blocks, cone_blocks;  // words, a float's bits or an index
+// Words, a float's bits or an index.
+#define KDRAY_BLOCK_ARRAY(NAME, name, names, Struct) Array<layout::u32> name##_blocks;
+  KDRAY_KINDS(KDRAY_BLOCK_ARRAY)
+#undef KDRAY_BLOCK_ARRAY
   int stack_size = 0;  // the most entries that a walk stacks which pushes all children of a node, for any ray
 
   std::size_t bytes() const;
 };
+
+// visit(array) for each of them, in the order of the members (see for_each_flat_array).
+template <class Wide, class Visit>
+void for_each_wide_array(Wide& wide, const Visit& visit) {
+  auto& [block, nodes, KDRAY_KINDS(KDRAY_KIND_BLOCKS) stack_size] = wide;
+  visit(nodes);
+  primitives::for_each_kind([&](auto kind) { visit(decltype(kind)::blocks_of(wide)); });
+}
+
+// The kind of the primitives of a leaf (a child with KDRAY_WIDE_LEAF).
+inline std::uint32_t leaf_kind(layout::u32 leaf) {
+  return leaf >> KDRAY_WIDE_KIND_SHIFT & KDRAY_WIDE_KIND_MASK;
+}
 
 // `primitives` has the arrays that the tree's references name; `block` is 4 or 8.
 WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int block);

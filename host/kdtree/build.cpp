@@ -21,7 +21,10 @@ namespace {
 constexpr std::size_t kFineMesh = std::size_t{1} << 19;  // primitives
 constexpr int kDepthLimit = 64;                          // the traversal's stack
 
-void check(const BuildConfig& c, std::size_t n) {
+constexpr std::size_t kMostPrimitives = std::size_t{1}
+                                        << 29;  // references twice as many, which nodes can name
+
+void check(const BuildConfig& c, const scene::Geometry& geometry) {
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   if (!positive(c.cost_intersect) || !(std::isfinite(c.cost_traverse) && c.cost_traverse >= 0) ||
       !(positive(c.empty_bonus) && c.empty_bonus <= 1) ||
@@ -29,19 +32,27 @@ void check(const BuildConfig& c, std::size_t n) {
     throw Error(ErrorCode::usage, "kd-tree: costs must be positive and the empty-space factor in (0, 1]");
   if (c.block < 1 || c.block > 64 || (c.block & (c.block - 1)) != 0)
     throw Error(ErrorCode::usage, "kd-tree: the block size must be a power of two from 1 to 64");
-  if (n > (std::size_t{1} << (kRefIndexBits - 1)))
-    throw Error(ErrorCode::input, "too many primitives for one tree: " + std::to_string(n));
+  if (geometry.size() > kMostPrimitives)
+    throw Error(ErrorCode::input, "too many primitives for one tree: " + std::to_string(geometry.size()));
+  primitives::for_each_kind([&](auto kind) {
+    if (decltype(kind)::of(geometry).size() > KDRAY_REF_INDEX_MASK)
+      throw Error(ErrorCode::input, std::string("too many ") + decltype(kind)::kNames + " for one tree");
+  });
 }
 
 // How much more Ct counts where cells are divided into groups: what a plane would save of their tests, groups
-// save mostly. Cones are dear to test, and planes in the end the better fence around them
-// (docs/logbook/kdtree.md).
+// save mostly. Some kinds (cones) are dear to test, and planes in the end the better fence around them
+// (docs/logbook/kdtree.md): by how much more, their kFenceFactor says.
 double grouped_factor(const scene::Geometry& geometry, const BuildConfig& config) {
-  constexpr double kGrouped = 6, kConesFactor = 7;
+  constexpr double kGrouped = 6;
   if (!config.groups || config.small_cells) return 1;
   const double n = static_cast<double>(std::max<std::size_t>(geometry.size(), 1));
-  const double cones = static_cast<double>(geometry.cones.size()) / n;
-  return kGrouped / (1 + kConesFactor * cones);
+  double fences = 1;
+  primitives::for_each_shape([&](auto kind) {
+    const double share = static_cast<double>(decltype(kind)::of(geometry).size()) / n;
+    fences += decltype(kind)::Geometry::kFenceFactor * share;
+  });
+  return kGrouped / fences;
 }
 
 BuildConfig priced(BuildConfig config, const scene::Geometry& geometry) {
@@ -62,9 +73,8 @@ void add_refs(const Primitives& primitives, scene::PrimitiveKind kind, std::vect
 std::vector<BoundedRef> all_refs(const scene::Geometry& geometry) {
   std::vector<BoundedRef> refs;
   refs.reserve(geometry.size());
-  add_refs(geometry.triangles, scene::PrimitiveKind::triangle, refs);
-  add_refs(geometry.spheres, scene::PrimitiveKind::sphere, refs);
-  add_refs(geometry.cones, scene::PrimitiveKind::cone, refs);
+  primitives::for_each_kind(
+      [&](auto kind) { add_refs(decltype(kind)::of(geometry), decltype(kind)::kKind, refs); });
   return refs;
 }
 
@@ -92,7 +102,7 @@ BuildConfig suited(BuildConfig config, std::size_t n_primitives) {
 
 Tree build(const scene::Geometry& geometry, const BuildConfig& asked) {
   const std::size_t n = geometry.size();
-  check(asked, n);
+  check(asked, geometry);
   const BuildConfig config = priced(asked, geometry);
   Tree tree;
   if (n == 0) {

@@ -6,17 +6,13 @@ SplitBounds clip_to_sides(const scene::Geometry& geometry, const BoundedRef& r, 
                           float position) {
   const Bounds known = r.bounds();
   const std::uint32_t index = ref_index(r.ref);
-  switch (ref_kind(r.ref)) {
-    case scene::PrimitiveKind::triangle:
-      return clip_triangle(geometry.triangles[index], known, cell, axis, position);
-    case scene::PrimitiveKind::sphere:
-      return {clip_sphere(geometry.spheres[index], below(known, axis, position)),
-              clip_sphere(geometry.spheres[index], above(known, axis, position))};
-    case scene::PrimitiveKind::cone:
-      return {clip_cone(geometry.cones[index], below(known, axis, position)),
-              clip_cone(geometry.cones[index], above(known, axis, position))};
-  }
-  return {below(known, axis, position), above(known, axis, position)};
+  return primitives::with_kind(kind_number(r.ref), [&](auto kind) -> SplitBounds {
+    const auto& primitive = decltype(kind)::of(geometry)[index];
+    if constexpr (decltype(kind)::kIsShape)
+      return {clip(primitive, below(known, axis, position)), clip(primitive, above(known, axis, position))};
+    else
+      return clip_triangle(primitive, known, cell, axis, position);
+  });
 }
 
 }  // namespace kdray::kdtree

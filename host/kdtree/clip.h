@@ -16,11 +16,9 @@ struct SplitBounds {
 SplitBounds clip_to_sides(const scene::Geometry& geometry, const BoundedRef& r, const Bounds& cell, int axis,
                           float position);
 
-// The same for one kind. `known` are bounds of the part inside the cell, found before.
+// The same for a triangle. `known` are bounds of the part inside the cell, found before. (For a shape they
+// are a region to clip it to: primitives/<kind>_clip.cpp.)
 SplitBounds clip_triangle(const scene::TriangleGeometry& t, const Bounds& known, const Bounds& cell, int axis,
                           float position);
-// Bounds of the surface inside a region; the region is a cell or known bounds of the surface inside it.
-Bounds clip_sphere(const scene::SphereGeometry& s, const Bounds& region);
-Bounds clip_cone(const scene::ConeGeometry& c, const Bounds& region);
 
 }  // namespace kdray::kdtree

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "kdtree/clip.h"
-#include "kdtree/rounding.h"
+#include "math/rounding.h"
 
 namespace kdray::kdtree {
 

@@ -1,25 +1,29 @@
-// What    A kd-tree over triangles, spheres and cones, as the builder leaves it and flatten/ packs it.
-// Shape   nodes[0] is the root; a leaf names a run of `refs`. A reference is the kind in the top two bits and
-//         the index into that kind's array of scene::Geometry below them; within a leaf they ascend.
-//         What is in a cell may be in *groups*: a subtree whose nodes part primitives, not space. Their
-//         contents may overlap, and they refer to each primitive of the cell once. Below groups there are no
-//         planes.
+// What    A kd-tree over primitives of all kinds, as the builder leaves it and flatten/ packs it.
+// Shape   nodes[0] is the root; a leaf names a run of `refs`. A reference is the kind in the top four bits
+//         and the index into that kind's array of scene::Geometry below them; within a leaf they ascend. What
+//         is in a cell may be in *groups*: a subtree whose nodes part primitives, not space. Their contents
+//         may overlap, and they refer to each primitive of the cell once. Below groups there are no planes.
 #pragma once
 
 #include <cstdint>
+
 #include "base/raw_vector.h"
+#include "layout/tree.layout.h"
 #include "math/box.h"
 #include "scene/geometry.h"
 
 namespace kdray::kdtree {
 
 using Ref = std::uint32_t;
-inline constexpr std::uint32_t kRefIndexBits = 30;
+inline constexpr std::uint32_t kRefIndexBits = KDRAY_REF_KIND_SHIFT;
 inline constexpr Ref make_ref(scene::PrimitiveKind kind, std::uint32_t index) {
   return (static_cast<std::uint32_t>(kind) << kRefIndexBits) | index;
 }
+inline constexpr std::uint32_t kind_number(Ref r) {
+  return r >> kRefIndexBits;
+}
 inline constexpr scene::PrimitiveKind ref_kind(Ref r) {
-  return static_cast<scene::PrimitiveKind>(r >> kRefIndexBits);
+  return static_cast<scene::PrimitiveKind>(kind_number(r));
 }
 inline constexpr std::uint32_t ref_index(Ref r) {
   return r & ((1u << kRefIndexBits) - 1);

@@ -7,18 +7,20 @@
 
 #include "flatten/wide.h"
 #include "layout/wide.layout.h"
+#include "primitives/kinds.h"
 
 namespace kdray::odprt {
 
-inline constexpr std::uint32_t kKinds = 3;
-inline constexpr std::array<std::uint32_t, kKinds> kBlockRows = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS,
-                                                                 KDRAY_CONE_ROWS};
+using primitives::kKinds;
 
-inline Array<layout::u32>& blocks_of(flatten::WideForm& form, std::uint32_t kind) {
-  return kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
-}
-inline const Array<layout::u32>& blocks_of(const flatten::WideForm& form, std::uint32_t kind) {
-  return kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
+#define KDRAY_ROWS_OF_KIND(NAME, name, names, Struct) KDRAY_##NAME##_ROWS,
+inline constexpr std::array<std::uint32_t, kKinds> kBlockRows = {KDRAY_KINDS(KDRAY_ROWS_OF_KIND)};
+#undef KDRAY_ROWS_OF_KIND
+
+template <class Form>
+auto& blocks_of(Form& form, std::uint32_t number) {
+  return primitives::with_kind(
+      number, [&](auto kind) -> auto& { return decltype(kind)::blocks_of(form); });
 }
 
 }  // namespace kdray::odprt

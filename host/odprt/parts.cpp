@@ -22,9 +22,7 @@ struct Holders {
   std::array<std::vector<std::uint64_t>, kKinds> of;
 
   explicit Holders(const flatten::FlatScene& scene) {
-    of[0].resize(scene.triangles.size());
-    of[1].resize(scene.spheres.size());
-    of[2].resize(scene.cones.size());
+    primitives::for_each_kind([&](auto kind) { of[kind.kNumber].resize(decltype(kind)::of(scene).size()); });
   }
   void add(std::uint32_t kind, std::uint32_t index, std::uint64_t part) {
     std::atomic_ref(of[kind][index]).fetch_or(part, std::memory_order_relaxed);
@@ -104,7 +102,7 @@ class Counting {
   }
 
   void count_leaf(layout::u32 leaf) {
-    const std::uint32_t kind = leaf >> KDRAY_WIDE_KIND_SHIFT & 3u, n = leaf_blocks(walk_.form(), leaf);
+    const std::uint32_t kind = flatten::leaf_kind(leaf), n = leaf_blocks(walk_.form(), leaf);
     const auto width = static_cast<std::size_t>(walk_.form().block);
     const layout::u32* words = blocks_of(walk_.form(), kind).data() +
                                (leaf & KDRAY_WIDE_FIRST_MASK) * kBlockRows[kind] * width +
@@ -137,9 +135,9 @@ Numbering number(const Holders& holders, const flatten::FlatScene& scene, std::u
     std::vector<std::uint32_t> own;
     for (std::uint32_t i = 0; i < of.size(); ++i)
       if (of[i] & bit) (std::has_single_bit(of[i]) ? own : n.members[kind]).push_back(i);
-    if (kind == 0) {
-      n.n_shared = static_cast<std::uint32_t>(n.members[0].size());
-      std::sort(n.members[0].begin(), n.members[0].end(), [&](std::uint32_t a, std::uint32_t b) {
+    if (kind == KDRAY_KIND_TRIANGLE) {
+      n.n_shared = static_cast<std::uint32_t>(n.members[kind].size());
+      std::sort(n.members[kind].begin(), n.members[kind].end(), [&](std::uint32_t a, std::uint32_t b) {
         return scene.triangles[a].number < scene.triangles[b].number;
       });
     }
@@ -212,7 +210,7 @@ class Copying {
   }
 
   layout::u32 copy_leaf(layout::u32 leaf) {
-    const std::uint32_t kind = leaf >> KDRAY_WIDE_KIND_SHIFT & 3u, n = leaf_blocks(walk_.form(), leaf);
+    const std::uint32_t kind = flatten::leaf_kind(leaf), n = leaf_blocks(walk_.form(), leaf);
     const auto width = static_cast<std::size_t>(walk_.form().block);
     const std::size_t words = kBlockRows[kind] * width;
     const layout::u32* from = blocks_of(walk_.form(), kind).data() + (leaf & KDRAY_WIDE_FIRST_MASK) * words;
@@ -249,9 +247,9 @@ Array<T> select(const Array<T>& all, const std::vector<std::uint32_t>& members) 
 
 flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numbering& n) {
   flatten::FlatScene flat;
-  flat.triangles = select(scene.triangles, n.members[0]);
-  flat.spheres = select(scene.spheres, n.members[1]);
-  flat.cones = select(scene.cones, n.members[2]);
+  primitives::for_each_kind([&](auto kind) {
+    decltype(kind)::of(flat) = select(decltype(kind)::of(scene), n.members[kind.kNumber]);
+  });
   flat.materials = scene.materials;
   flat.lights = scene.lights;
   std::vector<std::uint32_t> normals;
@@ -381,8 +379,9 @@ class Directory {
 }  // namespace
 
 std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideForm& wide) {
-  return flat.triangles.bytes() + flat.normals.bytes() + flat.spheres.bytes() + flat.cones.bytes() +
-         wide.bytes();
+  std::size_t bytes = flat.normals.bytes() + wide.bytes();
+  primitives::for_each_kind([&](auto kind) { bytes += decltype(kind)::of(flat).bytes(); });
+  return bytes;
 }
 
 std::size_t Part::geometry_bytes() const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "layout/features.h"
 #include "layout/frame.layout.h"
 #include "odprt/outbox.h"
 
@@ -22,7 +23,7 @@ struct Plan {
 
 // What is asked of a plan.
 struct PlanRequest {
-  std::uint32_t features = 0;
+  layout::Features features = 0;
   std::uint32_t n_parts = 1, n_queues = 1;
   std::uint32_t n_slices = 16;   // of each queue
   std::uint32_t ray_buffer = 0;  // rays in a place of the outbox; 0: chosen

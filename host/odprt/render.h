@@ -35,7 +35,7 @@ struct Queue {
 struct Request {
   std::vector<Queue> queues;
   layout::Frame frame;  // with tiles
-  std::uint32_t features = 0;
+  layout::Features features = 0;
   Traversal traversal = Traversal::automatic;
   // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one.
   double adaptive_target = 0;

@@ -15,12 +15,6 @@ namespace {
 
 // The heuristic's units: a node costs 1, a block of primitives 2 (host/kdtree).
 constexpr double kNodeCost = 1, kBlockCost = 2;
-constexpr std::uint64_t kPrimitiveBytes[] = {sizeof(layout::Triangle), sizeof(layout::Sphere),
-                                             sizeof(layout::Cone)};
-
-std::uint32_t kind_of(layout::u32 leaf) {
-  return leaf >> KDRAY_WIDE_KIND_SHIFT & 3u;
-}
 
 // What a subtree takes: surface times cost, and bytes.
 struct Load {
@@ -40,8 +34,9 @@ class Loads {
     // A smooth triangle has its normals beside it.
     const std::uint64_t normals =
         scene.triangles.empty() ? 0 : scene.normals.bytes() / scene.triangles.size();
-    for (std::uint32_t kind = 0; kind < 3; ++kind) primitive_bytes_[kind] = kPrimitiveBytes[kind];
-    primitive_bytes_[0] += normals;
+    primitives::for_each_kind(
+        [this](auto kind) { primitive_bytes_[kind.kNumber] = sizeof(typename decltype(kind)::Layout); });
+    primitive_bytes_[KDRAY_KIND_TRIANGLE] += normals;
     tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t i) { nodes_[i] = own(form_.nodes[i]); });
     // Children come behind their parents.
     for (std::size_t i = nodes_.size(); i-- > 0;)
@@ -61,7 +56,7 @@ class Loads {
 
  private:
   Load of_leaf(layout::u32 leaf, const Box& bounds) const {
-    const std::uint32_t kind = kind_of(leaf), n = leaf_blocks(form_, leaf);
+    const std::uint32_t kind = flatten::leaf_kind(leaf), n = leaf_blocks(form_, leaf);
     const auto lanes = n * static_cast<std::uint64_t>(form_.block);
     return {kBlockCost * n * static_cast<double>(bounds.area()),
             lanes * (kBlockRows[kind] * sizeof(float) + primitive_bytes_[kind])};
@@ -83,7 +78,7 @@ class Loads {
 
   const flatten::WideForm& form_;
   std::vector<Load> nodes_;
-  std::array<std::uint64_t, 3> primitive_bytes_{};
+  std::array<std::uint64_t, kKinds> primitive_bytes_{};
 };
 
 class Cutter {
@@ -153,7 +148,7 @@ class Cutter {
 }  // namespace
 
 std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf) {
-  const std::uint32_t kind = kind_of(leaf);
+  const std::uint32_t kind = flatten::leaf_kind(leaf);
   const std::size_t words = kBlockRows[kind] * static_cast<std::size_t>(form.block);
   const layout::u32* block = blocks_of(form, kind).data() + (leaf & KDRAY_WIDE_FIRST_MASK) * words;
   std::uint32_t n = 1;

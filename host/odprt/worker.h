@@ -52,7 +52,7 @@ struct WorkRoom {
 class Worker {
  public:
   Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
-         const layout::Frame& frame, const Plan& plan, std::uint32_t features, Traversal traversal,
+         const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
          std::span<const layout::PartCell> directory, const WorkRoom& room, std::size_t max_subtrees);
   ~Worker();
   Worker(const Worker&) = delete;

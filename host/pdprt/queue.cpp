@@ -13,7 +13,7 @@ namespace {
 // Shorter launches than this are not worth their report.
 constexpr double kShortestSeconds = 0.0003;
 
-layout::Frame scheduled(layout::Frame frame, const wavefront::Schedule& schedule, std::uint32_t features) {
+layout::Frame scheduled(layout::Frame frame, const wavefront::Schedule& schedule, layout::Features features) {
   schedule.apply(frame, features);
   return frame;
 }

@@ -39,7 +39,7 @@ inline constexpr std::size_t kLeastSamples = std::size_t{1} << 18;
 
 struct Task {
   layout::Frame frame;  // without a schedule (flatten::make_frame)
-  std::uint32_t features = 0;
+  layout::Features features = 0;
   // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one.
   double adaptive_target = 0;
   Division division = Division::bag;

@@ -38,16 +38,15 @@ kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
 namespace {
 
 // The scene is taken apart into all its members, so that one that is added can't be forgotten.
+#define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
 scene::Scene settings_of(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, spheres, cones, materials, lights, unlit, camera,
-               background, ambient, settings, warnings, files] = scene;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
+               camera, background, ambient, settings, warnings, files] = scene;
   return {.name = name,
           .vertices = {},
           .normals = {},
           .triangles = {},
-          .spheres = {},
-          .cones = {},
-          .materials = materials,
+          KDRAY_SHAPES(KDRAY_NO_SHAPES).materials = materials,
           .lights = lights,
           .unlit = unlit,
           .camera = camera,
@@ -57,6 +56,7 @@ scene::Scene settings_of(const scene::Scene& scene) {
           .warnings = warnings,
           .files = files};
 }
+#undef KDRAY_NO_SHAPES
 
 }  // namespace
 
@@ -94,10 +94,11 @@ Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geomet
 }  // namespace
 
 std::size_t Prepared::largest_array() const {
-  return std::max({flat.nodes.bytes(), flat.refs.bytes(), flat.triangles.bytes(), flat.normals.bytes(),
-                   flat.spheres.bytes(), flat.cones.bytes(), flat.materials.bytes(), flat.lights.bytes(),
-                   wide.nodes.bytes(), wide.triangle_blocks.bytes(), wide.sphere_blocks.bytes(),
-                   wide.cone_blocks.bytes()});
+  std::size_t largest = 0;
+  const auto look_at = [&](const auto& array) { largest = std::max(largest, array.bytes()); };
+  flatten::for_each_flat_array(flat, look_at);
+  flatten::for_each_wide_array(wide, look_at);
+  return largest;
 }
 
 Prepared prepare(const scene::Scene& scene, const TreeOptions& options) {
@@ -132,8 +133,9 @@ Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
   made.geometry.dropped_degenerate = geometry.dropped_degenerate;
   if (const std::string warning = scene::range_warning(geometry); !warning.empty())
     made.settings.warnings.push_back(warning);
-  made.counts = {scene.primitive_count(), geometry.triangles.size(), geometry.spheres.size(),
-                 geometry.cones.size()};
+  made.counts.primitives = scene.primitive_count();
+  primitives::for_each_kind(
+      [&](auto kind) { decltype(kind)::of(made.counts) = decltype(kind)::of(geometry).size(); });
   made.features = flatten::features_of(scene, geometry);
   made.tree_depth = tree.max_depth;
   made.tree_nodes = tree.nodes.size();

@@ -11,14 +11,18 @@
 #include "kdray/kdray.h"
 #include "kdtree/build.h"
 #include "kdtree/statistics.h"
+#include "layout/features.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
 
 namespace kdray::prepare {
 
 struct Counts {
-  std::uint64_t primitives = 0;                         // of the file, degenerate ones too
-  std::uint64_t triangles = 0, spheres = 0, cones = 0;  // that can be hit
+  std::uint64_t primitives = 0;  // of the file, degenerate ones too
+  // That can be hit.
+#define KDRAY_COUNT(NAME, name, names, Struct) std::uint64_t names = 0;
+  KDRAY_KINDS(KDRAY_COUNT)
+#undef KDRAY_COUNT
 };
 
 // These are wall times.
@@ -31,7 +35,7 @@ struct Prepared {
   scene::Scene settings;     // the scene but for its primitives, vertices and normals
   scene::Geometry geometry;  // centre and bounds (the root's cell: what rays are clipped to); no primitives
   Counts counts;
-  std::uint32_t features = 0;
+  layout::Features features = 0;
   int tree_depth = 0;  // of the deepest leaf: it sizes the kernels' stacks
   std::uint64_t tree_nodes = 0;
   kdtree::Statistics tree;

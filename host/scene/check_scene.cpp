@@ -25,15 +25,14 @@ class Checker {
     check_counts();
     check_values();
     check_triangles();
-    check_spheres();
-    check_cones();
+    primitives::for_each_shape([this](auto kind) { check_shapes(kind); });
   }
 
  private:
   void require(bool good, const std::string& what) const {
     if (!good) throw input_error(scene_.name, 0, what, "correct the file");
   }
-  void require_internal(bool good, const char* what) const {
+  void require_internal(bool good, const std::string& what) const {
     if (!good) throw Error(ErrorCode::internal, scene_.name + ": the reader of this format left " + what);
   }
   void require_none(const char* fault, const std::string& where) const {
@@ -41,11 +40,10 @@ class Checker {
   }
 
   void check_counts() const {
-    const auto few = [](std::size_t n) { return n < kMaxPrimitivesPerKind; };
-    const bool good = few(scene_.triangles.size()) && few(scene_.spheres.size()) && few(scene_.cones.size());
-    if (!good) {
-      throw input_error(scene_.name, 0, "more than 2^30 primitives of one kind", "split the scene");
-    }
+    primitives::for_each_kind([this](auto kind) {
+      if (decltype(kind)::of(scene_).size() >= kMaxPrimitivesPerKind)
+        throw input_error(scene_.name, 0, "2^28 primitives of one kind or more", "split the scene");
+    });
     require_internal(scene_.primitive_count() == 0 || !scene_.materials.empty(),
                      "primitives without a material");
   }
@@ -81,25 +79,13 @@ class Checker {
     }
   }
 
-  void check_spheres() const {
-    for (const Sphere& s : scene_.spheres) {
-      require_internal(s.material < scene_.materials.size(), "a sphere without a material");
-      if (!is_finite(s.center) || !std::isfinite(s.radius) || !(s.radius > 0)) {
-        require(false, "primitive " + std::to_string(s.number) +
-                           ": a sphere needs a finite center and a radius above 0");
-      }
-    }
-  }
-
-  void check_cones() const {
-    for (const Cone& c : scene_.cones) {
-      require_internal(c.material < scene_.materials.size(), "a cone without a material");
-      const bool radii = std::isfinite(c.base_radius) && std::isfinite(c.apex_radius) && c.base_radius >= 0 &&
-                         c.apex_radius >= 0 && c.base_radius + c.apex_radius > 0;
-      if (!radii || !is_finite(c.base) || !is_finite(c.apex) || c.base == c.apex) {
-        require(false, "primitive " + std::to_string(c.number) +
-                           ": a cone needs two different finite ends and radii of 0 or more, not both 0");
-      }
+  template <class Kind>
+  void check_shapes(Kind) const {
+    for (const auto& shape : Kind::of(scene_)) {
+      if (shape.material >= scene_.materials.size())
+        require_internal(false, std::string("a ") + Kind::kName + " without a material");
+      if (const char* const fault = fault_of(shape))
+        require(false, "primitive " + std::to_string(shape.number) + ": " + fault);
     }
   }
 

@@ -10,8 +10,8 @@
 
 namespace kdray::scene {
 
-// References of the kd-tree (kdtree/tree.h) have 30 bits for the index within a kind.
-inline constexpr std::uint64_t kMaxPrimitivesPerKind = std::uint64_t{1} << 30;
+// References of the kd-tree (kernels/layout/tree.layout.h) have 28 bits for the index within a kind.
+inline constexpr std::uint64_t kMaxPrimitivesPerKind = std::uint64_t{1} << 28;
 
 void check_scene(const Scene& scene);
 

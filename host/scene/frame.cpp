@@ -104,9 +104,10 @@ std::vector<dvec3> sampled_middles(const Scene& scene) {
     const auto& v = scene.triangles[i].vertex;
     middles.push_back((scene.vertices[v[0]] + scene.vertices[v[1]] + scene.vertices[v[2]]) / 3.0);
   }
-  for (std::size_t i = 0; i < scene.spheres.size(); i += step) middles.push_back(scene.spheres[i].center);
-  for (std::size_t i = 0; i < scene.cones.size(); i += step)
-    middles.push_back(0.5 * (scene.cones[i].base + scene.cones[i].apex));
+  primitives::for_each_shape([&](auto kind) {
+    const auto& shapes = decltype(kind)::of(scene);
+    for (std::size_t i = 0; i < shapes.size(); i += step) middles.push_back(middle_of(shapes[i]));
+  });
   return middles;
 }
 

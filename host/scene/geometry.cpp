@@ -11,36 +11,11 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/cone_bounds.h"
 #include "scene/predicates.h"
 
 namespace kdray::scene {
 
 namespace {
-
-// The largest float <= value.
-float round_down(double value) {
-  const auto f = static_cast<float>(value);
-  return f > value ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
-}
-
-// a + b rounded down to float: the sum in double and, where that rounded up, one step below it first.
-float sum_down(double a, double b) {
-  double sum = a + b;
-  const double back = sum - a;
-  const double lost = (a - (sum - back)) + (b - back);  // exactly what the rounding took
-  if (lost < 0) sum = std::nextafter(sum, -std::numeric_limits<double>::infinity());
-  return round_down(sum);
-}
-
-Box box_around(const vec3& center, const dvec3& reach) {
-  Box box;
-  for (int i = 0; i < 3; ++i) {
-    box.lo[i] = sum_down(center[i], -reach[i]);
-    box.hi[i] = -sum_down(-static_cast<double>(center[i]), -reach[i]);
-  }
-  return box;
-}
 
 // Where the scene's own origin is to be, along one axis. A coordinate near the origin stays as it is, so that
 // the floats of a file stay the floats of the file. Otherwise the middle is taken, rounded to a multiple of
@@ -121,14 +96,12 @@ class Maker {
 
   Geometry make() {
     add_triangles();
-    add_spheres();
-    add_cones();
+    primitives::for_each_shape([this](auto kind) { add_shapes(kind); });
     return std::move(out_);
   }
 
  private:
   vec3 local(const dvec3& p) const { return vec3(out_.space.local(p)); }
-  float local_length(double length) const { return static_cast<float>(out_.space.local_length(length)); }
 
   TriangleGeometry triangle(const RawVector<vec3>& vertices, std::size_t i) const {
     const Triangle& from = scene_.triangles[i];
@@ -228,35 +201,22 @@ class Maker {
     return vertices;
   }
 
-  void add_spheres() {
-    out_.spheres.reserve(scene_.spheres.size());
-    for (std::uint32_t i = 0; i < scene_.spheres.size(); ++i) {
-      const Sphere& s = scene_.spheres[i];
-      const SphereGeometry g{local(s.center), local_length(s.radius), i};
-      keep(out_.spheres, g, g.radius > 0);
-    }
-  }
-
-  void add_cones() {
-    out_.cones.reserve(scene_.cones.size());
-    for (std::uint32_t i = 0; i < scene_.cones.size(); ++i) {
-      const Cone& c = scene_.cones[i];
-      const ConeGeometry g{local(c.base), local(c.apex), local_length(c.base_radius),
-                           local_length(c.apex_radius), i};
-      keep(out_.cones, g, g.base != g.apex && (g.base_radius > 0 || g.apex_radius > 0));
-    }
-  }
-
-  template <class Primitive>
-  void keep(std::vector<Primitive>& into, const Primitive& primitive, bool has_area) {
-    if (has_area) {
-      into.push_back(primitive);
-      const Box box = bounds_of(primitive);
+  template <class Kind>
+  void add_shapes(Kind) {
+    const auto& shapes = Kind::of(scene_);
+    auto& kept = Kind::of(out_);
+    kept.reserve(shapes.size());
+    for (std::uint32_t i = 0; i < shapes.size(); ++i) {
+      const typename Kind::Geometry shape = geometry_of(shapes[i], out_.space, i);
+      if (!primitives::has_area(shape)) {
+        ++out_.dropped_degenerate;
+        ++out_.lost;  // the file's have a radius, and a height
+        continue;
+      }
+      kept.push_back(shape);
+      const Box box = bounds_of(shape);
       out_.bounds.grow(box);
       out_.fine += is_fine(box);
-    } else {
-      ++out_.dropped_degenerate;
-      ++out_.lost;  // the file's have a radius, and a height
     }
   }
 
@@ -287,19 +247,6 @@ std::string range_warning(const Geometry& geometry) {
 Box bounds_of(const TriangleGeometry& t) {
   Box box;
   for (int i = 0; i < 3; ++i) box.grow(vertex(t, i));
-  return box;
-}
-
-Box bounds_of(const SphereGeometry& s) {
-  return box_around(s.center, dvec3(s.radius));
-}
-
-Box bounds_of(const ConeGeometry& c) {
-  // The hull of its two discs. 2^-48 covers the dozen roundings of disc_reach and of its product with the
-  // radius.
-  const dvec3 reach = disc_reach(dvec3(c.apex) - dvec3(c.base)) * (1 + 0x1p-48);
-  Box box = box_around(c.base, reach * static_cast<double>(c.base_radius));
-  box.grow(box_around(c.apex, reach * static_cast<double>(c.apex_radius)));
   return box;
 }
 

@@ -3,9 +3,9 @@
 //         are done in double (docs/design/numerics.md), so that a model at (1e6, 1e6, 1e6) keeps its bits,
 //         and so does one that is 2^k times as large.
 // Shape   One array per kind, in file order; `number` maps back to the file. Degenerate triangles (zero area
-//         after rounding, exactly decided) and spheres or cones whose radius rounds to 0 are dropped and
-//         counted. Triangles are as the kernels read them: a device that shares memory takes them from here,
-//         without a copy. Copies of a Geometry share them.
+//         after rounding, exactly decided) and shapes that rounding leaves none (a radius of 0) are dropped
+//         and counted. Triangles are as the kernels read them: a device that shares memory takes them from
+//         here, without a copy. Copies of a Geometry share them.
 #pragma once
 
 #include <cstdint>
@@ -17,51 +17,57 @@
 #include "layout/primitives.layout.h"
 #include "math/box.h"
 #include "math/local_space.h"
+#include "primitives/shapes.h"
 #include "scene/scene.h"
 
 namespace kdray::scene {
 
-enum class PrimitiveKind : std::uint32_t { triangle = 0, sphere = 1, cone = 2 };
+using primitives::PrimitiveKind;
 
 using TriangleGeometry = layout::Triangle;
 inline vec3 vertex(const TriangleGeometry& t, int i) {
   return {t.v[i][0], t.v[i][1], t.v[i][2]};
 }
 
-struct SphereGeometry {
-  vec3 center;
-  float radius;
-  std::uint32_t source;  // index into Scene::spheres
-};
-struct ConeGeometry {
-  vec3 base, apex;
-  float base_radius, apex_radius;
-  std::uint32_t source;  // index into Scene::cones
-};
+#define KDRAY_SHAPE(NAME, name, names, Struct) using primitives::Struct##Geometry;
+KDRAY_SHAPES(KDRAY_SHAPE)
+#undef KDRAY_SHAPE
 
 struct Geometry {
   LocalSpace space;
   Array<TriangleGeometry> triangles;
   RawVector<std::uint32_t> sources;  // of each triangle, the index into Scene::triangles
   std::uint32_t n_smooth = 0;        // triangles with vertex normals, which their `normals` number in order
-  std::vector<SphereGeometry> spheres;
-  std::vector<ConeGeometry> cones;
+#define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct##Geometry> names;
+  KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
+#undef KDRAY_SHAPE_ARRAY
   Box bounds;  // contains every primitive
   std::uint32_t dropped_degenerate = 0;
   std::uint32_t lost = 0;  // of the dropped, those that have an area before rounding
   std::uint32_t fine = 0;  // of the others, those smaller than what floats tell apart over the whole scene
 
-  std::size_t size() const { return triangles.size() + spheres.size() + cones.size(); }
+  std::size_t size() const {
+    return primitives::count_primitives(*this);
+  }
 };
 
 Geometry make_geometry(const Scene& scene);
 
 // What the user should know of a scene that ranges too wide for floats, in one line; empty: nothing.
 std::string range_warning(const Geometry& geometry);
+// visit(Kind(), index) for the i-th of all primitives, kind by kind: the kind and the place in its array.
+template <class Visit>
+void visit_primitive(const Geometry& geometry, std::size_t i, const Visit& visit) {
+  std::size_t first = 0;
+  primitives::for_each_kind([&](auto kind) {
+    const auto& primitives = decltype(kind)::of(geometry);
+    if (i >= first && i - first < primitives.size()) visit(kind, static_cast<std::uint32_t>(i - first));
+    first += primitives.size();
+  });
+}
 
 // Bounds that contain the primitive, rounded outward.
 Box bounds_of(const TriangleGeometry& t);
-Box bounds_of(const SphereGeometry& s);
-Box bounds_of(const ConeGeometry& c);
+using primitives::bounds_of;
 
 }  // namespace kdray::scene

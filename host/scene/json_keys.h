@@ -6,6 +6,9 @@
 #include <array>
 #include <span>
 #include <string_view>
+#include <tuple>
+
+#include "primitives/shapes.h"
 
 namespace kdray::scene {
 
@@ -31,8 +34,13 @@ inline constexpr std::string_view mesh[] = {"type",   "file",  "material", "tran
                                             "rotate", "scale", "matrix"};
 inline constexpr std::string_view triangles[] = {"type",      "vertices", "faces", "normals", "material",
                                                  "translate", "rotate",   "scale", "matrix"};
-inline constexpr std::string_view sphere[] = {"type", "center", "radius", "material"};
-inline constexpr std::string_view cone[] = {"type", "base", "base_radius", "apex", "apex_radius", "material"};
+// Of a shape: its fields', between those that all have.
+template <class Shape>
+inline constexpr auto shape = std::apply(
+    [](const auto&... fields) {
+      return std::array<std::string_view, sizeof...(fields) + 2>{"type", fields.key..., "material"};
+    },
+    fields_of(static_cast<const Shape*>(nullptr)));
 inline constexpr std::string_view turn[] = {"axis", "angle"};
 }  // namespace list
 
@@ -45,13 +53,20 @@ inline constexpr JsonKeys kDirectionalLight{"directional_light", list::direction
 inline constexpr JsonKeys kSpotLight{"spot_light", list::spot_light};
 inline constexpr JsonKeys kMesh{"mesh", list::mesh};
 inline constexpr JsonKeys kTriangles{"triangles", list::triangles};
-inline constexpr JsonKeys kSphere{"sphere", list::sphere};
-inline constexpr JsonKeys kCone{"cone", list::cone};
 inline constexpr JsonKeys kTurn{"turn", list::turn};
 
-inline constexpr std::array kAll = {kScene,      kCamera,           kRender,    kMaterial,
-                                    kPointLight, kDirectionalLight, kSpotLight, kMesh,
-                                    kTriangles,  kSphere,           kCone,      kTurn};
+template <class Kind>
+constexpr JsonKeys keys_of(Kind) {
+  return {Kind::kName, list::shape<typename Kind::Source>};
+}
+
+#define KDRAY_SHAPE_KEYS(NAME, name, names, Struct) keys_of(primitives::Struct##Kind()),
+inline constexpr std::array kAll = {kScene,      kCamera,
+                                    kRender,     kMaterial,
+                                    kPointLight, kDirectionalLight,
+                                    kSpotLight,  kMesh,
+                                    kTriangles,  KDRAY_SHAPES(KDRAY_SHAPE_KEYS) kTurn};
+#undef KDRAY_SHAPE_KEYS
 
 }  // namespace json_keys
 

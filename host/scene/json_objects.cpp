@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "scene/check_scene.h"
@@ -77,6 +78,24 @@ void place(const JsonNode& object, Scene& part) {
   }
 }
 
+template <class Shape>
+void read_field(const JsonNode& object, const primitives::Field<Shape, dvec3>& field, Shape& shape) {
+  const JsonNode node = object[field.key];
+  shape.*field.member = field.meaning == primitives::Meaning::direction ? node.direction() : node.vector();
+}
+
+template <class Shape>
+void read_field(const JsonNode& object, const primitives::Field<Shape, double>& field, Shape& shape) {
+  using primitives::Meaning;
+  double& value = shape.*field.member;
+  if (field.meaning == Meaning::at_least_zero_or_left_out) {
+    if (const auto node = object.find(field.key)) value = node->number_from(0);
+    return;
+  }
+  const JsonNode node = object[field.key];
+  value = field.meaning == Meaning::above_zero ? node.number_above(0) : node.number_from(0);
+}
+
 float narrow(const JsonNode& node, double value) {
   const auto f = static_cast<float>(value);
   if (!std::isfinite(f)) throw node.error("a value beyond 3.4e38");
@@ -109,9 +128,16 @@ void JsonObjects::read(const JsonNode& object) {
   const std::string name = type.string();
   if (name == "mesh") return read_mesh(object);
   if (name == "triangles") return read_triangles(object);
-  if (name == "sphere") return read_sphere(object);
-  if (name == "cone") return read_cone(object);
-  throw type.expected("one of mesh, triangles, sphere, cone");
+  std::string known = "mesh, triangles";
+  bool found = false;
+  primitives::for_each_shape([&](auto kind) {
+    using Kind = decltype(kind);
+    known += std::string(", ") + Kind::kName;
+    if (name != Kind::kName) return;
+    found = true;
+    read_shape(kind, object);
+  });
+  if (!found) throw type.expected("one of " + known);
 }
 
 Material JsonObjects::material_of(const JsonNode& object) const {
@@ -144,8 +170,9 @@ void JsonObjects::read_mesh(const JsonNode& object) {
   if (object.find("material")) {
     part.materials = {material_of(object)};
     for (Triangle& t : part.triangles) t.material = 0;
-    for (Sphere& s : part.spheres) s.material = 0;
-    for (Cone& c : part.cones) c.material = 0;
+    primitives::for_each_shape([&](auto kind) {
+      for (auto& shape : decltype(kind)::of(part)) shape.material = 0;
+    });
   }
   append(part, object);
 }
@@ -181,26 +208,17 @@ void JsonObjects::read_triangles(const JsonNode& object) {
   append(part, object);
 }
 
-void JsonObjects::read_sphere(const JsonNode& object) {
-  object.expect_keys(json_keys::kSphere);
+template <class Kind>
+void JsonObjects::read_shape(Kind, const JsonNode& object) {
+  using Shape = typename Kind::Source;
+  object.expect_keys(json_keys::keys_of(Kind()));
+  Shape shape{};
+  std::apply([&](const auto&... fields) { (read_field(object, fields, shape), ...); },
+             fields_of(static_cast<const Shape*>(nullptr)));
+  if (const char* const fault = fault_of(shape)) throw object.error(fault);
   Scene part;
   part.materials = {material_of(object)};
-  part.spheres = {{.center = object["center"].vector(), .radius = object["radius"].number_above(0)}};
-  append(part, object);
-}
-
-void JsonObjects::read_cone(const JsonNode& object) {
-  object.expect_keys(json_keys::kCone);
-  Cone c{};
-  c.base = object["base"].vector();
-  c.base_radius = object["base_radius"].number_from(0);
-  c.apex = object["apex"].vector();
-  if (const auto radius = object.find("apex_radius")) c.apex_radius = radius->number_from(0);
-  if (c.base == c.apex) throw object.error("base and apex are the same point");
-  if (c.base_radius == 0 && c.apex_radius == 0) throw object.error("both radii are 0");
-  Scene part;
-  part.materials = {material_of(object)};
-  part.cones = {c};
+  Kind::of(part) = {shape};
   append(part, object);
 }
 
@@ -208,7 +226,7 @@ void JsonObjects::append(const Scene& part, const JsonNode& object) {
   const std::uint64_t primitives = std::uint64_t{number_} + part.primitive_count();
   if (primitives >= kMaxPrimitivesPerKind || scene_.vertices.size() + part.vertices.size() >= kNone ||
       scene_.normals.size() + part.normals.size() >= kNone) {
-    throw object.error("more than 2^30 primitives in all", "leave some out");
+    throw object.error("2^28 primitives or more in all", "leave some out");
   }
   std::vector<std::uint32_t> material(part.materials.size(), kNone);
   const auto take = [&](auto primitive) {  // numbers within the part become numbers within the scene
@@ -227,8 +245,9 @@ void JsonObjects::append(const Scene& part, const JsonNode& object) {
     for (std::uint32_t& n : t.normal) n = n == kNone ? kNone : n + first_normal;
     scene_.triangles.push_back(take(t));
   }
-  for (const Sphere& s : part.spheres) scene_.spheres.push_back(take(s));
-  for (const Cone& c : part.cones) scene_.cones.push_back(take(c));
+  primitives::for_each_shape([&](auto kind) {
+    for (const auto& shape : decltype(kind)::of(part)) decltype(kind)::of(scene_).push_back(take(shape));
+  });
   number_ = static_cast<std::uint32_t>(primitives);
 }
 

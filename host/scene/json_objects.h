@@ -1,4 +1,4 @@
-// What    Reads the "objects" of a JSON scene (meshes from files, inline triangles, spheres, cones) into a
+// What    Reads the "objects" of a JSON scene (meshes from files, inline triangles, shapes) into a
 //         Scene.
 // Errors  kdray::Error with the object's path; a mesh file's own errors name that file.
 #pragma once
@@ -27,8 +27,8 @@ class JsonObjects {
  private:
   void read_mesh(const JsonNode& object);
   void read_triangles(const JsonNode& object);
-  void read_sphere(const JsonNode& object);
-  void read_cone(const JsonNode& object);
+  template <class Kind>
+  void read_shape(Kind, const JsonNode& object);
 
   Material material_of(const JsonNode& object) const;
   const Scene& mesh(const JsonNode& file);

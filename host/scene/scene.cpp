@@ -3,10 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include <utility>
-
-#include "scene/cone_bounds.h"
-
 namespace kdray::scene {
 
 namespace {
@@ -37,17 +33,9 @@ DBox triangle_bounds(const Scene& scene) {
 
 DBox Scene::bounds() const {
   DBox box = triangle_bounds(*this);
-  for (const Sphere& s : spheres) {
-    box.grow(s.center - s.radius);
-    box.grow(s.center + s.radius);
-  }
-  for (const Cone& c : cones) {
-    const dvec3 reach = disc_reach(c.apex - c.base);
-    for (const auto& [end, radius] : {std::pair{c.base, c.base_radius}, std::pair{c.apex, c.apex_radius}}) {
-      box.grow(end - radius * reach);
-      box.grow(end + radius * reach);
-    }
-  }
+  primitives::for_each_shape([&](auto kind) {
+    for (const auto& shape : decltype(kind)::of(*this)) box.grow(bounds_of(shape));
+  });
   return box;
 }
 

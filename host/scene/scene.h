@@ -17,6 +17,7 @@
 #include "base/raw_vector.h"
 #include "math/box.h"
 #include "math/vec.h"
+#include "primitives/shapes.h"
 #include "scene/files_read.h"
 
 namespace kdray::scene {
@@ -65,20 +66,9 @@ struct Triangle {
   std::uint32_t number = 0;
 };
 
-struct Sphere {
-  dvec3 center;
-  double radius;  // > 0
-  std::uint32_t material = 0;
-  std::uint32_t number = 0;
-};
-
-// A truncated cone or cylinder without end caps, seen from both sides.
-struct Cone {
-  dvec3 base, apex;                 // end points of the axis, apart
-  double base_radius, apex_radius;  // >= 0, not both 0
-  std::uint32_t material = 0;
-  std::uint32_t number = 0;
-};
+#define KDRAY_SHAPE(NAME, name, names, Struct) using primitives::Struct;
+KDRAY_SHAPES(KDRAY_SHAPE)
+#undef KDRAY_SHAPE
 
 // What a scene file may ask for; the command line wins over it.
 struct RenderSettings {
@@ -91,8 +81,9 @@ struct Scene {
   RawVector<dvec3> vertices;
   RawVector<vec3> normals;  // unit length
   PageVector<Triangle> triangles;
-  std::vector<Sphere> spheres;
-  std::vector<Cone> cones;
+#define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct> names;
+  KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
+#undef KDRAY_SHAPE_ARRAY
   std::vector<Material> materials;  // at least one when there is a primitive
   std::vector<Light> lights;
   bool unlit = false;  // the file says that there are no lights; else frame_scene() adds some where none are
@@ -104,7 +95,7 @@ struct Scene {
   std::vector<FileRead> files;        // what it was loaded from, by load() only
 
   std::uint32_t primitive_count() const {
-    return static_cast<std::uint32_t>(triangles.size() + spheres.size() + cones.size());
+    return static_cast<std::uint32_t>(primitives::count_primitives(*this));
   }
   DBox bounds() const;
 };

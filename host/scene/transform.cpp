@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace kdray::scene {
@@ -15,7 +16,7 @@ dvec3 transform_point(const dmat4& m, const dvec3& p) {
 }
 
 // The factor by which a similarity (rotation, mirror, uniform scale) enlarges; throws for any other matrix.
-double similarity_factor(const dmat3& m) {
+double similarity_factor(const dmat3& m, const std::string& what) {
   const double factor = glm::length(m[0]);
   const dmat3 square = glm::transpose(m) * m;
   double worst = 0;
@@ -25,7 +26,7 @@ double similarity_factor(const dmat3& m) {
     }
   }
   if (!(worst <= 1e-9 * factor * factor)) {
-    throw std::domain_error("spheres and cones can be moved, turned and scaled alike along all axes only");
+    throw std::domain_error(what + " can be moved, turned and scaled alike along all axes only");
   }
   return factor;
 }
@@ -45,18 +46,12 @@ void apply_transform(const dmat4& m, Scene& scene) {
       std::swap(t.normal[1], t.normal[2]);
     }
   }
-  if (scene.spheres.empty() && scene.cones.empty()) return;
-  const double factor = similarity_factor(linear);
-  for (Sphere& s : scene.spheres) {
-    s.center = transform_point(m, s.center);
-    s.radius *= factor;
-  }
-  for (Cone& c : scene.cones) {
-    c.base = transform_point(m, c.base);
-    c.apex = transform_point(m, c.apex);
-    c.base_radius *= factor;
-    c.apex_radius *= factor;
-  }
+  primitives::for_each_shape([&](auto kind) {
+    auto& shapes = decltype(kind)::of(scene);
+    if (shapes.empty()) return;
+    const primitives::Similarity similarity{m, similarity_factor(linear, decltype(kind)::kNames)};
+    for (auto& shape : shapes) transform(similarity, shape);
+  });
 }
 
 dmat4 translation(const dvec3& by) {

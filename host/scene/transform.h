@@ -1,5 +1,5 @@
 // What    An affine placement of geometry read from another file or given inline.
-// Errors  apply_transform throws std::domain_error with what is wrong when a scene with spheres or cones
+// Errors  apply_transform throws std::domain_error with what is wrong when a scene with shapes (spheres, ...)
 //         meets a transform that would make ellipsoids of them; the caller knows the file and the place in
 //         it.
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace kdray::scene {
 
-// Moves vertices, normals, spheres and cones. Normals stay perpendicular to their surface (inverse transpose)
+// Moves vertices, normals and shapes. Normals stay perpendicular to their surface (inverse transpose)
 // and of unit length; a mirroring transform turns the triangles over, so that their front stays where the
 // normals point.
 void apply_transform(const dmat4& m, Scene& scene);

@@ -66,8 +66,8 @@ Entry to_entry(const Json& json, const std::string& name) {
 
 }  // namespace
 
-std::string features_text(std::uint32_t mask) {
-  return fmt::format("{:#010x}", mask);
+std::string features_text(std::uint64_t mask) {
+  return fmt::format("{:#018x}", mask);
 }
 
 Database Database::parse(const std::string& text, const std::string& name) {

@@ -23,11 +23,11 @@ struct Key {
   std::string device, driver;
   std::string kernels;   // a hash of their source
   std::string schedule;  // "slices", "global"
-  std::string features;  // the mask, as "0x00010f01"; or kAnyFeatures
+  std::string features;  // the mask, as "0x00010f0000010000"; or kAnyFeatures
   bool operator==(const Key&) const = default;
 };
 
-std::string features_text(std::uint32_t mask);
+std::string features_text(std::uint64_t mask);
 
 struct Entry {
   Key key;

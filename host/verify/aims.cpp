@@ -140,17 +140,14 @@ Aimed Aims::from_inside(const InsideOrigin& origin) {
 dvec3 Aims::place_on(std::size_t target) {
   const scene::Geometry& g = subject_.geometry;
   if (target < g.triangles.size()) return place_on_triangle(target, random_.below(4) == 0);
-  target -= g.triangles.size();
-  if (target < g.spheres.size()) {
-    const scene::SphereGeometry& s = g.spheres[target];
-    return dvec3(s.center) + (random_.below(2) == 0 ? 1.0 : random_.unit()) * s.radius * random_.direction();
-  }
-  const scene::ConeGeometry& c = g.cones[target - g.spheres.size()];
-  const double along = random_.unit(), radius = glm::mix(double{c.base_radius}, double{c.apex_radius}, along);
-  const dvec3 axis = glm::normalize(dvec3(c.apex) - dvec3(c.base));
-  const dvec3 across = glm::cross(axis, random_.direction());
-  const double length = glm::length(across);
-  return glm::mix(dvec3(c.base), dvec3(c.apex), along) + (length > 0 ? radius / length : 0.0) * across;
+  dvec3 place;
+  scene::visit_primitive(g, target, [&](auto kind, std::uint32_t index) {
+    if constexpr (decltype(kind)::kIsShape) {
+      const double share = random_.below(2) == 0 ? 1.0 : random_.unit();
+      place = primitives::place_on(decltype(kind)::of(g)[index], share, random_.direction());
+    }
+  });
+  return place;
 }
 
 Aimed Aims::from_outside() {

@@ -50,13 +50,15 @@ bool is_hit(const Hit& h) {
   return h.primitive >= 0;
 }
 
-// The place of a primitive in Geometry: triangles, then spheres, then cones.
+// The place of a primitive in Geometry: triangles, then the shapes, kind by kind.
 std::vector<std::uint32_t> places_by_number(const Subject& s) {
   std::vector<std::uint32_t> places(s.scene.primitive_count());
   std::uint32_t place = 0;
   for (const auto& t : s.geometry.triangles) places[t.number] = place++;
-  for (const auto& p : s.geometry.spheres) places[s.scene.spheres[p.source].number] = place++;
-  for (const auto& c : s.geometry.cones) places[s.scene.cones[c.source].number] = place++;
+  primitives::for_each_shape([&](auto kind) {
+    const auto& sources = decltype(kind)::of(s.scene);
+    for (const auto& shape : decltype(kind)::of(s.geometry)) places[sources[shape.source].number] = place++;
+  });
   return places;
 }
 
@@ -208,10 +210,11 @@ class Prober {
         return {};
       return sure_hit(line, a, b, c, margin);
     }
-    target -= g.triangles.size();
-    if (target >= g.spheres.size()) return {};
-    // Well inside of the outline, for the same reason.
-    return sure_hit(line, g.spheres[target], margin + 0.01 * g.spheres[target].radius);
+    std::optional<double> t;
+    scene::visit_primitive(g, target, [&](auto kind, std::uint32_t index) {
+      if constexpr (decltype(kind)::kIsShape) t = sure_target(line, decltype(kind)::of(g)[index], margin);
+    });
+    return t;
   }
 
   // A hit's plane has the ray's origin before it.
@@ -275,12 +278,12 @@ class Prober {
     how.push_back(leaving);
   }
 
-  // A ray that leaves a triangle never meets it again. One that leaves a sphere or cone outwards neither;
-  // inwards, not before it has crossed the inside.
+  // A ray that leaves a triangle never meets it again. What is sure of the
+  // shapes, meets_again tells.
   void check_self(const Ray& ray, const Leaving& how, const Hit& from, const Hit& found, std::size_t i) {
     if (!is_hit(found) || found.primitive != from.primitive) return;
     const Line line = line_of(ray);
-    std::size_t place = place_of_[static_cast<std::size_t>(from.primitive)];
+    const std::size_t place = place_of_[static_cast<std::size_t>(from.primitive)];
     const scene::Geometry& g = s_.geometry;
     if (place < g.triangles.size()) {
       // A direction of our own may lie on the wrong side of the plane, by the rounding of the normal it was
@@ -289,16 +292,12 @@ class Prober {
       if ((how.how == Leaves::scattered || how.how == Leaves::grazing) && towards) return;
       return blame(Defect::self_hit, ray, found, i);
     }
-    place -= g.triangles.size();
-    const bool again = place < g.spheres.size()
-                           ? meets_again(line, how, found.t, g.spheres[place])
-                           : meets_again(line, how, found.t, g.cones[place - g.spheres.size()]);
+    bool again = false;
+    scene::visit_primitive(g, place, [&](auto kind, std::uint32_t index) {
+      if constexpr (decltype(kind)::kIsShape)
+        again = meets_again(line, decltype(kind)::of(g)[index], found.t, how.side);
+    });
     if (again) blame(Defect::self_hit, ray, found, i);
-  }
-
-  template <class Solid>
-  static bool meets_again(const Line& line, const Leaving& how, double t, const Solid& solid) {
-    return hits_again(along(line, solid), t, glm::dot(how.side, outward(line.origin, solid)) > 0);
   }
 
   // A closed component is not entered twice, nor left twice, in one place.

@@ -37,9 +37,8 @@ Tracer::Tracer(const prepare::Prepared& scene, const DeviceOptions& device)
       buffers_(context_, scene.flat, scene.wide),
       programs_(context_, scene.tree_depth, scene.wide),
       ref_of_(scene.counts.primitives, KDRAY_REF_MISS) {
-  name_refs(scene.flat.triangles, KDRAY_KIND_TRIANGLE, ref_of_);
-  name_refs(scene.flat.spheres, KDRAY_KIND_SPHERE, ref_of_);
-  name_refs(scene.flat.cones, KDRAY_KIND_CONE, ref_of_);
+  primitives::for_each_kind(
+      [&](auto kind) { name_refs(decltype(kind)::of(scene.flat), kind.kNumber, ref_of_); });
 }
 
 std::vector<Hit> Tracer::closest(std::span<const Ray> rays, Traversal wanted) {

@@ -57,11 +57,9 @@ Findings verify(const scene::Scene& scene, const Options& o) {
   Timer timer;
   const scene::Geometry geometry = scene::make_geometry(scene);
   found.space = geometry.space;
-  found.triangles = geometry.triangles.size();
-  found.spheres = geometry.spheres.size();
-  found.cones = geometry.cones.size();
   found.dropped = geometry.dropped_degenerate;
   const prepare::Prepared prepared = in_local_space(prepare::prepare(scene, o.tree));
+  found.counts = prepared.counts;
   found.seconds.build = take(timer);
 
   found.mesh = make_mesh(scene, geometry);

@@ -9,6 +9,7 @@
 
 #include "film/image.h"
 #include "kdray/kdray.h"
+#include "prepare/prepared.h"
 #include "scene/scene.h"
 #include "verify/duplicates.h"
 #include "verify/edges.h"
@@ -35,9 +36,9 @@ struct Seconds {
 };
 
 struct Findings {
-  LocalSpace space;                                   // that places, areas and volumes here are in
-  std::size_t triangles = 0, spheres = 0, cones = 0;  // that can be hit
-  std::uint32_t dropped = 0;                          // that are degenerate
+  LocalSpace space;           // that places, areas and volumes here are in
+  prepare::Counts counts;     // of what can be hit
+  std::uint32_t dropped = 0;  // that are degenerate
   Mesh mesh;
   Topology topology;
   Duplicates duplicates;

@@ -46,7 +46,7 @@ std::vector<Plane> wanted_planes(std::span<const std::string> names) {
 
 std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
                                            Programs& programs, const layout::Frame& frame,
-                                           const LocalSpace& space, std::uint32_t features,
+                                           const LocalSpace& space, layout::Features features,
                                            Precision precision, std::span<const std::string> names) {
   const std::vector<Plane> planes = wanted_planes(names);
   const std::size_t n_pixels = std::size_t{frame.width} * frame.height;

@@ -17,7 +17,7 @@ namespace kdray::wavefront {
 // others. Depths are the world's; the frame's lengths are those of `space`.
 std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
                                            Programs& programs, const layout::Frame& frame,
-                                           const LocalSpace& space, std::uint32_t features,
+                                           const LocalSpace& space, layout::Features features,
                                            Precision precision, std::span<const std::string> names);
 
 }  // namespace kdray::wavefront

@@ -15,13 +15,12 @@ namespace kdray::wavefront {
 
 namespace {
 
-constexpr std::uint32_t kGeometry = KDRAY_FEATURE_TRIANGLES | KDRAY_FEATURE_SPHERES | KDRAY_FEATURE_CONES |
-                                    KDRAY_FEATURE_NUMBERS | KDRAY_KEEP_TRACING;
-constexpr std::uint32_t kShading = kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT |
-                                   KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE |
-                                   KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
-                                   KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND |
-                                   KDRAY_FEATURE_FACES | KDRAY_KEEP_SHADING;
+constexpr layout::Features kGeometry = KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS | KDRAY_KEEP_TRACING;
+constexpr layout::Features kShading =
+    kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT |
+    KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
+    KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND | KDRAY_FEATURE_FACES |
+    KDRAY_KEEP_SHADING;
 
 // A wide form larger than this lies outside of the nearer caches, where fetching ahead is worth its
 // instructions: a tenth is lost at 1 and 3 MB, up to a third gained at 20 MB.
@@ -35,7 +34,7 @@ constexpr std::size_t kFar = 48 << 20;
 constexpr int kFarSpread = 5, kFarPairs = 3;
 
 // The bits a file reads: a scene that differs elsewhere shares the program.
-std::uint32_t bits_read_by(const std::string& file) {
+layout::Features bits_read_by(const std::string& file) {
   if (file == "raygen/admit.cl") return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
   if (file == "film/add.cl") return 0;
   if (file == "film/channels.cl") return kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
@@ -88,10 +87,10 @@ void Programs::use(const Tuning& t) {
   if (t.distance > 0) walk_options_ += fmt::format(" -DKDRAY_COHERENT_DISTANCE={:.4f}f", 0.001 * t.distance);
 }
 
-std::string Programs::options_for(std::uint32_t features, Traversal traversal, Precision precision) const {
+std::string Programs::options_for(layout::Features features, Traversal traversal, Precision precision) const {
   const bool in_double = precision == Precision::float64;  // whose vectors have the portable form alone
   std::string options =
-      fmt::format("-cl-std=CL1.2 -DKDRAY_FEATURES={:#010x}u {}", features,
+      fmt::format("-cl-std=CL1.2 -DKDRAY_FEATURES={:#018x}ul {}", features,
                   device::build_option(in_double ? device::Simd::portable : context_->simd()));
   if (in_double) options += " -DKDRAY_PRECISION=64";
   if (traversal == Traversal::binary) {

@@ -11,6 +11,7 @@
 #include "device/kernel.h"
 #include "flatten/wide.h"
 #include "kdray/kdray.h"
+#include "layout/features.h"
 
 namespace kdray::wavefront {
 
@@ -29,14 +30,14 @@ class Programs {
   // `traversal` (never Traversal::automatic where a file is built for one walk) is for the files that walk
   // the tree.
   template <class K>
-  device::Kernel<K> kernel(std::uint32_t features, Traversal traversal = Traversal::binary,
+  device::Kernel<K> kernel(layout::Features features, Traversal traversal = Traversal::binary,
                            Precision precision = Precision::float32) {
     return device::Kernel<K>(program({K::kFile, features, traversal, precision}));
   }
 
   struct Wanted {
     std::string file;
-    std::uint32_t features;
+    layout::Features features;
     Traversal traversal = Traversal::binary;
     Precision precision = Precision::float32;
   };
@@ -49,11 +50,11 @@ class Programs {
 
  private:
   // The last: walk_options_.
-  using Key = std::tuple<std::string, std::uint32_t, Traversal, Precision, std::string>;
+  using Key = std::tuple<std::string, layout::Features, Traversal, Precision, std::string>;
 
   Key key_of(const Wanted& wanted) const;
   const cl::Program& program(const Wanted& wanted);
-  std::string options_for(std::uint32_t features, Traversal traversal, Precision precision) const;
+  std::string options_for(layout::Features features, Traversal traversal, Precision precision) const;
 
   const device::Context* context_;
   std::string more_options_, walk_options_;

@@ -22,7 +22,7 @@ struct QueryResult {
 };
 
 QueryResult trace_query(const device::Context& context, const SceneBuffers& scene, Programs& programs,
-                        const scene::Geometry& geometry, std::uint32_t features, std::size_t work_group,
+                        const scene::Geometry& geometry, layout::Features features, std::size_t work_group,
                         Traversal traversal, Precision precision, std::span<const Ray> rays, bool any_hit,
                         int repeat, std::size_t rays_per_launch = kRaysPerChunk);
 

@@ -15,7 +15,7 @@ std::size_t list_words(const SliceRoom& room) {
 
 }  // namespace
 
-std::uint32_t spawned_per_ray(std::uint32_t features) {
+std::uint32_t spawned_per_ray(layout::Features features) {
   if (features & KDRAY_FEATURE_TRANSMIT) return 2;
   return features & KDRAY_FEATURE_REFLECT ? 1 : 0;
 }

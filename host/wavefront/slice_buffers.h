@@ -15,13 +15,14 @@
 
 #include "device/context.h"
 #include "device/kernel.h"
+#include "layout/features.h"
 #include "layout/frame.layout.h"
 #include "layout/rays.layout.h"
 
 namespace kdray::wavefront {
 
 // Rays that one ray can put into the pool. Where one is refracted another may be reflected, if of no weight.
-std::uint32_t spawned_per_ray(std::uint32_t features);
+std::uint32_t spawned_per_ray(layout::Features features);
 
 // A stream's words per field for `n` rays: whole vectors, and one behind the last ray (rays.layout.h).
 std::uint32_t capacity_for(std::uint32_t n);

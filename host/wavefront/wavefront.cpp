@@ -28,7 +28,7 @@ std::size_t word_of(Precision precision) {
 
 }  // namespace
 
-void Schedule::apply(layout::Frame& frame, std::uint32_t features) const {
+void Schedule::apply(layout::Frame& frame, layout::Features features) const {
   frame.tile_width = tile_width;
   frame.tile_height = tile_height;
   frame.n_tiles_x = (frame.width + tile_width - 1) / tile_width;
@@ -49,7 +49,7 @@ std::size_t Schedule::stream_bytes(const layout::Frame& frame) const {
   return n_slices * StreamForm::of_device(frame, word_of(precision)).bytes(frame);
 }
 
-void Schedule::fit(layout::Frame frame, std::uint32_t features, std::size_t max_bytes) {
+void Schedule::fit(layout::Frame frame, layout::Features features, std::size_t max_bytes) {
   for (;; batch_size /= 2) {
     apply(frame, features);
     const std::size_t of_slice = StreamForm::of_device(frame, sizeof(float)).largest(frame);
@@ -60,7 +60,7 @@ void Schedule::fit(layout::Frame frame, std::uint32_t features, std::size_t max_
 
 Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
                      Programs& programs, const layout::Frame& frame, const Schedule& schedule,
-                     std::uint32_t features, const Room& room)
+                     layout::Features features, const Room& room)
     : context_(context),
       queue_(std::move(queue)),
       frame_(frame),

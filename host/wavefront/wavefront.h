@@ -42,11 +42,11 @@ struct Schedule {
   std::size_t stream_bytes(const layout::Frame& frame) const;
 
   // Writes tiles, batch, pool and light batch into the frame.
-  void apply(layout::Frame& frame, std::uint32_t features) const;
+  void apply(layout::Frame& frame, layout::Features features) const;
 
   // Fewer slices, and smaller batches where even one slice is too much, so that no buffer of a Wavefront for
   // this frame (but the film) takes more than `max_bytes`: a device's limit for one allocation.
-  void fit(layout::Frame frame, std::uint32_t features, std::size_t max_bytes);
+  void fit(layout::Frame frame, layout::Features features, std::size_t max_bytes);
 };
 
 // How far a queue is with its list, by its last report.
@@ -91,8 +91,8 @@ class Wavefront {
  public:
   // `frame` has the schedule applied; its film band is set by begin().
   Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
-            Programs& programs, const layout::Frame& frame, const Schedule& schedule, std::uint32_t features,
-            const Room& room);
+            Programs& programs, const layout::Frame& frame, const Schedule& schedule,
+            layout::Features features, const Room& room);
 
   ~Wavefront();
 
@@ -166,7 +166,7 @@ class Wavefront {
   cl::CommandQueue queue_;
   layout::Frame frame_;
   Schedule schedule_;
-  std::uint32_t features_;
+  layout::Features features_;
   Room room_;
   Watch watch_;
   Launch launches_[2];

@@ -10,19 +10,17 @@
 //         nowhere is refused at the first launch, by name; one that is set and is not here does not compile.
 #ifndef KDRAY_LAYOUT_ARGUMENTS_H
 #define KDRAY_LAYOUT_ARGUMENTS_H
+#include "layout/kinds.h"
 
 // The scene's arrays. host/wavefront/scene_buffers.h holds a buffer for each of them, by these names.
-#define KDRAY_PRIMITIVE_ARRAYS(X) \
-  X(IN, Triangle, triangles)      \
-  X(IN, Sphere, spheres)          \
-  X(IN, Cone, cones)
-#define KDRAY_TREE_ARRAYS(X)    \
-  X(IN, KdNode, nodes)          \
-  X(IN, u32, refs)              \
-  X(IN, WideNode, wide_nodes)   \
-  X(IN, float, triangle_blocks) \
-  X(IN, float, sphere_blocks)   \
-  X(IN, float, cone_blocks)
+#define KDRAY_PRIMITIVE_ARRAYS(X) KDRAY_KINDS_WITH(KDRAY_ARRAY_OF_KIND, X)
+#define KDRAY_ARRAY_OF_KIND(X, NAME, name, names, Struct) X(IN, Struct, names)
+#define KDRAY_TREE_ARRAYS(X)  \
+  X(IN, KdNode, nodes)        \
+  X(IN, u32, refs)            \
+  X(IN, WideNode, wide_nodes) \
+  KDRAY_KINDS_WITH(KDRAY_BLOCKS_OF_KIND, X)
+#define KDRAY_BLOCKS_OF_KIND(X, NAME, name, names, Struct) X(IN, float, name##_blocks)
 #define KDRAY_NORMAL_ARRAYS(X) X(IN, VertexNormals, normals)
 #define KDRAY_LOOK_ARRAYS(X) \
   X(IN, Material, materials) \

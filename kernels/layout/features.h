@@ -1,44 +1,48 @@
 // What    The feature mask: what a scene needs. The host ORs it together (host/flatten/features.h) and passes
 //         it as KDRAY_FEATURES; here it becomes KDRAY_HAS_X = 0 or 1, to be tested with #if. Undefined:
-//         everything on, so that each kernel compiles alone. Bits between those below are the rules'
-//         (rules.h).
+//         everything on, so that each kernel compiles alone.
+// Shape   64 bits, 16 for each of four groups: the rules that are off (rules.h), the kinds of primitives
+//         (kinds.h), what surfaces need, what light and film need. Bits that have no name here are free.
 #ifndef KDRAY_LAYOUT_FEATURES_H
 #define KDRAY_LAYOUT_FEATURES_H
+#include "layout/base.layout.h"
+#include "layout/kinds.h"
 #include "layout/rules.h"
 
-// Geometry, bits 0-7: set by the primitives that are there; removes their tests, fields and shading.
-#define KDRAY_FEATURE_TRIANGLES 0x00000001u
-#define KDRAY_FEATURE_SPHERES 0x00000002u
-#define KDRAY_FEATURE_CONES 0x00000004u
-#define KDRAY_FEATURE_SMOOTH 0x00000008u  // vertex normals; removes interpolation and the terminator's shift
+#define KDRAY_FEATURE(bit) (1ul << (bit))
+
+// Kinds of primitives, bits 16-31: set by those that are there; removes their tests, fields and shading.
+#define KDRAY_FEATURE_OF_KIND(number) KDRAY_FEATURE(16u + (number))
+#define KDRAY_FEATURE_KIND(NAME) KDRAY_FEATURE_OF_KIND(KDRAY_KIND_##NAME)
+#define KDRAY_FEATURE_ALL_KINDS 0xffff0000ul
+// Surfaces, bits 32-47.
+#define KDRAY_FEATURE_SMOOTH \
+  KDRAY_FEATURE(32)  // vertex normals; removes interpolation, the terminator's shift
 // Numbers in file order that differ from indices; removes looking them up.
-#define KDRAY_FEATURE_NUMBERS 0x00000010u
-// Materials, bits 8-15.
-#define KDRAY_FEATURE_REFLECT 0x00000100u   // removes reflected rays (and, with TRANSMIT, the pool)
-#define KDRAY_FEATURE_TRANSMIT 0x00000200u  // removes refracted rays
-#define KDRAY_FEATURE_SPECULAR 0x00000400u  // removes highlights
-#define KDRAY_FEATURE_DIFFUSE 0x00000800u   // removes the diffuse term
-// Lights, bits 16-23.
-#define KDRAY_FEATURE_LIGHTS 0x00010000u       // removes shadow rays, their buffers and launches
-#define KDRAY_FEATURE_ATTENUATION 0x00020000u  // removes fall-off and range
-#define KDRAY_FEATURE_DIRECTIONAL 0x00040000u
-#define KDRAY_FEATURE_SPOT 0x00080000u
+#define KDRAY_FEATURE_NUMBERS KDRAY_FEATURE(33)
+#define KDRAY_FEATURE_REFLECT KDRAY_FEATURE(40)   // removes reflected rays (and, with TRANSMIT, the pool)
+#define KDRAY_FEATURE_TRANSMIT KDRAY_FEATURE(41)  // removes refracted rays
+#define KDRAY_FEATURE_SPECULAR KDRAY_FEATURE(42)  // removes highlights
+#define KDRAY_FEATURE_DIFFUSE KDRAY_FEATURE(43)   // removes the diffuse term
+// Light, bits 48-55, and film, bits 56-63.
+#define KDRAY_FEATURE_LIGHTS KDRAY_FEATURE(48)       // removes shadow rays, their buffers and launches
+#define KDRAY_FEATURE_ATTENUATION KDRAY_FEATURE(49)  // removes fall-off and range
+#define KDRAY_FEATURE_DIRECTIONAL KDRAY_FEATURE(50)
+#define KDRAY_FEATURE_SPOT KDRAY_FEATURE(51)
 // A core with faces around it; removes looking whether rays pass it by.
-#define KDRAY_FEATURE_FACES 0x00400000u
-// Film, bits 24-27.
-#define KDRAY_FEATURE_BACKGROUND 0x01000000u   // a background other than black
-#define KDRAY_FEATURE_SUPERSAMPLE 0x02000000u  // more than one sample per pixel
-#define KDRAY_FEATURE_ADAPTIVE 0x04000000u     // rounds of single samples beside whole tiles
-// Debug, bits 28-31.
-#define KDRAY_FEATURE_COST 0x10000000u  // counts nodes and tests per ray, for the cost channel
+#define KDRAY_FEATURE_FACES KDRAY_FEATURE(52)
+#define KDRAY_FEATURE_BACKGROUND KDRAY_FEATURE(56)   // a background other than black
+#define KDRAY_FEATURE_SUPERSAMPLE KDRAY_FEATURE(57)  // more than one sample per pixel
+#define KDRAY_FEATURE_ADAPTIVE KDRAY_FEATURE(58)     // rounds of single samples beside whole tiles
+#define KDRAY_FEATURE_COST KDRAY_FEATURE(63)         // counts nodes and tests per ray, for the cost channel
 
 #ifdef __OPENCL_C_VERSION__
 #ifndef KDRAY_FEATURES
 #define KDRAY_FEATURES (~KDRAY_KEEP_ALL)
 #endif
-#define KDRAY_HAS_TRIANGLES ((KDRAY_FEATURES & KDRAY_FEATURE_TRIANGLES) != 0)
-#define KDRAY_HAS_SPHERES ((KDRAY_FEATURES & KDRAY_FEATURE_SPHERES) != 0)
-#define KDRAY_HAS_CONES ((KDRAY_FEATURES & KDRAY_FEATURE_CONES) != 0)
+#define KDRAY_HAS_KIND(NAME) ((KDRAY_FEATURES & KDRAY_FEATURE_KIND(NAME)) != 0)
+// Kinds whose test asks for the square of the direction.
+#define KDRAY_HAS_CURVED (KDRAY_HAS_KIND(SPHERE) || KDRAY_HAS_KIND(CONE))
 #define KDRAY_HAS_SMOOTH ((KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
 #define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
 #define KDRAY_HAS_REFLECT ((KDRAY_FEATURES & KDRAY_FEATURE_REFLECT) != 0)
@@ -54,5 +58,26 @@
 #define KDRAY_HAS_SUPERSAMPLE ((KDRAY_FEATURES & KDRAY_FEATURE_SUPERSAMPLE) != 0)
 #define KDRAY_HAS_ADAPTIVE ((KDRAY_FEATURES & KDRAY_FEATURE_ADAPTIVE) != 0)
 #define KDRAY_HAS_COST ((KDRAY_FEATURES & KDRAY_FEATURE_COST) != 0)
+
+// Code of a kind, where the program has it.
+#if KDRAY_HAS_KIND(TRIANGLE)
+#define KDRAY_IF_TRIANGLE(...) __VA_ARGS__
+#else
+#define KDRAY_IF_TRIANGLE(...)
+#endif
+#if KDRAY_HAS_KIND(SPHERE)
+#define KDRAY_IF_SPHERE(...) __VA_ARGS__
+#else
+#define KDRAY_IF_SPHERE(...)
+#endif
+#if KDRAY_HAS_KIND(CONE)
+#define KDRAY_IF_CONE(...) __VA_ARGS__
+#else
+#define KDRAY_IF_CONE(...)
+#endif
+#else
+namespace kdray::layout {
+using Features = std::uint64_t;
+}
 #endif
 #endif

@@ -9,17 +9,17 @@
 #define KDRAY_LAYOUT_RULES_H
 
 // Tracing.
-#define KDRAY_KEEP_FRUSTUM 0x00000020u   // packets: the children of a node that the frustum misses
-#define KDRAY_KEEP_OCCLUDER 0x00000040u  // packets: the walk of rays that the leaf before stops as well
-#define KDRAY_KEEP_NEARNESS 0x00000080u  // the roots of cones that a line surely passes by
-#define KDRAY_KEEP_BEYOND 0x00100000u    // children that a ray enters behind its best hit
+#define KDRAY_KEEP_FRUSTUM 0x0001ul   // packets: the children of a node that the frustum misses
+#define KDRAY_KEEP_OCCLUDER 0x0002ul  // packets: the walk of rays that the leaf before stops as well
+#define KDRAY_KEEP_NEARNESS 0x0004ul  // the roots of cones that a line surely passes by
+#define KDRAY_KEEP_BEYOND 0x0008ul    // children that a ray enters behind its best hit
 // Shading.
-#define KDRAY_KEEP_BEHIND 0x00001000u  // shadow rays towards lights behind the surface
+#define KDRAY_KEEP_BEHIND 0x0010ul  // shadow rays towards lights behind the surface
 // Shadow rays whose light rounds to nothing on the film, or doesn't reach.
-#define KDRAY_KEEP_UNLIT 0x00002000u
-#define KDRAY_KEEP_WEIGHTLESS 0x00004000u  // secondary rays of no weight
-#define KDRAY_KEEP_LEFT 0x00008000u        // rays against the triangle that they leave
-#define KDRAY_KEEP_OPEN 0x00200000u        // rays that surely meet nothing (shade/open.clh)
+#define KDRAY_KEEP_UNLIT 0x0020ul
+#define KDRAY_KEEP_WEIGHTLESS 0x0040ul  // secondary rays of no weight
+#define KDRAY_KEEP_LEFT 0x0080ul        // rays against the triangle that they leave
+#define KDRAY_KEEP_OPEN 0x0100ul        // rays that surely meet nothing (shade/open.clh)
 
 #define KDRAY_KEEP_TRACING \
   (KDRAY_KEEP_FRUSTUM | KDRAY_KEEP_OCCLUDER | KDRAY_KEEP_NEARNESS | KDRAY_KEEP_BEYOND)

@@ -12,10 +12,13 @@
 #ifndef KDRAY_LAYOUT_WIDE_H
 #define KDRAY_LAYOUT_WIDE_H
 #include "layout/base.layout.h"
+#include "layout/kinds.h"
 
 #define KDRAY_WIDE_LEAF 0x80000000u
-#define KDRAY_WIDE_KIND_SHIFT 29
-#define KDRAY_WIDE_FIRST_MASK 0x1fffffffu
+#define KDRAY_WIDE_KIND_SHIFT 27
+#define KDRAY_WIDE_KIND_MASK 15u
+#define KDRAY_WIDE_FIRST_MASK 0x07ffffffu
+#define KDRAY_WIDE_NODE_MAX 0x1fffffffu
 #define KDRAY_WIDE_LAST 0x80000000u
 
 // The rows of KDRAY_BLOCK words in a block. The last row of every kind holds the primitives' indices.
@@ -59,6 +62,7 @@ typedef struct WideNode {
   u32 order[8];
 } WideNode;
 KDRAY_ASSERT_SIZE(WideNode, 256)
+typedef char kdray_kinds_of_leaves[KDRAY_N_KINDS <= KDRAY_WIDE_KIND_MASK ? 1 : -1];
 KDRAY_ASSERT_OFFSET(WideNode, child, 192)
 KDRAY_LAYOUT_END
 #endif

@@ -41,12 +41,10 @@ inline std::string everything(const prepare::Prepared& p) {
   for (const scene::Light& l : p.settings.lights)
     all += bytes_of_values(std::span(&l.position, 1)) + bytes_of_values(std::span(&l.color, 1)) +
            std::to_string(static_cast<int>(l.kind)) + std::to_string(l.range) + std::to_string(l.cos_outer);
-  const auto& [nodes, refs, triangles, normals, spheres, cones, materials, lights] = p.flat;
-  all += bytes_of_values(nodes) + bytes_of_values(refs) + bytes_of_values(triangles) +
-         bytes_of_values(normals) + bytes_of_values(spheres) + bytes_of_values(cones) +
-         bytes_of_values(materials) + bytes_of_values(lights);
-  return all + bytes_of_values(p.wide.nodes) + bytes_of_values(p.wide.triangle_blocks) +
-         bytes_of_values(p.wide.sphere_blocks) + bytes_of_values(p.wide.cone_blocks);
+  const auto add = [&](const auto& array) { all += bytes_of_values(array); };
+  flatten::for_each_flat_array(p.flat, add);
+  flatten::for_each_wide_array(p.wide, add);
+  return all;
 }
 
 }  // namespace kdray::test

@@ -18,7 +18,7 @@ scene::Scene triangle_scene() {
   return s;
 }
 
-std::uint32_t mask_of(const scene::Scene& s) {
+layout::Features mask_of(const scene::Scene& s) {
   return features_of(s, scene::make_geometry(s));
 }
 
@@ -28,9 +28,9 @@ TEST(Features, AnEmptySceneNeedsNothing) {
 
 TEST(Features, ALitDiffuseTriangle) {
   scene::Scene s = triangle_scene();
-  EXPECT_EQ(mask_of(s), KDRAY_FEATURE_TRIANGLES | KDRAY_FEATURE_DIFFUSE);
+  EXPECT_EQ(mask_of(s), KDRAY_FEATURE_KIND(TRIANGLE) | KDRAY_FEATURE_DIFFUSE);
   s.lights.emplace_back();
-  EXPECT_EQ(mask_of(s), KDRAY_FEATURE_TRIANGLES | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS);
+  EXPECT_EQ(mask_of(s), KDRAY_FEATURE_KIND(TRIANGLE) | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS);
 }
 
 TEST(Features, AMaterialThatNobodyWearsDoesNotCount) {
@@ -53,7 +53,7 @@ TEST(Features, EachKindOfLight) {
   scene::Scene s = triangle_scene();
   s.lights = {scene::Light{.kind = scene::LightKind::directional},
               scene::Light{.kind = scene::LightKind::spot}, scene::Light{.attenuation = vec3(0, 0, 1)}};
-  const std::uint32_t wanted = KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_ATTENUATION;
+  const layout::Features wanted = KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_ATTENUATION;
   EXPECT_EQ(mask_of(s) & wanted, wanted);
 }
 
@@ -69,7 +69,7 @@ TEST(Features, SmoothNormalsBackgroundAndSamples) {
 }
 
 TEST(Features, NamesAreSplitWithoutLoss) {
-  const FeatureNames some = feature_names(KDRAY_FEATURE_SPHERES | KDRAY_FEATURE_LIGHTS);
+  const FeatureNames some = feature_names(KDRAY_FEATURE_KIND(SPHERE) | KDRAY_FEATURE_LIGHTS);
   EXPECT_EQ((std::set<std::string>(some.on.begin(), some.on.end())),
             (std::set<std::string>{"spheres", "lights"}));
   EXPECT_EQ(some.on.size() + some.off.size(), feature_names(0xffffffffu).on.size());

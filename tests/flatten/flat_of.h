@@ -9,8 +9,7 @@ namespace kdray::flatten {
 inline FlatScene flat_of(const scene::Geometry& g, const kdtree::Tree& tree) {
   scene::Scene s;
   s.triangles.resize(g.triangles.size());
-  s.spheres.resize(g.spheres.size());
-  s.cones.resize(g.cones.size());
+  primitives::for_each_shape([&](auto kind) { decltype(kind)::of(s).resize(decltype(kind)::of(g).size()); });
   return flatten(s, g, tree);
 }
 

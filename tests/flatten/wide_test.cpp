@@ -26,7 +26,10 @@ using layout::WideNode;
 using test::Random;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kRows[3] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
+constexpr int kKinds = static_cast<int>(primitives::kKinds);
+#define KDRAY_ROWS(NAME, name, names, Struct) KDRAY_##NAME##_ROWS,
+constexpr int kRows[kKinds] = {KDRAY_KINDS(KDRAY_ROWS)};
+#undef KDRAY_ROWS
 constexpr std::uint64_t kSeed = 71;
 
 // ---- Scenes
@@ -129,7 +132,7 @@ bool is_leaf(u32 child) {
   return child & KDRAY_WIDE_LEAF;
 }
 int kind_of(u32 leaf) {
-  return static_cast<int>(leaf >> KDRAY_WIDE_KIND_SHIFT & 3u);
+  return static_cast<int>(leaf_kind(leaf));
 }
 
 Box bounds_of(const WideNode& node, int slot) {
@@ -154,7 +157,8 @@ int nth_slot(const WideNode& node, unsigned octant, int n) {
 }
 
 const Array<u32>& blocks_of(const WideForm& wide, int kind) {
-  return kind == 0 ? wide.triangle_blocks : (kind == 1 ? wide.sphere_blocks : wide.cone_blocks);
+  return primitives::with_kind(static_cast<u32>(kind),
+                               [&](auto k) -> const Array<u32>& { return decltype(k)::blocks_of(wide); });
 }
 
 // A lane of the kind's array, as numbered through all blocks.
@@ -199,12 +203,12 @@ std::vector<Leaf> leaves_of(const kdtree::Tree& tree) {
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const kdtree::Node& node = tree.nodes[i];
     if (!node.is_leaf()) continue;
-    std::vector<u32> indices[3];
+    std::vector<u32> indices[kKinds];
     for (u32 k = 0; k < node.right; ++k) {
       const kdtree::Ref r = tree.refs[node.left + k];
       indices[static_cast<int>(kdtree::ref_kind(r))].push_back(kdtree::ref_index(r));
     }
-    for (int kind = 0; kind < 3; ++kind)
+    for (int kind = 0; kind < kKinds; ++kind)
       if (!indices[kind].empty()) leaves.emplace_back(kind, corners_of(tree.contents[i]), indices[kind]);
   }
   std::sort(leaves.begin(), leaves.end());
@@ -316,7 +320,7 @@ TEST(Wide, ThreadsDoNotShow) {
 TEST(Wide, LeavesShareNoBlockAndLeaveNone) {
   for_each_subject([](const Subject& s) {
     const auto block = static_cast<std::size_t>(s.wide.block);
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < kKinds; ++kind) {
       std::vector<int> uses(blocks_of(s.wide, kind).size() / (kRows[kind] * block), 0);
       ASSERT_EQ(uses.size() * kRows[kind] * block, blocks_of(s.wide, kind).size());
       for (const WideNode& node : s.wide.nodes)
@@ -342,26 +346,22 @@ void expect_primitive(const FlatScene& flat, int kind, const Lane& lane) {
     ASSERT_LT(lane.index(), flat.triangles.size());
     expect_row(lane, 0, &flat.triangles[lane.index()].v[0][0], 9);
     ASSERT_TRUE(std::isfinite(lane.number(9)));
-  } else if (kind == 1) {
-    ASSERT_LT(lane.index(), flat.spheres.size());
-    const layout::Sphere& p = flat.spheres[lane.index()];
-    expect_row(lane, 0, p.center, 3);
-    expect_row(lane, 3, &p.radius, 1);
-  } else {
-    ASSERT_LT(lane.index(), flat.cones.size());
-    const layout::Cone& p = flat.cones[lane.index()];
-    expect_row(lane, 0, p.base, 3);
-    expect_row(lane, 3, p.axis, 3);
-    const float rest[] = {p.base_radius, p.height, p.slope};
-    expect_row(lane, 6, rest, 3);
+    return;
   }
+  primitives::for_each_shape([&](auto k) {
+    if (kind != static_cast<int>(k.kNumber)) return;
+    const auto& shapes = decltype(k)::of(flat);
+    ASSERT_LT(lane.index(), shapes.size());
+    const auto rows = primitives::rows_of(shapes[lane.index()]);
+    expect_row(lane, 0, rows.data(), static_cast<int>(rows.size()));
+  });
 }
 
 // From the first that ends its leaf to the end of its block all lanes say so, and all but the first are
 // empty.
 TEST(Wide, LanesHoldTheirPrimitiveOrNothing) {
   for_each_subject([](const Subject& s) {
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < kKinds; ++kind) {
       bool after_last = false;
       for (std::size_t i = 0; i < blocks_of(s.wide, kind).size() / kRows[kind]; ++i) {
         if (i % s.wide.block == 0) after_last = false;

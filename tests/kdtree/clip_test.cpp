@@ -8,8 +8,8 @@
 #include "kdtree/check_tree.h"
 #include "kdtree/exact_clip.h"
 #include "kdtree/integer_case.h"
-#include "kdtree/rounding.h"
 #include "kdtree/shapes.h"
+#include "math/rounding.h"
 
 namespace kdray::test {
 namespace {
@@ -161,42 +161,42 @@ void expect_bounds(const Bounds& found, const std::array<double, 3>& lo, const s
 
 TEST(ClipSphere, ClosedForms) {
   const scene::SphereGeometry unit{{0, 0, 0}, 1, 0};
-  expect_bounds(kdtree::clip_sphere(unit, {{-2, -2, -2}, {2, 2, 2}}), {-1, -1, -1}, {1, 1, 1});
+  expect_bounds(primitives::clip(unit, {{-2, -2, -2}, {2, 2, 2}}), {-1, -1, -1}, {1, 1, 1});
   const double cap = std::sqrt(0.75);
-  expect_bounds(kdtree::clip_sphere(unit, {{0.5f, -2, -2}, {2, 2, 2}}), {0.5, -cap, -cap}, {1, cap, cap});
+  expect_bounds(primitives::clip(unit, {{0.5f, -2, -2}, {2, 2, 2}}), {0.5, -cap, -cap}, {1, cap, cap});
   // A rod that begins inside: the surface is where it comes out.
   const float w = 0.125f;
-  expect_bounds(kdtree::clip_sphere(unit, {{-0.5f, -w, -w}, {2, w, w}}), {std::sqrt(1 - 2.0 * w * w), -w, -w},
+  expect_bounds(primitives::clip(unit, {{-0.5f, -w, -w}, {2, w, w}}), {std::sqrt(1 - 2.0 * w * w), -w, -w},
                 {1, w, w});
-  expect_bounds(kdtree::clip_sphere(unit, {{1, -1, -1}, {3, 1, 1}}), {1, 0, 0}, {1, 0, 0});  // touched
+  expect_bounds(primitives::clip(unit, {{1, -1, -1}, {3, 1, 1}}), {1, 0, 0}, {1, 0, 0});  // touched
 }
 
 TEST(ClipSphere, DropsWhatHoldsNoSurface) {
   const scene::SphereGeometry s{{1, 2, 3}, 2, 0};
-  EXPECT_TRUE(kdtree::clip_sphere(s, {{0, 1, 2}, {2, 3, 4}}).empty());           // inside
-  EXPECT_TRUE(kdtree::clip_sphere(s, {{2.5f, 3.5f, 4.5f}, {5, 5, 5}}).empty());  // off the corner of its box
-  EXPECT_TRUE(kdtree::clip_sphere(s, {{3.001f, 0, 0}, {4, 9, 9}}).empty());      // beside it
-  EXPECT_FALSE(kdtree::clip_sphere(s, {{3, 0, 0}, {4, 9, 9}}).empty());          // touching
-  EXPECT_FALSE(kdtree::clip_sphere(s, {{0, 1, 2}, {2, 3, 5}}).empty());          // one corner pokes out
+  EXPECT_TRUE(primitives::clip(s, {{0, 1, 2}, {2, 3, 4}}).empty());           // inside
+  EXPECT_TRUE(primitives::clip(s, {{2.5f, 3.5f, 4.5f}, {5, 5, 5}}).empty());  // off the corner of its box
+  EXPECT_TRUE(primitives::clip(s, {{3.001f, 0, 0}, {4, 9, 9}}).empty());      // beside it
+  EXPECT_FALSE(primitives::clip(s, {{3, 0, 0}, {4, 9, 9}}).empty());          // touching
+  EXPECT_FALSE(primitives::clip(s, {{0, 1, 2}, {2, 3, 5}}).empty());          // one corner pokes out
 }
 
 TEST(ClipCone, ClosedForms) {
   const scene::ConeGeometry cylinder{{0, 0, 0}, {0, 0, 10}, 1, 1, 0};
-  expect_bounds(kdtree::clip_cone(cylinder, {{-9, -9, 2}, {9, 9, 3}}), {-1, -1, 2}, {1, 1, 3});
-  EXPECT_TRUE(kdtree::clip_cone(cylinder, {{-0.5f, -0.5f, 2}, {0.5f, 0.5f, 3}}).empty());  // inside
+  expect_bounds(primitives::clip(cylinder, {{-9, -9, 2}, {9, 9, 3}}), {-1, -1, 2}, {1, 1, 3});
+  EXPECT_TRUE(primitives::clip(cylinder, {{-0.5f, -0.5f, 2}, {0.5f, 0.5f, 3}}).empty());  // inside
   EXPECT_TRUE(
-      kdtree::clip_cone(cylinder, {{-0.5f, -0.5f, -5}, {0.5f, 0.5f, 30}}).empty());  // through: no caps
-  EXPECT_TRUE(kdtree::clip_cone(cylinder, {{-9, -9, 10.5f}, {9, 9, 20}}).empty());
+      primitives::clip(cylinder, {{-0.5f, -0.5f, -5}, {0.5f, 0.5f, 30}}).empty());  // through: no caps
+  EXPECT_TRUE(primitives::clip(cylinder, {{-9, -9, 10.5f}, {9, 9, 20}}).empty());
   const scene::ConeGeometry pointed{{0, 0, 0}, {0, 0, 4}, 2, 0, 0};
-  expect_bounds(kdtree::clip_cone(pointed, {{-9, -9, 2}, {9, 9, 9}}), {-1, -1, 2}, {1, 1, 4});
-  expect_bounds(kdtree::clip_cone(pointed, {{-9, -9, 4}, {9, 9, 9}}), {0, 0, 4}, {0, 0, 4});
+  expect_bounds(primitives::clip(pointed, {{-9, -9, 2}, {9, 9, 9}}), {-1, -1, 2}, {1, 1, 4});
+  expect_bounds(primitives::clip(pointed, {{-9, -9, 4}, {9, 9, 9}}), {0, 0, 4}, {0, 0, 4});
   // Only the circles near the base reach out there.
-  expect_bounds(kdtree::clip_cone(pointed, {{1, -9, -9}, {9, 9, 9}}), {1, -2, 0}, {2, 2, 2});
+  expect_bounds(primitives::clip(pointed, {{1, -9, -9}, {9, 9, 9}}), {1, -2, 0}, {2, 2, 2});
 }
 
 // Points of the surface in random boxes lie in the bounds, but for the point's own rounding.
-template <class Primitive, class Clip>
-void check_samples(const std::vector<Primitive>& primitives, Random& random, Clip clip) {
+template <class Primitive>
+void check_samples(const std::vector<Primitive>& primitives, Random& random) {
   constexpr double kRounding = 1e-14;  // of points of size 20 in double
   int n_inside = 0;
   for (const Primitive& p : primitives) {
@@ -230,7 +230,7 @@ TEST(ClipSphere, ContainsItsPoints) {
   Random random(kSeed);
   scene::Geometry g;
   add_spheres(g, random, 400, 3);
-  check_samples(g.spheres, random, kdtree::clip_sphere);
+  check_samples(g.spheres, random);
 }
 
 TEST(ClipCone, ContainsItsPoints) {
@@ -239,15 +239,15 @@ TEST(ClipCone, ContainsItsPoints) {
   Random random(kSeed);
   scene::Geometry g;
   add_cones(g, random, 400, 3);
-  check_samples(g.cones, random, kdtree::clip_cone);
+  check_samples(g.cones, random);
 }
 
 TEST(Rounding, IsOutward) {
   for (const double x : {1.0 + 1e-12, -1.0 - 1e-12, 1e-60, -1e-60, 0.1, -0.1, 0.0, 16777217.0}) {
-    EXPECT_LE(kdtree::round_down(x), x);
-    EXPECT_GE(kdtree::round_up(x), x);
-    EXPECT_GT(std::nextafter(kdtree::round_down(x), INFINITY), x);
-    EXPECT_LT(std::nextafter(kdtree::round_up(x), -INFINITY), x);
+    EXPECT_LE(round_down(x), x);
+    EXPECT_GE(round_up(x), x);
+    EXPECT_GT(std::nextafter(round_down(x), INFINITY), x);
+    EXPECT_LT(std::nextafter(round_up(x), -INFINITY), x);
   }
 }
 

@@ -24,12 +24,14 @@ bool holds(cl::CommandQueue& queue, const cl::Buffer& buffer, const Array<T>& it
 }
 
 bool holds(cl::CommandQueue& queue, const wavefront::SceneBuffers& b, const odprt::Part& part) {
-  return holds(queue, b.triangles, part.flat.triangles) && holds(queue, b.normals, part.flat.normals) &&
-         holds(queue, b.spheres, part.flat.spheres) && holds(queue, b.cones, part.flat.cones) &&
-         holds(queue, b.materials, part.flat.materials) && holds(queue, b.wide_nodes, part.wide.nodes) &&
-         holds(queue, b.triangle_blocks, part.wide.triangle_blocks) &&
-         holds(queue, b.sphere_blocks, part.wide.sphere_blocks) &&
-         holds(queue, b.cone_blocks, part.wide.cone_blocks);
+  bool all = holds(queue, b.normals, part.flat.normals) && holds(queue, b.materials, part.flat.materials) &&
+             holds(queue, b.wide_nodes, part.wide.nodes);
+  primitives::for_each_kind([&](auto kind) {
+    using Kind = decltype(kind);
+    all = all && holds(queue, Kind::of(b), Kind::of(part.flat)) &&
+          holds(queue, Kind::blocks_of(b), Kind::blocks_of(part.wide));
+  });
+  return all;
 }
 
 TEST(PartStore, HoldsThePartThatWasAskedForLast) {

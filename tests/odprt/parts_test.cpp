@@ -3,6 +3,8 @@
 //         directory encloses what the parts hold.
 #include "odprt/parts.h"
 
+#include "odprt/kinds.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,12 +21,8 @@ namespace kdray::test {
 namespace {
 
 constexpr std::uint64_t kPartsSeed = 23;
-constexpr std::size_t kRows[3] = {KDRAY_TRIANGLE_ROWS, KDRAY_SPHERE_ROWS, KDRAY_CONE_ROWS};
-
 std::uint32_t number_of(const flatten::FlatScene& scene, std::uint32_t kind, std::uint32_t index) {
-  return kind == 0   ? scene.triangles[index].number
-         : kind == 1 ? scene.spheres[index].number
-                     : scene.cones[index].number;
+  return primitives::with_kind(kind, [&](auto k) { return decltype(k)::of(scene)[index].number; });
 }
 
 // A leaf by what a ray sees of it: its box, its kind, its words with numbers for indices.
@@ -32,15 +30,15 @@ using Leaf = std::tuple<std::vector<float>, std::uint32_t, std::vector<layout::u
 
 Leaf leaf_of(const flatten::FlatScene& scene, const flatten::WideForm& form, layout::u32 word,
              const Box& box) {
-  const std::uint32_t kind = word >> KDRAY_WIDE_KIND_SHIFT & 3u;
-  const auto& blocks = kind == 0 ? form.triangle_blocks : kind == 1 ? form.sphere_blocks : form.cone_blocks;
+  const std::uint32_t kind = flatten::leaf_kind(word);
+  const auto& blocks = blocks_of(form, kind);
   const auto width = static_cast<std::size_t>(form.block);
-  const std::size_t words = kRows[kind] * width;
+  const std::size_t words = kBlockRows[kind] * width;
   const layout::u32* const first = blocks.data() + (word & KDRAY_WIDE_FIRST_MASK) * words;
   std::vector<layout::u32> all(first, first + odprt::leaf_blocks(form, word) * words);
   for (std::size_t b = 0; b < all.size(); b += words)
     for (std::size_t lane = 0; lane < width; ++lane) {
-      layout::u32& index = all[b + (kRows[kind] - 1) * width + lane];
+      layout::u32& index = all[b + (kBlockRows[kind] - 1) * width + lane];
       const layout::u32 last = index & KDRAY_WIDE_LAST;
       index = number_of(scene, kind, index & ~KDRAY_WIDE_LAST) | last;
       if (last) break;

@@ -24,8 +24,8 @@ layout::Frame frame_of(std::uint32_t side) {
   return frame;
 }
 
-constexpr std::uint32_t kFeatures =
-    KDRAY_FEATURE_TRIANGLES | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS;
+constexpr layout::Features kFeatures =
+    KDRAY_FEATURE_KIND(TRIANGLE) | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS;
 
 odprt::Request request_of(std::size_t n_queues, std::uint64_t device_memory) {
   odprt::Request request;

@@ -86,7 +86,7 @@ __kernel void spawn(KDRAY_PARAMETERS(SPAWN_ARGUMENTS)) {
 }
 )";
 
-std::string options_for(const device::Context& context, std::uint32_t features) {
+std::string options_for(const device::Context& context, layout::Features features) {
   std::string options = fmt::format("-cl-std=CL1.2 -DKDRAY_FEATURES={:#010x}u {}", features,
                                     device::build_option(context.simd()));
   if (context.rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";

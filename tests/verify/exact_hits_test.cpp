@@ -8,6 +8,8 @@
 namespace kdray::verify {
 namespace {
 
+using primitives::Quadratic;
+
 const dvec3 kA(0, 0, 0), kB(1, 0, 0), kC(0, 1, 0);
 
 TEST(ExactHits, ATriangleIsHitInsideOfItsMarginOnly) {

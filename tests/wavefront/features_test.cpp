@@ -29,20 +29,23 @@
 namespace kdray::wavefront {
 namespace {
 
-constexpr std::uint32_t kT = KDRAY_FEATURE_TRIANGLES, kS = KDRAY_FEATURE_SPHERES, kC = KDRAY_FEATURE_CONES,
-                        kSmooth = KDRAY_FEATURE_SMOOTH, kNumbers = KDRAY_FEATURE_NUMBERS,
-                        kReflect = KDRAY_FEATURE_REFLECT, kTransmit = KDRAY_FEATURE_TRANSMIT,
-                        kSpecular = KDRAY_FEATURE_SPECULAR, kDiffuse = KDRAY_FEATURE_DIFFUSE,
-                        kLights = KDRAY_FEATURE_LIGHTS, kFallOff = KDRAY_FEATURE_ATTENUATION,
-                        kDirectional = KDRAY_FEATURE_DIRECTIONAL, kSpot = KDRAY_FEATURE_SPOT,
-                        kBackground = KDRAY_FEATURE_BACKGROUND, kSamples = KDRAY_FEATURE_SUPERSAMPLE;
-constexpr std::uint32_t kLit = kDiffuse | kLights, kAll = 0x03000000u | 0x000f0000u | 0x0f00u | 0x1fu;
+constexpr layout::Features kT = KDRAY_FEATURE_KIND(TRIANGLE), kS = KDRAY_FEATURE_KIND(SPHERE),
+                           kC = KDRAY_FEATURE_KIND(CONE), kSmooth = KDRAY_FEATURE_SMOOTH,
+                           kNumbers = KDRAY_FEATURE_NUMBERS, kReflect = KDRAY_FEATURE_REFLECT,
+                           kTransmit = KDRAY_FEATURE_TRANSMIT, kSpecular = KDRAY_FEATURE_SPECULAR,
+                           kDiffuse = KDRAY_FEATURE_DIFFUSE, kLights = KDRAY_FEATURE_LIGHTS,
+                           kFallOff = KDRAY_FEATURE_ATTENUATION, kDirectional = KDRAY_FEATURE_DIRECTIONAL,
+                           kSpot = KDRAY_FEATURE_SPOT, kBackground = KDRAY_FEATURE_BACKGROUND,
+                           kSamples = KDRAY_FEATURE_SUPERSAMPLE;
+constexpr layout::Features kLit = kDiffuse | kLights, kAll = kT | kS | kC | kSmooth | kNumbers | kReflect |
+                                                             kTransmit | kSpecular | kLit | kFallOff |
+                                                             kDirectional | kSpot | kBackground | kSamples;
 
-bool has(std::uint32_t mask, std::uint32_t bit) {
+bool has(layout::Features mask, layout::Features bit) {
   return (mask & bit) != 0;
 }
 
-scene::Material material_of(std::uint32_t mask) {
+scene::Material material_of(layout::Features mask) {
   scene::Material m{.ambient = vec3(0.2f, 0.1f, 0.15f), .shine = 12, .index = 1.4f};
   if (has(mask, kDiffuse)) m.diffuse = vec3(0.5f, 0.4f, 0.3f);
   if (has(mask, kSpecular)) m.specular = vec3(0.4f);
@@ -52,7 +55,7 @@ scene::Material material_of(std::uint32_t mask) {
 }
 
 // Above the objects, so that some shadows fall on them.
-std::vector<scene::Light> lights_of(std::uint32_t mask) {
+std::vector<scene::Light> lights_of(layout::Features mask) {
   if (!has(mask, kLights)) return {};
   std::vector<scene::Light> lights{{.position = {1, 4, 3}, .color = vec3(0.5f)},
                                    {.position = {-4, 3, 1}, .color = vec3(0.3f)}};
@@ -70,7 +73,7 @@ std::vector<scene::Light> lights_of(std::uint32_t mask) {
   return lights;
 }
 
-void add_triangles(scene::Scene& s, std::uint32_t mask, std::uint32_t first_number) {
+void add_triangles(scene::Scene& s, layout::Features mask, std::uint32_t first_number) {
   s.vertices = {{-3, -1, -2}, {3, -1, -2}, {0, -1, 3}, {-1.5, -0.9, -1}, {1, -0.8, -1.2}, {0.2, 1.4, -1.4}};
   if (has(mask, kSmooth)) s.normals = {{-0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}};
   for (std::uint32_t i = 0; i < 2; ++i) {
@@ -80,7 +83,7 @@ void add_triangles(scene::Scene& s, std::uint32_t mask, std::uint32_t first_numb
   }
 }
 
-scene::Scene scene_of(std::uint32_t mask) {
+scene::Scene scene_of(layout::Features mask) {
   scene::Scene s;
   s.materials = {material_of(mask)};
   s.lights = lights_of(mask);
@@ -108,7 +111,7 @@ struct Drawn {
 // A scene of exactly these features on a device, and its programs, which pictures share.
 class Subject {
  public:
-  Subject(const device::Context& context, std::uint32_t mask) : context_(context), scene_(scene_of(mask)) {
+  Subject(const device::Context& context, layout::Features mask) : context_(context), scene_(scene_of(mask)) {
     options_.width = 9;
     options_.height = 7;
     options_.depth = 3;
@@ -117,7 +120,7 @@ class Subject {
     features_ = flatten::features_of(scene_, geometry_) | flatten::features_of_samples(options_.samples);
   }
 
-  std::uint32_t features() const { return features_; }
+  layout::Features features() const { return features_; }
 
   Drawn draw(const Schedule& schedule) {
     layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
@@ -154,7 +157,7 @@ class Subject {
   SceneBuffers buffers_{context_, flat_, wide_};
   Programs programs_{context_, tree_.max_depth, wide_};
   RenderOptions options_;
-  std::uint32_t features_;
+  layout::Features features_;
 };
 
 // As on GPUs: a launch per stage, a ray per work-item; batches that aren't full, several slices and groups.
@@ -172,8 +175,8 @@ class FeaturesTest : public test::EachDevice {
  protected:
   const device::Context context_{GetParam(), 1};
 
-  void draw(std::initializer_list<std::uint32_t> masks) {
-    for (const std::uint32_t mask : masks) {
+  void draw(std::initializer_list<layout::Features> masks) {
+    for (const layout::Features mask : masks) {
       Subject subject(context_, mask);
       SCOPED_TRACE(fmt::format("{:#010x}: {}", mask, fmt::join(flatten::feature_names(mask).on, ", ")));
       ASSERT_EQ(subject.features(), mask);

@@ -74,7 +74,7 @@ struct Hall {
   kdtree::Tree tree = kdtree::build(geometry);
   flatten::FlatScene flat = flatten::flatten(scene, geometry, tree);
   flatten::WideForm wide = flatten::make_wide(tree, flat, flatten::choose_block(tree));
-  std::uint32_t features = flatten::features_of(scene, geometry);
+  layout::Features features = flatten::features_of(scene, geometry);
 
   static RenderOptions options() {
     RenderOptions o;

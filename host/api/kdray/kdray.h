@@ -197,7 +197,7 @@ struct RenderOptions {
   std::uint64_t device_memory = 0;
   // For benches: bits of kernels/layout/features.h and rules.h, what is compiled and done though the scene
   // doesn't need it.
-  std::uint32_t keep = 0;
+  std::uint64_t keep = 0;
   bool timeline = false;                      // keep what Renderer::timeline() tells
   std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost", "samples"
   std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1

@@ -100,7 +100,7 @@ HWY_ATTR inline void clip_straddling(const scene::Geometry& geometry, const Buil
                                      BoundedRef* above, Divided& sides) {
   std::size_t n_triangles = 0;
   if (config.clip) {
-    const bool mixed = !geometry.spheres.empty() || !geometry.cones.empty();
+    const bool mixed = geometry.size() > geometry.triangles.size();
     n_triangles = mixed ? triangles_first(refs) : refs.size();
     // The triangles lie anywhere in memory, so all are on their way before the first is needed.
     for (const BoundedRef& r : refs.first(n_triangles)) hwy::Prefetch(&geometry.triangles[ref_index(r.ref)]);

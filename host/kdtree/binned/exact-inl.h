@@ -11,7 +11,7 @@
 
 #include "kdtree/binned/bin_grid.h"
 #include "kdtree/binned/cost-inl.h"
-#include "kdtree/rounding.h"
+#include "math/rounding.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {

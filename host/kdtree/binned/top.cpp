@@ -96,14 +96,12 @@ class TopBuilder {
 
   // The i-th of all primitives.
   BoundedRef reference(std::size_t i) const {
-    const auto make = [&](scene::PrimitiveKind kind, const auto& primitives, std::size_t k) {
-      const Bounds b = bounds_from(scene::bounds_of(primitives[k]));
-      return BoundedRef{b.lo, make_ref(kind, static_cast<std::uint32_t>(k)), b.hi};
-    };
-    if (i < geometry_.triangles.size()) return make(scene::PrimitiveKind::triangle, geometry_.triangles, i);
-    i -= geometry_.triangles.size();
-    if (i < geometry_.spheres.size()) return make(scene::PrimitiveKind::sphere, geometry_.spheres, i);
-    return make(scene::PrimitiveKind::cone, geometry_.cones, i - geometry_.spheres.size());
+    BoundedRef found;
+    scene::visit_primitive(geometry_, i, [&](auto kind, std::uint32_t index) {
+      const Bounds b = bounds_from(scene::bounds_of(decltype(kind)::of(geometry_)[index]));
+      found = {b.lo, make_ref(decltype(kind)::kKind, index), b.hi};
+    });
+    return found;
   }
 
   // Large cells go to the next level, small ones are subtrees.

@@ -7,10 +7,10 @@
 
 #include <cmath>
 
-#include "kdtree/clip.h"
-#include "kdtree/rounding.h"
+#include "math/rounding.h"
+#include "primitives/sphere.h"
 
-namespace kdray::kdtree {
+namespace kdray::primitives {
 
 namespace {
 
@@ -27,7 +27,7 @@ void distances(double c, double lo, double hi, double& nearest2, double& farthes
 
 }  // namespace
 
-Bounds clip_sphere(const scene::SphereGeometry& s, const Bounds& region) {
+Bounds clip(const SphereGeometry& s, const Bounds& region) {
   const double c[3] = {s.center.x, s.center.y, s.center.z}, r = s.radius;
   double nearest2[3], farthest2[3];
   for (int k = 0; k < 3; ++k) distances(c[k], region.lo[k], region.hi[k], nearest2[k], farthest2[k]);
@@ -53,4 +53,4 @@ Bounds clip_sphere(const scene::SphereGeometry& s, const Bounds& region) {
   return out;
 }
 
-}  // namespace kdray::kdtree
+}  // namespace kdray::primitives

@@ -8,10 +8,10 @@
 
 #include <cmath>
 
-#include "kdtree/clip.h"
-#include "kdtree/rounding.h"
+#include "math/rounding.h"
+#include "primitives/cone.h"
 
-namespace kdray::kdtree {
+namespace kdray::primitives {
 
 namespace {
 
@@ -42,7 +42,7 @@ void keep_at_most(const double* ends, double limit, double& s0, double& s1) {
 }
 
 // The solid of one nappe of the infinite cone is convex: when all corners are inside, all of the box is.
-bool all_corners_inside(const scene::ConeGeometry& c, const dvec3& axis, const Bounds& box, double widen) {
+bool all_corners_inside(const ConeGeometry& c, const dvec3& axis, const Bounds& box, double widen) {
   const double length2 = glm::dot(axis, axis);
   for (int corner = 0; corner < 8; ++corner) {
     const dvec3 p{(corner & 1 ? box.hi : box.lo)[0], (corner & 2 ? box.hi : box.lo)[1],
@@ -59,7 +59,7 @@ bool all_corners_inside(const scene::ConeGeometry& c, const dvec3& axis, const B
 
 }  // namespace
 
-Bounds clip_cone(const scene::ConeGeometry& c, const Bounds& region) {
+Bounds clip(const ConeGeometry& c, const Bounds& region) {
   const dvec3 axis = dvec3(c.apex) - dvec3(c.base);
   const double length = glm::length(axis);
   const double base[3] = {c.base.x, c.base.y, c.base.z}, apex[3] = {c.apex.x, c.apex.y, c.apex.z};
@@ -87,4 +87,4 @@ Bounds clip_cone(const scene::ConeGeometry& c, const Bounds& region) {
   return intersection(out, region);
 }
 
-}  // namespace kdray::kdtree
+}  // namespace kdray::primitives

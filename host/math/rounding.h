@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace kdray::kdtree {
+namespace kdray {
 
 // The next float towards -infinity; -infinity stays.
 inline float next_below(float x) {
@@ -25,4 +25,4 @@ inline float round_up(double x) {
   return -round_down(-x);
 }
 
-}  // namespace kdray::kdtree
+}  // namespace kdray

@@ -1,0 +1,58 @@
+#include <cmath>
+
+#include "primitives/cone.h"
+
+namespace kdray::primitives {
+
+namespace {
+
+// The cone about its axis: radius(s) = base_radius + slope*s at the distance s from the base.
+struct Axis {
+  dvec3 base, unit;
+  double base_radius, slope, height;
+};
+Axis axis_of(const ConeGeometry& cone) {
+  const dvec3 along = dvec3(cone.apex) - dvec3(cone.base);
+  const double height = glm::length(along);
+  return {dvec3(cone.base), along / height, cone.base_radius,
+          (static_cast<double>(cone.apex_radius) - cone.base_radius) / height, height};
+}
+
+}  // namespace
+
+dvec3 place_on(const ConeGeometry& c, double share, const dvec3& direction) {
+  const double radius = glm::mix(double{c.base_radius}, double{c.apex_radius}, share);
+  const dvec3 axis = glm::normalize(dvec3(c.apex) - dvec3(c.base));
+  const dvec3 across = glm::cross(axis, direction);
+  const double length = glm::length(across);
+  return glm::mix(dvec3(c.base), dvec3(c.apex), share) + (length > 0 ? radius / length : 0.0) * across;
+}
+
+// Where a line meets a cone is not known so well that its place would be certain.
+std::optional<double> sure_target(const Line&, const ConeGeometry&, double) {
+  return {};
+}
+
+Quadratic along(const Line& line, const ConeGeometry& cone) {
+  const Axis axis = axis_of(cone);
+  const dvec3 from = line.origin - axis.base;
+  const double s = glm::dot(from, axis.unit), ds = glm::dot(line.direction, axis.unit);
+  const dvec3 across = from - s * axis.unit, moving = line.direction - ds * axis.unit;
+  const double radius = axis.base_radius + axis.slope * s, growing = axis.slope * ds,
+               far = glm::length(across);
+  return {glm::dot(moving, moving) - growing * growing, glm::dot(across, moving) - radius * growing,
+          (far - radius) * (far + radius)};
+}
+
+dvec3 outward(const dvec3& point, const ConeGeometry& cone) {
+  const Axis axis = axis_of(cone);
+  const dvec3 from = point - axis.base;
+  const double s = glm::dot(from, axis.unit);
+  return (from - s * axis.unit) - axis.slope * (axis.base_radius + axis.slope * s) * axis.unit;
+}
+
+bool meets_again(const Line& line, const ConeGeometry& c, double t, const dvec3& side) {
+  return hits_again(along(line, c), t, glm::dot(side, outward(line.origin, c)) > 0);
+}
+
+}  // namespace kdray::primitives
