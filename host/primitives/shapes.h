@@ -15,5 +15,6 @@
 #pragma once
 
 #include "primitives/cone.h"
+#include "primitives/disc.h"
 #include "primitives/kinds.h"
 #include "primitives/sphere.h"

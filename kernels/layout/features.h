@@ -75,6 +75,11 @@
 #else
 #define KDRAY_IF_CONE(...)
 #endif
+#if KDRAY_HAS_KIND(DISC)
+#define KDRAY_IF_DISC(...) __VA_ARGS__
+#else
+#define KDRAY_IF_DISC(...)
+#endif
 #else
 namespace kdray::layout {
 using Features = std::uint64_t;

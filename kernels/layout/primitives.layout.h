@@ -43,5 +43,17 @@ typedef struct Cone {
 } Cone;
 KDRAY_ASSERT_SIZE(Cone, 48)
 KDRAY_ASSERT_OFFSET(Cone, height, 28)
+
+// In the plane through its centre at right angles to the normal, which is of unit length but for rounding.
+typedef struct Disc {
+  float center[3];
+  float radius;
+  float normal[3];
+  u32 number;
+  u32 material;
+  u32 pad[3];
+} Disc;
+KDRAY_ASSERT_SIZE(Disc, 48)
+KDRAY_ASSERT_OFFSET(Disc, number, 28)
 KDRAY_LAYOUT_END
 #endif

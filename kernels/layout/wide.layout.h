@@ -55,6 +55,16 @@
 #define KDRAY_ROW_CONE_INDEX 9
 #define KDRAY_CONE_ROWS 10
 
+#define KDRAY_ROW_DISC_X 0  // the centre
+#define KDRAY_ROW_DISC_Y 1
+#define KDRAY_ROW_DISC_Z 2
+#define KDRAY_ROW_DISC_NORMAL_X 3
+#define KDRAY_ROW_DISC_NORMAL_Y 4
+#define KDRAY_ROW_DISC_NORMAL_Z 5
+#define KDRAY_ROW_DISC_RADIUS 6
+#define KDRAY_ROW_DISC_INDEX 7
+#define KDRAY_DISC_ROWS 8
+
 KDRAY_LAYOUT_BEGIN
 typedef struct WideNode {
   float bounds[3][2][8];  // [axis][0: lo, 1: hi][slot]
