@@ -21,6 +21,10 @@ class SceneBuilder {
     scene_.cones.push_back({base, apex, r0, r1, material(m), next()});
     return *this;
   }
+  SceneBuilder& disc(const dvec3& center, const dvec3& normal, double radius, const scene::Material& m) {
+    scene_.discs.push_back({center, normal, radius, material(m), next()});
+    return *this;
+  }
   // Counter-clockwise seen from the front.
   SceneBuilder& triangle(const dvec3& a, const dvec3& b, const dvec3& c, const scene::Material& m) {
     scene_.triangles.push_back(

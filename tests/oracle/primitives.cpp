@@ -52,6 +52,13 @@ World::World(const scene::Scene& scene) : scene_(scene) {
     shapes_.push_back(
         {Kind::cone, i, static_cast<int>(c.number), c.base, c.apex, {}, c.base_radius, c.apex_radius, {}});
   }
+  for (std::uint32_t i = 0; i < scene.discs.size(); ++i) {
+    const scene::Disc& d = scene.discs[i];
+    box.grow(d.center - d.radius), box.grow(d.center + d.radius);
+    const dvec3 normal = glm::normalize(d.normal);
+    shapes_.push_back({Kind::disc, i, static_cast<int>(d.number), d.center, {}, {}, d.radius, 0, normal});
+  }
+  static_assert(primitives::kKinds == 4, "a kind that the oracle doesn't know");
   std::sort(shapes_.begin(), shapes_.end(),
             [](const Shape& l, const Shape& r) { return l.number < r.number; });
   if (!box.empty()) extent_ = 0.5 * std::max({box.extent().x, box.extent().y, box.extent().z});
@@ -84,6 +91,8 @@ Hit World::intersect(const Shape& shape, const Ray& ray, double grow) const {
       return intersect_sphere(shape, ray, grow);
     case Kind::cone:
       return intersect_cone(shape, ray, grow);
+    case Kind::disc:
+      return intersect_disc(shape, ray, grow);
   }
   return {};
 }
@@ -151,6 +160,19 @@ Hit World::intersect_cone(const Shape& s, const Ray& ray, double grow) const {
   return {};
 }
 
+// Cuts the ray with the plane, as a triangle does; there it asks for the distance from the centre.
+Hit World::intersect_disc(const Shape& s, const Ray& ray, double grow) const {
+  if (ray.self == s.number) return {};
+  const double slope = glm::dot(ray.direction, s.normal);
+  if (slope == 0) return {};
+  const double t = glm::dot(s.a - ray.origin, s.normal) / slope;
+  if (!within(t, ray)) return {};
+  const double away = glm::length(ray.origin + t * ray.direction - s.a);
+  const double moved = grow * glm::length(ray.direction) / std::abs(slope);
+  if (!(away <= s.r0 + moved)) return {};
+  return {t, s.number, std::min(away / s.r0, 1.0), 0};
+}
+
 Surface World::surface(const Ray& ray, const Hit& hit) const {
   const auto found = std::lower_bound(shapes_.begin(), shapes_.end(), hit.primitive,
                                       [](const Shape& s, int number) { return s.number < number; });
@@ -163,6 +185,10 @@ Surface World::surface(const Ray& ray, const Hit& hit) const {
     case Kind::sphere:
       out.material = scene_.spheres[found->source].material;
       out.outward = glm::normalize(out.point - found->a);
+      break;
+    case Kind::disc:
+      out.material = scene_.discs[found->source].material;
+      out.outward = found->normal;
       break;
     case Kind::cone: {
       out.material = scene_.cones[found->source].material;

@@ -57,20 +57,21 @@ class World {
   std::size_t size() const { return shapes_.size(); }
 
  private:
-  enum class Kind { triangle, sphere, cone };
+  enum class Kind { triangle, sphere, cone, disc };
   struct Shape {
     Kind kind;
     std::uint32_t source;  // index into the scene's array of that kind
     int number;
-    dvec3 a, b, c;    // triangle: corners; sphere: centre; cone: base, apex
-    double r0, r1;    // sphere: radius; cone: radii
-    dvec3 normal{0};  // triangle: its length is twice the area
+    dvec3 a, b, c;    // triangle: corners; sphere, disc: centre; cone: base, apex
+    double r0, r1;    // sphere, disc: radius; cone: radii
+    dvec3 normal{0};  // triangle: its length is twice the area; disc
   };
 
   Hit intersect(const Shape& shape, const Ray& ray, double grow) const;
   Hit intersect_triangle(const Shape& s, const Ray& ray, double grow) const;
   Hit intersect_sphere(const Shape& s, const Ray& ray, double grow) const;
   Hit intersect_cone(const Shape& s, const Ray& ray, double grow) const;
+  Hit intersect_disc(const Shape& s, const Ray& ray, double grow) const;
   void triangle_surface(const Shape& shape, const Hit& hit, Surface& out) const;
 
   const scene::Scene& scene_;
