@@ -12,6 +12,12 @@ Scene Scene::load(const std::filesystem::path& file) {
   scene.load_seconds_ = timer.seconds();
   return scene;
 }
+Scene Scene::from_memory(std::string bytes, const std::filesystem::path& name) {
+  const Timer timer;
+  Scene scene(scene::load_from_memory(std::move(bytes), name));
+  scene.load_seconds_ = timer.seconds();
+  return scene;
+}
 Scene::Scene(scene::Scene&& model) : model_(std::make_unique<scene::Scene>(std::move(model))) {}
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;

@@ -44,18 +44,6 @@ fs::path folder_of(const fs::path& file) {
   return parent.empty() ? fs::path(".") : parent;
 }
 
-// Where the bytes will go at last: `file`, or what the symbolic links it is made of point to (which need not
-// exist).
-fs::path resolve_links(fs::path file) {
-  std::error_code error;
-  for (int n_links = 0; n_links < 40 && fs::is_symlink(file, error); ++n_links) {
-    const fs::path to = fs::read_symlink(file, error);
-    if (error) break;
-    file = to.is_absolute() ? to : folder_of(file) / to;
-  }
-  return file;
-}
-
 // An existing target must be a file that its owner left writable: a rename would not ask.
 void check_target(const fs::path& file, const fs::path& target, const fs::file_status& status) {
   if (target.filename().empty() || fs::is_directory(status))
@@ -88,9 +76,19 @@ fs::path create_beside(const fs::path& file, const fs::path& target) {
 
 }  // namespace
 
+fs::path where_written(fs::path file) {
+  std::error_code error;
+  for (int n_links = 0; n_links < 40 && fs::is_symlink(file, error); ++n_links) {
+    const fs::path to = fs::read_symlink(file, error);
+    if (error) break;
+    file = to.is_absolute() ? to : folder_of(file) / to;
+  }
+  return file;
+}
+
 void write_atomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
   std::error_code error;
-  const fs::path target = resolve_links(file);
+  const fs::path target = where_written(file);
   const fs::file_status status = fs::status(target, error);
   check_target(file, target, status);
   if (is_special(status)) return write(target);
@@ -123,7 +121,7 @@ void write_file(const fs::path& file, std::string_view content) {
 
 void check_writable(const fs::path& file) {
   std::error_code error;
-  const fs::path target = resolve_links(file);
+  const fs::path target = where_written(file);
   const fs::file_status status = fs::status(target, error);
   check_target(file, target, status);
   if (!is_special(status)) fs::remove(create_beside(file, target), error);

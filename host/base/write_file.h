@@ -10,6 +10,10 @@
 
 namespace kdray {
 
+// Where the bytes of `file` will go at last: to `file`, or to what the symbolic links that it is made of
+// point to (which need not exist).
+std::filesystem::path where_written(std::filesystem::path file);
+
 // Calls `write(temporary)` and renames the temporary onto `file`; removes it if `write` throws.
 void write_atomically(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path&)>& write);

@@ -38,6 +38,7 @@ std::vector<FileRead> from_folder(std::vector<FileRead> files, const fs::path& f
 // The first file is the scene's own, whose content is in the key.
 bool all_as_they_were(const std::vector<FileRead>& files, const fs::path& folder) {
   return std::all_of(files.begin() + 1, files.end(), [&](const FileRead& file) {
+    if (file.only_named) return true;
     std::error_code error;
     const fs::path path = folder / file.path;
     return file.content ? content_of(path) == file.content : !fs::is_regular_file(path, error);
@@ -70,6 +71,7 @@ std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path&
   if (!found || found->settings.files.empty() || !says_the_same(found->settings, scene) ||
       !all_as_they_were(found->settings.files, scene.parent_path()))
     return std::nullopt;
+  for (FileRead& named : found->settings.files) named.path = scene.parent_path() / named.path;
   found->settings.name = scene.string();
   found->tree_options = tree;
   touch_entry(file);

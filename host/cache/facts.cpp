@@ -62,7 +62,8 @@ void get(const Json& from, scene::RenderSettings& s) {
 Json of(const std::vector<scene::FileRead>& files) {
   Json list = Json::array();
   for (const scene::FileRead& f : files)
-    list.push_back({f.path.string(), f.content ? Json{f.content->high, f.content->low} : Json()});
+    list.push_back(
+        {f.path.string(), f.content ? Json{f.content->high, f.content->low} : Json(), f.only_named});
   return list;
 }
 
@@ -72,6 +73,7 @@ void get(const Json& from, std::vector<scene::FileRead>& files) {
     file.path = f.at(0).get<std::string>();
     if (!f.at(1).is_null())
       file.content = Hash{f.at(1).at(0).get<std::uint64_t>(), f.at(1).at(1).get<std::uint64_t>()};
+    f.at(2).get_to(file.only_named);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "cli/message.h"
 #include "cli/output.h"
+#include "cli/suggest.h"
 #include "kdray/error.h"
 
 namespace kdray::cli {
@@ -52,9 +53,8 @@ int parse_and_run(CLI::App& app, std::span<const char* const> arguments, std::sp
     print(std::string(version.what()) + "\n");
     return 0;
   } catch (const CLI::ParseError& error) {
-    const auto chosen = app.get_subcommands();
-    const std::string where = chosen.empty() ? "kdray" : "kdray " + chosen.front()->get_name();
-    throw Error(ErrorCode::usage, fmt::format("{}; see '{} --help'", error.what(), where));
+    check_unknown(app);
+    throw Error(ErrorCode::usage, fmt::format("{}; see '{} --help'", error.what(), parsed_command(app)));
   }
   for (const Command& c : commands)
     if (c.app->parsed()) return c.run();

@@ -11,6 +11,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/parse.h"
+#include "cli/run_files.h"
 #include "cli/stats.h"
 #include "film/compare.h"
 #include "film/read.h"
@@ -47,11 +48,15 @@ std::string as_json(const film::Difference& d) {
 }
 
 int run(const CompareArgs& o) {
-  if (!o.diff.empty()) {
-    film::check_picture_name(o.diff);
-    check_apart("A", o.a, "--diff", o.diff);
-    check_apart("B", o.b, "--diff", o.diff);
-  }
+  RunFiles files;
+  files.read("A", o.a);
+  files.read("B", o.b);
+  for (const std::string& file : {o.a, o.b})
+    if (file == "-")
+      throw Error(ErrorCode::usage, "'-': compare reads files; write the picture to one first");
+  if (o.diff == "-")
+    throw Error(ErrorCode::usage, "--diff '-': the figures go to standard output; name a file");
+  files.write_picture("--diff", o.diff, {}, {});
   const film::Image a = film::read_picture(o.a, o.transfer);
   const film::Image b = film::read_picture(o.b, o.transfer);
   if (a.width != b.width || a.height != b.height)

@@ -13,6 +13,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/parse.h"
+#include "cli/run_files.h"
 #include "generate/generate.h"
 
 namespace kdray::cli {
@@ -46,16 +47,26 @@ void write(const GenerateArgs& o, int size, std::ostream& out, const std::string
   if (!out) throw input_error(where, 0, "can't be written", "is the disk full?");
 }
 
+// A scene of another ending would be read as what it isn't. Devices and pipes need no ending.
+void check_is_nff(const std::filesystem::path& output) {
+  std::error_code error;
+  const std::string ending = ending_of(output);
+  if (ending == ".nff" || std::filesystem::is_other(output, error)) return;
+  if (ending == ".gz" || ending == ".xz")
+    throw input_error(output.string(), 0, "generate writes plain text",
+                      "leave " + ending + " off and compress it after");
+  throw input_error(output.string(), 0, "generate writes NFF", "end the name in .nff");
+}
+
 int run(const GenerateArgs& o) {
   const int size = o.size < 0 ? default_size(o.name) : o.size;
   if (o.output.empty() || o.output == "-") {
     write(o, size, std::cout, "standard output");
     return 0;
   }
-  check_text_output(o.output);
-  if (const std::string ending = ending_of(o.output); ending == ".gz" || ending == ".xz")
-    throw input_error(o.output, 0, "generate writes plain text",
-                      "leave " + ending + " off and compress it after");
+  RunFiles files;
+  files.write("--output", o.output);
+  check_is_nff(o.output);
   write_atomically(o.output, [&](const std::filesystem::path& file) {
     std::ofstream out(file, std::ios::binary);
     write(o, size, out, o.output);
@@ -70,7 +81,7 @@ Command add_generate(CLI::App& kdray) {
   const auto o = std::make_shared<GenerateArgs>();
   app->add_option("NAME", o->name, "Which scene")->required()->type_name("");
   add_int(*app, "--size", "Size factor (default: the scene's own, see below)", 0, kSizeMax, o->size);
-  add_path(*app, "-o,--output", "The file (default: standard output)", o->output);
+  add_path(*app, "-o,--output", "The file, .nff (default, and '-': standard output)", o->output);
   app->footer(what_there_is());
   return {app, [o] { return run(*o); }};
 }

@@ -13,6 +13,7 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/scene_input.h"
 #include "flatten/flatten.h"
 #include "flatten/wide.h"
 #include "kdtree/build.h"
@@ -20,14 +21,13 @@
 #include "prepare/prepared.h"
 #include "prepare/quality.h"
 #include "scene/geometry.h"
-#include "scene/load.h"
 
 namespace kdray::cli {
 
 namespace {
 
 struct InfoArgs {
-  std::string scene;
+  SceneInput scene;
   TreeOptions tree;
   bool json = false;
 };
@@ -54,8 +54,9 @@ Forms build_forms(const scene::Scene& scene, const scene::Geometry& geometry,
 }
 
 int run(const InfoArgs& o) {
+  check_scene_input(o.scene);
   Timer step;
-  const scene::Scene scene = scene::load(o.scene);
+  const scene::Scene scene = load_model(o.scene);
   const double load_seconds = step.seconds();
   for (const std::string& warning : scene.warnings) say(warning);
 
@@ -88,7 +89,7 @@ Command add_info(CLI::App& kdray) {
   CLI::App* const app =
       kdray.add_subcommand("info", "Show counts, bounds, materials, tree statistics and memory of a scene");
   const auto o = std::make_shared<InfoArgs>();
-  app->add_option("SCENE", o->scene, "The scene, as for render")->required()->type_name("");
+  add_scene_input(*app, o->scene, "The scene, as for render");
   app->add_flag("--json", o->json, "Print JSON");
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};

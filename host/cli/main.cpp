@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/command_line.h"
 #include "cli/start_bench.h"
+#include "cli/suggest.h"
 #include "kdray/error.h"
 
 namespace kdray::cli {
@@ -23,8 +24,8 @@ void check_command_name(int argc, char** argv, const std::vector<Command>& comma
     throw Error(ErrorCode::usage,
                 fmt::format("a command is missing: {}; see 'kdray --help'", fmt::join(names, ", ")));
   if (std::find(names.begin(), names.end(), argv[1]) == names.end())
-    throw Error(ErrorCode::usage, fmt::format("there is no command '{}'; the commands are {}", argv[1],
-                                              fmt::join(names, ", ")));
+    throw Error(ErrorCode::usage, fmt::format("there is no command '{}'; {}the commands are {}", argv[1],
+                                              suggestion(argv[1], names), fmt::join(names, ", ")));
 }
 
 int run_kdray(int argc, char** argv) {

@@ -32,7 +32,7 @@ DeviceOptions with_cache(DeviceOptions device, const CacheChoice& choice) {
 
 }  // namespace
 
-OpenedScene::OpenedScene(const std::string& file, const TreeOptions& tree, const DeviceOptions& device,
+OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const DeviceOptions& device,
                          const CacheChoice& choice, bool quiet,
                          const std::function<void(const scene::Scene&)>& check)
     : choice_(choice),
@@ -48,14 +48,15 @@ OpenedScene::OpenedScene(const std::string& file, const TreeOptions& tree, const
   if (!quiet) device_.tunings_ignored = [](const std::string& why) { say(why); };
   std::future<void> device_opened = std::async(std::launch::async, [this] { open_device(device_); });
   const auto tell = [&](const scene::Scene& settings) {
+    if (check) check(settings);
     if (!quiet)
       for (const std::string& warning : settings.warnings) say(warning);
-    if (check) check(settings);
     device_opened.get();
   };
-  const bool has_cache = !options_of(choice).folder.empty();
+  // A scene from standard input is no file that could be found again.
+  const bool has_cache = !options_of(choice).folder.empty() && !input.is_stdin();
   const Timer look_up;
-  scene_ = cache_.find(file, tree);
+  if (has_cache) scene_ = cache_.find(input.file, tree);
   if (has_cache) {
     outcome_ = scene_ ? kHit : kMiss;
     cache_seconds_ = look_up.seconds();
@@ -66,7 +67,7 @@ OpenedScene::OpenedScene(const std::string& file, const TreeOptions& tree, const
   }
   const Scene read = [&] {
     try {
-      return Scene::load(file);
+      return load_scene(input);
     } catch (...) {
       notice_.mute();  // the device is waited for, but what it does is of no interest any more
       throw;

@@ -11,6 +11,7 @@
 
 #include "cli/build_notice.h"
 #include "cli/options.h"
+#include "cli/scene_input.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {
@@ -18,7 +19,7 @@ namespace kdray::cli {
 class OpenedScene {
  public:
   // `check` sees the scene's settings before any tree is built. Prints the scene's warnings, unless `quiet`.
-  OpenedScene(const std::string& file, const TreeOptions& tree, const DeviceOptions& device,
+  OpenedScene(const SceneInput& input, const TreeOptions& tree, const DeviceOptions& device,
               const CacheChoice& cache, bool quiet,
               const std::function<void(const scene::Scene&)>& check = {});
 

@@ -54,7 +54,25 @@ CLI::Option* add_size(CLI::App& app, const std::string& help, int side_max, long
 }
 
 CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string& help, std::string& value) {
-  return app.add_option(name, value, help)->type_name("FILE");
+  return add_text(app, name, "FILE", help, [option = long_name(name), &value](const std::string& text) {
+    if (text.empty()) throw usage_error(option, text, "the name of a file");
+    value = text;
+  });
+}
+
+void add_loudness(CLI::App& app, bool& quiet, bool& verbose) {
+  CLI::Option* const silent = app.add_flag("-q,--quiet", quiet, "Say nothing unless something is wrong");
+  app.add_flag("-v,--verbose", verbose, "Say where the time went, which rays were traced, what was left out")
+      ->excludes(silent);
+}
+
+void add_picture_format(CLI::App& app, std::optional<film::PictureFormat>& format) {
+  static constexpr std::array<std::string_view, 2> kFormats = {"png", "exr"};
+  add_text(app, "--format", "NAME", "The picture's format: png, exr (default: by its name; to stdout png)",
+           [&format](const std::string& text) {
+             const bool exr = parse_choice("--format", text, kFormats) == "exr";
+             format = exr ? film::PictureFormat::exr : film::PictureFormat::png;
+           });
 }
 
 void add_cache_options(CLI::App& app, CacheChoice& cache) {

@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "film/format.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {
@@ -22,6 +24,10 @@ CLI::Option* add_real(CLI::App& app, const std::string& name, const std::string&
 CLI::Option* add_size(CLI::App& app, const std::string& help, int side_max, long long pixels_max, int& width,
                       int& height);
 CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string& help, std::string& value);
+// --quiet --verbose
+void add_loudness(CLI::App& app, bool& quiet, bool& verbose);
+// --format png|exr
+void add_picture_format(CLI::App& app, std::optional<film::PictureFormat>& format);
 
 // Where prepared scenes are kept.
 struct CacheChoice {

@@ -14,10 +14,6 @@ namespace fs = std::filesystem;
 
 namespace kdray::cli {
 
-void check_text_output(const fs::path& file) {
-  if (file != "-") check_writable(file);
-}
-
 void write_text(const fs::path& file, std::string_view text) {
   if (file == "-") return print(text);
   write_file(file, text);
@@ -29,26 +25,24 @@ void print(std::string_view text) {
     throw input_error("standard output", 0, fmt::format("can't be written ({})", std::strerror(errno)));
 }
 
-void check_apart(std::string_view option_a, const fs::path& a, std::string_view option_b, const fs::path& b) {
-  if (a.empty() || b.empty()) return;
-  std::error_code error;
-  const bool same_name = fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
-  const bool same_file = fs::equivalent(a, b, error) && fs::is_regular_file(a, error);
-  if (same_file || (same_name && !fs::is_other(a, error)))
-    throw Error(ErrorCode::usage, fmt::format("{} and {} are the same file, {}; give them different names",
-                                              option_a, option_b, a.string()));
-}
-
 std::string ending_of(const fs::path& file) {
   std::string ending = file.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return ending;
 }
 
-fs::path default_picture(const fs::path& scene) {
-  fs::path name = scene.filename();
+fs::path default_picture(const fs::path& scene, film::PictureFormat format) {
+  fs::path name = scene == "-" ? "stdin" : scene.filename();
   if (const std::string ending = ending_of(name); ending == ".gz" || ending == ".xz") name = name.stem();
-  return name.replace_extension(".png");
+  return name.replace_extension(format == film::PictureFormat::exr ? ".exr" : ".png");
+}
+
+film::Written put_picture(const fs::path& file, const film::Image& image,
+                          std::span<const film::Channel> channels, const film::WriteOptions& options) {
+  if (file != "-") return film::write_picture(file, image, channels, options);
+  const auto format = options.format.value_or(film::PictureFormat::png);
+  print(film::encode_picture(format, image, channels, options));
+  return {{file}, film::count_nan(image)};
 }
 
 }  // namespace kdray::cli

@@ -21,6 +21,8 @@
 #include "cli/output.h"
 #include "cli/parse.h"
 #include "cli/progress.h"
+#include "cli/run_files.h"
+#include "cli/scene_input.h"
 #include "cli/stats.h"
 #include "cli/summary.h"
 #include "film/write.h"
@@ -31,13 +33,16 @@ namespace kdray::cli {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr int kPictureSideMax = 65536;
 // 16384 x 16384; memory.h refuses what this machine can't hold.
 constexpr long long kPicturePixelsMax = 1ll << 28;
 
 struct RenderArgs {
-  std::string scene, output, stats, timeline;
-  bool quiet = false;
+  SceneInput scene;
+  std::string output, stats, timeline;
+  bool quiet = false, verbose = false;
   bool gamma_given = false, bits_given = false;
   CacheChoice cache;
   TreeOptions tree;
@@ -77,8 +82,10 @@ void add_file_options(CLI::App& app, RenderArgs& o) {
   static constexpr std::array<std::string_view, 2> kBits = {"8", "16"};
   static constexpr std::array<std::string_view, 5> kChannels = {"depth", "normal", "primitive", "cost",
                                                                 "samples"};
-  add_path(app, "-o,--output", "The picture, .png or .exr (default: the scene's name with .png, here)",
+  add_path(app, "-o,--output",
+           "The picture, .png or .exr; '-': standard output (default: the scene's name with .png, here)",
            o.output);
+  add_picture_format(app, o.write.format);
   add_text(app, "--gamma", "G", "PNG's transfer curve: srgb (default) or v^(1/G)",
            [&o](const std::string& text) {
              o.write.transfer = parse_gamma("--gamma", text);
@@ -92,7 +99,7 @@ void add_file_options(CLI::App& app, RenderArgs& o) {
            "More channels, in the EXR or as files beside the PNG: depth,normal,primitive,cost,samples",
            [&o](const std::string& text) { o.render.channels = parse_list("--aov", text, kChannels); });
   add_path(app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o.stats);
-  app.add_flag("-q,--quiet", o.quiet, "Say nothing unless something is wrong");
+  add_loudness(app, o.quiet, o.verbose);
 }
 
 // Adds an option that takes one of an enumeration's names, in the order of its values.
@@ -136,25 +143,38 @@ void add_division_options(CLI::App& app, RenderArgs& o) {
       ->group(group);
 }
 
-void check_timeline(const RenderArgs& o) {
-  check_text_output(o.timeline);
-  check_apart("SCENE", o.scene, "--trace", o.timeline);
-  check_apart("--output", o.output, "--trace", o.timeline);
-  check_apart("--stats", o.stats, "--trace", o.timeline);
+// Before the scene is read. A name that isn't given depends on the files that the scene names.
+void check_files(const RenderArgs& o, RunFiles& files) {
+  check_scene_input(o.scene);
+  files.read("SCENE", o.scene.file);
+  files.write_picture("--output", o.output, o.render.channels, o.write);
+  files.write("--stats", o.stats);
+  files.write("--trace", o.timeline);
 }
 
-void check_files(RenderArgs& o) {
-  if (o.output.empty()) o.output = default_picture(o.scene).string();
-  film::check_picture_name(o.output);
-  if (!o.stats.empty()) check_text_output(o.stats);
-  check_apart("SCENE", o.scene, "--output", o.output);
-  check_apart("SCENE", o.scene, "--stats", o.stats);
-  check_apart("--output", o.output, "--stats", o.stats);
-  if (!o.timeline.empty()) check_timeline(o);
-  if (ending_of(o.output) == ".exr" && !o.quiet) {
-    if (o.gamma_given) say("--gamma has no effect: an EXR holds linear values");
-    if (o.bits_given) say("--bits has no effect: an EXR holds floats");
-  }
+fs::path default_output(const RenderArgs& o) {
+  return default_picture(o.scene.file, o.write.format.value_or(film::PictureFormat::png));
+}
+
+// Once it is known which files the scene names.
+void check_files(RenderArgs& o, RunFiles& files, const scene::Scene& asked) {
+  files.read_scene(asked.files);
+  if (!o.output.empty()) return;
+  const fs::path usual = default_output(o);
+  o.output = files.free_name(usual, o.render.channels, o.write).string();
+  files.write_picture("--output", o.output, o.render.channels, o.write);
+  if (o.output != usual && !o.quiet)
+    say(fmt::format("{} is a file that the scene names: the picture goes to {}", usual.string(), o.output));
+}
+
+bool makes_exr(const RenderArgs& o) {
+  return o.write.format ? *o.write.format == film::PictureFormat::exr : ending_of(o.output) == ".exr";
+}
+
+void tell_of_options_without_effect(const RenderArgs& o) {
+  if (o.quiet || !makes_exr(o)) return;
+  if (o.gamma_given) say("--gamma has no effect: an EXR holds linear values");
+  if (o.bits_given) say("--bits has no effect: an EXR holds floats");
 }
 
 // As the renderer will resolve it (RenderOptions::width).
@@ -179,7 +199,7 @@ film::Written write(Picture&& picture, const RenderArgs& o) {
   for (Channel& c : picture.channels) channels.push_back({std::move(c.name), std::move(c.values)});
   const film::Image image = to_image(picture);
   picture.rgb = {};  // large pictures: no third copy while the file is made
-  return film::write_picture(o.output, image, channels, o.write);
+  return put_picture(o.output, image, channels, o.write);
 }
 
 Picture render(Renderer& renderer, const RenderArgs& o) {
@@ -192,10 +212,14 @@ Picture render(Renderer& renderer, const RenderArgs& o) {
 
 int run(RenderArgs& o) {
   const Timer total;
-  check_files(o);
+  RunFiles files;
+  check_files(o, files);
+  tell_of_options_without_effect(o);
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
-  OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet,
-                    [&o](const scene::Scene& asked) { check_memory(o.render, asked.settings); });
+  OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet, [&](const scene::Scene& asked) {
+    check_files(o, files, asked);
+    check_memory(o.render, asked.settings);
+  });
   Renderer renderer(scene.scene(), scene.device());
   Picture picture = render(renderer, o);
   if (!o.quiet)
@@ -209,12 +233,12 @@ int run(RenderArgs& o) {
   seconds.load = scene.load_seconds();
   seconds.total = total.seconds();
 
-  Json stats = collect_stats("render", o.scene, renderer.statistics(), seconds);
+  Json stats = collect_stats("render", o.scene.file, renderer.statistics(), seconds);
   stats["cache"] = scene.cache();
   for (const auto& file : written.files) stats["files"].push_back(file.string());
   if (!o.stats.empty()) write_stats(o.stats, stats);
   if (!o.timeline.empty()) write_text(o.timeline, renderer.timeline() + "\n");
-  if (!o.quiet) print_render_summary(stats, written.nan_values);
+  if (!o.quiet) print_render_summary(stats, written.nan_values, o.verbose);
   return 0;
 }
 
@@ -223,10 +247,9 @@ int run(RenderArgs& o) {
 Command add_render(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand("render", "Render a scene to a picture");
   const auto o = std::make_shared<RenderArgs>();
-  app->add_option("SCENE", o->scene,
-                  "The scene: .nff .obj .ply .stl .gltf .glb .json, also .gz and .xz of them")
-      ->required()
-      ->type_name("");
+  add_scene_input(
+      *app, o->scene,
+      "The scene: .nff .obj .ply .stl .gltf .glb .json, also .gz and .xz of them; '-': standard input");
   add_file_options(*app, *o);
   add_picture_options(*app, *o);
   add_division_options(*app, *o);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "cli/message.h"
@@ -9,6 +11,13 @@
 namespace kdray::cli {
 
 namespace {
+
+// What a start takes once and the next one does not, as statistics and people call it.
+constexpr std::array<std::pair<const char*, const char*>, 4> kStart = {{{"start", "opening the device"},
+                                                                        {"self_test", "its self-test"},
+                                                                        {"compile", "compiling kernels"},
+                                                                        {"keep_programs", "keeping them"}}};
+constexpr double kCold = 1, kWorthTelling = 0.05;  // seconds
 
 const Json& part(const Json& stats, const char* name) {
   static const Json kNothing = Json::object();
@@ -19,6 +28,11 @@ const Json& part(const Json& stats, const char* name) {
 double number(const Json& object, const char* name) {
   const auto found = object.find(name);
   return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
+}
+
+// Within a frame, trace is a part of render: a line with both would count it twice. A query has only trace.
+const char* work_of(const Json& seconds) {
+  return number(seconds, "render") > 0 ? "render" : "trace";
 }
 
 // "41% of 2.3 M shadow rays" were not traced; empty when all were.
@@ -51,10 +65,31 @@ std::string rays_left_out(const Json& rays) {
   return shares.empty() ? "" : fmt::format("{} proven needless", fmt::join(shares, " and "));
 }
 
-void print_common(const Json& stats) {
+// "1024x1024 of 4 samples", "512x512 of 3.2 samples"
+std::string picture_in_words(const Json& stats) {
+  const Json& frame = part(stats, "frame");
+  const double adaptive = number(part(stats, "samples"), "per_pixel");
+  const double samples = adaptive > 0 ? adaptive : number(frame, "samples");
+  return fmt::format("{}x{}{}", number(frame, "width"), number(frame, "height"),
+                     samples > 1 ? fmt::format(" of {:.3g} samples", samples) : "");
+}
+
+// "in 130 ms, 33 Mrays/s; 0.45 s in all"
+std::string speed_in_words(const Json& stats) {
+  const Json& seconds = part(stats, "seconds");
+  return fmt::format("in {}, {:.3g} Mrays/s; {} in all", seconds_in_words(number(seconds, work_of(seconds))),
+                     number(stats, "mrays_per_s"), seconds_in_words(number(seconds, "total")));
+}
+
+void say_if_any(const std::string& line) {
+  if (!line.empty()) say(line);
+}
+
+void print_details(const Json& stats) {
   say(stages_line(stats));
   say(rays_line(stats));
-  if (const std::string left_out = left_out_line(stats); !left_out.empty()) say(left_out);
+  say_if_any(left_out_line(stats));
+  say_if_any(samples_line(stats));
 }
 
 }  // namespace
@@ -62,11 +97,9 @@ void print_common(const Json& stats) {
 std::string stages_line(const Json& stats) {
   const Json& seconds = part(stats, "seconds");
   std::vector<std::string> stages;
-  // Within a frame, trace is a part of render: the line would count it twice. A query has only trace.
-  const char* const work = number(seconds, "render") > 0 ? "render" : "trace";
   if (const double s = number(seconds, "cache"); s > 0)
     stages.push_back(fmt::format("cache {} {}", stats.value("cache", "off"), seconds_in_words(s)));
-  for (const char* const name : {"load", "build", "flatten", "upload", "compile", work, "write"})
+  for (const char* const name : {"load", "build", "flatten", "upload", "compile", work_of(seconds), "write"})
     if (const double s = number(seconds, name); s > 0)
       stages.push_back(fmt::format("{} {}", name, seconds_in_words(s)));
   return fmt::format("{}; {} in all", fmt::join(stages, ", "), seconds_in_words(number(seconds, "total")));
@@ -103,22 +136,52 @@ std::string samples_line(const Json& stats) {
       met ? "within" : "all that helps is done, above", number(samples, "target"));
 }
 
-void print_render_summary(const Json& stats, std::size_t nan_values) {
-  const Json& frame = part(stats, "frame");
-  const double samples = number(frame, "samples");
-  say(fmt::format("{} primitives, {}x{} pixels{}, depth {}: {}", number(part(stats, "scene"), "primitives"),
-                  number(frame, "width"), number(frame, "height"),
-                  samples > 1 ? fmt::format(" of {} samples", samples) : "", number(frame, "depth"),
-                  fmt::join(stats.value("files", std::vector<std::string>()), ", ")));
-  print_common(stats);
-  if (const std::string samples = samples_line(stats); !samples.empty()) say(samples);
+std::string render_line(const Json& stats) {
+  return fmt::format("{}: {}, {} rays {}", fmt::join(stats.value("files", std::vector<std::string>()), ", "),
+                     picture_in_words(stats), in_words(number(part(stats, "rays"), "total")),
+                     speed_in_words(stats));
+}
+
+std::string trace_line(const Json& stats) {
+  const Json& hits = part(stats, "hits");
+  return fmt::format("{}: {} of {} rays hit, {}", hits.value("file", ""), number(hits, "hits"),
+                     number(hits, "rays"), speed_in_words(stats));
+}
+
+std::string cold_start_line(const Json& stats) {
+  const Json& seconds = part(stats, "seconds");
+  double sum = 0;
+  std::vector<std::string> parts;
+  for (const auto& [key, words] : kStart) {
+    const double s = number(seconds, key);
+    if (s >= kWorthTelling) parts.push_back(fmt::format("{} {}", words, seconds_in_words(s)));
+    sum += s;
+  }
+  if (number(seconds, "compile") < kCold || parts.empty()) return {};
+  return fmt::format("a first start took {} of it ({}); the next finds the kernels built",
+                     seconds_in_words(sum), fmt::join(parts, ", "));
+}
+
+std::string missed_target_line(const Json& stats) {
+  const Json& samples = part(stats, "samples");
+  const bool missed = samples.value("mode", "") == "adaptive" && samples.value("stopped", "") != "target";
+  return missed ? samples_line(stats) : "";
+}
+
+void print_render_summary(const Json& stats, std::size_t nan_values, bool verbose) {
+  say(render_line(stats));
+  say_if_any(cold_start_line(stats));
+  if (verbose)
+    print_details(stats);
+  else
+    say_if_any(missed_target_line(stats));
   if (nan_values > 0) say(fmt::format("{} values of the picture are not numbers", nan_values));
 }
 
-void print_trace_summary(const Json& stats, const std::string& hits_file, std::size_t rays,
-                         std::size_t hits) {
-  say(fmt::format("{} of {} rays hit: {}", hits, rays, hits_file));
-  print_common(stats);
+void print_trace_summary(const Json& stats, bool verbose) {
+  say(trace_line(stats));
+  say_if_any(cold_start_line(stats));
+  if (verbose) print_details(stats);
 }
 
 }  // namespace kdray::cli

@@ -1,5 +1,6 @@
-// What    The lines at the end of a run, on stderr: what was made, where the time went, what was left
-//         out. Every figure comes from the run's own statistics (stats.h).
+// What    The end of a run in words, on stderr: what was made, and how fast, in one line; with --verbose also
+//         where the time went and what was left out. Every figure comes from the run's own statistics
+//         (stats.h).
 #pragma once
 
 #include <string>
@@ -7,6 +8,16 @@
 #include "cli/stats.h"
 
 namespace kdray::cli {
+
+// "balls.png: 1024x1024, 5.5 M rays in 130 ms, 42 Mrays/s; 450 ms in all"
+std::string render_line(const Json& stats);
+
+// "hits.npy: 3 of 5 rays hit, in 1 ms, 0.005 Mrays/s; 20 ms in all"
+std::string trace_line(const Json& stats);
+
+// "a first start took 8.2 s of it (compiling kernels 6.1 s, ...); the next finds the kernels built"; empty
+// when they were found.
+std::string cold_start_line(const Json& stats);
 
 // "load 1.2 ms, build 3.4 ms, ...; 5.6 s in all"
 std::string stages_line(const Json& stats);
@@ -22,7 +33,7 @@ std::string left_out_line(const Json& stats);
 // not adaptive.
 std::string samples_line(const Json& stats);
 
-void print_render_summary(const Json& stats, std::size_t nan_values);
-void print_trace_summary(const Json& stats, const std::string& hits_file, std::size_t rays, std::size_t hits);
+void print_render_summary(const Json& stats, std::size_t nan_values, bool verbose);
+void print_trace_summary(const Json& stats, bool verbose);
 
 }  // namespace kdray::cli

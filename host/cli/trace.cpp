@@ -2,27 +2,32 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/timer.h"
-#include "base/write_file.h"
 #include "cli/command.h"
 #include "cli/open_scene.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/run_files.h"
+#include "cli/scene_input.h"
 #include "cli/stats.h"
 #include "cli/summary.h"
 #include "kdray/kdray.h"
 #include "rays/npy.h"
+#include "scene/scene.h"
 
 namespace kdray::cli {
 
 namespace {
 
 struct TraceArgs {
-  std::string scene, rays, output, stats;
-  bool any_hit = false, quiet = false;
+  SceneInput scene;
+  std::string rays, output, stats;
+  bool any_hit = false, quiet = false, verbose = false;
   int repeat = 1;
   Traversal traversal = Traversal::automatic;
   Precision precision = Precision::float32;
@@ -31,38 +36,54 @@ struct TraceArgs {
   DeviceOptions device;
 };
 
-void check_files(const TraceArgs& o) {
-  check_writable(o.output);
-  if (!o.stats.empty()) check_text_output(o.stats);
-  check_apart("SCENE", o.scene, "--output", o.output);
-  check_apart("SCENE", o.scene, "--stats", o.stats);
-  check_apart("--rays", o.rays, "--output", o.output);
-  check_apart("--rays", o.rays, "--stats", o.stats);
-  check_apart("--output", o.output, "--stats", o.stats);
+void check_files(const TraceArgs& o, RunFiles& files) {
+  check_scene_input(o.scene);
+  files.read("SCENE", o.scene.file);
+  files.read("--rays", o.rays);
+  if (o.output == "-") check_stdout_takes_bytes("--output");
+  files.write("--output", o.output);
+  files.write("--stats", o.stats);
+}
+
+void write_hits(const std::string& output, std::span<const Hit> hits) {
+  if (output != "-") return rays::write_hits(output, hits);
+  print(rays::header_of_hits(hits.size()));
+  print({reinterpret_cast<const char*>(hits.data()), hits.size_bytes()});
+}
+
+std::vector<Hit> trace(Renderer& renderer, const TraceArgs& o, std::span<const Ray> rays) {
+  try {
+    return renderer.trace(rays, o.any_hit, o.repeat, o.traversal, o.precision);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input) throw;
+    throw input_error(o.rays, 0, error.what());  // the renderer doesn't know where the rays come from
+  }
 }
 
 int run(const TraceArgs& o) {
   const Timer total;
-  check_files(o);
+  RunFiles files;
+  check_files(o, files);
   Timer step;
   const std::vector<Ray> rays = rays::read_rays(o.rays);
   const double read_rays = step.seconds();
 
   TreeOptions tree = o.tree;
   tree.binary_form = takes_binary_form(o.traversal, o.precision);
-  OpenedScene scene(o.scene, tree, o.device, o.cache, o.quiet);
+  OpenedScene scene(o.scene, tree, o.device, o.cache, o.quiet,
+                    [&files](const scene::Scene& asked) { files.read_scene(asked.files); });
   Renderer renderer(scene.scene(), scene.device());
-  const std::vector<Hit> hits = renderer.trace(rays, o.any_hit, o.repeat, o.traversal, o.precision);
+  const std::vector<Hit> hits = trace(renderer, o, rays);
   OwnSeconds seconds;
   step.restart();
-  rays::write_hits(o.output, hits);
+  write_hits(o.output, hits);
   seconds.write = step.seconds();
   scene.keep();
   seconds.cache = scene.cache_seconds();
   seconds.load = scene.load_seconds();
   seconds.total = total.seconds();
 
-  Json stats = collect_stats("trace", o.scene, renderer.statistics(), seconds);
+  Json stats = collect_stats("trace", o.scene.file, renderer.statistics(), seconds);
   stats["cache"] = scene.cache();
   stats["seconds"]["read_rays"] = read_rays;
   const auto found = std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return std::isfinite(h.t); });
@@ -72,7 +93,7 @@ int run(const TraceArgs& o) {
                    {"any_hit", o.any_hit},
                    {"repeat", o.repeat}};
   if (!o.stats.empty()) write_stats(o.stats, stats);
-  if (!o.quiet) print_trace_summary(stats, o.output, rays.size(), static_cast<std::size_t>(found));
+  if (!o.quiet) print_trace_summary(stats, o.verbose);
   return 0;
 }
 
@@ -81,13 +102,15 @@ int run(const TraceArgs& o) {
 Command add_trace(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand("trace", "Trace rays from a NumPy file and write their hits");
   const auto o = std::make_shared<TraceArgs>();
-  app->add_option("SCENE", o->scene, "The scene, as for render")->required()->type_name("");
+  add_scene_input(*app, o->scene, "The scene, as for render");
   add_path(*app, "--rays", "The rays: float32, N x 8: origin, t_min, direction, t_max", o->rays)->required();
-  add_path(*app, "-o,--output", "The hits: a structured array of t, primitive, u, v", o->output)->required();
+  add_path(*app, "-o,--output", "The hits: a structured array of t, primitive, u, v; '-': standard output",
+           o->output)
+      ->required();
   app->add_flag("--any-hit", o->any_hit, "Only whether something is hit, not what is hit first");
   add_int(*app, "--repeat", "Trace that often and report the median time (default 1)", 1, 1000000, o->repeat);
   add_path(*app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o->stats);
-  app->add_flag("-q,--quiet", o->quiet, "Say nothing unless something is wrong");
+  add_loudness(*app, o->quiet, o->verbose);
   add_device_options(*app, o->device, o->traversal, o->precision);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);

@@ -15,16 +15,17 @@
 #include <string>
 #include <vector>
 
-#include "base/write_file.h"
 #include "cli/command.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/parse.h"
 #include "cli/progress.h"
+#include "cli/run_files.h"
 #include "cli/stats.h"
 #include "cli/tune_lab.h"
 #include "cli/tune_report.h"
+#include "scene/scene.h"
 #include "tune/database.h"
 #include "tune/search.h"
 
@@ -122,26 +123,32 @@ std::vector<Checked> check(const TuneArgs& o, std::vector<TuneScenes>& groups, c
 }
 
 // Before a search that would be for nothing.
-void check_outputs(const TuneArgs& o) {
+void check_outputs(const TuneArgs& o, RunFiles& files) {
+  if (o.file == "-")
+    throw Error(ErrorCode::usage, "--output '-': tunings are added to those of a file; name one");
+  for (const std::string& scene : o.scenes) files.read("SCENE", scene);
+  for (const std::string& file : o.merge) files.read("--merge", file);
   const std::filesystem::path folder = std::filesystem::path(o.file).parent_path();
-  std::error_code error;  // check_writable tells
+  std::error_code error;  // the check of the file tells
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  check_writable(o.file);
-  if (!o.stats.empty()) check_text_output(o.stats);
+  files.write("--output", o.file);
+  files.write("--stats", o.stats);
 }
 
 int run(TuneArgs& o) {
   if (o.file.empty()) o.file = tune::default_file().string();
   if (o.file.empty())
     throw Error(ErrorCode::usage, "there is no home folder to keep tunings in; name a file with --output");
-  check_outputs(o);
+  RunFiles files;
+  check_outputs(o, files);
   if (!o.merge.empty()) return merge_files(o);
   o.device.tunings.clear();  // the start is what kdray ships with
   o.device.programs = default_program_folder();
   const bool built_in = o.scenes.empty();
   TuneScenes scenes;
   for (const std::string& name : built_in ? kBuiltIn : o.scenes)
-    scenes.push_back(std::make_unique<TuneScene>(name, o.device, o.render));
+    scenes.push_back(std::make_unique<TuneScene>(
+        name, o.device, o.render, [&](const scene::Scene& loaded) { files.read_scene(loaded.files); }));
   std::vector<TuneScenes> groups;
   if (built_in)
     groups.push_back(std::move(scenes));

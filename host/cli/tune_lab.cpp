@@ -9,6 +9,7 @@
 
 #include "base/timer.h"
 #include "generate/built_in.h"
+#include "scene/scene.h"
 
 namespace kdray::cli {
 
@@ -27,12 +28,19 @@ std::string difference(const Picture& picture, const Picture& reference) {
   return "";
 }
 
+Scene load_checked(const std::string& name, const std::function<void(const scene::Scene&)>& check) {
+  scene::Scene scene = generate::load_scene(name);
+  check(scene);
+  return Scene(std::move(scene));
+}
+
 }  // namespace
 
-TuneScene::TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render)
+TuneScene::TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render,
+                     const std::function<void(const scene::Scene&)>& check)
     : name_(name),
       options_(render),
-      renderer_(PreparedScene(Scene(generate::load_scene(name)),
+      renderer_(PreparedScene(load_checked(name, check),
                               {.binary_form = takes_binary_form(render.traversal, render.precision)}),
                 device),
       reference_(TuneScene::render({})) {}

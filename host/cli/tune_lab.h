@@ -17,8 +17,9 @@ namespace kdray::cli {
 
 class TuneScene {
  public:
-  // A file, or a scene that is built in (generate/built_in.h).
-  TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render);
+  // A file, or a scene that is built in (generate/built_in.h). `check` sees it before anything is done with it.
+  TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render,
+            const std::function<void(const scene::Scene&)>& check);
 
   const std::string& name() const { return name_; }
   tune::Key key() const;  // of the scene, its device and schedule

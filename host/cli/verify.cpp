@@ -17,10 +17,11 @@
 #include "cli/output.h"
 #include "cli/parse.h"
 #include "cli/progress.h"
+#include "cli/run_files.h"
+#include "cli/scene_input.h"
 #include "cli/stats.h"
 #include "cli/verify_report.h"
 #include "film/write.h"
-#include "scene/load.h"
 #include "verify/picture.h"
 
 namespace kdray::cli {
@@ -28,19 +29,20 @@ namespace kdray::cli {
 namespace {
 
 struct VerifyArgs {
-  std::string scene, output, stats;
+  SceneInput scene;
+  std::string output, stats;
+  film::WriteOptions write;
   int width = 1280, height = 720, rays = 1 << 18;
   bool quiet = false;
   TreeOptions tree;
   DeviceOptions device;
 };
 
-void check_options(const VerifyArgs& o) {
-  if (!o.output.empty()) film::check_picture_name(o.output);
-  if (!o.stats.empty()) check_text_output(o.stats);
-  check_apart("SCENE", o.scene, "--output", o.output);
-  check_apart("SCENE", o.scene, "--stats", o.stats);
-  check_apart("--output", o.output, "--stats", o.stats);
+void check_options(const VerifyArgs& o, RunFiles& files) {
+  check_scene_input(o.scene);
+  files.read("SCENE", o.scene.file);
+  files.write_picture("--output", o.output, {}, o.write);
+  files.write("--stats", o.stats);
   if (o.width < verify::kLeastWidth || o.height < verify::kLeastHeight)
     throw Error(ErrorCode::usage, fmt::format("--size {}x{}: the picture and its legend need {}x{} at least",
                                               o.width, o.height, verify::kLeastWidth, verify::kLeastHeight));
@@ -48,7 +50,7 @@ void check_options(const VerifyArgs& o) {
 
 Json stats_of(const VerifyArgs& o, const verify::Findings& found, double load, double total) {
   const verify::Seconds& s = found.seconds;
-  Json stats = {{"kdray", KDRAY_VERSION}, {"command", "verify"}, {"scene", {{"file", o.scene}}}};
+  Json stats = {{"kdray", KDRAY_VERSION}, {"command", "verify"}, {"scene", {{"file", o.scene.file}}}};
   primitives::for_each_kind(
       [&](auto kind) { stats["scene"][kind.kNames] = decltype(kind)::of(found.counts); });
   stats.update(findings_as_json(found));
@@ -73,10 +75,12 @@ void tell(const VerifyArgs& o, const verify::Findings& found, double load, doubl
 
 int run(const VerifyArgs& o) {
   const Timer total;
-  check_options(o);
+  RunFiles files;
+  check_options(o, files);
   open_device(o.device);
   Timer step;
-  const scene::Scene scene = scene::load(o.scene);
+  const scene::Scene scene = load_model(o.scene);
+  files.read_scene(scene.files);
   const double load = step.seconds();
   if (!o.quiet)
     for (const std::string& warning : scene.warnings) say(warning);
@@ -88,10 +92,10 @@ int run(const VerifyArgs& o) {
   const verify::Findings found = verify::verify(scene, options);
   progress.clear();
 
-  if (!o.output.empty()) film::write_picture(o.output, found.picture, {}, {});
+  if (!o.output.empty()) put_picture(o.output, found.picture, {}, o.write);
   if (!o.stats.empty()) write_stats(o.stats, stats_of(o, found, load, total.seconds()));
   if (!o.quiet) tell(o, found, load, total.seconds());
-  if (!o.quiet || !found.kdray_is_sound()) say(o.scene + ": " + verdict(found));
+  if (!o.quiet || !found.kdray_is_sound()) say(scene.name + ": " + verdict(found));
   return found.kdray_is_sound() ? 0 : static_cast<int>(ErrorCode::input);
 }
 
@@ -101,8 +105,10 @@ Command add_verify(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand(
       "verify", "Check a scene's mesh, and that kdray traces it without leaks and self-hits");
   const auto o = std::make_shared<VerifyArgs>();
-  app->add_option("SCENE", o->scene, "The scene, as for render")->required()->type_name("");
-  add_path(*app, "-o,--output", "A picture of where the findings are, .png or .exr", o->output);
+  add_scene_input(*app, o->scene, "The scene, as for render");
+  add_path(*app, "-o,--output", "A picture of where the findings are, .png or .exr; '-': standard output",
+           o->output);
+  add_picture_format(*app, o->write.format);
   add_size(*app, "Pixels of that picture (default 1280x720)", 16384, 1 << 26, o->width, o->height);
   add_int(*app, "--rays", "Rays to send, besides those that leave their hits (default 262144)", 1, 2000000000,
           o->rays);

@@ -27,8 +27,33 @@ double difference(float a, float b) {
   return std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
 }
 
-double largest_difference(const vec3& a, const vec3& b) {
-  return std::max({difference(a.x, b.x), difference(a.y, b.y), difference(a.z, b.z)});
+// The differences of a pixel: of red, green and blue, and of alpha where one of the pictures has it.
+struct PixelDifference {
+  double of[4] = {};
+  double largest() const { return std::max({of[0], of[1], of[2], of[3]}); }
+};
+
+float alpha_of(const Image& image, std::size_t i) {
+  return image.alpha.empty() ? 1.0f : image.alpha[i];
+}
+
+PixelDifference difference(const Image& a, const Image& b, std::size_t i) {
+  const vec3 &p = a.pixels[i], &q = b.pixels[i];
+  return {{difference(p.x, q.x), difference(p.y, q.y), difference(p.z, q.z),
+           difference(alpha_of(a, i), alpha_of(b, i))}};
+}
+
+Image over_white(const Image& image) {
+  Image over = image;
+  for (std::size_t i = 0; i < over.pixels.size(); ++i) over.pixels[i] += vec3(1 - alpha_of(image, i));
+  return over;
+}
+
+// With alpha: over black or over white, whichever shows more.
+double flip_of(const Image& a, const Image& b) {
+  const double over_black = mean_flip(a, b);
+  if (a.alpha.empty() && b.alpha.empty()) return over_black;
+  return std::max(over_black, mean_flip(over_white(a), over_white(b)));
 }
 
 }  // namespace
@@ -40,20 +65,19 @@ Difference compare(const Image& a, const Image& b) {
   Difference result;
   double squares = 0, sum = 0;
   std::size_t n_differing = 0;
+  const int n_values = a.alpha.empty() && b.alpha.empty() ? 3 : 4;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      const double d = difference(a.pixels[i][c], b.pixels[i][c]);
-      squares += d * d, sum += d;
-    }
-    const double largest = largest_difference(a.pixels[i], b.pixels[i]);
+    const PixelDifference d = difference(a, b, i);
+    for (int c = 0; c < n_values; ++c) squares += d.of[c] * d.of[c], sum += d.of[c];
+    const double largest = d.largest();
     result.max = std::max(result.max, largest);
     n_differing += largest > kStep;
   }
   const double n_pixels = std::max<double>(1, static_cast<double>(a.pixels.size()));
-  result.rmse = std::sqrt(squares / (3 * n_pixels));
-  result.mean_absolute = sum / (3 * n_pixels);
+  result.rmse = std::sqrt(squares / (n_values * n_pixels));
+  result.mean_absolute = sum / (n_values * n_pixels);
   result.differing_share = static_cast<double>(n_differing) / n_pixels;
-  result.flip = mean_flip(a, b);
+  result.flip = flip_of(a, b);
   return result;
 }
 
@@ -62,7 +86,7 @@ Image difference_image(const Image& a, const Image& b) {
   std::vector<double> differences(a.pixels.size());
   double scale = 0;
   for (std::size_t i = 0; i < differences.size(); ++i) {
-    differences[i] = largest_difference(a.pixels[i], b.pixels[i]);
+    differences[i] = difference(a, b, i).largest();
     if (std::isfinite(differences[i])) scale = std::max(scale, differences[i]);
   }
   Image image{a.width, a.height, {}};

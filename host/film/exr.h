@@ -10,11 +10,12 @@
 
 namespace kdray::film {
 
-// Colour goes out as R, G and B, `channels` under the names that they have in an EXR (exr_name).
+// Colour goes out as R, G and B, its alpha as A where it has one, `channels` under the names that they have
+// in an EXR (exr_name).
 std::string encode_exr(const Image& image, std::span<const Channel> channels);
 
-// Reads R, G and B, or grey from Y alone. The picture is the file's data window; other channels are passed
-// over.
+// Reads R, G and B, or grey from Y alone, and A as alpha. The picture is the file's data window; other
+// channels are passed over.
 Image decode_exr(std::string_view bytes, const std::string& file);
 
 // "depth" becomes "Z", "normal.x" becomes "N.X"; others stay as they are.

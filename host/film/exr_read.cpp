@@ -43,14 +43,15 @@ class MemoryStream : public Imf::IStream {
 // The names of the channels that hold red, green and blue.
 struct ColorNames {
   const char* name[3];
+  bool alpha;
 };
 
 ColorNames find_color(const Imf::ChannelList& channels, const std::string& file) {
   const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
-  if (has("R") && has("G") && has("B")) return {{"R", "G", "B"}};
+  if (has("R") && has("G") && has("B")) return {{"R", "G", "B"}, has("A")};
   if (has("RY") || has("BY"))
     throw input_error(file, 0, "holds luminance and chroma", "convert it to an EXR with R, G and B");
-  if (has("Y")) return {{"Y", "Y", "Y"}};
+  if (has("Y")) return {{"Y", "Y", "Y"}, has("A")};
   std::string found;
   for (auto c = channels.begin(); c != channels.end() && found.size() < 60; ++c)
     found += std::string(found.empty() ? "" : ", ") + c.name();
@@ -72,17 +73,21 @@ void append_rows(Imf::InputFile& input, const ColorNames& names, int left, int f
   const auto width = static_cast<std::size_t>(image.width);
   const std::size_t n_before = image.pixels.size();
   image.pixels.resize(n_before + width * static_cast<std::size_t>(last - first), vec3(0));
-  // OpenEXR wants the address that pixel (0, 0) would have. It may lie outside, so it is reckoned as a
-  // number.
-  const auto origin =
-      reinterpret_cast<std::intptr_t>(image.pixels.data() + n_before) -
-      (static_cast<std::intptr_t>(first) * image.width + left) * static_cast<std::intptr_t>(sizeof(vec3));
   Imf::FrameBuffer frame;
+  const auto insert = [&](const char* name, float* first_value, std::size_t step) {
+    // OpenEXR wants the address that pixel (0, 0) would have. It may lie outside, so it is reckoned as a
+    // number.
+    const auto origin =
+        reinterpret_cast<std::intptr_t>(first_value) -
+        (static_cast<std::intptr_t>(first) * image.width + left) * static_cast<std::intptr_t>(step);
+    frame.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(origin), step, step * width));
+  };
   const bool grey = std::strcmp(names.name[0], names.name[1]) == 0;
-  for (int c = 0; c < (grey ? 1 : 3); ++c)
-    frame.insert(names.name[c],
-                 Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(origin + c * std::intptr_t{sizeof(float)}),
-                            sizeof(vec3), sizeof(vec3) * width));
+  for (int c = 0; c < (grey ? 1 : 3); ++c) insert(names.name[c], &image.pixels[n_before].x + c, sizeof(vec3));
+  if (names.alpha) {
+    image.alpha.resize(image.pixels.size(), 0);
+    insert("A", &image.alpha[n_before], sizeof(float));
+  }
   input.setFrameBuffer(frame);
   input.readPixels(first, last - 1);
   if (grey)

@@ -41,6 +41,7 @@ std::string encode_exr(const Image& image, std::span<const Channel> channels) {
   };
   const float* rgb = &image.pixels.data()->x;
   add("R", rgb, 3), add("G", rgb + 1, 3), add("B", rgb + 2, 3);
+  if (!image.alpha.empty()) add("A", image.alpha.data(), 1);
   for (const Channel& channel : channels) add(exr_name(channel.name), channel.values.data(), 1);
 
   Imf::StdOSStream stream;

@@ -1,5 +1,5 @@
-// What    Pictures in memory: linear RGB float, row by row from the top left; and named extra channels
-//         (AOVs).
+// What    Pictures in memory: linear RGB float, row by row from the top left, with alpha where a picture has
+//         it; and named extra channels (AOVs).
 #pragma once
 
 #include <string>
@@ -12,6 +12,8 @@ namespace kdray::film {
 struct Image {
   int width = 0, height = 0;
   std::vector<vec3> pixels;  // width * height, row 0 is the top
+  // What share of each pixel is covered, by which `pixels` are multiplied already; empty: all of each.
+  std::vector<float> alpha = {};
 };
 
 // One float channel beside the colour, as wide and high as the picture: "depth" (multiples of the unit-length

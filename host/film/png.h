@@ -14,7 +14,7 @@ namespace kdray::film {
 
 struct PngPixels {
   int width = 0, height = 0;
-  int channels = 3;  // 1: grey, 3: RGB
+  int channels = 3;  // 1: grey, 3: RGB, 4: RGB and alpha, by which RGB is not multiplied
   int bits = 8;      // 8 or 16
   std::vector<std::uint16_t> samples;
 };
@@ -30,7 +30,7 @@ struct PngMeta {
 
 std::string encode_png(const PngPixels& picture, const PngMeta& meta);
 
-// Palette, grey below 8 bits and grey itself become RGB; alpha is left out; 16 bits stay 16.
+// Palette, grey below 8 bits and grey itself become RGB; alpha stays; 16 bits stay 16.
 PngPixels decode_png(std::string_view bytes, const std::string& file);
 
 }  // namespace kdray::film

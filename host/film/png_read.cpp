@@ -34,13 +34,13 @@ struct Reader {
   ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-// Reads the header and sets the transformations; the rows that follow are RGB with 8 or 16 bits.
+// Reads the header and sets the transformations; the rows that follow are RGB, or RGB and alpha, with 8 or 16
+// bits.
 bool start(png_structp png, png_infop info, Source& source) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_read_fn(png, &source, take);
   png_read_info(png, info);
   png_set_expand(png);
-  png_set_strip_alpha(png);
   png_set_gray_to_rgb(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
@@ -65,7 +65,8 @@ PngPixels unpack(const Reader& reader, const std::vector<png_byte>& raw) {
   picture.width = static_cast<int>(png_get_image_width(reader.png, reader.info));
   picture.height = static_cast<int>(png_get_image_height(reader.png, reader.info));
   picture.bits = png_get_bit_depth(reader.png, reader.info);
-  picture.samples.resize(static_cast<std::size_t>(picture.width) * picture.height * 3);
+  picture.channels = png_get_channels(reader.png, reader.info);
+  picture.samples.resize(static_cast<std::size_t>(picture.width) * picture.height * picture.channels);
   for (std::size_t i = 0; i < picture.samples.size(); ++i)
     picture.samples[i] =
         picture.bits == 16 ? static_cast<std::uint16_t>(raw[2 * i] << 8 | raw[2 * i + 1]) : raw[i];

@@ -51,6 +51,11 @@ void pack_row(const std::uint16_t* samples, std::size_t n_samples, int bits, png
   }
 }
 
+int color_type(int channels) {
+  if (channels == 4) return PNG_COLOR_TYPE_RGB_ALPHA;
+  return channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB;
+}
+
 bool encode_rows(png_structp png, png_infop info, const PngPixels& picture, const PngMeta& meta, Sink& sink,
                  png_bytep row) {
   if (setjmp(png_jmpbuf(png))) return false;
@@ -60,8 +65,8 @@ bool encode_rows(png_structp png, png_infop info, const PngPixels& picture, cons
   png_set_compression_level(png, 3);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
   png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height),
-               picture.bits, picture.channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+               picture.bits, color_type(picture.channels), PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
   set_color(png, info, meta);
   if (!meta.comment.empty()) set_comment(png, info, meta.comment.c_str());
   png_write_info(png, info);

@@ -41,9 +41,17 @@ Image to_linear(const PngPixels& png, const Transfer& transfer) {
     linear[static_cast<std::size_t>(code)] =
         static_cast<float>(decode(transfer, static_cast<double>(code) / maximum));
   Image image{png.width, png.height, {}};
-  image.pixels.reserve(png.samples.size() / 3);
-  for (std::size_t i = 0; i + 2 < png.samples.size(); i += 3)
+  const auto step = static_cast<std::size_t>(png.channels);
+  image.pixels.reserve(png.samples.size() / step);
+  for (std::size_t i = 0; i + 2 < png.samples.size(); i += step)
     image.pixels.emplace_back(linear[png.samples[i]], linear[png.samples[i + 1]], linear[png.samples[i + 2]]);
+  if (png.channels < 4) return image;
+  image.alpha.reserve(image.pixels.size());
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const float alpha = static_cast<float>(png.samples[4 * i + 3]) / static_cast<float>(maximum);
+    image.alpha.push_back(alpha);
+    image.pixels[i] *= alpha;
+  }
   return image;
 }
 

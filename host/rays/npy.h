@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "kdray/kdray.h"
@@ -15,5 +16,6 @@ namespace kdray::rays {
 
 std::vector<Ray> read_rays(const std::filesystem::path& file);
 void write_hits(const std::filesystem::path& file, std::span<const Hit> hits);  // whole or not at all
+std::string header_of_hits(std::size_t n_hits);  // what comes before the hits' own bytes
 
 }  // namespace kdray::rays

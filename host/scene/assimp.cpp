@@ -18,6 +18,7 @@
 #include <cmath>
 #include <exception>
 
+#include "scene/files_read.h"
 #include "scene/mesh_material.h"
 #include "scene/read_file.h"
 #include "scene/settle_normals.h"
@@ -52,6 +53,18 @@ Material read_material(const aiMaterial& from) {
   m.transmit = vec3(1 - opacity);
   m.ambient = 0.1f * m.diffuse;
   return m;
+}
+
+// Names that begin with '*' are of pictures inside the file.
+void note_textures(const aiMaterial& from, const std::filesystem::path& file) {
+  for (int type = aiTextureType_NONE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
+    const auto kind = static_cast<aiTextureType>(type);
+    for (unsigned i = 0; i < from.GetTextureCount(kind); ++i) {
+      aiString name;
+      if (from.GetTexture(kind, i, &name) == AI_SUCCESS && name.C_Str()[0] != '*')
+        FilesRead::add_named(file, name.C_Str());
+    }
+  }
 }
 
 dvec3 to_vector(const aiVector3D& v) {
@@ -101,8 +114,10 @@ Scene read_assimp(std::string_view text, const std::filesystem::path& path) {
   }
   if (!read) throw input_error(file, 0, std::string("assimp: ") + printable(importer.GetErrorString()));
   Scene scene;
-  for (unsigned i = 0; i < read->mNumMaterials; ++i)
+  for (unsigned i = 0; i < read->mNumMaterials; ++i) {
     scene.materials.push_back(read_material(*read->mMaterials[i]));
+    note_textures(*read->mMaterials[i], path);
+  }
   if (scene.materials.empty()) scene.materials.push_back(mesh_material());
   for (unsigned i = 0; i < read->mNumMeshes; ++i) add_mesh(*read->mMeshes[i], file, scene);
   if (scene.triangles.empty()) scene.warnings.push_back(file + ": no faces");

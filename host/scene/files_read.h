@@ -1,5 +1,7 @@
-// What    Which files a scene was made of: all that were read while it was loaded, with a hash of each, and
-//         those that were looked for in vain, whose appearing would change the scene.
+// What    Which files a scene was made of: all that were read while it was loaded, with a hash of each; those
+//         that were looked for in vain, whose appearing would change the scene; and those that it only names
+//         (textures, which kdray doesn't read). None of them may be overwritten by a run that loads the
+//         scene.
 // Shape   While a FilesRead lives, what its thread reads goes into it; they may be nested, and then the
 //         innermost records.
 #pragma once
@@ -17,6 +19,7 @@ struct FileRead {
   std::filesystem::path path;  // as it was opened
   // Of the file's own bytes, packed ones as they are; none: there was no such file.
   std::optional<Hash> content;
+  bool only_named = false;  // never looked for: the scene is the same with and without it
   bool operator==(const FileRead&) const = default;
 };
 
@@ -32,6 +35,9 @@ class FilesRead {
   // Called by whoever reads files, recorded or not.
   static void add(const std::filesystem::path& path, std::string_view bytes);
   static void add_missing(const std::filesystem::path& path);
+  // `name` as it stands in the file `scene`. Exporters write backslashes and the paths of their own machines:
+  // then it is the file of that name beside the scene, too.
+  static void add_named(const std::filesystem::path& scene, std::string_view name);
 
  private:
   FilesRead* outer_;

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "scene/files_read.h"
 #include "scene/gltf_uri.h"
 #include "scene/read_file.h"
 #include "scene/text_scanner.h"
@@ -51,6 +52,22 @@ Document::Document(std::string_view text, const std::filesystem::path& path)
   json_ = parse_json(json_text_, file_);
   check_asset();
   check_extensions();
+  note_files();
+}
+
+// Of all that the file names, in extensions too: pictures are never read, buffers only when they are used.
+void Document::note_files() const {
+  std::vector<const nlohmann::json*> open = {&json_};
+  while (!open.empty()) {
+    const nlohmann::json& value = *open.back();
+    open.pop_back();
+    for (const auto& [key, member] : value.items()) {
+      if (member.is_structured()) open.push_back(&member);
+      if (key != "uri" || !value.is_object() || !member.is_string()) continue;
+      const std::string& uri = member.get_ref<const std::string&>();
+      if (!uri.starts_with("data:")) FilesRead::add_named(path_, percent_decoded(uri));
+    }
+  }
 }
 
 void Document::split_glb() {

@@ -42,6 +42,7 @@ class Document {
   void split_glb();
   void check_asset();
   void check_extensions();
+  void note_files() const;
   std::string_view buffer_bytes(const JsonNode& index);
   std::string read_buffer(const JsonNode& buffer, const std::string& uri) const;
 

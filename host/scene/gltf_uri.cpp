@@ -44,6 +44,16 @@ int hex_digit(char c) {
   return -1;
 }
 
+}  // namespace
+
+std::optional<std::string> decode_data_uri(std::string_view uri) {
+  constexpr std::string_view kMark = ";base64,";
+  // The mark is in the short head of the URI; the data may be gigabytes.
+  const std::size_t mark = uri.substr(0, 256).find(kMark);
+  if (!uri.starts_with("data:") || mark == std::string_view::npos) return std::nullopt;
+  return decode_base64(uri.substr(mark + kMark.size()));
+}
+
 std::string percent_decoded(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -57,16 +67,6 @@ std::string percent_decoded(std::string_view text) {
     }
   }
   return out;
-}
-
-}  // namespace
-
-std::optional<std::string> decode_data_uri(std::string_view uri) {
-  constexpr std::string_view kMark = ";base64,";
-  // The mark is in the short head of the URI; the data may be gigabytes.
-  const std::size_t mark = uri.substr(0, 256).find(kMark);
-  if (!uri.starts_with("data:") || mark == std::string_view::npos) return std::nullopt;
-  return decode_base64(uri.substr(mark + kMark.size()));
 }
 
 std::optional<std::filesystem::path> relative_path_of(std::string_view uri) {

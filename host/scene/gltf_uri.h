@@ -11,6 +11,9 @@ namespace kdray::scene::gltf {
 // The bytes of "data:[type];base64,...", or nothing when it is not one.
 std::optional<std::string> decode_data_uri(std::string_view uri);
 
+// With each "%20" as the character that it stands for.
+std::string percent_decoded(std::string_view text);
+
 // The path a relative URI names, percent-decoded; nothing for absolute paths, other schemes (http:), and what
 // leads out of the folder.
 std::optional<std::filesystem::path> relative_path_of(std::string_view uri);

@@ -101,32 +101,7 @@ bool read_vector(const json& value, dvec3& out) {
   return is_finite(out);
 }
 
-// Levenshtein's edit distance.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, change}));
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
-
-std::string did_you_mean(std::string_view word, std::span<const std::string_view> names) {
-  if (word.size() > 64) return "";
-  std::string_view best;
-  std::size_t least = 1 + (word.size() < 3 ? 1 : std::max<std::size_t>(word.size() / 2, 2));
-  for (const std::string_view name : names) {
-    const std::size_t d = distance(word, name);
-    if (d < least) least = d, best = name;
-  }
-  return best.empty() ? "" : "did you mean '" + std::string(best) + "'?";
-}
 
 json parse_json(std::string_view text, const std::string& file) {
   try {

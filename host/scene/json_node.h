@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/did_you_mean.h"
 #include "base/error.h"
 #include "base/raw_vector.h"
 #include "math/vec.h"
@@ -66,8 +67,5 @@ class JsonNode {
   const std::string* file_;
   std::string path_;
 };
-
-// "did you mean 'radius'?" for the name nearest to `word`, or nothing when none is near.
-std::string did_you_mean(std::string_view word, std::span<const std::string_view> names);
 
 }  // namespace kdray::scene

@@ -69,19 +69,34 @@ void check_ending(const std::filesystem::path& file, const std::string& ending) 
 
 }  // namespace
 
-Scene import_scene(const std::filesystem::path& file) {
-  const std::string ending = format_of(file);
-  check_ending(file, ending);
-  const std::string text = read_file(file);
-  Scene scene = read_by_ending(text, file, ending);
+namespace {
+
+Scene import_text(std::string_view text, const std::filesystem::path& file) {
+  Scene scene = read_by_ending(text, file, format_of(file));
   scene.name = file.string();
   check_scene(scene);
   return scene;
 }
 
+}  // namespace
+
+Scene import_scene(const std::filesystem::path& file) {
+  check_ending(file, format_of(file));
+  return import_text(read_file(file), file);
+}
+
 Scene load(const std::filesystem::path& file) {
   FilesRead files;
   Scene scene = import_scene(file);
+  frame_scene(scene);
+  scene.files = files.take();
+  return scene;
+}
+
+Scene load_from_memory(std::string bytes, const std::filesystem::path& name) {
+  FilesRead files;
+  check_ending(name, format_of(name));
+  Scene scene = import_text(unpacked(std::move(bytes), name), name);
   frame_scene(scene);
   scene.files = files.take();
   return scene;

@@ -6,11 +6,16 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "scene/scene.h"
 
 namespace kdray::scene {
 
 Scene load(const std::filesystem::path& file);
+
+// The same of a file's content. Its `name` tells the format, and the folder of the files that the scene
+// names.
+Scene load_from_memory(std::string bytes, const std::filesystem::path& name);
 
 }  // namespace kdray::scene

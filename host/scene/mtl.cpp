@@ -1,7 +1,9 @@
 #include "scene/mtl.h"
 
 #include <algorithm>
+#include <array>
 
+#include "scene/files_read.h"
 #include "scene/line_scanner.h"
 #include "scene/text_scanner.h"
 
@@ -41,6 +43,22 @@ class MtlReader {
     if (keyword == "Tr") m.tr = std::clamp(number(keyword), 0.0f, 1.0f);
     if (keyword == "illum") m.illum = static_cast<int>(std::clamp(number(keyword), 0.0f, 10.0f));
     if (keyword == "map_Kd") m.has_picture = true;
+    if (names_picture(keyword)) note_picture(in_.rest());
+  }
+
+  static bool names_picture(std::string_view keyword) {
+    static constexpr std::array<std::string_view, 5> kOthers = {"bump", "disp", "decal", "refl", "norm"};
+    return keyword.starts_with("map_") || std::ranges::find(kOthers, keyword) != kOthers.end();
+  }
+
+  // Options come before the name, and the name may hold spaces: it is the line from one of its words on.
+  void note_picture(std::string_view rest) {
+    while (!rest.empty()) {
+      FilesRead::add_named(in_.file(), rest);
+      const std::size_t gap = rest.find_first_of(" \t");
+      if (gap == std::string_view::npos) return;
+      rest.remove_prefix(std::min(rest.find_first_not_of(" \t", gap), rest.size()));
+    }
   }
 
   // Brought into float's range, which is all that materials have.

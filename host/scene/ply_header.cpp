@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "scene/files_read.h"
 #include "scene/text_scanner.h"
 
 namespace kdray::scene::ply {
@@ -56,12 +57,19 @@ class HeaderReader {
 
  private:
   void read_line(std::string_view keyword) {
-    if (keyword.empty() || keyword == "comment" || keyword == "obj_info") return;
+    if (keyword == "comment") return read_comment();
+    if (keyword.empty() || keyword == "obj_info") return;
     if (keyword == "format") return read_format();
     if (keyword == "element") return read_element();
     if (keyword == "property") return read_property();
     throw error("expected format, element, property, comment or end_header, found '" + printable(keyword) +
                 "'");
+  }
+
+  // MeshLab's way to name a texture.
+  void read_comment() {
+    if (word() == "TextureFile")
+      FilesRead::add_named(file_, rest_.substr(std::min(rest_.find_first_not_of(" \t"), rest_.size())));
   }
 
   void read_format() {

@@ -174,6 +174,10 @@ std::string unxz(const std::string& packed, const std::string& file, std::size_t
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) {
   std::string bytes = read_packed(file, max_bytes);
   FilesRead::add(file, bytes);
+  return unpacked(std::move(bytes), file, max_bytes);
+}
+
+std::string unpacked(std::string bytes, const std::filesystem::path& file, std::size_t max_bytes) {
   const std::string ending = ending_of(file);
   if (ending == ".gz") return gunzip(bytes, file.string(), max_bytes);
   if (ending == ".xz") return unxz(bytes, file.string(), max_bytes);

@@ -55,6 +55,18 @@ TEST(CompareCommand, TheLimitDecidesTheExitCode) {
   EXPECT_TRUE(fails_with(kdray({"compare", a, b, "--max-rmse", "nan"}), 2, "--max-rmse"));
 }
 
+TEST(CompareCommand, AlphaIsTakenIntoAccount) {
+  const Folder folder;
+  const fs::path opaque = picture(folder, "a.png", 0);
+  film::Image clear = film::read_picture(opaque, {});
+  clear.alpha.assign(100, 1.0f);
+  clear.alpha[7] = 0, clear.pixels[7] = vec3(0);
+  film::write_picture(folder / "b.png", clear, {}, {});
+  const Json d = Json::parse(kdray({"compare", opaque, folder / "b.png", "--json"}).out);
+  EXPECT_EQ(d["max"], 1.0);
+  EXPECT_EQ(d["differing_share"], 0.01);
+}
+
 TEST(CompareCommand, GammaChangesHowAPngIsRead) {
   const Folder folder;
   film::Image image{2, 1, {vec3(0), vec3(1)}};

@@ -64,6 +64,8 @@ TEST(GenerateCommand, Refusals) {
   EXPECT_TRUE(fails_with(kdray({"generate", "balls", "--size", "two"}), 2, "--size"));
   EXPECT_TRUE(fails_with(kdray({"generate", "balls", "-o", folder / "no/a.nff"}), 1, "no"));
   EXPECT_TRUE(fails_with(kdray({"generate", "balls", "-o", folder / "a.nff.gz"}), 1, ".gz"));
+  EXPECT_TRUE(fails_with(kdray({"generate", "balls", "-o", folder / "a.png"}), 1, "end the name in .nff"));
+  EXPECT_TRUE(fails_with(kdray({"generate", "balls", "-o", folder / "a"}), 1, "end the name in .nff"));
   EXPECT_EQ(folder.n_entries(), 0u);
 }
 

@@ -52,8 +52,8 @@ class Capture {
     const rlimit address_space{limit, limit};
     ::setrlimit(RLIMIT_AS, &address_space);
   }
-  const int nothing = ::open("/dev/null", O_RDONLY);
-  ::dup2(nothing, 0), ::dup2(out, 1), ::dup2(err, 2);
+  const int in = ::open(options.stdin_file.empty() ? "/dev/null" : options.stdin_file.c_str(), O_RDONLY);
+  ::dup2(in, 0), ::dup2(out, 1), ::dup2(err, 2);
   std::vector<char*> argv{const_cast<char*>("kdray")};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);

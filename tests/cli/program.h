@@ -25,6 +25,7 @@ struct RunOptions {
   std::filesystem::path program = {};                   // empty: the built kdray
   std::filesystem::path folder = {};                    // to run in; empty: where the test runs
   std::map<std::string, std::string> environment = {};  // set on top of the test's own
+  std::filesystem::path stdin_file = {};                // empty: nothing
   std::filesystem::path stdout_file = {};               // instead of Outcome::out
   double limit_seconds = 60;
   std::size_t limit_address_space = 0;  // bytes; 0: none

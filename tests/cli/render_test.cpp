@@ -54,6 +54,22 @@ TEST(RenderCommand, TheSameOptionsInBothFormatsGiveTheSamePicture) {
   EXPECT_NE(exr.pixels.back().z, 0.4f);
 }
 
+TEST(RenderCommand, TheSummaryIsOneLineAndTheRestIsToldWhenAskedFor) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.png"})));  // kernels are built from here on
+  const auto lines = [&](const std::string& option) {
+    const Outcome run = kdray({"render", scene, "-o", folder / "a.png", option});
+    EXPECT_TRUE(succeeds(run));
+    const std::string err = without_notice(run.err);
+    return std::count(err.begin(), err.end(), '\n') - (err.find("a first start") != std::string::npos);
+  };
+  EXPECT_EQ(lines("--depth=3"), 1);
+  EXPECT_GE(lines("--verbose"), 4);
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "-v", "-q"}), 2, "--quiet"));
+}
+
 TEST(RenderCommand, QuietIsSilent) {
   KDRAY_NEED_DEVICE();
   const Folder folder;

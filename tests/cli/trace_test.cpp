@@ -100,6 +100,17 @@ TEST(TraceCommand, AnyHitTellsOnlyOccluded) {
   for (const std::size_t i : {3, 4}) EXPECT_EQ(hits[i].t, kInfinity) << i;
 }
 
+TEST(TraceCommand, HitsGoToStdoutAsDash) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const fs::path rays = folder.put("r.npy", rays_npy(kRays));
+  ASSERT_TRUE(succeeds(kdray({"trace", scene, "--rays", rays, "-o", folder / "h.npy"})));
+  const Outcome run = kdray({"trace", scene, "--rays", rays, "-o", "-"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_EQ(run.out, folder.get("h.npy"));
+}
+
 TEST(TraceCommand, NoRaysGiveNoHits) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
@@ -133,7 +144,8 @@ TEST(TraceCommand, RaysThatAreNoneAreRefused) {
   const Folder folder;
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
   const fs::path rays = folder.put("r.npy", rays_npy({{0, 0, NAN, 0, 0, 0, -1, kInfinity}}));
-  EXPECT_TRUE(fails_with(kdray({"trace", scene, "--rays", rays, "-o", folder / "h.npy"}), 1, "ray"));
+  EXPECT_TRUE(fails_with(kdray({"trace", scene, "--rays", rays, "-o", folder / "h.npy"}), 1,
+                         rays.string() + ": ray 0"));
   EXPECT_FALSE(fs::exists(folder / "h.npy"));
 }
 

@@ -40,6 +40,14 @@ TEST(Usage, UnknownCommandIsToldWhatThereIs) {
   EXPECT_TRUE(fails_with(kdray({}), 2, "render, trace"));
 }
 
+TEST(Usage, WhatIsNearlyANameIsToldTheName) {
+  EXPECT_TRUE(fails_with(kdray({"rendr", "x"}), 2, "did you mean 'render'?"));
+  EXPECT_TRUE(fails_with(kdray({"render", "a.nff", "--sise=3x3"}), 2, "'--sise'; did you mean '--size'?"));
+  EXPECT_TRUE(fails_with(kdray({"trace", "a.nff", "--ray", "r", "-o", "h"}), 2, "did you mean '--rays'?"));
+  EXPECT_TRUE(fails_with(kdray({"bench", "ray"}), 2, "did you mean 'rays'?"));
+  EXPECT_TRUE(fails_with(kdray({"bench", "rays", "--clases", "x"}), 2, "did you mean '--classes'?"));
+}
+
 TEST(Usage, MissingAndSuperfluousArguments) {
   EXPECT_TRUE(fails_with(kdray({"render"}), 2, "SCENE"));
   EXPECT_TRUE(fails_with(kdray({"trace", "a.nff", "-o", "h.npy"}), 2, "--rays"));

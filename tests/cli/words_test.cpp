@@ -91,6 +91,27 @@ TEST(Summary, LinesSayWhatWasMeasuredAndLeftOut) {
   EXPECT_EQ(left_out_line(Json::object()), "");
 }
 
+TEST(Summary, IsOneLine) {
+  const Json stats = Json::parse(R"({
+    "files": ["a.png", "a.depth.png"],
+    "seconds": {"load": 0.001, "compile": 0.25, "trace": 0.75, "render": 1.5, "total": 2},
+    "frame": {"width": 640, "height": 480, "samples": 4}, "rays": {"total": 1500000},
+    "hits": {"file": "h.npy", "rays": 5, "hits": 3},
+    "mrays_per_s": 1.0})");
+  EXPECT_EQ(render_line(stats),
+            "a.png, a.depth.png: 640x480 of 4 samples, 1.5 M rays in 1.5 s, 1 Mrays/s; 2 s in all");
+  EXPECT_EQ(trace_line(stats), "h.npy: 3 of 5 rays hit, in 1.5 s, 1 Mrays/s; 2 s in all");
+  EXPECT_EQ(cold_start_line(stats), "");
+}
+
+TEST(Summary, AColdStartIsTold) {
+  const Json stats = Json::parse(R"({
+    "seconds": {"self_test": 1.5, "start": 0.001, "compile": 4, "total": 9}})");
+  EXPECT_EQ(cold_start_line(stats),
+            "a first start took 5.5 s of it (its self-test 1.5 s, compiling kernels 4 s); the next finds the "
+            "kernels built");
+}
+
 TEST(Summary, SaysWhatSecondaryRaysWereLeftOut) {
   const Json stats = Json::parse(R"({
     "rays": {"shadow": 9999, "reflected": 20000, "refracted": 10000,

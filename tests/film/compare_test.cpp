@@ -33,6 +33,21 @@ TEST(Compare, MeasuresOnePixel) {
   EXPECT_GT(d.flip, 0);
 }
 
+// A fourth channel, of which a picture without alpha has 1 everywhere.
+TEST(Compare, AlphaCounts) {
+  const Image opaque = flat(4, 1, vec3(0));
+  Image holes = opaque;
+  holes.alpha = {1, 1, 1, 0.5f};
+  const Difference d = compare(opaque, holes);
+  EXPECT_NEAR(d.rmse, std::sqrt(0.25 / 16), 1e-12);
+  EXPECT_NEAR(d.mean_absolute, 0.5 / 16, 1e-12);
+  EXPECT_DOUBLE_EQ(d.max, 0.5);
+  EXPECT_DOUBLE_EQ(d.differing_share, 0.25);
+  EXPECT_GT(d.flip, 0) << "over black they are the same, over white not";
+  EXPECT_EQ(compare(holes, holes).max, 0);
+  EXPECT_EQ(compare(holes, holes).flip, 0);
+}
+
 TEST(Compare, AnEightBitStepIsNoDifferenceButMoreIs) {
   for (int k = 0; k < 254; ++k) {
     const Image a = flat(1, 1, vec3(static_cast<float>(k) / 255));

@@ -57,13 +57,14 @@ TEST(Png, GreyComesBackAsRgb) {
   }
 }
 
-TEST(Png, LeavesAlphaOutAndExpandsPalettes) {
+TEST(Png, KeepsAlphaAndExpandsPalettes) {
   const unsigned char rgba[] = {10, 20, 30, 128, 40, 50, 60, 255};
   const std::vector<std::uint16_t> wanted = {10, 20, 30, 40, 50, 60};
-  EXPECT_EQ(decode_png(write_simplified(PNG_FORMAT_RGBA, rgba), "a.png").samples, wanted);
+  EXPECT_EQ(decode_png(write_simplified(PNG_FORMAT_RGBA, rgba), "a.png").samples,
+            (std::vector<std::uint16_t>{10, 20, 30, 128, 40, 50, 60, 255}));
   const unsigned char grey_alpha[] = {10, 128, 40, 255};
   EXPECT_EQ(decode_png(write_simplified(PNG_FORMAT_GA, grey_alpha), "a.png").samples,
-            (std::vector<std::uint16_t>{10, 10, 10, 40, 40, 40}));
+            (std::vector<std::uint16_t>{10, 10, 10, 128, 40, 40, 40, 255}));
   const unsigned char index[] = {1, 0}, colors[] = {40, 50, 60, 10, 20, 30};
   EXPECT_EQ(decode_png(write_simplified(PNG_FORMAT_RGB_COLORMAP, index, colors, 2), "a.png").samples, wanted);
 }

@@ -69,6 +69,29 @@ TEST(WritePicture, ChannelsGoBesideAPngAndIntoAnExr) {
   EXPECT_EQ(folder.n_entries(), 6u);
 }
 
+// Colours are multiplied with alpha in memory and in an EXR, not in a PNG.
+TEST(WritePicture, AlphaComesBack) {
+  const test::Folder folder;
+  Image image = flat(2, 2, vec3(0.5f));
+  image.alpha = {1, 0.5f, 0, 0.2f};
+  image.pixels[2] = vec3(0);
+  image.pixels[3] = vec3(0.1f);
+  write_picture(folder / "a.exr", image, {}, {});
+  const Image exr = read_picture(folder / "a.exr", {});
+  EXPECT_EQ(exr.alpha, image.alpha);
+  EXPECT_EQ(exr.pixels[3], image.pixels[3]);
+  for (const int bits : {8, 16}) {
+    write_picture(folder / "a.png", image, {}, {.transfer = {}, .png_bits = bits});
+    const Image png = read_picture(folder / "a.png", {});
+    ASSERT_EQ(png.alpha.size(), 4u);
+    const float step = bits == 8 ? 0.01f : 1e-4f;
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(png.alpha[i], image.alpha[i], step) << i;
+      EXPECT_NEAR(png.pixels[i].x, image.pixels[i].x, step) << i;
+    }
+  }
+}
+
 TEST(WritePicture, SaysWhatIsWrongWithTheName) {
   const test::Folder folder;
   const Image image = flat(2, 2, vec3(0));
@@ -78,9 +101,8 @@ TEST(WritePicture, SaysWhatIsWrongWithTheName) {
   EXPECT_TRUE(test::fails(write("a.jpg"), "end the name in .png or .exr"));
   EXPECT_TRUE(test::fails(write("a"), "no ending"));
   EXPECT_TRUE(test::fails(write("none/a.png"), "does not exist"));
-  EXPECT_TRUE(test::fails([&] { check_picture_name(folder / "a.tif"); }, ".tif"));
-  EXPECT_TRUE(test::fails([&] { check_picture_name(folder / "none/a.exr"); }, "does not exist"));
-  check_picture_name(folder / "a.exr");
+  EXPECT_TRUE(test::fails([&] { picture_files(folder / "a.tif", {}, {}); }, ".tif"));
+  EXPECT_TRUE(test::fails([&] { write_file(folder / "none/a.exr", ""); }, "does not exist"));
   EXPECT_EQ(folder.n_entries(), 0u);
 }
 

@@ -33,6 +33,9 @@ struct Prepared;
 class Scene {
  public:
   static Scene load(const std::filesystem::path& file);
+  // The same of a file's content; `name` tells its format by the ending, and where the files are that it
+  // names.
+  static Scene from_memory(std::string bytes, const std::filesystem::path& name);
   explicit Scene(scene::Scene&& model);
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;

@@ -1,0 +1,73 @@
+#include "cli/scene_input.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+#include "base/error.h"
+#include "cli/options.h"
+#include "scene/load.h"
+#include "scene/read_file.h"
+
+namespace kdray::cli {
+
+namespace {
+
+std::string bytes_of_stdin() {
+  std::string bytes;
+  char block[1 << 16];
+  while (const std::size_t n = std::fread(block, 1, sizeof block, stdin)) {
+    bytes.append(block, n);
+    if (bytes.size() > scene::kMaxBytes)
+      throw input_error("standard input", 0, "has more bytes than a scene may have", "split the scene");
+  }
+  if (std::ferror(stdin)) throw input_error("standard input", 0, "cannot be read to its end");
+  return bytes;
+}
+
+// The name that messages have for it. It tells the format, and by a second ending what the bytes are packed
+// with. The files that such a scene names are looked for in the current folder.
+std::filesystem::path name_of(const SceneInput& input, std::string_view bytes) {
+  std::string name = "stdin." + input.format;
+  if (bytes.starts_with("\x1f\x8b")) name += ".gz";
+  if (bytes.starts_with("\xfd"
+                        "7zXZ"))
+    name += ".xz";
+  return name;
+}
+
+}  // namespace
+
+void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help) {
+  app.add_option("SCENE", input.file, help)->required()->type_name("");
+  add_text(
+      app, "--scene-format", "NAME", "Format of a SCENE from standard input: nff, obj, ply, ...",
+      [&input](const std::string& text) { input.format = text.starts_with('.') ? text.substr(1) : text; });
+}
+
+void check_scene_input(const SceneInput& input) {
+  if (input.is_stdin() && input.format.empty())
+    throw Error(ErrorCode::usage,
+                "SCENE '-' is standard input; say its format, as in --scene-format nff (or obj, ply, stl, "
+                "gltf, glb, json)");
+  if (!input.is_stdin() && !input.format.empty())
+    throw Error(
+        ErrorCode::usage,
+        "--scene-format is for a scene from standard input ('-'); a file's format is that of its name");
+}
+
+scene::Scene load_model(const SceneInput& input) {
+  if (!input.is_stdin()) return scene::load(input.file);
+  std::string bytes = bytes_of_stdin();
+  const std::filesystem::path name = name_of(input, bytes);
+  return scene::load_from_memory(std::move(bytes), name);
+}
+
+Scene load_scene(const SceneInput& input) {
+  if (!input.is_stdin()) return Scene::load(input.file);
+  std::string bytes = bytes_of_stdin();
+  const std::filesystem::path name = name_of(input, bytes);
+  return Scene::from_memory(std::move(bytes), name);
+}
+
+}  // namespace kdray::cli
