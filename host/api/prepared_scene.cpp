@@ -1,6 +1,8 @@
 #include "prepare/prepared.h"
 
 #include "kdray/kdray.h"
+#include "prepare/view.h"
+#include "scene/frame.h"
 
 namespace kdray {
 
@@ -12,6 +14,26 @@ prepare::Prepared prepare_loaded(const Scene& scene, const TreeOptions& tree) {
   return prepared;
 }
 
+std::optional<dvec3> vector_of(const std::optional<View::Vector>& v) {
+  if (!v) return std::nullopt;
+  return dvec3((*v)[0], (*v)[1], (*v)[2]);
+}
+
+scene::View view_of(const View& view) {
+  scene::View v{.camera = view.camera,
+                .from = vector_of(view.from),
+                .at = vector_of(view.at),
+                .up = vector_of(view.up),
+                .vertical_fov = {},
+                .ortho_width = view.ortho_width};
+  if (view.fov) v.vertical_fov = glm::radians(*view.fov);
+  return v;
+}
+
+double aspect_of(const scene::RenderSettings& settings, int width, int height) {
+  return width > 0 && height > 0 ? static_cast<double>(width) / height : scene::aspect_of(settings);
+}
+
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene, const TreeOptions& tree)
@@ -21,6 +43,18 @@ PreparedScene::PreparedScene(prepare::Prepared&& prepared)
 
 const std::vector<std::string>& PreparedScene::warnings() const {
   return prepared_->settings.warnings;
+}
+PreparedScene PreparedScene::seen(const View& view, int width, int height) const {
+  std::optional<vec3> background;
+  if (view.background) background = vec3((*view.background)[0], (*view.background)[1], (*view.background)[2]);
+  return PreparedScene(
+      prepare::seen(*prepared_, view_of(view), background, aspect_of(settings().settings, width, height)));
+}
+PreparedScene PreparedScene::coverage() const {
+  return PreparedScene(prepare::coverage_of(*prepared_));
+}
+void check_view(const scene::Scene& scene, const View& view) {
+  static_cast<void>(scene::camera_of(scene, view_of(view), 1));
 }
 const scene::Scene& PreparedScene::settings() const {
   return prepared_->settings;

@@ -32,8 +32,8 @@ Json of(const std::optional<T>& value) {
 
 Json of(const std::optional<scene::Camera>& camera) {
   if (!camera) return nullptr;
-  const auto& [eye, at, up, fov, hither] = *camera;
-  return {of(eye), of(at), of(up), fov, hither};
+  const auto& [eye, at, up, fov, hither, ortho_width] = *camera;
+  return {of(eye), of(at), of(up), fov, hither, ortho_width};
 }
 
 void get(const Json& from, std::optional<scene::Camera>& camera) {
@@ -44,6 +44,34 @@ void get(const Json& from, std::optional<scene::Camera>& camera) {
   get(from.at(2), c.up);
   from.at(3).get_to(c.vertical_fov);
   from.at(4).get_to(c.hither);
+  from.at(5).get_to(c.ortho_width);
+}
+
+Json of(const std::vector<scene::Camera>& cameras) {
+  Json list = Json::array();
+  for (const scene::Camera& camera : cameras) list.push_back(of(std::optional(camera)));
+  return list;
+}
+
+void get(const Json& from, std::vector<scene::Camera>& cameras) {
+  for (const Json& camera : from) {
+    std::optional<scene::Camera> read;
+    get(camera, read);
+    cameras.push_back(read.value());
+  }
+}
+
+Json of(const scene::Framing& framing) {
+  const auto& [camera, lights, box] = framing;
+  return {camera, lights, box.empty() ? Json() : Json{of(box.lo), of(box.hi)}};  // infinities are no numbers
+}
+
+void get(const Json& from, scene::Framing& framing) {
+  from.at(0).get_to(framing.camera);
+  from.at(1).get_to(framing.lights);
+  if (from.at(2).is_null()) return;
+  get(from.at(2).at(0), framing.box.lo);
+  get(from.at(2).at(1), framing.box.hi);
 }
 
 Json of(const scene::RenderSettings& s) {
@@ -114,13 +142,15 @@ void get(const Json& from, prepare::Counts& c) {
 
 std::string to_bytes(const prepare::Prepared& p) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
-               camera, background, ambient, settings, warnings, files] = p.settings;
+               camera, cameras, framing, background, ambient, settings, warnings, files] = p.settings;
   const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, tree_options,
                seconds] = p;
   const Json facts = {{"name", name},
                       {"warnings", warnings},
                       {"files", of(files)},
                       {"camera", of(camera)},
+                      {"cameras", of(cameras)},
+                      {"framing", of(framing)},
                       {"background", of(background)},
                       {"ambient", of(ambient)},
                       {"settings", of(settings)},
@@ -148,6 +178,8 @@ void from_bytes(std::string_view bytes, prepare::Prepared& p) {
   facts.at("warnings").get_to(s.warnings);
   get(facts.at("files"), s.files);
   get(facts.at("camera"), s.camera);
+  get(facts.at("cameras"), s.cameras);
+  get(facts.at("framing"), s.framing);
   get(facts.at("background"), s.background);
   get(facts.at("ambient"), s.ambient);
   get(facts.at("settings"), s.settings);

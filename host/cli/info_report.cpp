@@ -25,7 +25,7 @@ void add_kinds(const Holder& holder, Json& arrays) {
 
 Json scene_arrays(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
-               camera, background, ambient, settings, warnings, files] = scene;
+               camera, cameras, framing, background, ambient, settings, warnings, files] = scene;
   Json arrays = {{"vertices", bytes_of(vertices)}, {"normals", bytes_of(normals)}};
   add_kinds(scene, arrays);
   arrays.update({{"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
@@ -33,8 +33,8 @@ Json scene_arrays(const scene::Scene& scene) {
 }
 
 Json geometry_arrays(const scene::Geometry& geometry) {
-  const auto& [space, triangles, sources, n_smooth, KDRAY_SHAPES(KDRAY_KIND_PLURAL) bounds, dropped, lost, fine] =
-      geometry;
+  const auto& [space, triangles, sources, n_smooth, KDRAY_SHAPES(KDRAY_KIND_PLURAL) bounds, dropped, lost,
+               fine] = geometry;
   // Its triangles are the flat form's.
   Json arrays = {{"sources", bytes_of(sources)}};
   primitives::for_each_shape(
@@ -120,8 +120,10 @@ Json camera_report(const scene::Scene& scene) {
   return {{"from", as_json(c.from)},
           {"at", as_json(c.at)},
           {"up", as_json(c.up)},
-          {"vertical_fov_degrees", c.vertical_fov * kDegrees},
-          {"hither", c.hither}};
+          {"vertical_fov_degrees", c.ortho_width > 0 ? Json() : Json(c.vertical_fov * kDegrees)},
+          {"ortho_width", c.ortho_width > 0 ? Json(c.ortho_width) : Json()},
+          {"hither", c.hither},
+          {"in_file", scene.cameras.size()}};
 }
 
 }  // namespace

@@ -44,8 +44,12 @@ std::string primitives_text(const Json& p) {
 
 std::string camera_text(const Json& c) {
   if (c.is_null()) return "none";
-  return fmt::format("from {} at {}, {:.4g} degrees high", vector_text(c["from"]), vector_text(c["at"]),
-                     c["vertical_fov_degrees"].get<double>());
+  const std::string lens = c["ortho_width"].is_null()
+                               ? fmt::format("{:.4g} degrees high", c["vertical_fov_degrees"].get<double>())
+                               : fmt::format("orthographic, {:.4g} wide", c["ortho_width"].get<double>());
+  const auto n = c["in_file"].get<std::size_t>();
+  return fmt::format("from {} at {}, {}{}", vector_text(c["from"]), vector_text(c["at"]), lens,
+                     n > 1 ? fmt::format("; the first of {}", n) : "");
 }
 
 std::string material_text(const Json& m) {

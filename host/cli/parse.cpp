@@ -47,6 +47,18 @@ double parse_real(std::string_view option, std::string_view text, double lo, dou
   return value;
 }
 
+std::vector<double> parse_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    double value = 0;
+    if (!whole_number(text.substr(start, comma - start), value)) return {};
+    numbers.push_back(value);
+    start = comma + 1;
+  }
+  return numbers;
+}
+
 std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
   constexpr std::string_view kUnits = "KMG";
   const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());

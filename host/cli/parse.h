@@ -23,6 +23,9 @@ struct Size {
 int parse_int(std::string_view option, std::string_view text, int lo, int hi);
 double parse_real(std::string_view option, std::string_view text, double lo, double hi);
 
+// "1,2.5,-3"; none where a part is no number.
+std::vector<double> parse_numbers(std::string_view text);
+
 // "4096", "500M": a whole number, of KiB, MiB or GiB with K, M or G behind it.
 std::uint64_t parse_bytes(std::string_view option, std::string_view text);
 

@@ -25,6 +25,7 @@
 #include "cli/scene_input.h"
 #include "cli/stats.h"
 #include "cli/summary.h"
+#include "cli/view_options.h"
 #include "film/write.h"
 #include "kdray/kdray.h"
 #include "scene/scene.h"
@@ -48,6 +49,7 @@ struct RenderArgs {
   TreeOptions tree;
   DeviceOptions device;
   RenderOptions render;
+  ViewOptions view;
   film::WriteOptions write;
 };
 
@@ -146,6 +148,9 @@ void add_division_options(CLI::App& app, RenderArgs& o) {
 // Before the scene is read. A name that isn't given depends on the files that the scene names.
 void check_files(const RenderArgs& o, RunFiles& files) {
   check_scene_input(o.scene);
+  if (o.view.transparent && o.render.adaptive_target > 0)
+    throw Error(ErrorCode::usage,
+                "--background transparent needs a number of --samples; adaptive ones don't look at coverage");
   files.read("SCENE", o.scene.file);
   files.write_picture("--output", o.output, o.render.channels, o.write);
   files.write("--stats", o.stats);
@@ -187,6 +192,21 @@ void check_memory(const RenderOptions& render, const scene::RenderSettings& aske
                      free_memory());
 }
 
+// Before a tree is built for nothing.
+void check_view_of(const RenderArgs& o, const scene::Scene& asked) {
+  if (o.view.any) check_view(asked, o.view.view);
+}
+
+// The picture's alpha, where it is wanted; the background is taken out of its colours then.
+std::vector<float> make_transparent(Picture& picture, const PreparedScene& scene, const DeviceOptions& device,
+                                    const RenderArgs& o) {
+  if (!o.view.transparent) return {};
+  std::vector<float> alpha = coverage(scene, device, o.render);
+  const vec3& background = scene.settings().background;
+  take_out_background(alpha, std::span<const float, 3>(&background.x, 3), picture.rgb);
+  return alpha;
+}
+
 film::Image to_image(const Picture& picture) {
   film::Image image{picture.width, picture.height, std::vector<vec3>(picture.rgb.size() / 3)};
   static_assert(sizeof(vec3) == 3 * sizeof(float));
@@ -194,10 +214,11 @@ film::Image to_image(const Picture& picture) {
   return image;
 }
 
-film::Written write(Picture&& picture, const RenderArgs& o) {
+film::Written write(Picture&& picture, std::vector<float>&& alpha, const RenderArgs& o) {
   std::vector<film::Channel> channels;
   for (Channel& c : picture.channels) channels.push_back({std::move(c.name), std::move(c.values)});
-  const film::Image image = to_image(picture);
+  film::Image image = to_image(picture);
+  image.alpha = std::move(alpha);
   picture.rgb = {};  // large pictures: no third copy while the file is made
   return put_picture(o.output, image, channels, o.write);
 }
@@ -217,16 +238,20 @@ int run(RenderArgs& o) {
   tell_of_options_without_effect(o);
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
   OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet, [&](const scene::Scene& asked) {
+    check_view_of(o, asked);
     check_files(o, files, asked);
     check_memory(o.render, asked.settings);
   });
-  Renderer renderer(scene.scene(), scene.device());
+  const PreparedScene seen =
+      o.view.any ? scene.scene().seen(o.view.view, o.render.width, o.render.height) : scene.scene();
+  Renderer renderer(seen, scene.device());
   Picture picture = render(renderer, o);
+  std::vector<float> alpha = make_transparent(picture, seen, scene.device(), o);
   if (!o.quiet)
     for (const std::string& warning : picture.warnings) say(warning);
   OwnSeconds seconds;
   const Timer step;
-  const film::Written written = write(std::move(picture), o);
+  const film::Written written = write(std::move(picture), std::move(alpha), o);
   seconds.write = step.seconds();
   scene.keep();
   seconds.cache = scene.cache_seconds();
@@ -251,6 +276,7 @@ Command add_render(CLI::App& kdray) {
       *app, o->scene,
       "The scene: .nff .obj .ply .stl .gltf .glb .json, also .gz and .xz of them; '-': standard input");
   add_file_options(*app, *o);
+  add_view_options(*app, o->view);
   add_picture_options(*app, *o);
   add_division_options(*app, *o);
   add_device_options(*app, o->device, o->render.traversal, o->render.precision);

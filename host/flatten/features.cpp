@@ -91,8 +91,13 @@ bool attenuated(const scene::Light& l) {
 }  // namespace
 
 Features features_of(const scene::Scene& scene, const scene::Geometry& geometry) {
-  Features mask = geometry_features(scene, geometry) | material_features(scene, geometry) |
-                  when(any(scene.background), KDRAY_FEATURE_BACKGROUND);
+  return features_in_light(geometry_features(scene, geometry) | material_features(scene, geometry), scene);
+}
+
+Features features_in_light(Features mask, const scene::Scene& scene) {
+  constexpr Features kOfLight = KDRAY_FEATURE_BACKGROUND | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
+                                KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT;
+  mask = (mask & ~kOfLight) | when(any(scene.background), KDRAY_FEATURE_BACKGROUND);
   if (!(mask & (KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_SPECULAR)))
     return mask;  // nothing that light could change
   for (const scene::Light& light : scene.lights)

@@ -17,6 +17,9 @@ using layout::Features;
 // What the scene needs, whatever the render's settings.
 Features features_of(const scene::Scene& scene, const scene::Geometry& geometry);
 
+// The same mask for a scene that has the background and the lights of `scene` instead.
+Features features_in_light(Features mask, const scene::Scene& scene);
+
 // What a render adds.
 Features features_of_samples(int samples, bool adaptive = false);
 

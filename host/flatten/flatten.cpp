@@ -178,11 +178,19 @@ FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, co
       return packed;
     });
   });
-  flat.materials = filled<layout::Material>(
-      scene.materials.size(), [&](std::size_t i) { return pack(scene.materials[i], scene.ambient); });
-  flat.lights = filled<layout::Light>(scene.lights.size(),
-                                      [&](std::size_t i) { return pack(scene.lights[i], geometry.space); });
+  flat.materials = pack_materials(scene);
+  flat.lights = pack_lights(scene, geometry.space);
   return flat;
+}
+
+Array<layout::Material> pack_materials(const scene::Scene& scene) {
+  return filled<layout::Material>(scene.materials.size(),
+                                  [&](std::size_t i) { return pack(scene.materials[i], scene.ambient); });
+}
+
+Array<layout::Light> pack_lights(const scene::Scene& scene, const LocalSpace& space) {
+  return filled<layout::Light>(scene.lights.size(),
+                               [&](std::size_t i) { return pack(scene.lights[i], space); });
 }
 
 }  // namespace kdray::flatten

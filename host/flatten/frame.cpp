@@ -92,7 +92,10 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
   const dvec3 right =
       glm::normalize(glm::cross(forward, camera.up * scale_to_one(largest_component(camera.up))));
   const dvec3 up = glm::cross(right, forward);
-  const double half_height = std::tan(camera.vertical_fov / 2);
+  const bool parallel = camera.ortho_width > 0;
+  const double half_height =
+      parallel ? geometry.space.local_length(camera.ortho_width) / 2 * o.height / o.width
+               : std::tan(camera.vertical_fov / 2);
   const double half_width = half_height * o.width / o.height;
   // The outermost samples of the corner grid lie on the picture's edges; with one pixel there is only one
   // corner.
@@ -127,6 +130,7 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
   f.max_depth = static_cast<layout::u32>(o.depth);
   f.n_lights = static_cast<layout::u32>(scene.lights.size());
   f.corner_grid = corners ? 1 : 0;
+  f.parallel = parallel ? 1 : 0;
   return f;
 }
 

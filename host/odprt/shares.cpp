@@ -40,15 +40,16 @@ class Probe {
 
   // At (x, y) in pixels. KDRAY_NO_PART: none.
   std::uint32_t first_part(double x, double y) const {
-    const dvec3 direction = vector(frame_.forward) +
-                            (x * frame_.x_scale + frame_.x_offset) * vector(frame_.right) +
-                            (y * frame_.y_scale + frame_.y_offset) * vector(frame_.up);
+    const dvec3 across = (x * frame_.x_scale + frame_.x_offset) * vector(frame_.right) +
+                         (y * frame_.y_scale + frame_.y_offset) * vector(frame_.up);
+    const dvec3 origin = frame_.parallel ? eye_ + across : eye_;
+    const dvec3 direction = frame_.parallel ? vector(frame_.forward) : vector(frame_.forward) + across;
     const dvec3 inverse = 1.0 / direction;
     double nearest = std::numeric_limits<double>::infinity();
     std::uint32_t part = KDRAY_NO_PART;
     for (std::size_t i = 0; i < directory_.size(); ++i) {
       const layout::PartCell& cell = directory_[i];
-      const double t = entry(cell, eye_, inverse, frame_.hither);
+      const double t = entry(cell, origin, inverse, frame_.hither);
       if (cell.n_below > 0) {
         if (t >= nearest) i += cell.n_below;
       } else if (t < nearest) {

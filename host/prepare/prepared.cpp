@@ -41,7 +41,7 @@ namespace {
 #define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
 scene::Scene settings_of(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
-               camera, background, ambient, settings, warnings, files] = scene;
+               camera, cameras, framing, background, ambient, settings, warnings, files] = scene;
   return {.name = name,
           .vertices = {},
           .normals = {},
@@ -50,6 +50,8 @@ scene::Scene settings_of(const scene::Scene& scene) {
           .lights = lights,
           .unlit = unlit,
           .camera = camera,
+          .cameras = cameras,
+          .framing = framing,
           .background = background,
           .ambient = ambient,
           .settings = settings,

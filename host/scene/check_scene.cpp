@@ -107,6 +107,7 @@ const char* fault_of(const Camera& c) {
   // Nearer to parallel than this, the sideways direction would be made of rounding errors.
   if (glm::length(glm::cross(safe_normalize(forward), safe_normalize(c.up))) < 1e-9)
     return "'up' is parallel to the view direction";
+  if (!std::isfinite(c.ortho_width) || c.ortho_width < 0) return "the orthographic width is below 0";
   if (!(c.vertical_fov > 0 && c.vertical_fov < 3.14159265))
     return "the angle of view is not between 0 and 180 degrees";
   if (!std::isfinite(c.hither) || c.hither < 0) return "'hither' is below 0";

@@ -1,6 +1,7 @@
 #include "scene/frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -19,6 +20,15 @@ struct Basis {
   dvec3 right, up, forward;
 };
 
+// The rotation by the shortest way from y, which is up for the directions in this file, to `up`.
+dvec3 turned_to(const dvec3& up, const dvec3& v) {
+  const dvec3 to = safe_normalize(up);
+  if (to.y == 1) return v;
+  if (to.y == -1) return {v.x, -v.y, -v.z};
+  const dvec3 axis(to.z, 0, -to.x);  // y x up, as long as the sine of the angle
+  return to.y * v + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1 + to.y));
+}
+
 Basis basis_of(const Camera& camera) {
   const dvec3 forward = safe_normalize(camera.at - camera.from);
   const dvec3 right =
@@ -26,38 +36,16 @@ Basis basis_of(const Camera& camera) {
   return {right, glm::cross(right, forward), forward};
 }
 
-double aspect_of(const RenderSettings& settings) {
-  if (!settings.width || !settings.height) return 1;
-  return static_cast<double>(*settings.width) / *settings.height;
+// What brings the box to a size of about 1: a power of two. Cameras are made at that size.
+double scale_of(const DBox& world) {
+  return scale_to_one(std::max(largest_component(world.lo), largest_component(world.hi)));
 }
 
-// A view from the front, the right and above (y is up, as in glTF and most OBJ files) onto the middle of the
-// box, from as near as lets all eight corners into the picture. The camera is made for the box at a size of
-// about 1.
-Camera three_quarter_view(const DBox& world, double aspect) {
-  const double scale = scale_to_one(std::max(largest_component(world.lo), largest_component(world.hi)));
-  const DBox box{world.lo * scale, world.hi * scale};
-  Camera camera;
-  camera.at = box.center();
-  camera.vertical_fov = kFov;
-  const dvec3 away = glm::normalize(dvec3(0.8, 0.6, 1.2));
-  camera.from = camera.at + away;
-  const Basis view = basis_of(camera);
-  const double tan_up = std::tan(kFov / 2) / kMargin;
-  const double tan_side = tan_up * aspect;
-  double distance = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 p = dvec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                          corner & 4 ? box.hi.z : box.lo.z) -
-                    camera.at;
-    const double sideways = std::abs(glm::dot(p, view.right)) / tan_side;
-    const double upward = std::abs(glm::dot(p, view.up)) / tan_up;
-    distance = std::max(distance, std::max(sideways, upward) - glm::dot(p, view.forward));
-  }
-  if (!(distance > 0)) distance = scale;  // a single point
-  camera.from = (camera.at + distance * away) / scale;
-  camera.at /= scale;
-  return camera;
+std::array<dvec3, 8> corners_of(const DBox& box) {
+  std::array<dvec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = {i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z};
+  return corners;
 }
 
 Light directional(const dvec3& direction, float intensity) {
@@ -82,7 +70,7 @@ bool contains(const DBox& box, const dvec3& p) {
 // A key light from over the viewer's left shoulder and a weaker one from the right. A viewer inside the scene
 // (a room) gets lamps instead, for walls would keep light from outside away: one at the eye and one beside
 // it.
-void add_lights(Scene& scene, const DBox& box) {
+void add_lights_for_camera(Scene& scene, const DBox& box) {
   const Basis view = basis_of(*scene.camera);
   const dvec3 eye = scene.camera->from;
   if (contains(box, eye)) {
@@ -143,13 +131,61 @@ DBox worth_showing(Scene& scene, const DBox& bounds) {
 
 }  // namespace
 
+double aspect_of(const RenderSettings& settings) {
+  if (!settings.width || !settings.height) return 1;
+  return static_cast<double>(*settings.width) / *settings.height;
+}
+
+Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect) {
+  const double scale = scale_of(world);
+  const DBox box{world.lo * scale, world.hi * scale};
+  Camera camera = wanted;
+  camera.at *= scale;
+  const dvec3 away = turned_to(camera.up, glm::normalize(dvec3(0.8, 0.6, 1.2)));
+  camera.from = camera.at + away;
+  const Basis view = basis_of(camera);
+  const double tan_up = std::tan(camera.vertical_fov / 2) / kMargin;
+  const double tan_side = tan_up * aspect;
+  double distance = 0;
+  for (const dvec3& corner : corners_of(box)) {
+    const dvec3 p = corner - camera.at;
+    const double sideways = std::abs(glm::dot(p, view.right)) / tan_side;
+    const double upward = std::abs(glm::dot(p, view.up)) / tan_up;
+    distance = std::max(distance, std::max(sideways, upward) - glm::dot(p, view.forward));
+  }
+  if (!(distance > 0)) distance = scale;  // a single point
+  camera.from = (camera.at + distance * away) / scale;
+  camera.at /= scale;
+  return camera;
+}
+
+double width_to_show(const DBox& world, const Camera& camera, double aspect) {
+  if (world.empty()) return 0;
+  const double scale = scale_of(world);
+  const DBox box{world.lo * scale, world.hi * scale};
+  const Basis view = basis_of(camera);
+  double half = 0;
+  for (const dvec3& corner : corners_of(box)) {
+    const dvec3 p = corner - camera.from * scale;
+    half = std::max({half, std::abs(glm::dot(p, view.right)), aspect * std::abs(glm::dot(p, view.up))});
+  }
+  return 2 * kMargin * half / scale;
+}
+
+void add_lights(Scene& scene) {
+  if (!scene.framing.box.empty()) add_lights_for_camera(scene, scene.framing.box);
+}
+
 void frame_scene(Scene& scene) {
   const DBox bounds = scene.bounds();
   const DBox box = scene.camera || bounds.empty() ? bounds : worth_showing(scene, bounds);
+  scene.framing = {.camera = !scene.camera, .lights = scene.lights.empty() && !scene.unlit, .box = box};
   if (!scene.camera) {
-    scene.camera = box.empty() ? Camera{} : three_quarter_view(box, aspect_of(scene.settings));
+    const double scale = box.empty() ? 1 : scale_of(box);
+    const Camera usual{.at = DBox{box.lo * scale, box.hi * scale}.center() / scale, .vertical_fov = kFov};
+    scene.camera = box.empty() ? Camera{} : three_quarter_view(box, usual, aspect_of(scene.settings));
   }
-  if (scene.lights.empty() && !scene.unlit && !box.empty()) add_lights(scene, box);
+  if (scene.framing.lights) add_lights(scene);
 }
 
 }  // namespace kdray::scene

@@ -9,4 +9,17 @@ namespace kdray::scene {
 
 void frame_scene(Scene& scene);
 
+// Width by height of the picture that the scene asks for.
+double aspect_of(const RenderSettings& settings);
+
+// A view from the front, the right and above (y is up, as in glTF and most OBJ files, unless `wanted` has
+// another direction) onto `wanted.at`, from as near as lets all eight corners of the box into the picture.
+Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect);
+
+// How wide an orthographic picture has to be to show all of the box, and a margin; 0 for an empty one.
+double width_to_show(const DBox& world, const Camera& camera, double aspect);
+
+// Lights for the scene's camera, where there is anything to light.
+void add_lights(Scene& scene);
+
 }  // namespace kdray::scene

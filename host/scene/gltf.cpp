@@ -1,5 +1,6 @@
-// What    glTF 2.0, .gltf and .glb: the default scene's meshes, lights and first perspective camera, placed
-//         by their nodes. Animations, skins and pictures are left out, with a warning.
+// What    glTF 2.0, .gltf and .glb: the default scene's meshes, lights and cameras, placed by their
+//         nodes; the first camera is the one that is looked through. Animations, skins and pictures are left
+//         out, with a warning.
 // Errors  A node that has two parents, or is its own ancestor, refuses the file; so does all that the parts'
 //         headers name.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021; KHR_lights_punctual.
@@ -58,6 +59,7 @@ class Reader {
     if (scene_.triangles.empty()) meshes_.warn("no triangles");
     meshes_.finish();
     expose(scene_);
+    if (!scene_.cameras.empty()) scene_.camera = scene_.cameras.front();
     return std::move(scene_);
   }
 
@@ -109,8 +111,9 @@ class Reader {
       meshes_.warn("EXT_mesh_gpu_instancing is left out: the mesh is shown once");
     }
     if (const auto mesh = node.find("mesh")) meshes_.add(document_.entry("meshes", *mesh), to_world);
-    if (const auto camera = node.find("camera"); camera && !scene_.camera) {
-      scene_.camera = read_camera(document_.entry("cameras", *camera), to_world, scene_.warnings);
+    if (const auto camera = node.find("camera")) {
+      const auto read = read_camera(document_.entry("cameras", *camera), to_world, scene_.warnings);
+      if (read) scene_.cameras.push_back(*read);
     }
     if (const auto light = extension(node, "KHR_lights_punctual")) read_light_of(*light, to_world);
   }

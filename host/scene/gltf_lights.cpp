@@ -85,19 +85,19 @@ void expose(Scene& scene) {
 
 std::optional<Camera> read_camera(const JsonNode& camera, const dmat4& to_world,
                                   std::vector<std::string>& warnings) {
-  if (camera["type"].string() != "perspective") {
-    warnings.push_back(camera.file() +
-                       ": an orthographic camera is left out: only perspective ones are read");
-    return std::nullopt;
-  }
-  const JsonNode perspective = camera["perspective"];
   Camera out;
-  out.vertical_fov = perspective["yfov"].number();
-  out.hither = std::max(0.0, number_or(perspective, "znear", 0));
+  const bool parallel = camera["type"].string() == "orthographic";
+  const JsonNode lens = camera[parallel ? "orthographic" : "perspective"];
+  if (parallel)
+    out.ortho_width = 2 * std::abs(number_or(lens, "xmag", 0));
+  else
+    out.vertical_fov = lens["yfov"].number();
+  out.hither = std::max(0.0, number_or(lens, "znear", 0));
   out.from = dvec3(to_world[3]);
   out.at = out.from + direction_or(-dvec3(to_world[2]), dvec3(0, 0, -1));
   out.up = direction_or(dvec3(to_world[1]), dvec3(0, 1, 0));
   const char* fault = fault_of(out);
+  if (!fault && parallel && out.ortho_width == 0) fault = "'xmag' is 0";
   if (!fault) return out;
   warnings.push_back(camera.file() + ": a camera is left out: " + fault);
   return std::nullopt;

@@ -24,6 +24,10 @@ Camera read_camera(const JsonNode& node) {
   if (const auto up = node.find("up")) camera.up = up->vector();
   if (const auto fov = node.find("fov"))
     camera.vertical_fov = glm::radians(fov->number_between(1e-6, 179.999));
+  if (const auto width = node.find("ortho")) {
+    if (node.find("fov")) throw width->error("a camera has either 'fov' or 'ortho'");
+    camera.ortho_width = width->number_above(0);
+  }
   if (const auto hither = node.find("hither")) camera.hither = hither->number_from(0);
   if (const char* fault = fault_of(camera)) throw node.error(fault);
   return camera;

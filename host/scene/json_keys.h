@@ -22,7 +22,7 @@ namespace json_keys {
 namespace list {
 inline constexpr std::string_view scene[] = {"$schema", "kdray",     "camera", "background", "ambient",
                                              "render",  "materials", "lights", "objects"};
-inline constexpr std::string_view camera[] = {"from", "at", "up", "fov", "hither"};
+inline constexpr std::string_view camera[] = {"from", "at", "up", "fov", "ortho", "hither"};
 inline constexpr std::string_view render[] = {"size", "depth", "samples", "min_weight"};
 inline constexpr std::string_view material[] = {"color",   "ka",       "kd",    "ks",      "shine",
                                                 "reflect", "transmit", "index", "emission"};

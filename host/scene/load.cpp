@@ -74,6 +74,7 @@ namespace {
 Scene import_text(std::string_view text, const std::filesystem::path& file) {
   Scene scene = read_by_ending(text, file, format_of(file));
   scene.name = file.string();
+  if (scene.cameras.empty() && scene.camera) scene.cameras = {*scene.camera};
   check_scene(scene);
   return scene;
 }

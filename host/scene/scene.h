@@ -51,12 +51,21 @@ struct Light {
   float cos_inner = 1, cos_outer = -1;                     // spot: full inside inner, none outside outer
 };
 
-// A pinhole camera. `vertical_fov` spans the full height of the picture, from its lower to its upper edge;
-// the horizontal angle follows from the aspect ratio of the picture (square pixels).
+// A pinhole camera, or an orthographic one. `vertical_fov` spans the full height of the picture, from its
+// lower to its upper edge; the horizontal angle follows from the aspect ratio of the picture (square pixels).
 struct Camera {
   dvec3 from{0, 0, 5}, at{0}, up{0, 1, 0};
   double vertical_fov = 0.7853981633974483;
   double hither = 0;  // distance along the view direction in front of which nothing is seen
+  double ortho_width =
+      0;  // > 0: orthographic, parallel rays from the plane through `from`; the picture's width
+};
+
+// What frame_scene() made up where the file has nothing, so that another view can be made up as well
+// (view.h).
+struct Framing {
+  bool camera = false, lights = false;
+  DBox box;  // of what is worth showing; empty for a scene of nothing
 };
 
 struct Triangle {
@@ -88,6 +97,8 @@ struct Scene {
   std::vector<Light> lights;
   bool unlit = false;  // the file says that there are no lights; else frame_scene() adds some where none are
   std::optional<Camera> camera;  // loaders leave it empty when the file has none; frame_scene() fills it
+  std::vector<Camera> cameras;   // all that the file has; `camera` is the first of them, or made up
+  Framing framing;
   vec3 background{0};
   vec3 ambient{1};  // Camb
   RenderSettings settings;

@@ -27,8 +27,9 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
   const uint16 pixel = first_pixel + first + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   const Real2x16 middle = {(real16)(0.5f), (real16)(0.5f)};
-  const Real3x16 d = normalize3(eye_direction(frame, pixel % frame->width, pixel / frame->width, middle));
-  const real3 eye = load3_constant(frame->eye);
+  const EyeRays rays = eye_rays(frame, pixel % frame->width, pixel / frame->width, middle);
+  const Real3x16 d = normalize3(rays.direction);
+  const Row ox = row_of(rays.origin.x), oy = row_of(rays.origin.y), oz = row_of(rays.origin.z);
   const Row dx = row_of(d.x), dy = row_of(d.y), dz = row_of(d.z);
   const Row t_min = row_of(frame->hither / dot3(d, splat3(load3_constant(frame->forward))));
   // Lanes behind the last pixel are computed with: as a miss.
@@ -37,8 +38,9 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   for (u32 i = 0; i < KDRAY_LANES; ++i) {
     refs[i] = KDRAY_REF_MISS;
     if (i >= n) continue;
-    const TreeRay r = make_tree_ray(eye, (real3)(dx.lane[i], dy.lane[i], dz.lane[i]), t_min.lane[i], INFINITY,
-                                    frame->world_max);
+    const TreeRay r =
+        make_tree_ray((real3)(ox.lane[i], oy.lane[i], oz.lane[i]),
+                      (real3)(dx.lane[i], dy.lane[i], dz.lane[i]), t_min.lane[i], INFINITY, frame->world_max);
     u32 steps = 0;
     const Hit hit = find_closest(&scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi),
                                  KDRAY_REF_MISS, &steps);
@@ -54,7 +56,7 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const lanes16 hit = hits.ref != KDRAY_REF_MISS;
   Surface s;
-  surfaces_at(&arrays, splat3(eye), d, &hits, hit, &s);
+  surfaces_at(&arrays, rays.origin, d, &hits, hit, &s);
   const Real3x16 normal = select3(hit, s.shading, zero3());
   const Row nx = row_of(normal.x), ny = row_of(normal.y), nz = row_of(normal.z);
   for (u32 i = 0; i < n; ++i) {

@@ -13,8 +13,9 @@
 
 KDRAY_LAYOUT_BEGIN
 typedef struct Frame {
-  // A sample at (sx, sy), in pixels from the top left, looks along forward + x*right + y*up with
-  // x = sx*x_scale + x_offset and y = sy*y_scale + y_offset.
+  // A sample at (sx, sy), in pixels from the top left, looks from eye along forward + x*right + y*up with
+  // x = sx*x_scale + x_offset and y = sy*y_scale + y_offset; of a parallel camera, from eye + x*right + y*up
+  // along forward.
   float eye[3];
   float hither;
   float forward[3];
@@ -51,8 +52,9 @@ typedef struct Frame {
   // where there are none (host/flatten/core.h).
   float core_lo[3], core_hi[3];
   float face_lo[3], face_hi[3];
+  u32 parallel;  // 1: an orthographic camera
 } Frame;
-KDRAY_ASSERT_SIZE(Frame, 240)
+KDRAY_ASSERT_SIZE(Frame, 244)
 KDRAY_ASSERT_OFFSET(Frame, core_lo, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 

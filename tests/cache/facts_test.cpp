@@ -11,8 +11,12 @@ prepare::Prepared with_everything() {
   prepare::Prepared p;
   p.settings.name = "a/\xff\xfe name.obj";  // file names need not be UTF-8
   p.settings.warnings = {"one", "two: \"2\"\n"};
-  p.settings.files = {{"a/b.obj", Hash{~std::uint64_t{0}, 1}}, {"c.mtl", std::nullopt}};
+  p.settings.files = {{"a/b.obj", Hash{~std::uint64_t{0}, 1}},
+                      {"c.mtl", std::nullopt},
+                      {.path = "d.png", .content = std::nullopt, .only_named = true}};
   p.settings.camera = scene::Camera{{0.1, 1e300, -0.0}, {1, 2, 3}, {0, 0, 1}, 0.7, 1e-308};
+  p.settings.cameras = {*p.settings.camera, scene::Camera{.ortho_width = 0.3}};
+  p.settings.framing = {true, true, {dvec3(-0.1), dvec3(1.0 / 3)}};
   p.settings.background = vec3(0.1f, 1e-40f, 3e38f);
   p.settings.settings.width = 640;
   p.settings.settings.min_weight = 0.1;
@@ -40,6 +44,10 @@ TEST(Facts, ComeBackBitForBit) {
   EXPECT_EQ(back.settings.files, with_everything().settings.files);
   EXPECT_EQ(back.settings.camera->from.y, 1e300);
   EXPECT_TRUE(std::signbit(back.settings.camera->from.z));
+  ASSERT_EQ(back.settings.cameras.size(), 2u);
+  EXPECT_EQ(back.settings.cameras[1].ortho_width, 0.3);
+  EXPECT_TRUE(back.settings.framing.lights);
+  EXPECT_EQ(back.settings.framing.box.hi.z, 1.0 / 3);
   EXPECT_EQ(back.settings.background.y, 1e-40f);
   EXPECT_EQ(back.settings.settings.width, 640);
   EXPECT_FALSE(back.settings.settings.height);

@@ -168,6 +168,8 @@ TEST(Json, NamesThePathOfWhatIsNoScene) {
   EXPECT_EQ(refused(R"({"materials": {"red": {}}, "objects": [
                 {"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "rde"}]})"),
             "s.json: /objects/0/material: no material 'rde' in /materials; did you mean 'red'?");
+  EXPECT_EQ(refused(R"({"camera": {"from": [0, 0, 1], "at": [0, 0, 0], "fov": 45, "ortho": 3}})"),
+            "s.json: /camera/ortho: a camera has either 'fov' or 'ortho'");
   EXPECT_EQ(refused(R"({"camera": {"from": [0, 0, 0], "at": [0, 0, 0]}})"),
             "s.json: /camera: 'from' and 'at' are the same point");
   EXPECT_EQ(refused(R"({"lights": [{"type": "directional", "direction": [0, 0, 0]}]})"),

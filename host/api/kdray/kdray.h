@@ -7,6 +7,7 @@
 // Threads A Renderer serves one call at a time; different Renderers may be used from different threads.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -64,6 +65,19 @@ struct TreeOptions {
   bool binary_form = true;  // is made too; few options take it (takes_binary_form)
 };
 
+// Where a picture is seen from, and before what, in place of what the scene says. What isn't given stays as
+// it is; where the file has no camera, it is chosen so that all is in the picture, and so are lights where it
+// has none.
+struct View {
+  using Vector = std::array<double, 3>;
+  std::optional<int> camera = {};  // of those that the file has, from 0
+  std::optional<Vector> from = {}, at = {}, up = {};
+  std::optional<double> fov = {};  // of the picture's full height, in degrees
+  // An orthographic camera: the picture's width in the scene's units; 0: as wide as the scene needs.
+  std::optional<double> ortho_width = {};
+  std::optional<std::array<float, 3>> background = {};  // linear RGB
+};
+
 // A scene ready to be traced: its tree built, all in the form that a device uses. It keeps nothing of the
 // Scene that it does not need; copies share what they hold.
 class PreparedScene {
@@ -73,11 +87,20 @@ class PreparedScene {
 
   const std::vector<std::string>& warnings() const;
   const scene::Scene& settings() const;  // the scene without its primitives
+
+  // The same scene seen otherwise, in a picture of this size (0: what the scene asks for, or square). Throws
+  // ErrorCode::usage for a camera that isn't there, and for directions that make no view.
+  PreparedScene seen(const View& view, int width = 0, int height = 0) const;
+  // The same shapes, white and shining on black: a picture of depth 1 is what share of each pixel they cover.
+  PreparedScene coverage() const;
   const prepare::Prepared& prepared() const { return *prepared_; }
 
  private:
   std::shared_ptr<const prepare::Prepared> prepared_;
 };
+
+// Throws what PreparedScene::seen() would, for a scene that isn't prepared yet.
+void check_view(const scene::Scene& scene, const View& view);
 
 // Prepared scenes kept in a folder between runs (docs/design/cache.md). Several processes and threads may use
 // one at once.

@@ -1,0 +1,40 @@
+#include "prepare/view.h"
+
+#include "flatten/features.h"
+#include "flatten/flatten.h"
+#include "layout/features.h"
+
+namespace kdray::prepare {
+
+namespace {
+
+void light_anew(Prepared& scene) {
+  scene.flat.lights = flatten::pack_lights(scene.settings, scene.geometry.space);
+  scene.features = flatten::features_in_light(scene.features, scene.settings);
+}
+
+}  // namespace
+
+Prepared seen(const Prepared& prepared, const scene::View& view, const std::optional<vec3>& background,
+              double aspect) {
+  Prepared changed = prepared;
+  scene::set_view(changed.settings, view, aspect);
+  if (background) changed.settings.background = *background;
+  light_anew(changed);
+  return changed;
+}
+
+Prepared coverage_of(const Prepared& prepared) {
+  constexpr std::uint32_t kOfMaterials =
+      KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE;
+  Prepared white = prepared;
+  for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1)};
+  white.settings.background = vec3(0);
+  white.settings.lights.clear();
+  white.flat.materials = flatten::pack_materials(white.settings);
+  white.features &= ~kOfMaterials;
+  light_anew(white);
+  return white;
+}
+
+}  // namespace kdray::prepare
