@@ -1,5 +1,6 @@
 #include <cstdlib>
 
+#include "base/cache_folder.h"
 #include "cache/cache.h"
 #include "kdray/kdray.h"
 
@@ -7,14 +8,10 @@ namespace kdray {
 
 namespace fs = std::filesystem;
 
-// The XDG base directory specification: a relative path in its variable counts as none.
 fs::path SceneCache::default_folder() {
   if (const char* const own = std::getenv("KDRAY_CACHE_DIR")) return own;
-  if (const char* const caches = std::getenv("XDG_CACHE_HOME"); caches && fs::path(caches).is_absolute())
-    return fs::path(caches) / "kdray" / "scenes";
-  if (const char* const home = std::getenv("HOME"); home && fs::path(home).is_absolute())
-    return fs::path(home) / ".cache" / "kdray" / "scenes";
-  return {};
+  const fs::path caches = user_cache_folder();
+  return caches.empty() ? caches : caches / "scenes";
 }
 
 std::optional<PreparedScene> SceneCache::find(const fs::path& file, const TreeOptions& tree) const {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,15 @@ std::vector<Entry> entries_in(const fs::path& folder, std::string_view ending) {
 }
 
 }  // namespace
+
+// A relative path in these variables counts as none.
+fs::path user_cache_folder() {
+  if (const char* const caches = std::getenv("XDG_CACHE_HOME"); caches && fs::path(caches).is_absolute())
+    return fs::path(caches) / "kdray";
+  if (const char* const home = std::getenv("HOME"); home && fs::path(home).is_absolute())
+    return fs::path(home) / ".cache" / "kdray";
+  return {};
+}
 
 fs::path entry_file(const fs::path& folder, const Hash& key, std::string_view ending) {
   return folder / (in_hex(key) + std::string(ending));

@@ -12,6 +12,10 @@
 
 namespace kdray {
 
+// Where what is kept between runs goes, by the XDG base directory specification: $XDG_CACHE_HOME/kdray or
+// ~/.cache/kdray. Empty where there is no home.
+std::filesystem::path user_cache_folder();
+
 // `ending` is the entries' own, as ".scene".
 std::filesystem::path entry_file(const std::filesystem::path& folder, const Hash& key,
                                  std::string_view ending);

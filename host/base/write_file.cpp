@@ -6,9 +6,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <random>
 
 #include "base/error.h"
+#include "base/temporary.h"
 
 namespace kdray {
 namespace fs = std::filesystem;
@@ -32,6 +34,9 @@ Error cannot_write(const fs::path& file, int error, const fs::path& folder) {
     case ENOSPC:
     case EDQUOT:
       return input_error(file.string(), 0, "the disk is full", "free some space or name another place");
+    case EFBIG:
+      return input_error(file.string(), 0, "the file gets larger than the system allows",
+                         "raise the limit (ulimit -f) or name a place on another file system");
     case ENAMETOOLONG:
       return input_error(file.string(), 0, "the file name is too long", "choose a shorter one");
     default:
@@ -57,19 +62,21 @@ bool is_special(const fs::file_status& status) {
 }
 
 // Creates an empty file of a new name beside `target`, with the permissions that the umask leaves.
-fs::path create_beside(const fs::path& file, const fs::path& target) {
+std::unique_ptr<Temporary> create_beside(const fs::path& file, const fs::path& target) {
   const fs::path folder = folder_of(target);
   std::random_device random;
   for (int attempt = 0; attempt < 100; ++attempt) {
     char name[48];
     std::snprintf(name, sizeof name, ".kdray-%d-%08x", static_cast<int>(::getpid()), random());
-    const fs::path temporary = folder / (name + target.extension().string());
-    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    auto temporary = std::make_unique<Temporary>(folder / (name + target.extension().string()));
+    const int descriptor = ::open(temporary->path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0) {
       ::close(descriptor);
       return temporary;
     }
-    if (errno != EEXIST) throw cannot_write(file, errno, folder);
+    const int error = errno;
+    temporary->forget();
+    if (error != EEXIST) throw cannot_write(file, error, folder);
   }
   throw cannot_write(file, EEXIST, folder);
 }
@@ -92,16 +99,12 @@ void write_atomically(const fs::path& file, const std::function<void(const fs::p
   const fs::file_status status = fs::status(target, error);
   check_target(file, target, status);
   if (is_special(status)) return write(target);
-  const fs::path temporary = create_beside(file, target);
-  try {
-    write(temporary);
-    if (fs::exists(status)) fs::permissions(temporary, status.permissions(), error);
-    if (std::rename(temporary.c_str(), target.c_str()) != 0)
-      throw cannot_write(file, errno, folder_of(target));
-  } catch (...) {
-    fs::remove(temporary, error);
-    throw;
-  }
+  const std::unique_ptr<Temporary> temporary = create_beside(file, target);
+  write(temporary->path());
+  if (fs::exists(status)) fs::permissions(temporary->path(), status.permissions(), error);
+  if (std::rename(temporary->path().c_str(), target.c_str()) != 0)
+    throw cannot_write(file, errno, folder_of(target));
+  temporary->forget();
 }
 
 void write_bytes(const fs::path& temporary, const fs::path& shown, std::string_view content) {
@@ -124,7 +127,7 @@ void check_writable(const fs::path& file) {
   const fs::path target = where_written(file);
   const fs::file_status status = fs::status(target, error);
   check_target(file, target, status);
-  if (!is_special(status)) fs::remove(create_beside(file, target), error);
+  if (!is_special(status)) create_beside(file, target);  // and removes it at once
 }
 
 }  // namespace kdray

@@ -1,6 +1,7 @@
 // What    Output files, written whole or not at all: under a temporary name in the same folder first, then
 //         renamed onto the target. A symbolic link is followed; a device or pipe is written directly, since a
-//         rename would replace it. The permissions of a file that is replaced are kept.
+//         rename would replace it. The permissions of a file that is replaced are kept. The temporary goes
+//         with whatever ends the process (temporary.h).
 // Errors  kdray::Error, ErrorCode::input: a folder, a missing folder, no permission, disk full.
 #pragma once
 

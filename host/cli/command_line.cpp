@@ -1,3 +1,4 @@
+#include "base/signals.h"
 #include "cli/command_line.h"
 
 #include <fmt/format.h>
@@ -63,6 +64,7 @@ int parse_and_run(CLI::App& app, std::span<const char* const> arguments, std::sp
 
 int run_program(const std::function<int()>& run) {
   keep_freed_memory();
+  mind_signals();  // before there are other threads
   try {
     return run();
   } catch (const Error& error) {

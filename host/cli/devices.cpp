@@ -8,6 +8,7 @@
 #include "cli/message.h"
 #include "cli/output.h"
 #include "cli/stats.h"
+#include "device/pocl_cache.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {
@@ -59,6 +60,8 @@ int run(bool json) {
   print(json ? as_json(all) : as_text(all));
   for (const DeviceInfo& d : all)
     if (d.usable) return 0;
+  if (const std::string& why = device::pocl_cache().unusable; all.empty() && !why.empty())
+    throw Error(ErrorCode::no_device, "no OpenCL device found; " + why);
   throw Error(ErrorCode::no_device, all.empty()
                                         ? "no OpenCL device found; 'kdray doctor' says what is missing"
                                         : "no usable OpenCL device; 'kdray doctor' says more");

@@ -4,6 +4,7 @@
 // Errors  Exit code 3 when no device is usable (ErrorCode::no_device), so that scripts can ask it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "cli/opencl_probe.h"
 #include "cli/output.h"
 #include "cli/self_test.h"
+#include "device/pocl_cache.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {
@@ -55,35 +57,41 @@ void check_drivers() {
   }
 }
 
-bool is_pocl(const Platform& p) {
-  return p.name.find("Portable Computing Language") != std::string::npos;
+// PoCL without a device is broken. Another driver may well be there for hardware that isn't, as Mesa's are.
+void check_platform(const Platform& p, bool another_has_devices) {
+  const std::string text =
+      fmt::format("platform {} ({}), {} device{}", p.name, p.version, p.devices, p.devices == 1 ? "" : "s");
+  if (p.devices > 0)
+    good(text);
+  else if (device::is_pocl(p.name))
+    bad(text, "PoCL without a device: look at POCL_DEVICES, and at its LLVM packages");
+  else if (another_has_devices)
+    note(text + ": its driver sees no hardware of its own");
+  else
+    bad(text, "its driver sees no hardware: is the device there, and may this user open it?");
+}
+
+void check_pocl_cache() {
+  const device::PoclCache& cache = device::pocl_cache();
+  if (!cache.unusable.empty()) return bad(cache.unusable, "");
+  if (cache.why_not.empty()) return good("PoCL's kernel cache " + cache.folder.string() + " is writable");
+  note(fmt::format("PoCL's kernel cache would be '{}': {}. kdray has it use {} instead{}",
+                   cache.preferred.string(), cache.why_not, cache.folder.string(),
+                   cache.temporary
+                       ? ", for this run only; set POCL_CACHE_DIR or KDRAY_CACHE_DIR to a folder of "
+                         "yours to keep what is compiled"
+                       : ""));
 }
 
 void check_platforms() {
   const std::vector<Platform> platforms = find_platforms();
-  bool pocl = false;
+  const auto is_pocl = [](const Platform& p) { return device::is_pocl(p.name); };
+  const bool any_device = std::ranges::any_of(platforms, [](const Platform& p) { return p.devices > 0; });
   if (platforms.empty()) bad("OpenCL's loader finds no platform", kInstall);
-  for (const Platform& p : platforms) {
-    pocl = pocl || is_pocl(p);
-    const std::string text =
-        fmt::format("platform {} ({}), {} device{}", p.name, p.version, p.devices, p.devices == 1 ? "" : "s");
-    if (p.devices > 0)
-      good(text);
-    else
-      bad(text, is_pocl(p) ? "PoCL without a device: look at POCL_DEVICES, and at its LLVM packages"
-                           : "its driver sees no hardware: is the device there, and may this user open it?");
-  }
+  for (const Platform& p : platforms) check_platform(p, any_device);
+  const bool pocl = std::ranges::any_of(platforms, is_pocl);
   if (!platforms.empty() && !pocl) note("PoCL is not installed; kdray works without it on the devices above");
-  if (!pocl) return;
-  const std::string cache = pocl_cache_folder();
-  std::string why_not;
-  if (cache.empty())
-    bad("PoCL has no place for its kernel cache", "set HOME, XDG_CACHE_HOME or POCL_CACHE_DIR");
-  else if (is_writable(cache, why_not))
-    good("PoCL's kernel cache " + cache + " is writable");
-  else
-    bad(fmt::format("PoCL's kernel cache {} is not writable ({})", cache, why_not),
-        "set POCL_CACHE_DIR to a folder of yours; without it kernels are compiled again in every run");
+  if (pocl) check_pocl_cache();
 }
 
 // Tells what the test throws, so that a fault of one device doesn't hide the others.
@@ -120,6 +128,7 @@ int check_devices() {
 int run() {
   good("kdray " KDRAY_VERSION);
   check_environment();
+  device::pocl_cache();  // before OpenCL's first call
   check_drivers();
   check_platforms();
   if (check_devices() == 0)

@@ -1,13 +1,11 @@
 #include "cli/opencl_probe.h"
 
 #include <dlfcn.h>
-#include <unistd.h>
 
 #include <CL/cl.h>
 #include <algorithm>
-#include <cerrno>
+#include <cctype>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -25,14 +23,7 @@ std::string variable(const char* name) {
   return value ? value : "";
 }
 
-Driver inspect(const fs::path& file) {
-  Driver driver{.file = file.string(), .library = {}, .why_not = {}};
-  std::ifstream in(file);
-  std::getline(in, driver.library);
-  if (driver.library.empty()) {
-    driver.why_not = "the file can't be read or is empty";
-    return driver;
-  }
+void try_to_open(Driver& driver) {
   void* const handle = ::dlopen(driver.library.c_str(), RTLD_LAZY | RTLD_LOCAL);
   driver.opens = handle != nullptr;
   if (!handle) {
@@ -40,6 +31,21 @@ Driver inspect(const fs::path& file) {
     driver.why_not = reason ? reason : "unknown reason";
   }
   // The library is not closed again: the loader is about to open it too, and drivers dislike being unloaded.
+}
+
+// An .icd file: its first line names the library.
+Driver inspect(const fs::path& file) {
+  Driver driver{.file = file.string(), .library = {}, .why_not = {}};
+  std::ifstream in(file);
+  std::getline(in, driver.library);
+  const bool is_text = std::none_of(driver.library.begin(), driver.library.end(),
+                                    [](unsigned char c) { return std::iscntrl(c) && !std::isspace(c); });
+  if (!is_text) driver.library.clear();
+  if (driver.library.empty())
+    driver.why_not =
+        is_text ? "the file can't be read or is empty" : "the file is no text with a library's name";
+  else
+    try_to_open(driver);
   return driver;
 }
 
@@ -62,7 +68,12 @@ std::vector<Driver> find_drivers() {
   std::vector<Driver> drivers;
   const fs::path place = vendors_folder();
   std::error_code error;
-  if (fs::is_regular_file(place, error)) return {inspect(place)};
+  if (place.extension() == ".icd") return {inspect(place)};
+  if (place.filename().string().find(".so") != std::string::npos && !fs::is_directory(place, error)) {
+    Driver driver{.file = "OCL_ICD_VENDORS", .library = place.string(), .why_not = {}};
+    try_to_open(driver);
+    return {driver};
+  }
   for (fs::directory_iterator i(place, error), end; !error && i != end; i.increment(error))
     if (i->path().extension() == ".icd") drivers.push_back(inspect(i->path()));
   std::sort(drivers.begin(), drivers.end(), [](const Driver& a, const Driver& b) { return a.file < b.file; });
@@ -96,29 +107,6 @@ std::vector<Variable> opencl_environment() {
   }
   std::sort(found.begin(), found.end(), [](const Variable& a, const Variable& b) { return a.name < b.name; });
   return found;
-}
-
-std::string pocl_cache_folder() {
-  if (const std::string set = variable("POCL_CACHE_DIR"); !set.empty()) return set;
-  if (const std::string base = variable("XDG_CACHE_HOME"); !base.empty()) return base + "/pocl/kcache";
-  if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/pocl/kcache";
-  return "";
-}
-
-bool is_writable(const std::string& folder, std::string& why_not) {
-  // A folder that does not exist yet will be made, so its nearest ancestor counts.
-  std::error_code error;
-  fs::path place = fs::absolute(folder, error);
-  while (!fs::exists(place, error) && place != place.parent_path()) place = place.parent_path();
-  std::string trial = (place / ".kdray-XXXXXX").string();
-  const int descriptor = ::mkstemp(trial.data());
-  if (descriptor < 0) {
-    why_not = std::strerror(errno);
-    return false;
-  }
-  ::close(descriptor);
-  ::unlink(trial.c_str());
-  return true;
 }
 
 }  // namespace kdray::cli

@@ -1,8 +1,8 @@
 // What    What OpenCL's loader sees on this machine, step by step: the drivers that are registered,
 //         whether they can be opened, the platforms they give, the devices those have. `kdray doctor`
 //         explains each step that fails.
-// Source  The loader is ocl-icd or Khronos': *.icd files in /etc/OpenCL/vendors, or where
-//         OCL_ICD_VENDORS points.
+// Source  The loader is ocl-icd or Khronos': *.icd files in /etc/OpenCL/vendors, or where OCL_ICD_VENDORS
+//         points: another folder, a single .icd file, or a library.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace kdray::cli {
 
 struct Driver {
-  std::string file;     // /etc/OpenCL/vendors/pocl.icd
+  std::string file;     // /etc/OpenCL/vendors/pocl.icd, or OCL_ICD_VENDORS
   std::string library;  // its first line: libpocl.so.2; empty when unreadable
   bool opens = false;
   std::string why_not;  // the dynamic linker's words
@@ -31,11 +31,5 @@ std::string vendors_folder();        // where *.icd files are looked for
 std::vector<Driver> find_drivers();  // sorted by file name
 std::vector<Platform> find_platforms();
 std::vector<Variable> opencl_environment();  // OCL_*, POCL_* and CUDA_VISIBLE_DEVICES, as far as set
-
-// Where PoCL keeps the kernels it has compiled; empty when it has no place.
-std::string pocl_cache_folder();
-
-// Whether a file can be made in `folder`, or the folder itself where it does not exist yet; else the reason.
-bool is_writable(const std::string& folder, std::string& why_not);
 
 }  // namespace kdray::cli

@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "device/host_memory.h"
 #include "device/opencl_error.h"
+#include "device/pocl_cache.h"
 #include "device/program.h"
 
 namespace kdray::device {
@@ -79,6 +80,8 @@ const Opened& opened_before_or_now(const FoundDevice& found, int n_queues) {
 
 Context::Context(const std::string& device_spec, int n_queues, int compute_units, Builds builds)
     : found_(choose_device(device_spec)), builds_(std::move(builds)) {
+  if (is_pocl(found_.info.platform) && !pocl_cache().unusable.empty())
+    throw Error(ErrorCode::input, pocl_cache().unusable);
   if (compute_units > 0)
     found_.info.compute_units =
         std::min(found_.info.compute_units, static_cast<std::uint32_t>(compute_units));

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "device/opencl_error.h"
+#include "device/pocl_cache.h"
 
 namespace kdray::device {
 
@@ -99,6 +100,7 @@ std::vector<int> devices_by_preference() {
 }
 
 std::vector<FoundDevice> find_devices() {
+  pocl_cache();  // before OpenCL's first call
   std::vector<FoundDevice> found;
   std::vector<cl::Platform> platforms;
   try {
@@ -121,6 +123,8 @@ std::vector<FoundDevice> find_devices() {
 
 FoundDevice choose_device(const std::string& spec) {
   const std::vector<FoundDevice> devices = find_devices();
+  if (devices.empty() && !pocl_cache().unusable.empty())
+    throw Error(ErrorCode::no_device, "no OpenCL device found; " + pocl_cache().unusable);
   if (devices.empty())
     throw Error(ErrorCode::no_device,
                 "no OpenCL device found; install one (Debian: apt-get install pocl-opencl-icd), then see "

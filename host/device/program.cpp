@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "device/opencl_error.h"
+#include "device/pocl_cache.h"
 #include "device/program_cache.h"
 #include "device/program_key.h"
 #include "kernels.h"
@@ -65,17 +66,22 @@ std::string first_error(const std::string& log) {
   return log.substr(0, log.find('\n'));
 }
 
-[[noreturn]] void report_failed_build(const std::string& file, const std::string& options,
-                                      const std::string& source, const std::string& log) {
+[[noreturn]] void report_failed_build(const std::string& platform, const std::string& file,
+                                      const std::string& options, const std::string& source,
+                                      const std::string& log) {
+  const std::filesystem::path cache = pocl_cache().folder;
+  if (const std::string why = why_no_cache(cache); is_pocl(platform) && !why.empty())
+    throw input_error(cache.string(), 0, "PoCL can't compile there: " + why,
+                      "free some space, or set POCL_CACHE_DIR to a folder of yours");
   std::string name = file;
   for (char& c : name)
     if (c == '/') c = '_';
   const std::filesystem::path dump = std::filesystem::temp_directory_path() / ("kdray_failed_" + name);
   std::ofstream out(dump);
-  out << "// options: " << options << "\n" << source << "\n/* build log:\n" << log << "\n*/\n";
+  out << "// options: " << options << "\n" << source << "\n/* build log:\n" << log << "\n*/\n" << std::flush;
   throw Error(ErrorCode::no_device,
-              fmt::format("the device's compiler refuses {}: {}; source and log are in {}", file,
-                          first_error(log), dump.string()));
+              fmt::format("the device's compiler refuses {}: {}{}", file, first_error(log),
+                          out ? "; source and log are in " + dump.string() : std::string()));
 }
 
 }  // namespace
@@ -118,7 +124,10 @@ cl::Program build_source(const cl::Context& context, const std::vector<cl::Devic
   std::string log;
   cl::Program program =
       checked("building " + name, [&] { return try_build(context, devices, source, options, builds, log); });
-  if (program() == nullptr) report_failed_build(name, options, source, log);
+  if (program() == nullptr) {
+    const cl::Platform platform(devices.front().getInfo<CL_DEVICE_PLATFORM>());
+    report_failed_build(platform.getInfo<CL_PLATFORM_NAME>(), name, options, source, log);
+  }
   return program;
 }
 

@@ -76,15 +76,62 @@ TEST(DoctorCommand, NamesADriverThatDoesNotOpen) {
   EXPECT_NE(run.out.find("broken.icd"), std::string::npos) << run.out;
 }
 
-TEST(DoctorCommand, NamesAKernelCacheThatCannotBeWritten) {
-  KDRAY_NEED_DEVICE();
-  if (kdray({"doctor"}).out.find("Portable Computing Language") == std::string::npos)
-    GTEST_SKIP() << "no PoCL";
+bool has_pocl() {
+  return kdray({"doctor"}).out.find("Portable Computing Language") != std::string::npos;
+}
+
+// For root, too, nothing can be made in /proc.
+const std::map<std::string, std::string> kNoHome = {{"HOME", "/proc/none"}, {"XDG_CACHE_HOME", "/proc/none"}};
+
+TEST(DevicesCommand, PoclHasADeviceWithoutAHome) {
+  if (!has_pocl()) GTEST_SKIP() << "no PoCL";
+  const Folder folder;
+  std::map<std::string, std::string> environment = kNoHome;
+  environment["TMPDIR"] = folder.path();
+  ASSERT_TRUE(succeeds(kdray({"devices"}, {.environment = environment})));
+  EXPECT_EQ(folder.n_entries(), 0u) << "what was temporary stayed";
+  environment["KDRAY_CACHE_DIR"] = folder / "own";
+  ASSERT_TRUE(succeeds(kdray({"devices"}, {.environment = environment})));
+  EXPECT_TRUE(fs::is_directory(folder / "own" / "pocl"));
+  for (const char* const unusable : {"", "/proc/none"}) {
+    environment["POCL_CACHE_DIR"] = unusable;
+    EXPECT_TRUE(succeeds(kdray({"devices"}, {.environment = environment}))) << unusable;
+  }
+}
+
+TEST(DevicesCommand, WhereNothingCanBeWrittenThatIsWhatIsSaid) {
+  if (!has_pocl()) GTEST_SKIP() << "no PoCL";
+  std::map<std::string, std::string> environment = kNoHome;
+  environment["TMPDIR"] = "/proc";
+  const Outcome run = kdray({"devices"}, {.environment = environment});
+  EXPECT_NE(run.code, 0);
+  EXPECT_NE(run.err.find("PoCL has no folder to compile in"), std::string::npos) << run.err;
+}
+
+TEST(DoctorCommand, TellsOfAKernelCacheThatCannotBeWritten) {
+  if (!has_pocl()) GTEST_SKIP() << "no PoCL";
   const Folder folder;
   const fs::path file = folder.put("file", "a file, where a folder is wanted");
   const Outcome run = kdray({"doctor"}, {.environment = {{"POCL_CACHE_DIR", file / "cache"}}});
-  EXPECT_NE(run.out.find("is not writable"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("POCL_CACHE_DIR"), std::string::npos) << run.out;
+  EXPECT_TRUE(succeeds(run)) << run.out;
+  EXPECT_NE(run.out.find("it is not writable"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("for this run only; set POCL_CACHE_DIR"), std::string::npos) << run.out;
+}
+
+TEST(DoctorCommand, OclIcdVendorsMayNameALibrary) {
+  const Folder folder;
+  const fs::path library = folder.put("libdriver.so.1", std::string("\x7f"
+                                                                    "ELF\x02\x01\0\0",
+                                                                    8));
+  const Outcome run = kdray({"doctor"}, {.environment = {{"OCL_ICD_VENDORS", library}}});
+  EXPECT_NE(run.out.find("[bad]  driver " + library.string() + " (OCL_ICD_VENDORS)"), std::string::npos)
+      << run.out;
+  EXPECT_EQ(run.out.find("\x7f"), std::string::npos) << run.out;
+  const fs::path icd = folder.put("driver.icd", std::string("\x7f"
+                                                            "ELF\x02\x01\0\0",
+                                                            8));
+  const Outcome binary = kdray({"doctor"}, {.environment = {{"OCL_ICD_VENDORS", icd}}});
+  EXPECT_NE(binary.out.find("no text with a library's name"), std::string::npos) << binary.out;
 }
 
 }  // namespace

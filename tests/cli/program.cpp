@@ -62,14 +62,15 @@ class Capture {
 }
 
 // Waits in small steps, so that a child that hangs can be killed.
-void wait_for(pid_t child, double limit_seconds, Outcome& run) {
+void wait_for(pid_t child, const RunOptions& options, Outcome& run) {
   const Clock::time_point start = Clock::now();
   int status = 0;
   rusage usage{};
-  bool killed = false;
+  bool killed = false, signalled = options.signal == 0;
   while (::wait4(child, &status, WNOHANG, &usage) == 0) {
     run.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (run.seconds > limit_seconds && !killed) ::kill(child, SIGKILL), killed = true;
+    if (run.seconds > options.signal_seconds && !signalled) ::kill(child, options.signal), signalled = true;
+    if (run.seconds > options.limit_seconds && !killed) ::kill(child, SIGKILL), killed = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   run.exited = WIFEXITED(status);
@@ -92,7 +93,7 @@ Outcome kdray(const std::vector<std::string>& arguments, const RunOptions& optio
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("fork failed");
   if (child == 0) become_kdray(arguments, options, out.descriptor(), err.descriptor());
-  wait_for(child, options.limit_seconds, run);
+  wait_for(child, options, run);
   run.out = out.text();
   run.err = err.text();
   return run;

@@ -29,6 +29,8 @@ struct RunOptions {
   std::filesystem::path stdout_file = {};               // instead of Outcome::out
   double limit_seconds = 60;
   std::size_t limit_address_space = 0;  // bytes; 0: none
+  int signal = 0;                       // sent after `signal_seconds`; 0: none
+  double signal_seconds = 0;
 };
 
 Outcome kdray(const std::vector<std::string>& arguments, const RunOptions& options = {});

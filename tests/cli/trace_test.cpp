@@ -1,5 +1,7 @@
 // What    kdray trace through the real program, with NumPy files written and read by hand: hits of known
 //         answer.
+#include <signal.h>
+
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -118,6 +120,21 @@ TEST(TraceCommand, NoRaysGiveNoHits) {
   const fs::path rays = folder.put("r.npy", rays_npy({}));
   ASSERT_TRUE(succeeds(kdray({"trace", scene, "--rays", rays, "-o", folder / "h.npy"})));
   EXPECT_TRUE(hits_of(folder.get("h.npy")).empty());
+}
+
+// LLVM, inside PoCL, takes hold of these signals when it compiles, and used to swallow SIGQUIT.
+TEST(TraceCommand, SignalsEndItAndLeaveNothing) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const fs::path rays = folder.put("r.npy", rays_npy(kRays));
+  for (const int signal : {SIGQUIT, SIGINT}) {
+    const Outcome run = kdray({"trace", scene, "--rays", rays, "-o", folder / "h.npy", "--repeat", "1000000"},
+                              {.limit_seconds = 20, .signal = signal, .signal_seconds = 4});
+    EXPECT_FALSE(run.exited);
+    EXPECT_EQ(run.signal, signal);
+    EXPECT_EQ(folder.n_entries(), 2u);
+  }
 }
 
 TEST(TraceCommand, FaultyRaysAreNamedAndLeaveNothing) {

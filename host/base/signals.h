@@ -1,0 +1,14 @@
+// What    Signals that end the program: what is temporary is removed, then the program dies of the signal as
+//         any other does, so that a shell sees what ended it.
+// Why     No signal handler: LLVM, inside PoCL, sets its own as soon as it compiles something, which swallow
+//         SIGQUIT. Signals are blocked in every thread, and one thread waits for them; it may do what a
+//         handler may not.
+#pragma once
+
+namespace kdray {
+
+// To be called by the first thread before there are others, which inherit what it blocks. So do child
+// processes, which must be started with an empty mask (POSIX_SPAWN_SETSIGMASK).
+void mind_signals();
+
+}  // namespace kdray

@@ -1,0 +1,122 @@
+#include "device/pocl_cache.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <random>
+
+#include "base/cache_folder.h"
+#include "base/temporary.h"
+
+namespace kdray::device {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A program takes up to 2 MiB while it is compiled; a first run compiles several.
+constexpr std::uint64_t kLeastRoom = std::uint64_t{16} << 20;
+constexpr const char* kTemporary = "kdray-pocl-";
+
+// As PoCL chooses. Empty: it is told to have none, which ends the process.
+fs::path pocls_own() {
+  if (const char* const set = std::getenv("POCL_CACHE_DIR")) return set;
+  if (const char* const caches = std::getenv("XDG_CACHE_HOME"); caches && *caches)
+    return fs::path(caches) / "pocl" / "kcache";
+  if (const char* const home = std::getenv("HOME")) return fs::path(home) / ".cache" / "pocl" / "kcache";
+  return "/tmp/pocl/kcache";
+}
+
+fs::path kdrays_own() {
+  const char* const set = std::getenv("KDRAY_CACHE_DIR");
+  const fs::path folder = set ? fs::path(set) : user_cache_folder();
+  return folder.empty() ? folder : folder / "pocl";
+}
+
+// What processes that were killed have left behind.
+void sweep(const fs::path& where) {
+  std::error_code error;
+  for (fs::directory_iterator i(where, error), end; !error && i != end; i.increment(error)) {
+    int process = 0;
+    if (std::sscanf(i->path().filename().c_str(), "kdray-pocl-%d-", &process) != 1) continue;
+    struct stat status {};
+    if (::lstat(i->path().c_str(), &status) != 0 || status.st_uid != ::geteuid()) continue;
+    std::error_code ignored;
+    if (process > 0 && ::kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(i->path(), ignored);
+  }
+}
+
+// Removed at the end. PoCL's own clean-up comes before that, since it begins to work after this is made.
+fs::path make_temporary() {
+  std::error_code error;
+  const fs::path where = fs::temp_directory_path(error);
+  if (error || !why_no_cache(where).empty()) return {};
+  sweep(where);
+  static std::optional<Temporary> folder;
+  folder.emplace(where / fmt::format("{}{}-{:08x}", kTemporary, ::getpid(), std::random_device()()));
+  if (::mkdir(folder->path().c_str(), 0700) == 0) return folder->path();
+  folder->forget();
+  return {};
+}
+
+PoclCache choose() {
+  PoclCache cache;
+  cache.folder = cache.preferred = pocls_own();
+  cache.why_not = why_no_cache(cache.preferred);
+  if (cache.why_not.empty()) return cache;
+  fs::path other = kdrays_own();
+  if (!why_no_cache(other).empty()) {
+    other = make_temporary();
+    cache.temporary = !other.empty();
+  }
+  if (other.empty()) {
+    cache.unusable = fmt::format(
+        "PoCL has no folder to compile in: '{}': {}, and no other has {} MiB of room; free some space, or "
+        "set "
+        "POCL_CACHE_DIR to a folder of yours",
+        cache.preferred.string(), cache.why_not, kLeastRoom >> 20);
+  } else {
+    cache.folder = other;
+    ::setenv("POCL_CACHE_DIR", other.c_str(), 1);
+  }
+  return cache;
+}
+
+}  // namespace
+
+std::string why_no_cache(const fs::path& folder) {
+  if (folder.empty()) return "there is no such place";
+  // What does not exist yet will be made: its nearest ancestor counts.
+  std::error_code error;
+  fs::path place = fs::absolute(folder, error);
+  while (!fs::exists(place, error) && place != place.parent_path()) place = place.parent_path();
+  std::string trial = (place / ".kdray-XXXXXX").string();
+  const int descriptor = ::mkstemp(trial.data());
+  if (descriptor < 0) return fmt::format("it is not writable ({})", std::strerror(errno));
+  struct statvfs system {};
+  const bool known = ::fstatvfs(descriptor, &system) == 0;
+  ::close(descriptor);
+  ::unlink(trial.c_str());
+  if (known && std::uint64_t{system.f_bavail} * system.f_frsize < kLeastRoom) return "its disk is full";
+  return "";
+}
+
+const PoclCache& pocl_cache() {
+  static const PoclCache cache = choose();
+  return cache;
+}
+
+bool is_pocl(const std::string& platform) {
+  return platform.find("Portable Computing Language") != std::string::npos;
+}
+
+}  // namespace kdray::device

@@ -1,0 +1,30 @@
+// What    The folder that PoCL compiles in: one that can be written and has room, before PoCL looks for it.
+// Why     Without such a folder PoCL offers no device at all, or fails while it compiles, or LLVM ends the
+//         process. No home, or one that is read-only or full, is common: containers, services, batch systems.
+// Shape   PoCL's own choice where it will do; else in kdray's cache folder; else a temporary folder, which
+//         goes with the process, so that the next one compiles anew.
+// Threads The first call sets an environment variable (POCL_CACHE_DIR), and comes before OpenCL's first.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace kdray::device {
+
+struct PoclCache {
+  std::filesystem::path folder;     // that PoCL uses
+  std::filesystem::path preferred;  // that it would have used: another one where that can't be used
+  std::string why_not;              // the reason; empty: there was none
+  bool temporary = false;
+  std::string unusable;  // why none of them will do, with what to do about it; empty where one does
+};
+
+// Chosen at the first call.
+const PoclCache& pocl_cache();
+
+bool is_pocl(const std::string& platform);
+
+// Why PoCL can't compile in the folder, which need not exist yet; empty when it can.
+std::string why_no_cache(const std::filesystem::path& folder);
+
+}  // namespace kdray::device
