@@ -9,7 +9,7 @@ namespace kdray::bench {
 namespace {
 
 // A journey at one of its hops.
-struct Place {
+struct Stop {
   std::uint32_t journey = 0, hop = 0;
 };
 
@@ -17,7 +17,7 @@ struct Event {
   double time;
   std::uint64_t number;
   bool arrives;  // else it has been served
-  Place place;
+  Stop stop;
   bool operator>(const Event& other) const {
     return time != other.time ? time > other.time : number > other.number;
   }
@@ -26,7 +26,7 @@ struct Event {
 struct Waiting {
   std::uint32_t depth;
   std::uint64_t number;
-  Place place;
+  Stop stop;
   bool operator<(const Waiting& other) const {
     return depth != other.depth ? depth < other.depth : number > other.number;
   }
@@ -65,31 +65,31 @@ class Simulation {
   }
 
  private:
-  const Hop& at(const Place& place) const { return traffic_.journeys[place.journey].hops[place.hop]; }
+  const Hop& at(const Stop& stop) const { return traffic_.journeys[stop.journey].hops[stop.hop]; }
 
-  void wait(const Place& place) {
-    queues_[at(place).queue].waiting.push({traffic_.journeys[place.journey].depth, n_++, place});
+  void wait(const Stop& stop) {
+    queues_[at(stop).queue].waiting.push({traffic_.journeys[stop.journey].depth, n_++, stop});
   }
 
   void serve(Queue& queue, double now) {
     if (queue.busy || queue.waiting.empty()) return;
-    const Place place = queue.waiting.top().place;
+    const Stop stop = queue.waiting.top().stop;
     queue.waiting.pop();
     queue.busy = true;
-    queue.work += at(place).seconds;
-    events_.push({now + at(place).seconds, n_++, false, place});
+    queue.work += at(stop).seconds;
+    events_.push({now + at(stop).seconds, n_++, false, stop});
   }
 
   void arrive(const Event& event) {
-    wait(event.place);
-    serve(queues_[at(event.place).queue], event.time);
+    wait(event.stop);
+    serve(queues_[at(event.stop).queue], event.time);
   }
 
   void leave(const Event& event) {
-    const Journey& journey = traffic_.journeys[event.place.journey];
-    const std::uint32_t here = at(event.place).queue;
-    if (event.place.hop + 1 < journey.hops.size()) {
-      send(here, {event.place.journey, event.place.hop + 1}, event.time);
+    const Journey& journey = traffic_.journeys[event.stop.journey];
+    const std::uint32_t here = at(event.stop).queue;
+    if (event.stop.hop + 1 < journey.hops.size()) {
+      send(here, {event.stop.journey, event.stop.hop + 1}, event.time);
     } else {
       for (const std::uint32_t next : journey.next) send(here, {next, 0}, event.time);
     }
@@ -97,10 +97,10 @@ class Simulation {
     serve(queues_[here], event.time);
   }
 
-  void send(std::uint32_t from, const Place& place, double now) {
-    const std::uint32_t to = at(place).queue;
+  void send(std::uint32_t from, const Stop& stop, double now) {
+    const std::uint32_t to = at(stop).queue;
     if (to == from) {
-      wait(place);
+      wait(stop);
       return;
     }
     Queue &sender = queues_[from], &receiver = queues_[to];
@@ -109,7 +109,7 @@ class Simulation {
     receiver.in_free = begins + message_seconds_;
     sender.out_used += message_seconds_, receiver.in_used += message_seconds_;
     outcome_.rays_sent += traffic_.rays_per_journey;
-    events_.push({receiver.in_free, n_++, true, place});
+    events_.push({receiver.in_free, n_++, true, stop});
   }
 
   const Traffic& traffic_;

@@ -54,8 +54,8 @@ bool LabelLayout::is_free(const Box& box, double x, double y, bool over_lines) c
   });
 }
 
-std::optional<LabelLayout::Place> LabelLayout::place(double x, double y, double width, double height,
-                                                     double farthest, bool may_cover_lines) {
+std::optional<LabelLayout::Spot> LabelLayout::place(double x, double y, double width, double height,
+                                                    double farthest, bool may_cover_lines) {
   for (const bool over_lines : {false, true}) {
     if (over_lines && !may_cover_lines) break;
     for (const double distance : kDistances)
@@ -65,7 +65,7 @@ std::optional<LabelLayout::Place> LabelLayout::place(double x, double y, double 
         const Box box = {cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2};
         if (!is_free(box, x, y, over_lines)) continue;
         taken_.push_back(box);
-        return Place{box, distance > kNear};
+        return Spot{box, distance > kNear};
       }
   }
   return std::nullopt;

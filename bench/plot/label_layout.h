@@ -22,13 +22,13 @@ class LabelLayout {
   void add_point(double x, double y, double radius);
   void add_line(double x0, double y0, double x1, double y1);
 
-  struct Place {
+  struct Spot {
     Box box;
     bool far;  // so far from its point that a line should lead there
   };
   // Returns nothing where there is no room within `farthest` pixels.
-  std::optional<Place> place(double x, double y, double width, double height, double farthest,
-                             bool may_cover_lines = true);
+  std::optional<Spot> place(double x, double y, double width, double height, double farthest,
+                            bool may_cover_lines = true);
 
  private:
   bool is_free(const Box& box, double x, double y, bool over_lines) const;

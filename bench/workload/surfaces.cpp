@@ -21,28 +21,28 @@ dvec3 normal_of(const scene::Cone& c, const dvec3& point) {
   return radial / distance - axis * ((c.apex_radius - c.base_radius) / height);
 }
 
-template <class Primitives, class Place>
-void put(std::vector<Place>& places, const Primitives& primitives, PrimitiveKind kind) {
-  for (std::uint32_t i = 0; i < primitives.size(); ++i) places[primitives[i].number] = {kind, i};
+template <class Primitives, class Entry>
+void put(std::vector<Entry>& entries, const Primitives& primitives, PrimitiveKind kind) {
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) entries[primitives[i].number] = {kind, i};
 }
 
 }  // namespace
 
-Surfaces::Surfaces(const scene::Scene& scene) : scene_(scene), places_(scene.primitive_count()) {
-  put(places_, scene.triangles, PrimitiveKind::triangle);
-  put(places_, scene.spheres, PrimitiveKind::sphere);
-  put(places_, scene.cones, PrimitiveKind::cone);
+Surfaces::Surfaces(const scene::Scene& scene) : scene_(scene), entries_(scene.primitive_count()) {
+  put(entries_, scene.triangles, PrimitiveKind::triangle);
+  put(entries_, scene.spheres, PrimitiveKind::sphere);
+  put(entries_, scene.cones, PrimitiveKind::cone);
 }
 
 dvec3 Surfaces::normal(std::uint32_t number, const dvec3& point) const {
-  const Place& place = places_.at(number);
-  switch (place.kind) {
+  const Entry& entry = entries_.at(number);
+  switch (entry.kind) {
     case PrimitiveKind::sphere:
-      return glm::normalize(point - scene_.spheres[place.index].center);
+      return glm::normalize(point - scene_.spheres[entry.index].center);
     case PrimitiveKind::cone:
-      return glm::normalize(normal_of(scene_.cones[place.index], point));
+      return glm::normalize(normal_of(scene_.cones[entry.index], point));
     default:
-      return glm::normalize(normal_of(scene_, scene_.triangles[place.index]));
+      return glm::normalize(normal_of(scene_, scene_.triangles[entry.index]));
   }
 }
 

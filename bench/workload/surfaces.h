@@ -17,13 +17,13 @@ class Surfaces {
   dvec3 normal(std::uint32_t number, const dvec3& point) const;
 
  private:
-  struct Place {
+  struct Entry {
     scene::PrimitiveKind kind;
     std::uint32_t index;
   };
 
   const scene::Scene& scene_;
-  std::vector<Place> places_;  // by number
+  std::vector<Entry> entries_;  // by number
 };
 
 }  // namespace kdray::bench
