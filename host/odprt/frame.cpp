@@ -61,7 +61,7 @@ void add_visits(const Crew& crew, const Division& division, Result& result) {
   }
 }
 
-// Of the stages' cycles, and of the time that the queues were busy.
+// Shares the time that the queues were busy out among the stages, by their cycles.
 void share_out_seconds(const Crew& crew, Result& result) {
   std::map<std::string, double> cycles;
   for (const auto& worker : crew.workers) worker->add_cycles(cycles);
@@ -90,7 +90,7 @@ void finish(Crew& crew, const Division& division, Result& result) {
   share_out_seconds(crew, result);
 }
 
-// A frame in work.
+// Renders one frame, band by band.
 class FrameRun {
  public:
   FrameRun(const Request& request, const Provision& provision, const Division& division, Crew& crew,
@@ -147,7 +147,7 @@ void FrameRun::render_uniform() {
   });
 }
 
-// As many at a time as the queues have room for.
+// Renders as many samples at a time as the queues' films have places for.
 void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
   constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN;
   const std::size_t n_runs = samples.size() / kWords, most = provision_.room.samples / KDRAY_SAMPLE_RUN;

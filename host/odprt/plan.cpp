@@ -14,12 +14,13 @@ using wavefront::capacity_for, wavefront::spawned_per_ray;
 
 constexpr std::uint32_t kBatch = 512;                     // large batches keep packets full
 constexpr std::uint32_t kWaves = 16, kLaunchWaves = 256;  // of a slice in a launch, and of all slices
-// Of all slices together: rays of a depth that may be alive, and those that an outbox holds for a part.
+// For all slices together, how many rays of a depth may be alive, and how many an outbox holds for a part.
 constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
 // Where parts come and go: rays that may wait in the host's memory, in a queue's pool, and in the outbox.
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 
-// Of a level: enough that no queue waits for what others hold, or a few of the buffers that were asked for.
+// How many rays of a level a slice may have: enough that no queue waits for what others hold, or a few of the
+// buffers that were asked for.
 std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uint32_t n_slices) {
   if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least);
   const std::uint32_t in_work = kBatch * (std::min(least, 4u) * r.n_queues + 2);
@@ -27,7 +28,7 @@ std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uin
 }
 
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
-// With shadow rays.
+// The bytes of a ray on its way and of two shadow rays.
 constexpr std::size_t kSentBytes = kRayBytes + 2 * KDRAY_SENT_SHADOW_FIELDS * sizeof(float);
 constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;  // of memory that is short: that part of it
 

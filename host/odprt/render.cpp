@@ -17,8 +17,8 @@ namespace kdray::odprt {
 namespace {
 
 constexpr std::size_t kSubtreesPerPart = 16, kLeastSubtrees = 64, kMostSubtrees = 512;
-// Less is replicated where primitives in several parts take a queue beyond that of the geometry, over its
-// equal share.
+// A queue may hold so much more than an equal share of the geometry. Less is replicated where primitives in
+// several parts would take it beyond that.
 constexpr double kMostSpare = 0.2;
 constexpr double kUnbalanced = 1.05;  // the busiest queue against the mean, from which on subtrees are moved
 constexpr std::uint32_t kCensusEvery = 16;
@@ -28,8 +28,8 @@ std::size_t subtrees_for(std::size_t n_parts) {
   return std::clamp(kSubtreesPerPart * n_parts, kLeastSubtrees, kMostSubtrees);
 }
 
-// With a limit nothing is held twice; where all parts stay, they keep to what has been provided for, and
-// where they come and go their size is checked.
+// With a limit nothing is held twice. Where all parts stay, they keep to what has been provided for; where
+// they come and go, their size is checked.
 DivideOptions options_for(const Provision& provision, const Request& request) {
   if (request.device_memory == 0) return {provision.n_parts, kSpare, kReplicated};
   return {provision.n_parts,
@@ -91,7 +91,7 @@ void DividedScene::weigh(std::span<const SubtreeUse> visits) {
   division_.reset();
 }
 
-// What the last frame showed: visits, and how long each queue took for its part's.
+// Learns from the last frame: from the visits, and from how long each queue took for its part's.
 void DividedScene::learn(const Result& result) {
   if (result.visits.size() != costs_.size() || !division_) return;
   std::vector<double> costs(costs_.size()), of_part(division_->parts.size());
@@ -104,9 +104,9 @@ void DividedScene::learn(const Result& result) {
     busiest = std::max(busiest, queue.busy_seconds);
     all += queue.busy_seconds;
   }
-  // Not worth its while where queues are about as busy.
+  // It isn't worth its while where queues are about as busy as each other.
   if (all == 0 || busiest * static_cast<double>(result.queues.size()) < kUnbalanced * all) return;
-  // In units of the counted costs, which are those of what every part holds too.
+  // Seconds are turned into units of the counted costs, which are those of what every part holds too.
   const double seconds_of_cost = all / std::max(std::accumulate(of_part.begin(), of_part.end(), 0.0), 1.0);
   for (std::size_t i = 0; i < costs.size(); ++i) {
     const std::uint32_t part = division_->part_of[i];

@@ -110,7 +110,7 @@ std::size_t Frame::n_working() const {
   }));
 }
 
-// On a thread of the queue's own.
+// Runs on a thread of the queue's own.
 void Frame::run(std::size_t number, Tiles& tiles, const Work& work) {
   Place& place = places_[number];
   try {
@@ -151,7 +151,7 @@ void Frame::wait(Tiles& tiles) {
 }
 
 void Frame::render_list(std::vector<layout::u32> list, const Work& work) {
-  // One queue takes all at once.
+  // A single queue takes everything at once.
   const Division division = places_.size() == 1 ? Division::contiguous : task_.division;
   Tiles tiles(std::move(list), division, places_.size());
   n_running_ = n_working();
