@@ -1,5 +1,5 @@
-#include "base/signals.h"
 #include "cli/command_line.h"
+#include "base/signals.h"
 
 #include <fmt/format.h>
 #include <malloc.h>

@@ -93,9 +93,9 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
       glm::normalize(glm::cross(forward, camera.up * scale_to_one(largest_component(camera.up))));
   const dvec3 up = glm::cross(right, forward);
   const bool parallel = camera.ortho_width > 0;
-  const double half_height =
-      parallel ? geometry.space.local_length(camera.ortho_width) / 2 * o.height / o.width
-               : std::tan(camera.vertical_fov / 2);
+  const double half_height = parallel
+                                 ? geometry.space.local_length(camera.ortho_width) / 2 * o.height / o.width
+                                 : std::tan(camera.vertical_fov / 2);
   const double half_width = half_height * o.width / o.height;
   // The outermost samples of the corner grid lie on the picture's edges; with one pixel there is only one
   // corner.

@@ -25,7 +25,7 @@ Prepared seen(const Prepared& prepared, const scene::View& view, const std::opti
 }
 
 Prepared coverage_of(const Prepared& prepared) {
-  constexpr std::uint32_t kOfMaterials =
+  constexpr flatten::Features kOfMaterials =
       KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE;
   Prepared white = prepared;
   for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1)};

@@ -35,8 +35,9 @@ void transform(const Similarity& m, Cone& c) {
 }
 
 ConeGeometry geometry_of(const Cone& c, const LocalSpace& space, std::uint32_t source) {
-  return {vec3(space.local(c.base)), vec3(space.local(c.apex)), static_cast<float>(space.local_length(c.base_radius)), static_cast<float>(space.local_length(c.apex_radius)),
-          source};
+  return {vec3(space.local(c.base)), vec3(space.local(c.apex)),
+          static_cast<float>(space.local_length(c.base_radius)),
+          static_cast<float>(space.local_length(c.apex_radius)), source};
 }
 
 bool has_area(const ConeGeometry& c) {

@@ -10,8 +10,8 @@ namespace kdray::primitives {
 const char* fault_of(const Disc& d) {
   if (!kdray::is_finite(d.center) || !std::isfinite(d.radius) || !(d.radius > 0))
     return "a disc needs a finite center and a radius above 0";
-  const double length = glm::length(d.normal);
-  return std::isfinite(length) && length > 0 ? nullptr : "a disc needs a normal with a direction";
+  const bool has_direction = kdray::is_finite(d.normal) && d.normal != dvec3(0);
+  return has_direction ? nullptr : "a disc needs a normal with a direction";
 }
 
 DBox bounds_of(const Disc& d) {
@@ -30,12 +30,8 @@ void transform(const Similarity& m, Disc& d) {
 }
 
 DiscGeometry geometry_of(const Disc& d, const LocalSpace& space, std::uint32_t source) {
-  return {space.point(d.center), vec3(glm::normalize(d.normal)), space.length(d.radius), source};
-}
-
-// The radius can be larger than what the bounds reach along any axis.
-bool is_finite(const DiscGeometry& d) {
-  return std::isfinite(d.radius);
+  return {vec3(space.local(d.center)), vec3(safe_normalize(d.normal)),
+          static_cast<float>(space.local_length(d.radius)), source};
 }
 
 bool has_area(const DiscGeometry& d) {

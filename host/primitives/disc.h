@@ -48,7 +48,6 @@ void transform(const Similarity& m, Disc& d);
 
 // In the tree.
 DiscGeometry geometry_of(const Disc& d, const LocalSpace& space, std::uint32_t source);
-bool is_finite(const DiscGeometry& d);
 bool has_area(const DiscGeometry& d);
 Box bounds_of(const DiscGeometry& d);
 Bounds clip(const DiscGeometry& d, const Bounds& region);

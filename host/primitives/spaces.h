@@ -1,5 +1,5 @@
-// What    The moves that leave a shape the shape that it is: placements in a file. (math/local_space.h has the space
-//         of the tree and the kernels.)
+// What    The moves that leave a shape the shape that it is: placements in a file. (math/local_space.h has
+//         the space of the tree and the kernels.)
 #pragma once
 
 #include "math/local_space.h"

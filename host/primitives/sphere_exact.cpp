@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "primitives/sphere.h"
@@ -5,7 +6,8 @@
 namespace kdray::primitives {
 
 dvec3 place_on(const SphereGeometry& s, double share, const dvec3& direction) {
-  return dvec3(s.center) + share * s.radius * direction;
+  const double depth = std::min(2 * share, 1.0);  // half of them on the surface
+  return dvec3(s.center) + depth * s.radius * direction;
 }
 
 std::optional<double> sure_hit(const Line& line, const SphereGeometry& s, double margin) {

@@ -143,7 +143,7 @@ dvec3 Aims::place_on(std::size_t target) {
   dvec3 place;
   scene::visit_primitive(g, target, [&](auto kind, std::uint32_t index) {
     if constexpr (decltype(kind)::kIsShape) {
-      const double share = random_.below(2) == 0 ? 1.0 : random_.unit();
+      const double share = random_.unit();
       place = primitives::place_on(decltype(kind)::of(g)[index], share, random_.direction());
     }
   });

@@ -28,13 +28,14 @@ Ray ray_from(const vec3& o, const vec3& d) {
 // From around the scene and from within, at places on primitives, in every direction and along the axes.
 template <class Kind>
 std::vector<Ray> rays_for(const scene::Scene& s, std::size_t n) {
-  Random random(kSeed);
+  Random random(kSeed + 1);  // another than the scene's, or rays would begin where primitives are
   const scene::Geometry g = scene::make_geometry(s);
   const auto& all = Kind::of(g);
   std::vector<Ray> rays;
   while (rays.size() < n) {
     const vec3 origin(random.in_cube(random.below(2) == 0 ? 1 : 3));
-    const vec3 target(dvec3(Samples<Kind>::point(all[random.below(all.size())], random)));
+    const dvec3 local(Samples<Kind>::point(all[random.below(all.size())], random));
+    const vec3 target(g.space.world(local));
     vec3 d = random.below(4) == 0 ? vec3(random.axis_or_any()) : target - origin;
     if (d == vec3(0)) continue;
     rays.push_back(ray_from(origin, d));
@@ -79,8 +80,15 @@ void expect_as_oracle(const scene::Scene& s, const std::vector<Ray>& rays, const
     const oracle::Ray ray = exact(rays[i]);
     const oracle::Hit wide = world.closest(ray, grow), narrow = world.closest(ray, -grow);
     if (wide.primitive != narrow.primitive) continue;
-    // Grazing hits move by the square root of what the surface does; these two are as far apart.
-    const double apart = wide.found() ? std::abs(wide.t - narrow.t) : 0;
+    // Where a ray grazes, its hit moves by more than the surface does: over the sine of the angle, or, where
+    // the surface is curved, as far as these two are apart.
+    double apart = 0;
+    if (narrow.found()) {
+      const double sine =
+          std::abs(glm::dot(world.surface(ray, narrow).outward, glm::normalize(ray.direction)));
+      if (sine < 1e-3) continue;
+      apart = std::abs(wide.t - narrow.t) + tolerance / sine;
+    }
     ++sure;
     const bool found =
         hits[i].primitive == narrow.primitive &&
@@ -90,7 +98,7 @@ void expect_as_oracle(const scene::Scene& s, const std::vector<Ray>& rays, const
                     << ", the oracle's " << narrow.t << " of " << narrow.primitive;
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(sure, static_cast<int>(rays.size() * 9 / 10));
+  EXPECT_GT(sure, static_cast<int>(rays.size() * 3 / 4));  // many aim at rims and edges
 }
 
 constexpr Traversal kWalks[] = {Traversal::wide, Traversal::packet, Traversal::batch, Traversal::automatic};

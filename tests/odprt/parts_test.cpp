@@ -20,6 +20,9 @@
 namespace kdray::test {
 namespace {
 
+using odprt::blocks_of;
+using odprt::kBlockRows;
+
 constexpr std::uint64_t kPartsSeed = 23;
 std::uint32_t number_of(const flatten::FlatScene& scene, std::uint32_t kind, std::uint32_t index) {
   return primitives::with_kind(kind, [&](auto k) { return decltype(k)::of(scene)[index].number; });
