@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -18,6 +19,9 @@ constexpr std::array<std::pair<const char*, const char*>, 4> kStart = {{{"start"
                                                                         {"compile", "compiling kernels"},
                                                                         {"keep_programs", "keeping them"}}};
 constexpr double kCold = 1, kWorthTelling = 0.05;  // seconds
+
+constexpr double kGlassWorthTelling = 0.002;  // of the eye rays
+constexpr double kDeepest = 64;               // that --depth may be
 
 const Json& part(const Json& stats, const char* name) {
   static const Json kNothing = Json::object();
@@ -162,6 +166,16 @@ std::string cold_start_line(const Json& stats) {
                      seconds_in_words(sum), fmt::join(parts, ", "));
 }
 
+std::string glass_line(const Json& stats) {
+  const Json& rays = part(stats, "rays");
+  const double depth = number(part(stats, "frame"), "depth"), eye_rays = number(rays, "primary");
+  const double cut = number(part(rays, "skipped"), "too_deep_in_glass");
+  if (!(cut > kGlassWorthTelling * eye_rays) || depth >= kDeepest) return {};
+  return fmt::format(
+      "glass behind glass is black where {} rays would have gone deeper than --depth {}; try --depth {}",
+      in_words(cut), depth, std::min(2 * depth, kDeepest));
+}
+
 std::string missed_target_line(const Json& stats) {
   const Json& samples = part(stats, "samples");
   const bool missed = samples.value("mode", "") == "adaptive" && samples.value("stopped", "") != "target";
@@ -171,6 +185,7 @@ std::string missed_target_line(const Json& stats) {
 void print_render_summary(const Json& stats, std::size_t nan_values, bool verbose) {
   say(render_line(stats));
   say_if_any(cold_start_line(stats));
+  say_if_any(glass_line(stats));
   if (verbose)
     print_details(stats);
   else

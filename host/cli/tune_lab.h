@@ -17,7 +17,8 @@ namespace kdray::cli {
 
 class TuneScene {
  public:
-  // A file, or a scene that is built in (generate/built_in.h). `check` sees it before anything is done with it.
+  // A file, or a scene that is built in (generate/built_in.h). `check` sees it before anything is done with
+  // it.
   TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render,
             const std::function<void(const scene::Scene&)>& check);
 

@@ -1,6 +1,6 @@
 // What    A prepared scene seen otherwise: by another camera, before another background, or only for what it
 //         covers. Trees and primitives are shared with the scene that it was made of.
-// Errors  As scene/view.h.
+// Errors  kdray::Error, ErrorCode::usage, as scene/view.h says.
 #pragma once
 
 #include <optional>

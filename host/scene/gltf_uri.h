@@ -11,7 +11,7 @@ namespace kdray::scene::gltf {
 // The bytes of "data:[type];base64,...", or nothing when it is not one.
 std::optional<std::string> decode_data_uri(std::string_view uri);
 
-// With each "%20" as the character that it stands for.
+// The text with each "%20" replaced by the character that it stands for.
 std::string percent_decoded(std::string_view text);
 
 // The path a relative URI names, percent-decoded; nothing for absolute paths, other schemes (http:), and what

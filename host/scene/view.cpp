@@ -22,7 +22,7 @@ const Camera& numbered_camera(const Scene& scene, int number) {
               "there is no camera " + std::to_string(number) + ": " + scene.name + " " + there);
 }
 
-// Of a scene of nothing any width shows all.
+// The width that shows all; any width does where there is nothing.
 double width_of(const DBox& box, const Camera& camera, double aspect) {
   const double width = width_to_show(box, camera, aspect);
   return width > 0 ? width : 1;

@@ -23,7 +23,8 @@
   X(skipped_open, n_skipped_open, "light_in_the_open")             \
   X(skipped_background, n_skipped_background, "of_the_background") \
   X(skipped_weight, n_skipped_weight, "below_min_weight")          \
-  X(skipped_depth, n_skipped_depth, "too_deep")
+  X(skipped_depth, n_skipped_depth, "too_deep")                    \
+  X(skipped_glass, n_skipped_glass, "too_deep_in_glass")
 // What a correct render never counts.
 #define KDRAY_COUNTERS_OF_FAULTS(X) \
   X(invalid, n_invalid, "invalid")  \

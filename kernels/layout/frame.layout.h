@@ -9,6 +9,8 @@
 #define KDRAY_FILM_MAX 1048576.0f
 
 #define KDRAY_MAX_DEPTH 64
+// The weight from which on a refracted ray that is too deep counts as one that matters: a tenth of its pixel.
+#define KDRAY_GLASS_MATTERS 0.1f
 #define KDRAY_MAX_LIGHT_BATCH 8
 
 KDRAY_LAYOUT_BEGIN
@@ -90,6 +92,7 @@ typedef struct Slice {
   u64 n_skipped_background;  // secondary rays that surely meet nothing
   u64 n_skipped_weight;      // secondary rays below the spawn threshold
   u64 n_skipped_depth;       // secondary rays deeper than the limit
+  u64 n_skipped_glass;       // ... of them those through transmitting surfaces that matter to their pixel
   u64 n_invalid;             // rays whose traversal failed
   u64 n_nan;                 // contributions that were not numbers
   u64 n_pool_overflow;       // spawned rays that found no place: a broken bound
@@ -97,7 +100,7 @@ typedef struct Slice {
   // For closest hits and for any, by depth: how often the distance that a packet's rays may start apart was
   // halved (traverse/learn.clh).
   u8 halvings[2][KDRAY_MAX_DEPTH + 1];
-  u8 pad2[62];  // no two slices share a line of a cache
+  u8 pad2[54];  // no two slices share a line of a cache
 } Slice;
 KDRAY_ASSERT_SIZE(Slice, 640)
 KDRAY_ASSERT_OFFSET(Slice, n_primary, 296)

@@ -70,6 +70,39 @@ TEST(RenderCommand, TheSummaryIsOneLineAndTheRestIsToldWhenAskedFor) {
   EXPECT_TRUE(fails_with(kdray({"render", scene, "-v", "-q"}), 2, "--quiet"));
 }
 
+// Six panes of clear glass before a white wall: an eye ray crosses them in depths 1 to 6.
+TEST(RenderCommand, StackedGlassIsToldWhichDepthItNeeds) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  std::string text = "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 30\nresolution 32 32\nf 1 1 1 0 0 1 0.9 1\n";
+  for (int z = 1; z <= 6; ++z) {
+    const std::string at = " " + std::to_string(z) + "\n";
+    text += "p 4\n-9 -9" + at + "9 -9" + at + "9 9" + at + "-9 9" + at;
+  }
+  const fs::path scene =
+      folder.put("panes.nff", text + "f 1 1 1 1 0 1 0 1\np 4\n-9 -9 0\n9 -9 0\n9 9 0\n-9 9 0\n");
+  const auto hint = [&](const fs::path& file, const char* depth) {
+    const Outcome run = kdray({"render", file, "-o", folder / "a.png", "--depth", depth});
+    EXPECT_TRUE(succeeds(run));
+    const std::size_t at = run.err.find("try --depth ");
+    return at == std::string::npos ? "" : run.err.substr(at, run.err.find('\n', at) - at);
+  };
+  EXPECT_EQ(hint(scene, "4"), "try --depth 8");
+  EXPECT_EQ(hint(scene, "7"), "");
+  // A ball's inner reflections are cut off too, but don't matter.
+  const fs::path ball =
+      folder.put("ball.nff",
+                 "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 30\nresolution 32 32\nb 0.5 0.5 0.5\n"
+                 "f 1 1 1 0 0.05 1 0.9 1.5\ns 0 0 0 1\n");
+  EXPECT_EQ(hint(ball, "4"), "");
+  // Mirrors are no glass.
+  const fs::path mirrors =
+      folder.put("mirrors.nff",
+                 "v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 30\nresolution 32 32\nf 1 1 1 0 0.9 1 0 1\n"
+                 "p 4\n-9 -9 0\n9 -9 0\n9 9 0\n-9 9 0\np 4\n-9 -9 2\n9 -9 2\n9 9 2\n-9 9 2\n");
+  EXPECT_EQ(hint(mirrors, "4"), "");
+}
+
 TEST(RenderCommand, QuietIsSilent) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
