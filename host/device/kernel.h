@@ -91,7 +91,7 @@ class Kernel : public AnyKernel {
 #define KDRAY_TYPE_IO(type) cl::Buffer
 #define KDRAY_TYPE_CONSTANT(type) cl::Buffer
 #define KDRAY_TYPE_VALUE(type) type  // as OpenCL C names it; kdray::kernels has the names
-// As the kernel's parameter is spelt.
+// How the kernel's parameter is spelt.
 #define KDRAY_SPELT(access, type, name) KDRAY_SPELT_##access(name),
 #define KDRAY_SPELT_IN(name) "in_" #name
 #define KDRAY_SPELT_OUT(name) "out_" #name

@@ -30,9 +30,9 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       cells_(make(directory.size_bytes(), "the directory")),
       grant_buffer_(make(plan.n_slices * sizeof(layout::Grant), "the slices' grants")),
       traffic_buffer_(make(plan.n_slices * sizeof(layout::Traffic), "the slices' accounts")),
-      shadow_pool_(make(
-          plan.n_slices * KDRAY_TRAVEL_SHADOW_FIELDS * (plan.shadow_pool + 2 * KDRAY_LANES) * sizeof(float),
-          "the waiting shadow rays")),
+      shadow_pool_(make(std::size_t{plan.n_slices} * KDRAY_TRAVEL_SHADOW_FIELDS *
+                            (plan.shadow_pool + 2 * KDRAY_LANES) * sizeof(float),
+                        "the waiting shadow rays")),
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
       inbox_(context, plan.inbox),
       wave_(programs.kernel<kernels::TravelWave>(features | KDRAY_FEATURE_NUMBERS, traversal)),

@@ -86,7 +86,7 @@ class Worker {
   // Takes everything that waits out of the pools.
   void stash(Mail& mail);
 
-  // As the last launch left them.
+  // What the last launch left.
   std::span<const layout::Slice> slices() const { return slices_; }
   std::span<const layout::Traffic> traffic() const { return traffic_; }
   std::uint32_t tiles_left() const;  // not begun

@@ -118,7 +118,7 @@ class Wavefront {
   // doesn't count them.
   std::vector<layout::u64> tile_cycles();
 
-  // Of the lists that were finished.
+  // What was counted over the lists that are finished.
   const Counters& counters() const { return counters_; }
   double busy_seconds() const { return busy_seconds_; }  // of all launches that have ended
   std::size_t device_bytes() const { return buffers_.bytes + tile_cycle_bytes(); }

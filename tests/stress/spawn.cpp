@@ -62,7 +62,7 @@ __kernel void spawn(KDRAY_PARAMETERS(SPAWN_ARGUMENTS)) {
   const lanes16 hit = hits.ref < KDRAY_REF_INVALID;
   Surface s;
   surfaces_at(&arrays, o, d, &hits, hit, &s);
-  // As shade.clh has it.
+  // The same as in shade.clh.
   const float16 index = gather(&in->index), eta = s.inside ? index : 1.0f / index;
   Real3x16 refracted;
   const lanes16 refracts = refracted_direction(d, s.shading, s.normal, eta, &refracted);

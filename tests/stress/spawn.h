@@ -11,7 +11,7 @@
 #include "prepare/prepared.h"
 #include "wavefront/scene_buffers.h"
 
-// As kSource of spawn.cpp has it.
+// The arguments of the kernel in spawn.cpp, whose source has this list as well.
 #define SPAWN_ARGUMENTS(F, X) \
   F(VALUE, u32, n)            \
   KDRAY_SURFACE_ARRAYS(X)     \
