@@ -76,6 +76,11 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
   load_seconds_ = read.load_seconds();
   tell(read.model());  // without a device there is no use in building a tree
   scene_.emplace(read, tree);
+  // What the tree was built of is known to be in range, and to fit, only now.
+  if (!quiet) {
+    const std::vector<std::string>& warnings = scene_->settings().warnings;
+    for (std::size_t i = read.model().warnings.size(); i < warnings.size(); ++i) say(warnings[i]);
+  }
 }
 
 void OpenedScene::keep() {

@@ -21,6 +21,11 @@ void add_triangle(Scene& scene, std::span<const std::uint32_t> corners,
 
 }  // namespace
 
+std::string polygon_warning(std::size_t n_corners) {
+  return "a polygon of " + std::to_string(n_corners) +
+         " corners crosses itself too often to be cut up: part of it is a fan";
+}
+
 void add_polygon(Scene& scene, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> normals,
                  std::uint32_t material) {
   if (corners.size() < 3) return;
@@ -28,7 +33,10 @@ void add_polygon(Scene& scene, std::span<const std::uint32_t> corners, std::span
   std::vector<dvec3> points;
   points.reserve(corners.size());
   for (const std::uint32_t c : corners) points.push_back(scene.vertices[c]);
-  for (const auto& pick : triangulate(points)) add_triangle(scene, corners, normals, pick, material);
+  bool finished = true;
+  for (const auto& pick : triangulate(points, &finished))
+    add_triangle(scene, corners, normals, pick, material);
+  if (!finished) scene.warnings.push_back(polygon_warning(points.size()));
 }
 
 }  // namespace kdray::scene

@@ -5,6 +5,7 @@
 //         headers name.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021; KHR_lights_punctual.
 #include <glm/gtc/quaternion.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,8 @@ class Reader {
     visited_.assign(document_.entries("nodes").size(), false);
     read_nodes();
     if (!document_.entries("animations").empty()) meshes_.warn("animations are left out");
+    if (n_hidden_ > 0)
+      meshes_.warn(std::to_string(n_hidden_) + " hidden nodes (KHR_node_visibility) are left out");
     if (scene_.triangles.empty()) meshes_.warn("no triangles");
     meshes_.finish();
     expose(scene_);
@@ -76,6 +79,10 @@ class Reader {
     while (!open.empty()) {
       const Visit visit = open.back();
       open.pop_back();
+      if (is_hidden(visit.node)) {
+        ++n_hidden_;
+        continue;
+      }
       const dmat4 to_world = visit.to_parent * local_transform(visit.node);
       read_node(visit.node, to_world);
       if (const auto children = visit.node.find("children")) push(children->elements(), to_world, open);
@@ -94,15 +101,35 @@ class Reader {
     }
   }
 
-  // The nodes of the default scene, or of the first one. A file without scenes is a library: nothing is
-  // shown.
+  // The nodes of the default scene, or of the first one. Of a file without scenes, which leaves it to the
+  // viewer what to show, all nodes that are no other's children, as other viewers do.
   std::vector<JsonNode> roots() {
     const auto& scenes = document_.entries("scenes");
     const auto index = document_.root().find("scene");
-    if (!index && scenes.empty()) return {};
+    if (!index && scenes.empty()) return nodes_without_parent();
     const JsonNode& scene = index ? document_.entry("scenes", *index) : scenes.front();
     const auto nodes = scene.find("nodes");
     return nodes ? nodes->elements() : std::vector<JsonNode>{};
+  }
+
+  // Their numbers, as a scene has them.
+  std::vector<JsonNode> nodes_without_parent() {
+    const auto& nodes = document_.entries("nodes");
+    std::vector<bool> is_child(nodes.size(), false);
+    for (const JsonNode& node : nodes)
+      if (const auto children = node.find("children"))
+        for (const JsonNode& child : children->elements())
+          if (const std::uint64_t i = whole(child); i < nodes.size()) is_child[i] = true;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (!is_child[i]) root_numbers_.push_back(i);
+    return JsonNode(root_numbers_, document_.file()).elements();
+  }
+
+  // KHR_node_visibility: a node that is not visible hides all below it.
+  static bool is_hidden(const JsonNode& node) {
+    const auto visibility = extension(node, "KHR_node_visibility");
+    const auto visible = visibility ? visibility->find("visible") : std::nullopt;
+    return visible && !visible->boolean();
   }
 
   void read_node(const JsonNode& node, const dmat4& to_world) {
@@ -133,7 +160,9 @@ class Reader {
   Scene scene_;
   MeshReader meshes_;
   std::vector<bool> visited_;
-  std::vector<JsonNode> lights_;  // of the file, once a node asks for one
+  std::size_t n_hidden_ = 0;
+  nlohmann::json root_numbers_ = nlohmann::json::array();  // of a file without scenes
+  std::vector<JsonNode> lights_;                           // of the file, once a node asks for one
 };
 
 }  // namespace

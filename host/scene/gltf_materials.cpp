@@ -134,9 +134,31 @@ bool has_picture(const JsonNode& pbr) {
   return false;
 }
 
+// Extensions that change how a surface looks and that no term of Whitted's stands for; each does nothing
+// while its factor is 0.
+struct LayerExtension {
+  std::string_view name, factor;
+  double otherwise;  // the factor when it is not given
+};
+constexpr LayerExtension kLayers[] = {{"KHR_materials_clearcoat", "clearcoatFactor", 0},
+                                      {"KHR_materials_iridescence", "iridescenceFactor", 0},
+                                      {"KHR_materials_anisotropy", "anisotropyStrength", 0},
+                                      {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0},
+                                      {"KHR_materials_dispersion", "dispersion", 0},
+                                      {"KHR_materials_sheen", "", 1},
+                                      {"KHR_materials_specular", "", 1}};
+
 }  // namespace
 
+void Materials::count_left_out(const JsonNode& node) {
+  for (const LayerExtension& layer : kLayers)
+    if (const auto found = extension(node, layer.name))
+      left_out_[std::string(layer.name)] += number_or(*found, layer.factor, layer.otherwise) != 0;
+  if (const auto mode = node.find("alphaMode")) left_out_["alphaMode MASK"] += mode->string() == "MASK";
+}
+
 Material Materials::read(const JsonNode& node) {
+  count_left_out(node);
   Surface s;
   const auto pbr = node.find("pbrMetallicRoughness");
   if (pbr) read_metallic_roughness(*pbr, s);
@@ -158,6 +180,10 @@ std::uint32_t Materials::number_of(const JsonNode& primitive) {
 }
 
 void Materials::warn() {
+  for (const auto& [what, n] : left_out_)
+    if (n > 0)
+      scene_.warnings.push_back(document_.file() + ": " + what + " of " + std::to_string(n) +
+                                (n == 1 ? " material" : " materials") + " is left out");
   if (!any_picture_) return;
   scene_.warnings.push_back(document_.file() +
                             ": pictures (textures) are left out: the colours of the factors are used");

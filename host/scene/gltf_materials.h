@@ -24,11 +24,13 @@ class Materials {
 
  private:
   Material read(const JsonNode& node);
+  void count_left_out(const JsonNode& node);
 
   Document& document_;
   Scene& scene_;
   std::map<std::uint64_t, std::uint32_t> numbers_;  // by the file's index; kDefault for no material
   bool any_picture_ = false;
+  std::map<std::string, std::size_t> left_out_;  // number of materials by what they ask for in vain
 };
 
 }  // namespace kdray::scene::gltf

@@ -31,7 +31,7 @@ inline constexpr std::string_view directional_light[] = {"type", "direction", "c
 inline constexpr std::string_view spot_light[] = {"type",  "position", "direction",   "inner",
                                                   "outer", "color",    "attenuation", "range"};
 inline constexpr std::string_view mesh[] = {"type",   "file",  "material", "translate",
-                                            "rotate", "scale", "matrix"};
+                                            "rotate", "scale", "matrix",   "smooth"};
 inline constexpr std::string_view triangles[] = {"type",      "vertices", "faces", "normals", "material",
                                                  "translate", "rotate",   "scale", "matrix"};
 // Of a shape: its fields', between those that all have.

@@ -5,9 +5,11 @@
 #include <tuple>
 #include <utility>
 
+#include "scene/add_polygon.h"
 #include "scene/check_scene.h"
 #include "scene/import.h"
 #include "scene/read_file.h"
+#include "scene/smooth_normals.h"
 #include "scene/transform.h"
 #include "scene/triangulate.h"
 
@@ -166,6 +168,7 @@ const Scene& JsonObjects::mesh(const JsonNode& file) {
 void JsonObjects::read_mesh(const JsonNode& object) {
   object.expect_keys(json_keys::kMesh);
   Scene part = mesh(object["file"]);
+  if (const auto smooth = object.find("smooth")) smooth_normals(part, smooth->number_between(0, 180));
   place(object, part);
   if (object.find("material")) {
     part.materials = {material_of(object)};
@@ -196,7 +199,10 @@ void JsonObjects::read_triangles(const JsonNode& object) {
   for (const auto& face : object["faces"].faces(part.vertices.size())) {
     corners.clear();
     for (const std::uint32_t v : face) corners.push_back(part.vertices[v]);
-    for (const auto& corner : triangulate(corners)) {
+    bool finished = true;
+    const auto cut = triangulate(corners, &finished);
+    if (!finished) scene_.warnings.push_back(polygon_warning(corners.size()));
+    for (const auto& corner : cut) {
       Triangle t;
       for (std::size_t i = 0; i < 3; ++i) t.vertex[i] = face[corner[i]];
       if (normals) t.normal = t.vertex;

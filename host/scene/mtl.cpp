@@ -44,6 +44,7 @@ class MtlReader {
     if (keyword == "illum") m.illum = static_cast<int>(std::clamp(number(keyword), 0.0f, 10.0f));
     if (keyword == "map_Kd") m.has_picture = true;
     if (names_picture(keyword)) note_picture(in_.rest());
+    if (means_nothing(keyword)) note_left_out(keyword, m);
   }
 
   static bool names_picture(std::string_view keyword) {
@@ -59,6 +60,27 @@ class MtlReader {
       if (gap == std::string_view::npos) return;
       rest.remove_prefix(std::min(rest.find_first_not_of(" \t", gap), rest.size()));
     }
+  }
+
+  // What would change how the surface looks: other pictures than map_Kd, and terms of physically based
+  // shading.
+  static bool means_nothing(std::string_view keyword) {
+    constexpr std::string_view kLeftOut[] = {"map_d",    "map_Ks", "map_Ns", "map_Ke",   "map_Tr", "map_bump",
+                                             "map_Bump", "bump",   "norm",   "disp",     "refl",   "decal",
+                                             "map_Pr",   "map_Pm", "map_Ps", "map_refl", "Pr",     "Pm",
+                                             "Ps",       "Pc",     "Pcr",    "aniso",    "anisor"};
+    return std::ranges::find(kLeftOut, keyword) != std::end(kLeftOut);
+  }
+
+  // A factor of 0 is how exporters say that there is none.
+  void note_left_out(std::string_view keyword, MtlMaterial& m) {
+    const std::string_view first = in_.word();
+    double value = 1;
+    const bool is_number = read_number(first.data(), first.data() + first.size(), value);
+    if ((is_number && value == 0 && keyword != "Pr") ||
+        std::ranges::find(m.left_out, keyword) != m.left_out.end())
+      return;
+    m.left_out.emplace_back(keyword);
   }
 
   // Brought into float's range, which is all that materials have.

@@ -22,7 +22,8 @@ struct MtlMaterial {
   std::optional<float> tr;        // 1 - d, as some exporters write it; `d` wins
   float ns = 0, ni = 1;
   std::optional<int> illum;
-  bool has_picture = false;  // map_Kd
+  bool has_picture = false;           // map_Kd
+  std::vector<std::string> left_out;  // statements that nothing is made of
 };
 
 // Adds the file's materials to `materials`, its warnings to `warnings`.

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "scene/add_polygon.h"
 #include "scene/check_scene.h"
 #include "scene/importers.h"
 #include "scene/material_table.h"
@@ -230,7 +231,9 @@ class NffReader {
       scene_.triangles.push_back(t);
     };
     if (n == 3) return add({0, 1, 2});  // most are, and need no list
-    for (const auto& corner : triangulate({scene_.vertices.data() + first_vertex, n})) add(corner);
+    bool finished = true;
+    for (const auto& corner : triangulate({scene_.vertices.data() + first_vertex, n}, &finished)) add(corner);
+    if (!finished) warn(polygon_warning(n));
   }
 
   void read_view() {

@@ -1,6 +1,6 @@
-// What    Wavefront OBJ: vertices, normals, polygons, and the materials of its MTL files. Groups, texture
-//         coordinates and vertex colours mean nothing to a Whitted ray tracer and are skipped; points, lines
-//         and free-form surfaces are left out with a warning.
+// What    Wavefront OBJ: vertices, normals, polygons, and the materials of its MTL files. Groups and texture
+//         coordinates mean nothing to a Whitted ray tracer and are skipped; vertex colours, points, lines and
+//         free-form surfaces are left out with a warning.
 // Shape   Materials are looked up after the last line, so `mtllib` may stand anywhere.
 // Errors  File and line of the word at fault. A normal that doesn't exist makes its face flat (a warning); a
 //         vertex that doesn't exist refuses the file.
@@ -90,6 +90,7 @@ class ObjReader {
   void read_vertex() {
     vertex_reserve_.reserve(scene_.vertices, in_.bytes_left());
     scene_.vertices.push_back(three_numbers("a vertex of three numbers"));
+    if (!in_.word().empty() && !in_.word().empty()) colored_vertices_.add(in_.line());  // more than a weight
   }
 
   void read_normal() {
@@ -175,6 +176,7 @@ class ObjReader {
     warn(small_faces_, "faces with fewer than 3 corners are left out");
     warn(missing_normals_, "corners name a normal that does not exist: those faces are shaded flat");
     warn(points_and_lines_, "points and lines are left out: they have no surface");
+    warn(colored_vertices_, "vertices have colours, which are left out: a material holds for a whole face");
     warn(free_forms_, "free-form curves and surfaces are left out: only polygons are read");
     warn(unknown_, "lines that are no OBJ statements are left out");
     if (scene_.triangles.empty()) scene_.warnings.push_back(in_.file() + ": no faces");
@@ -185,7 +187,7 @@ class ObjReader {
   ObjMaterials materials_;
   ReserveAhead vertex_reserve_, normal_reserve_, triangle_reserve_;
   std::vector<std::uint32_t> corners_, normals_;
-  LeftOut small_faces_, missing_normals_, points_and_lines_, free_forms_, unknown_;
+  LeftOut small_faces_, missing_normals_, points_and_lines_, free_forms_, unknown_, colored_vertices_;
   std::size_t n_statements_ = 0;
 };
 

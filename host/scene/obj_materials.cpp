@@ -1,6 +1,7 @@
 #include "scene/obj_materials.h"
 
 #include <algorithm>
+#include <map>
 #include <system_error>
 
 #include "scene/files_read.h"
@@ -100,11 +101,14 @@ void ObjMaterials::finish() {
   std::size_t n_missing = 0;
   std::string first_missing;
   bool any_picture = false;
+  std::map<std::string, std::size_t> left_out;  // materials, by the statement
   for (const std::string& name : names_) {
     const auto found = library.find(name);
     const MtlMaterial* mtl = found == library.end() ? nullptr : found->second;
     scene_.materials.push_back(mtl ? whitted_from_mtl(*mtl) : mesh_material());
     any_picture = any_picture || (mtl && mtl->has_picture);
+    if (mtl)
+      for (const std::string& what : mtl->left_out) ++left_out[what];
     if (!mtl && !name.empty() && n_missing++ == 0) first_missing = name;
   }
   if (n_missing > 0 && !read_files_.empty()) {
@@ -112,6 +116,9 @@ void ObjMaterials::finish() {
                               (n_missing > 1 ? " and " + std::to_string(n_missing - 1) + " others" : "") +
                               " in its MTL files: grey instead");
   }
+  for (const auto& [what, n] : left_out)
+    scene_.warnings.push_back(file_.string() + ": " + what + " of " + std::to_string(n) +
+                              (n == 1 ? " material" : " materials") + " is left out");
   if (any_picture) {
     scene_.warnings.push_back(file_.string() +
                               ": pictures (map_Kd) are left out: the colours of Kd are used");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/add_polygon.h"
 #include "scene/mesh_material.h"
 #include "scene/settle_normals.h"
 #include "scene/triangulate.h"
@@ -49,7 +50,10 @@ void Mesh::cut_polygons() {
     points.clear();
     for (const std::uint32_t c : corners) points.push_back(scene_.vertices[c]);
     Triangle* out = scene_.triangles.data() + polygon.first_triangle;
-    for (const auto& pick : triangulate(points)) {
+    bool finished = true;
+    const auto cut = triangulate(points, &finished);
+    if (!finished) scene_.warnings.push_back(polygon_warning(points.size()));
+    for (const auto& pick : cut) {
       out->vertex = {corners[pick[0]], corners[pick[1]], corners[pick[2]]};
       ++out;
     }

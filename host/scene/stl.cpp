@@ -1,5 +1,5 @@
 // What    STL, ascii and binary. Facets are flat: the normals in the file are ignored (many files have them
-//         wrong), as are colours in the attribute bytes.
+//         wrong). Colours, in the header or the attribute bytes, are left out, with a warning.
 // Shape   A binary file is told by its size, which its facet count gives exactly: many binary files begin
 //         with the word "solid", too.
 // Errors  ascii: file and line; binary: file and facet.
@@ -45,7 +45,9 @@ bool same_word(std::string_view a, std::string_view b) {
 
 bool looks_like_text(std::string_view text) {
   const std::string_view start = text.substr(0, 1024);
-  const std::size_t first = start.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  std::size_t first = start.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  while (first != std::string_view::npos && start[first] == '#')  // a comment
+    first = start.find_first_not_of(" \t\r\n", start.find_first_of("\r\n", first));
   return first != std::string_view::npos && same_word(start.substr(first, 5), "solid") &&
          start.find('\0') == std::string_view::npos;
 }
@@ -78,10 +80,19 @@ class AsciiReader {
     in_.word(wanted);
   }
 
-  // A solid's name: whatever is left of the line.
+  // A solid's name: whatever is left of the line, or, in a file that is one line, up to what can't be a name.
   void skip_line() {
     const std::uint32_t line = in_.line();
-    while (!in_.at_end() && in_.line() == line) in_.word("a name");
+    while (!in_.at_end() && in_.line() == line && !begins_statement()) in_.word("a name");
+  }
+
+  bool begins_statement() {
+    const std::string_view word = in_.peek();
+    if (same_word(word, "endsolid")) return true;
+    if (!same_word(word, "facet")) return false;
+    TextScanner ahead = in_;
+    ahead.word("facet");
+    return same_word(ahead.peek(), "normal");
   }
 
   void read_facet() {
@@ -109,6 +120,16 @@ class AsciiReader {
   std::vector<std::uint32_t> corners_;
 };
 
+// Facets that say that they have a colour of their own. By VisCAM's convention the highest bit of the
+// attribute says so; by Materialise's, whose header has a colour for all, that the facet has that one.
+std::size_t colored_facets(std::string_view text, std::size_t n) {
+  if (text.substr(0, kHeaderBytes - 4).find("COLOR=") != std::string_view::npos) return n;
+  std::size_t colored = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    colored += (static_cast<unsigned char>(text[kHeaderBytes + (i + 1) * kFacetBytes - 1]) & 0x80) != 0;
+  return colored;
+}
+
 Scene read_binary(std::string_view text, const std::string& file) {
   if (text.size() < kHeaderBytes) {
     throw input_error(file, 0, "too short for an STL file", "its header takes 84 bytes");
@@ -126,6 +147,8 @@ Scene read_binary(std::string_view text, const std::string& file) {
     scene.warnings.push_back(file + ": " + std::to_string(text.size() - size) +
                              " bytes after the last facet are left out");
   }
+  if (const std::size_t colored = colored_facets(text, n); colored > 0)
+    scene.warnings.push_back(file + ": the colours of " + std::to_string(colored) + " facets are left out");
   scene.vertices.reserve(3 * n);
   scene.triangles.reserve(n);
   for (std::size_t i = 0; i < n; ++i) {

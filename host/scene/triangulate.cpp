@@ -1,8 +1,10 @@
 #include "scene/triangulate.h"
 
-#include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "scene/number_set.h"
+#include "scene/point_tree.h"
 #include "scene/predicates.h"
 
 namespace kdray::scene {
@@ -53,9 +55,33 @@ bool fan_fits(const std::vector<dvec2>& p) {
   return true;
 }
 
+// The triangle of a corner and its neighbours, and what may lie in it.
+struct Ear {
+  dvec2 a, b, c;
+
+  // Corners at the same place (a bridge to a hole, a repeated corner) are no obstacle to each other.
+  bool is_blocked_by(const dvec2& q) const {
+    if (q == a || q == b || q == c) return false;
+    return orient_sign(a, b, q) >= 0 && orient_sign(b, c, q) >= 0 && orient_sign(c, a, q) >= 0;
+  }
+
+  // Whether a box surely holds no point that blocks: all of it is on the far side of an edge.
+  bool passes_by(const dvec2& lo, const dvec2& hi) const {
+    return is_beyond(a, b, lo, hi) || is_beyond(b, c, lo, hi) || is_beyond(c, a, lo, hi);
+  }
+
+ private:
+  static bool is_beyond(const dvec2& from, const dvec2& to, const dvec2& lo, const dvec2& hi) {
+    const dvec2 nearest(to.y > from.y ? lo.x : hi.x,
+                        to.x > from.x ? hi.y : lo.y);  // the box's leftmost corner
+    return orient_sign(from, to, nearest) < 0;
+  }
+};
+
 class EarClipper {
  public:
-  explicit EarClipper(std::vector<dvec2> points) : p_(std::move(points)), left_(size()) {
+  explicit EarClipper(std::vector<dvec2> points)
+      : p_(std::move(points)), open_(p_.size()), obstacles_(p_), left_(size()) {
     prev_.resize(size());
     next_.resize(size());
     for (std::uint32_t i = 0; i < size(); ++i) {
@@ -63,33 +89,25 @@ class EarClipper {
       next_[i] = (i + 1) % size();
     }
     turn_.resize(size());
-    rejected_.assign(size(), false);
-    for (std::uint32_t i = 0; i < size(); ++i) turn_[i] = turn_at(i);
-    sort_blockers();
+    for (std::uint32_t i = 0; i < size(); ++i) look_at(i);
   }
 
   std::vector<Triple> run() {
     triangles_.reserve(size() - 2);
-    std::uint32_t at = 0;
-    std::uint32_t visited = 0;  // corners since the last clip
+    std::uint32_t at = 0;  // where to look for the next ear
     bool refreshed = false;
     while (left_ > 3 && work_ < kMostWork) {
-      if (is_ear(at)) {
-        at = clip(at);
-        visited = 0;
-        refreshed = false;
-      } else if (++visited <= left_) {
-        rejected_[at] = true;
-        at = next_[at];
-      } else if (!refreshed) {
-        // A rejected corner stays rejected until a neighbour goes, in a simple polygon. This one isn't, so
+      const std::optional<std::uint32_t> corner = open_.next(at);
+      if (corner && !is_ear(*corner)) {
+        open_.remove(*corner);
+      } else if (!corner && !refreshed) {
+        // A corner that is no ear is none until a neighbour goes, in a simple polygon. This one isn't, so
         // look again.
-        std::fill(rejected_.begin(), rejected_.end(), false);
-        visited = 0;
+        for (std::uint32_t i = 0, b = at; i < left_; ++i, b = next_[b]) look_at(b);
+        work_ += left_;
         refreshed = true;
       } else {
-        at = clip(least_bad(at));
-        visited = 0;
+        at = clip(corner ? *corner : least_bad(at));
         refreshed = false;
       }
     }
@@ -97,58 +115,34 @@ class EarClipper {
     return std::move(triangles_);
   }
 
+  // Whether it was cut to the end, and not into a fan at last.
+  bool finished() const { return work_ < kMostWork; }
+
  private:
   // Tests of a point against a triangle after which the rest becomes a fan. Only a polygon of many thousand
   // corners that also crosses itself gets here; it must not hang.
   static constexpr std::uint64_t kMostWork = 200'000'000;
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(p_.size()); }
-  int turn_at(std::uint32_t b) const { return orient_sign(p_[prev_[b]], p_[b], p_[next_[b]]); }
 
-  // Only corners that don't turn left can be the nearest obstacle inside an ear (Meisters). They are kept
-  // sorted by x, so that a small ear looks at few of them.
-  void sort_blockers() {
-    blockers_.clear();
-    for (std::uint32_t i = 0; i < size(); ++i) {
-      if (turn_[i] <= 0) blockers_.push_back(i);
-    }
-    std::ranges::sort(blockers_, [&](std::uint32_t a, std::uint32_t b) { return p_[a].x < p_[b].x; });
-    live_blockers_ = blockers_.size();
+  // Only corners that don't turn left can be the nearest obstacle inside an ear (Meisters), and only the
+  // others can be ears.
+  void look_at(std::uint32_t b) {
+    turn_[b] = orient_sign(p_[prev_[b]], p_[b], p_[next_[b]]);
+    obstacles_.set(b, turn_[b] <= 0);
+    turn_[b] > 0 ? open_.add(b) : open_.remove(b);
   }
 
-  void set_turn(std::uint32_t b, int turn) {
-    if (turn_[b] <= 0 && turn > 0) {
-      --live_blockers_;
-    } else if (turn_[b] > 0 && turn <= 0) {
-      // Clipping can make a corner flat or reflex only where the polygon isn't simple.
-      const auto place =
-          std::ranges::lower_bound(blockers_, p_[b].x, {}, [&](std::uint32_t i) { return p_[i].x; });
-      if (std::ranges::find(blockers_, b) == blockers_.end()) blockers_.insert(place, b);
-      ++live_blockers_;
-    }
-    turn_[b] = turn;
-    if (2 * live_blockers_ < blockers_.size()) {
-      std::erase_if(blockers_, [&](std::uint32_t i) { return turn_[i] > 0; });
-    }
-  }
-
-  bool is_ear(std::uint32_t b) {
-    if (rejected_[b] || turn_[b] <= 0) return false;
-    const dvec2& a = p_[prev_[b]];
-    const dvec2& c = p_[next_[b]];
-    const dvec2 lo = glm::min(glm::min(a, p_[b]), c);
-    const dvec2 hi = glm::max(glm::max(a, p_[b]), c);
-    auto it = std::ranges::lower_bound(blockers_, lo.x, {}, [&](std::uint32_t i) { return p_[i].x; });
-    for (; it != blockers_.end() && p_[*it].x <= hi.x; ++it) {
-      ++work_;
-      const dvec2& q = p_[*it];
-      if (q.y < lo.y || q.y > hi.y || turn_[*it] > 0) continue;
-      // Corners at the same place (a bridge to a hole, a repeated corner) are no obstacle to each other.
-      if (q == a || q == p_[b] || q == c) continue;
-      if (orient_sign(a, p_[b], q) >= 0 && orient_sign(p_[b], c, q) >= 0 && orient_sign(c, a, q) >= 0)
-        return false;
-    }
-    return true;
+  bool is_ear(std::uint32_t corner) {
+    const Ear ear{p_[prev_[corner]], p_[corner], p_[next_[corner]]};
+    const dvec2 lo = glm::min(glm::min(ear.a, ear.b), ear.c), hi = glm::max(glm::max(ear.a, ear.b), ear.c);
+    return !obstacles_.any_within(
+        lo, hi,
+        [&](std::uint32_t i) {
+          ++work_;
+          return ear.is_blocked_by(p_[i]);
+        },
+        [&](const dvec2& box_lo, const dvec2& box_hi) { return ear.passes_by(box_lo, box_hi); });
   }
 
   // Takes corner b off and returns where to look next: not the neighbour, for that would make a fan of
@@ -160,18 +154,19 @@ class EarClipper {
     next_[a] = c;
     prev_[c] = a;
     --left_;
-    set_turn(b, 1);  // gone: no obstacle any more
-    set_turn(a, turn_at(a));
-    set_turn(c, turn_at(c));
-    rejected_[a] = rejected_[c] = false;
+    obstacles_.set(b, false);
+    open_.remove(b);
+    look_at(a);
+    look_at(c);
     return next_[c];
   }
 
-  // The corner to cut in a polygon without an ear, which touches or crosses itself: one without area, else
-  // one that turns left.
-  std::uint32_t least_bad(std::uint32_t at) const {
+  // In a polygon without an ear (it touches or crosses itself): a corner without area, else one that turns
+  // left.
+  std::uint32_t least_bad(std::uint32_t at) {
     std::uint32_t best = at;
     for (std::uint32_t i = 0, b = at; i < left_; ++i, b = next_[b]) {
+      ++work_;
       if (turn_[b] == 0) return b;
       if (turn_[b] > turn_[best]) best = b;
     }
@@ -186,9 +181,8 @@ class EarClipper {
   std::vector<dvec2> p_;
   std::vector<std::uint32_t> prev_, next_;
   std::vector<int> turn_;
-  std::vector<bool> rejected_;  // known to be no ear as long as its neighbours stay
-  std::vector<std::uint32_t> blockers_;
-  std::size_t live_blockers_ = 0;
+  NumberSet open_;  // of corners that turn left, those not known to be no ear
+  PointTree obstacles_;
   std::uint32_t left_;
   std::uint64_t work_ = 0;
   std::vector<Triple> triangles_;
@@ -196,13 +190,17 @@ class EarClipper {
 
 }  // namespace
 
-std::vector<Triple> triangulate(std::span<const dvec3> corners) {
+std::vector<Triple> triangulate(std::span<const dvec3> corners, bool* finished) {
+  if (finished) *finished = true;
   const auto n = static_cast<std::uint32_t>(corners.size());
   if (n < 3) return {};
   if (n == 3) return {{0, 1, 2}};
   std::vector<dvec2> flat = project(corners);
   if (flat.empty() || fan_fits(flat)) return fan(n);
-  return EarClipper(std::move(flat)).run();
+  EarClipper clipper(std::move(flat));
+  std::vector<Triple> triangles = clipper.run();
+  if (finished) *finished = clipper.finished();
+  return triangles;
 }
 
 }  // namespace kdray::scene

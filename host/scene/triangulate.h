@@ -3,9 +3,10 @@
 //         orientation. A polygon whose first corner sees all others (a convex one) becomes the fan of that
 //         corner. Corners on a straight line become corners of real triangles, not of flat ones, so that
 //         neighbours share whole edges.
-// Errors  None: a polygon that is not simple or has no area still gives n - 2 triangles. One of some ten
-//         thousand corners that is all spikes or crosses itself is cut for about a second; its rest becomes a
-//         fan.
+// Cost    About n log n, whatever the polygon's shape.
+// Errors  None: a polygon that is not simple or has no area still gives n - 2 triangles. One of over some ten
+//         thousand corners that crosses itself all over is cut for a few seconds; its rest becomes a fan, and
+//         `finished` false.
 #pragma once
 
 #include <array>
@@ -17,6 +18,7 @@
 
 namespace kdray::scene {
 
-std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const dvec3> corners);
+std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const dvec3> corners,
+                                                      bool* finished = nullptr);
 
 }  // namespace kdray::scene

@@ -34,6 +34,30 @@ void expect_near(const vec3& a, const vec3& b) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-5) << i;
 }
 
+std::vector<std::string> warnings_of(const json& material) {
+  test::GltfSample sample = test::square();
+  sample.json["materials"] = {material};
+  sample.primitive()["material"] = 0;
+  return read_gltf(sample.text(), "a.gltf").warnings;
+}
+
+TEST(GltfMaterial, SaysWhatIsLeftOut) {
+  json material = {{"alphaMode", "MASK"}};
+  material["extensions"]["KHR_materials_clearcoat"]["clearcoatFactor"] = 1;
+  material["extensions"]["KHR_materials_sheen"]["sheenColorFactor"] = {1, 1, 1};
+  material["extensions"]["KHR_materials_iridescence"]["iridescenceFactor"] = 0;
+  EXPECT_EQ(warnings_of(material),
+            (std::vector<std::string>{"a.gltf: KHR_materials_clearcoat of 1 material is left out",
+                                      "a.gltf: KHR_materials_sheen of 1 material is left out",
+                                      "a.gltf: alphaMode MASK of 1 material is left out"}));
+  for (const char* name : {"specular", "anisotropy"}) {
+    json other;
+    other["extensions"][std::string("KHR_materials_") + name]["anisotropyStrength"] = 0.5;
+    ASSERT_EQ(warnings_of(other).size(), 1u) << name;
+    EXPECT_NE(warnings_of(other)[0].find(name), std::string::npos);
+  }
+}
+
 TEST(GltfMaterial, DefaultsToAMattGrey) {
   const Material m = material_of(json::object());
   expect_near(m.diffuse, vec3(1));

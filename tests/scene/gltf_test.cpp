@@ -265,6 +265,34 @@ TEST(Gltf, RefusesWithThePlace) {
   EXPECT_SAYS(refused(sample), "/accessors/2: element 1 is not finite");
 }
 
+// Which nodes are shown is then the viewer's choice: those that are in no other one, each once.
+TEST(Gltf, ShowsAllRootsOfAFileWithoutScenes) {
+  GltfSample sample = square();
+  sample.json.erase("scene"), sample.json.erase("scenes");
+  sample.json["nodes"] = {{{"mesh", 0}},
+                          {{"children", {0, 2}}, {"translation", {5, 0, 0}}},
+                          {{"mesh", 0}},
+                          {{"mesh", 0}, {"translation", {0, 7, 0}}}};
+  const Scene s = read(sample);
+  EXPECT_EQ(s.triangles.size(), 6u);
+  EXPECT_EQ(s.bounds().lo, dvec3(0, 0, 0));
+  EXPECT_EQ(s.bounds().hi, dvec3(6, 8, 0));
+}
+
+TEST(Gltf, LeavesHiddenNodesOut) {
+  GltfSample sample = square();
+  sample.json["extensionsRequired"] = {"KHR_node_visibility"};
+  sample.json["nodes"] = {{{"mesh", 0}, {"children", {1}}}, {{"children", {2}}}, {{"mesh", 0}}};
+  EXPECT_EQ(read(sample).triangles.size(), 4u);
+  sample.json["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = true;
+  EXPECT_TRUE(read(sample).warnings.empty());
+  sample.json["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = false;
+  const Scene s = read(sample);
+  EXPECT_EQ(s.triangles.size(), 2u);
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_SAYS(s.warnings[0], "1 hidden nodes (KHR_node_visibility) are left out");
+}
+
 TEST(Gltf, RefusesPackedMeshes) {
   GltfSample sample = square();
   sample.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_draco_mesh_compression"};

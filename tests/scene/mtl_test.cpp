@@ -37,6 +37,15 @@ void expect_near(const vec3& a, const vec3& b) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-6) << i;
 }
 
+TEST(Mtl, KnowsWhatItLeavesOut) {
+  const auto m = read(
+      "newmtl a\nmap_d a.png\nmap_bump -bm 0.5 b.png\nnorm n.png\nPr 0\nPm 0\nPm 0.0\nmap_Ke e.png\nmap_Ke "
+      "e.png\n"
+      "newmtl b\nmap_Kd a.png\nKd 1 1 1\nPm 0.5\n");
+  EXPECT_EQ(m[0].left_out, (std::vector<std::string>{"map_d", "map_bump", "norm", "Pr", "map_Ke"}));
+  EXPECT_EQ(m[1].left_out, (std::vector<std::string>{"Pm"}));
+}
+
 TEST(Mtl, ReadsItsStatements) {
   const auto m = read(
       "Kd 9 9 9\n# before the first\n\nnewmtl  a b \n\tKd .1 0.2 3e-1 # red\n Ks 0.5\nKe 1 2 3\nNs 40\n"

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cctype>
 #include <string>
@@ -49,6 +50,35 @@ std::string binary(const std::string& title, std::uint32_t n) {
     bytes += std::string(2, '\x7f');
   }
   return bytes;
+}
+
+std::string on_one_line(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  return text;
+}
+
+TEST(Stl, ReadsAsciiOnOneLine) {
+  const std::string text = "solid a facet of it\n" + facet("0 0 1") + facet("nan -inf 1e999", "0 2.5 0") +
+                           "endsolid a facet of it\nsolid b\n" + facet("0 0 0") + "endsolid b";
+  const Scene s = read(on_one_line(text)), wanted = read(text);
+  ASSERT_EQ(s.triangles.size(), 3u);
+  EXPECT_EQ(s.vertices, wanted.vertices);
+  EXPECT_EQ(read("solid endsolid").triangles.size(), 0u);
+}
+
+TEST(Stl, ReadsAsciiBehindComments) {
+  const Scene s = read("# made by hand\n\n  # solid\nsolid a # b\n" + facet("0 0 1") + "endsolid a");
+  EXPECT_EQ(s.triangles.size(), 1u);
+  EXPECT_SAYS(refused("# nothing else"), "too short");
+}
+
+TEST(Stl, SaysThatColoursAreLeftOut) {
+  EXPECT_TRUE(read(binary("", 5)).warnings.empty());
+  std::string viscam = binary("", 5);
+  for (const std::size_t facet : {1u, 3u}) viscam[84 + 50 * facet + 49] = '\x80';
+  ASSERT_EQ(read(viscam).warnings.size(), 1u);
+  EXPECT_SAYS(read(viscam).warnings[0], "the colours of 2 facets are left out");
+  ASSERT_EQ(read(binary("COLOR=....", 5)).warnings.size(), 1u);
 }
 
 TEST(Stl, ReadsAscii) {

@@ -173,6 +173,49 @@ TEST(Triangulate, DoesNotHangOnHugePolygons) {
   EXPECT_LT(seconds.count(), 60) << "a few seconds on any machine; the limit only tells a hang";
 }
 
+// Long ears side by side: all corners of a comb lie between any two x of one of its ears, or between any two
+// y.
+TEST(Triangulate, CoversCombsOfAHundredThousandCorners) {
+  for (const bool lying : {false, true}) {
+    SCOPED_TRACE(lying);
+    std::vector<dvec3> comb;
+    constexpr int kTeeth = 60'000;
+    for (int i = 0; i < 2 * kTeeth; ++i) comb.push_back({i, i % 2 ? 1e6 : 0.5 + 0.25 * (i % 3), 0});
+    comb.push_back({2 * kTeeth - 1.0, -1, 0});
+    comb.push_back({0, -1, 0});
+    if (lying)
+      for (dvec3& p : comb) std::swap(p.x, p.y);
+    bool finished = false;
+    const Triples triangles = triangulate(comb, &finished);
+    EXPECT_TRUE(finished);
+    EXPECT_NO_FATAL_FAILURE(expect_cover(comb));
+  }
+}
+
+// A spiral has two ears at a time: whoever goes round to find them takes n^2 steps.
+TEST(Triangulate, CoversASpiralOfAHundredThousandCorners) {
+  constexpr int kSteps = 60'000;
+  std::vector<dvec3> spiral;
+  const auto at = [](int i, double more) {
+    return dvec3((1 + 0.01 * i + more) * std::cos(i * 0.02), (1 + 0.01 * i + more) * std::sin(i * 0.02), 0);
+  };
+  for (int i = 0; i <= kSteps; ++i) spiral.push_back(at(i, 0));
+  for (int i = kSteps; i >= 0; --i) spiral.push_back(at(i, 0.5));
+  bool finished = false;
+  (void)triangulate(spiral, &finished);
+  EXPECT_TRUE(finished);
+  EXPECT_NO_FATAL_FAILURE(expect_cover(spiral));
+}
+
+TEST(Triangulate, SaysWhenItGaveUp) {
+  std::vector<dvec3> mess;
+  std::mt19937 random(1);
+  for (int i = 0; i < 60'000; ++i) mess.push_back({random() % 1000 * 1.0, random() % 1000 * 1.0, 0});
+  bool finished = true;
+  EXPECT_EQ(triangulate(mess, &finished).size(), mess.size() - 2);
+  EXPECT_FALSE(finished);
+}
+
 TEST(OrientSign, IsExactWhereRoundingDecides) {
   // Points along a line through (0.5, 0.5) moved by single ulps: the sign follows from integers. (Kettner et
   // al. 2008)

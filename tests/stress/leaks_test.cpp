@@ -166,10 +166,11 @@ TEST_P(Leaks, SmallMeshes) {
   expect_tight(tally);
 }
 
-// 1e-6 to 1e6 times as large, moved by up to a million times the size.
+// 1e-30 to 1e30 times as large, moved by up to a million times the size.
 TEST_P(Leaks, ScaledAndMoved) {
   const std::vector<double> scales =
-      is_full() ? std::vector<double>{1e-6, 1e-3, 1, 1e3, 1e6} : std::vector<double>{1e-6, 1e6};
+      is_full() ? std::vector<double>{1e-30, 1e-14, 1e-6, 1e-3, 1, 1e3, 1e6, 1e14, 1e30}
+                : std::vector<double>{1e-30, 1e-6, 1e6, 1e30};
   const std::vector<double> moves =
       is_full() ? std::vector<double>{0, 1, 1e3, 1e6} : std::vector<double>{1e3, 1e6};
   const double share =

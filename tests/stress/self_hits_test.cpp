@@ -81,12 +81,13 @@ scene::Scene triangles_of_any_coordinates(std::uint64_t seed) {
   return s;
 }
 
-// Sizes from a millionth of the distance from the origin to ten times that.
+// Sizes from a millionth of the distance from the origin to ten times that. (Nearer to the origin, beside a
+// scene of this size, products of their lengths would be below what floats hold: math/local_space.h.)
 scene::Scene triangles_of_any_size(std::uint64_t seed) {
   scene::Scene s = with_material();
   for (int i = 0; i < kPrimitives; ++i) {
     Random random(seed, static_cast<std::uint64_t>(i));
-    const dvec3 middle = random.log_uniform(1e-8, 1e8) * random.direction();
+    const dvec3 middle = random.log_uniform(1e-3, 1e8) * random.direction();
     const double size = glm::length(middle) * random.log_uniform(1e-6, 10);
     add_triangle(s, {middle + size * random.direction(), middle + size * random.direction(),
                      middle + size * random.direction()});
