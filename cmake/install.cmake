@@ -1,4 +1,4 @@
-# cmake --install: bin/kdray, bin/kdray-bench beside it (which `kdray bench` starts; a package may leave it out), the rooms as static libraries, the two public headers, and the package that
+# cmake --install: bin/kdray, bin/kdray-bench beside it (which `kdray bench` starts; a package may leave it out), the rooms as static libraries, the public headers, and the package that
 # find_package(kdray) finds, with the target kdray::kdray. tests/consumer uses what is installed.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -15,7 +15,8 @@ install(TARGETS kdray ${rooms} EXPORT kdray
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(FILES host/api/kdray/kdray.h host/base/kdray/error.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kdray)
+file(GLOB type_headers CONFIGURE_DEPENDS host/types/kdray/*.h)
+install(FILES host/api/kdray/kdray.h host/base/kdray/error.h ${type_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kdray)
 foreach(program kdray_cli kdray_bench_program)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -86,7 +86,6 @@ std::vector<Ablation> ablations_for(layout::Features features) {
 }
 
 RenderOptions with(const Ablation& ablation, RenderOptions options) {
-  options.keep = ablation.keep;
   if (ablation.min_weight_off) options.min_weight = kNoWeight;
   if (ablation.twice_as_deep) options.depth *= 2;
   return options;

@@ -17,7 +17,7 @@ struct Ablation {
   std::string name;  // of what is taken away
   enum class Kind { none, specialisation, rule, everything } kind = Kind::none;
   bool exact = true;
-  std::uint64_t keep = 0;       // RenderOptions::keep
+  std::uint64_t keep = 0;       // api::Hooks::keep
   bool min_weight_off = false;  // rays are spawned whatever they weigh, unless nothing
   bool twice_as_deep = false;
 };

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "api/hooks.h"
+#include "api/statistics_json.h"
 #include "base/timer.h"
 #include "flatten/features.h"
 #include "generate/built_in.h"
@@ -38,7 +40,7 @@ class AblationScene {
       : options_(options),
         name_(name),
         scene_(Scene(generate::load_scene(name)), {.binary_form = false}),
-        renderer_(scene_, {.device = options.device, .build_options = unheard_of()}) {}
+        renderer_(api::make_renderer(scene_, {.device = options.device}, {.build_options = unheard_of()})) {}
 
   AblationRun run() {
     warm_up();
@@ -64,7 +66,7 @@ class AblationScene {
  private:
   // These include the features of the last frame.
   AblationRun describe() const {
-    const nlohmann::json facts = nlohmann::json::parse(renderer_.statistics());
+    const nlohmann::json facts = api::statistics_json(renderer_.statistics());
     return {name_,
             facts.at("device").at("name"),
             facts.at("scene").at("primitives"),
@@ -83,13 +85,14 @@ class AblationScene {
   Frame frame(const Ablation& ablation) {
     const Timer timer;
     Frame f;
+    api::keep(renderer_, ablation.keep);
     f.picture = renderer_.render(with(ablation, {.width = options_.width,
                                                  .height = options_.height,
                                                  .depth = options_.depth,
                                                  .samples = 1,
                                                  .mode = Mode::pdprt}));
     f.wall = timer.seconds();
-    f.statistics = nlohmann::json::parse(renderer_.statistics());
+    f.statistics = api::statistics_json(renderer_.statistics());
     f.render = f.statistics.at("seconds").at("render");
     return f;
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "api/statistics_json.h"
 #include "bench/accuracy/pareto.h"
 #include "bench/accuracy/povray.h"
 #include "bench/accuracy/reference.h"
@@ -29,7 +30,7 @@ class AccuracyScene {
 
   AccuracyRun run() {
     Renderer& first = renderer({});
-    const nlohmann::json device = nlohmann::json::parse(first.statistics()).at("device");
+    const nlohmann::json device = api::device_json(first.statistics());
     run_.device = device.at("name"), run_.cores = cores_of(device);
     run_.n_primitives = scene_.triangles.size() + scene_.spheres.size() + scene_.cones.size();
     run_.reference_in_double = device.value("double_precision", false);
@@ -73,7 +74,7 @@ class AccuracyScene {
   Rendered render(const Setting& s) {
     Renderer& r = renderer(s);
     Picture picture = r.render(render_options(s, options_.width, options_.height));
-    return {std::move(picture), nlohmann::json::parse(r.statistics())};
+    return {std::move(picture), api::statistics_json(r.statistics())};
   }
 
   void make_reference(Renderer& r) {

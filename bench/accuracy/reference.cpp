@@ -22,7 +22,7 @@ Reference make_reference(Renderer& renderer, int width, int height, int samples,
     o.precision = precision;
     o.mode = Mode::pdprt;
     film::Image image = image_of(renderer.render(o));
-    r.seconds += nlohmann::json::parse(renderer.statistics()).at("seconds").at("render").get<double>();
+    r.seconds += renderer.statistics().seconds.render;
     return image;
   };
   const film::Image one = shrunk(render(2, samples / 8), 2), other = shrunk(render(4, samples / 32), 4);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "api/statistics_json.h"
 #include "bench/build/builders.h"
 #include "bench/embree/build.h"
 #include "bench/embree/embree.h"
@@ -71,7 +72,7 @@ class BuildScene {
       contestant.mode = builders_[i].name;
       contestants.push_back(std::move(contestant));
     }
-    const auto facts = nlohmann::json::parse(renderers.front()->statistics()).at("device");
+    const auto facts = api::device_json(renderers.front()->statistics());
     run.device = facts.at("name");
     run.cores = cores_of(facts);
     if (options_.embree)

@@ -38,7 +38,7 @@ class DepthScene {
     Renderer usual(PreparedScene(prepare_with(-1)), device());
     make_rays(usual);
     DepthRun run{name_,
-                 nlohmann::json::parse(usual.statistics()).at("device").at("name"),
+                 usual.statistics().device.name,
                  geometry_.size(),
                  kdtree::depth_limit(kdtree::BuildConfig{}, geometry_.size()),
                  {}};
@@ -89,7 +89,7 @@ class DepthScene {
       const RayClass& c = classes_[i];
       const std::vector<Hit> hits = renderer.trace(c.rays, c.any_hit);
       row.n_not_identical = std::max(row.n_not_identical, count_not_identical(hits_[i], hits));
-      const double taken = nlohmann::json::parse(renderer.statistics()).at("seconds").at("trace");
+      const double taken = renderer.statistics().seconds.trace;
       seconds += 1e6 * taken / static_cast<double>(c.rays.size());
     }
     return seconds;

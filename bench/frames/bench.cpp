@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "api/statistics_json.h"
 #include "bench/embree/embree.h"
 #include "bench/measure/cores.h"
 #include "bench/povray/povray.h"
@@ -21,9 +22,15 @@ namespace {
 
 constexpr int kPovrayRounds = 3;
 constexpr double kMinWeight = 0.5 / 255 / 12.92;  // kdray's default: what can't change an 8-bit picture
-// What statistics() has in `seconds` beside the stages of a frame.
-constexpr std::array kNotStages = {"load",    "build",  "flatten", "upload",
-                                   "compile", "render", "write",   "total"};
+
+// A frame's time and that of its stages.
+std::map<std::string, double> times_of_frame(const Statistics::Seconds& s) {
+  return {{"render", s.render},
+          {"trace", s.trace},
+          {"shade", s.shade},
+          {"admit", s.admit.value_or(0)},
+          {"add", s.add.value_or(0)}};
+}
 
 // Scenes whose materials are NFF's, and so POV-Ray's as well.
 bool is_nff(const std::string& name) {
@@ -39,7 +46,7 @@ class FrameBench {
     DeviceOptions device;
     device.device = options.device;
     renderer_ = std::make_unique<Renderer>(scene_, TreeOptions{.binary_form = false}, device);
-    facts_ = nlohmann::json::parse(renderer_->statistics()).at("device");
+    facts_ = api::device_json(renderer_->statistics());
     cores_ = cores_of(facts_);
     embree_ = make_embree_scenes(scene_.model());
     if (embree_) make_primary();
@@ -67,13 +74,14 @@ class FrameBench {
     RenderOptions o;
     o.width = options_.width, o.height = options_.height, o.depth = options_.depth;
     renderer_->render(o);
-    const auto statistics = nlohmann::json::parse(renderer_->statistics());
+    const Statistics& statistics = renderer_->statistics();
     const double embree = embree_ ? trace_embree16(embree_, primary_, cores_).seconds : 0;
     const bool with_povray = povray_ && round < kPovrayRounds;
     const double povray = with_povray ? povray_->trace_seconds(cores_) : 0;
     if (round < 0) return;
-    for (const auto& [stage, seconds] : statistics.at("seconds").items()) seconds_[stage].push_back(seconds);
-    rays_ = statistics.at("rays");
+    for (const auto& [stage, seconds] : times_of_frame(statistics.seconds))
+      seconds_[stage].push_back(seconds);
+    rays_ = api::statistics_json(statistics).at("rays");
     if (embree_) embree_seconds_.push_back(embree);
     if (with_povray) povray_seconds_.push_back(povray);
   }
@@ -88,8 +96,7 @@ class FrameBench {
     r.device = facts_.at("name");
     r.seconds = spread_of(seconds_.at("render"));
     for (const auto& [stage, seconds] : seconds_)
-      if (std::find(kNotStages.begin(), kNotStages.end(), stage) == kNotStages.end())
-        r.stages.emplace_back(stage, spread_of(seconds));
+      if (stage != "render") r.stages.emplace_back(stage, spread_of(seconds));
     for (const char* const kind : {"primary", "shadow", "reflected", "refracted", "total"})
       r.rays[kind] = rays_.at(kind);
     if (embree_) r.embree_seconds = spread_of(embree_seconds_), r.n_embree_rays = primary_.rays.size();

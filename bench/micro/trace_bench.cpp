@@ -32,7 +32,7 @@ void trace(benchmark::State& state, bool any_hit) {
     if (hit.primitive < 0) state.SkipWithError("a ray escaped from a closed mesh");
   for (auto _ : state) {
     (void)renderer.trace(rays, any_hit);
-    state.SetIterationTime(nlohmann::json::parse(renderer.statistics()).at("seconds").at("trace"));
+    state.SetIterationTime(renderer.statistics().seconds.trace);
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "api/statistics_json.h"
 #include "bench/measure/cores.h"
 #include "generate/built_in.h"
 #include "prepare/prepared.h"
@@ -58,7 +59,7 @@ class Runner {
       Picture picture = renderer_->render(options);
       if (first) row_.differing_pixels += differing_pixels(*first, picture);
       if (!first) first = std::move(picture);
-      if (counts) record(nlohmann::json::parse(renderer_->statistics()));
+      if (counts) record(api::statistics_json(renderer_->statistics()));
     } catch (const Error& error) {
       fail(error.what());
     }
@@ -119,7 +120,7 @@ class ModesScene {
   ModesScene(const ModesOptions& options, const std::string& name)
       : options_(options), scene_(generate::load_scene(name)), prepared_(scene_, {.binary_form = false}) {
     Renderer renderer(prepared_, {.device = options.device});
-    const nlohmann::json facts = nlohmann::json::parse(renderer.statistics());
+    const nlohmann::json facts = api::statistics_json(renderer.statistics());
     run_.scene = name;
     run_.device = facts.at("device").at("name");
     run_.n_primitives = scene_.primitives();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "api/statistics_json.h"
 #include "bench/measure/spread.h"
 #include "bench/modes/events.h"
 #include "bench/modes/lives.h"
@@ -62,7 +63,7 @@ class Prophet {
     frame_.timeline = true;
     frame_.tile_width = frame_.tile_height = kTile;
     renderer_.render(frame_);
-    statistics_ = nlohmann::json::parse(renderer_.statistics());
+    statistics_ = api::statistics_json(renderer_.statistics());
     const nlohmann::json& mode = statistics_.at("mode");
     if (!mode.contains("tile_seconds") || !mode.at("tile_seconds").is_array()) return;
     tiles_ = mode.at("tile_seconds").get<std::vector<double>>();

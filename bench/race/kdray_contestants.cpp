@@ -16,7 +16,7 @@ constexpr std::array<Traversal, 5> kTraversals = {Traversal::binary, Traversal::
 Traced trace(Renderer& renderer, const RayClass& c, Traversal traversal) {
   Traced traced;
   traced.hits = renderer.trace(c.rays, c.any_hit, 1, traversal);
-  traced.seconds = nlohmann::json::parse(renderer.statistics()).at("seconds").at("trace");
+  traced.seconds = renderer.statistics().seconds.trace;
   return traced;
 }
 

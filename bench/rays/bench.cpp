@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "api/statistics_json.h"
 #include "bench/embree/embree.h"
 #include "bench/measure/cores.h"
 #include "bench/race/kdray_contestants.h"
@@ -71,7 +72,7 @@ class RaysScene {
       contestants.push_back(kdray_contestant(renderer, name));
     }
     const auto& any = renderers[renderers[0] ? 0 : 1];
-    RaysRun run = described(nlohmann::json::parse(any->statistics()).at("device"));
+    RaysRun run = described(api::device_json(any->statistics()));
     if (options_.embree)
       for (Contestant& c : embree_contestants(embree_, run.cores)) contestants.push_back(std::move(c));
     for (std::size_t i = 0; i < classes_.size(); ++i)

@@ -28,11 +28,12 @@ std::size_t work_group_of(const DeviceOptions& options, const device::Context& c
                                 : std::min<std::size_t>(kDefaultWorkGroup, largest);
 }
 
-Device::Device(const device::Context& opened, const DeviceOptions& options, const prepare::Prepared& scene)
+Device::Device(const device::Context& opened, const DeviceOptions& options, const std::string& build_options,
+               const prepare::Prepared& scene)
     : context(opened),
       work_group(work_group_of(options, context)),
       global(runs_globally(options, context)),
-      programs(context, scene.tree_depth, scene.wide, options.build_options),
+      programs(context, scene.tree_depth, scene.wide, build_options),
       asked_work_group_(options.work_group),
       scene_(scene) {}
 
@@ -58,11 +59,12 @@ std::uint32_t Device::units_of_a_queue() const {
   return (context.info().compute_units + n_parts - 1) / n_parts;
 }
 
-DeviceSet::DeviceSet(const DeviceOptions& options, const prepare::Prepared& scene) {
-  const std::vector<device::Context> contexts = open_devices(options);
+DeviceSet::DeviceSet(const DeviceOptions& options, const Hooks& hooks, const prepare::Prepared& scene) {
+  const OpenedDevices opened = open_devices(options, hooks.faults);
+  open_seconds_ = opened.seconds;
   const tune::Database tunings = read_tunings(options);
-  for (const device::Context& context : contexts) {
-    Device& device = devices_.emplace_back(context, options, scene);
+  for (const device::Context& context : opened.contexts) {
+    Device& device = devices_.emplace_back(context, options, hooks.build_options, scene);
     device.use(tuned_for(context, device.global, scene.features, tunings, options.tunings.string()));
   }
 }
@@ -96,12 +98,18 @@ double DeviceSet::upload_seconds() const {
   return seconds;
 }
 
+OpenSeconds open_device(const DeviceOptions& options, const Hooks& hooks) {
+  const OpenedDevices opened = open_devices(options, hooks.faults);
+  for (const device::Context& context : opened.contexts) work_group_of(options, context);
+  return opened.seconds;
+}
+
 }  // namespace kdray::api
 
 namespace kdray {
 
-void open_device(const DeviceOptions& options) {
-  for (const device::Context& context : api::open_devices(options)) api::work_group_of(options, context);
+OpenSeconds open_device(const DeviceOptions& options) {
+  return api::open_device(options, {});
 }
 
 }  // namespace kdray

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 
+#include "api/hooks.h"
 #include "api/tuning.h"
 #include "device/context.h"
 #include "kdray/kdray.h"
@@ -22,7 +24,8 @@ std::size_t work_group_of(const DeviceOptions& options, const device::Context& c
 class Device {
  public:
   // `scene` has to outlive the device.
-  Device(const device::Context& opened, const DeviceOptions& options, const prepare::Prepared& scene);
+  Device(const device::Context& opened, const DeviceOptions& options, const std::string& build_options,
+         const prepare::Prepared& scene);
   Device(const Device&) = delete;  // its programs point to its context
   Device& operator=(const Device&) = delete;
 
@@ -48,7 +51,7 @@ class Device {
 
 class DeviceSet {
  public:
-  DeviceSet(const DeviceOptions& options, const prepare::Prepared& scene);
+  DeviceSet(const DeviceOptions& options, const Hooks& hooks, const prepare::Prepared& scene);
 
   Device& first() { return devices_.front(); }  // queries and channels take it
   const Device& first() const { return devices_.front(); }
@@ -56,6 +59,7 @@ class DeviceSet {
   auto begin() const { return devices_.begin(); }
   auto end() { return devices_.end(); }
   auto end() const { return devices_.end(); }
+  const OpenSeconds& open_seconds() const { return open_seconds_; }
   std::size_t size() const { return devices_.size(); }
 
   void tune(const Tuning& tuning);
@@ -68,6 +72,7 @@ class DeviceSet {
 
  private:
   std::deque<Device> devices_;
+  OpenSeconds open_seconds_;
 };
 
 }  // namespace kdray::api

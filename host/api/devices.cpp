@@ -1,6 +1,6 @@
+#include "api/open_devices.h"
 #include "device/context.h"
 #include "kdray/kdray.h"
-#include "open_devices.h"
 
 namespace kdray {
 
@@ -13,7 +13,7 @@ DeviceInfo opened(const DeviceInfo& listed, const DeviceOptions& options) {
     DeviceOptions one = options;
     one.device = std::to_string(listed.number);
     one.queues = 1;
-    return api::open_devices(one).front().info();
+    return api::open_devices(one).contexts.front().info();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::no_device) throw;
     DeviceInfo info = listed;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "api/film_memory.h"
-#include "api/odprt_json.h"
+#include "api/record.h"
 
 namespace kdray::api {
 
@@ -74,15 +74,12 @@ Drawn draw_odprt(State& state, Job& job) {
     state.divided = std::make_unique<odprt::DividedScene>(state.scene.flat, state.scene.wide);
   odprt::Result result = state.divided->render(request);
   state.speeds.take(job.frame).odprt = mrays_per_s(result.counters.total(), result.render_seconds);
-  Json mode = odprt_mode_json(result, o, state.divided->geometry_bytes());
-  mode["queues"] = state.devices.n_queues();
-  mode["tile"] = {job.frame.tile_width, job.frame.tile_height};
-  mode["tiles"] = job.frame.n_tiles;
   Drawn drawn;
+  drawn.division = division_of(result, job, state.divided->geometry_bytes());
+  for (const odprt::QueueReport& queue : result.queues)
+    drawn.memory_of_queues.push_back({queue.geometry_bytes, queue.work_bytes});
+  drawn.divide_seconds = result.divide_seconds;
   drawn.warnings = warnings_of(result);
-  drawn.seconds = {{"divide", result.divide_seconds}, {"route", result.stage_seconds["route"]}};
-  drawn.mode = std::move(mode);
-  drawn.memory = {{"per_queue", odprt_memory_json(result)}};
   drawn.image = std::move(result.image);
   drawn.samples = std::move(result.samples);
   drawn.counters = result.counters;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/film_memory.h"
-#include "api/names.h"
+#include "api/record.h"
 #include "pdprt/render.h"
 
 namespace kdray::api {
@@ -35,6 +35,15 @@ std::vector<std::string> warnings_of(const pdprt::Result& result) {
   return warnings;
 }
 
+// Each queue sees the whole scene.
+void add_memory(Drawn& drawn, const pdprt::Result& result, std::uint64_t scene_bytes) {
+  drawn.frame_bytes = 0;
+  for (const pdprt::QueueResult& queue : result.queues) {
+    *drawn.frame_bytes += queue.device_bytes;
+    drawn.memory_of_queues.push_back({scene_bytes, queue.device_bytes});
+  }
+}
+
 }  // namespace
 
 Drawn draw_pdprt(State& state, const Job& job) {
@@ -49,17 +58,16 @@ Drawn draw_pdprt(State& state, const Job& job) {
                                                                .max_film_bytes = max_film_bytes});
   state.scheduler.remember(job.frame, result.tile_cost);
   state.speeds.take(job.frame).pdprt = mrays_per_s(result.counters.total(), result.render_seconds);
-  Json mode = pdprt_json(result);
-  mode["division"] = name_of(job.options.division);
-  mode["schedule"] = state.devices.first().global ? "global" : "slices";
-  return {.image = std::move(result.image),
-          .samples = std::move(result.samples),
-          .warnings = warnings_of(result),
-          .counters = result.counters,
-          .stage_seconds = std::move(result.stage_seconds),
-          .render_seconds = result.render_seconds,
-          .mode = std::move(mode),
-          .memory = pdprt_memory_json(result, state.scene_bytes)};
+  Drawn drawn;
+  drawn.division = division_of(result, job, state.devices.first().global);
+  add_memory(drawn, result, state.scene_bytes);
+  drawn.warnings = warnings_of(result);
+  drawn.image = std::move(result.image);
+  drawn.samples = std::move(result.samples);
+  drawn.counters = result.counters;
+  drawn.stage_seconds = std::move(result.stage_seconds);
+  drawn.render_seconds = result.render_seconds;
+  return drawn;
 }
 
 }  // namespace kdray::api

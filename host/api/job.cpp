@@ -28,7 +28,7 @@ Job make_job(State& state, const RenderOptions& options, timeline::Timeline* tim
   check_division(o);
   check_form(takes_binary_form(o.traversal, o.precision, o.channels), scene);
   const layout::Features features =
-      scene.features | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | o.keep;
+      scene.features | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | state.keep;
   Job job{o, flatten::make_frame(scene.settings, scene.geometry, o), features, timeline};
   use_core(state, job);
   return job;

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "adaptive/report.h"
-#include "api/statistics.h"
 #include "film/image.h"
 #include "kdray/kdray.h"
+#include "kdray/statistics.h"
 #include "layout/frame.layout.h"
 #include "timeline/timeline.h"
 #include "wavefront/wavefront.h"
@@ -31,8 +31,11 @@ struct Drawn {
   wavefront::Counters counters;
   std::map<std::string, double> stage_seconds;  // device time, added over the queues
   double render_seconds = 0;
-  // What only this mode has to tell, for the statistics' parts of these names.
-  Json seconds = Json::object(), mode, memory;
+  std::optional<double> divide_seconds;  // of ODPRT
+  // For the statistics: how the frame was divided, and what it took of memory.
+  Statistics::Division division;
+  std::optional<std::uint64_t> frame_bytes;  // of PDPRT
+  std::vector<Statistics::QueueMemory> memory_of_queues;
 };
 
 struct State;

@@ -1,4 +1,4 @@
-#include "open_devices.h"
+#include "api/open_devices.h"
 
 #include <cstdlib>
 #include <map>
@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "base/timer.h"
 #include "device/faults.h"
 #include "device/program_cache.h"
 #include "selftest/self_test.h"
@@ -37,18 +38,24 @@ device::Builds builds_of(const DeviceOptions& options) {
   return {cache_in(options.programs), options.building};
 }
 
-std::vector<device::Context> open_devices(const DeviceOptions& o) {
+OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults_asked) {
   check(o);
-  const device::Faults faults(o.faults);
+  const device::Faults faults(faults_asked);
+  OpenedDevices opened;
   device::OpenOptions options;
   options.n_queues = o.queues;
   options.compute_units = o.compute_units;
   options.builds = builds_of(o);
   options.left_out = o.left_out;
-  options.check = [&faults](const device::Context& context) {
+  options.check = [&](const device::Context& context) {
+    const Timer timer;
     selftest::require(context, faults.fails_self_test(context.info().number));
+    opened.seconds.self_test += timer.seconds();
   };
-  return device::open_contexts(o.device, options);
+  const Timer timer;
+  opened.contexts = device::open_contexts(o.device, options);
+  opened.seconds.start = timer.seconds() - opened.seconds.self_test;
+  return opened;
 }
 
 }  // namespace kdray::api

@@ -2,6 +2,7 @@
 //         in the folder that the options name.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "device/context.h"
@@ -11,7 +12,12 @@ namespace kdray::api {
 
 device::Builds builds_of(const DeviceOptions& options);
 
-// Throws ErrorCode::usage, or ErrorCode::no_device where none is usable.
-std::vector<device::Context> open_devices(const DeviceOptions& options);
+struct OpenedDevices {
+  std::vector<device::Context> contexts;
+  OpenSeconds seconds;
+};
+
+// `faults` as in Hooks. Throws ErrorCode::usage, or ErrorCode::no_device where none is usable.
+OpenedDevices open_devices(const DeviceOptions& options, const std::string& faults = {});
 
 }  // namespace kdray::api

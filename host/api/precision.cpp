@@ -1,4 +1,4 @@
-#include "precision.h"
+#include "api/precision.h"
 
 #include <fmt/format.h>
 

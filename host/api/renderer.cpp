@@ -1,15 +1,19 @@
+#include <algorithm>
+#include <numeric>
 #include <span>
 
 #include "api/channels.h"
 #include "api/choose_mode.h"
 #include "api/draw_odprt.h"
 #include "api/draw_pdprt.h"
+#include "api/hooks.h"
 #include "api/job.h"
-#include "api/names.h"
 #include "api/precision.h"
+#include "api/record.h"
 #include "api/state.h"
-#include "api/statistics.h"
+
 #include "base/median.h"
+#include "base/timer.h"
 #include "kdray/kdray.h"
 #include "timeline/timeline.h"
 #include "wavefront/query.h"
@@ -29,105 +33,53 @@ Picture to_picture(const film::Image& image, std::vector<film::Channel> channels
   return picture;
 }
 
+// Times what is done on the way to a frame or a query, beside what the statistics tell of by other names.
+class Preparing {
+ public:
+  explicit Preparing(const api::DeviceSet& devices) : devices_(devices), before_(told()) {}
+
+  // `work`: the frame or the query itself.
+  double beside(double work) const { return std::max(0.0, timer_.seconds() - work - (told() - before_)); }
+
+ private:
+  double told() const { return devices_.build_seconds() + devices_.upload_seconds(); }
+
+  const api::DeviceSet& devices_;
+  double before_;
+  Timer timer_;
+};
+
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(const PreparedScene& prepared, const DeviceOptions& device_options);
+  Impl(const PreparedScene& prepared, const DeviceOptions& options, const api::Hooks& hooks)
+      : state(prepared.prepared(), options, hooks), statistics(api::first_statistics(state)) {}
 
   Picture render(const RenderOptions& options);
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
                          Precision precision);
   void tune(const Tuning& tuning);
-  void record_seconds();
-  void record_frame(const api::Job& job, const api::Drawn& drawn);
-  void record_mode(const api::Job& job, api::Json mode, const std::string& why);
 
   api::State state;
-  api::Json statistics;
+  Statistics statistics;
   std::string timeline;  // of the last frame, where it was asked for
 };
-
-Renderer::Impl::Impl(const PreparedScene& prepared, const DeviceOptions& device_options)
-    : state(prepared.prepared(), device_options) {
-  const prepare::Prepared& scene = state.scene;
-  const api::Device& first = state.devices.first();
-  statistics["seconds"] = {
-      {"build", scene.seconds.build}, {"flatten", scene.seconds.flatten}, {"upload", 0.0}, {"compile", 0.0}};
-  statistics["scene"] = api::scene_json(scene);
-  statistics["tree"] = api::tree_json(scene);
-  statistics["memory"] = {{"scene_bytes", state.scene_bytes}};
-  statistics["device"] = api::device_json(first.context.info());
-  statistics["device"]["tuning"] = api::tuning_json(first.tuned);
-  statistics["features"] = api::features_json(scene.features);
-}
 
 void Renderer::Impl::tune(const Tuning& tuning) {
   state.devices.tune(tuning);
   state.scheduler.forget();
-  statistics["device"]["tuning"] = api::tuning_json(state.devices.first().tuned);
-}
-
-void Renderer::Impl::record_seconds() {
-  statistics["seconds"]["compile"] = state.devices.build_seconds();
-  statistics["seconds"]["upload"] = state.devices.upload_seconds();
-}
-
-// What all modes tell of a frame.
-void Renderer::Impl::record_frame(const api::Job& job, const api::Drawn& drawn) {
-  record_seconds();
-  api::Json& seconds = statistics["seconds"];
-  const auto stage = [&](const char* name) {
-    const auto found = drawn.stage_seconds.find(name);
-    return found == drawn.stage_seconds.end() ? 0.0 : found->second;
-  };
-  seconds["render"] = drawn.render_seconds;
-  seconds["trace"] = stage("trace_closest") + stage("trace_shadow");
-  seconds["shade"] = stage("shade");
-  seconds["admit"] = stage("admit");
-  seconds["add"] = stage("add");
-  seconds.update(drawn.seconds);
-  statistics["rays"] = api::rays_json(drawn.counters);
-  statistics["mrays_per_s"] = api::mrays_per_s(drawn.counters.total(), drawn.render_seconds);
-  statistics["features"] = api::features_json(job.features);
-  statistics["frame"] = {{"width", job.frame.width},
-                         {"height", job.frame.height},
-                         {"samples", job.frame.n_samples},
-                         {"depth", job.frame.max_depth},
-                         {"spawn_threshold", job.frame.spawn_threshold}};
-  statistics["memory"].update(drawn.memory);
-  statistics["samples"] = api::samples_json(job.frame, drawn.samples ? &*drawn.samples : nullptr);
-}
-
-// `mode`: what is the mode's own.
-void Renderer::Impl::record_mode(const api::Job& job, api::Json mode, const std::string& why) {
-  const api::Device& first = state.devices.first();
-  std::size_t sub_devices = 0, programs = 0;
-  api::Json names = api::Json::array();
-  for (const api::Device& d : state.devices) {
-    sub_devices += d.context.n_sub_devices();
-    programs += d.programs.n_built();
-    names.push_back(d.context.info().name);
-  }
-  mode["why"] = why;
-  mode["devices"] = std::move(names);
-  mode["sub_devices"] = sub_devices;
-  mode["traversal"] =
-      api::name_of(api::traversal_in(job.options.precision, job.options.traversal, first.context.info()));
-  mode["precision"] = api::name_of(job.options.precision);
-  mode["work_group"] = first.work_group;
-  mode["programs"] = programs;
-  mode["programs_known"] = state.devices.size() * wavefront::Programs::n_known();
-  statistics["mode"] = std::move(mode);
+  statistics.tuning = api::tuning_told(state.devices.first().tuned);
 }
 
 Picture Renderer::Impl::render(const RenderOptions& options) {
   timeline::Timeline kept;
   api::Job job = api::make_job(state, options, options.timeline ? &kept : nullptr);
   const api::ChosenMode chosen = api::choose_mode(state, job);
+  const Preparing preparing(state.devices);
   api::Drawn drawn = chosen.mode == Mode::odprt ? api::draw_odprt(state, job) : api::draw_pdprt(state, job);
   timeline = options.timeline ? kept.json() : std::string();
-  record_frame(job, drawn);
-  record_mode(job, std::move(drawn.mode), chosen.why);
+  statistics.seconds.prepare = preparing.beside(drawn.render_seconds + drawn.divide_seconds.value_or(0));
+  api::record_frame(statistics, state, job, drawn, chosen.why);
   Picture picture = to_picture(drawn.image, api::channels_of(state, job, drawn));
   picture.warnings = std::move(drawn.warnings);
   return picture;
@@ -140,38 +92,38 @@ std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, 
   api::check_form(takes_binary_form(traversal, precision), state.scene);
   // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
   if (traversal == Traversal::automatic && first.global) traversal = Traversal::wide;
+  const Preparing preparing(state.devices);
   wavefront::QueryResult result =
       wavefront::trace_query(first.context, first.buffers(), first.programs, state.scene.geometry,
                              state.scene.features, first.work_group, traversal, precision, rays, any_hit,
                              repeat, first.global ? wavefront::kBoundedLaunch : wavefront::kRaysPerChunk);
-  const double seconds = median(result.seconds);
-  record_seconds();
-  statistics["seconds"]["trace"] = seconds;
-  statistics["rays"] = {{"total", rays.size()}};
-  statistics["mrays_per_s"] = api::mrays_per_s(rays.size(), seconds);
-  statistics["mode"] = {{"name", "query"},
-                        {"queues", 1},
-                        {"traversal", api::name_of(traversal)},
-                        {"precision", api::name_of(precision)},
-                        {"work_group", first.work_group},
-                        {"repeat", result.seconds.size()}};
+  statistics.seconds.prepare =
+      preparing.beside(std::accumulate(result.seconds.begin(), result.seconds.end(), 0.0));
+  api::record_query(statistics, state,
+                    {.rays = rays.size(),
+                     .repeat = result.seconds.size(),
+                     .seconds = median(result.seconds),
+                     .traversal = traversal,
+                     .precision = precision});
   return std::move(result.hits);
 }
 
 namespace {
 
 // The device first: without one there is no use in building a tree.
-PreparedScene prepared_for(const DeviceOptions& device, const Scene& scene, const TreeOptions& tree) {
-  open_device(device);
+PreparedScene prepared_for(const DeviceOptions& device, const api::Hooks& hooks, const Scene& scene,
+                           const TreeOptions& tree) {
+  api::open_device(device, hooks);
   return PreparedScene(scene, tree);
 }
 
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const TreeOptions& tree, const DeviceOptions& device)
-    : Renderer(prepared_for(device, scene, tree), device) {}
+    : Renderer(prepared_for(device, {}, scene, tree), device) {}
 Renderer::Renderer(const PreparedScene& scene, const DeviceOptions& device)
-    : impl_(std::make_unique<Impl>(scene, device)) {}
+    : Renderer(std::make_unique<Impl>(scene, device, api::Hooks())) {}
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
@@ -189,8 +141,30 @@ void Renderer::tune(const Tuning& tuning) {
 std::string Renderer::timeline() const {
   return impl_->timeline;
 }
-std::string Renderer::statistics() const {
-  return impl_->statistics.dump(2);
+const Statistics& Renderer::statistics() const {
+  return impl_->statistics;
 }
+
+namespace api {
+
+struct HookedRenderer {
+  static Renderer make(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks) {
+    return Renderer(std::make_unique<Renderer::Impl>(scene, device, hooks));
+  }
+  static void keep(Renderer& renderer, std::uint64_t bits) { renderer.impl_->state.keep = bits; }
+};
+
+Renderer make_renderer(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks) {
+  return HookedRenderer::make(scene, device, hooks);
+}
+Renderer make_renderer(const Scene& scene, const TreeOptions& tree, const DeviceOptions& device,
+                       const Hooks& hooks) {
+  return HookedRenderer::make(prepared_for(device, hooks, scene, tree), device, hooks);
+}
+void keep(Renderer& renderer, std::uint64_t bits) {
+  HookedRenderer::keep(renderer, bits);
+}
+
+}  // namespace api
 
 }  // namespace kdray

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "api/device.h"
+#include "api/hooks.h"
 #include "api/scheduler.h"
 #include "device/faults.h"
 #include "flatten/core.h"
@@ -29,12 +30,13 @@ struct Speeds {
 
 // Its parts refer to each other, so it stays where it was made.
 struct State {
-  State(const prepare::Prepared& prepared, const DeviceOptions& options)
+  State(const prepare::Prepared& prepared, const DeviceOptions& options, const Hooks& hooks)
       : scene(prepared),
         scene_bytes(scene.bytes()),
-        devices(options, scene),
+        devices(options, hooks, scene),
         scheduler(devices),
-        faults(options.faults) {}
+        faults(hooks.faults),
+        keep(hooks.keep) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -45,6 +47,7 @@ struct State {
   device::Faults faults;
   std::unique_ptr<odprt::DividedScene> divided;  // once a frame was rendered in ODPRT
   Speeds speeds;
+  std::uint64_t keep;                 // Hooks::keep
   std::optional<flatten::Core> core;  // looked for with the first frame that could make use of it
 };
 

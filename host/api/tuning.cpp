@@ -1,4 +1,4 @@
-#include "tuning.h"
+#include "api/tuning.h"
 
 #include <fmt/format.h>
 
@@ -36,21 +36,6 @@ Tuned tuned_for(const device::Context& context, bool global, layout::Features fe
     tuned.from = fmt::format("{}, features {}", file, entry->key.features);
   }
   return tuned;
-}
-
-Json tuning_json(const Tuned& tuned) {
-  Json settings = Json::object();
-  for (const tune::Setting& s : tune::settings())
-    if (tuned.settings.*s.value != 0) settings[std::string(s.name)] = tuned.settings.*s.value;
-  const tune::Key& k = tuned.key;
-  return {{"from", tuned.from},
-          {"settings", settings},
-          {"key",
-           {{"device", k.device},
-            {"driver", k.driver},
-            {"kernels", k.kernels},
-            {"schedule", k.schedule},
-            {"features", k.features}}}};
 }
 
 }  // namespace kdray::api

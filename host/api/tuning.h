@@ -8,7 +8,6 @@
 
 #include "device/context.h"
 #include "layout/features.h"
-#include "statistics.h"
 #include "tune/database.h"
 
 namespace kdray::api {
@@ -26,7 +25,5 @@ tune::Database read_tunings(const DeviceOptions& options);
 
 Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
                 const tune::Database& tunings, const std::string& file);
-
-Json tuning_json(const Tuned& tuned);
 
 }  // namespace kdray::api

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "base/hash.h"
-#include "kdray/kdray.h"
+#include "kdray/options.h"
 
 namespace kdray::cache {
 

@@ -1,5 +1,6 @@
 #include "cli/open_scene.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <future>
 
@@ -34,7 +35,7 @@ DeviceOptions with_cache(DeviceOptions device, const CacheChoice& choice) {
 
 OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const DeviceOptions& device,
                          const CacheChoice& choice, bool quiet,
-                         const std::function<void(const scene::Scene&)>& check)
+                         const std::function<void(const scene::Scene&)>& check, const api::Hooks& hooks)
     : choice_(choice),
       cache_(options_of(choice)),
       quiet_(quiet),
@@ -46,12 +47,13 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
     if (!quiet_ && left_out_.insert(why).second) say(why);
   };
   if (!quiet) device_.tunings_ignored = [](const std::string& why) { say(why); };
-  std::future<void> device_opened = std::async(std::launch::async, [this] { open_device(device_); });
+  std::future<OpenSeconds> device_opened =
+      std::async(std::launch::async, [&] { return api::open_device(device_, hooks); });
   const auto tell = [&](const scene::Scene& settings) {
     if (check) check(settings);
     if (!quiet)
       for (const std::string& warning : settings.warnings) say(warning);
-    device_opened.get();
+    wait_for(device_opened);
   };
   // A scene from standard input is no file that could be found again.
   const bool has_cache = !options_of(choice).folder.empty() && !input.is_stdin();
@@ -59,7 +61,7 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
   if (has_cache) scene_ = cache_.find(input.file, tree);
   if (has_cache) {
     outcome_ = scene_ ? kHit : kMiss;
-    cache_seconds_ = look_up.seconds();
+    seconds_.cache = look_up.seconds();
   }
   if (scene_) {
     tell(scene_->settings());
@@ -73,7 +75,7 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
       throw;
     }
   }();
-  load_seconds_ = read.load_seconds();
+  seconds_.load = read.load_seconds();
   tell(read.model());  // without a device there is no use in building a tree
   scene_.emplace(read, tree);
   // What the tree was built of is known to be in range, and to fit, only now.
@@ -85,7 +87,26 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
 
 void OpenedScene::keep() {
   keep_scene();
+  const Timer timer;
   keep_programs(device_);
+  seconds_.keep_programs = timer.seconds();
+}
+
+// The self-test comes last.
+void OpenedScene::wait_for(std::future<OpenSeconds>& device) {
+  const Timer timer;
+  const OpenSeconds opened = device.get();
+  const double waited = timer.seconds();
+  seconds_.self_test = std::min(opened.self_test, waited);
+  seconds_.start = waited - seconds_.self_test;
+}
+
+void OpenedScene::add_to(Statistics::Seconds& seconds) const {
+  seconds.cache += seconds_.cache;
+  seconds.load += seconds_.load;
+  seconds.start += seconds_.start;
+  seconds.self_test += seconds_.self_test;
+  seconds.keep_programs += seconds_.keep_programs;
 }
 
 void OpenedScene::keep_scene() {
@@ -96,7 +117,7 @@ void OpenedScene::keep_scene() {
   } catch (const Error& error) {
     if (!choice_.folder.empty() && !quiet_) say(error.what());
   }
-  cache_seconds_ += timer.seconds();
+  seconds_.cache += timer.seconds();
 }
 
 }  // namespace kdray::cli

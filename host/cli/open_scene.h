@@ -5,10 +5,12 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <optional>
 #include <set>
 #include <string>
 
+#include "api/hooks.h"
 #include "cli/build_notice.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
@@ -21,7 +23,7 @@ class OpenedScene {
   // `check` sees the scene's settings before any tree is built. Prints the scene's warnings, unless `quiet`.
   OpenedScene(const SceneInput& input, const TreeOptions& tree, const DeviceOptions& device,
               const CacheChoice& cache, bool quiet,
-              const std::function<void(const scene::Scene&)>& check = {});
+              const std::function<void(const scene::Scene&)>& check = {}, const api::Hooks& hooks = {});
 
   const PreparedScene& scene() const { return *scene_; }
 
@@ -33,11 +35,14 @@ class OpenedScene {
   void keep();
 
   const std::string& cache() const { return outcome_; }  // "hit", "miss" or "off"
-  double load_seconds() const { return load_seconds_; }
-  double cache_seconds() const { return cache_seconds_; }  // to look the scene up, and to keep it
+
+  // Of what was done here: cache, load, keep_programs, and of start and self_test what was waited for, since
+  // the device is opened while the scene is read.
+  void add_to(Statistics::Seconds& seconds) const;
 
  private:
   void keep_scene();
+  void wait_for(std::future<OpenSeconds>& device);
 
   CacheChoice choice_;
   SceneCache cache_;
@@ -46,7 +51,7 @@ class OpenedScene {
   std::set<std::string> left_out_;  // devices, as they were told of
   DeviceOptions device_;
   std::string outcome_ = "off";
-  double load_seconds_ = 0, cache_seconds_ = 0;
+  Statistics::Seconds seconds_;
   std::optional<PreparedScene> scene_;
 };
 

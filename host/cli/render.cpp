@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "api/hooks.h"
 #include "base/timer.h"
 #include "cli/command.h"
 #include "cli/memory.h"
@@ -48,6 +49,7 @@ struct RenderArgs {
   CacheChoice cache;
   TreeOptions tree;
   DeviceOptions device;
+  api::Hooks hooks;
   RenderOptions render;
   ViewOptions view;
   film::WriteOptions write;
@@ -141,7 +143,7 @@ void add_division_options(CLI::App& app, RenderArgs& o) {
   add_path(app, "--trace", "Write what each queue did when, for Perfetto (Chrome trace format)", o.timeline)
       ->group(group);
   add_text(app, "--inject-fault", "Q@N", "For tests: the Nth launch on queue Q fails (Q@N,Q@N,...)",
-           [&o](const std::string& text) { o.device.faults = text; })
+           [&o](const std::string& text) { o.hooks.faults = text; })
       ->group(group);
 }
 
@@ -237,28 +239,30 @@ int run(RenderArgs& o) {
   check_files(o, files);
   tell_of_options_without_effect(o);
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
-  OpenedScene scene(o.scene, o.tree, o.device, o.cache, o.quiet, [&](const scene::Scene& asked) {
-    check_view_of(o, asked);
-    check_files(o, files, asked);
-    check_memory(o.render, asked.settings);
-  });
+  OpenedScene scene(
+      o.scene, o.tree, o.device, o.cache, o.quiet,
+      [&](const scene::Scene& asked) {
+        check_view_of(o, asked);
+        check_files(o, files, asked);
+        check_memory(o.render, asked.settings);
+      },
+      o.hooks);
   const PreparedScene seen =
       o.view.any ? scene.scene().seen(o.view.view, o.render.width, o.render.height) : scene.scene();
-  Renderer renderer(seen, scene.device());
+  Renderer renderer = api::make_renderer(seen, scene.device(), o.hooks);
   Picture picture = render(renderer, o);
   std::vector<float> alpha = make_transparent(picture, seen, scene.device(), o);
   if (!o.quiet)
     for (const std::string& warning : picture.warnings) say(warning);
-  OwnSeconds seconds;
+  Statistics figures = renderer.statistics();
   const Timer step;
   const film::Written written = write(std::move(picture), std::move(alpha), o);
-  seconds.write = step.seconds();
+  figures.seconds.write = step.seconds();
   scene.keep();
-  seconds.cache = scene.cache_seconds();
-  seconds.load = scene.load_seconds();
-  seconds.total = total.seconds();
+  scene.add_to(figures.seconds);
+  figures.seconds.total = total.seconds();
 
-  Json stats = collect_stats("render", o.scene.file, renderer.statistics(), seconds);
+  Json stats = collect_stats("render", o.scene.file, figures);
   stats["cache"] = scene.cache();
   for (const auto& file : written.files) stats["files"].push_back(file.string());
   if (!o.stats.empty()) write_stats(o.stats, stats);

@@ -2,37 +2,41 @@
 
 #include <sys/resource.h>
 
+#include <array>
+
+#include "api/statistics_json.h"
 #include "cli/output.h"
 
 namespace kdray::cli {
 
 namespace {
 
-// The names of docs/cli.md in their order; what the renderer never reached is 0.
-Json all_seconds(const Json& measured, const OwnSeconds& own) {
-  Json seconds;
-  seconds["cache"] = own.cache;
-  seconds["load"] = own.load;
-  for (const char* const name : {"build", "flatten", "upload", "compile", "trace", "shade", "render"})
-    seconds[name] = measured.value(name, 0.0);
+constexpr std::array kFirst = {"cache",  "load",    "start",   "self_test", "build", "flatten",
+                               "upload", "compile", "prepare", "trace",     "shade", "render"};
+constexpr std::array kLast = {"keep_programs", "write", "total", "read_rays"};
+
+// In the order of docs/cli.md, which is about that of the work; what one command alone has lies between.
+Json in_order(const Json& measured) {
+  Json seconds, last;
+  for (const char* const name : kFirst) seconds[name] = measured.at(name);
+  for (const char* const name : kLast)
+    if (const auto found = measured.find(name); found != measured.end()) last[name] = *found;
   for (const auto& [name, value] : measured.items())
-    if (!seconds.contains(name)) seconds[name] = value;
-  seconds["write"] = own.write;
-  seconds["total"] = own.total;
+    if (!seconds.contains(name) && !last.contains(name)) seconds[name] = value;
+  seconds.update(last);
   return seconds;
 }
 
 }  // namespace
 
-Json collect_stats(const std::string& command, const std::string& scene,
-                   const std::string& renderer_statistics, const OwnSeconds& seconds) {
-  const Json renderer = Json::parse(renderer_statistics);
+Json collect_stats(const std::string& command, const std::string& scene, const Statistics& statistics) {
+  const Json renderer = api::statistics_json(statistics);
   Json stats;
   stats["kdray"] = KDRAY_VERSION;
   stats["command"] = command;
   stats["scene"]["file"] = scene;
-  if (const auto facts = renderer.find("scene"); facts != renderer.end()) stats["scene"].update(*facts);
-  stats["seconds"] = all_seconds(renderer.value("seconds", Json::object()), seconds);
+  stats["scene"].update(renderer.at("scene"));
+  stats["seconds"] = in_order(renderer.at("seconds"));
   for (const auto& [name, value] : renderer.items())
     if (!stats.contains(name)) stats[name] = value;
   stats["memory"]["process_peak_bytes"] = peak_memory();

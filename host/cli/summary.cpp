@@ -14,9 +14,10 @@ namespace kdray::cli {
 namespace {
 
 // What a start takes once and the next one does not, as statistics and people call it.
-constexpr std::array<std::pair<const char*, const char*>, 4> kStart = {{{"start", "opening the device"},
+constexpr std::array<std::pair<const char*, const char*>, 5> kStart = {{{"start", "opening the device"},
                                                                         {"self_test", "its self-test"},
                                                                         {"compile", "compiling kernels"},
+                                                                        {"prepare", "their first launch"},
                                                                         {"keep_programs", "keeping them"}}};
 constexpr double kCold = 1, kWorthTelling = 0.05;  // seconds
 
@@ -103,7 +104,8 @@ std::string stages_line(const Json& stats) {
   std::vector<std::string> stages;
   if (const double s = number(seconds, "cache"); s > 0)
     stages.push_back(fmt::format("cache {} {}", stats.value("cache", "off"), seconds_in_words(s)));
-  for (const char* const name : {"load", "build", "flatten", "upload", "compile", work_of(seconds), "write"})
+  for (const char* const name : {"load", "start", "self_test", "build", "flatten", "upload", "compile",
+                                 "prepare", work_of(seconds), "keep_programs", "write"})
     if (const double s = number(seconds, name); s > 0)
       stages.push_back(fmt::format("{} {}", name, seconds_in_words(s)));
   return fmt::format("{}; {} in all", fmt::join(stages, ", "), seconds_in_words(number(seconds, "total")));

@@ -74,18 +74,17 @@ int run(const TraceArgs& o) {
                     [&files](const scene::Scene& asked) { files.read_scene(asked.files); });
   Renderer renderer(scene.scene(), scene.device());
   const std::vector<Hit> hits = trace(renderer, o, rays);
-  OwnSeconds seconds;
+  Statistics figures = renderer.statistics();
   step.restart();
   write_hits(o.output, hits);
-  seconds.write = step.seconds();
+  figures.seconds.write = step.seconds();
   scene.keep();
-  seconds.cache = scene.cache_seconds();
-  seconds.load = scene.load_seconds();
-  seconds.total = total.seconds();
+  scene.add_to(figures.seconds);
+  figures.seconds.read_rays = read_rays;
+  figures.seconds.total = total.seconds();
 
-  Json stats = collect_stats("trace", o.scene.file, renderer.statistics(), seconds);
+  Json stats = collect_stats("trace", o.scene.file, figures);
   stats["cache"] = scene.cache();
-  stats["seconds"]["read_rays"] = read_rays;
   const auto found = std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return std::isfinite(h.t); });
   stats["hits"] = {{"file", o.output},
                    {"rays", rays.size()},

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstring>
 #include <future>
-#include <nlohmann/json.hpp>
 
 #include "base/timer.h"
 #include "generate/built_in.h"
@@ -46,10 +45,8 @@ TuneScene::TuneScene(const std::string& name, const DeviceOptions& device, const
       reference_(TuneScene::render({})) {}
 
 tune::Key TuneScene::key() const {
-  const nlohmann::json key =
-      nlohmann::json::parse(renderer_.statistics()).at("device").at("tuning").at("key");
-  const auto text = [&](const char* word) { return key.at(word).get<std::string>(); };
-  return {text("device"), text("driver"), text("kernels"), text("schedule"), text("features")};
+  const Statistics::DeviceTuning& tuning = renderer_.statistics().tuning;
+  return {tuning.device, tuning.driver, tuning.kernels, tuning.schedule, tuning.features};
 }
 
 Picture TuneScene::render(const Tuning& tuning) {
@@ -64,7 +61,7 @@ std::string TuneScene::fault(const Tuning& tuning) {
 
 double TuneScene::seconds(const Tuning& tuning) {
   render(tuning);
-  return nlohmann::json::parse(renderer_.statistics()).at("seconds").at("render").get<double>();
+  return renderer_.statistics().seconds.render;
 }
 
 namespace {

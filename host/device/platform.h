@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "device/opencl.h"
-#include "kdray/kdray.h"
+#include "kdray/device_info.h"
 
 namespace kdray::device {
 

@@ -1,7 +1,7 @@
 // What    Camera and settings -> layout::Frame, in the space of the tree.
 #pragma once
 
-#include "kdray/kdray.h"
+#include "kdray/options.h"
 #include "layout/frame.layout.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"

@@ -16,7 +16,7 @@
 #include "adaptive/report.h"
 #include "device/faults.h"
 #include "film/image.h"
-#include "kdray/kdray.h"
+#include "kdray/options.h"
 #include "odprt/division.h"
 #include "odprt/exchange.h"
 #include "timeline/timeline.h"

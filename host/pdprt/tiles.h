@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "kdray/kdray.h"
+#include "kdray/options.h"
 #include "layout/frame.layout.h"
 
 namespace kdray::pdprt {

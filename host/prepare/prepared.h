@@ -8,7 +8,7 @@
 
 #include "flatten/flatten.h"
 #include "flatten/wide.h"
-#include "kdray/kdray.h"
+#include "kdray/options.h"
 #include "kdtree/build.h"
 #include "kdtree/statistics.h"
 #include "layout/features.h"

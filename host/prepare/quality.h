@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "kdray/kdray.h"
+#include "kdray/options.h"
 
 namespace kdray::prepare {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "kdray/kdray.h"
+#include "kdray/ray.h"
 
 namespace kdray::rays {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "kdray/kdray.h"
+#include "kdray/ray.h"
 #include "scene/scene.h"
 
 namespace kdray::selftest {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "device/context.h"
-#include "kdray/kdray.h"
+#include "kdray/ray.h"
 #include "selftest/known_case.h"
 
 namespace kdray::selftest {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "kdray/kdray.h"
+#include "kdray/options.h"
 
 namespace kdray::tune {
 

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "kdray/kdray.h"
+#include "kdray/ray.h"
 #include "math/local_space.h"
 
 namespace kdray::wavefront {

@@ -10,7 +10,7 @@
 #include "device/context.h"
 #include "device/kernel.h"
 #include "flatten/wide.h"
-#include "kdray/kdray.h"
+#include "kdray/options.h"
 #include "layout/features.h"
 
 namespace kdray::wavefront {

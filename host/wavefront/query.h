@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "kdray/kdray.h"
+#include "kdray/options.h"
+#include "kdray/ray.h"
 #include "scene/geometry.h"
 #include "wavefront/programs.h"
 #include "wavefront/scene_buffers.h"

@@ -71,7 +71,7 @@ TEST_P(RendererTest, PicturesHaveTheColoursOfTheScene) {
 TEST_P(RendererTest, StatisticsHoldTheContract) {
   Renderer r = renderer();
   (void)r.render({.width = 16, .height = 16});
-  const auto s = nlohmann::json::parse(r.statistics());
+  const auto s = nlohmann::json::parse(to_json(r.statistics()));
   for (const char* key : {"build", "flatten", "upload", "compile", "trace", "shade", "render"})
     EXPECT_TRUE(s.at("seconds").contains(key)) << key;
   EXPECT_EQ(s.at("rays").at("primary"), 256);
@@ -92,7 +92,7 @@ TEST_P(RendererTest, EveryBuildGivesTheSameHits) {
   for (const auto& [quality, name] :
        {std::pair{BuildQuality::fast, "fast"}, std::pair{BuildQuality::best, "best"}}) {
     Renderer r(small_scene(), {.quality = quality}, {.device = GetParam()});
-    EXPECT_EQ(nlohmann::json::parse(r.statistics()).at("tree").at("build"), name);
+    EXPECT_EQ(nlohmann::json::parse(to_json(r.statistics())).at("tree").at("build"), name);
     const std::vector<Hit> hits = r.trace(rays);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       EXPECT_EQ(hits[i].t, expected[i].t) << name << " " << i;

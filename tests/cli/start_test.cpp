@@ -59,6 +59,36 @@ TEST(Start, NoCacheKeepsNoProgramsAndTheEnvironmentNamesTheFolder) {
   EXPECT_GE(n_programs(folder / "own" / "programs"), 2u);
 }
 
+// Stages one after the other, without the device time that is a part of `render`.
+double sum_of_stages(const Json& seconds) {
+  double sum = 0;
+  for (const char* const stage : {"cache", "load", "start", "self_test", "build", "flatten", "upload",
+                                  "compile", "prepare", "render", "keep_programs", "write"})
+    sum += seconds.at(stage).get<double>();
+  return sum;
+}
+
+TEST(Start, StagesOfAColdStartAddUpToTheTotal) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  small_scene(folder);
+  const std::map<std::string, std::string> nothing_kept = {{"XDG_CACHE_HOME", folder / "caches"},
+                                                           {"POCL_CACHE_DIR", folder / "pocl"},
+                                                           {"KDRAY_CACHE_DIR", folder / "kdray"}};
+  fs::create_directories(folder / "pocl");
+  for (const bool cold : {true, false}) {
+    ASSERT_TRUE(succeeds(render_into(folder, {"--stats", folder / "s.json"}, nothing_kept)));
+    const Json seconds = Json::parse(folder.get("s.json")).at("seconds");
+    SCOPED_TRACE((cold ? "cold: " : "warm: ") + seconds.dump());
+    const double total = seconds.at("total");
+    EXPECT_LE(sum_of_stages(seconds), total);
+    if (!cold) continue;
+    EXPECT_GE(sum_of_stages(seconds), 0.95 * total);
+    for (const char* const stage : {"start", "self_test", "compile", "keep_programs"})
+      EXPECT_GT(seconds.at(stage), 0.0) << stage;
+  }
+}
+
 TEST(Start, ADeviceThatFailsTheSelfTestIsExitCode3WhenItWasNamed) {
   KDRAY_NEED_DEVICE();
   const Folder folder;

@@ -41,21 +41,31 @@ TEST(Words, DefaultPictureIsTheScenesNameHere) {
   EXPECT_EQ(default_picture("/x/balls.nff"), "balls.png");
 }
 
-TEST(Stats, RendererFiguresAreKeptAndOwnOnesAdded) {
-  const Json stats = collect_stats(
-      "render", "a.nff",
-      R"({"seconds":{"build":0.5,"extra":0.1},"rays":{"total":7},"scene":{"primitives":3},"memory":{"x":1}})",
-      {.load = 1, .write = 2, .total = 4});
+TEST(Stats, HoldEveryStageInItsOrder) {
+  Statistics figures;
+  figures.seconds = {.load = 1, .build = 0.5, .add = 0.1, .read_rays = 3, .write = 2, .total = 4};
+  figures.scene = {.primitives = 3, .kinds = {{"spheres", 3}}};
+  figures.memory.scene_bytes = 1;
+  figures.rays.total = 7;
+  figures.mode.name = "query";
+  const Json stats = collect_stats("render", "a.nff", figures);
+  std::string names;
+  for (const auto& [name, value] : stats["seconds"].items()) names += name + " ";
+  EXPECT_EQ(names,
+            "cache load start self_test build flatten upload compile prepare trace shade render add "
+            "keep_programs write "
+            "total read_rays ");
   EXPECT_EQ(stats["seconds"]["load"], 1.0);
   EXPECT_EQ(stats["seconds"]["build"], 0.5);
-  EXPECT_EQ(stats["seconds"]["extra"], 0.1);
+  EXPECT_EQ(stats["seconds"]["add"], 0.1);
   EXPECT_EQ(stats["seconds"]["shade"], 0.0);
   EXPECT_EQ(stats["seconds"]["write"], 2.0);
   EXPECT_EQ(stats["seconds"]["total"], 4.0);
   EXPECT_EQ(stats["scene"]["file"], "a.nff");
   EXPECT_EQ(stats["scene"]["primitives"], 3);
+  EXPECT_EQ(stats["scene"]["spheres"], 3);
   EXPECT_EQ(stats["rays"]["total"], 7);
-  EXPECT_EQ(stats["memory"]["x"], 1);
+  EXPECT_EQ(stats["memory"]["scene_bytes"], 1);
 }
 
 TEST(Memory, WhatWouldFitFits) {

@@ -30,8 +30,9 @@ RenderOptions options_for(double target, int samples = 1) {
   return o;
 }
 
-Shot render(const Scene& scene, const RenderOptions& options, const DeviceOptions& device = {}) {
-  Renderer renderer(scene, {}, device_of(device));
+Shot render(const Scene& scene, const RenderOptions& options, const DeviceOptions& device = {},
+            const api::Hooks& hooks = {}) {
+  Renderer renderer = api::make_renderer(scene, {}, device_of(device), hooks);
   Picture picture = renderer.render(options);
   return {std::move(picture), statistics_of(renderer)};
 }
@@ -88,7 +89,7 @@ TEST_P(Adaptive, TheSameBitsWhateverQueuesFail) {
       RenderOptions options = options_for(kTarget);
       options.mode = mode;
       if (mode == Mode::pdprt) options.division = Division::interleaved;
-      const Shot other = render(scene, options, {.queues = 3, .faults = faults});
+      const Shot other = render(scene, options, {.queues = 3}, {.faults = faults});
       EXPECT_TRUE(same_bits(first.picture.rgb, other.picture.rgb));
       EXPECT_EQ(other.picture.warnings.size(), other.quarantined().size());
       if (faults == "0@1") {

@@ -82,7 +82,7 @@ TEST_P(Identical, WhateverQueuesFail) {
   const Scene scene{GetParam().make()};
   const Picture first = render(scene, {0, 0, 0, 1});
   for (const char* const faults : {"0@1", "1@1,2@2", "0@2,2@1"}) {
-    Renderer renderer(scene, {}, device_of({.queues = 3, .faults = faults}));
+    Renderer renderer = api::make_renderer(scene, {}, device_of({.queues = 3}), {.faults = faults});
     RenderOptions options = exact_options(kWidth, kHeight);
     options.division = Division::interleaved;
     const Picture picture = renderer.render(options);

@@ -37,8 +37,7 @@ struct Shot {
 Shot render(const Scene& scene, const Way& way) {
   DeviceOptions device;
   device.queues = way.queues;
-  device.faults = way.faults;
-  Renderer renderer(scene, {}, device_of(device));
+  Renderer renderer = api::make_renderer(scene, {}, device_of(device), {.faults = way.faults});
   Picture picture = renderer.render(way.options);
   return {std::move(picture), statistics_of(renderer)};
 }

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "api/hooks.h"
+#include "api/statistics_json.h"
 #include "kdray/kdray.h"
 #include "scene/scene.h"
 #include "support/programs.h"
@@ -26,7 +28,7 @@ inline DeviceOptions device_of(DeviceOptions options = {}) {
 }
 
 inline nlohmann::json statistics_of(const Renderer& renderer) {
-  return nlohmann::json::parse(renderer.statistics());
+  return api::statistics_json(renderer.statistics());
 }
 
 // Every ray that has any weight, to the given depth, one through each pixel: what an oracle can follow. (A

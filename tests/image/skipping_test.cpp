@@ -20,10 +20,11 @@ bool same_bits(const Picture& a, const Picture& b) {
          std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(float)) == 0;
 }
 
-RenderOptions keeping(std::uint32_t rules) {
-  RenderOptions o = exact_options(kWidth, kHeight);
-  o.keep = rules;
-  return o;
+// A frame for which what these rules skip is done all the same.
+Picture keeping(Renderer& renderer, std::uint32_t rules,
+                const RenderOptions& options = exact_options(kWidth, kHeight)) {
+  api::keep(renderer, rules);
+  return renderer.render(options);
 }
 
 std::uint64_t skipped(const Renderer& renderer, const char* why) {
@@ -50,9 +51,9 @@ class EachRule : public testing::TestWithParam<std::uint32_t> {};
 TEST_P(EachRule, ChangesNoBit) {
   const Scene scene{floor_show()};
   Renderer renderer(scene, {}, device_of());
-  const Picture usual = renderer.render(keeping(0));
+  const Picture usual = keeping(renderer, 0);
   ASSERT_GT(mean_luminance(usual), 0.05);
-  EXPECT_TRUE(same_bits(usual, renderer.render(keeping(GetParam()))));
+  EXPECT_TRUE(same_bits(usual, keeping(renderer, GetParam())));
 }
 
 INSTANTIATE_TEST_SUITE_P(Skipping, EachRule,
@@ -68,9 +69,9 @@ TEST_P(AllRules, ChangeNoBit) {
   const bool smooth = !model.normals.empty() && !model.lights.empty();
   const Scene scene{scene::Scene(model)};
   Renderer renderer(scene, {}, device_of());
-  const Picture usual = renderer.render(keeping(0));
+  const Picture usual = keeping(renderer, 0);
   const std::uint32_t all = KDRAY_KEEP_ALL & ~(smooth ? KDRAY_KEEP_LEFT : 0u);
-  EXPECT_TRUE(same_bits(usual, renderer.render(keeping(all))));
+  EXPECT_TRUE(same_bits(usual, keeping(renderer, all)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Skipping, AllRules, testing::ValuesIn(small_scenes()),
@@ -88,32 +89,32 @@ TEST(Skipping, OfTheTriangleThatIsLeftIsExactForSmoothOnesWithoutLights) {
   for (scene::Material& m : model.materials) m.emission = {0.1f, 0.2f, 0.3f}, m.reflect = {0.5f, 0.5f, 0.5f};
   const Scene scene{std::move(model)};
   Renderer renderer(scene, {}, device_of());
-  const Picture usual = renderer.render(keeping(0));
+  const Picture usual = keeping(renderer, 0);
   ASSERT_GT(mean_luminance(usual), 0.05);
-  EXPECT_TRUE(same_bits(usual, renderer.render(keeping(KDRAY_KEEP_LEFT))));
+  EXPECT_TRUE(same_bits(usual, keeping(renderer, KDRAY_KEEP_LEFT)));
 }
 
 TEST(Skipping, ChangesNoBitInODPRT) {
   const Scene scene{floor_show()};
   Renderer renderer(scene, {}, device_of({.queues = 2}));
-  RenderOptions usual = keeping(0), all = keeping(KDRAY_KEEP_ALL);
-  usual.mode = all.mode = Mode::odprt;
-  const Picture picture = renderer.render(usual);
+  RenderOptions o = exact_options(kWidth, kHeight);
+  o.mode = Mode::odprt;
+  const Picture picture = keeping(renderer, 0, o);
   EXPECT_GT(skipped(renderer, "light_in_the_open"), 0u);
-  EXPECT_TRUE(same_bits(picture, renderer.render(all)));
+  EXPECT_TRUE(same_bits(picture, keeping(renderer, KDRAY_KEEP_ALL, o)));
 }
 
 TEST(Skipping, LeavesOutWhatPassesTheCore) {
   const Scene scene{floor_show()};
   Renderer renderer(scene, {}, device_of());
-  renderer.render(keeping(0));
+  keeping(renderer, 0);
   const std::uint64_t shadow = statistics_of(renderer)["rays"]["shadow"];
   const std::uint64_t reflected = statistics_of(renderer)["rays"]["reflected"];
   const std::uint64_t open = skipped(renderer, "light_in_the_open");
   const std::uint64_t background = skipped(renderer, "of_the_background");
   EXPECT_GT(open, 1000u);
   EXPECT_GT(background, 500u);
-  renderer.render(keeping(KDRAY_KEEP_OPEN));
+  keeping(renderer, KDRAY_KEEP_OPEN);
   EXPECT_EQ(statistics_of(renderer)["rays"]["shadow"], shadow + open);
   EXPECT_EQ(statistics_of(renderer)["rays"]["reflected"], reflected + background);
   EXPECT_EQ(skipped(renderer, "light_in_the_open") + skipped(renderer, "of_the_background"), 0u);
@@ -122,9 +123,9 @@ TEST(Skipping, LeavesOutWhatPassesTheCore) {
 TEST(Skipping, TracesEverythingWithoutLeastWeight) {
   const Scene scene{floor_show()};
   Renderer renderer(scene, {}, device_of());
-  RenderOptions o = keeping(0);
+  RenderOptions o = exact_options(kWidth, kHeight);
   o.min_weight = 0;
-  renderer.render(o);
+  keeping(renderer, 0, o);
   EXPECT_EQ(skipped(renderer, "light_in_the_open") + skipped(renderer, "of_the_background"), 0u);
 }
 

@@ -93,8 +93,7 @@ struct Shot {
 Shot render(const PreparedScene& scene, const RenderOptions& options, int queues, const std::string& faults) {
   DeviceOptions device;
   device.queues = queues;
-  device.faults = faults;
-  Renderer renderer(scene, device_of(device));
+  Renderer renderer = api::make_renderer(scene, device_of(device), {.faults = faults});
   Picture picture = renderer.render(options);
   return {std::move(picture), statistics_of(renderer)["rays"]};
 }

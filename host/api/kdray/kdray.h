@@ -2,7 +2,7 @@
 //         rays. `kdray`, the command line, is one client of it; an installed kdray offers it as kdray::kdray
 //         to CMake.
 // Shape   Only standard types cross this header. Classes are handles: cheap to move, not copyable.
-// Errors  Everything throws kdray::Error (base/error.h's codes: 1 input, 2 usage, 3 no device, 4 out of
+// Errors  Everything throws kdray::Error (kdray/error.h's codes: 1 input, 2 usage, 3 no device, 4 out of
 //         memory).
 // Threads A Renderer serves one call at a time; different Renderers may be used from different threads.
 #pragma once
@@ -18,7 +18,11 @@
 #include <utility>
 #include <vector>
 
+#include "kdray/device_info.h"
 #include "kdray/error.h"
+#include "kdray/options.h"
+#include "kdray/ray.h"
+#include "kdray/statistics.h"
 
 namespace kdray {
 
@@ -50,19 +54,6 @@ class Scene {
  private:
   std::unique_ptr<scene::Scene> model_;
   double load_seconds_ = 0;
-};
-
-// How much time goes into the tree (docs/design/kdtree.md). A choice changes times and memory, never a hit.
-enum class BuildQuality { fast, balanced, best };
-
-struct TreeOptions {
-  BuildQuality quality = BuildQuality::balanced;
-  int max_depth = -1;  // -1: 8 + 1.3*log2(N)
-  double cost_traverse = 1.0;
-  double cost_intersect = 2.0;  // of one test: of a block of primitives
-  // The most that the scene may take when it is traced; the tree gets coarser; 0: no limit.
-  std::uint64_t memory_bytes = 0;
-  bool binary_form = true;  // is made too; few options take it (takes_binary_form)
 };
 
 // Where a picture is seen from, and before what, in place of what the scene says. What isn't given stays as
@@ -102,14 +93,6 @@ class PreparedScene {
 // Throws what PreparedScene::seen() would, for a scene that isn't prepared yet.
 void check_view(const scene::Scene& scene, const View& view);
 
-// Prepared scenes kept in a folder between runs (docs/design/cache.md). Several processes and threads may use
-// one at once.
-struct CacheOptions {
-  std::filesystem::path folder = {};  // made when something is to be kept; empty: there is no cache
-  std::uint64_t max_bytes = std::uint64_t{4} << 30;  // of all scenes; the least recently used go first
-  double min_seconds = 0.05;                         // what took less to load and build is not kept
-};
-
 class SceneCache {
  public:
   explicit SceneCache(CacheOptions options) : options_(std::move(options)) {}
@@ -130,105 +113,6 @@ class SceneCache {
   CacheOptions options_;
 };
 
-// How a device's work is cut into launches (docs/devices.md). A choice changes time, never the picture or a
-// hit.
-enum class Schedule {
-  automatic,  // slices on CPUs, global elsewhere
-  slices,     // a work-item takes a slice of the picture through all stages of many waves
-  global      // a launch for each stage over all slices, one ray per work-item for tracing: for GPUs
-};
-
-// Settings that change time alone, never a bit of a picture or a hit; 0: kdray's own choice. `kdray tune`
-// finds them, host/tune/ settings.cpp tells what each does.
-struct Tuning {
-  int tile = 0, batch = 0, slices = 0, waves = 0, work_group = 0;
-  int packets = 0, batch_rays = 0, spread = 0, distance = 0, prefetch = 0;
-  bool operator==(const Tuning&) const = default;
-};
-
-struct DeviceOptions {
-  // "auto", "cpu", "gpu", a number from `kdray devices`, or a part of a name; several with commas between
-  // them
-  std::string device = "auto";
-  int queues = 1;         // one per sub-device of equal size when > 1; dealt out over several devices
-  int work_group = 0;     // local size of the per-ray kernels; 0: chosen for the device
-  int compute_units = 0;  // that many of the device's, as a sub-device; 0: all of them
-  Schedule schedule = Schedule::automatic;
-  // For tests: "1@5,0@9" makes the fifth launch on queue 1 and the ninth on queue 0 fail as if the device
-  // had; "self-test@0" makes device 0 fail the self-test.
-  std::string faults = {};
-  std::filesystem::path programs = {};  // folder where built programs are looked for and kept; empty: none
-  // File of what `kdray tune` found; empty, or none there: what kdray ships with.
-  std::filesystem::path tunings = {};
-  // Told why, in a line, where that file is of no use.
-  std::function<void(const std::string&)> tunings_ignored = {};
-  // True: a compiler begins to work; false: it ends. From any thread; may nest.
-  std::function<void(bool)> building = {};
-  // Told of each device that "auto" would prefer, but can't use.
-  std::function<void(const std::string&)> left_out = {};
-  // For benches: what every kernel is compiled with beside kdray's own options.
-  std::string build_options = {};
-};
-
-// How rays find their way through the tree. A choice changes time, never a hit (docs/traversal.md).
-enum class Traversal {
-  automatic,  // per 16 rays, from how coherent they are
-  binary,     // the binary tree, one ray per work-item: the baseline
-  wide,       // the wide tree, one ray per work-item
-  packet,     // the wide tree, 16 coherent rays to a vector, several packets in flight
-  batch       // the wide tree, many independent rays in flight
-};
-
-// What the kernels compute in. The scene is the same, stored as float. float64 (C++'s double) is the
-// reference for float's
-// rounding: slower, by the binary walk and PDPRT alone, on devices that have it.
-enum class Precision { float32, float64 };
-
-// How a frame is divided among the queues (docs/modes.md). A choice changes time and memory, never the
-// picture.
-enum class Mode {
-  automatic,  // what fits and is measured to be the fastest
-  pdprt,      // the pixels are divided: every queue sees the whole scene
-  odprt       // the scene is divided: a queue holds some of its subtrees, and rays travel
-};
-enum class Division { bag, contiguous, interleaved };  // PDPRT: how queues come by their tiles
-enum class Balance {                                   // ODPRT: what a queue's subtrees are chosen by
-  sah,                                                 // their expected cost for random rays
-  pilot,                                               // the cost measured in a small frame
-  dynamic  // like pilot, and moved between a Renderer's frames by what the last one measured
-};
-
-enum class PixelGrid { centers, corners };  // corners: the outermost rays go through the picture's edges
-
-// Of RenderOptions::adaptive_target: pictures about as good as of 16 samples in each pixel
-// (docs/design/adaptive.md).
-constexpr double kDefaultAdaptiveTarget = 0.0075;
-
-struct RenderOptions {
-  int width = 0, height = 0;  // 0: what the scene asks for, or 1024x1024
-  int depth = 0;              // 0: what the scene asks for, or 5; the eye ray is depth 1
-  double min_weight = -1;     // < 0: what the scene asks for, or the default; 0: no cut
-  int samples = 0;            // per pixel, stratified; 0: what the scene asks for, or 1
-  // > 0: as many samples in each pixel as an RMSE of that, in linear RGB, is believed to take.
-  double adaptive_target = 0;
-  PixelGrid grid = PixelGrid::centers;
-  int tile_width = 0, tile_height = 0;  // 0: chosen
-  Traversal traversal = Traversal::automatic;
-  Precision precision = Precision::float32;
-  Mode mode = Mode::automatic;
-  Division division = Division::bag;
-  Balance balance = Balance::pilot;
-  int ray_buffer = 0;  // ODPRT: rays that a buffer between queues holds for each slice; 0: chosen
-  // ODPRT: the most that a device may hold; subtrees come and go; 0: no limit.
-  std::uint64_t device_memory = 0;
-  // For benches: bits of kernels/layout/features.h and rules.h, what is compiled and done though the scene
-  // doesn't need it.
-  std::uint64_t keep = 0;
-  bool timeline = false;                      // keep what Renderer::timeline() tells
-  std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost", "samples"
-  std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1
-};
-
 struct Channel {
   std::string name;           // "depth", "normal.x" "normal.y" "normal.z", "primitive", "cost", "samples"
   std::vector<float> values;  // width * height
@@ -242,22 +126,13 @@ struct Picture {
   std::vector<std::string> warnings;
 };
 
-struct Ray {
-  float origin[3];
-  float t_min;
-  float direction[3];  // any length but 0; t counts in multiples of it
-  float t_max;
-};
-
-struct Hit {
-  float t;                 // inf: a miss; with any_hit 0: occluded
-  std::int32_t primitive;  // number in file order; -1: a miss
-  float u, v;  // triangle: barycentric weights of its 2nd and 3rd corner; cone: u = 0 base to 1 apex
-};
-
 // Whether rays of these options walk the tree's binary form, so that TreeOptions::binary_form is to be left
 // true.
 bool takes_binary_form(Traversal traversal, Precision precision, std::span<const std::string> channels = {});
+
+namespace api {
+struct HookedRenderer;  // for kdray's own tests and benches
+}
 
 class Renderer {
  public:
@@ -284,19 +159,28 @@ class Renderer {
   // RenderOptions::timeline asks for it.
   std::string timeline() const;
 
-  // JSON: seconds, rays, tree, memory, features, device and mode of what has been done so far
-  // (docs/cli.md, "Statistics").
-  std::string statistics() const;
+  // Figures of what has been done so far; to_json() makes text of them.
+  const Statistics& statistics() const;
 
  private:
+  friend struct api::HookedRenderer;
   struct Impl;
+  explicit Renderer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
+};
+
+// JSON, by the names of docs/cli.md.
+std::string to_json(const Statistics& statistics);
+
+// Wall time.
+struct OpenSeconds {
+  double start = 0, self_test = 0;  // as in Statistics::Seconds
 };
 
 // Opens the device that a Renderer of these options will use, which takes a while and can be done beside the
 // loading of a scene, by another thread. It stays open until the process ends. Throws what the Renderer
 // would.
-void open_device(const DeviceOptions& device);
+OpenSeconds open_device(const DeviceOptions& device);
 
 // Beside SceneCache::default_folder(), or in $KDRAY_CACHE_DIR; empty where that is.
 std::filesystem::path default_program_folder();
@@ -305,21 +189,8 @@ std::filesystem::path default_program_folder();
 // build, so best when the picture is out. A folder that can't be written is no error.
 void keep_programs(const DeviceOptions& device);
 
-struct DeviceInfo {
-  int number = 0;
-  std::string name, platform, version, driver, kind;  // kind: "cpu", "gpu", "accelerator"
-  std::uint32_t compute_units = 0;
-  std::uint64_t global_memory = 0, max_allocation = 0;
-  std::string vectors;  // the form of the kernels' vector operations: "x86 AVX-512", "x86 AVX2" or "portable"
-  std::string
-      vectors_refused;  // the better forms that can't be had, each with why; empty where there is none
-  bool double_precision = false;
-  bool usable = true;
-  std::string why_not;  // when not usable
-};
-
 // All OpenCL devices; empty when there is no platform. Never throws for want of a device. A device that fails
-// the self-test is not usable; of the options, those on built programs and faults count.
+// the self-test is not usable; of the options, those on built programs count.
 std::vector<DeviceInfo> devices(const DeviceOptions& options = {});
 
 }  // namespace kdray

@@ -1,0 +1,32 @@
+// What    What tests, benches and the command line's hidden options do to a Renderer beyond its public interface.
+//         This header is not installed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "kdray/kdray.h"
+
+namespace kdray::api {
+
+struct Hooks {
+  // "1@5,0@9" makes the fifth launch on queue 1 and the ninth on queue 0 fail as if the device had;
+  // "self-test@0" makes device 0 fail the self-test.
+  std::string faults = {};
+  // What every kernel is compiled with beside kdray's own options.
+  std::string build_options = {};
+  // Bits of kernels/layout/features.h and rules.h: what is compiled and done though the scene doesn't need it.
+  std::uint64_t keep = 0;
+};
+
+Renderer make_renderer(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks);
+Renderer make_renderer(const Scene& scene, const TreeOptions& tree, const DeviceOptions& device,
+                       const Hooks& hooks);
+
+// Hooks::keep, from the next frame on.
+void keep(Renderer& renderer, std::uint64_t bits);
+
+// kdray::open_device() with faults.
+OpenSeconds open_device(const DeviceOptions& device, const Hooks& hooks);
+
+}  // namespace kdray::api

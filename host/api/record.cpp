@@ -1,0 +1,163 @@
+#include "api/record.h"
+
+#include "api/names.h"
+#include "api/precision.h"
+#include "flatten/features.h"
+#include "prepare/quality.h"
+#include "wavefront/programs.h"
+
+namespace kdray::api {
+
+namespace {
+
+Statistics::Scene scene_told(const prepare::Prepared& scene) {
+  Statistics::Scene told{.primitives = scene.counts.primitives,
+                         .kinds = {},
+                         .lights = scene.settings.lights.size(),
+                         .materials = scene.settings.materials.size(),
+                         .dropped_degenerate = scene.geometry.dropped_degenerate};
+  primitives::for_each_kind(
+      [&](auto kind) { told.kinds.emplace_back(kind.kNames, decltype(kind)::of(scene.counts)); });
+  return told;
+}
+
+Statistics::Tree tree_told(const prepare::Prepared& scene) {
+  const kdtree::Statistics& s = scene.tree;
+  return {.build = std::string(prepare::name_of(scene.tree_options.quality)),
+          .nodes = scene.tree_nodes,
+          .inner_nodes = s.inner_nodes,
+          .leaves = s.leaves,
+          .empty_leaves = s.empty_leaves,
+          .references = s.references,
+          .duplication = s.duplication,
+          .largest_leaf = s.largest_leaf,
+          .max_depth = s.max_depth,
+          .mean_leaf_depth = s.mean_leaf_depth,
+          .sah_cost = s.sah_cost};
+}
+
+#define KDRAY_ONE(name, field, key) +1
+static_assert(0 KDRAY_COUNTERS_OF_TRACED(KDRAY_ONE) == 5 && 0 KDRAY_COUNTERS_OF_SKIPPED(KDRAY_ONE) == 6,
+              "Statistics::Rays has a field for each counter");
+#undef KDRAY_ONE
+
+Statistics::Rays rays_told(const wavefront::Counters& c) {
+  return {.total = c.total(),
+          .kinds = Statistics::Rays::Kinds{.primary = c.primary,
+                                           .primary_hit = c.primary_hit,
+                                           .shadow = c.shadow,
+                                           .reflected = c.reflected,
+                                           .refracted = c.refracted,
+                                           .skipped = {.light_behind = c.skipped_behind,
+                                                       .light_of_no_weight = c.skipped_unlit,
+                                                       .light_in_the_open = c.skipped_open,
+                                                       .of_the_background = c.skipped_background,
+                                                       .below_min_weight = c.skipped_weight,
+                                                       .too_deep = c.skipped_depth}}};
+}
+
+Statistics::Samples samples_told(const layout::Frame& frame, const std::optional<adaptive::Report>& report) {
+  const std::uint64_t pixels = std::uint64_t{frame.width} * frame.height;
+  if (!report) return {pixels * frame.n_samples, static_cast<double>(frame.n_samples), {}};
+  Statistics::Adaptive adaptive{report->rounds, report->target, report->estimated_rmse, report->met, {}};
+  for (int level = 0; level < adaptive::kLevels; ++level)
+    adaptive.pixels.emplace_back(adaptive::samples_of(level),
+                                 report->pixels[static_cast<std::size_t>(level)]);
+  return {report->samples, static_cast<double>(report->samples) / static_cast<double>(pixels),
+          std::move(adaptive)};
+}
+
+void record_preparations(Statistics::Seconds& seconds, const State& state) {
+  seconds.compile = state.devices.build_seconds();
+  seconds.upload = state.devices.upload_seconds();
+}
+
+void add_devices(Statistics::Division& division, const DeviceSet& devices) {
+  for (const Device& d : devices) {
+    division.sub_devices += d.context.n_sub_devices();
+    division.programs += d.programs.n_built();
+    division.devices.push_back(d.context.info().name);
+  }
+  division.programs_known = devices.size() * wavefront::Programs::n_known();
+}
+
+}  // namespace
+
+Statistics::Features features_told(layout::Features mask) {
+  flatten::FeatureNames names = flatten::feature_names(mask);
+  return {std::move(names.on), std::move(names.off)};
+}
+
+Statistics::DeviceTuning tuning_told(const Tuned& tuned) {
+  const tune::Key& k = tuned.key;
+  return {tuned.from, tuned.settings, k.device, k.driver, k.kernels, k.schedule, k.features};
+}
+
+Statistics first_statistics(const State& state) {
+  Statistics s;
+  s.seconds.start = state.devices.open_seconds().start;
+  s.seconds.self_test = state.devices.open_seconds().self_test;
+  s.seconds.build = state.scene.seconds.build;
+  s.seconds.flatten = state.scene.seconds.flatten;
+  s.scene = scene_told(state.scene);
+  s.tree = tree_told(state.scene);
+  s.memory.scene_bytes = state.scene_bytes;
+  s.device = state.devices.first().context.info();
+  s.tuning = tuning_told(state.devices.first().tuned);
+  s.features = features_told(state.scene.features);
+  return s;
+}
+
+void record_frame(Statistics& statistics, const State& state, const Job& job, Drawn& drawn,
+                  const std::string& why) {
+  const Device& first = state.devices.first();
+  const auto stage = [&](const char* name) {
+    const auto found = drawn.stage_seconds.find(name);
+    return found == drawn.stage_seconds.end() ? 0.0 : found->second;
+  };
+  Statistics::Seconds& seconds = statistics.seconds;
+  record_preparations(seconds, state);
+  seconds.render = drawn.render_seconds;
+  seconds.trace = stage("trace_closest") + stage("trace_shadow");
+  seconds.shade = stage("shade");
+  seconds.admit = stage("admit");
+  seconds.add = stage("add");
+  seconds.divide = drawn.divide_seconds;
+  seconds.route.reset();
+  if (drawn.division.odprt) seconds.route = stage("route");
+  statistics.rays = rays_told(drawn.counters);
+  statistics.mrays_per_s = mrays_per_s(drawn.counters.total(), drawn.render_seconds);
+  statistics.features = features_told(job.features);
+  statistics.frame = {job.frame.width, job.frame.height, job.frame.n_samples, job.frame.max_depth,
+                      job.frame.spawn_threshold};
+  statistics.samples = samples_told(job.frame, drawn.samples);
+  statistics.memory.frame_bytes = drawn.frame_bytes;
+  statistics.memory.per_queue = std::move(drawn.memory_of_queues);
+  add_devices(drawn.division, state.devices);
+  drawn.division.why = why;
+  const Traversal traversal =
+      traversal_in(job.options.precision, job.options.traversal, first.context.info());
+  statistics.mode = {.name = drawn.division.odprt ? "odprt" : "pdprt",
+                     .queues = state.devices.n_queues(),
+                     .work_group = first.work_group,
+                     .traversal = name_of(traversal),
+                     .precision = name_of(job.options.precision),
+                     .division = std::move(drawn.division),
+                     .repeat = {}};
+}
+
+void record_query(Statistics& statistics, const State& state, const Query& query) {
+  record_preparations(statistics.seconds, state);
+  statistics.seconds.trace = query.seconds;
+  statistics.rays = {.total = query.rays, .kinds = {}};
+  statistics.mrays_per_s = mrays_per_s(query.rays, query.seconds);
+  statistics.mode = {.name = "query",
+                     .queues = 1,
+                     .work_group = state.devices.first().work_group,
+                     .traversal = name_of(query.traversal),
+                     .precision = name_of(query.precision),
+                     .division = {},
+                     .repeat = query.repeat};
+}
+
+}  // namespace kdray::api

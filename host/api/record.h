@@ -1,0 +1,42 @@
+// What    Fills in a Renderer's Statistics from what its rooms tell: the scene, the tree, rays, samples,
+//         queues.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "adaptive/report.h"
+#include "api/job.h"
+#include "api/state.h"
+#include "kdray/statistics.h"
+#include "layout/features.h"
+#include "odprt/render.h"
+#include "pdprt/render.h"
+#include "prepare/prepared.h"
+
+namespace kdray::api {
+
+// What is known before the first frame.
+Statistics first_statistics(const State& state);
+
+Statistics::Features features_told(layout::Features mask);
+Statistics::DeviceTuning tuning_told(const Tuned& tuned);
+
+// How a frame was divided among the queues, as far as the mode knows.
+Statistics::Division division_of(const pdprt::Result& result, const Job& job, bool global);
+// `bytes_of_whole` is the scene's geometry.
+Statistics::Division division_of(const odprt::Result& result, const Job& job, std::uint64_t bytes_of_whole);
+
+// What all modes tell of a frame.
+void record_frame(Statistics& statistics, const State& state, const Job& job, Drawn& drawn,
+                  const std::string& why);
+
+struct Query {
+  std::uint64_t rays = 0, repeat = 0;
+  double seconds = 0;
+  Traversal traversal = Traversal::automatic;
+  Precision precision = Precision::float32;
+};
+void record_query(Statistics& statistics, const State& state, const Query& query);
+
+}  // namespace kdray::api
