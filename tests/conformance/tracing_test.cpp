@@ -144,9 +144,9 @@ TYPED_TEST(TracingOf, PicturesAreTheSameBits) {
     EXPECT_TRUE(same_bits(usual.rgb, renderer.render(options).rgb)) << "walk " << static_cast<int>(walk);
   }
   options.traversal = Traversal::automatic;
-  options.keep = KDRAY_KEEP_ALL;
+  api::keep(renderer, KDRAY_KEEP_ALL);
   EXPECT_TRUE(same_bits(usual.rgb, renderer.render(options).rgb)) << "rules of skipping";
-  options.keep = 0;
+  api::keep(renderer, 0);
   DeviceOptions global = this->device();
   global.schedule = Schedule::global;
   EXPECT_TRUE(same_bits(usual.rgb, Renderer(scene, {}, global).render(options).rgb)) << "global schedule";
@@ -169,7 +169,7 @@ TYPED_TEST(TracingOf, ACoreHoldsIt) {
   RenderOptions options = exact_options(48, 36, 4);
   const Picture usual = renderer.render(options);
   EXPECT_GT(statistics_of(renderer)["rays"]["skipped"]["light_in_the_open"], 0);
-  options.keep = KDRAY_KEEP_OPEN;
+  api::keep(renderer, KDRAY_KEEP_OPEN);
   EXPECT_TRUE(same_bits(usual.rgb, renderer.render(options).rgb));
 }
 
