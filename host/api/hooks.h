@@ -1,5 +1,5 @@
-// What    What tests, benches and the command line's hidden options do to a Renderer beyond its public interface.
-//         This header is not installed.
+// What    What tests, benches and the command line's hidden options do to a Renderer beyond its public
+//         interface. This header is not installed.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@ struct Hooks {
   std::string faults = {};
   // What every kernel is compiled with beside kdray's own options.
   std::string build_options = {};
-  // Bits of kernels/layout/features.h and rules.h: what is compiled and done though the scene doesn't need it.
+  // Bits of kernels/layout/features.h and rules.h: what is compiled and done though the scene doesn't need
+  // it.
   std::uint64_t keep = 0;
 };
 

@@ -37,7 +37,7 @@ Statistics::Tree tree_told(const prepare::Prepared& scene) {
 }
 
 #define KDRAY_ONE(name, field, key) +1
-static_assert(0 KDRAY_COUNTERS_OF_TRACED(KDRAY_ONE) == 5 && 0 KDRAY_COUNTERS_OF_SKIPPED(KDRAY_ONE) == 6,
+static_assert(0 KDRAY_COUNTERS_OF_TRACED(KDRAY_ONE) == 5 && 0 KDRAY_COUNTERS_OF_SKIPPED(KDRAY_ONE) == 7,
               "Statistics::Rays has a field for each counter");
 #undef KDRAY_ONE
 
@@ -53,7 +53,8 @@ Statistics::Rays rays_told(const wavefront::Counters& c) {
                                                        .light_in_the_open = c.skipped_open,
                                                        .of_the_background = c.skipped_background,
                                                        .below_min_weight = c.skipped_weight,
-                                                       .too_deep = c.skipped_depth}}};
+                                                       .too_deep = c.skipped_depth,
+                                                       .too_deep_in_glass = c.skipped_glass}}};
 }
 
 Statistics::Samples samples_told(const layout::Frame& frame, const std::optional<adaptive::Report>& report) {

@@ -70,7 +70,8 @@ Json rays_json(const Statistics::Rays& r) {
   rays["refracted"] = r.kinds->refracted;
   rays["skipped"] = {{"light_behind", s.light_behind},           {"light_of_no_weight", s.light_of_no_weight},
                      {"light_in_the_open", s.light_in_the_open}, {"of_the_background", s.of_the_background},
-                     {"below_min_weight", s.below_min_weight},   {"too_deep", s.too_deep}};
+                     {"below_min_weight", s.below_min_weight},   {"too_deep", s.too_deep},
+                     {"too_deep_in_glass", s.too_deep_in_glass}};
   return rays;
 }
 

@@ -59,6 +59,9 @@ Box bounds_of(const layout::Cone& c);
 std::array<float, KDRAY_CONE_ROWS - 1> rows_of(const layout::Cone& c);
 
 // For `kdray verify`.
+constexpr bool has_outline(const ConeGeometry&) {
+  return false;
+}
 dvec3 place_on(const ConeGeometry& c, double share, const dvec3& direction);
 std::optional<double> sure_target(const Line& line, const ConeGeometry& c, double margin);
 Quadratic along(const Line& line, const ConeGeometry& c);

@@ -58,6 +58,9 @@ Box bounds_of(const layout::Disc& d);
 std::array<float, KDRAY_DISC_ROWS - 1> rows_of(const layout::Disc& d);
 
 // For `kdray verify`.
+constexpr bool has_outline(const DiscGeometry&) {
+  return true;
+}
 dvec3 place_on(const DiscGeometry& d, double share, const dvec3& direction);
 std::optional<double> sure_target(const Line& line, const DiscGeometry& d, double margin);
 bool meets_again(const Line& line, const DiscGeometry& d, double t, const dvec3& side);

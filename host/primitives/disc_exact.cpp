@@ -19,8 +19,8 @@ int sure_sign(const dvec3& a, const dvec3& b) {
 
 dvec3 place_on(const DiscGeometry& d, double share, const dvec3& direction) {
   const dvec3 across = glm::cross(dvec3(d.normal), direction);
-  const double length = glm::length(across), away = std::min(2 * share, 1.0);  // half of them on the rim
-  return dvec3(d.center) + (length > 0 ? away * d.radius / length : 0.0) * across;
+  const double length = glm::length(across);
+  return dvec3(d.center) + (length > 0 ? share * d.radius / length : 0.0) * across;
 }
 
 // Steeply, so that the place in the plane is off by no more than 16 margins.

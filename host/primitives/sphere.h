@@ -55,6 +55,9 @@ Box bounds_of(const layout::Sphere& s);
 std::array<float, KDRAY_SPHERE_ROWS - 1> rows_of(const layout::Sphere& s);
 
 // For `kdray verify`.
+constexpr bool has_outline(const SphereGeometry&) {
+  return true;
+}
 dvec3 place_on(const SphereGeometry& s, double share, const dvec3& direction);
 std::optional<double> sure_hit(const Line& line, const SphereGeometry& s, double margin);
 std::optional<double> sure_target(const Line& line, const SphereGeometry& s, double margin);

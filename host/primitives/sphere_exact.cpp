@@ -6,8 +6,7 @@
 namespace kdray::primitives {
 
 dvec3 place_on(const SphereGeometry& s, double share, const dvec3& direction) {
-  const double depth = std::min(2 * share, 1.0);  // half of them on the surface
-  return dvec3(s.center) + depth * s.radius * direction;
+  return dvec3(s.center) + share * s.radius * direction;
 }
 
 std::optional<double> sure_hit(const Line& line, const SphereGeometry& s, double margin) {

@@ -1,6 +1,6 @@
 // What    The settings that may be tuned, in one table, and what kdray ships with for each kind of device.
-// Shape   Each is a whole number in Tuning (kdray/options.h). 0 leaves it to kdray's own choice, which rules make
-//         (api/scheduler.cpp, wavefront/programs.cpp) or constants of the kernels.
+// Shape   Each is a whole number in Tuning (kdray/options.h). 0 leaves it to kdray's own choice, which rules
+//         make (api/scheduler.cpp, wavefront/programs.cpp) or constants of the kernels.
 // Why     Nothing in the table changes a bit of a picture: `kdray tune` may try anything, and a file of
 //         foreign settings can only cost time.
 #pragma once

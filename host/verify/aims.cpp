@@ -143,8 +143,10 @@ dvec3 Aims::place_on(std::size_t target) {
   dvec3 place;
   scene::visit_primitive(g, target, [&](auto kind, std::uint32_t index) {
     if constexpr (decltype(kind)::kIsShape) {
-      const double share = random_.unit();
-      place = primitives::place_on(decltype(kind)::of(g)[index], share, random_.direction());
+      // Half of the rays go to the outline of what has one.
+      const auto& shape = decltype(kind)::of(g)[index];
+      const double share = has_outline(shape) && random_.below(2) == 0 ? 1.0 : random_.unit();
+      place = primitives::place_on(shape, share, random_.direction());
     }
   });
   return place;

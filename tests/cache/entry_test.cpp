@@ -7,6 +7,7 @@
 #include <random>
 
 #include "cache/samples.h"
+#include "primitives/kinds.h"
 #include "support/errors.h"
 
 namespace kdray::cache {
@@ -17,7 +18,10 @@ constexpr Hash kKey{0x123456789abcdef0, 0x0fedcba987654321};
 constexpr std::size_t kPage = 4096;
 
 // The header's checksum lies behind the bytes that it is of; entry.cpp.
-constexpr std::size_t kHeaderBytes = 8 + 8 + 8 + 16 + 15 * 40;
+// The facts, materials and lights, six arrays of the flat form, the wide form's nodes; each shape's own
+// array, and each kind's blocks.
+constexpr std::size_t kSections = 1 + 2 + 6 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
+constexpr std::size_t kHeaderBytes = 8 + 8 + 8 + 16 + kSections * 40;
 constexpr std::size_t kFirstSection = 8 + 8 + 8 + 16;
 
 struct EntryTest : testing::Test {
@@ -93,7 +97,7 @@ TEST_F(EntryTest, FlippedBitsOfSectionsAreSeen) {
   const std::string wanted = test::everything(made);
   std::vector<bool> used(whole.size(), false);
   std::vector<std::size_t> places;
-  for (std::size_t s = 0; s < 15; ++s) {
+  for (std::size_t s = 0; s < kSections; ++s) {
     const std::size_t offset = number_at(kFirstSection + 40 * s), n = number_at(kFirstSection + 40 * s + 8);
     std::fill_n(used.begin() + static_cast<std::ptrdiff_t>(offset), n, true);
     if (n == 0) continue;
@@ -139,15 +143,15 @@ TEST_F(EntryTest, AHeaderOfAnotherFormIsRefusedUnderARightChecksum) {
   EXPECT_FALSE(read(forged(0, 'x'))) << "magic";
   EXPECT_FALSE(read(forged(8, std::uint32_t{1}))) << "an old version";
   EXPECT_FALSE(read(forged(8, std::uint32_t{3}))) << "a new version";
-  EXPECT_FALSE(read(forged(12, std::uint32_t{14}))) << "fewer sections";
+  EXPECT_FALSE(read(forged(12, std::uint32_t{kSections - 1}))) << "fewer sections";
   EXPECT_FALSE(read(forged(16, whole.size() - 1))) << "another size";
   EXPECT_FALSE(read(forged(24, std::uint64_t{7}))) << "another key";
-  for (std::size_t s = 0; s < 15; ++s) {
+  for (std::size_t s = 0; s < kSections; ++s) {
     const std::size_t at = kFirstSection + 40 * s;
     EXPECT_FALSE(read(forged(at, ~std::uint64_t{0}))) << "a section outside";
     EXPECT_FALSE(read(forged(at + 8, ~std::uint64_t{0} - number_at(at)))) << "a section without end";
   }
-  for (std::size_t s = 1; s < 15; ++s) {
+  for (std::size_t s = 1; s < kSections; ++s) {
     const std::size_t at = kFirstSection + 40 * s;
     EXPECT_FALSE(read(forged(at + 16, number_at(at + 16) + 1))) << "items of another size";
   }

@@ -72,7 +72,7 @@ TEST(Features, NamesAreSplitWithoutLoss) {
   const FeatureNames some = feature_names(KDRAY_FEATURE_KIND(SPHERE) | KDRAY_FEATURE_LIGHTS);
   EXPECT_EQ((std::set<std::string>(some.on.begin(), some.on.end())),
             (std::set<std::string>{"spheres", "lights"}));
-  EXPECT_EQ(some.on.size() + some.off.size(), feature_names(0xffffffffu).on.size());
+  EXPECT_EQ(some.on.size() + some.off.size(), feature_names(~Features{0}).on.size());
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ TEST(Json, NamesThePathOfWhatIsNoScene) {
   EXPECT_EQ(refused_object(R"({"type": "sphere", "center": [0, 0, 0], "radius": 0})"),
             "s.json: /objects/0/radius: expected a number above 0.0, found 0");
   EXPECT_EQ(refused_object(R"({"type": "cube"})"),
-            "s.json: /objects/0/type: expected one of mesh, triangles, sphere, cone, found \"cube\"");
+            "s.json: /objects/0/type: expected one of mesh, triangles, sphere, cone, disc, found \"cube\"");
   EXPECT_EQ(refused(R"({"materials": {"a/b": {"index": 0}}})"),
             "s.json: /materials/a~1b/index: expected a number above 0.0, found 0");
   EXPECT_EQ(refused(R"({"materials": {"red": {}}, "objects": [
@@ -208,7 +208,7 @@ TEST(Json, RefusesPlacementsThatMakeNoSense) {
       read_json(R"({"objects": [{"type": "mesh", "file": "ball.nff", )" + how + "}]}", folder / "s.json");
     });
   };
-  EXPECT_NE(placed(R"("scale": [1, 2, 1])").find("spheres and cones can be moved"), std::string::npos);
+  EXPECT_NE(placed(R"("scale": [1, 2, 1])").find("spheres can be moved"), std::string::npos);
   EXPECT_NE(placed(R"("scale": 0)").find("/objects/0/scale: a scale of 0"), std::string::npos);
   EXPECT_NE(placed(R"("scale": 1, "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1])").find("keep one kind"),
             std::string::npos);

@@ -1,5 +1,5 @@
-// What    The options of kdray's public interface: how a tree is built, which devices are used, how a frame is
-//         rendered.
+// What    The options of kdray's public interface: how a tree is built, which devices are used, how a frame
+//         is rendered.
 // Shape   Plain values, which every room below the interface may see; kdray/kdray.h includes them.
 #pragma once
 

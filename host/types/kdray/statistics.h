@@ -53,6 +53,7 @@ struct Statistics {
     struct Skipped {
       std::uint64_t light_behind = 0, light_of_no_weight = 0, light_in_the_open = 0;
       std::uint64_t of_the_background = 0, below_min_weight = 0, too_deep = 0;
+      std::uint64_t too_deep_in_glass = 0;  // of too_deep: refracted rays that matter to their pixel
     };
     // Of a frame; a query has nothing but rays.
     struct Kinds {
