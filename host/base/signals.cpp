@@ -34,6 +34,10 @@ sigset_t ending_signals() {
   ::_exit(128 + signal);  // as a shell would tell of it; not reached
 }
 
+void unblock(const sigset_t& set) {
+  ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
 void wait_for(const sigset_t& set) {
   int signal = 0;
   while (::sigwait(&set, &signal) != 0) {
@@ -50,10 +54,14 @@ void mind_signals() {
   try {
     std::thread(wait_for, set).detach();
   } catch (const std::system_error&) {  // too little memory for a thread: signals do as they ever did
-    ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    unblock(set);
   }
   // A file that gets larger than `ulimit -f` allows is then an error of writing, which is told.
   ::signal(SIGXFSZ, SIG_IGN);
+}
+
+void leave_signals_alone() {
+  unblock(ending_signals());
 }
 
 }  // namespace kdray

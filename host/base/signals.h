@@ -11,4 +11,7 @@ namespace kdray {
 // processes, which must be started with an empty mask (POSIX_SPAWN_SETSIGMASK).
 void mind_signals();
 
+// For a program that is about to take this one's place, and would inherit the block.
+void leave_signals_alone();
+
 }  // namespace kdray

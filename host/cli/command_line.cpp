@@ -1,5 +1,4 @@
 #include "cli/command_line.h"
-#include "base/signals.h"
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -8,6 +7,7 @@
 #include <new>
 #include <string>
 
+#include "base/signals.h"
 #include "cli/message.h"
 #include "cli/output.h"
 #include "cli/suggest.h"

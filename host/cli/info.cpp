@@ -20,6 +20,7 @@
 #include "kdtree/statistics.h"
 #include "prepare/prepared.h"
 #include "prepare/quality.h"
+#include "prepare/within.h"
 #include "scene/geometry.h"
 
 namespace kdray::cli {
@@ -38,18 +39,33 @@ struct Forms {
   flatten::FlatScene flat;
   flatten::WideForm wide;
   double build_seconds = 0, flatten_seconds = 0;
+
+  std::size_t bytes() const { return flat.bytes() + wide.bytes(); }
 };
 
 Forms build_forms(const scene::Scene& scene, const scene::Geometry& geometry,
-                  const kdtree::BuildConfig& config) {
+                  const kdtree::BuildConfig& config, bool binary_form) {
   Forms forms;
   Timer step;
   forms.tree = kdtree::build(geometry, config);
   forms.build_seconds = step.seconds();
   step.restart();
-  forms.flat = flatten::flatten(scene, geometry, forms.tree);
+  forms.flat = flatten::flatten(scene, geometry, forms.tree, binary_form);
   forms.wide = flatten::make_wide(forms.tree, forms.flat, flatten::choose_block(forms.tree));
   forms.flatten_seconds = step.seconds();
+  return forms;
+}
+
+// Both forms without a limit, which `info` tells of; with one, what `render` would make.
+Forms build_forms_within(const scene::Scene& scene, const scene::Geometry& geometry,
+                         const kdtree::BuildConfig& config, std::uint64_t most_bytes) {
+  if (most_bytes == 0) return build_forms(scene, geometry, config, true);
+  std::string warning;
+  Forms forms = prepare::make_within(
+      config, most_bytes,
+      [&](const kdtree::BuildConfig& coarser) { return build_forms(scene, geometry, coarser, false); },
+      warning);
+  if (!warning.empty()) say(warning);
   return forms;
 }
 
@@ -69,7 +85,7 @@ int run(const InfoArgs& o) {
   Forms forms;
   const std::uint64_t peak_before = peak_memory();  // measuring the next one makes the system forget it
   const std::optional<std::uint64_t> build_peak =
-      peak_bytes_of([&] { forms = build_forms(scene, geometry, config); });
+      peak_bytes_of([&] { forms = build_forms_within(scene, geometry, config, o.tree.memory_bytes); });
 
   Json report = scene_report(scene, geometry);
   report["tree"] = tree_report(kdtree::measure(forms.tree, geometry, config));

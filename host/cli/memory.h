@@ -1,22 +1,29 @@
-// What    Refuses a picture that this machine has no memory for, before hours are spent on it, and says
-//         what would fit.
+// What    Refuses a picture, or rays, that this machine has no memory for, before hours are spent on them,
+//         and says what would fit.
 // Units   bytes.
 // Errors  kdray::Error, ErrorCode::out_of_memory.
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 namespace kdray::cli {
 
-// What this process may still take: free memory, or what is left of its own limit. When nothing is known, it
-// is all that there is.
-std::uint64_t free_memory();
+// What of a picture decides on the memory that it takes.
+struct PictureNeeds {
+  std::uint64_t width = 0, height = 0;
+  std::uint64_t n_channels = 0;  // floats for each pixel beside the colour
+  bool exr = false;              // else a PNG
+  int bits = 8;                  // of a PNG
+  bool adaptive = false;         // its sampling
+  std::uint64_t n_queues = 1;
+};
 
-// `n_channels` floats for each pixel beside the colour.
-std::uint64_t picture_bytes(std::uint64_t width, std::uint64_t height, std::uint64_t n_channels);
+// All that is held at one time, the file included, without the scene.
+std::uint64_t picture_bytes(const PictureNeeds& picture);
 
-void check_picture_fits(std::uint64_t width, std::uint64_t height, std::uint64_t n_channels,
-                        std::uint64_t free);
+void check_picture_fits(const PictureNeeds& picture, std::uint64_t free);
+
+// `n_rays` of `trace`.
+void check_rays_fit(std::uint64_t n_rays, std::uint64_t free);
 
 }  // namespace kdray::cli

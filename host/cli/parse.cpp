@@ -59,16 +59,26 @@ std::vector<double> parse_numbers(std::string_view text) {
   return numbers;
 }
 
+// The number is exact where it is whole; a fraction is rounded down to a byte.
 std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
-  constexpr std::string_view kUnits = "KMG";
-  const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+  constexpr std::string_view kUnits = "KMGT", kLowerUnits = "kmgt";
+  constexpr std::string_view kWanted = "a number of bytes, as in 4096, 64K, 500M, 1.5G or 1T";
+  constexpr double kTooMany = 18446744073709551616.0;  // 2^64
+  const auto unit = text.empty() ? std::string_view::npos
+                                 : std::min(kUnits.find(text.back()), kLowerUnits.find(text.back()));
   const bool has_unit = unit != std::string_view::npos;
   const unsigned shift = has_unit ? 10 * (static_cast<unsigned>(unit) + 1) : 0;
-  std::uint64_t value = 0;
-  const bool good = whole_number(text.substr(0, text.size() - (has_unit ? 1 : 0)), value);
-  if (!good || value > std::numeric_limits<std::uint64_t>::max() >> shift)
-    throw usage_error(option, text, "a number of bytes, as in 4096, 64K, 500M or 4G");
-  return value << shift;
+  const std::string_view number = text.substr(0, text.size() - (has_unit ? 1 : 0));
+  if (number.empty() || number.find_first_not_of("0123456789.") != std::string_view::npos)
+    throw usage_error(option, text, kWanted);
+  std::uint64_t whole = 0;
+  if (whole_number(number, whole) && whole <= std::numeric_limits<std::uint64_t>::max() >> shift)
+    return whole << shift;
+  double value = 0;
+  if (!whole_number(number, value)) throw usage_error(option, text, kWanted);
+  value = std::ldexp(value, static_cast<int>(shift));
+  if (value >= kTooMany) throw usage_error(option, text, "less than 2^64 bytes, as in 500M, 1.5G or 1T");
+  return static_cast<std::uint64_t>(value);
 }
 
 Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max) {

@@ -26,7 +26,7 @@ double parse_real(std::string_view option, std::string_view text, double lo, dou
 // "1,2.5,-3"; none where a part is no number.
 std::vector<double> parse_numbers(std::string_view text);
 
-// "4096", "500M": a whole number, of KiB, MiB or GiB with K, M or G behind it.
+// "4096", "500M", "1.5g": in bytes, KiB, MiB, GiB or TiB with K, M, G or T behind it, small or large.
 std::uint64_t parse_bytes(std::string_view option, std::string_view text);
 
 // "640x480"; each side from 1 to `side_max`, and no more than `pixels_max` pixels.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "api/hooks.h"
+#include "base/free_memory.h"
 #include "base/timer.h"
 #include "cli/command.h"
 #include "cli/memory.h"
@@ -185,13 +186,19 @@ void tell_of_options_without_effect(const RenderArgs& o) {
 }
 
 // As the renderer will resolve it (RenderOptions::width).
-void check_memory(const RenderOptions& render, const scene::RenderSettings& asked) {
+void check_memory(const RenderArgs& o, const scene::RenderSettings& asked) {
+  const RenderOptions& render = o.render;
   const int width = render.width > 0 ? render.width : asked.width.value_or(1024);
   const int height = render.height > 0 ? render.height : asked.height.value_or(1024);
-  std::uint64_t n_channels = 0;
-  for (const std::string& name : render.channels) n_channels += name == "normal" ? 3 : 1;
-  check_picture_fits(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), n_channels,
-                     free_memory());
+  PictureNeeds picture{.width = static_cast<std::uint64_t>(width),
+                       .height = static_cast<std::uint64_t>(height)};
+  for (const std::string& name : render.channels) picture.n_channels += name == "normal" ? 3 : 1;
+  if (o.view.transparent) ++picture.n_channels;
+  picture.exr = makes_exr(o);
+  picture.bits = o.write.png_bits;
+  picture.adaptive = render.adaptive_target > 0;
+  picture.n_queues = static_cast<std::uint64_t>(o.device.queues);
+  check_picture_fits(picture, free_memory());
 }
 
 // Before a tree is built for nothing.
@@ -244,7 +251,7 @@ int run(RenderArgs& o) {
       [&](const scene::Scene& asked) {
         check_view_of(o, asked);
         check_files(o, files, asked);
-        check_memory(o.render, asked.settings);
+        check_memory(o, asked.settings);
       },
       o.hooks);
   const PreparedScene seen =

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "base/signals.h"
 #include "kdray/error.h"
 
 namespace kdray::cli {
@@ -47,6 +48,7 @@ void start_bench(const std::vector<std::string>& arguments) {
   std::vector<char*> argv = {const_cast<char*>(kProgram)};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
+  leave_signals_alone();
   ::execv(program.c_str(), argv.data());
   if (errno == ENOENT)
     throw input_error(program.string(), 0, "no such file: this kdray comes without the program that measures",

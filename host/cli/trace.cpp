@@ -1,14 +1,17 @@
 // What    kdray trace: rays from a NumPy file, hits to a NumPy file.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "base/timer.h"
 #include "cli/command.h"
+#include "cli/memory.h"
 #include "cli/open_scene.h"
 #include "cli/options.h"
 #include "cli/output.h"
@@ -60,11 +63,19 @@ std::vector<Hit> trace(Renderer& renderer, const TraceArgs& o, std::span<const R
   }
 }
 
+// The size of the file tells how many rays there are; whether it can be read is told by reading it.
+void check_memory(const std::filesystem::path& rays) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(rays, error);
+  if (!error) check_rays_fit(bytes / sizeof(Ray), free_memory());
+}
+
 int run(const TraceArgs& o) {
   const Timer total;
   RunFiles files;
   check_files(o, files);
   Timer step;
+  check_memory(o.rays);
   const std::vector<Ray> rays = rays::read_rays(o.rays);
   const double read_rays = step.seconds();
 

@@ -27,7 +27,7 @@ namespace {
 constexpr std::uint64_t kLeastRoom = std::uint64_t{16} << 20;
 constexpr const char* kTemporary = "kdray-pocl-";
 
-// As PoCL chooses. Empty: it is told to have none, which ends the process.
+// The folder that PoCL would choose. It is empty where PoCL is told to have none, which ends the process.
 fs::path pocls_own() {
   if (const char* const set = std::getenv("POCL_CACHE_DIR")) return set;
   if (const char* const caches = std::getenv("XDG_CACHE_HOME"); caches && *caches)

@@ -1,12 +1,10 @@
 #include "prepare/prepared.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "base/error.h"
 #include "base/timer.h"
 #include "flatten/features.h"
+#include "prepare/within.h"
 
 namespace kdray::prepare {
 
@@ -64,33 +62,15 @@ scene::Scene settings_of(const scene::Scene& scene) {
 
 namespace {
 
-constexpr double kCoarsest = 256;
-
-std::string megabytes(std::uint64_t bytes) {
-  return fmt::format("{:.1f}M", static_cast<double>(bytes) / (1 << 20));
-}
-
-// Dearer inner nodes make larger leaves: fewer nodes, and fewer copies of primitives that lie in several.
 Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geometry,
-                        kdtree::BuildConfig config, bool binary_form, std::uint64_t most_bytes) {
-  config.cost_traverse = std::max(config.cost_traverse, 1.0);
-  const double asked = config.cost_traverse, finest = config.group_traverse;
-  for (double coarser = 1;; coarser *= 2) {
-    config.cost_traverse = asked * coarser;
-    config.group_traverse = finest * coarser;
-    Prepared made = prepare(scene, geometry, config, binary_form);
-    if (made.bytes() <= most_bytes) {
-      if (coarser > 1)
-        made.settings.warnings.push_back(
-            fmt::format("the tree is coarser, so that the scene takes {} (--memory {}): tracing is slower",
-                        megabytes(made.bytes()), megabytes(most_bytes)));
-      return made;
-    }
-    if (coarser >= kCoarsest)
-      throw Error(ErrorCode::out_of_memory,
-                  fmt::format("the scene takes {} at least; --memory {} is too little for it",
-                              megabytes(made.bytes()), megabytes(most_bytes)));
-  }
+                        const kdtree::BuildConfig& config, bool binary_form, std::uint64_t most_bytes) {
+  std::string warning;
+  Prepared made = make_within(
+      config, most_bytes,
+      [&](const kdtree::BuildConfig& coarser) { return prepare(scene, geometry, coarser, binary_form); },
+      warning);
+  if (!warning.empty()) made.settings.warnings.push_back(warning);
+  return made;
 }
 
 }  // namespace

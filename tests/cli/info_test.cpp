@@ -119,5 +119,41 @@ TEST(InfoCommand, AnEmptySceneIsToldAsSuch) {
   EXPECT_EQ(kdray({"info", scene}).code, run.code);
 }
 
+std::string sheet(int n) {
+  std::string obj;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) obj += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const int a = y * (n + 1) + x + 1;
+      obj += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(a + n + 2) + "\n";
+      obj +=
+          "f " + std::to_string(a) + " " + std::to_string(a + n + 2) + " " + std::to_string(a + n + 1) + "\n";
+    }
+  return obj;
+}
+
+TEST(InfoCommand, TheTreeIsMadeToFitTheMemoryWithAWarningAsInRender) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const std::string scene = folder.put("sheet.obj", sheet(60));
+  const auto bytes_of = [](const Outcome& run) {
+    return nlohmann::json::parse(run.out)["memory"]["final_bytes"].get<std::uint64_t>();
+  };
+  const std::string least =
+      std::to_string(bytes_of(kdray({"info", scene, "--json", "--memory", "100m"})) * 23 / 25);
+  const Outcome coarse = kdray({"info", scene, "--json", "--memory", least});
+  ASSERT_TRUE(succeeds(coarse));
+  EXPECT_LE(bytes_of(coarse), std::stoull(least));
+  EXPECT_NE(coarse.err.find("the tree is coarser"), std::string::npos) << coarse.err;
+  EXPECT_TRUE(fails_with(kdray({"info", scene, "--memory", "1K"}), 4, "too little"));
+  const std::string picture = folder / "a.png";
+  const Outcome render = kdray({"render", scene, "-o", picture, "--size", "16x16", "--memory", least});
+  ASSERT_TRUE(succeeds(render));
+  EXPECT_NE(render.err.find("the tree is coarser"), std::string::npos) << render.err;
+  const Outcome quiet = kdray({"render", scene, "-o", picture, "--size", "16x16", "--memory", least, "-q"});
+  EXPECT_EQ(quiet.err, "");
+}
+
 }  // namespace
 }  // namespace kdray::test

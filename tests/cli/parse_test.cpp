@@ -60,8 +60,13 @@ TEST(Parse, BytesHaveAUnitAndALimit) {
   EXPECT_EQ(parse_bytes("--cache-size", "3K"), 3072u);
   EXPECT_EQ(parse_bytes("--cache-size", "500M"), std::uint64_t{500} << 20);
   EXPECT_EQ(parse_bytes("--cache-size", "17179869183G"), std::uint64_t{17179869183} << 30);
+  EXPECT_EQ(parse_bytes("--memory", "100m"), std::uint64_t{100} << 20);
+  EXPECT_EQ(parse_bytes("--memory", "1.5G"), std::uint64_t{1536} << 20);
+  EXPECT_EQ(parse_bytes("--memory", "0.5k"), 512u);
+  EXPECT_EQ(parse_bytes("--memory", "2t"), std::uint64_t{2} << 40);
   for (const char* text :
-       {"", "K", "-1", "1.5G", "4 G", "4g", "4GB", "17179869184G", "18446744073709551616", "x"})
+       {"", "K", "-1", "-1G", "4 G", "4GB", "1.5.5G", ".", ".G", "1e3", "+4", "nan", "inf", "17179869184G",
+        "18446744073709551616", "16777216T", "99999999999999999999.5", "x"})
     EXPECT_TRUE(fails([&] { parse_bytes("--cache-size", text); }, "--cache-size", ErrorCode::usage)) << text;
 }
 

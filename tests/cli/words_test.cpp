@@ -9,6 +9,7 @@
 #include "cli/output.h"
 #include "cli/stats.h"
 #include "cli/summary.h"
+#include "support/errors.h"
 
 namespace kdray::cli {
 namespace {
@@ -70,20 +71,50 @@ TEST(Stats, HoldEveryStageInItsOrder) {
 
 TEST(Memory, WhatWouldFitFits) {
   const std::uint64_t free = std::uint64_t{1} << 30;
-  EXPECT_NO_THROW(check_picture_fits(1024, 1024, 6, free));
-  EXPECT_GT(picture_bytes(100, 100, 6), picture_bytes(100, 100, 0));
-  try {
-    check_picture_fits(60000, 4000, 0, free);
-    FAIL() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::out_of_memory);
-    unsigned width = 0, height = 0;
-    const std::string what = error.what();
-    ASSERT_EQ(std::sscanf(what.c_str() + what.find("--size"), "--size %ux%u", &width, &height), 2) << what;
-    EXPECT_NO_THROW(check_picture_fits(width, height, 0, free)) << what;
-    EXPECT_GT(picture_bytes(width, height, 0), free / 2) << "too careful: " << what;
+  EXPECT_NO_THROW(check_picture_fits({.width = 1024, .height = 1024, .n_channels = 6}, free));
+  for (const bool exr : {false, true}) {
+    try {
+      check_picture_fits({.width = 60000, .height = 4000, .exr = exr}, free);
+      FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::out_of_memory);
+      unsigned width = 0, height = 0;
+      const std::string what = error.what();
+      ASSERT_EQ(std::sscanf(what.c_str() + what.find("--size"), "--size %ux%u", &width, &height), 2) << what;
+      const PictureNeeds would_fit{.width = width, .height = height, .exr = exr};
+      EXPECT_NO_THROW(check_picture_fits(would_fit, free)) << what;
+      EXPECT_GT(picture_bytes(would_fit), free / 2) << "too careful: " << what;
+    }
   }
-  EXPECT_GT(free_memory(), 0u);
+  EXPECT_TRUE(
+      fails([] { check_picture_fits({.width = 1024, .height = 1024}, 0); }, "1x1", ErrorCode::out_of_memory));
+}
+
+TEST(Memory, EverythingThatIsAskedForCounts) {
+  const PictureNeeds plain{.width = 4096, .height = 4096};
+  const auto more = [&](const auto& change) {
+    PictureNeeds other = plain;
+    change(other);
+    return picture_bytes(other) > picture_bytes(plain);
+  };
+  EXPECT_TRUE(more([](PictureNeeds& p) { p.n_channels = 1; }));
+  EXPECT_TRUE(more([](PictureNeeds& p) { p.exr = true; }));
+  EXPECT_TRUE(more([](PictureNeeds& p) { p.bits = 16; }));
+  EXPECT_TRUE(more([](PictureNeeds& p) { p.adaptive = true; }));
+  EXPECT_TRUE(more([](PictureNeeds& p) { p.n_queues = 2; }));
+}
+
+// 7.9 GiB were measured; it used to be refused where 12 were free.
+TEST(Memory, ALargePictureTakesWhatItWasMeasuredToTake) {
+  const std::uint64_t needed = picture_bytes({.width = 16384, .height = 16384});
+  EXPECT_GT(needed, std::uint64_t{7900} << 20);
+  EXPECT_LT(needed, std::uint64_t{9} << 30);
+}
+
+TEST(Memory, RaysThatDoNotFitAreRefused) {
+  EXPECT_NO_THROW(check_rays_fit(1000000, std::uint64_t{600} << 20));
+  EXPECT_TRUE(fails([] { check_rays_fit(10000000, std::uint64_t{600} << 20); }, "at a time would fit",
+                    ErrorCode::out_of_memory));
 }
 
 TEST(Summary, LinesSayWhatWasMeasuredAndLeftOut) {

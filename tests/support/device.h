@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "device/platform.h"
-#include "kdray/kdray.h"
 
 namespace kdray::test {
 
