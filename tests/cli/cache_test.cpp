@@ -54,7 +54,7 @@ TEST(CacheOption, SecondRunFindsTheScene) {
   const std::string cache = folder / "cache";
   const Rendered off = render(folder, scene, {"--no-cache"});
   const Rendered miss = render(folder, scene, {"--cache", cache});
-  const Rendered hit = render(folder, scene, {"--cache", cache});
+  const Rendered hit = render(folder, scene, {"--cache", cache, "--verbose"});
   EXPECT_EQ(off.stats["cache"], "off");
   EXPECT_EQ(miss.stats["cache"], "miss");
   EXPECT_EQ(hit.stats["cache"], "hit");
