@@ -5,6 +5,7 @@
 #include <random>
 
 #include "cache/samples.h"
+#include "kdray/kdray.h"
 #include "support/device.h"
 
 namespace kdray {

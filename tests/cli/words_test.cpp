@@ -44,7 +44,12 @@ TEST(Words, DefaultPictureIsTheScenesNameHere) {
 
 TEST(Stats, HoldEveryStageInItsOrder) {
   Statistics figures;
-  figures.seconds = {.load = 1, .build = 0.5, .add = 0.1, .read_rays = 3, .write = 2, .total = 4};
+  figures.seconds.load = 1;
+  figures.seconds.build = 0.5;
+  figures.seconds.add = 0.1;
+  figures.seconds.read_rays = 3;
+  figures.seconds.write = 2;
+  figures.seconds.total = 4;
   figures.scene = {.primitives = 3, .kinds = {{"spheres", 3}}};
   figures.memory.scene_bytes = 1;
   figures.rays.total = 7;

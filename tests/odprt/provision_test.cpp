@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "device/context.h"
+#include "kdray/error.h"
 #include "layout/features.h"
 #include "odprt/crew.h"
 #include "odprt/prepared_scenes.h"
