@@ -39,7 +39,7 @@ class RaysIn : public testing::Test {
     folder_.put("ball.nff", kBall);
     folder_.put("rays.npy", npy(rays));
     return test::kdray({"trace", "ball.nff", "--rays", "rays.npy", "-o", "hits.npy", "--no-cache"},
-                       {folder_.path()});
+                       {.folder = folder_.path()});
   }
   // t of each ray.
   std::vector<float> hits() {
