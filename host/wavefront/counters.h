@@ -1,7 +1,7 @@
 // What    What a frame's slices count: rays of each kind, rays that were found needless, faults.
 // Shape   One list for all of it: a counter's name here, the field of layout::Slice that it adds up, and its
-//         key in the statistics. Sums, and the keys of `--stats` (host/api/statistics.h), follow from the
-//         list.
+//         key in the statistics. Sums, and the keys of `--stats` (host/api/statistics_json.h), follow from
+//         the list.
 // Errors  check(): ErrorCode::internal where a fault was counted, since the picture would be wrong.
 #pragma once
 
