@@ -6,15 +6,15 @@
 
 namespace kdray {
 
-Scene Scene::load(const std::filesystem::path& file) {
+Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
   const Timer timer;
-  Scene scene(scene::load(file));
+  Scene scene(scene::load(file, options));
   scene.load_seconds_ = timer.seconds();
   return scene;
 }
-Scene Scene::from_memory(std::string bytes, const std::filesystem::path& name) {
+Scene Scene::from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options) {
   const Timer timer;
-  Scene scene(scene::load_from_memory(std::move(bytes), name));
+  Scene scene(scene::load_from_memory(std::move(bytes), name, options));
   scene.load_seconds_ = timer.seconds();
   return scene;
 }

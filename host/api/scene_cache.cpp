@@ -14,8 +14,9 @@ fs::path SceneCache::default_folder() {
   return caches.empty() ? caches : caches / "scenes";
 }
 
-std::optional<PreparedScene> SceneCache::find(const fs::path& file, const TreeOptions& tree) const {
-  std::optional<prepare::Prepared> found = cache::find(options_, file, tree);
+std::optional<PreparedScene> SceneCache::find(const fs::path& file, const TreeOptions& tree,
+                                              const LoadOptions& load) const {
+  std::optional<prepare::Prepared> found = cache::find(options_, file, tree, load);
   if (!found) return std::nullopt;
   return PreparedScene(std::move(*found));
 }

@@ -61,11 +61,11 @@ void make_folder(const fs::path& folder) {
 }  // namespace
 
 std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path& scene,
-                                      const TreeOptions& tree) {
+                                      const TreeOptions& tree, const LoadOptions& load) {
   if (cache.folder.empty()) return std::nullopt;
   const std::optional<Hash> content = content_of(scene);
   if (!content) return std::nullopt;
-  const Hash key = key_of(scene, *content, tree);
+  const Hash key = key_of(scene, *content, tree, load);
   const fs::path file = entry_file(cache.folder, key, kEnding);
   std::optional<prepare::Prepared> found = read_entry(file, key);
   if (!found || found->settings.files.empty() || !says_the_same(found->settings, scene) ||
@@ -73,6 +73,7 @@ std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path&
     return std::nullopt;
   for (FileRead& named : found->settings.files) named.path = scene.parent_path() / named.path;
   found->settings.name = scene.string();
+  found->settings.load_options = load;
   found->tree_options = tree;
   touch_entry(file);
   return found;
@@ -84,7 +85,8 @@ bool keep(const CacheOptions& cache, const prepare::Prepared& prepared) {
       prepared.seconds.total() >= cache.min_seconds && entry_bytes(prepared) <= cache.max_bytes / 4;
   if (cache.folder.empty() || files.empty() || !files.front().content || !worth_it) return false;
   const fs::path scene = files.front().path;
-  const Hash key = key_of(scene, *files.front().content, prepared.tree_options);
+  const Hash key =
+      key_of(scene, *files.front().content, prepared.tree_options, prepared.settings.load_options);
   prepare::Prepared kept = prepared;
   kept.settings.files = from_folder(files, scene.parent_path());
   make_folder(cache.folder);

@@ -14,7 +14,7 @@
 namespace kdray::cache {
 
 std::optional<prepare::Prepared> find(const CacheOptions& cache, const std::filesystem::path& scene,
-                                      const TreeOptions& tree);
+                                      const TreeOptions& tree, const LoadOptions& load = {});
 
 // Whether the scene was kept. It isn't where it doesn't come from a file, was made too fast to be worth it,
 // or is too large.

@@ -12,6 +12,7 @@
 namespace kdray::cache {
 
 // `content` is the hash of the scene file's bytes.
-Hash key_of(const std::filesystem::path& file, const Hash& content, const TreeOptions& options);
+Hash key_of(const std::filesystem::path& file, const Hash& content, const TreeOptions& tree,
+            const LoadOptions& load);
 
 }  // namespace kdray::cache

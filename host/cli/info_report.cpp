@@ -25,7 +25,8 @@ void add_kinds(const Holder& holder, Json& arrays) {
 
 Json scene_arrays(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
-               camera, cameras, framing, background, ambient, settings, warnings, files] = scene;
+               camera, cameras, framing, background, ambient, settings, warnings, files, load_options] =
+      scene;
   Json arrays = {{"vertices", bytes_of(vertices)}, {"normals", bytes_of(normals)}};
   add_kinds(scene, arrays);
   arrays.update({{"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});

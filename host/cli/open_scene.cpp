@@ -58,7 +58,7 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
   // A scene from standard input is no file that could be found again.
   const bool has_cache = !options_of(choice).folder.empty() && !input.is_stdin();
   const Timer look_up;
-  if (has_cache) scene_ = cache_.find(input.file, tree);
+  if (has_cache) scene_ = cache_.find(input.file, tree, input.load);
   if (has_cache) {
     outcome_ = scene_ ? kHit : kMiss;
     seconds_.cache = look_up.seconds();

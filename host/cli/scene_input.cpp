@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "cli/options.h"
+#include "cli/parse.h"
 #include "scene/load.h"
 #include "scene/read_file.h"
 
@@ -43,6 +44,11 @@ void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help) 
   add_text(
       app, "--scene-format", "NAME", "Format of a SCENE from standard input: nff, obj, ply, ...",
       [&input](const std::string& text) { input.format = text.starts_with('.') ? text.substr(1) : text; });
+  add_text(app, "--smooth", "DEG",
+           "Smooth shading for triangles without normals, where faces turn by no more than DEG (as in 40)",
+           [&input](const std::string& text) {
+             input.load.smooth_degrees = parse_real("--smooth", text, 0, 180);
+           });
 }
 
 void check_scene_input(const SceneInput& input) {
@@ -57,17 +63,17 @@ void check_scene_input(const SceneInput& input) {
 }
 
 scene::Scene load_model(const SceneInput& input) {
-  if (!input.is_stdin()) return scene::load(input.file);
+  if (!input.is_stdin()) return scene::load(input.file, input.load);
   std::string bytes = bytes_of_stdin();
   const std::filesystem::path name = name_of(input, bytes);
-  return scene::load_from_memory(std::move(bytes), name);
+  return scene::load_from_memory(std::move(bytes), name, input.load);
 }
 
 Scene load_scene(const SceneInput& input) {
-  if (!input.is_stdin()) return Scene::load(input.file);
+  if (!input.is_stdin()) return Scene::load(input.file, input.load);
   std::string bytes = bytes_of_stdin();
   const std::filesystem::path name = name_of(input, bytes);
-  return Scene::from_memory(std::move(bytes), name);
+  return Scene::from_memory(std::move(bytes), name, input.load);
 }
 
 }  // namespace kdray::cli

@@ -14,11 +14,12 @@ namespace kdray::cli {
 struct SceneInput {
   std::string file;
   std::string format;  // of standard input: the ending of such a file, "nff" or "ply"
+  LoadOptions load;
 
   bool is_stdin() const { return file == "-"; }
 };
 
-// SCENE and --scene-format
+// SCENE, --scene-format and --smooth
 void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help);
 
 // Before anything else is done with it.

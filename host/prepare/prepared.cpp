@@ -39,7 +39,8 @@ namespace {
 #define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
 scene::Scene settings_of(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
-               camera, cameras, framing, background, ambient, settings, warnings, files] = scene;
+               camera, cameras, framing, background, ambient, settings, warnings, files, load_options] =
+      scene;
   return {.name = name,
           .vertices = {},
           .normals = {},
@@ -54,7 +55,8 @@ scene::Scene settings_of(const scene::Scene& scene) {
           .ambient = ambient,
           .settings = settings,
           .warnings = warnings,
-          .files = files};
+          .files = files,
+          .load_options = load_options};
 }
 #undef KDRAY_NO_SHAPES
 

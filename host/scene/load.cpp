@@ -10,6 +10,7 @@
 #include "scene/import.h"
 #include "scene/importers.h"
 #include "scene/read_file.h"
+#include "scene/smooth_normals.h"
 
 namespace kdray::scene {
 
@@ -86,19 +87,37 @@ Scene import_scene(const std::filesystem::path& file) {
   return import_text(read_file(file), file);
 }
 
-Scene load(const std::filesystem::path& file) {
-  FilesRead files;
-  Scene scene = import_scene(file);
+namespace {
+
+void check(const LoadOptions& options) {
+  if (!options.smooth_degrees) return;
+  const double degrees = *options.smooth_degrees;
+  if (!(degrees >= 0 && degrees <= 180))
+    throw Error(ErrorCode::usage, "the smoothing angle may be 0 to 180 degrees");
+}
+
+Scene finished(Scene&& scene, const LoadOptions& options) {
+  scene.load_options = options;
+  if (options.smooth_degrees) smooth_normals(scene, *options.smooth_degrees);
   frame_scene(scene);
+  return std::move(scene);
+}
+
+}  // namespace
+
+Scene load(const std::filesystem::path& file, const LoadOptions& options) {
+  check(options);
+  FilesRead files;
+  Scene scene = finished(import_scene(file), options);
   scene.files = files.take();
   return scene;
 }
 
-Scene load_from_memory(std::string bytes, const std::filesystem::path& name) {
+Scene load_from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options) {
+  check(options);
   FilesRead files;
   check_ending(name, format_of(name));
-  Scene scene = import_text(unpacked(std::move(bytes), name), name);
-  frame_scene(scene);
+  Scene scene = finished(import_text(unpacked(std::move(bytes), name), name), options);
   scene.files = files.take();
   return scene;
 }

@@ -2,7 +2,8 @@
 //         kdray was built with it, the other mesh formats; ".gz" and ".xz" after the ending of any format are
 //         decompressed on the way. Fills in what a renderer needs and the file lacks (camera, lights:
 //         frame.h).
-// Errors  kdray::Error with ErrorCode::input: "file:line: what; what to do".
+// Errors  kdray::Error with ErrorCode::input: "file:line: what; what to do"; ErrorCode::usage for options
+//         that are out of range.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +13,10 @@
 
 namespace kdray::scene {
 
-Scene load(const std::filesystem::path& file);
+Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
 
 // The same of a file's content. Its `name` tells the format, and the folder of the files that the scene
 // names.
-Scene load_from_memory(std::string bytes, const std::filesystem::path& name);
+Scene load_from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options = {});
 
 }  // namespace kdray::scene

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/raw_vector.h"
+#include "kdray/options.h"
 #include "math/box.h"
 #include "math/vec.h"
 #include "primitives/shapes.h"
@@ -104,6 +105,7 @@ struct Scene {
   RenderSettings settings;
   std::vector<std::string> warnings;  // one line each: what the loader left out or changed
   std::vector<FileRead> files;        // what it was loaded from, by load() only
+  LoadOptions load_options;           // that it was loaded with
 
   std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(primitives::count_primitives(*this));

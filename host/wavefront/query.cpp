@@ -39,6 +39,14 @@ void check(std::span<const Ray> rays) {
       throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault));
 }
 
+// Whether the kernels leave its direction as long as it is (length_exponent() of query.clh): where they do so
+// with all rays of a launch, they need not look.
+bool is_ordinary(const Ray& ray) {
+  const float largest =
+      std::max({std::abs(ray.direction[0]), std::abs(ray.direction[1]), std::abs(ray.direction[2])});
+  return largest >= 0x1p-8f && largest < 0x1p8f;
+}
+
 cl_float4 float4(const vec3& v, float w = 0) {
   return cl_float4{{v.x, v.y, v.z, w}};
 }
@@ -84,6 +92,7 @@ QueryResult trace_query(const device::Context& context, const SceneBuffers& scen
     stage.set(K::space, float4(vec3(space.center), static_cast<float>(space.scale)));
     stage.set(K::world_max, world_max(geometry.bounds));
     stage.set(K::any_hit, cl_uint{any_hit}).set(K::rays, ray_buffer).set(K::hits, hit_buffer);
+    stage.set(K::any_length, cl_uint{!std::all_of(rays.begin(), rays.end(), is_ordinary)});
     for (std::size_t first = 0; first < rays.size(); first += chunk) {
       const std::size_t n = std::min(chunk, rays.size() - first);
       const std::span<const Ray> taken = near_rays.take(rays.subspan(first, n));

@@ -132,6 +132,7 @@
   X(VALUE, float, world_max)              \
   X(VALUE, u32, n_rays)                   \
   X(VALUE, u32, any_hit)                  \
+  X(VALUE, u32, any_length)               \
   KDRAY_TRACED_ARRAYS(X)                  \
   X(IN, QueryRay, rays)                   \
   X(OUT, QueryHit, hits)

@@ -21,8 +21,9 @@ struct FindTest : testing::Test {
   test::Folder folder;
   CacheOptions cache = test::all_kept_in(folder / "cache");
 
-  prepare::Prepared keep_it(const std::filesystem::path& file, const TreeOptions& tree = {}) {
-    prepare::Prepared made = test::prepared_from(file, tree);
+  prepare::Prepared keep_it(const std::filesystem::path& file, const TreeOptions& tree = {},
+                            const LoadOptions& load = {}) {
+    prepare::Prepared made = test::prepared_from(file, tree, load);
     EXPECT_TRUE(keep(cache, made));
     return made;
   }
@@ -59,6 +60,18 @@ TEST_F(FindTest, OtherTreeOptionsAreOtherEntries) {
   EXPECT_FALSE(find(cache, file, flat));
   const prepare::Prepared made = keep_it(file, flat);
   EXPECT_EQ(test::everything(*find(cache, file, flat)), test::everything(made));
+  EXPECT_EQ(n_kept(), 2u);
+}
+
+TEST_F(FindTest, OtherLoadOptionsAreOtherEntries) {
+  const auto file = folder.put("square.obj", std::string(kSquare) + "f 1 2 3\nf 1 3 4\n");
+  const LoadOptions smooth{.smooth_degrees = 30};
+  keep_it(file);
+  EXPECT_FALSE(find(cache, file, {}, smooth));
+  const prepare::Prepared made = keep_it(file, {}, smooth);
+  EXPECT_EQ(test::everything(*find(cache, file, {}, smooth)), test::everything(made));
+  EXPECT_NE(test::everything(*find(cache, file, {})), test::everything(made));
+  EXPECT_EQ(find(cache, file, {}, smooth)->settings.load_options, smooth);
   EXPECT_EQ(n_kept(), 2u);
 }
 

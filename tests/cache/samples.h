@@ -18,8 +18,9 @@ inline std::string nff(const std::string& name, int size) {
   return text.str();
 }
 
-inline prepare::Prepared prepared_from(const std::filesystem::path& file, const TreeOptions& tree = {}) {
-  return prepare::prepare(scene::load(file), tree);
+inline prepare::Prepared prepared_from(const std::filesystem::path& file, const TreeOptions& tree = {},
+                                       const LoadOptions& load = {}) {
+  return prepare::prepare(scene::load(file, load), tree);
 }
 
 // Everything is kept, however fast it was made.

@@ -245,6 +245,32 @@ TEST(Trace, TheLengthOfTheDirectionScalesT) {
   EXPECT_NEAR(hits[0].t, 8 * hits[1].t, 1e-5f * hits[0].t);
 }
 
+// Directions of ordinary lengths are traced as they are, others scaled (query.clh); with some powers a launch
+// has rays of both kinds.
+TEST(Trace, NoLengthOfTheDirectionChangesABit) {
+  const Scene scene{glass_and_mirror_balls()};
+  Renderer renderer(scene, {}, device_of());
+  RayMaker maker(scene.model(), 20261124);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 500; ++i) rays.push_back(maker.make(maker.point(0.5), maker.direction(), 0, kInfinity));
+  for (const Traversal walk : {Traversal::binary, Traversal::wide, Traversal::packet, Traversal::batch}) {
+    const std::vector<Hit> wanted = renderer.trace(rays, false, 1, walk);
+    for (const int power : {-100, -20, -9, -8, -7, 3, 7, 8, 9, 20, 100}) {
+      std::vector<Ray> longer = rays;
+      for (Ray& ray : longer)
+        for (float& d : ray.direction) d = std::ldexp(d, power);
+      const std::vector<Hit> hits = renderer.trace(longer, false, 1, walk);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << "ray " << i << " times 2^" << power);
+        ASSERT_EQ(hits[i].primitive, wanted[i].primitive);
+        ASSERT_EQ(std::ldexp(hits[i].t, power), wanted[i].t);
+        ASSERT_EQ(hits[i].u, wanted[i].u);
+        ASSERT_EQ(hits[i].v, wanted[i].v);
+      }
+    }
+  }
+}
+
 // A grid of squares in the planes x, y, z = -1, 0, 1, and axis rays exactly in and between those planes:
 // splitting planes, cell walls and geometry coincide.
 TEST(Trace, AxisRaysAlongSplittingPlanes) {

@@ -37,10 +37,11 @@ struct Prepared;
 // A scene read from a file (formats: see docs/scenes.md).
 class Scene {
  public:
-  static Scene load(const std::filesystem::path& file);
+  static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
   // The same of a file's content; `name` tells its format by the ending, and where the files are that it
   // names.
-  static Scene from_memory(std::string bytes, const std::filesystem::path& name);
+  static Scene from_memory(std::string bytes, const std::filesystem::path& name,
+                           const LoadOptions& options = {});
   explicit Scene(scene::Scene&& model);
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
@@ -103,7 +104,8 @@ class SceneCache {
 
   // The scene as it was kept, if no file that it was made of and no option has changed since. An entry that
   // is damaged counts as none.
-  std::optional<PreparedScene> find(const std::filesystem::path& file, const TreeOptions& tree = {}) const;
+  std::optional<PreparedScene> find(const std::filesystem::path& file, const TreeOptions& tree = {},
+                                    const LoadOptions& load = {}) const;
 
   // Whether it was kept: not a scene that comes from no file, is larger than a quarter of max_bytes, or took
   // less than min_seconds. Throws ErrorCode::input when the folder can't be written.

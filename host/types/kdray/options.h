@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,14 @@ namespace kdray {
 
 // How much time goes into the tree (docs/design/kdtree.md). A choice changes times and memory, never a hit.
 enum class BuildQuality { fast, balanced, best };
+
+// How a scene file is read.
+struct LoadOptions {
+  // Triangles without normals get them from the faces around each corner, where the surface turns by no more
+  // than this: 0 to 180 degrees. Empty: they stay flat.
+  std::optional<double> smooth_degrees = {};
+  bool operator==(const LoadOptions&) const = default;
+};
 
 struct TreeOptions {
   BuildQuality quality = BuildQuality::balanced;
