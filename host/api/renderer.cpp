@@ -15,8 +15,8 @@
 #include "base/median.h"
 #include "base/timer.h"
 #include "kdray/kdray.h"
+#include "query/trace.h"
 #include "timeline/timeline.h"
-#include "wavefront/query.h"
 
 namespace kdray {
 
@@ -93,10 +93,9 @@ std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, 
   // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
   if (traversal == Traversal::automatic && first.global) traversal = Traversal::wide;
   const Preparing preparing(state.devices);
-  wavefront::QueryResult result =
-      wavefront::trace_query(first.context, first.buffers(), first.programs, state.scene.geometry,
-                             state.scene.features, first.work_group, traversal, precision, rays, any_hit,
-                             repeat, first.global ? wavefront::kBoundedLaunch : wavefront::kRaysPerChunk);
+  query::Traced result = query::trace(
+      {first.context, first.buffers(), first.programs, state.scene, first.work_group, first.global}, rays,
+      {.any_hit = any_hit, .traversal = traversal, .precision = precision, .repeat = repeat});
   statistics.seconds.prepare =
       preparing.beside(std::accumulate(result.seconds.begin(), result.seconds.end(), 0.0));
   api::record_query(statistics, state,

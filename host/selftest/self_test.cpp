@@ -14,8 +14,8 @@
 #include "device/program_cache.h"
 #include "device/program_key.h"
 #include "prepare/prepared.h"
+#include "query/trace.h"
 #include "selftest/known_case.h"
-#include "wavefront/query.h"
 
 namespace kdray::selftest {
 
@@ -82,11 +82,10 @@ class Known {
   std::vector<Hit> trace(bool any_hit) {
     constexpr std::size_t kWorkGroup = 16;
     const bool cpu = context_.info().kind == "cpu";
-    return wavefront::trace_query(context_, buffers_, programs_, scene_.geometry, scene_.features,
-                                  std::min(kWorkGroup, context_.max_work_group()),
-                                  cpu ? Traversal::automatic : Traversal::wide, Precision::float32,
-                                  known_rays(), any_hit, 1)
-        .hits;
+    const query::Target target{context_, buffers_, programs_, scene_,
+                               std::min(kWorkGroup, context_.max_work_group())};
+    const Traversal traversal = cpu ? Traversal::automatic : Traversal::wide;
+    return query::trace(target, known_rays(), {.any_hit = any_hit, .traversal = traversal}).hits;
   }
 
  private:

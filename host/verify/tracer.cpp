@@ -3,7 +3,7 @@
 #include "device/opencl_error.h"
 #include "layout/rays.layout.h"
 #include "layout/tree.layout.h"
-#include "wavefront/query.h"
+#include "query/trace.h"
 #include "wavefront/stage.h"
 
 namespace kdray::verify {
@@ -45,8 +45,7 @@ std::vector<Hit> Tracer::closest(std::span<const Ray> rays, Traversal wanted) {
   // Packets and batches are explicit vectors, for CPUs.
   const bool vectors = context_.info().kind == "cpu";
   const Traversal traversal = !vectors && wanted != Traversal::binary ? Traversal::wide : wanted;
-  return wavefront::trace_query(context_, buffers_, programs_, scene_.geometry, scene_.features, kWorkGroup,
-                                traversal, Precision::float32, rays, false, 1)
+  return query::trace({context_, buffers_, programs_, scene_, kWorkGroup}, rays, {.traversal = traversal})
       .hits;
 }
 

@@ -1,10 +1,10 @@
-#include "wavefront/near_rays.h"
+#include "query/near_rays.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace kdray::wavefront {
+namespace kdray::query {
 
 namespace {
 
@@ -75,4 +75,4 @@ void NearRays::give_back(std::span<Hit> hits) const {
     if (hits[i].primitive >= 0) hits[i].t = static_cast<float>(hits[i].t / shrink_ + ahead_[i]);
 }
 
-}  // namespace kdray::wavefront
+}  // namespace kdray::query

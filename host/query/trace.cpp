@@ -1,4 +1,4 @@
-#include "wavefront/query.h"
+#include "query/trace.h"
 
 #include <fmt/format.h>
 
@@ -9,14 +9,17 @@
 #include "device/opencl_error.h"
 #include "layout/rays.layout.h"
 #include "layout/traversal.h"
-#include "wavefront/near_rays.h"
+#include "query/near_rays.h"
 #include "wavefront/stage.h"
 
-namespace kdray::wavefront {
+namespace kdray::query {
 
 namespace {
 
 static_assert(sizeof(Ray) == sizeof(layout::QueryRay) && sizeof(Hit) == sizeof(layout::QueryHit));
+
+// Rays in one launch: 512 MiB of them; and for a GPU, whose watchdog may end what takes seconds.
+constexpr std::size_t kRaysPerChunk = std::size_t{1} << 24, kBoundedLaunch = std::size_t{1} << 20;
 
 constexpr std::int32_t kInvalid = -2;  // KDRAY_QUERY_INVALID of query.clh
 
@@ -60,7 +63,8 @@ float world_max(const Box& bounds) {
 // PoCL compiles a kernel for good at its first launch: here one of as many work-items that finds no rays, not
 // in the time of tracing.
 template <class Launch>
-void warm_up(const device::Context& context, Stage<kernels::TraceQuery>& stage, const Launch& launch) {
+void warm_up(const device::Context& context, wavefront::Stage<kernels::TraceQuery>& stage,
+             const Launch& launch) {
   const device::AtWork compiling(context.builds());
   stage.set(kernels::TraceQuery::n_rays, cl_uint{0});
   launch();
@@ -68,30 +72,30 @@ void warm_up(const device::Context& context, Stage<kernels::TraceQuery>& stage, 
 
 }  // namespace
 
-QueryResult trace_query(const device::Context& context, const SceneBuffers& scene, Programs& programs,
-                        const scene::Geometry& geometry, layout::Features features, std::size_t work_group,
-                        Traversal traversal, Precision precision, std::span<const Ray> rays, bool any_hit,
-                        int repeat, std::size_t rays_per_launch) {
+Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions& options) {
+  const device::Context& context = target.context;
   check(rays);
-  QueryResult result{std::vector<Hit>(rays.size()),
-                     std::vector<double>(static_cast<std::size_t>(std::max(repeat, 1)))};
+  Traced result{std::vector<Hit>(rays.size()),
+                std::vector<double>(static_cast<std::size_t>(std::max(options.repeat, 1)))};
   if (rays.empty()) return result;
-  const std::size_t chunk = std::min(
-      {rays.size(), rays_per_launch, static_cast<std::size_t>(context.info().max_allocation / sizeof(Ray))});
+  const std::size_t chunk = std::min({rays.size(), target.global ? kBoundedLaunch : kRaysPerChunk,
+                                      static_cast<std::size_t>(context.info().max_allocation / sizeof(Ray))});
   const cl::Buffer ray_buffer = context.buffer(CL_MEM_READ_ONLY, chunk * sizeof(Ray), "the rays");
   const cl::Buffer hit_buffer = context.buffer(CL_MEM_WRITE_ONLY, chunk * sizeof(Hit), "the hits");
   using K = kernels::TraceQuery;
-  Stage stage(programs.kernel<K>(features, traversal, precision));
+  const Traversal traversal = options.traversal;
+  wavefront::Stage stage(target.programs.kernel<K>(target.scene.features, traversal, options.precision));
   const bool chunked = traversal != Traversal::binary && traversal != Traversal::wide;
   cl::CommandQueue queue = context.queues().front();
+  const scene::Geometry& geometry = target.scene.geometry;
   NearRays near_rays(geometry.space);
   const LocalSpace& space = near_rays.kernel_space();
   device::checked("tracing rays", [&] {
-    scene.set_arguments(stage);
+    target.buffers.set_arguments(stage);
     stage.set(K::root_lo, float4(geometry.bounds.lo)).set(K::root_hi, float4(geometry.bounds.hi));
     stage.set(K::space, float4(vec3(space.center), static_cast<float>(space.scale)));
     stage.set(K::world_max, world_max(geometry.bounds));
-    stage.set(K::any_hit, cl_uint{any_hit}).set(K::rays, ray_buffer).set(K::hits, hit_buffer);
+    stage.set(K::any_hit, cl_uint{options.any_hit}).set(K::rays, ray_buffer).set(K::hits, hit_buffer);
     stage.set(K::any_length, cl_uint{!std::all_of(rays.begin(), rays.end(), is_ordinary)});
     for (std::size_t first = 0; first < rays.size(); first += chunk) {
       const std::size_t n = std::min(chunk, rays.size() - first);
@@ -102,7 +106,7 @@ QueryResult trace_query(const device::Context& context, const SceneBuffers& scen
       queue.finish();
       const auto launch = [&] {
         chunked ? stage.launch(queue, (n + KDRAY_CHUNK - 1) / KDRAY_CHUNK, 1)
-                : stage.launch(queue, n, work_group);
+                : stage.launch(queue, n, target.work_group);
         queue.finish();
       };
       if (first == 0) warm_up(context, stage, launch);
@@ -123,4 +127,4 @@ QueryResult trace_query(const device::Context& context, const SceneBuffers& scen
   return result;
 }
 
-}  // namespace kdray::wavefront
+}  // namespace kdray::query

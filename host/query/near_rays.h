@@ -14,7 +14,7 @@
 #include "kdray/ray.h"
 #include "math/local_space.h"
 
-namespace kdray::wavefront {
+namespace kdray::query {
 
 class NearRays {
  public:
@@ -40,4 +40,4 @@ class NearRays {
   std::vector<double> ahead_;  // of each ray, how far ahead it was begun anew; none: all stayed as they are
 };
 
-}  // namespace kdray::wavefront
+}  // namespace kdray::query

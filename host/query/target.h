@@ -1,0 +1,23 @@
+// What    What queries are put to: a scene that is ready to be traced, on a device.
+// Shape   References; whoever asks keeps all of it alive.
+#pragma once
+
+#include <cstddef>
+
+#include "device/context.h"
+#include "prepare/prepared.h"
+#include "wavefront/programs.h"
+#include "wavefront/scene_buffers.h"
+
+namespace kdray::query {
+
+struct Target {
+  const device::Context& context;
+  const wavefront::SceneBuffers& buffers;
+  wavefront::Programs& programs;
+  const prepare::Prepared& scene;
+  std::size_t work_group;  // local size of kernels that take a ray to a work-item
+  bool global = false;     // launches are to be short, and every lane is a work-item: a GPU
+};
+
+}  // namespace kdray::query

@@ -1,0 +1,29 @@
+// What    Traces rays from outside (kdray trace): closest hits or occlusion, in chunks that fit the device.
+// Errors  ErrorCode::input for a ray that is not one: NaN anywhere, an infinite origin or t_min, a direction
+//         that is infinite or 0; the message has the ray's number.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kdray/options.h"
+#include "kdray/ray.h"
+#include "query/target.h"
+
+namespace kdray::query {
+
+struct TraceOptions {
+  bool any_hit = false;
+  Traversal traversal = Traversal::automatic;  // on a target that is global: binary or wide
+  Precision precision = Precision::float32;
+  int repeat = 1;
+};
+
+struct Traced {
+  std::vector<Hit> hits;
+  std::vector<double> seconds;  // wall time of each repetition, rays already on the device
+};
+
+Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions& options);
+
+}  // namespace kdray::query
