@@ -16,7 +16,7 @@ install(TARGETS kdray ${rooms} EXPORT kdray
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 file(GLOB type_headers CONFIGURE_DEPENDS host/types/kdray/*.h)
-install(FILES host/api/kdray/kdray.h host/base/kdray/error.h ${type_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kdray)
+install(FILES host/api/kdray/kdray.h host/api/kdray/scene.h host/base/kdray/error.h ${type_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kdray)
 foreach(program kdray_cli kdray_bench_program)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -1,36 +1,243 @@
 #include "scene/scene.h"
 
+#include <fmt/format.h>
+
+#include <mutex>
+#include <optional>
+
+#include "api/committed.h"
 #include "base/timer.h"
 #include "kdray/kdray.h"
+#include "scene/check_scene.h"
+#include "scene/frame.h"
 #include "scene/load.h"
+#include "scene/part.h"
 
 namespace kdray {
+
+struct Scene::Impl {
+  scene::Scene base;       // of the file; or nothing
+  bool has_file = false;   // the base is geometry 0
+  GeometryInfo file_info;  // of it
+  bool file_removed = false;
+  double load_seconds = 0;
+  std::vector<std::optional<scene::Part>> parts;  // by id, after the file's; none: removed
+  std::vector<scene::Material> materials;
+  bool changed = false;  // since `assembled` was made
+
+  mutable std::optional<scene::Scene> assembled;  // base and parts together, where there are parts
+
+  std::mutex mutex;  // of `committed`
+  std::shared_ptr<api::Committed> committed;
+
+  GeometryId first_part() const { return has_file ? 1 : 0; }
+  bool is_file(GeometryId id) const { return has_file && id == 0 && !file_removed; }
+  scene::Part& part(GeometryId id);
+  GeometryId add(scene::Part&& part, const GeometryOptions& options);
+  const scene::Scene& model();
+  query::GeometryTable table() const;
+  std::shared_ptr<api::Committed> asked();
+};
+
+namespace {
+
+[[noreturn]] void no_such(GeometryId id) {
+  throw Error(ErrorCode::usage, fmt::format("there is no geometry {}", id));
+}
+
+scene::Scene only_settings(const scene::Scene& scene) {
+  scene::Scene settings;
+  settings.name = scene.name;
+  settings.lights = scene.lights;
+  settings.unlit = scene.unlit;
+  settings.camera = scene.camera;
+  settings.cameras = scene.cameras;
+  settings.background = scene.background;
+  settings.ambient = scene.ambient;
+  settings.settings = scene.settings;
+  settings.warnings = scene.warnings;
+  settings.files = scene.files;
+  settings.load_options = scene.load_options;
+  return settings;
+}
+
+}  // namespace
+
+scene::Part& Scene::Impl::part(GeometryId id) {
+  if (id < first_part()) throw Error(ErrorCode::usage, "geometry 0 is the file's: it can't be changed");
+  const std::size_t i = id - first_part();
+  if (i >= parts.size() || !parts[i]) no_such(id);
+  return *parts[i];
+}
+
+GeometryId Scene::Impl::add(scene::Part&& part, const GeometryOptions& options) {
+  if (options.material >= std::max<std::size_t>(materials.size(), 1))
+    throw Error(ErrorCode::usage, fmt::format("there is no material {}; add it first", options.material));
+  part.name = options.name;
+  part.mask = options.mask;
+  part.material = options.material;
+  parts.emplace_back(std::move(part));
+  changed = true;
+  return first_part() + static_cast<GeometryId>(parts.size() - 1);
+}
+
+const scene::Scene& Scene::Impl::model() {
+  if (!changed) return assembled ? *assembled : base;
+  const bool with_file = has_file && !file_removed && file_info.enabled;
+  scene::Scene all = with_file ? base : only_settings(base);
+  std::vector<const scene::Part*> enabled;
+  for (const auto& part : parts)
+    if (part && part->enabled) enabled.push_back(&*part);
+  scene::assemble(all, enabled, materials);
+  scene::frame_scene(all);
+  assembled = std::move(all);
+  changed = false;
+  return *assembled;
+}
+
+query::GeometryTable Scene::Impl::table() const {
+  query::GeometryTable table;
+  if (has_file && !file_removed && file_info.enabled) table.add(0, base.primitive_count(), file_info.mask);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i] && parts[i]->enabled)
+      table.add(first_part() + static_cast<GeometryId>(i), parts[i]->primitive_count(), parts[i]->mask);
+  return table;
+}
+
+std::shared_ptr<api::Committed> Scene::Impl::asked() {
+  const std::lock_guard lock(mutex);
+  if (!committed)
+    throw Error(ErrorCode::usage, "the scene has to be committed before anything is asked of it");
+  return committed;
+}
 
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
   const Timer timer;
   Scene scene(scene::load(file, options));
-  scene.load_seconds_ = timer.seconds();
+  scene.impl_->load_seconds = timer.seconds();
   return scene;
 }
 Scene Scene::from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options) {
   const Timer timer;
   Scene scene(scene::load_from_memory(std::move(bytes), name, options));
-  scene.load_seconds_ = timer.seconds();
+  scene.impl_->load_seconds = timer.seconds();
   return scene;
 }
-Scene::Scene(scene::Scene&& model) : model_(std::make_unique<scene::Scene>(std::move(model))) {}
+
+Scene::Scene() : impl_(std::make_unique<Impl>()) {
+  impl_->changed = true;  // a camera and lights are to be made up
+}
+Scene::Scene(scene::Scene&& model) : impl_(std::make_unique<Impl>()) {
+  impl_->has_file = true;
+  impl_->file_info = {model.name, 0xffffffffu, model.primitive_count(), true};
+  impl_->base = std::move(model);
+}
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
+GeometryId Scene::add_mesh(const Mesh& mesh, const GeometryOptions& options) {
+  return impl_->add(scene::make_part(mesh), options);
+}
+GeometryId Scene::add_spheres(const Spheres& spheres, const GeometryOptions& options) {
+  return impl_->add(scene::make_part(spheres), options);
+}
+GeometryId Scene::add_cones(const Cones& cones, const GeometryOptions& options) {
+  return impl_->add(scene::make_part(cones), options);
+}
+GeometryId Scene::add_discs(const Discs& discs, const GeometryOptions& options) {
+  return impl_->add(scene::make_part(discs), options);
+}
+
+void Scene::update_vertices(GeometryId mesh, const Points& vertices, const Points& normals) {
+  scene::move_vertices(impl_->part(mesh), vertices, normals);
+  impl_->changed = true;
+}
+void Scene::remove(GeometryId geometry) {
+  if (impl_->is_file(geometry)) {
+    impl_->file_removed = true;
+  } else {
+    static_cast<void>(impl_->part(geometry));
+    impl_->parts[geometry - impl_->first_part()].reset();
+  }
+  impl_->changed = true;
+}
+void Scene::enable(GeometryId geometry, bool enabled) {
+  (impl_->is_file(geometry) ? impl_->file_info.enabled : impl_->part(geometry).enabled) = enabled;
+  impl_->changed = true;
+}
+void Scene::set_mask(GeometryId geometry, std::uint32_t mask) {
+  (impl_->is_file(geometry) ? impl_->file_info.mask : impl_->part(geometry).mask) = mask;
+}
+
+std::vector<GeometryId> Scene::geometries() const {
+  std::vector<GeometryId> ids;
+  if (impl_->has_file && !impl_->file_removed) ids.push_back(0);
+  for (std::size_t i = 0; i < impl_->parts.size(); ++i)
+    if (impl_->parts[i]) ids.push_back(impl_->first_part() + static_cast<GeometryId>(i));
+  return ids;
+}
+GeometryInfo Scene::info(GeometryId geometry) const {
+  if (impl_->is_file(geometry)) return impl_->file_info;
+  const scene::Part& part = impl_->part(geometry);
+  return {part.name, part.mask, part.primitive_count(), part.enabled};
+}
+
+MaterialId Scene::add_material(const Material& material) {
+  impl_->materials.push_back(scene::material_of(material));
+  impl_->changed = true;
+  return static_cast<MaterialId>(impl_->materials.size() - 1);
+}
+void Scene::add_light(const Light& light) {
+  impl_->base.lights.push_back(scene::light_of(light));
+  impl_->changed = true;
+}
+void Scene::set_camera(const Camera& camera) {
+  impl_->base.camera = scene::camera_of(camera);
+  impl_->base.cameras = {*impl_->base.camera};
+  impl_->base.framing = {};
+  impl_->changed = true;
+}
+void Scene::set_background(const Color& color) {
+  impl_->base.background = scene::color_of(color, "background");
+  impl_->changed = true;
+}
+void Scene::set_ambient(const Color& color) {
+  impl_->base.ambient = scene::color_of(color, "ambient");
+  impl_->changed = true;
+}
+
 std::uint32_t Scene::primitives() const {
-  return model_->primitive_count();
+  return impl_->model().primitive_count();
 }
 const std::vector<std::string>& Scene::warnings() const {
-  return model_->warnings;
+  return impl_->base.warnings;
 }
 const scene::Scene& Scene::model() const {
-  return *model_;
+  return impl_->model();
+}
+double Scene::load_seconds() const {
+  return impl_->load_seconds;
+}
+
+void Scene::commit(const CommitOptions& options) {
+  api::open_device(options.device, {});  // without a device there is no use in building a tree
+  const auto committed =
+      std::make_shared<api::Committed>(PreparedScene(*this, options.tree), impl_->table(), options.device);
+  const std::lock_guard lock(impl_->mutex);
+  impl_->committed = committed;
+}
+PreparedScene Scene::prepared() const {
+  return impl_->asked()->scene();
+}
+
+QueryReport Scene::closest(const Rays& rays, const HitsOut& out, const QueryOptions& options) const {
+  const auto committed = impl_->asked();
+  return query::closest(committed->asked(), rays, out, options);
+}
+QueryReport Scene::any(const Rays& rays, const BytesOut& out, const QueryOptions& options) const {
+  const auto committed = impl_->asked();
+  return query::any(committed->asked(), rays, out, options);
 }
 
 }  // namespace kdray

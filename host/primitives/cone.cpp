@@ -80,4 +80,13 @@ std::array<float, KDRAY_CONE_ROWS - 1> rows_of(const layout::Cone& c) {
   return {c.base[0], c.base[1], c.base[2], c.axis[0], c.axis[1], c.axis[2], c.base_radius, c.height, c.slope};
 }
 
+// The radius grows by `slope` along the axis, so the normal leans back by as much.
+dvec3 normal_at(const layout::Cone& c, const dvec3& point) {
+  const dvec3 axis(c.axis[0], c.axis[1], c.axis[2]);
+  const dvec3 from = point - dvec3(c.base[0], c.base[1], c.base[2]);
+  const dvec3 out = from - glm::dot(from, axis) * axis;
+  if (out == dvec3(0)) return c.slope > 0 ? -axis : axis;  // at the tip
+  return glm::normalize(safe_normalize(out) - static_cast<double>(c.slope) * axis);
+}
+
 }  // namespace kdray::primitives

@@ -62,4 +62,8 @@ std::array<float, KDRAY_DISC_ROWS - 1> rows_of(const layout::Disc& d) {
   return {d.center[0], d.center[1], d.center[2], d.normal[0], d.normal[1], d.normal[2], d.radius};
 }
 
+dvec3 normal_at(const layout::Disc& d, const dvec3&) {
+  return glm::normalize(dvec3(d.normal[0], d.normal[1], d.normal[2]));
+}
+
 }  // namespace kdray::primitives

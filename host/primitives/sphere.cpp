@@ -52,4 +52,8 @@ std::array<float, KDRAY_SPHERE_ROWS - 1> rows_of(const layout::Sphere& s) {
   return {s.center[0], s.center[1], s.center[2], s.radius};
 }
 
+dvec3 normal_at(const layout::Sphere& s, const dvec3& point) {
+  return safe_normalize(point - dvec3(s.center[0], s.center[1], s.center[2]));
+}
+
 }  // namespace kdray::primitives

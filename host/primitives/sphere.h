@@ -54,6 +54,9 @@ layout::Sphere pack(const SphereGeometry& s);
 Box bounds_of(const layout::Sphere& s);
 std::array<float, KDRAY_SPHERE_ROWS - 1> rows_of(const layout::Sphere& s);
 
+// For queries: the unit normal at a point on it, in the scene's own space.
+dvec3 normal_at(const layout::Sphere& s, const dvec3& point);
+
 // For `kdray verify`.
 constexpr bool has_outline(const SphereGeometry&) {
   return true;

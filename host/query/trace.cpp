@@ -10,6 +10,8 @@
 #include "layout/rays.layout.h"
 #include "layout/traversal.h"
 #include "query/near_rays.h"
+#include "query/scene_arguments.h"
+#include "query/session.h"
 #include "wavefront/stage.h"
 
 namespace kdray::query {
@@ -20,8 +22,6 @@ static_assert(sizeof(Ray) == sizeof(layout::QueryRay) && sizeof(Hit) == sizeof(l
 
 // Rays in one launch: 512 MiB of them; and for a GPU, whose watchdog may end what takes seconds.
 constexpr std::size_t kRaysPerChunk = std::size_t{1} << 24, kBoundedLaunch = std::size_t{1} << 20;
-
-constexpr std::int32_t kInvalid = -2;  // KDRAY_QUERY_INVALID of query.clh
 
 bool all_finite(const float (&v)[3]) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -48,16 +48,6 @@ bool is_ordinary(const Ray& ray) {
   const float largest =
       std::max({std::abs(ray.direction[0]), std::abs(ray.direction[1]), std::abs(ray.direction[2])});
   return largest >= 0x1p-8f && largest < 0x1p8f;
-}
-
-cl_float4 float4(const vec3& v, float w = 0) {
-  return cl_float4{{v.x, v.y, v.z, w}};
-}
-
-float world_max(const Box& bounds) {
-  if (bounds.empty()) return 0;
-  const vec3 m = glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi));
-  return std::max({m.x, m.y, m.z});
 }
 
 // PoCL compiles a kernel for good at its first launch: here one of as many work-items that finds no rays, not
@@ -87,15 +77,14 @@ Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions
   wavefront::Stage stage(target.programs.kernel<K>(target.scene.features, traversal, options.precision));
   const bool chunked = traversal != Traversal::binary && traversal != Traversal::wide;
   cl::CommandQueue queue = context.queues().front();
-  const scene::Geometry& geometry = target.scene.geometry;
-  NearRays near_rays(geometry.space);
+  NearRays near_rays(target.scene.geometry.space);
   const LocalSpace& space = near_rays.kernel_space();
   device::checked("tracing rays", [&] {
-    target.buffers.set_arguments(stage);
-    stage.set(K::root_lo, float4(geometry.bounds.lo)).set(K::root_hi, float4(geometry.bounds.hi));
+    set_scene_arguments(stage, target);
     stage.set(K::space, float4(vec3(space.center), static_cast<float>(space.scale)));
-    stage.set(K::world_max, world_max(geometry.bounds));
     stage.set(K::any_hit, cl_uint{options.any_hit}).set(K::rays, ray_buffer).set(K::hits, hit_buffer);
+    // Rays of the command line have no masks: what is bound for them is not read.
+    stage.set(K::as_refs, cl_uint{0}).set(K::primitive_masks, hit_buffer).set(K::ray_masks, hit_buffer);
     stage.set(K::any_length, cl_uint{!std::all_of(rays.begin(), rays.end(), is_ordinary)});
     for (std::size_t first = 0; first < rays.size(); first += chunk) {
       const std::size_t n = std::min(chunk, rays.size() - first);
@@ -121,7 +110,7 @@ Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions
     }
   });
   if (std::any_of(result.hits.begin(), result.hits.end(),
-                  [](const Hit& h) { return h.primitive == kInvalid; }))
+                  [](const Hit& h) { return h.primitive == kFailedWalk; }))
     throw Error(ErrorCode::internal,
                 "a ray overflowed the traversal's stack; please report it with the scene");
   return result;

@@ -35,6 +35,7 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 
 // The bits a file reads: a scene that differs elsewhere shares the program.
 layout::Features bits_read_by(const std::string& file) {
+  if (file == "traverse/query.cl") return kGeometry | KDRAY_FEATURE_MASKS;
   if (file == "raygen/admit.cl") return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
   if (file == "film/add.cl") return 0;
   if (file == "film/channels.cl") return kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;

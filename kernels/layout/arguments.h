@@ -133,7 +133,10 @@
   X(VALUE, u32, n_rays)                   \
   X(VALUE, u32, any_hit)                  \
   X(VALUE, u32, any_length)               \
+  X(VALUE, u32, as_refs)                  \
   KDRAY_TRACED_ARRAYS(X)                  \
+  X(IN, u32, primitive_masks)             \
+  X(IN, u32, ray_masks)                   \
   X(IN, QueryRay, rays)                   \
   X(OUT, QueryHit, hits)
 

@@ -20,6 +20,9 @@
   KDRAY_FEATURE(32)  // vertex normals; removes interpolation, the terminator's shift
 // Numbers in file order that differ from indices; removes looking them up.
 #define KDRAY_FEATURE_NUMBERS KDRAY_FEATURE(33)
+// Rays and primitives of queries that meet only where their masks have a bit in common; removes looking at
+// them.
+#define KDRAY_FEATURE_MASKS KDRAY_FEATURE(34)
 #define KDRAY_FEATURE_REFLECT KDRAY_FEATURE(40)   // removes reflected rays (and, with TRANSMIT, the pool)
 #define KDRAY_FEATURE_TRANSMIT KDRAY_FEATURE(41)  // removes refracted rays
 #define KDRAY_FEATURE_SPECULAR KDRAY_FEATURE(42)  // removes highlights
@@ -45,6 +48,7 @@
 #define KDRAY_HAS_CURVED (KDRAY_HAS_KIND(SPHERE) || KDRAY_HAS_KIND(CONE))
 #define KDRAY_HAS_SMOOTH ((KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
 #define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
+#define KDRAY_HAS_MASKS ((KDRAY_FEATURES & KDRAY_FEATURE_MASKS) != 0)
 #define KDRAY_HAS_REFLECT ((KDRAY_FEATURES & KDRAY_FEATURE_REFLECT) != 0)
 #define KDRAY_HAS_TRANSMIT ((KDRAY_FEATURES & KDRAY_FEATURE_TRANSMIT) != 0)
 #define KDRAY_HAS_SPECULAR ((KDRAY_FEATURES & KDRAY_FEATURE_SPECULAR) != 0)

@@ -21,20 +21,27 @@ inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 
   const real3 d = (real3)(in.direction[0], in.direction[1], in.direction[2]);
   const TreeRay r = make_tree_ray(o, d, in.t_min, in.t_max, world_max);
   if (source->any_hit) {
-    const u32 found = find_any(scene, &r, root_lo, root_hi, KDRAY_REF_MISS);
+    const u32 found = find_any(scene, &r, root_lo, root_hi, in.skip);
     const u32 ref = found == KDRAY_OCCLUDED ? 0u : KDRAY_REF_MISS;
     store_query_hit(source, i, 0.0f, found == KDRAY_OCCLUSION_INVALID ? KDRAY_REF_INVALID : ref, 0.0f, 0.0f);
   } else {
     u32 cost;
-    const Hit hit = find_closest(scene, &r, root_lo, root_hi, KDRAY_REF_MISS, &cost);
+    const Hit hit = find_closest(scene, &r, root_lo, root_hi, in.skip, &cost);
     store_query_hit(source, i, hit.t, hit.ref, hit.u, hit.v);
   }
 }
 
 __kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
+#if KDRAY_HAS_MASKS
+  SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  scene.masks = in_primitive_masks;
+  RaySource source = ray_source(&scene, in_rays, out_hits, space, any_hit, any_length, as_refs);
+  source.masks = in_ray_masks;
+#else
   const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
-  const RaySource source = ray_source(&scene, in_rays, out_hits, space, any_hit, any_length);
+  const RaySource source = ray_source(&scene, in_rays, out_hits, space, any_hit, any_length, as_refs);
+#endif
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
   if (item < n_rays)
     query_binary(&scene, &source, item, convert_real3(root_lo.xyz), convert_real3(root_hi.xyz), world_max);

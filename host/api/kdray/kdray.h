@@ -1,9 +1,9 @@
-// What    kdray's public C++ interface: load a scene, build its tree on a device, render pictures, trace
-//         rays. `kdray`, the command line, is one client of it; an installed kdray offers it as kdray::kdray
-//         to CMake.
+// What    kdray's public C++ interface: a scene from a file or from a program's arrays (kdray/scene.h), its
+//         tree on a device, pictures, rays. `kdray`, the command line, is one client of it; an installed
+//         kdray offers it as kdray::kdray to CMake.
 // Shape   Only standard types cross this header. Classes are handles: cheap to move, not copyable.
 // Errors  Everything throws kdray::Error (kdray/error.h's codes: 1 input, 2 usage, 3 no device, 4 out of
-//         memory).
+//         memory, 6 cancelled).
 // Threads A Renderer serves one call at a time; different Renderers may be used from different threads.
 #pragma once
 
@@ -22,40 +22,10 @@
 #include "kdray/error.h"
 #include "kdray/options.h"
 #include "kdray/ray.h"
+#include "kdray/scene.h"
 #include "kdray/statistics.h"
 
 namespace kdray {
-
-// For kdray's own rooms.
-namespace scene {
-struct Scene;
-}
-namespace prepare {
-struct Prepared;
-}
-
-// A scene read from a file (formats: see docs/scenes.md).
-class Scene {
- public:
-  static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
-  // The same of a file's content; `name` tells its format by the ending, and where the files are that it
-  // names.
-  static Scene from_memory(std::string bytes, const std::filesystem::path& name,
-                           const LoadOptions& options = {});
-  explicit Scene(scene::Scene&& model);
-  Scene(Scene&&) noexcept;
-  Scene& operator=(Scene&&) noexcept;
-  ~Scene();
-
-  std::uint32_t primitives() const;
-  const std::vector<std::string>& warnings() const;  // what the loader left out or changed, one line each
-  const scene::Scene& model() const;
-  double load_seconds() const { return load_seconds_; }
-
- private:
-  std::unique_ptr<scene::Scene> model_;
-  double load_seconds_ = 0;
-};
 
 // Where a picture is seen from, and before what, in place of what the scene says. What isn't given stays as
 // it is; where the file has no camera, it is chosen so that all is in the picture, and so are lights where it

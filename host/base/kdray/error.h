@@ -9,7 +9,7 @@
 namespace kdray {
 
 // Exit statuses of the command line (docs/cli.md).
-enum class ErrorCode { input = 1, usage = 2, no_device = 3, out_of_memory = 4, internal = 5 };
+enum class ErrorCode { input = 1, usage = 2, no_device = 3, out_of_memory = 4, internal = 5, cancelled = 6 };
 
 class Error : public std::runtime_error {
  public:

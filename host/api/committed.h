@@ -1,0 +1,32 @@
+// What    A scene as it was committed: its tree, what its numbers mean, and the device that answers.
+// Shape   It never changes. Who asks holds on to it, so that it lives until the last answer.
+#pragma once
+
+#include <memory>
+
+#include "api/device.h"
+#include "kdray/kdray.h"
+#include "query/ask.h"
+
+namespace kdray::api {
+
+class Committed {
+ public:
+  Committed(const PreparedScene& scene, query::GeometryTable table, const DeviceOptions& device);
+  Committed(const Committed&) = delete;
+  Committed& operator=(const Committed&) = delete;
+
+  const PreparedScene& scene() const { return scene_; }
+  query::Asked asked() { return {scene_.prepared(), table_, frame_, sessions_}; }
+
+ private:
+  query::Target target();
+
+  PreparedScene scene_;
+  query::GeometryTable table_;
+  query::LocalFrame frame_;
+  DeviceSet devices_;
+  query::Sessions sessions_;
+};
+
+}  // namespace kdray::api

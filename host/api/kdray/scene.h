@@ -1,0 +1,109 @@
+// What    A scene: read from a file, or made of a program's own arrays; and, once it is committed, what can be
+//         asked of it: closest hits, occlusion.
+// Shape   A Scene is what the program says of it; commit() makes of it what queries are put to. Until the next
+//         commit() queries go on over what was committed, whatever is added, moved or removed meanwhile.
+// Errors  Everything throws kdray::Error. An array that is wrong is ErrorCode::input, and the message names
+//         the array and the element; nothing of the scene has changed then.
+// Threads One thread at a time adds, changes and commits. Any number may ask, also while it commits: they are
+//         answered from the state before until commit() returns.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kdray/error.h"
+#include "kdray/model.h"
+#include "kdray/options.h"
+#include "kdray/query.h"
+
+namespace kdray {
+
+// For kdray's own rooms.
+namespace scene {
+struct Scene;
+}
+namespace prepare {
+struct Prepared;
+}
+class PreparedScene;
+
+struct CommitOptions {
+  TreeOptions tree = {.binary_form = false};
+  DeviceOptions device = {};  // the first device answers queries
+};
+
+struct GeometryInfo {
+  std::string name;
+  std::uint32_t mask = 0;
+  std::uint32_t primitives = 0;
+  bool enabled = true;
+};
+
+class Scene {
+ public:
+  Scene();  // of nothing
+
+  // A scene read from a file (formats: docs/scenes.md). What is in it is geometry 0.
+  static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
+  // The same of a file's content; `name` tells its format by the ending, and where the files are that it
+  // names.
+  static Scene from_memory(std::string bytes, const std::filesystem::path& name,
+                           const LoadOptions& options = {});
+  explicit Scene(scene::Scene&& model);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
+  // ---- What it is made of. Arrays are copied; primitives are numbered in the order of their rows.
+
+  GeometryId add_mesh(const Mesh& mesh, const GeometryOptions& options = {});
+  GeometryId add_spheres(const Spheres& spheres, const GeometryOptions& options = {});
+  GeometryId add_cones(const Cones& cones, const GeometryOptions& options = {});
+  GeometryId add_discs(const Discs& discs, const GeometryOptions& options = {});
+
+  // As many vertices as the mesh was added with, and normals where it has them.
+  void update_vertices(GeometryId mesh, const Points& vertices, const Points& normals = {});
+  void remove(GeometryId geometry);
+  // One that is not enabled is left out of the next commit().
+  void enable(GeometryId geometry, bool enabled);
+  void set_mask(GeometryId geometry, std::uint32_t mask);
+
+  std::vector<GeometryId> geometries() const;
+  GeometryInfo info(GeometryId geometry) const;
+
+  // ---- How it looks: for pictures.
+
+  // Materials are numbered from 0; without any, geometries are matt and light grey. (A file's own materials
+  // are not among them.)
+  MaterialId add_material(const Material& material);
+  void add_light(const Light& light);
+  void set_camera(const Camera& camera);
+  void set_background(const Color& color);
+  void set_ambient(const Color& color);
+
+  std::uint32_t primitives() const;
+  const std::vector<std::string>& warnings() const;  // what the loader left out or changed, one line each
+  const scene::Scene& model() const;                 // all of it together
+  double load_seconds() const;
+
+  // ---- What can be asked of it.
+
+  // Builds the tree and opens the device. ErrorCode::no_device, out_of_memory.
+  void commit(const CommitOptions& options = {});
+  // What was committed, for a Renderer. ErrorCode::usage before the first commit().
+  PreparedScene prepared() const;
+
+  // What each ray hits first.
+  QueryReport closest(const Rays& rays, const HitsOut& out, const QueryOptions& options = {}) const;
+  // 1 for each ray that hits anything between t_min and t_max, else 0.
+  QueryReport any(const Rays& rays, const BytesOut& out, const QueryOptions& options = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kdray

@@ -1,0 +1,216 @@
+#include "query/local_rays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/error.h"
+#include "query/grains.h"
+
+namespace kdray::query {
+
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kFarOff = 0x1p60;  // in local lengths; its square is a float still
+
+// A ray that meets nothing.
+constexpr layout::QueryRay kNoRay{{0, 0, 0}, 0, {1, 0, 0}, -std::numeric_limits<float>::infinity()};
+
+void check_size(std::size_t size, std::size_t n, const char* name) {
+  if (size == n || size <= 1) return;
+  throw Error(ErrorCode::input,
+              fmt::format("rays: {} of {} for {} rays; give one for each, or one", size, name, n));
+}
+
+template <class View>
+bool is_double(const View& view) {
+  return !view.empty() && view.template first_of<const double>() != nullptr;
+}
+
+// Of an ordinary length kernels make directions no shorter and no longer (query.clh).
+bool is_ordinary(double largest) {
+  return largest >= 0x1p-8 && largest < 0x1p8;
+}
+
+}  // namespace
+
+const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max) {
+  if (!is_finite(origin)) return "its origin is not finite";
+  if (!is_finite(direction)) return "its direction is not finite";
+  if (direction == dvec3(0)) return "its direction is 0";
+  if (!std::isfinite(t_min)) return "its t_min is not finite";
+  if (std::isnan(t_max)) return "its t_max is not a number";
+  return nullptr;
+}
+
+RayArrays::RayArrays(const Rays& rays)
+    : rays_(rays),
+      n_(std::max({rays.origins.size(), rays.directions.size()})),
+      in_double_(is_double(rays.origins) || is_double(rays.directions) || is_double(rays.t_min) ||
+                 is_double(rays.t_max)) {
+  if (rays.origins.empty() || rays.directions.empty()) {
+    if (n_ > 0)
+      throw Error(ErrorCode::input, "rays: origins without directions, or directions without origins");
+    return;
+  }
+  n_ = std::max({n_, rays.t_min.size(), rays.t_max.size(), rays.masks.size()});
+  check_size(rays.origins.size(), n_, "origins");
+  check_size(rays.directions.size(), n_, "directions");
+  check_size(rays.t_min.size(), n_, "t_min");
+  check_size(rays.t_max.size(), n_, "t_max");
+  check_size(rays.masks.size(), n_, "masks");
+}
+
+const Ray* RayArrays::structs() const {
+  const float* const first = rays_.origins.first_of<const float>();
+  if (first == nullptr || rays_.origins.size() != n_ || rays_.directions.size() != n_ ||
+      rays_.t_min.size() != n_ || rays_.t_max.size() != n_)
+    return nullptr;
+  for (const std::size_t stride :
+       {rays_.origins.stride(), rays_.directions.stride(), rays_.t_min.stride(), rays_.t_max.stride()})
+    if (stride != sizeof(Ray)) return nullptr;
+  const Ray* const rays = reinterpret_cast<const Ray*>(first);
+  const bool in_place = rays_.t_min.first_of<const float>() == &rays->t_min &&
+                        rays_.directions.first_of<const float>() == rays->direction &&
+                        rays_.t_max.first_of<const float>() == &rays->t_max;
+  return in_place ? rays : nullptr;
+}
+
+LocalFrame::LocalFrame(const scene::Geometry& geometry)
+    : space_(geometry.space),
+      lo_(0),
+      hi_(0),
+      exponent_(-std::ilogb(geometry.space.scale)),
+      near_(2 * kLocalReach) {
+  if (geometry.bounds.empty()) return;
+  // By more than a ray may be off for being rounded to float.
+  constexpr double kWider = 0x1p-12 * kLocalReach;
+  lo_ = dvec3(geometry.bounds.lo) - kWider;
+  hi_ = dvec3(geometry.bounds.hi) + kWider;
+}
+
+// Where the line enters the bounds, in multiples of the direction; infinity: it passes them by.
+double LocalFrame::distance_ahead(const dvec3& origin, const dvec3& direction) const {
+  double enter = -kInfinite, leave = kInfinite;
+  for (int k = 0; k < 3; ++k) {
+    if (direction[k] == 0) {
+      if (origin[k] < lo_[k] || origin[k] > hi_[k]) return kInfinite;
+      continue;
+    }
+    const double a = (lo_[k] - origin[k]) / direction[k], b = (hi_[k] - origin[k]) / direction[k];
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  // These are off by some roundings: a ray that all but touches the bounds has to go on.
+  return enter <= leave + 0x1p-48 * std::abs(leave) ? enter : kInfinite;
+}
+
+LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_direction, double t_min,
+                           double t_max, bool in_double) const {
+  LocalRay out{kNoRay, 0, exponent_};
+  const double largest = largest_component(world_direction);
+  const int length = is_ordinary(largest) ? 0 : std::ilogb(largest);
+  const dvec3 direction =
+      length == 0 ? world_direction
+                  : dvec3(std::scalbn(world_direction.x, -length), std::scalbn(world_direction.y, -length),
+                          std::scalbn(world_direction.z, -length));
+  out.exponent = exponent_ - length;
+  // In local lengths from here on. The origin is the sum of two doubles, since the difference is rounded.
+  dvec3 origin = world_origin - space_.center;
+  const dvec3 back = world_origin - origin, rest = (world_origin - (origin + back)) - (space_.center - back);
+  origin *= space_.scale;
+  double ahead = 0;  // in multiples of the local direction
+  if (!(largest_component(origin) <= (in_double ? near_ : kFarOff))) {
+    ahead = distance_ahead(origin, direction);
+    if (!std::isfinite(ahead)) return out;
+    ahead = std::max(ahead, 0.0);
+    for (int k = 0; k < 3; ++k) origin[k] = std::fma(ahead, direction[k], origin[k]) + rest[k] * space_.scale;
+    if (!(largest_component(origin) <= kFarOff)) return out;
+  }
+  for (int k = 0; k < 3; ++k) {
+    out.ray.origin[k] = static_cast<float>(origin[k]);
+    out.ray.direction[k] = static_cast<float>(direction[k]);
+  }
+  out.ray.t_min = static_cast<float>(std::scalbn(t_min, -out.exponent) - ahead);
+  out.ray.t_max = static_cast<float>(std::scalbn(t_max, -out.exponent) - ahead);
+  out.ahead = std::scalbn(ahead, out.exponent);
+  return out;
+}
+
+void LocalRays::fill(std::size_t first, std::size_t n, layout::QueryRay* out) {
+  moved_.clear();
+  const Ray* const structs = rays_->structs();
+  if (structs != nullptr && fill_structs(first, n, structs + first, out)) return;
+  fill_any(first, n, out);
+}
+
+// Rays of floats as nearly all are: finite, of ordinary length, not from too far off. False where one isn't.
+bool LocalRays::fill_structs(std::size_t, std::size_t n, const Ray* rays, layout::QueryRay* out) const {
+  const LocalSpace& space = frame_->space();
+  const double scale = space.scale, limit = kFarOff / scale;
+  const auto t_scale = static_cast<float>(scale);
+  if (!std::isfinite(limit) || !(t_scale >= std::numeric_limits<float>::min()) || std::isinf(t_scale))
+    return false;
+  std::atomic<bool> all{true};
+  for_each_grain(n, [&](std::size_t begin, std::size_t end) {
+    bool plain = true;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Ray& ray = rays[i];
+      const float largest =
+          std::max({std::abs(ray.direction[0]), std::abs(ray.direction[1]), std::abs(ray.direction[2])});
+      const float sum = (ray.direction[0] - ray.direction[0]) + (ray.direction[1] - ray.direction[1]) +
+                        (ray.direction[2] - ray.direction[2]) + (ray.t_min - ray.t_min);
+      plain &= sum == 0 && largest >= 0x1p-8f && largest < 0x1p8f && ray.t_max == ray.t_max;
+      for (int k = 0; k < 3; ++k) {
+        const double from = ray.origin[k] - space.center[k];
+        plain &= std::abs(from) <= limit;
+        out[i].origin[k] = static_cast<float>(from * scale);
+        out[i].direction[k] = ray.direction[k];
+      }
+      out[i].t_min = ray.t_min * t_scale;
+      out[i].t_max = ray.t_max * t_scale;
+    }
+    if (!plain) all.store(false, std::memory_order_relaxed);
+  });
+  return all.load();
+}
+
+void LocalRays::fill_any(std::size_t first, std::size_t n, layout::QueryRay* out) {
+  moved_.resize(n);
+  std::atomic<bool> usual{true}, valid{true};
+  for_each_grain(n, [&](std::size_t begin, std::size_t end) {
+    bool all_usual = true, all_valid = true;
+    for (std::size_t i = begin; i < end; ++i) {
+      const dvec3 o = rays_->origin(first + i), d = rays_->direction(first + i);
+      const double t_min = rays_->t_min(first + i), t_max = rays_->t_max(first + i);
+      LocalRay local{kNoRay, 0, frame_->exponent()};
+      if (fault_of(o, d, t_min, t_max) == nullptr) {
+        local = frame_->begin(o, d, t_min, t_max, rays_->in_double());
+      } else {
+        all_valid = false;
+      }
+      out[i] = local.ray;
+      moved_[i] = {local.ahead, local.exponent};
+      all_usual &= local.ahead == 0 && local.exponent == frame_->exponent();
+    }
+    if (!all_usual) usual.store(false, std::memory_order_relaxed);
+    if (!all_valid) valid.store(false, std::memory_order_relaxed);
+  });
+  if (usual) moved_.clear();
+  if (!valid) note_invalid(first, n);
+}
+
+void LocalRays::note_invalid(std::size_t first, std::size_t n) {
+  for (std::size_t i = first; i < first + n; ++i) {
+    const char* const fault =
+        fault_of(rays_->origin(i), rays_->direction(i), rays_->t_min(i), rays_->t_max(i));
+    if (fault == nullptr) continue;
+    ++n_invalid_;
+    if (!first_invalid_) first_invalid_ = fmt::format("ray {}: {}; take it out or repair it", i, fault);
+  }
+}
+
+}  // namespace kdray::query

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <numeric>
+
+#include "base/error.h"
+#include "scene/check_scene.h"
+#include "scene/part.h"
+
+namespace kdray::scene {
+
+namespace {
+
+// Where a part's elements begin in the scene.
+struct Offsets {
+  std::size_t vertices, normals, triangles;
+  std::uint32_t number, material;
+};
+
+void put_mesh(Scene& scene, const Part& part, const Offsets& at) {
+  constexpr std::size_t kGrain = std::size_t{1} << 15;
+  const auto copy = [](const auto& from, auto& to, std::size_t first, const auto& changed) {
+    tbb::parallel_for(std::size_t{0}, (from.size() + kGrain - 1) / kGrain, [&](std::size_t grain) {
+      for (std::size_t i = grain * kGrain; i < std::min(from.size(), (grain + 1) * kGrain); ++i)
+        to[first + i] = changed(from[i], i);
+    });
+  };
+  copy(part.vertices, scene.vertices, at.vertices, [](const dvec3& v, std::size_t) { return v; });
+  copy(part.normals, scene.normals, at.normals, [](const vec3& n, std::size_t) { return n; });
+  copy(part.triangles, scene.triangles, at.triangles, [&](Triangle t, std::size_t i) {
+    for (std::uint32_t& v : t.vertex) v += static_cast<std::uint32_t>(at.vertices);
+    for (std::uint32_t& n : t.normal)
+      if (n != kNone) n += static_cast<std::uint32_t>(at.normals);
+    t.material = at.material + part.material;
+    t.number = at.number + static_cast<std::uint32_t>(i);
+    return t;
+  });
+}
+
+template <class Kind>
+void put_shapes(Kind, Scene& scene, const Part& part, const Offsets& at) {
+  auto& shapes = Kind::of(scene);
+  std::uint32_t number = at.number;
+  for (auto shape : Kind::of(part)) {
+    shape.material = at.material + part.material;
+    shape.number = number++;
+    shapes.push_back(shape);
+  }
+}
+
+void put(Scene& scene, const Part& part, const Offsets& at) {
+  put_mesh(scene, part, at);
+  primitives::for_each_shape([&](auto kind) { put_shapes(kind, scene, part, at); });
+}
+
+Offsets after(const Offsets& at, const Part& part) {
+  return {at.vertices + part.vertices.size(), at.normals + part.normals.size(),
+          at.triangles + part.triangles.size(), at.number + part.primitive_count(), at.material};
+}
+
+// Indices into vertices have 32 bits, and numbers as well; references have 28 (check_scene.h).
+void check_capacity(const Scene& scene, std::span<const Part* const> parts) {
+  std::uint64_t n_vertices = scene.vertices.size(), n_primitives = scene.primitive_count();
+  for (const Part* const part : parts) {
+    n_vertices += part->vertices.size();
+    n_primitives += part->primitive_count();
+  }
+  if (n_vertices >= kNone || n_primitives >= kMaxPrimitivesPerKind)
+    throw Error(ErrorCode::input, fmt::format("{} vertices and {} primitives in one scene; split it",
+                                              n_vertices, n_primitives));
+}
+
+}  // namespace
+
+void assemble(Scene& scene, std::span<const Part* const> parts, std::span<const Material> materials) {
+  check_capacity(scene, parts);
+  Offsets at{scene.vertices.size(), scene.normals.size(), scene.triangles.size(), scene.primitive_count(),
+             static_cast<std::uint32_t>(scene.materials.size())};
+  scene.materials.insert(scene.materials.end(), materials.begin(), materials.end());
+  if (materials.empty() && !parts.empty()) scene.materials.push_back(material_of({}));
+  Offsets end = at;
+  for (const Part* const part : parts) end = after(end, *part);
+  scene.vertices.resize(end.vertices);
+  scene.normals.resize(end.normals);
+  scene.triangles.resize(end.triangles);
+  for (const Part* const part : parts) {
+    put(scene, *part, at);
+    at = after(at, *part);
+  }
+}
+
+}  // namespace kdray::scene

@@ -1,0 +1,55 @@
+// What    A geometry that a program adds to a scene: its arrays, checked and copied (kdray/model.h has what
+//         they are made of).
+// Shape   A part holds primitives of one kind, whose order is the program's. Indices are into the part's own
+//         vertices and normals; materials and numbers are given when scenes are made of parts (assemble()).
+// Errors  kdray::Error, ErrorCode::input: names the array and the element: "vertices[12]: not finite".
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/raw_vector.h"
+#include "kdray/model.h"
+#include "scene/scene.h"
+
+namespace kdray::scene {
+
+struct Part {
+  std::string name;
+  std::uint32_t mask = 0xffffffffu;
+  std::uint32_t material = 0;
+  bool enabled = true;
+  RawVector<dvec3> vertices;
+  RawVector<vec3> normals;
+  PageVector<Triangle> triangles;
+#define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct> names;
+  KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
+#undef KDRAY_SHAPE_ARRAY
+
+  std::uint32_t primitive_count() const {
+    return static_cast<std::uint32_t>(primitives::count_primitives(*this));
+  }
+};
+
+Part make_part(const Mesh& mesh);
+Part make_part(const Spheres& spheres);
+Part make_part(const Cones& cones);
+Part make_part(const Discs& discs);
+
+// New places for the vertices of a mesh, as many as it has; `normals` as in Mesh. Leaves `part` as it was when
+// it throws. ErrorCode::usage where the part is no mesh.
+void move_vertices(Part& part, const Points& vertices, const Points& normals);
+
+Material material_of(const kdray::Material& m);
+Light light_of(const kdray::Light& l);
+Camera camera_of(const kdray::Camera& c);
+vec3 color_of(const Color& c, const char* name);
+
+// Puts the enabled parts behind what `scene` has: each one's primitives are numbered in a row, part by part,
+// after those that are there. `materials` are those that the parts' numbers mean; where there is none, and a
+// part, the default one.
+void assemble(Scene& scene, std::span<const Part* const> parts, std::span<const Material> materials);
+
+}  // namespace kdray::scene

@@ -1,0 +1,132 @@
+// What    Views of a program's own arrays, by which it hands vertices, indices, rays and points to kdray and
+//         gets results back, without a copy of its own: float or double, 32 or 64 bits, whatever lies between
+//         two of them.
+// Shape   A view is a first element, a number of rows, the bytes from one row to the next (0: none between
+//         them) and which type the values are of. N values make a row.
+// Errors  None are found here: whoever takes a view checks its size and its values.
+// Threads A view refers to memory that the caller keeps, and leaves alone, as long as a call lasts.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <variant>
+
+namespace kdray {
+
+// N values of one of Types to a row. `Types` are const for what is read, plain for what is written.
+template <std::size_t N, class... Types>
+class Rows {
+ public:
+  using Any = std::common_type_t<std::remove_const_t<Types>...>;  // that holds each of them
+  static constexpr std::size_t kValues = N;
+
+  Rows() = default;
+
+  template <class T>
+  requires(std::is_same_v<T, Types> || ...) || (std::is_same_v<const T, Types> || ...)
+                                                   Rows(T* first, std::size_t n, std::size_t stride_bytes = 0)
+      : first_(as_held(first)),
+  n_(n), stride_(stride_bytes == 0 ? N * sizeof(T) : stride_bytes) {}
+
+  // n rows of N values, one after the other; or n values where N is 1.
+  template <class Range>
+  requires requires(const Range& r) { std::data(r), std::size(r); }
+  Rows(Range&& range) : Rows(of_range(std::data(range), std::size(range))) {}
+
+  std::size_t size() const { return n_; }
+  bool empty() const { return n_ == 0; }
+  std::size_t stride() const { return stride_; }
+
+  // The values of row i, as they are in memory.
+  std::array<Any, N> operator[](std::size_t i) const {
+    return std::visit(
+        [&](auto* first) {
+          std::array<Any, N> row;
+          for (std::size_t k = 0; k < N; ++k) row[k] = static_cast<Any>(value_at(first, i, k));
+          return row;
+        },
+        first_);
+  }
+
+  void set(std::size_t i, const std::array<Any, N>& row) const requires(!std::is_const_v<Types> && ...) {
+    std::visit(
+        [&](auto* first) {
+          using T = std::remove_pointer_t<decltype(first)>;
+          for (std::size_t k = 0; k < N; ++k) {
+            const T value = static_cast<T>(row[k]);
+            std::memcpy(at(first, i, k), &value, sizeof value);
+          }
+        },
+        first_);
+  }
+
+  // Where the rows of that very type begin; null where they are of another.
+  template <class T>
+  T* first_of() const {
+    T* const* const first = std::get_if<T*>(&first_);
+    return first ? *first : nullptr;
+  }
+
+  // The rows from `first` on, `n` of them.
+  Rows part(std::size_t first, std::size_t n) const {
+    Rows some = *this;
+    std::visit([&](auto* p) { some.first_ = at(p, first, 0); }, first_);
+    some.n_ = n;
+    return some;
+  }
+
+ private:
+  template <class T>
+  static auto as_held(T* first) {
+    if constexpr ((std::is_same_v<T, Types> || ...))
+      return first;
+    else
+      return static_cast<const T*>(first);
+  }
+  template <class T, std::size_t M>
+  static Rows of_range(std::array<T, M>* rows, std::size_t n) {
+    static_assert(M == N, "the rows have another number of values");
+    return n == 0 ? Rows() : Rows(rows->data(), n);
+  }
+  template <class T, std::size_t M>
+  static Rows of_range(const std::array<T, M>* rows, std::size_t n) {
+    static_assert(M == N, "the rows have another number of values");
+    return n == 0 ? Rows() : Rows(rows->data(), n);
+  }
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  static Rows of_range(T* values, std::size_t n) { return Rows(values, n / N); }
+
+  template <class T>
+  T* at(T* first, std::size_t i, std::size_t k) const {
+    using Byte = std::conditional_t<std::is_const_v<T>, const std::byte, std::byte>;
+    return reinterpret_cast<T*>(reinterpret_cast<Byte*>(first) + i * stride_) + k;
+  }
+  // By memcpy: a stride may leave values where their type is not aligned.
+  template <class T>
+  std::remove_const_t<T> value_at(T* first, std::size_t i, std::size_t k) const {
+    std::remove_const_t<T> value;
+    std::memcpy(&value, at(first, i, k), sizeof value);
+    return value;
+  }
+
+  std::variant<Types*...> first_;
+  std::size_t n_ = 0, stride_ = 0;
+};
+
+using Points = Rows<3, const float, const double>;
+using Values = Rows<1, const float, const double>;
+using Triples = Rows<3, const std::uint32_t, const std::int32_t, const std::uint64_t, const std::int64_t>;
+using Words = Rows<1, const std::uint32_t>;
+
+// What results are written to; empty: not wanted.
+using PointsOut = Rows<3, float, double>;
+using ValuesOut = Rows<1, float, double>;
+using WordsOut = Rows<1, std::uint32_t>;
+using BytesOut = Rows<1, std::uint8_t>;
+
+}  // namespace kdray

@@ -1,0 +1,83 @@
+// What    What a scene is made of when a program makes it: geometries, how they look, what lights them, who
+//         sees them.
+// Shape   Plain values and views (arrays.h); a Scene copies what it is given.
+// Units   The program's own units of length, in double; linear RGB; angles in degrees.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "kdray/arrays.h"
+
+namespace kdray {
+
+using Vec3 = std::array<double, 3>;
+using Color = std::array<float, 3>;
+
+// A geometry of a Scene: 0 is the first that was added, or all that was in the file. Never given twice.
+using GeometryId = std::uint32_t;
+inline constexpr GeometryId kNoGeometry = 0xffffffffu;
+inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
+
+using MaterialId = std::uint32_t;
+
+// Triangles, three indices into `vertices` each. `normals`: one for each vertex, of any length but 0, or none.
+struct Mesh {
+  Points vertices;
+  Triples triangles;
+  Points normals = {};
+};
+
+struct Spheres {
+  Points centers;
+  Values radii;  // above 0; one for each, or one for all
+};
+
+// Truncated cones and cylinders without caps, seen from both sides, from one end of the axis to the other.
+struct Cones {
+  Points bases, apexes;
+  Values base_radii, apex_radii;  // at least 0, not both 0; one for each, or one for all
+};
+
+// Flat, seen from both sides.
+struct Discs {
+  Points centers, normals;  // of any length but 0
+  Values radii;             // above 0; one for each, or one for all
+};
+
+struct GeometryOptions {
+  std::string name = {};
+  // A ray meets the geometry where its own mask and this one have a bit in common.
+  std::uint32_t mask = 0xffffffffu;
+  MaterialId material = 0;
+};
+
+// The Whitted terms of docs/scenes.md, each with its colour multiplied in. The default is a matt light grey.
+struct Material {
+  Color emission{0, 0, 0}, ambient{0.08f, 0.08f, 0.08f}, diffuse{0.8f, 0.8f, 0.8f}, specular{0, 0, 0};
+  Color reflect{0, 0, 0}, transmit{0, 0, 0};
+  float shine = 1;  // exponent of the highlight, at least 0
+  float index = 1;  // of refraction, above 0
+};
+
+struct Light {
+  enum class Kind { point, directional, spot };
+  Kind kind = Kind::point;
+  Vec3 position{0, 0, 0};    // point, spot
+  Vec3 direction{0, 0, -1};  // directional, spot: the way the light travels, of any length but 0
+  Color color{1, 1, 1};
+  Vec3 attenuation{1, 0, 0};  // 1 / (a[0] + a[1]*d + a[2]*d^2)
+  double range = std::numeric_limits<double>::infinity();
+  double inner_degrees = 0, outer_degrees = 45;  // spot: half angles, full light inside of the inner one
+};
+
+struct Camera {
+  Vec3 from{0, 0, 5}, at{0, 0, 0}, up{0, 1, 0};
+  double fov = 45;         // of the picture's full height
+  double ortho_width = 0;  // above 0: orthographic; the picture's width
+  double hither = 0;       // nothing is seen nearer than this
+};
+
+}  // namespace kdray

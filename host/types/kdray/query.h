@@ -1,0 +1,76 @@
+// What    What a program asks of a scene with rays and points, and where the answers go.
+// Shape   Views of the caller's arrays (arrays.h). Rays are float or double, every array by itself; an answer
+//         that isn't wanted is an empty view, and is not computed.
+// Units   The scene's; t counts in multiples of the direction as it was given.
+// Errors  kdray::Error: ErrorCode::input for sizes that don't match and, unless InvalidRays::miss says
+//         otherwise, for a ray that means nothing (NaN anywhere, an infinite origin, a direction that is
+//         infinite or 0), with its number; ErrorCode::cancelled.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "kdray/arrays.h"
+#include "kdray/model.h"
+#include "kdray/options.h"
+#include "kdray/ray.h"
+
+namespace kdray {
+
+// The rays origin + t*direction, t_min < t < t_max. What has one row is the same for all rays.
+struct Rays {
+  Points origins, directions;
+  Values t_min = {}, t_max = {};  // empty: 0 and infinity
+  Words masks = {};               // empty: every bit
+
+  // Rays as they lie in an array of the struct: traced where they are, on a device that can.
+  static Rays of(std::span<const Ray> rays) {
+    if (rays.empty()) return {};
+    constexpr std::size_t kStride = sizeof(Ray);
+    return {{rays.front().origin, rays.size(), kStride},
+            {rays.front().direction, rays.size(), kStride},
+            {&rays.front().t_min, rays.size(), kStride},
+            {&rays.front().t_max, rays.size(), kStride},
+            {}};
+  }
+};
+
+// Of each ray what it hits first; of several at one distance the one that comes first in the scene.
+struct HitsOut {
+  ValuesOut t = {};         // infinity: a miss
+  WordsOut geometry = {};   // kNoGeometry: a miss
+  WordsOut primitive = {};  // of the geometry, from 0; kNoPrimitive: a miss
+  // Triangles: weights of the second and third corner; cones: u from base to apex.
+  ValuesOut u = {}, v = {};
+  PointsOut normal =
+      {};                // of unit length, of the surface as it is (no vertex normals), to the mesh's outside
+  PointsOut point = {};  // origin + t*direction
+};
+
+// Tells a query or a picture to end, from any thread. What it had begun is lost, and the call throws
+// ErrorCode::cancelled within a launch (some milliseconds to a tenth of a second).
+class Cancel {
+ public:
+  void cancel() { asked_->store(true); }
+  bool is_cancelled() const { return asked_->load(std::memory_order_relaxed); }
+
+ private:
+  std::shared_ptr<std::atomic<bool>> asked_ = std::make_shared<std::atomic<bool>>(false);
+};
+
+enum class InvalidRays { error, miss };
+
+struct QueryOptions {
+  InvalidRays invalid = InvalidRays::error;
+  Traversal traversal = Traversal::automatic;
+  std::optional<Cancel> cancel = {};
+};
+
+struct QueryReport {
+  std::uint64_t invalid = 0;  // rays that mean nothing, counted as misses
+};
+
+}  // namespace kdray

@@ -1,0 +1,248 @@
+// Queries on a program's arrays: float and double, any stride; what they promise of doubles far from the
+// origin, of rays that mean nothing, of threads and of cancelling.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <thread>
+
+#include "kdray/kdray.h"
+#include "support/device.h"
+#include "support/errors.h"
+#include "support/meshes.h"
+
+namespace kdray {
+namespace {
+
+using test::Cube;
+using test::fails;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class Query : public test::EachDevice {
+ protected:
+  CommitOptions options() const {
+    CommitOptions options;
+    options.device.device = GetParam();
+    return options;
+  }
+  // A cube of that half side about a centre, in double.
+  Scene cube_at(const std::array<double, 3>& center, double half) const {
+    const Cube cube;
+    std::vector<double> vertices;
+    for (std::size_t i = 0; i < cube.vertices.size(); ++i)
+      vertices.push_back(center[i % 3] + half * static_cast<double>(cube.vertices[i]));
+    Scene scene;
+    scene.add_mesh({vertices, cube.triangles});
+    scene.commit(options());
+    return scene;
+  }
+};
+KDRAY_FOR_EACH_DEVICE(Query);
+
+std::vector<Ray> random_rays(std::size_t n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> anywhere(-1.75f, 1.75f);
+  std::vector<Ray> rays(n);
+  for (Ray& ray : rays) {
+    for (float& x : ray.origin) x = anywhere(random);
+    for (float& x : ray.direction) x = anywhere(random);
+    ray.t_min = 0;
+    ray.t_max = std::numeric_limits<float>::infinity();
+  }
+  return rays;
+}
+
+TEST_P(Query, HitsAreThoseOfTheRendererBitForBit) {
+  constexpr unsigned kSeed = 1;
+  const std::vector<Ray> rays = random_rays(300'000, kSeed);  // more than a chunk
+  Scene scene = Scene::load(std::string(KDRAY_SOURCE_DIR) + "/scenes/balls.nff");
+  scene.commit(options());
+  DeviceOptions device;
+  device.device = GetParam();
+  const std::vector<Hit> expected = Renderer(scene, {}, device).trace(rays);
+  std::vector<float> t(rays.size()), u(rays.size()), v(rays.size());
+  std::vector<std::uint32_t> primitive(rays.size());
+  scene.closest(Rays::of(rays), {.t = t, .primitive = primitive, .u = u, .v = v});
+  std::vector<std::uint8_t> any(rays.size());
+  scene.any(Rays::of(rays), any);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(t[i], expected[i].t) << "seed " << kSeed << ", ray " << i;
+    ASSERT_EQ(primitive[i], static_cast<std::uint32_t>(expected[i].primitive)) << i;
+    ASSERT_EQ(u[i], expected[i].u) << i;
+    ASSERT_EQ(v[i], expected[i].v) << i;
+    ASSERT_EQ(any[i], expected[i].primitive >= 0 ? 1 : 0) << i;
+  }
+}
+
+TEST_P(Query, EveryFormOfTheArraysGivesTheSame) {
+  constexpr unsigned kSeed = 2;
+  const std::vector<Ray> rays = random_rays(5000, kSeed);
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  std::vector<double> t(rays.size());
+  scene.closest(Rays::of(rays), {.t = t});
+
+  std::vector<float> origins, directions;
+  std::vector<double> d_origins, d_directions;
+  for (const Ray& ray : rays) {
+    origins.insert(origins.end(), ray.origin, ray.origin + 3);
+    directions.insert(directions.end(), ray.direction, ray.direction + 3);
+  }
+  d_origins.assign(origins.begin(), origins.end());
+  d_directions.assign(directions.begin(), directions.end());
+  std::vector<double> apart(rays.size());
+  scene.closest({origins, directions}, {.t = apart});
+  EXPECT_EQ(apart, t) << "seed " << kSeed;
+  std::vector<double> in_double(rays.size());
+  scene.closest({d_origins, d_directions}, {.t = in_double});
+  EXPECT_EQ(in_double, t) << "these doubles are floats, and near the scene";
+  // Answers in a struct of the caller's, at an odd place.
+#pragma pack(push, 1)
+  struct Mine {
+    char tag;
+    float t;
+    std::uint32_t primitive;
+  };
+#pragma pack(pop)
+  std::vector<Mine> mine(rays.size());
+  char* const first = reinterpret_cast<char*>(mine.data());
+  scene.closest({origins, directions},
+                {.t = {reinterpret_cast<float*>(first + 1), mine.size(), sizeof(Mine)},
+                 .primitive = {reinterpret_cast<std::uint32_t*>(first + 5), mine.size(), sizeof(Mine)}});
+  for (std::size_t i = 0; i < mine.size(); ++i) ASSERT_EQ(mine[i].t, static_cast<float>(t[i])) << i;
+}
+
+TEST_P(Query, SizesThatDontMatchAreToldByName) {
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  const std::vector<float> two = {0, 0, 5, 0, 0, 6}, three = {0, 0, -1, 0, 0, -1, 0, 0, -1};
+  std::vector<double> t(2);
+  EXPECT_TRUE(fails([&] { scene.closest({two, three}, {.t = t}); }, "2 of origins for 3 rays"));
+  std::vector<double> few(1);
+  EXPECT_TRUE(fails([&] { scene.closest({two, two}, {.t = few}); }, "t: there are 1 places for 2 rays"));
+  EXPECT_TRUE(fails([&] { scene.closest({two, {}}, {.t = t}); }, "origins without directions"));
+}
+
+TEST_P(Query, RaysThatMeanNothingAreRefusedOrCounted) {
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                  kInf = std::numeric_limits<float>::infinity();
+  std::vector<Ray> rays(6, Ray{{0, 0, 5}, 0, {0, 0, -1}, kInf});
+  rays[1].origin[0] = kNan;
+  rays[2].direction[2] = 0;
+  rays[3].direction[0] = kInf;
+  rays[4].t_max = kNan;
+  std::vector<double> t(rays.size());
+  EXPECT_TRUE(fails([&] { scene.closest(Rays::of(rays), {.t = t}); }, "ray 1: its origin is not finite"));
+  const QueryReport report = scene.closest(Rays::of(rays), {.t = t}, {.invalid = InvalidRays::miss});
+  EXPECT_EQ(report.invalid, 4u);
+  EXPECT_EQ(t, (std::vector<double>{4, kInfinity, kInfinity, kInfinity, kInfinity, 4}));
+}
+
+// "A box of 1 mm 10 km away has its entry and its exit": rays from there, whose ends are known.
+TEST_P(Query, DoublesSeeASmallBoxFarAway) {
+  constexpr double kHalf = 0.0005;
+  for (const std::array<double, 3>& center :
+       {std::array<double, 3>{0, 0, 0}, {500'000.125, 4'649'776.25, 312.5}, {-1e7, 3e6, 5e5}}) {
+    const Scene scene = cube_at(center, kHalf);
+    for (const double away : {0.01, 1.0, 1e4, 1e6}) {
+      const std::vector<double> origin = {center[0] + away, center[1] + 0.0001, center[2] - 0.0002};
+      const std::vector<double> towards = {-1, 0, 0}, back = {-3, 0, 0};
+      std::vector<double> entry(1), exit(1);
+      scene.closest({origin, towards}, {.t = entry});
+      // As exact as the file's own numbers: an ulp of the coordinates.
+      const double ulp = 4e-16 * (std::abs(center[0]) + away) + 1e-7 * kHalf;
+      EXPECT_NEAR(entry[0], away - kHalf, ulp) << away;
+      // An ulp of t is a tenth of a micrometre of the box at most, up to 10 km away.
+      if (away <= 1e4) {
+        scene.closest({origin, towards, entry}, {.t = exit});
+        EXPECT_NEAR(exit[0], away + kHalf, ulp) << away;
+      }
+      scene.closest({origin, back}, {.t = entry});
+      EXPECT_NEAR(entry[0], (away - kHalf) / 3, ulp) << away;
+    }
+  }
+}
+
+// Embree's promise of a sphere of radius 2 at (148376, 1234, -223423), without its tolerance: every ray that
+// aims at a point inside of it hits it.
+TEST_P(Query, NoRayMissesASphereFarFromTheOrigin) {
+  constexpr unsigned kSeed = 3;
+  const std::array<double, 3> center{148376, 1234, -223423};
+  Scene scene;
+  scene.add_spheres({std::vector<double>{center[0], center[1], center[2]}, std::vector<double>{2}});
+  scene.commit(options());
+  std::mt19937 random(kSeed);
+  std::normal_distribution<double> normal;
+  constexpr std::size_t kRays = 200'000;
+  std::vector<double> origins, directions;
+  for (std::size_t i = 0; i < kRays; ++i) {
+    std::array<double, 3> at{}, from{};
+    double length = 0, distance = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      at[k] = normal(random), from[k] = normal(random);
+      length += at[k] * at[k], distance += from[k] * from[k];
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double target = center[k] + 1.999999 * at[k] / std::sqrt(length);
+      const double origin = center[k] + 1000 * from[k] / std::sqrt(distance);
+      origins.push_back(origin);
+      directions.push_back(target - origin);
+    }
+  }
+  std::vector<std::uint8_t> hit(kRays);
+  scene.any({origins, directions}, hit);
+  EXPECT_EQ(std::count(hit.begin(), hit.end(), 0), 0) << "seed " << kSeed;
+}
+
+TEST_P(Query, ThreadsAskWhileTheSceneIsCommittedAnew) {
+  const Cube cube;
+  Scene scene;
+  const GeometryId box = scene.add_mesh({cube.at(0, 0, 0), cube.triangles});
+  scene.commit(options());
+  std::atomic<bool> done{false};
+  std::atomic<int> wrong{0}, asked{0};
+  const auto ask = [&] {
+    const std::vector<float> from = {0.25f, 0.25f, 50}, down = {0, 0, -1};
+    std::vector<double> t(1);
+    while (!done) {
+      scene.closest({from, down}, {.t = t});
+      // The cube is at one of the ten heights.
+      const double height = 49 - t[0];
+      if (height != std::round(height) || height < 0 || height > 9) ++wrong;
+      ++asked;
+    }
+  };
+  std::thread first(ask), second(ask);
+  for (int i = 0; i < 20; ++i) {
+    scene.update_vertices(box, cube.at(0, 0, static_cast<float>(i % 10)));
+    scene.commit(options());
+  }
+  done = true;
+  first.join();
+  second.join();
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(asked, 0);
+}
+
+TEST_P(Query, CanBeCancelledFromAnotherThread) {
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  const std::vector<Ray> rays = random_rays(1 << 20, 4);
+  Cancel cancel;
+  cancel.cancel();
+  std::vector<double> t(rays.size());
+  EXPECT_TRUE(fails([&] { scene.closest(Rays::of(rays), {.t = t}, {.cancel = cancel}); }, "cancelled",
+                    ErrorCode::cancelled));
+  Cancel later;
+  std::thread other([&] { later.cancel(); });
+  try {
+    for (int i = 0; i < 10'000; ++i) scene.closest(Rays::of(rays), {.t = t}, {.cancel = later});
+    ADD_FAILURE() << "was not cancelled";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::cancelled);
+  }
+  other.join();
+}
+
+}  // namespace
+}  // namespace kdray
