@@ -15,6 +15,8 @@ struct Builds {
   // Is told true when a compiler begins its work and false when it ends. Calls come from any thread and may
   // nest.
   std::function<void(bool)> watch = {};
+  // Programs stay in memory until the process ends: who builds the same again is given the same.
+  bool remember = false;
 };
 
 // Tells `watch` of a compiler's work as long as it lives.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -95,6 +96,7 @@ Context::Context(const std::string& device_spec, int n_queues, int compute_units
 Context Context::without_cache() const {
   Context copy = *this;
   copy.builds_.cache = nullptr;
+  copy.builds_.remember = false;
   return copy;
 }
 
@@ -109,8 +111,38 @@ bool Context::rounds_division_correctly() const {
   });
 }
 
+namespace {
+
+// By all that a program is made of. Like what is opened, they are never destroyed.
+class RememberedPrograms {
+ public:
+  template <class Build>
+  static cl::Program find_or(const std::tuple<const Opened*, std::string, std::string, std::string>& key,
+                             const Build& build) {
+    static auto* all = new RememberedPrograms;
+    {
+      const std::lock_guard lock(all->mutex_);
+      if (const auto place = all->programs_.find(key); place != all->programs_.end()) return place->second;
+    }
+    const cl::Program program = build();  // side by side with others
+    const std::lock_guard lock(all->mutex_);
+    return all->programs_.emplace(key, program).first->second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::tuple<const Opened*, std::string, std::string, std::string>, cl::Program> programs_;
+};
+
+}  // namespace
+
 cl::Program Context::build(const std::string& file, const std::string& options) const {
-  return build_program(opened_->context, opened_->devices, file, options, builds_);
+  const auto build = [&] {
+    return build_program(opened_->context, opened_->devices, file, options, builds_);
+  };
+  if (!builds_.remember) return build();
+  const char* const folder = std::getenv("KDRAY_KERNEL_DIR");
+  return RememberedPrograms::find_or({opened_, folder ? folder : "", file, options}, build);
 }
 
 cl::Program Context::build_text(const std::string& name, const std::string& text,

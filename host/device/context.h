@@ -69,7 +69,8 @@ class Context {
   // Uploads a copy of the data, also where the device could use it in place.
   cl::Buffer upload_copy(const void* data, std::size_t bytes, const std::string& what) const;
 
-  // Whether the device takes the host's memory as it is: what a kernel has written is there when it has ended.
+  // Whether the device takes the host's memory as it is: what a kernel has written is there when it has
+  // ended.
   bool works_in_host_memory() const;
 
  private:

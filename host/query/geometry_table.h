@@ -1,5 +1,5 @@
-// What    Which geometry a primitive belongs to: numbers in file order -> a geometry's id, and the primitive's
-//         place in it.
+// What    Which geometry a primitive belongs to: numbers in file order -> a geometry's id, and the
+//         primitive's place in it.
 // Shape   Geometries have their numbers in a row, in the order of the table.
 #pragma once
 

@@ -4,9 +4,9 @@
 // Errors  A ray that means nothing becomes one that meets nothing, and is counted; the first one's number is
 //         kept.
 //         In double a ray begins where it enters the scene's bounds, so that it is as exact there as one that
-//         starts beside them: origin + ahead * direction is rounded once, to float, whatever `ahead` is, and t
-//         comes back as ahead + t in double. A ray of floats is begun elsewhere only from over 2^60 times the
-//         scene's size away. All else that happens to a ray here is exact.
+//         starts beside them: origin + ahead * direction is rounded once, to float, whatever `ahead` is,
+//         and t comes back as ahead + t in double. A ray of floats is begun elsewhere only from over 2^60
+//         times the scene's size away. All else that happens to a ray here is exact.
 #pragma once
 
 #include <cstdint>

@@ -38,8 +38,8 @@ Part make_part(const Spheres& spheres);
 Part make_part(const Cones& cones);
 Part make_part(const Discs& discs);
 
-// New places for the vertices of a mesh, as many as it has; `normals` as in Mesh. Leaves `part` as it was when
-// it throws. ErrorCode::usage where the part is no mesh.
+// New places for the vertices of a mesh, as many as it has; `normals` as in Mesh. Leaves `part` as it was
+// when it throws. ErrorCode::usage where the part is no mesh.
 void move_vertices(Part& part, const Points& vertices, const Points& normals);
 
 Material material_of(const kdray::Material& m);

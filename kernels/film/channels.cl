@@ -24,7 +24,7 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   const u32 first = (u32)get_global_id(0) * KDRAY_LANES;
   if (first >= n_pixels) return;
   const u32 n = min(n_pixels - first, KDRAY_LANES);
-  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   const uint16 pixel = first_pixel + first + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   const Real2x16 middle = {(real16)(0.5f), (real16)(0.5f)};
   const EyeRays rays = eye_rays(frame, pixel % frame->width, pixel / frame->width, middle);

@@ -112,7 +112,7 @@ inline void begin_account(__global Traffic* traffic) {
 __kernel void travel_wave(KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARGUMENTS)) {
   const u32 slice_id = (u32)get_global_id(0);
   if (slice_id >= travel->n_slices) return;
-  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   const Travels t = {&scene,
                      {in_cells, travel->n_cells, frame->world_max},
                      {travel, slice_id, out_sent_rays, out_sent_shadow_rays, out_sent_counts},

@@ -33,15 +33,9 @@ inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 
 
 __kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
-#if KDRAY_HAS_MASKS
-  SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
-  scene.masks = in_primitive_masks;
-  RaySource source = ray_source(&scene, in_rays, out_hits, space, any_hit, any_length, as_refs);
-  source.masks = in_ray_masks;
-#else
-  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
-  const RaySource source = ray_source(&scene, in_rays, out_hits, space, any_hit, any_length, as_refs);
-#endif
+  const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(in_primitive_masks);
+  const RaySource source =
+      ray_source(&scene, in_rays, in_ray_masks, out_hits, space, any_hit, any_length, as_refs);
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
   if (item < n_rays)
     query_binary(&scene, &source, item, convert_real3(root_lo.xyz), convert_real3(root_hi.xyz), world_max);

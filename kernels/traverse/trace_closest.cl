@@ -9,7 +9,7 @@ __kernel void trace_closest(KDRAY_PARAMETERS(KDRAY_TRACE_CLOSEST_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
   const u32 slice = item / frame->batch_size, i = item % frame->batch_size;
   if (slice >= n_slices || i >= in_slices[slice].n_batch) return;
-  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   const RaySource source = batch_rays(frame, slice, in_batch, out_hits);
   trace_one(&scene, frame, &source, i);
 }

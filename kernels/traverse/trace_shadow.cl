@@ -10,7 +10,7 @@ __kernel void trace_shadow(KDRAY_PARAMETERS(KDRAY_TRACE_SHADOW_ARGUMENTS)) {
   const u32 per_slice = frame->batch_size * frame->light_batch;
   const u32 slice = item / per_slice, i = item % per_slice;
   if (slice >= n_slices || i >= in_slices[slice].n_shadow) return;
-  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   const RaySource source = shadow_rays(frame, slice, in_shadow_rays, out_occluded);
   trace_one(&scene, frame, &source, i);
 }

@@ -18,7 +18,7 @@ __kernel void wave(KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)) {
   const u32 slice_id = (u32)get_global_id(0);
   if (slice_id >= n_slices) return;
   __global Slice* slice = io_slices + slice_id;
-  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const TileList list = {in_tiles, n_tiles};
   for (u32 k = 0; k < n_waves; ++k) {

@@ -1,7 +1,8 @@
-// What    A scene: read from a file, or made of a program's own arrays; and, once it is committed, what can be
-//         asked of it: closest hits, occlusion.
-// Shape   A Scene is what the program says of it; commit() makes of it what queries are put to. Until the next
-//         commit() queries go on over what was committed, whatever is added, moved or removed meanwhile.
+// What    A scene: read from a file, or made of a program's own arrays; and, once it is committed, what can
+//         be asked of it: closest hits, occlusion.
+// Shape   A Scene is what the program says of it; commit() makes of it what queries are put to. Until the
+//         next commit() queries go on over what was committed, whatever is added, moved or removed
+//         meanwhile.
 // Errors  Everything throws kdray::Error. An array that is wrong is ErrorCode::input, and the message names
 //         the array and the element; nothing of the scene has changed then.
 // Threads One thread at a time adds, changes and commits. Any number may ask, also while it commits: they are
@@ -32,7 +33,7 @@ class PreparedScene;
 
 struct CommitOptions {
   TreeOptions tree = {.binary_form = false};
-  DeviceOptions device = {};  // the first device answers queries
+  DeviceOptions device = {.remember_programs = true};  // the first device answers queries
 };
 
 struct GeometryInfo {

@@ -23,7 +23,8 @@ inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
 using MaterialId = std::uint32_t;
 
-// Triangles, three indices into `vertices` each. `normals`: one for each vertex, of any length but 0, or none.
+// Triangles, three indices into `vertices` each. `normals`: one for each vertex, of any length but 0, or
+// none.
 struct Mesh {
   Points vertices;
   Triples triangles;

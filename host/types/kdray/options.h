@@ -66,6 +66,8 @@ struct DeviceOptions {
   int compute_units = 0;  // that many of the device's, as a sub-device; 0: all of them
   Schedule schedule = Schedule::automatic;
   std::filesystem::path programs = {};  // folder where built programs are looked for and kept; empty: none
+  // What is built stays in memory for others of this process: for programs that commit many scenes.
+  bool remember_programs = false;
   // File of what `kdray tune` found; empty, or none there: what kdray ships with.
   std::filesystem::path tunings = {};
   // Told why, in a line, where that file is of no use.
