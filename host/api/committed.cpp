@@ -7,7 +7,14 @@ Committed::Committed(const PreparedScene& scene, query::GeometryTable table, con
       table_(std::move(table)),
       frame_(scene_.prepared().geometry),
       devices_(device, {}, scene_.prepared()),
-      sessions_(target(), table_.masks()) {}
+      sessions_(target(), table_.masks()),
+      device_options_(device) {}
+
+Picture Committed::render(const RenderOptions& options) {
+  const std::lock_guard lock(rendering_);
+  if (!renderer_) renderer_.emplace(scene_, device_options_);
+  return renderer_->render(options);
+}
 
 query::Target Committed::target() {
   Device& first = devices_.first();

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <optional>
 
 #include "api/device.h"
 #include "kdray/kdray.h"
@@ -17,6 +19,7 @@ class Committed {
   Committed& operator=(const Committed&) = delete;
 
   const PreparedScene& scene() const { return scene_; }
+  Picture render(const RenderOptions& options);
   query::Asked asked() { return {scene_.prepared(), table_, frame_, sessions_}; }
 
  private:
@@ -27,6 +30,9 @@ class Committed {
   query::LocalFrame frame_;
   DeviceSet devices_;
   query::Sessions sessions_;
+  DeviceOptions device_options_;
+  std::mutex rendering_;
+  std::optional<Renderer> renderer_;  // once a picture was asked for
 };
 
 }  // namespace kdray::api

@@ -5,6 +5,7 @@
 #include "flatten/features.h"
 #include "flatten/frame.h"
 #include "layout/features.h"
+#include "scene/part.h"
 
 namespace kdray::api {
 
@@ -22,14 +23,35 @@ void use_core(State& state, Job& job) {
 
 }  // namespace
 
+namespace {
+
+// Between launches the calling thread looks whether the picture is still wanted.
+std::function<void(double)> progress_of(const RenderOptions& o) {
+  if (!o.cancel) return o.progress;
+  return [progress = o.progress, cancel = *o.cancel](double share) {
+    if (cancel.is_cancelled()) throw Error(ErrorCode::cancelled, "the picture was cancelled");
+    if (progress) progress(share);
+  };
+}
+
+layout::Frame frame_of(const prepare::Prepared& scene, const RenderOptions& o) {
+  if (!o.camera) return flatten::make_frame(scene.settings, scene.geometry, o);
+  scene::Scene seen = scene.settings;
+  seen.camera = scene::camera_of(*o.camera);
+  return flatten::make_frame(seen, scene.geometry, o);
+}
+
+}  // namespace
+
 Job make_job(State& state, const RenderOptions& options, timeline::Timeline* timeline) {
   const prepare::Prepared& scene = state.scene;
-  const RenderOptions o = flatten::resolved(options, scene.settings.settings);
+  RenderOptions o = flatten::resolved(options, scene.settings.settings);
+  o.progress = progress_of(o);
   check_division(o);
   check_form(takes_binary_form(o.traversal, o.precision, o.channels), scene);
   const layout::Features features =
       scene.features | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | state.keep;
-  Job job{o, flatten::make_frame(scene.settings, scene.geometry, o), features, timeline};
+  Job job{o, frame_of(scene, o), features, timeline};
   use_core(state, job);
   return job;
 }

@@ -231,6 +231,9 @@ PreparedScene Scene::prepared() const {
   return impl_->asked()->scene();
 }
 
+Picture Scene::render(const RenderOptions& options) const {
+  return impl_->asked()->render(options);
+}
 QueryReport Scene::closest(const Rays& rays, const HitsOut& out, const QueryOptions& options) const {
   const auto committed = impl_->asked();
   return query::closest(committed->asked(), rays, out, options);

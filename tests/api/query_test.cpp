@@ -244,5 +244,36 @@ TEST_P(Query, CanBeCancelledFromAnotherThread) {
   other.join();
 }
 
+TEST_P(Query, PicturesAreTakenOfWhatWasCommittedByAnyCamera) {
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  RenderOptions picture;
+  picture.width = picture.height = 32;
+  const Picture framed = scene.render(picture);
+  picture.camera = Camera{.from = {0, 0, 9}, .at = {0, 0, 20}};
+  const Picture away = scene.render(picture);
+  EXPECT_NE(framed.rgb, away.rgb);
+  EXPECT_EQ(away.rgb, std::vector<float>(3 * 32 * 32, 0.0f)) << "it looks away";
+  picture.camera = Camera{.from = {0, 0, 9}, .at = {0, 0, 9}};
+  EXPECT_TRUE(fails([&] { scene.render(picture); }, "camera"));
+}
+
+TEST_P(Query, APictureCanBeCancelled) {
+  Scene scene = Scene::load(std::string(KDRAY_SOURCE_DIR) + "/scenes/balls.nff");
+  scene.commit(options());
+  for (const Mode mode : {Mode::pdprt, Mode::odprt}) {
+    RenderOptions picture;
+    picture.width = picture.height = 2048;
+    picture.samples = 64;
+    picture.mode = mode;
+    picture.cancel = Cancel();
+    std::thread other([cancel = *picture.cancel]() mutable { cancel.cancel(); });
+    EXPECT_TRUE(fails([&] { scene.render(picture); }, "cancelled", ErrorCode::cancelled));
+    other.join();
+  }
+  RenderOptions small;
+  small.width = small.height = 16;
+  EXPECT_EQ(scene.render(small).width, 16) << "the next one is rendered as ever";
+}
+
 }  // namespace
 }  // namespace kdray

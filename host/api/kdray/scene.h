@@ -30,6 +30,7 @@ namespace prepare {
 struct Prepared;
 }
 class PreparedScene;
+struct Picture;
 
 struct CommitOptions {
   TreeOptions tree = {.binary_form = false};
@@ -96,6 +97,10 @@ class Scene {
   void commit(const CommitOptions& options = {});
   // What was committed, for a Renderer. ErrorCode::usage before the first commit().
   PreparedScene prepared() const;
+
+  // A picture of what was committed; one at a time, others wait. Channels, double precision and the binary
+  // walk ask for CommitOptions::tree.binary_form.
+  Picture render(const RenderOptions& options = {}) const;
 
   // What each ray hits first.
   QueryReport closest(const Rays& rays, const HitsOut& out, const QueryOptions& options = {}) const;

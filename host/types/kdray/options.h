@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "kdray/cancel.h"
+#include "kdray/model.h"
+
 namespace kdray {
 
 // How much time goes into the tree (docs/design/kdtree.md). A choice changes times and memory, never a hit.
@@ -131,6 +134,8 @@ struct RenderOptions {
   bool timeline = false;                      // keep what Renderer::timeline() tells
   std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost", "samples"
   std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1
+  std::optional<Camera> camera = {};          // in place of the scene's
+  std::optional<Cancel> cancel = {};
 };
 
 }  // namespace kdray

@@ -7,15 +7,13 @@
 //         infinite or 0), with its number; ErrorCode::cancelled.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
 
 #include "kdray/arrays.h"
+#include "kdray/cancel.h"
 #include "kdray/model.h"
-#include "kdray/options.h"
 #include "kdray/ray.h"
 
 namespace kdray {
@@ -50,22 +48,10 @@ struct HitsOut {
   PointsOut point = {};  // origin + t*direction
 };
 
-// Tells a query or a picture to end, from any thread. What it had begun is lost, and the call throws
-// ErrorCode::cancelled within a launch (some milliseconds to a tenth of a second).
-class Cancel {
- public:
-  void cancel() { asked_->store(true); }
-  bool is_cancelled() const { return asked_->load(std::memory_order_relaxed); }
-
- private:
-  std::shared_ptr<std::atomic<bool>> asked_ = std::make_shared<std::atomic<bool>>(false);
-};
-
 enum class InvalidRays { error, miss };
 
 struct QueryOptions {
   InvalidRays invalid = InvalidRays::error;
-  Traversal traversal = Traversal::automatic;
   std::optional<Cancel> cancel = {};
 };
 
