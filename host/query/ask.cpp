@@ -67,33 +67,44 @@ class HitWriter {
 
   bool wants_refs() const { return !out_.normal.empty(); }
 
-  void write(std::size_t ray, const layout::QueryHit& hit, double t) const {
-    const bool missed = hit.primitive == -1;
-    GeometryTable::Place place{kNoGeometry, kNoPrimitive};
-    if (!missed) place = asked_->table.of(number_of(hit));
-    if (!out_.t.empty()) out_.t.set(ray, {missed ? kInfinity : t});
-    if (!out_.geometry.empty()) out_.geometry.set(ray, {place.geometry});
-    if (!out_.primitive.empty()) out_.primitive.set(ray, {place.primitive});
-    if (!out_.u.empty()) out_.u.set(ray, {hit.u});
-    if (!out_.v.empty()) out_.v.set(ray, {hit.v});
-    if (!out_.normal.empty() || !out_.point.empty()) write_surface(ray, hit, t, missed);
+  // Column by column: of rays first + begin to first + end, of which hits[begin] is the first's.
+  void write(std::size_t first, std::size_t begin, std::size_t end, std::span<const layout::QueryHit> hits,
+             const LocalRays& local) const {
+    const auto fill = [&](const auto& column, const auto& value_of) {
+      if (column.empty()) return;
+      column.fill(first + begin, end - begin,
+                  [&](std::size_t ray) { return value_of(ray, hits[ray - first]); });
+    };
+    const auto t_of = [&](std::size_t ray, const layout::QueryHit& hit) {
+      return missed(hit) ? kInfinity : local.world_t(ray - first, hit.t);
+    };
+    fill(out_.t, [&](std::size_t ray, const auto& hit) { return std::array{t_of(ray, hit)}; });
+    fill(out_.geometry, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).geometry}; });
+    fill(out_.primitive, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).primitive}; });
+    fill(out_.u, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
+    fill(out_.v, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
+    fill(out_.normal, [&](std::size_t ray, const auto& hit) { return normal_of(ray, hit, t_of(ray, hit)); });
+    fill(out_.point, [&](std::size_t ray, const auto& hit) { return array(point_of(ray, t_of(ray, hit))); });
   }
 
  private:
-  std::uint32_t number_of(const layout::QueryHit& hit) const {
+  static bool missed(const layout::QueryHit& hit) { return hit.primitive == -1; }
+  static std::array<double, 3> array(const dvec3& v) { return {v.x, v.y, v.z}; }
+
+  GeometryTable::Place place_of(const layout::QueryHit& hit) const {
+    if (missed(hit)) return {kNoGeometry, kNoPrimitive};
     const auto word = static_cast<std::uint32_t>(hit.primitive);
-    return wants_refs() ? query::number_of(asked_->scene.flat, word) : word;
+    return asked_->table.of(wants_refs() ? number_of(asked_->scene.flat, word) : word);
   }
 
-  void write_surface(std::size_t ray, const layout::QueryHit& hit, double t, bool missed) const {
-    const dvec3 world = missed ? dvec3(kInfinity) : rays_->origin(ray) + t * rays_->direction(ray);
-    if (!out_.point.empty()) out_.point.set(ray, {world.x, world.y, world.z});
-    if (out_.normal.empty()) return;
-    dvec3 normal(0);
-    if (!missed)
-      normal = normal_at(asked_->scene.flat, static_cast<std::uint32_t>(hit.primitive),
-                         asked_->frame.space().local(world));
-    out_.normal.set(ray, {normal.x, normal.y, normal.z});
+  dvec3 point_of(std::size_t ray, double t) const {
+    return std::isinf(t) ? dvec3(kInfinity) : rays_->origin(ray) + t * rays_->direction(ray);
+  }
+
+  std::array<double, 3> normal_of(std::size_t ray, const layout::QueryHit& hit, double t) const {
+    if (missed(hit)) return {0, 0, 0};
+    return array(normal_at(asked_->scene.flat, static_cast<std::uint32_t>(hit.primitive),
+                           asked_->frame.space().local(point_of(ray, t))));
   }
 
   const Asked* asked_;
@@ -109,8 +120,7 @@ QueryReport closest(const Asked& asked, const Rays& rays, const HitsOut& out, co
   return trace_chunks(asked, arrays, false, writer.wants_refs(), options,
                       [&](std::size_t first, std::span<const layout::QueryHit> hits, const LocalRays& local) {
                         for_each_grain(hits.size(), [&](std::size_t begin, std::size_t end) {
-                          for (std::size_t i = begin; i < end; ++i)
-                            writer.write(first + i, hits[i], local.world_t(i, hits[i].t));
+                          writer.write(first, begin, end, hits, local);
                         });
                       });
 }
@@ -120,9 +130,11 @@ QueryReport any(const Asked& asked, const Rays& rays, const BytesOut& out, const
   check_out(out.size(), arrays.size(), "hit");
   return trace_chunks(asked, arrays, true, false, options,
                       [&](std::size_t first, std::span<const layout::QueryHit> hits, const LocalRays&) {
+                        if (out.empty()) return;
                         for_each_grain(hits.size(), [&](std::size_t begin, std::size_t end) {
-                          for (std::size_t i = begin; i < end; ++i)
-                            if (!out.empty()) out.set(first + i, {static_cast<std::uint8_t>(hits[i].t == 0)});
+                          out.fill(first + begin, end - begin, [&](std::size_t ray) {
+                            return std::array{static_cast<std::uint8_t>(hits[ray - first].t == 0)};
+                          });
                         });
                       });
 }

@@ -52,13 +52,19 @@ class Rows {
         first_);
   }
 
-  void set(std::size_t i, const std::array<Any, N>& row) const requires(!std::is_const_v<Types> && ...) {
+  // Writes row_of(i), an array of N values, for rows first to first + n.
+  template <class RowOf>
+  void fill(std::size_t first, std::size_t n, const RowOf& row_of) const
+      requires(!std::is_const_v<Types> && ...) {
     std::visit(
-        [&](auto* first) {
-          using T = std::remove_pointer_t<decltype(first)>;
-          for (std::size_t k = 0; k < N; ++k) {
-            const T value = static_cast<T>(row[k]);
-            std::memcpy(at(first, i, k), &value, sizeof value);
+        [&](auto* begin) {
+          using T = std::remove_pointer_t<decltype(begin)>;
+          for (std::size_t i = first; i < first + n; ++i) {
+            const auto row = row_of(i);
+            for (std::size_t k = 0; k < N; ++k) {
+              const T value = static_cast<T>(row[k]);
+              std::memcpy(at(begin, i, k), &value, sizeof value);
+            }
           }
         },
         first_);
