@@ -33,7 +33,7 @@ const char* const kSource =
     "  Found f = {0, 0, 0, 0};\n"
     "  f.hit = intersect_triangle(make_shear(load3(in[i].direction)), load3(in[i].origin), "
     "load3(in[i].direction), &in[i].v[0][0], "
-    "&f.t,\n"
+    "false, &f.t,\n"
     "                             &f.u, &f.v);\n"
     "  out[i] = f;\n"
     "}\n";
