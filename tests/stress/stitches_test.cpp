@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "stress/leaks.h"
 #include "stress/spawn.h"
@@ -130,7 +132,7 @@ TEST_P(Stitches, CloseThemInDoubleToo) {
 }
 
 // The tests above would see it.
-TEST(StitchesLeftOut, LetRaysOut) {
+TEST(WithoutStitches, RaysLeak) {
   if (devices().empty()) GTEST_SKIP() << "no OpenCL device";
   std::uint64_t leaks = 0;
   for (test::LatticeMesh m : test::stitched_meshes()) {
@@ -143,6 +145,122 @@ TEST(StitchesLeftOut, LetRaysOut) {
     leaks += n_leaks(mesh, make, 20000, Precision::float32);
   }
   EXPECT_GT(leaks, 100u);
+}
+
+// ---- Rays that leave stitches
+
+dvec3 point3(const float (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+// A mesh in the kernels' own space, the rays that hit its stitches, and those that leave them.
+class Left {
+ public:
+  explicit Left(const test::LatticeMesh& m)
+      : scene_(in_local_space(test::scene_of(m))),
+        geometry_(scene::make_geometry(scene_)),
+        mesh_(scene::Scene(scene_)),
+        prepared_(Scene{scene::Scene(scene_)}),
+        spawner_(prepared_.prepared()) {
+    for (const scene::Stitch& s : geometry_.stitches) normals_[s.triangle] = s.normal;
+  }
+
+  Renderer& renderer() { return mesh_.renderer(); }
+
+  // n rays at edges; of their hits those on stitches.
+  void hit(std::size_t n) {
+    const RaysInside make(mesh_, kFamilies[1], kSeed + 2);
+    const std::vector<Ray> rays = make_rays(0, n, make);
+    const std::vector<Hit> hits = mesh_.renderer().trace(rays);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (is_leak(hits[i])) continue;
+      const auto triangle = static_cast<std::uint32_t>(hits[i].primitive);  // none was dropped
+      if (!normals_.contains(triangle)) continue;
+      const Ray& r = rays[i];
+      const dvec3 d = glm::normalize(point3(r.direction)),
+                  light = point3(r.origin) + 0.1 * dvec3(d.y, -d.z, d.x);
+      hits_.push_back(
+          {{r.origin[0], r.origin[1], r.origin[2]},
+           {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)},
+           hits[i].t,
+           KDRAY_KIND_TRIANGLE << KDRAY_REF_KIND_SHIFT | triangle,
+           hits[i].u,
+           hits[i].v,
+           {static_cast<float>(light.x), static_cast<float>(light.y), static_cast<float>(light.z)},
+           1.3f});
+    }
+    if (!hits_.empty()) spawned_ = spawner_.spawn(hits_);
+  }
+  std::size_t n_hits() const { return hits_.size(); }
+
+  // Each has the normal of a neighbour, turned against the ray.
+  void expect_neighbours_normals() const {
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      const dvec3 n = point3(spawned_[i].normal), expected(normals_.at(hits_[i].ref & KDRAY_REF_INDEX_MASK));
+      ASSERT_LE(std::min(glm::length(n - expected), glm::length(n + expected)), 1e-6) << "hit " << i;
+      ASSERT_LE(glm::dot(n, point3(hits_[i].direction)), 0) << "hit " << i;
+      ASSERT_TRUE(is_finite(point3(spawned_[i].above)) && is_finite(point3(spawned_[i].below)))
+          << "hit " << i;
+    }
+  }
+
+  // What leaves the hits: reflected, refracted and towards a light.
+  void leave() {
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      const Spawned& s = spawned_[i];
+      put(i, s.above, s.reflected);
+      if (s.flags & kRefracts) put(i, s.below, s.refracted);
+      if (s.flags & kLit) put(i, s.above, s.to_light);
+    }
+  }
+  const std::vector<Ray>& rays() const { return rays_; }
+  bool is_self_hit(std::size_t i, const Hit& hit) const {
+    return hit.primitive >= 0 && static_cast<std::uint32_t>(hit.primitive) == from_[i];
+  }
+
+ private:
+  static scene::Scene in_local_space(scene::Scene scene) {
+    const LocalSpace space = scene::make_geometry(scene).space;
+    return placed(std::move(scene), space.scale, -space.center * space.scale);
+  }
+
+  void put(std::size_t i, const float (&o)[3], const float (&d)[3]) {
+    rays_.push_back({{o[0], o[1], o[2]}, 0, {d[0], d[1], d[2]}, std::numeric_limits<float>::infinity()});
+    from_.push_back(hits_[i].ref & KDRAY_REF_INDEX_MASK);
+  }
+
+  scene::Scene scene_;
+  scene::Geometry geometry_;
+  ClosedMesh mesh_;
+  PreparedScene prepared_;
+  Spawner spawner_;
+  std::map<std::uint32_t, vec3> normals_;  // by triangle
+  std::vector<ToSpawn> hits_;
+  std::vector<Spawned> spawned_;
+  std::vector<Ray> rays_;
+  std::vector<std::uint32_t> from_;
+};
+
+// By the code that shades, and without telling the walks what a ray has left.
+TEST(StitchesLeft, AreNotHitAgainAndShadedAsTheirNeighbours) {
+  if (devices().empty()) GTEST_SKIP() << "no OpenCL device";
+  Tally tally("re-hits", "stitches");
+  std::size_t n_hits = 0;
+  for (const test::LatticeMesh& m : test::stitched_meshes()) {
+    SCOPED_TRACE(m.name);
+    Left left(m);
+    left.hit(rays_to_trace(0.05));
+    n_hits += left.n_hits();
+    ASSERT_NO_FATAL_FAILURE(left.expect_neighbours_normals());
+    left.leave();
+    trace_all(
+        left.renderer(), 0, left.rays().size(), [&](std::uint64_t i) { return left.rays()[i]; },
+        [&](std::uint64_t i, const Ray&, const Hit& hit) { return left.is_self_hit(i, hit); }, tally);
+  }
+  EXPECT_GT(n_hits, 10000u);
+  tally.publish();
+  EXPECT_EQ(tally.wrong(), 0u) << tally.first_wrong;
+  EXPECT_EQ(tally.differing, 0u) << tally.first_differing;
 }
 
 INSTANTIATE_TEST_SUITE_P(Family, Stitches, testing::ValuesIn(kFamilies),
