@@ -13,6 +13,7 @@ namespace {
 Statistics::Scene scene_told(const prepare::Prepared& scene) {
   Statistics::Scene told{.primitives = scene.counts.primitives,
                          .kinds = {},
+                         .stitches = scene.counts.stitches,
                          .lights = scene.settings.lights.size(),
                          .materials = scene.settings.materials.size(),
                          .dropped_degenerate = scene.geometry.dropped_degenerate};

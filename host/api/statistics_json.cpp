@@ -38,6 +38,7 @@ Json seconds_json(const Statistics::Seconds& s) {
 
 Json scene_json(const Statistics::Scene& s) {
   Json scene = {{"primitives", s.primitives},
+                {"stitches", s.stitches},
                 {"lights", s.lights},
                 {"materials", s.materials},
                 {"dropped_degenerate", s.dropped_degenerate}};

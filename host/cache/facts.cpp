@@ -130,12 +130,14 @@ void get(const Json& from, kdtree::Statistics& s) {
 Json of(const prepare::Counts& c) {
   Json counts = {c.primitives};
   primitives::for_each_kind([&](auto kind) { counts.push_back(decltype(kind)::of(c)); });
+  counts.push_back(c.stitches);
   return counts;
 }
 
 void get(const Json& from, prepare::Counts& c) {
   from.at(0).get_to(c.primitives);
   primitives::for_each_kind([&](auto kind) { from.at(1 + kind.kNumber).get_to(decltype(kind)::of(c)); });
+  from.at(1 + primitives::kKinds).get_to(c.stitches);
 }
 
 }  // namespace

@@ -34,10 +34,10 @@ Json scene_arrays(const scene::Scene& scene) {
 }
 
 Json geometry_arrays(const scene::Geometry& geometry) {
-  const auto& [space, triangles, sources, n_smooth, KDRAY_SHAPES(KDRAY_KIND_PLURAL) bounds, dropped, lost,
-               fine] = geometry;
+  const auto& [space, triangles, sources, n_smooth, stitches, KDRAY_SHAPES(KDRAY_KIND_PLURAL) bounds, dropped,
+               lost, fine] = geometry;
   // Its triangles are the flat form's.
-  Json arrays = {{"sources", bytes_of(sources)}};
+  Json arrays = {{"sources", bytes_of(sources)}, {"stitches", bytes_of(stitches)}};
   primitives::for_each_shape(
       [&](auto kind) { arrays[kind.kNames] = bytes_of(decltype(kind)::of(geometry)); });
   return arrays;
@@ -134,7 +134,8 @@ Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
   report["scene"] = scene.name;
   Json counts = {{"total", scene.primitive_count()}};
   primitives::for_each_kind([&](auto kind) { counts[kind.kNames] = decltype(kind)::of(scene).size(); });
-  counts.update({{"dropped_degenerate", geometry.dropped_degenerate},
+  counts.update({{"stitches", geometry.stitches.size()},
+                 {"dropped_degenerate", geometry.dropped_degenerate},
                  {"vertices", scene.vertices.size()},
                  {"normals", scene.normals.size()}});
   report["primitives"] = counts;

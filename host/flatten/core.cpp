@@ -34,7 +34,7 @@ Sum sum_of(const Items& items, Add add) {
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, items.size(), kGrain), Sum{},
       [&](const tbb::blocked_range<std::size_t>& range, Sum sum) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) add(sum, bounds_of(items[i]));
+        for (std::size_t i = range.begin(); i < range.end(); ++i) add(sum, items[i]);
         return sum;
       },
       [](Sum a, const Sum& b) {
@@ -45,7 +45,7 @@ Sum sum_of(const Items& items, Add add) {
 
 template <class Items>
 Box bounds_of_all(const Items& items) {
-  return sum_of<Box>(items, [](Box& sum, const Box& b) { sum.grow(b); });
+  return sum_of<Box>(items, [](Box& sum, const auto& item) { sum.grow(bounds_of(item)); });
 }
 
 // The boxes of the triangles that lie in each of the planes that bound them all, and of all others.
@@ -53,8 +53,10 @@ struct Sides {
   Box inner;
   Box at[3][2];  // [axis][0: lo, 1: hi]
 
-  void add(const Box& triangle, const Box& all) {
-    for (int k = 0; k < 3; ++k) {
+  // A stitch in a plane may be hit from either side of it: it is no part of a face.
+  void add(const layout::Triangle& t, const Box& all) {
+    const Box triangle = bounds_of(t);
+    for (int k = 0; k < 3 && !scene::is_stitch(t); ++k) {
       if (triangle.lo[k] != triangle.hi[k]) continue;
       if (triangle.lo[k] == all.lo[k]) return at[k][0].grow(triangle);
       if (triangle.hi[k] == all.hi[k]) return at[k][1].grow(triangle);
@@ -72,7 +74,8 @@ struct Sides {
 
 Core core_of(const FlatScene& scene) {
   const Box all = bounds_of_all(scene.triangles);
-  Sides sides = sum_of<Sides>(scene.triangles, [&](Sides& sum, const Box& b) { sum.add(b, all); });
+  Sides sides =
+      sum_of<Sides>(scene.triangles, [&](Sides& sum, const layout::Triangle& t) { sum.add(t, all); });
   primitives::for_each_shape([&](auto kind) { sides.inner.grow(bounds_of_all(decltype(kind)::of(scene))); });
   Core core;
   if (sides.inner.empty()) return core;

@@ -14,6 +14,7 @@ constexpr Feature kFeatures[] = {
     KDRAY_KINDS(KDRAY_NAMED_KIND)
 #undef KDRAY_NAMED_KIND
         {KDRAY_FEATURE_SMOOTH, "smooth normals"},
+    {KDRAY_FEATURE_STITCHES, "stitches"},
     {KDRAY_FEATURE_NUMBERS, "primitive numbers"},
     {KDRAY_FEATURE_REFLECT, "reflection"},
     {KDRAY_FEATURE_TRANSMIT, "refraction"},
@@ -59,7 +60,8 @@ bool numbers_are_indices(const scene::Scene& scene, const scene::Geometry& geome
 
 Features geometry_features(const scene::Scene& scene, const scene::Geometry& geometry) {
   Features mask = when(!numbers_are_indices(scene, geometry), KDRAY_FEATURE_NUMBERS) |
-                  when(geometry.n_smooth > 0, KDRAY_FEATURE_SMOOTH);
+                  when(geometry.n_smooth > geometry.stitches.size(), KDRAY_FEATURE_SMOOTH) |
+                  when(!geometry.stitches.empty(), KDRAY_FEATURE_STITCHES);
   primitives::for_each_kind([&](auto kind) {
     mask |= when(!decltype(kind)::of(geometry).empty(), KDRAY_FEATURE_OF_KIND(decltype(kind)::kNumber));
   });

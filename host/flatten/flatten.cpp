@@ -73,17 +73,30 @@ layout::VertexNormals pack_normals(const scene::Scene& scene, const scene::Trian
   return n;
 }
 
+// A stitch to which the file gives none has its neighbour's everywhere.
+void pack_stitches(const scene::Scene& scene, const scene::Geometry& geometry,
+                   Array<layout::VertexNormals>& normals) {
+  for (const scene::Stitch& stitch : geometry.stitches) {
+    if (scene.triangles[geometry.sources[stitch.triangle]].normal[0] != scene::kNone) continue;
+    layout::VertexNormals n{};
+    for (auto& at_corner : n.n) set(at_corner, stitch.normal);
+    normals[geometry.triangles[stitch.triangle].normals & KDRAY_NORMALS_MASK] = n;
+  }
+}
+
 Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene::Geometry& geometry) {
   Array<layout::VertexNormals> normals(geometry.n_smooth);
   if (normals.empty()) return normals;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, geometry.triangles.size(), kGrain),
                     [&](const auto& range) {
                       for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        const layout::u32 place = geometry.triangles[i].normals;
-                        if (place != KDRAY_NO_NORMALS)
-                          normals[place] = pack_normals(scene, scene.triangles[geometry.sources[i]]);
+                        const layout::u32 place = geometry.triangles[i].normals & KDRAY_NORMALS_MASK;
+                        const scene::Triangle& source = scene.triangles[geometry.sources[i]];
+                        if (place != KDRAY_NO_NORMALS && source.normal[0] != scene::kNone)
+                          normals[place] = pack_normals(scene, source);
                       }
                     });
+  pack_stitches(scene, geometry, normals);
   return normals;
 }
 

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "base/error.h"
 #include "flatten/collapse.h"
@@ -74,6 +75,15 @@ void write_normal_bounds(layout::u32* rows) {
   std::copy(bounds.begin(), bounds.end(), rows + KDRAY_ROW_TRIANGLE_LIMIT * kLanes);
 }
 
+// A stitch has no normal: all that is asked near t = 0 is how far it is from the ray's origin (stitch_t).
+template <class Primitive>
+void mark_stitches(const Array<Primitive>& triangles, const kdtree::Ref* refs, std::uint32_t n,
+                   layout::u32* limits) {
+  if constexpr (std::is_same_v<Primitive, layout::Triangle>)
+    for (std::uint32_t lane = 0; lane < n; ++lane)
+      if (scene::is_stitch(triangles[kdtree::ref_index(refs[lane])])) limits[lane] = bits(INFINITY);
+}
+
 // The rows of a primitive in its block, without the index, and without a triangle's bound.
 std::array<float, KDRAY_TRIANGLE_ROWS - 2> rows_of(const layout::Triangle& t) {
   return {t.v[0][0], t.v[0][1], t.v[0][2], t.v[1][0], t.v[1][1], t.v[1][2], t.v[2][0], t.v[2][1], t.v[2][2]};
@@ -122,6 +132,7 @@ void write_blocks(Kind, const kdtree::Tree& tree, const kdtree::RefRun& run,
     if (!kTriangles) continue;
     write_normal_bounds(block, words);
     layout::u32* const limits = words + KDRAY_ROW_TRIANGLE_LIMIT * block;
+    mark_stitches(primitives, tree.refs.data() + run.first + done, n, limits);
     std::fill(limits + n, limits + block, bits(NAN));
   }
 }

@@ -255,8 +255,8 @@ flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numb
   std::vector<std::uint32_t> normals;
   for (layout::Triangle& t : flat.triangles) {
     if (t.normals == KDRAY_NO_NORMALS) continue;
-    normals.push_back(t.normals);
-    t.normals = static_cast<layout::u32>(normals.size() - 1);
+    normals.push_back(t.normals & KDRAY_NORMALS_MASK);
+    t.normals = (t.normals & KDRAY_STITCH) | static_cast<layout::u32>(normals.size() - 1);
   }
   flat.normals = select(scene.normals, normals);
   return flat;

@@ -120,6 +120,7 @@ Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
   made.counts.primitives = scene.primitive_count();
   primitives::for_each_kind(
       [&](auto kind) { decltype(kind)::of(made.counts) = decltype(kind)::of(geometry).size(); });
+  made.counts.stitches = geometry.stitches.size();
   made.features = flatten::features_of(scene, geometry);
   made.tree_depth = tree.max_depth;
   made.tree_nodes = tree.nodes.size();

@@ -23,6 +23,7 @@ struct Counts {
 #define KDRAY_COUNT(NAME, name, names, Struct) std::uint64_t names = 0;
   KDRAY_KINDS(KDRAY_COUNT)
 #undef KDRAY_COUNT
+  std::uint64_t stitches = 0;  // of the triangles, those without area (scene/stitches.h)
 };
 
 // These are wall times.

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/predicates.h"
 
 namespace kdray::scene {
 
@@ -57,22 +56,6 @@ constexpr double kFewFine = 0.01;
 bool is_fine(const Box& box) {
   const vec3 extent = box.extent();
   return std::max({extent.x, extent.y, extent.z}) < kFine;
-}
-
-// Whether a triangle of the file has an area that is more than the rounding of its decimals.
-bool has_area(const dvec3& a, const dvec3& b, const dvec3& c) {
-  const double scale = scale_to_one(std::max(largest_component(b - a), largest_component(c - a)));
-  const dvec3 e = (b - a) * scale, f = (c - a) * scale;
-  return glm::length(glm::cross(e, f)) > 0x1p-40 * glm::length(e) * glm::length(f);
-}
-
-// Whether a triangle of floats has exactly no area: its three projections all have none.
-bool is_flat(const TriangleGeometry& t) {
-  const auto& v = t.v;
-  const auto flat_across = [&](int i, int j) {
-    return orient_sign({v[0][i], v[0][j]}, {v[1][i], v[1][j]}, {v[2][i], v[2][j]}) == 0;
-  };
-  return flat_across(0, 1) && flat_across(1, 2) && flat_across(2, 0);
 }
 
 constexpr std::size_t kGrain = std::size_t{1} << 14;
@@ -125,10 +108,12 @@ class Maker {
       std::size_t end = first;
       GrainFacts found;
       for (std::size_t i = first; i < last; ++i) {
-        const TriangleGeometry t = triangle(vertices, i);
+        TriangleGeometry t = triangle(vertices, i);
         if (is_flat(t)) {
           found.lost += has_area(i);
-          continue;
+          if (has_equal_corners(t)) continue;
+          t.normals |= KDRAY_STITCH;
+          found.has_stitches = true;
         }
         out_.triangles[end] = t;
         out_.sources[end++] = static_cast<std::uint32_t>(i);
@@ -141,23 +126,29 @@ class Maker {
     });
     close_gaps(kept);
     out_.dropped_degenerate += static_cast<std::uint32_t>(n - out_.triangles.size());
+    bool has_stitches = false;
     for (const GrainFacts& found : facts) {
       out_.bounds.grow(found.bounds);
       out_.lost += found.lost;
       out_.fine += found.fine;
+      has_stitches |= found.has_stitches;
     }
-    if (!scene_.normals.empty()) number_normals();
+    if (has_stitches) out_.stitches = find_stitches(out_.triangles);
+    if (has_stitches || !scene_.normals.empty()) number_normals();
   }
 
   // What is known of a grain of triangles, and added up afterwards.
   struct GrainFacts {
     Box bounds;
     std::uint32_t lost = 0, fine = 0;
+    bool has_stitches = false;
   };
 
   bool has_area(std::size_t i) const {
     const auto& v = scene_.triangles[i].vertex;
-    return scene::has_area(scene_.vertices[v[0]], scene_.vertices[v[1]], scene_.vertices[v[2]]);
+    const dvec3 &a = scene_.vertices[v[0]], b = scene_.vertices[v[1]] - a, c = scene_.vertices[v[2]] - a;
+    const double scale = scale_to_one(std::max(largest_component(b), largest_component(c)));
+    return scene::has_area(b * scale, c * scale);
   }
 
   // Moves together the triangles that each grain kept at its beginning.
@@ -176,19 +167,24 @@ class Maker {
     out_.sources.resize(end);
   }
 
-  bool is_smooth(std::size_t i) const { return scene_.triangles[out_.sources[i]].normal[0] != kNone; }
+  bool has_normals(std::size_t i) const {
+    return is_stitch(out_.triangles[i]) || scene_.triangles[out_.sources[i]].normal[0] != kNone;
+  }
 
   void number_normals() {
     const std::size_t n = out_.triangles.size();
     std::vector<std::uint32_t> before((n + kGrain - 1) / kGrain + 1, 0);  // those of earlier grains
     for_each_grain(n, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) before[first / kGrain + 1] += is_smooth(i) ? 1 : 0;
+      for (std::size_t i = first; i < last; ++i) before[first / kGrain + 1] += has_normals(i) ? 1 : 0;
     });
     std::partial_sum(before.begin(), before.end(), before.begin());
     for_each_grain(n, [&](std::size_t first, std::size_t last) {
       std::uint32_t next = before[first / kGrain];
-      for (std::size_t i = first; i < last; ++i)
-        if (is_smooth(i)) out_.triangles[i].normals = next++;
+      for (std::size_t i = first; i < last; ++i) {
+        if (!has_normals(i)) continue;
+        layout::u32& normals = out_.triangles[i].normals;
+        normals = (normals & KDRAY_STITCH) | next++;
+      }
     });
     out_.n_smooth = before.back();
   }

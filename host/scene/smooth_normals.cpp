@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "math/local_space.h"
+#include "scene/stitches.h"
 
 namespace kdray::scene {
 
@@ -43,6 +44,7 @@ class Smoother {
       smooth_place(std::span(corners_).subspan(first, last - first));
       first = last;
     }
+    leave_flat();
   }
 
  private:
@@ -63,7 +65,7 @@ class Smoother {
     const double scale = scale_to_one(std::max(largest_component(to_next), largest_component(to_last)));
     const dvec3 e = to_next * scale, f = to_last * scale, n = glm::cross(e, f);
     const double length = glm::length(n);
-    if (!(length > 0)) return {};
+    if (!has_area(e, f)) return {};
     return {n / length, std::atan2(length, glm::dot(e, f))};
   }
 
@@ -75,19 +77,29 @@ class Smoother {
       scene_.triangles[corners[i].triangle].normal[corners[i].k] = number_of(normal_at(i), first_normal);
   }
 
+  // A triangle without area has no side of its own to be on: it takes part in whatever is there.
   vec3 normal_at(std::size_t i) const {
     const dvec3& own = shares_[i].normal;
+    const double least = own == dvec3(0) ? -1 : least_cosine_;
     dvec3 sum = own * shares_[i].angle;
     if (shares_.size() <= kMostFaces)
       for (std::size_t j = 0; j < shares_.size(); ++j)
-        if (j != i && glm::dot(own, shares_[j].normal) >= least_cosine_)
-          sum += shares_[j].normal * shares_[j].angle;
+        if (j != i && glm::dot(own, shares_[j].normal) >= least) sum += shares_[j].normal * shares_[j].angle;
     const double length = glm::length(sum);
-    return length > 0 ? vec3(sum / length) : vec3(0, 0, 1);  // of a triangle without area, which is dropped
+    return length > 0 ? vec3(sum / length) : vec3(0);
+  }
+
+  // Triangles with a corner that has no normal: of those without area, where all there have none.
+  void leave_flat() {
+    for (const Corner& c : corners_) {
+      auto& normal = scene_.triangles[c.triangle].normal;
+      if (normal[c.k] == kNone) normal.fill(kNone);
+    }
   }
 
   // Corners of one place share a normal that is the same.
   std::uint32_t number_of(const vec3& normal, std::size_t first) {
+    if (normal == vec3(0)) return kNone;
     const std::size_t back = std::min<std::size_t>(scene_.normals.size() - first, 16);
     for (std::size_t i = scene_.normals.size() - back; i < scene_.normals.size(); ++i)
       if (scene_.normals[i] == normal) return static_cast<std::uint32_t>(i);

@@ -36,14 +36,20 @@ Crossing crossing(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c
   return (volume > 0) == (ab > 0) ? Crossing::one : Crossing::none;
 }
 
+// From the line of a stitch's corners, which differ.
+double distance_from_line(const dvec3& p, const dvec3& a, const dvec3& b) {
+  return glm::length(glm::cross(b - a, p - a)) / glm::length(b - a);
+}
+
 }  // namespace
 
 bool Insides::near(const dvec3& p, std::uint32_t component, double clearance) const {
   bool near = false;
   boxes_.touching({p - clearance, p + clearance}, [&](std::uint32_t face) {
     if (topology_.component_of[face] != component) return true;
-    const dvec3 n = mesh_.normal(face);
-    near = !(std::abs(glm::dot(n, p - dvec3(mesh_.corner(face, 0)))) > clearance * glm::length(n));
+    const dvec3 a(mesh_.corner(face, 0)), n = mesh_.normal(face);
+    near = mesh_.stitch[face] != 0 ? !(distance_from_line(p, a, dvec3(mesh_.corner(face, 1))) > clearance)
+                                   : !(std::abs(glm::dot(n, p - a)) > clearance * glm::length(n));
     return !near;
   });
   return near;

@@ -20,10 +20,12 @@ struct Mesh {
   std::vector<vec3> points;            // all different
   std::vector<Corners> triangles;      // corners
   std::vector<std::uint32_t> numbers;  // of each triangle, in file order over all kinds of primitives
+  std::vector<std::uint8_t> stitch;    // of each: 1 where it has no area (scene/stitches.h)
   Box bounds;                          // of the points
 
   const vec3& corner(std::size_t triangle, std::size_t k) const { return points[triangles[triangle][k]]; }
-  dvec3 normal(std::size_t triangle) const;  // twice the area long; from the front, counter-clockwise
+  // Twice the area long; from the front, counter-clockwise. 0 of a stitch, whatever rounding says.
+  dvec3 normal(std::size_t triangle) const;
   Box bounds_of(std::size_t triangle) const;
 };
 

@@ -18,6 +18,8 @@
 // Surfaces, bits 32-47.
 #define KDRAY_FEATURE_SMOOTH \
   KDRAY_FEATURE(32)  // vertex normals; removes interpolation, the terminator's shift
+// Stitches (primitives.layout.h), which have vertex normals; removes their distance and their shading.
+#define KDRAY_FEATURE_STITCHES KDRAY_FEATURE(34)
 // Numbers in file order that differ from indices; removes looking them up.
 #define KDRAY_FEATURE_NUMBERS KDRAY_FEATURE(33)
 // Rays and primitives of queries that meet only where their masks have a bit in common; removes looking at
@@ -46,7 +48,8 @@
 #define KDRAY_HAS_KIND(NAME) ((KDRAY_FEATURES & KDRAY_FEATURE_KIND(NAME)) != 0)
 // Kinds whose test asks for the square of the direction.
 #define KDRAY_HAS_CURVED (KDRAY_HAS_KIND(SPHERE) || KDRAY_HAS_KIND(CONE))
-#define KDRAY_HAS_SMOOTH ((KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
+#define KDRAY_HAS_STITCHES ((KDRAY_FEATURES & KDRAY_FEATURE_STITCHES) != 0)
+#define KDRAY_HAS_SMOOTH (KDRAY_HAS_STITCHES || (KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
 #define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
 #define KDRAY_HAS_MASKS ((KDRAY_FEATURES & KDRAY_FEATURE_MASKS) != 0)
 #define KDRAY_HAS_REFLECT ((KDRAY_FEATURES & KDRAY_FEATURE_REFLECT) != 0)

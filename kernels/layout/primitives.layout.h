@@ -3,14 +3,18 @@
 #define KDRAY_LAYOUT_PRIMITIVES_H
 #include "layout/base.layout.h"
 
-#define KDRAY_NO_NORMALS 0xffffffffu
+// Triangle::normals: the index, and the bit of a stitch. A stitch is a triangle whose corners differ but lie on
+// one line: it has no area and no plane, but closes what would gape where a corner lies on a neighbour's edge.
+#define KDRAY_NO_NORMALS 0x7fffffffu
+#define KDRAY_NORMALS_MASK 0x7fffffffu
+#define KDRAY_STITCH 0x80000000u
 
 KDRAY_LAYOUT_BEGIN
 typedef struct Triangle {
   float v[3][3];
   u32 number;    // place in file order
   u32 material;  // into materials
-  u32 normals;   // into the vertex normals, or KDRAY_NO_NORMALS
+  u32 normals;   // into the vertex normals, or KDRAY_NO_NORMALS; and KDRAY_STITCH, which always has some
 } Triangle;
 KDRAY_ASSERT_SIZE(Triangle, 48)
 KDRAY_ASSERT_OFFSET(Triangle, number, 36)

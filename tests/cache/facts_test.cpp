@@ -23,7 +23,7 @@ prepare::Prepared with_everything() {
   p.geometry.space = {{1.0 / 3, 1e6 + 0.1, -7}, 0x1p-900};
   p.geometry.bounds = {vec3(-1.1f), vec3(2.2f)};
   p.geometry.dropped_degenerate = 3;
-  p.counts = {10, 5, 2, 1};
+  p.counts = {10, 5, 2, 1, 0, 4};
   p.features = 0xdeadbeef;
   p.tree_depth = 33;
   p.tree_nodes = std::uint64_t{1} << 40;

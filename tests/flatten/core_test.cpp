@@ -84,6 +84,16 @@ TEST(Core, FaceCountsWhereTheCoreTouchesIt) {
   EXPECT_EQ(core.face_lo.z, 0);
 }
 
+// One that lies in the floor's plane may be hit from above all the same.
+TEST(Core, AStitchIsNoPartOfAFace) {
+  layout::Triangle stitch = triangle({-6, 0, 0}, {0, 0, 0}, {6, 0, 0});
+  stitch.normals = KDRAY_STITCH;
+  const Core core = core_of(flat_of({floor_at(0), stitch}, {}));
+  EXPECT_TRUE(core.has_faces);
+  EXPECT_EQ(core.lo, vec3(-6, 0, 0));
+  EXPECT_EQ(core.hi, vec3(6, 0, 0));
+}
+
 TEST(Core, IsEverythingWithoutFaces) {
   // The floor is tilted; it lies within the core; it is all there is.
   const layout::Triangle tilted = triangle({-6, -6, 0}, {6, -6, 0}, {0, 6, 0.001f});

@@ -68,6 +68,16 @@ TEST(Features, SmoothNormalsBackgroundAndSamples) {
   EXPECT_EQ(features_of_samples(4), KDRAY_FEATURE_SUPERSAMPLE);
 }
 
+TEST(Features, StitchesAndSmoothNormalsAreApart) {
+  scene::Scene s = triangle_scene();
+  EXPECT_FALSE(mask_of(s) & KDRAY_FEATURE_STITCHES);
+  const auto first = static_cast<std::uint32_t>(s.vertices.size());
+  for (const double x : {0, 1, 3}) s.vertices.push_back(dvec3(x, 0, 0));
+  s.triangles.push_back({.vertex = {first, first + 1, first + 2}, .number = 1});
+  EXPECT_TRUE(mask_of(s) & KDRAY_FEATURE_STITCHES);
+  EXPECT_FALSE(mask_of(s) & KDRAY_FEATURE_SMOOTH);
+}
+
 TEST(Features, NamesAreSplitWithoutLoss) {
   const FeatureNames some = feature_names(KDRAY_FEATURE_KIND(SPHERE) | KDRAY_FEATURE_LIGHTS);
   EXPECT_EQ((std::set<std::string>(some.on.begin(), some.on.end())),

@@ -27,7 +27,7 @@ void add_triangles(const flatten::FlatScene& flat, scene::Scene& out) {
       out.vertices.push_back(vector(t.v[i]));
       if (t.normals == KDRAY_NO_NORMALS) continue;
       triangle.normal[i] = static_cast<std::uint32_t>(out.normals.size());
-      out.normals.push_back(color(flat.normals[t.normals].n[i]));
+      out.normals.push_back(color(flat.normals[t.normals & KDRAY_NORMALS_MASK].n[i]));
     }
     out.triangles.push_back(triangle);
   }

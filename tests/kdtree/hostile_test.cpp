@@ -93,6 +93,22 @@ TEST(Hostile, NeedlesInOnePlane) {
   check_hostile(g);
 }
 
+// Triangles without area: anywhere, along the axes, and all on one line.
+TEST(Hostile, Stitches) {
+  Random random(28);
+  for (int sort = 0; sort < 3; ++sort) {
+    SCOPED_TRACE(sort);
+    scene::Geometry g;
+    for (int i = 0; i < 3000; ++i) {
+      const vec3 place = sort == 2 ? vec3(uniform(random, -8, 8)) : random_vec3(random, -8, 8);
+      vec3 way = sort == 2 ? vec3(uniform(random, 0.01f, 2)) : random_vec3(random, -2, 2);
+      if (sort == 1) way = vec3(i % 3 == 0, i % 3 == 1, i % 3 == 2) * way;
+      add_triangle(g, place, place + 0.25f * way, place + way);
+    }
+    check_hostile(g);
+  }
+}
+
 TEST(Hostile, CoplanarLayers) {
   scene::Geometry g;
   for (int layer = 0; layer < 40; ++layer) {

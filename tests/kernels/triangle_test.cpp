@@ -23,6 +23,7 @@ struct Found {
   float t, u, v;
 };
 
+// -DSTITCH=true: the triangles are stitches.
 const char* const kSource =
     "#include \"intersect/triangle.clh\"\n"
     "typedef struct Case { float origin[3], direction[3]; float v[3][3]; } Case;\n"
@@ -33,7 +34,7 @@ const char* const kSource =
     "  Found f = {0, 0, 0, 0};\n"
     "  f.hit = intersect_triangle(make_shear(load3(in[i].direction)), load3(in[i].origin), "
     "load3(in[i].direction), &in[i].v[0][0], "
-    "&f.t,\n"
+    "STITCH, &f.t,\n"
     "                             &f.u, &f.v);\n"
     "  out[i] = f;\n"
     "}\n";
@@ -83,7 +84,7 @@ TEST_P(TriangleTest, NoRayEscapesAtAVertexOrAnEdge) {
     const vec3 target = face[0] + s * (face[1] - face[0]);
     for (const auto& f : faces) in.push_back(make_case(origin, target - origin, f));
   }
-  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in);
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false");
   for (int i = 0; i < kRays; ++i) {
     // A face seen edge-on may put its hit anywhere along the edge; another face has it at the target.
     float nearest_error = INFINITY;
@@ -117,7 +118,7 @@ TEST_P(TriangleTest, ARayInThePlaneItStartsFromDoesNotHitIt) {
     if (i % 5 == 0) direction[axis] *= 1e-6f;  // grazing
     in.push_back(make_case(origin, direction, triangle));
   }
-  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in);
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false");
   int met = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     met += out[i].hit;
@@ -134,7 +135,7 @@ TEST_P(TriangleTest, AgreesWithDoubleAwayFromEdges) {
   const auto point = [&] { return vec3(coordinate(random), coordinate(random), coordinate(random)); };
   std::vector<Case> in;
   for (int i = 0; i < 100000; ++i) in.push_back(make_case(point(), point(), {point(), point(), point()}));
-  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in);
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false");
   int compared = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
     const auto at = [](const float(&p)[3]) { return dvec3(p[0], p[1], p[2]); };
@@ -154,6 +155,93 @@ TEST_P(TriangleTest, AgreesWithDoubleAwayFromEdges) {
     EXPECT_NEAR(out[i].v, v, 1e-3) << i;
   }
   EXPECT_GT(compared, 50000);
+}
+
+// ---- Stitches
+
+// Three points of a grid on a line, in any order, and a place between the outer two.
+struct StitchCase {
+  std::array<vec3, 3> corners;
+  vec3 place;
+};
+
+StitchCase make_stitch(std::mt19937& random) {
+  std::uniform_int_distribution<int> step(-9, 9), start(-500, 500);
+  std::uniform_real_distribution<float> unit(0, 1);
+  const vec3 first(start(random), start(random), start(random));
+  vec3 way(0);
+  while (way == vec3(0)) way = vec3(step(random), step(random), step(random));
+  std::array<int, 3> at{0, 1 + static_cast<int>(random() % 30), 0};
+  at[2] = at[1] + 1 + static_cast<int>(random() % 30);
+  const vec3 place = first + unit(random) * static_cast<float>(at[2]) * way;
+  std::shuffle(at.begin(), at.end(), random);
+  StitchCase c{{}, place};
+  for (std::size_t i = 0; i < 3; ++i) c.corners[i] = first + static_cast<float>(at[i]) * way;
+  return c;
+}
+
+float largest(const vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+// What the corners' projection may be off by, with room: 16 units of roundoff of their distance.
+float in_doubt(const Case& c) {
+  float reach = 0;
+  for (const auto& v : c.v)
+    reach = std::max(reach, largest(vec3(v[0] - c.origin[0], v[1] - c.origin[1], v[2] - c.origin[2])));
+  return 16 * 0x1p-24f * reach;
+}
+
+TEST_P(TriangleTest, AStitchIsHitOnItsLine) {
+  const unsigned seed = 25;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> coordinate(-1000, 1000);
+  std::vector<Case> in;
+  for (int i = 0; i < 100000; ++i) {
+    const StitchCase s = make_stitch(random);
+    const vec3 origin(coordinate(random), coordinate(random), coordinate(random));
+    in.push_back(make_case(origin, s.place - origin, s.corners));
+  }
+  const auto out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=true");
+  int hits = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!out[i].hit) continue;
+    ++hits;
+    const auto at = [](const float(&p)[3]) { return dvec3(p[0], p[1], p[2]); };
+    const double u = out[i].u, v = out[i].v, w = 1 - u - v;
+    ASSERT_TRUE(u >= 0 && v >= 0 && w > -1e-6) << i;
+    const dvec3 hit = w * at(in[i].v[0]) + u * at(in[i].v[1]) + v * at(in[i].v[2]);
+    const dvec3 seen = at(in[i].origin) + static_cast<double>(out[i].t) * at(in[i].direction);
+    // Along the ray's largest axis the two agree but for the rounding of t.
+    ASSERT_LT(glm::length(hit - seen), 2 * in_doubt(in[i])) << i << " t = " << out[i].t;
+  }
+  EXPECT_GT(hits, 1000) << "rays that corners rounded apart let through";
+}
+
+TEST_P(TriangleTest, ARayThatStartsAtAStitchHasLeftIt) {
+  const unsigned seed = 26;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const auto direction = [&] { return glm::normalize(vec3(unit(random), unit(random), unit(random))); };
+  std::vector<Case> in;
+  for (int i = 0; i < 400000; ++i) {
+    const StitchCase s = make_stitch(random);
+    // The mean of the corners' distances is not below the least of them.
+    const vec3 middle = 0.5f * s.corners[0] + 0.5f * s.corners[1];
+    float least = INFINITY;
+    for (const vec3& corner : s.corners) least = std::min(least, largest(corner - middle));
+    const vec3 origin = middle + 8 * 0x1p-24f * least * direction();
+    in.push_back(make_case(origin, direction(), s.corners));
+  }
+  const auto out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=true");
+  int met = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    met += out[i].hit;
+    ASSERT_FALSE(out[i].hit && out[i].t != 0.0f) << i << " t = " << out[i].t;
+  }
+  EXPECT_GT(met, 1000) << "the line does pass through it as projected";
 }
 
 // ---- Seen edge-on
@@ -227,7 +315,8 @@ TEST_P(TriangleTest, SeenEdgeOnIsNoHitInAnyForm) {
   const unsigned seed = 10;
   SCOPED_TRACE(seed);
   const std::vector<Case> in = edge_on_cases(seed);
-  for (const Found& found : test::run_kernel<Found>(GetParam(), kSource, in)) ASSERT_FALSE(found.hit);
+  for (const Found& found : test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false"))
+    ASSERT_FALSE(found.hit);
   for (const int lanes : {1, 4, 8, 16}) {
     SCOPED_TRACE(lanes);
     const auto out = test::run_kernel<FoundInLanes>(GetParam(), kLanesSource, in, lanes_options(lanes));

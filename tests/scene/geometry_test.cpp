@@ -85,7 +85,7 @@ TEST(MakeGeometry, KeepsTheShapeOfAModelAMillionAway) {
   }
 }
 
-TEST(MakeGeometry, DropsAndCountsTrianglesWithoutArea) {
+TEST(MakeGeometry, DropsTrianglesOfEqualCornersAndKeepsThoseOnALine) {
   const Scene s = triangle_scene({
       {0, 0, 0},
       {1, 0, 0},
@@ -104,14 +104,34 @@ TEST(MakeGeometry, DropsAndCountsTrianglesWithoutArea) {
       {0.3, 0.3, 0.3},  // on a line in float as well: x = y = z
   });
   const Geometry g = make_geometry(s);
-  ASSERT_EQ(g.triangles.size(), 2u);
-  EXPECT_EQ(g.sources[0], 0u);
-  EXPECT_EQ(g.sources[1], 3u);
-  EXPECT_EQ(g.dropped_degenerate, 3u);
+  ASSERT_EQ(g.triangles.size(), 4u);
+  EXPECT_EQ(std::vector<std::uint32_t>(g.sources.begin(), g.sources.end()),
+            (std::vector<std::uint32_t>{0, 2, 3, 4}));
+  EXPECT_EQ(g.dropped_degenerate, 1u);
+  ASSERT_EQ(g.stitches.size(), 2u);
+  EXPECT_EQ(g.stitches[0].triangle, 1u);
+  EXPECT_EQ(g.stitches[1].triangle, 3u);
+  for (const std::size_t i : {0u, 2u}) EXPECT_EQ(g.triangles[i].normals, KDRAY_NO_NORMALS);
+  EXPECT_EQ(g.triangles[1].normals, KDRAY_STITCH | 0u) << "which has vertex normals of its own";
+  EXPECT_EQ(g.triangles[3].normals, KDRAY_STITCH | 1u);
+  EXPECT_EQ(g.n_smooth, 2u);
 }
 
-// One ulp off a line is area enough: only what is exactly flat goes, or else watertight meshes would get
-// holes.
+TEST(MakeGeometry, DropsCornersThatAreEqualAfterRounding) {
+  const Geometry g = make_geometry(triangle_scene({{0, 0, 0},
+                                                   {1e9, 0, 0},
+                                                   {1e9, 1e9, 0},
+                                                   {1e9, 5e8, 0},
+                                                   {1e9, 5e8 + 1, 0},
+                                                   {1e9, 0, 0},
+                                                   {1e9, 5e8, 0},
+                                                   {1e9, 5e8 + 100, 0},
+                                                   {1e9, 0, 0}}));
+  EXPECT_EQ(g.dropped_degenerate, 1u);
+  EXPECT_EQ(g.stitches.size(), 1u);
+  EXPECT_EQ(g.lost, 0u) << "they had no area to lose";
+}
+
 TEST(MakeGeometry, KeepsTheOrderAroundDroppedTrianglesOfALargeScene) {
   // More than are made at a time; flat ones singly, in rows, and none for long stretches.
   constexpr std::uint32_t kMany = 70000;
@@ -148,15 +168,17 @@ TEST(MakeGeometry, KeepsTheOrderAroundDroppedTrianglesOfALargeScene) {
   EXPECT_EQ(g.n_smooth, n_smooth);
 }
 
+// One ulp off a line is area enough.
 TEST(MakeGeometry, DecidesFlatnessExactly) {
   const double x = 1 + 0x1p-23;
   for (const double third : {std::nextafter(3.0f, 0.0f) * 1.0, 3.0, std::nextafter(3.0f, 4.0f) * 1.0}) {
     const Geometry g = make_geometry(triangle_scene({{-1, -1, 5}, {1, 1, 5}, {3, third, 5}}));
-    EXPECT_EQ(g.triangles.size(), third == 3.0 ? 0u : 1u) << third;
+    EXPECT_EQ(g.stitches.size(), third == 3.0 ? 1u : 0u) << third;
+    EXPECT_EQ(g.triangles.size(), 1u);
   }
   const Geometry g = make_geometry(triangle_scene({{0, 0, 0}, {x, 1, 0}, {x * x, x, 0}}));
   // x * x needs more bits than float has: in float the third corner is off the line.
-  EXPECT_EQ(g.triangles.size(), 1u);
+  EXPECT_EQ(g.stitches.size(), 0u);
 }
 
 TEST(MakeGeometry, DropsSpheresAndConesThatVanishInFloat) {
@@ -245,7 +267,8 @@ TEST(RangeWarning, CountsWhatFloatsLose) {
                                                       {1, 1, 1},
                                                       {1, 1, 1},
                                                       {0, 0, 1}}));
-  EXPECT_EQ(flat.dropped_degenerate, 2u);
+  EXPECT_EQ(flat.dropped_degenerate, 1u);
+  EXPECT_EQ(flat.stitches.size(), 1u);
   EXPECT_EQ(flat.lost, 0u);
   EXPECT_EQ(range_warning(flat), "");
 }

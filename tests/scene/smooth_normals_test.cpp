@@ -70,6 +70,21 @@ TEST(SmoothNormals, OfABallPointAwayFromItsMiddle) {
       EXPECT_LT(glm::length(normal(s, t, k) - s.vertices[s.triangles[t].vertex[k]]), 0.02);
 }
 
+// A triangle without area takes part in whatever is at its corners, though it turns against all of that; where
+// there is nothing but its like, it stays without.
+TEST(SmoothNormals, OfATriangleWithoutAreaAreItsNeighbours) {
+  Scene s;
+  add(s, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  add(s, {1, 0, 0}, {0, 0, 0}, {0, -4, 0});
+  add(s, {4, 0, 0}, {1, 0, 0}, {0, -4, 0});
+  add(s, {0, 0, 0}, {1, 0, 0}, {4, 0, 0});
+  add(s, {0.1, 9, 0.1}, {0.2, 9, 0.2}, {0.3, 9, 0.3});
+  smooth_normals(s, 20);
+  for (std::size_t t = 0; t < 4; ++t)
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(normal(s, t, k), dvec3(0, 0, 1));
+  EXPECT_EQ(s.triangles[4].normal, (std::array<std::uint32_t, 3>{kNone, kNone, kNone}));
+}
+
 TEST(SmoothNormals, LeaveThoseOfTheFileAlone) {
   Scene s = cube(1);
   s.normals = {vec3(0, 0, 1)};

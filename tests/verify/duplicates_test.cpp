@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/stitched_meshes.h"
 #include "verify/meshes.h"
 
 namespace kdray::verify {
@@ -36,6 +37,15 @@ TEST(Duplicates, TheSameFaceTwiceOrTurnedOver) {
   EXPECT_TRUE(same.overlapping.empty());
   turn_over(b.scene().triangles.back());
   EXPECT_EQ(duplicates_of(b).doubled, std::vector<std::uint32_t>{12});
+}
+
+// They lie in their neighbours' planes, along their edges.
+TEST(Duplicates, StitchesOverlapNothing) {
+  for (test::LatticeMesh& m : std::vector{test::lattice_box(60), test::lattice_ball(6, 20, 12, 3)}) {
+    test::divide_edges(m, 100, 2);
+    const Meshed meshed(test::scene_of(m));
+    EXPECT_TRUE(find_duplicates(meshed.mesh, meshed.boxes).overlapping.empty());
+  }
 }
 
 TEST(Duplicates, CommonGroundInOnePlane) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/stitched_meshes.h"
 #include "verify/inside.h"
 #include "verify/meshes.h"
 #include "verify/random.h"
@@ -61,6 +62,29 @@ TEST(Inside, ComponentsAreToldApartAndTurnsDoNotMatter) {
       }
     }
   }
+}
+
+// A box with many stitches is where the box is, but in the planes of its edges: the stitches part nothing. (Seed
+// 3.)
+TEST(Inside, StitchesDoNotMatter) {
+  test::LatticeMesh box = test::lattice_box(60);
+  test::divide_edges(box, 40, 1);
+  const Meshed m(test::scene_of(box));
+  ASSERT_EQ(m.topology.components.size(), 1u);
+  EXPECT_TRUE(m.topology.components[0].watertight);
+  EXPECT_NEAR(m.volume(0), 120.0 * 240.0 * 360.0, 1);
+  const Insides insides(m.mesh, m.boxes, m.topology);
+  Random random(3);
+  int inside = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const dvec3 p(random.between(-90, 90), random.between(-180, 180), random.between(-270, 270));
+    const double depth = std::min({60 - std::abs(p.x), 120 - std::abs(p.y), 180 - std::abs(p.z)});
+    const Side side = insides.side_of(m.local(p), 0, m.local(1e-3));
+    if (side == Side::unsure) continue;
+    EXPECT_EQ(side, depth > 0 ? Side::inside : Side::outside);
+    inside += side == Side::inside;
+  }
+  EXPECT_GT(inside, 5000);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "support/device.h"
+#include "support/stitched_meshes.h"
 #include "verify/meshes.h"
 #include "verify/tracer.h"
 #include "verify/verify.h"
@@ -39,6 +40,20 @@ TEST_P(Verify, ClosedMeshesDoNotLeak) {
     EXPECT_EQ(f.probes.components, 1u);
     EXPECT_LT(f.probes.in_doubt, f.probes.from_inside / 10);
     EXPECT_GT(f.probes.leaving, 20000u);
+  }
+}
+
+// T-junctions that are closed by triangles without area: those are hit, left and shaded like others.
+TEST_P(Verify, StitchesCloseAndAreLeft) {
+  for (const test::LatticeMesh& m : test::stitched_meshes()) {
+    SCOPED_TRACE(m.name);
+    Builder b;
+    b.scene() = test::scene_of(m);
+    const Findings f = check(b, 40000);
+    expect_sound(f);
+    EXPECT_EQ(f.topology.count([](const Component& c) { return c.watertight; }), 1u);
+    EXPECT_EQ(f.counts.stitches, m.n_without_area());
+    EXPECT_GT(f.probes.from_inside, 10000u);
   }
 }
 

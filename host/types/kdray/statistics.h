@@ -36,6 +36,7 @@ struct Statistics {
   struct Scene {
     std::uint64_t primitives = 0;                              // of the file, degenerate ones too
     std::vector<std::pair<std::string, std::uint64_t>> kinds;  // of each kind those that can be hit
+    std::uint64_t stitches = 0;                                // triangles without area that may close gaps
     std::uint64_t lights = 0, materials = 0, dropped_degenerate = 0;
   };
 
