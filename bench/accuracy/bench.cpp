@@ -32,7 +32,7 @@ class AccuracyScene {
     Renderer& first = renderer({});
     const nlohmann::json device = api::device_json(first.statistics());
     run_.device = device.at("name"), run_.cores = cores_of(device);
-    run_.n_primitives = scene_.triangles.size() + scene_.spheres.size() + scene_.cones.size();
+    run_.n_primitives = scene_.primitive_count();
     run_.reference_in_double = device.value("double_precision", false);
     make_reference(first);
     for (const Setting& s : accuracy_settings({.cpu = device.at("kind") == "cpu",

@@ -37,8 +37,7 @@ class BuildScene {
   }
 
   BuildRun run(const std::function<void(const std::string&)>& working) {
-    BuildRun run{name_, geometry_.triangles.size(), geometry_.spheres.size(), geometry_.cones.size(), {}, 0,
-                 {}};
+    BuildRun run{name_, kind_counts(geometry_), {}, 0, {}};
     working(name_ + ": building");
     time_builds(run);
     working(name_ + ": tracing");

@@ -12,6 +12,7 @@
 
 #include "bench/build/tree_facts.h"
 #include "bench/race/build_race.h"
+#include "bench/workload/kinds.h"
 
 namespace kdray::bench {
 
@@ -43,7 +44,7 @@ struct BuilderResult {
 
 struct BuildRun {
   std::string scene;
-  std::size_t n_triangles = 0, n_spheres = 0, n_cones = 0;  // that can be hit
+  KindCounts n_primitives;  // that can be hit
   std::string device;
   int cores = 0;
   std::vector<BuilderResult> builders;

@@ -11,14 +11,8 @@ namespace kdray::bench {
 namespace {
 
 std::string heading(const BuildRun& run) {
-  std::string out = short_name(run.scene) + ":";
-  const auto add = [&](std::size_t n, const char* what) {
-    if (n > 0) out += fmt::format(" {} {},", n, what);
-  };
-  add(run.n_triangles, "triangles");
-  add(run.n_spheres, "spheres");
-  add(run.n_cones, "cones");
-  return out + fmt::format(" {} core{}\n", run.cores, run.cores == 1 ? "" : "s");
+  return fmt::format("{}: {}, {} core{}\n", short_name(run.scene), in_words(run.n_primitives), run.cores,
+                     run.cores == 1 ? "" : "s");
 }
 
 std::string columns(const BuildRun& run) {
@@ -89,12 +83,11 @@ Json json_of(const BuilderResult& b, const std::optional<BuildRatios>& ratios) {
 }
 
 Json json_of(const BuildRun& run) {
-  Json json = {
-      {"scene", run.scene},
-      {"primitives", {{"triangles", run.n_triangles}, {"spheres", run.n_spheres}, {"cones", run.n_cones}}},
-      {"cores", run.cores},
-      {"device", run.device},
-      {"builders", Json::array()}};
+  Json json = {{"scene", run.scene},
+               {"primitives", json_of(run.n_primitives)},
+               {"cores", run.cores},
+               {"device", run.device},
+               {"builders", Json::array()}};
   for (const BuilderResult& b : run.builders)
     json["builders"].push_back(json_of(b, ratios_to(run.embree(), b)));
   return json;

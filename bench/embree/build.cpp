@@ -1,5 +1,6 @@
 #include "bench/embree/build.h"
 
+#include <array>
 #include <memory>
 
 #include "base/error.h"
@@ -15,12 +16,16 @@ constexpr std::size_t kPadding = 16 / sizeof(float);
 
 struct Buffers {
   std::vector<float> vertices;  // of 3 (triangles) or 4 (with a radius) floats
+  std::size_t n_vertices = 0;
+  std::vector<float> normals;  // of 3
   std::vector<std::uint32_t> indices;
   std::vector<std::uint8_t> flags;
 };
 
-Buffers triangle_buffers(const scene::Scene& scene, const scene::Geometry& geometry) {
+// The buffers of a kind. One that lacks them does not compile.
+Buffers buffers_of(primitives::TriangleKind, const scene::Scene& scene, const scene::Geometry& geometry) {
   Buffers b;
+  if (geometry.triangles.empty()) return b;
   b.vertices.reserve(3 * scene.vertices.size() + kPadding);
   for (const dvec3& v : scene.vertices) {
     const vec3 local(geometry.space.local(v));
@@ -29,24 +34,26 @@ Buffers triangle_buffers(const scene::Scene& scene, const scene::Geometry& geome
   b.indices.reserve(3 * geometry.triangles.size());
   for (const std::uint32_t source : geometry.sources)
     for (const std::uint32_t v : scene.triangles[source].vertex) b.indices.push_back(v);
+  b.n_vertices = scene.vertices.size();
   b.vertices.resize(b.vertices.size() + kPadding);
   return b;
 }
 
 void add_point(Buffers& b, const vec3& p, float radius) {
   b.vertices.insert(b.vertices.end(), {p.x, p.y, p.z, radius});
+  ++b.n_vertices;
 }
 
-Buffers sphere_buffers(const scene::Geometry& geometry) {
+Buffers buffers_of(primitives::SphereKind, const scene::Scene&, const scene::Geometry& geometry) {
   Buffers b;
   for (const scene::SphereGeometry& s : geometry.spheres) add_point(b, s.center, s.radius);
   return b;
 }
 
-Buffers cone_buffers(const scene::Geometry& geometry) {
+Buffers buffers_of(primitives::ConeKind, const scene::Scene&, const scene::Geometry& geometry) {
   Buffers b;
   for (const scene::ConeGeometry& c : geometry.cones) {
-    b.indices.push_back(static_cast<std::uint32_t>(b.vertices.size() / 4));
+    b.indices.push_back(static_cast<std::uint32_t>(b.n_vertices));
     b.flags.push_back(kOpenCone);
     add_point(b, c.base, c.base_radius);
     add_point(b, c.apex, c.apex_radius);
@@ -54,14 +61,21 @@ Buffers cone_buffers(const scene::Geometry& geometry) {
   return b;
 }
 
+Buffers buffers_of(primitives::DiscKind, const scene::Scene&, const scene::Geometry& geometry) {
+  Buffers b;
+  for (const scene::DiscGeometry& d : geometry.discs) {
+    add_point(b, d.center, d.radius);
+    b.normals.insert(b.normals.end(), {d.normal.x, d.normal.y, d.normal.z});
+  }
+  if (!b.normals.empty()) b.normals.resize(b.normals.size() + kPadding);
+  return b;
+}
+
 class EmbreeBuild {
  public:
-  EmbreeBuild(const scene::Scene& scene, const scene::Geometry& geometry)
-      : device_(open_embree()),
-        triangles_(triangle_buffers(scene, geometry)),
-        spheres_(sphere_buffers(geometry)),
-        cones_(cone_buffers(geometry)),
-        n_vertices_(scene.vertices.size()) {}
+  EmbreeBuild(const scene::Scene& scene, const scene::Geometry& geometry) : device_(open_embree()) {
+    primitives::for_each_kind([&](auto kind) { buffers_[kind.kNumber] = buffers_of(kind, scene, geometry); });
+  }
   ~EmbreeBuild() { rtcReleaseDevice(device_); }
   EmbreeBuild(const EmbreeBuild&) = delete;
   EmbreeBuild& operator=(const EmbreeBuild&) = delete;
@@ -69,9 +83,7 @@ class EmbreeBuild {
   BuildTimes run() const {
     const RTCScene made = rtcNewScene(device_);
     rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_MEDIUM);
-    if (!triangles_.indices.empty()) attach_triangles(made);
-    if (!spheres_.vertices.empty()) attach_spheres(made);
-    if (!cones_.indices.empty()) attach_cones(made);
+    primitives::for_each_kind([&](auto kind) { attach(made, kind); });
     const BuildClock clock;
     rtcCommitScene(made);
     const BuildTimes times{clock.wall(), 0, clock.cpu()};
@@ -87,39 +99,31 @@ class EmbreeBuild {
     rtcSetSharedGeometryBuffer(g, type, 0, format, data, 0, stride, n);
   }
 
-  static void attach(RTCScene into, RTCGeometry g) {
+  template <class Kind>
+  void attach(RTCScene into, Kind kind) const {
+    const Buffers& b = buffers_[Kind::kNumber];
+    if (b.n_vertices == 0) return;
+    const RTCGeometry g = rtcNewGeometry(device_, embree_type(kind));
+    constexpr std::size_t kFloats = Kind::kIsShape ? 4 : 3;
+    share(g, RTC_BUFFER_TYPE_VERTEX, Kind::kIsShape ? RTC_FORMAT_FLOAT4 : RTC_FORMAT_FLOAT3,
+          b.vertices.data(), kFloats * sizeof(float), b.n_vertices);
+    if (!b.normals.empty())
+      share(g, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, b.normals.data(), 3 * sizeof(float), b.n_vertices);
+    if (!Kind::kIsShape)
+      share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, b.indices.data(), 3 * sizeof(std::uint32_t),
+            b.indices.size() / 3);
+    else if (!b.indices.empty())
+      share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, b.indices.data(), sizeof(std::uint32_t),
+            b.indices.size());
+    if (!b.flags.empty())
+      share(g, RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, b.flags.data(), 1, b.flags.size());
     rtcCommitGeometry(g);
     rtcAttachGeometry(into, g);
     rtcReleaseGeometry(g);
   }
 
-  void attach_triangles(RTCScene into) const {
-    const RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    share(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, triangles_.vertices.data(), 12, n_vertices_);
-    share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles_.indices.data(), 12,
-          triangles_.indices.size() / 3);
-    attach(into, g);
-  }
-
-  void attach_spheres(RTCScene into) const {
-    const RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    share(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres_.vertices.data(), 16,
-          spheres_.vertices.size() / 4);
-    attach(into, g);
-  }
-
-  void attach_cones(RTCScene into) const {
-    const RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE);
-    share(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, cones_.vertices.data(), 16,
-          cones_.vertices.size() / 4);
-    share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, cones_.indices.data(), 4, cones_.indices.size());
-    share(g, RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, cones_.flags.data(), 1, cones_.flags.size());
-    attach(into, g);
-  }
-
   RTCDevice device_;
-  Buffers triangles_, spheres_, cones_;
-  std::size_t n_vertices_;
+  std::array<Buffers, primitives::kKinds> buffers_;
 };
 
 }  // namespace

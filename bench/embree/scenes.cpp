@@ -8,8 +8,6 @@ namespace kdray::bench {
 
 namespace {
 
-using scene::PrimitiveKind;
-
 template <class T>
 T* new_buffer(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t stride, std::size_t n) {
   void* const memory = rtcSetNewGeometryBuffer(g, type, 0, format, stride, n);
@@ -47,27 +45,33 @@ void fill(RTCGeometry g, const std::vector<scene::ConeGeometry>& cones) {
   }
 }
 
+void fill(RTCGeometry g, const std::vector<scene::DiscGeometry>& discs) {
+  auto* point =
+      new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), discs.size());
+  auto* normal = new_buffer<vec3>(g, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, sizeof(vec3), discs.size());
+  for (const scene::DiscGeometry& d : discs) *point++ = {d.center, d.radius}, *normal++ = d.normal;
+}
+
 template <class Primitives>
-void attach(RTCDevice device, RTCScene into, PrimitiveKind kind, RTCGeometryType type,
+void attach(RTCDevice device, RTCScene into, unsigned id, RTCGeometryType type,
             const Primitives& primitives) {
   if (primitives.empty()) return;
   const RTCGeometry g = rtcNewGeometry(device, type);
   fill(g, primitives);
   rtcCommitGeometry(g);
-  rtcAttachGeometryByID(into, g, static_cast<unsigned>(kind));
+  rtcAttachGeometryByID(into, g, id);
   rtcReleaseGeometry(g);
 }
 
-std::vector<std::uint32_t> numbers_of(const Array<scene::TriangleGeometry>& triangles) {
+template <class Kind>
+std::vector<std::uint32_t> numbers_of(Kind, const scene::Scene& scene, const scene::Geometry& geometry) {
   std::vector<std::uint32_t> numbers;
-  for (const auto& t : triangles) numbers.push_back(t.number);
-  return numbers;
-}
-
-template <class Sources, class Primitives>
-std::vector<std::uint32_t> numbers_of(const Sources& sources, const Primitives& primitives) {
-  std::vector<std::uint32_t> numbers;
-  for (const auto& p : primitives) numbers.push_back(sources[p.source].number);
+  for (const auto& p : Kind::of(geometry)) {
+    if constexpr (Kind::kIsShape)
+      numbers.push_back(Kind::of(scene)[p.source].number);
+    else
+      numbers.push_back(p.number);
+  }
   return numbers;
 }
 
@@ -82,8 +86,7 @@ RTCDevice open_embree() {
 EmbreeScenes::EmbreeScenes(const scene::Scene& scene) : device_(open_embree()) {
   const scene::Geometry geometry = scene::make_geometry(scene);
   space_ = geometry.space;
-  numbers_ = {numbers_of(geometry.triangles), numbers_of(scene.spheres, geometry.spheres),
-              numbers_of(scene.cones, geometry.cones)};
+  primitives::for_each_kind([&](auto kind) { numbers_[kind.kNumber] = numbers_of(kind, scene, geometry); });
   fast_ = build(geometry, RTC_SCENE_FLAG_NONE);
   robust_ = build(geometry, RTC_SCENE_FLAG_ROBUST);
 }
@@ -98,9 +101,9 @@ RTCScene EmbreeScenes::build(const scene::Geometry& geometry, RTCSceneFlags flag
   const RTCScene made = rtcNewScene(device_);
   rtcSetSceneFlags(made, flags);
   rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_MEDIUM);
-  attach(device_, made, PrimitiveKind::triangle, RTC_GEOMETRY_TYPE_TRIANGLE, geometry.triangles);
-  attach(device_, made, PrimitiveKind::sphere, RTC_GEOMETRY_TYPE_SPHERE_POINT, geometry.spheres);
-  attach(device_, made, PrimitiveKind::cone, RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE, geometry.cones);
+  primitives::for_each_kind([&](auto kind) {
+    attach(device_, made, kind.kNumber, embree_type(kind), decltype(kind)::of(geometry));
+  });
   rtcCommitScene(made);
   if (rtcGetDeviceError(device_) != RTC_ERROR_NONE)
     throw Error(ErrorCode::internal, "Embree refuses the scene");

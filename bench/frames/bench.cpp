@@ -90,8 +90,7 @@ class FrameBench {
     const scene::Scene& model = scene_.model();
     FrameResult r;
     r.scene = name_;
-    r.n_triangles = model.triangles.size(), r.n_spheres = model.spheres.size(),
-    r.n_cones = model.cones.size();
+    r.n_primitives = kind_counts(model);
     r.cores = cores_;
     r.device = facts_.at("name");
     r.seconds = spread_of(seconds_.at("render"));

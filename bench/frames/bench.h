@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/measure/spread.h"
+#include "bench/workload/kinds.h"
 
 namespace kdray::bench {
 
@@ -23,7 +24,7 @@ struct FramesOptions {
 
 struct FrameResult {
   std::string scene;
-  std::size_t n_triangles = 0, n_spheres = 0, n_cones = 0;
+  KindCounts n_primitives;
   int cores = 0;
   std::string device;
   Spread seconds;                                      // seconds.render

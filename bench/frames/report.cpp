@@ -25,7 +25,7 @@ Json optional_json(const std::optional<Spread>& spread) {
 
 Json json_of(const FrameResult& f) {
   Json json = {{"scene", f.scene},
-               {"primitives", {{"triangles", f.n_triangles}, {"spheres", f.n_spheres}, {"cones", f.n_cones}}},
+               {"primitives", json_of(f.n_primitives)},
                {"cores", f.cores},
                {"device", f.device},
                {"seconds", json_of(f.seconds)},

@@ -46,9 +46,9 @@ class Making {
         surfaces_(scene),
         offset_(offset_of(scene)),
         materials_(scene.primitive_count()) {
-    for (const auto& t : scene.triangles) materials_[t.number] = t.material;
-    for (const auto& s : scene.spheres) materials_[s.number] = s.material;
-    for (const auto& c : scene.cones) materials_[c.number] = c.material;
+    primitives::for_each_kind([&](auto kind) {
+      for (const auto& p : decltype(kind)::of(scene)) materials_[p.number] = p.material;
+    });
   }
 
   std::vector<LifeRay> make() {

@@ -76,6 +76,18 @@ void write_triangle(std::ostream& out, const scene::Scene& scene, const scene::T
   out << "}\n";
 }
 
+void write_shape(std::ostream& out, const scene::Sphere& s) {
+  fmt::print(out, "sphere {{ {},{:.9g} {} }}\n", vector(s.center), s.radius, material(s.material));
+}
+void write_shape(std::ostream& out, const scene::Cone& c) {
+  fmt::print(out, "cone {{ {},{:.9g},{},{:.9g} open {} }}\n", vector(c.base), c.base_radius, vector(c.apex),
+             c.apex_radius, material(c.material));
+}
+void write_shape(std::ostream& out, const scene::Disc& d) {
+  fmt::print(out, "disc {{ {},{},{:.9g} {} }}\n", vector(d.center), vector(d.normal), d.radius,
+             material(d.material));
+}
+
 // A mesh for each material: a texture per triangle would cost POV-Ray memory, and interiors are a mesh's own.
 void write_meshes(std::ostream& out, const scene::Scene& scene) {
   std::vector<std::vector<const scene::Triangle*>> by_material(scene.materials.size());
@@ -104,11 +116,9 @@ void write_pov(std::ostream& out, const scene::Scene& scene, double aspect, int 
   write_camera(out, scene.camera.value_or(scene::Camera{}), aspect);
   for (const scene::Light& light : scene.lights) write_light(out, light);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) write_material(out, scene.materials[i], i);
-  for (const scene::Sphere& s : scene.spheres)
-    fmt::print(out, "sphere {{ {},{:.9g} {} }}\n", vector(s.center), s.radius, material(s.material));
-  for (const scene::Cone& c : scene.cones)
-    fmt::print(out, "cone {{ {},{:.9g},{},{:.9g} open {} }}\n", vector(c.base), c.base_radius, vector(c.apex),
-               c.apex_radius, material(c.material));
+  primitives::for_each_shape([&](auto kind) {
+    for (const auto& shape : decltype(kind)::of(scene)) write_shape(out, shape);
+  });
   write_meshes(out, scene);
 }
 

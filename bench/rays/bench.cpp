@@ -83,14 +83,7 @@ class RaysScene {
  private:
   RaysRun described(const nlohmann::json& device) const {
     const scene::Scene& model = scene_.model();
-    return {name_,
-            model.triangles.size(),
-            model.spheres.size(),
-            model.cones.size(),
-            cores_of(device),
-            device.at("name"),
-            device.value("vectors", ""),
-            {}};
+    return {name_, kind_counts(model), cores_of(device), device.at("name"), device.value("vectors", ""), {}};
   }
 
   // Once for all numbers of cores, on the whole device: the binary traversal is slow, and its hits are the

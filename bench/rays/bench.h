@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/race/race.h"
+#include "bench/workload/kinds.h"
 
 namespace kdray::bench {
 
@@ -32,7 +33,7 @@ struct ClassResult {
 // A scene on a number of cores.
 struct RaysRun {
   std::string scene;
-  std::size_t n_triangles = 0, n_spheres = 0, n_cones = 0;
+  KindCounts n_primitives;
   int cores = 0;  // as used
   std::string device, vectors;
   std::vector<ClassResult> classes;

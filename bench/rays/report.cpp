@@ -26,14 +26,8 @@ std::string version_of_embree(const RaysOptions& options) {
 }
 
 std::string heading(const RaysRun& run) {
-  std::string out = std::filesystem::path(run.scene).filename().string() + ":";
-  const auto add = [&](std::size_t n, const char* what) {
-    if (n > 0) out += fmt::format(" {} {},", n, what);
-  };
-  add(run.n_triangles, "triangles");
-  add(run.n_spheres, "spheres");
-  add(run.n_cones, "cones");
-  return out + fmt::format(" {} core{}", run.cores, run.cores == 1 ? "" : "s");
+  return fmt::format("{}: {}, {} core{}", std::filesystem::path(run.scene).filename().string(),
+                     in_words(run.n_primitives), run.cores, run.cores == 1 ? "" : "s");
 }
 
 // How many times as fast as `other`, or 0 when one is missing.
@@ -148,13 +142,9 @@ Json json_of(const ClassResult& c) {
 }
 
 Json json_of(const RaysRun& run) {
-  Json json = {
-      {"scene", run.scene},
-      {"primitives", {{"triangles", run.n_triangles}, {"spheres", run.n_spheres}, {"cones", run.n_cones}}},
-      {"cores", run.cores},
-      {"device", run.device},
-      {"vectors", run.vectors},
-      {"classes", Json::array()}};
+  Json json = {{"scene", run.scene},     {"primitives", json_of(run.n_primitives)},
+               {"cores", run.cores},     {"device", run.device},
+               {"vectors", run.vectors}, {"classes", Json::array()}};
   for (const ClassResult& c : run.classes) json["classes"].push_back(json_of(c));
   return json;
 }

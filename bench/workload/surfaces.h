@@ -18,8 +18,7 @@ class Surfaces {
 
  private:
   struct Entry {
-    scene::PrimitiveKind kind;
-    std::uint32_t index;
+    std::uint32_t kind, index;
   };
 
   const scene::Scene& scene_;

@@ -65,6 +65,10 @@
 #define KDRAY_ROW_DISC_INDEX 7
 #define KDRAY_DISC_ROWS 8
 
+#define KDRAY_CHECK_ROWS(NAME, name, names, Struct) \
+  typedef char kdray_last_row_of_##name[KDRAY_ROW_##NAME##_INDEX == KDRAY_##NAME##_ROWS - 1 ? 1 : -1];
+KDRAY_KINDS(KDRAY_CHECK_ROWS)
+
 KDRAY_LAYOUT_BEGIN
 typedef struct WideNode {
   float bounds[3][2][8];  // [axis][0: lo, 1: hi][slot]

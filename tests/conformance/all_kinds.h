@@ -1,33 +1,17 @@
-// What    The list of kinds as the types of a typed test, named as the kinds are: a kind that is added to
-//         kernels/layout/kinds.h is held to everything here, and fails by its name.
+// What    Scenes of one kind, and of all kinds.
 #pragma once
-
-#include <gtest/gtest.h>
-
-#include <string>
 
 #include "conformance/samples.h"
 #include "oracle/build_scene.h"
-#include "primitives/shapes.h"
+#include "support/all_kinds.h"
 
 namespace kdray::test {
-
-#define KDRAY_ANOTHER_KIND(NAME, name, names, Struct) , primitives::Struct##Kind
-using AllKinds = testing::Types<primitives::TriangleKind KDRAY_SHAPES(KDRAY_ANOTHER_KIND)>;
-#undef KDRAY_ANOTHER_KIND
-
-struct KindNames {
-  template <class Kind>
-  static std::string GetName(int) {
-    return Kind::kName;
-  }
-};
 
 // A scene of n random primitives of one kind, with what makes rays of every sort: a light that throws
 // shadows, mirrors and glass.
 template <class Kind>
 scene::Scene scene_of(int n, std::uint64_t seed) {
-  Random random(seed);
+  Draw random(seed);
   scene::Scene s;
   scene::Material matte = oracle::matte(vec3(0.7f, 0.5f, 0.3f)), mirror = matte, glass = matte;
   mirror.reflect = vec3(0.4f), glass.transmit = vec3(0.5f), glass.index = 1.3f;
@@ -42,7 +26,7 @@ scene::Scene scene_of(int n, std::uint64_t seed) {
 // Some of every kind.
 inline scene::Scene mixed_scene(int n_of_each, std::uint64_t seed) {
   scene::Scene s = scene_of<primitives::TriangleKind>(0, seed);
-  Random random(seed);
+  Draw random(seed);
   for (int i = 0; i < n_of_each; ++i)
     primitives::for_each_kind(
         [&](auto kind) { Samples<decltype(kind)>::add(s, static_cast<std::uint32_t>(i % 3), random); });

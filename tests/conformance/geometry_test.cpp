@@ -27,7 +27,7 @@ class GeometryOf : public testing::Test {
 
   scene::Scene scene_;
   scene::Geometry geometry_;
-  Random random_{kSeed};
+  Draw random_{kSeed};
 };
 TYPED_TEST_SUITE(GeometryOf, AllKinds, KindNames);
 

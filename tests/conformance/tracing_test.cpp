@@ -1,4 +1,4 @@
-// What every kind owes to rays: hits as the oracle has them, the same bits by every walk, in both modes, with
+// What every kind owes to rays: hits and pictures as the oracle has them, the same bits by every walk, in both modes, with
 // every rule of skipping off, from a cache; and soundness by verify's own measure.
 #include <algorithm>
 #include <cstring>
@@ -7,6 +7,7 @@
 
 #include "cache/entry.h"
 #include "conformance/all_kinds.h"
+#include "image/like_oracle.h"
 #include "image/render.h"
 #include "kdray/kdray.h"
 #include "layout/rules.h"
@@ -28,7 +29,7 @@ Ray ray_from(const vec3& o, const vec3& d) {
 // From around the scene and from within, at places on primitives, in every direction and along the axes.
 template <class Kind>
 std::vector<Ray> rays_for(const scene::Scene& s, std::size_t n) {
-  Random random(kSeed + 1);  // another than the scene's, or rays would begin where primitives are
+  Draw random(kSeed + 1);  // another than the scene's, or rays would begin where primitives are
   const scene::Geometry g = scene::make_geometry(s);
   const auto& all = Kind::of(g);
   std::vector<Ray> rays;
@@ -90,12 +91,17 @@ void expect_as_oracle(const scene::Scene& s, const std::vector<Ray>& rays, const
       apart = std::abs(wide.t - narrow.t) + tolerance / sine;
     }
     ++sure;
-    const bool found =
-        hits[i].primitive == narrow.primitive &&
-        (!wide.found() || std::abs(hits[i].t - narrow.t) <= apart + tolerance * (1 + narrow.t));
+    const Hit& hit = hits[i];
+    const auto near = [](double a, double b, double most) { return std::abs(a - b) <= most; };
+    // What is small, or long and thin, is crossed within some hundred times its error.
+    const double across = 0.02 + 100 * apart;
+    const bool found = hit.primitive == narrow.primitive &&
+                       (!narrow.found() || (near(hit.t, narrow.t, apart + tolerance * (1 + narrow.t)) &&
+                                            near(hit.u, narrow.u, across) && near(hit.v, narrow.v, across)));
     if (!found && ++wrong < 5)
-      ADD_FAILURE() << "ray " << i << ", seed " << kSeed << ": t " << hits[i].t << " of " << hits[i].primitive
-                    << ", the oracle's " << narrow.t << " of " << narrow.primitive;
+      ADD_FAILURE() << "ray " << i << ", seed " << kSeed << ": t " << hit.t << " u " << hit.u << " v "
+                    << hit.v << " of " << hit.primitive << ", the oracle's " << narrow.t << " " << narrow.u
+                    << " " << narrow.v << " of " << narrow.primitive;
   }
   EXPECT_EQ(wrong, 0);
   EXPECT_GT(sure, static_cast<int>(rays.size() * 3 / 4));  // many aim at rims and edges
@@ -128,6 +134,15 @@ TYPED_TEST(TracingOf, DoublePrecisionIsFiner) {
   // The scene itself is in float: what it is rounded to is what the oracle's is moved by.
   expect_as_oracle(this->scene_, rays,
                    renderer.trace(rays, false, 1, Traversal::automatic, Precision::float64), 1e-6, 1e-6);
+}
+
+// Normals, materials, sides: matte ones, mirrors and glass, as the oracle shades them.
+TYPED_TEST(TracingOf, PicturesAreTheOracles) {
+  const scene::Scene model = scene_of<TypeParam>(40, kSeed + 2);
+  const RenderOptions options = exact_options(72, 54, 3);
+  Renderer renderer(Scene(scene::Scene(model)), {}, this->device());
+  const Picture picture = renderer.render(options);
+  expect_like(picture, oracle::trace_picture(model, options.width, options.height, options.depth));
 }
 
 // Both modes, both schedules, and with no work left out: one picture. It shows something.

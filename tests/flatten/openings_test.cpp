@@ -129,7 +129,7 @@ TEST(Openings, NorWithEmptyCells) {
   config.tight_cells = false;
   for (int i = 0; i < 30; ++i) {
     scene::Geometry g;
-    test::add_spheres(g, random, 3 + i % 4, 0.2f);
+    test::add_primitives(primitives::SphereKind(), g, random, 3 + i % 4, 0.2f);
     expect_least(g, config);
   }
 }

@@ -50,23 +50,21 @@ void add_layers(scene::Geometry& g) {
 }
 
 struct NamedGeometry {
-  const char* name;
+  std::string name;
   scene::Geometry geometry;
 };
 
 std::vector<NamedGeometry> geometries() {
   Random random(kSeed);
   std::vector<NamedGeometry> all;
-  const auto add = [&all](const char* name) -> scene::Geometry& {
-    return all.emplace_back(NamedGeometry{name, {}}).geometry;
+  const auto add = [&all](std::string name) -> scene::Geometry& {
+    return all.emplace_back(NamedGeometry{std::move(name), {}}).geometry;
   };
   add("empty");
-  test::add_triangles(add("one triangle"), random, 1, 1);
-  test::add_spheres(add("one sphere"), random, 1, 1);
-  test::add_cones(add("one cone"), random, 1, 1);
-  test::add_triangles(add("triangles"), random, 1500, 0.5f);
-  test::add_spheres(add("spheres"), random, 800, 0.7f);
-  test::add_cones(add("cones"), random, 800, 0.7f);
+  primitives::for_each_kind([&](auto kind) {
+    test::add_primitives(kind, add(std::string("one ") + kind.kName), random, 1, 1);
+    test::add_primitives(kind, add(kind.kNames), random, kind.kIsShape ? 800 : 1500, 0.6f);
+  });
   add("mixed") = test::mixed_geometry(random, 800, 0.5f);
   add("large and mixed") = test::mixed_geometry(random, 200, 6);
   test::add_architecture(add("architecture"), random, 700);
@@ -98,7 +96,7 @@ const std::vector<Subject>& subjects() {
             const kdtree::Tree tree = kdtree::build(g.geometry, config);
             const FlatScene flat = flat_of(g.geometry, tree);
             for (const int block : {4, 8})
-              made.push_back({std::string(g.name) + ", leaves for blocks of " + std::to_string(leaf_block) +
+              made.push_back({g.name + ", leaves for blocks of " + std::to_string(leaf_block) +
                                   (loose ? ", loose" : "") + (groups ? ", groups" : "") + ", in blocks of " +
                                   std::to_string(block),
                               tree, flat, make_wide(tree, flat, block)});
@@ -309,9 +307,8 @@ TEST(Wide, ThreadsDoNotShow) {
   const WideForm one = made_by(1), four = made_by(4);
   EXPECT_EQ(one.stack_size, four.stack_size);
   expect_same_bytes(one.nodes, four.nodes);
-  expect_same_bytes(one.triangle_blocks, four.triangle_blocks);
-  expect_same_bytes(one.sphere_blocks, four.sphere_blocks);
-  expect_same_bytes(one.cone_blocks, four.cone_blocks);
+  primitives::for_each_kind(
+      [&](auto kind) { expect_same_bytes(decltype(kind)::blocks_of(one), decltype(kind)::blocks_of(four)); });
 }
 
 // ---- Blocks

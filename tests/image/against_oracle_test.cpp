@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "image/like_oracle.h"
 #include "image/render.h"
 #include "image/scenes.h"
 #include "oracle/oracle.h"
@@ -17,48 +18,6 @@ namespace kdray::test {
 namespace {
 
 constexpr int kSize = 128;
-// A quarter of an 8-bit step; float and double are 1e-4 apart at the most.
-constexpr double kTolerance = 1e-3;
-constexpr double kDifferingEdges = 0.005;  // share of all pixels
-
-struct Verdict {
-  int edges = 0, differing_edges = 0, wrong = 0;
-  double worst = 0;  // of the pixels that are no edges
-  int worst_x = 0, worst_y = 0;
-  dvec3 found{0}, wanted{0};
-};
-
-Verdict judge(const Picture& picture, const oracle::OracleResult& truth) {
-  Verdict v;
-  for (std::size_t i = 0; i < truth.rgb.size(); ++i) {
-    const dvec3 found(picture.rgb[3 * i], picture.rgb[3 * i + 1], picture.rgb[3 * i + 2]);
-    const dvec3 apart = glm::abs(found - truth.rgb[i]);
-    const double difference = std::max({apart.x, apart.y, apart.z});
-    const bool differs = !(difference <= kTolerance);  // so that NaN differs
-    v.edges += truth.edge[i];
-    v.differing_edges += truth.edge[i] && differs;
-    if (truth.edge[i]) continue;
-    v.wrong += differs;
-    if (difference <= v.worst) continue;
-    v.worst = difference, v.found = found, v.wanted = truth.rgb[i];
-    v.worst_x = static_cast<int>(i % truth.width), v.worst_y = static_cast<int>(i / truth.width);
-  }
-  return v;
-}
-
-void expect_equal(const Picture& picture, const oracle::OracleResult& truth) {
-  ASSERT_EQ(picture.width, truth.width);
-  ASSERT_EQ(picture.height, truth.height);
-  ASSERT_EQ(picture.rgb.size(), 3 * truth.rgb.size());
-  const Verdict v = judge(picture, truth);
-  EXPECT_EQ(v.wrong, 0) << fmt::format(
-      "worst at ({}, {}): {:.4f} {:.4f} {:.4f} instead of {:.4f} {:.4f} {:.4f}", v.worst_x, v.worst_y,
-      v.found.x, v.found.y, v.found.z, v.wanted.x, v.wanted.y, v.wanted.z);
-  EXPECT_LE(v.differing_edges, kDifferingEdges * truth.rgb.size());
-  testing::Test::RecordProperty("edges", v.edges);
-  testing::Test::RecordProperty("differing_edges", v.differing_edges);
-  testing::Test::RecordProperty("worst", fmt::format("{:.6f}", v.worst));
-}
 
 // The rays too are the same ones, within the few that an edge may decide otherwise.
 void expect_same_rays(const Renderer& renderer, const oracle::RayCounts& truth) {
@@ -87,7 +46,7 @@ void expect_like_oracle(const scene::Scene& model, const RenderOptions& options)
   const auto grid = options.grid == PixelGrid::corners ? oracle::Grid::corners : oracle::Grid::centers;
   const oracle::OracleResult truth =
       oracle::trace_picture(model, options.width, options.height, options.depth, grid);
-  expect_equal(picture, truth);
+  expect_like(picture, truth);
   expect_same_rays(renderer, truth.counts);
 }
 
@@ -155,7 +114,7 @@ TEST(AgainstOracle, TheDefaultCutOfWeightsIsInvisible) {
   RenderOptions options = exact_options(kSize, kSize, 8);
   options.min_weight = -1;  // the default: below half of an 8-bit step in the worst case
   Renderer renderer(scene, {}, device_of());
-  expect_equal(renderer.render(options), oracle::trace_picture(model, kSize, kSize, 8));
+  expect_like(renderer.render(options), oracle::trace_picture(model, kSize, kSize, 8));
 }
 
 constexpr const char* kNff = R"(b 0.2 0.4 0.7
@@ -200,7 +159,7 @@ TEST(AgainstOracle, AnNffFileAllTheWay) {
   Renderer renderer(scene, {}, device_of());
   const RenderOptions options = exact_options(kSize, kSize);
   const oracle::OracleResult truth = oracle::trace_picture(scene.model(), kSize, kSize, options.depth);
-  expect_equal(renderer.render(options), truth);
+  expect_like(renderer.render(options), truth);
   expect_same_rays(renderer, truth.counts);
 }
 

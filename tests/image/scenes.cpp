@@ -3,7 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "conformance/all_kinds.h"
 #include "oracle/build_scene.h"
+#include "support/scene_fields.h"
 
 namespace kdray::test {
 namespace {
@@ -96,6 +98,10 @@ scene::Scene cones_and_cylinders() {
   return b.scene();
 }
 
+scene::Scene every_kind() {
+  return mixed_scene(4, 23);
+}
+
 scene::Scene every_light() {
   SceneBuilder b;
   b.quad({-20, -1, 20}, {40, 0, 0}, {0, 0, -40}, plastic(vec3(0.7f), 6));
@@ -150,12 +156,7 @@ scene::Scene flat_glass() {
 
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset) {
   const auto place = [&](dvec3& p) { p = p * scale + offset; };
-  for (dvec3& v : model.vertices) place(v);
-  for (scene::Sphere& s : model.spheres) place(s.center), s.radius *= scale;
-  for (scene::Cone& c : model.cones) {
-    place(c.base), place(c.apex);
-    c.base_radius *= scale, c.apex_radius *= scale;
-  }
+  scale_and_move(model, scale, offset);
   for (scene::Light& l : model.lights) {
     place(l.position);
     l.range *= scale;
@@ -172,6 +173,7 @@ const std::vector<NamedScene>& small_scenes() {
       {"glass_and_mirror_balls", glass_and_mirror_balls},
       {"smooth_meshes", smooth_meshes},
       {"cones_and_cylinders", cones_and_cylinders},
+      {"every_kind", every_kind},
       {"every_light", every_light},
       {"flat_glass", flat_glass},
       {"scaled_down", [] { return moved(glass_and_mirror_balls(), 1e-4, dvec3(0)); }},

@@ -18,6 +18,7 @@ void add_smooth_ball(scene::Scene& scene, const dvec3& center, double radius, in
 scene::Scene glass_and_mirror_balls();  // spheres: nested, glass in glass, a mirror; a floor
 scene::Scene smooth_meshes();           // vertex normals: matte, glossy, glass, mirror
 scene::Scene cones_and_cylinders();     // pointed, truncated, cylinders, glass and mirror ones, seen into
+scene::Scene every_kind();              // random ones of each kind: matte, mirrors, glass
 scene::Scene every_light();             // point with attenuation, range, directional, spots; emission
 scene::Scene flat_glass();              // a slab, a prism with total reflection, index 1, a box of mirrors
 

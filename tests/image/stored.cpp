@@ -33,15 +33,17 @@ void add_triangles(const flatten::FlatScene& flat, scene::Scene& out) {
   }
 }
 
-void add_curved(const flatten::FlatScene& flat, scene::Scene& out) {
-  for (const layout::Sphere& s : flat.spheres)
-    out.spheres.push_back({vector(s.center), s.radius, s.material, s.number});
-  for (const layout::Cone& c : flat.cones) {
-    const double height = c.height, base_radius = c.base_radius, slope = c.slope;
-    const dvec3 base = vector(c.base), apex = base + glm::normalize(vector(c.axis)) * height;
-    out.cones.push_back(
-        {base, apex, base_radius, std::max(0.0, base_radius + slope * height), c.material, c.number});
-  }
+// A kind that lacks one does not compile.
+scene::Sphere as_told(const layout::Sphere& s) {
+  return {vector(s.center), s.radius, s.material, s.number};
+}
+scene::Cone as_told(const layout::Cone& c) {
+  const double height = c.height, base_radius = c.base_radius, slope = c.slope;
+  const dvec3 base = vector(c.base), apex = base + glm::normalize(vector(c.axis)) * height;
+  return {base, apex, base_radius, std::max(0.0, base_radius + slope * height), c.material, c.number};
+}
+scene::Disc as_told(const layout::Disc& d) {
+  return {vector(d.center), vector(d.normal), d.radius, d.material, d.number};
 }
 
 void add_materials(const flatten::FlatScene& flat, scene::Scene& out) {
@@ -66,7 +68,9 @@ Stored as_stored(const scene::Scene& scene) {
   stored.space = geometry.space;
   scene::Scene& out = stored.model;
   add_triangles(flat, out);
-  add_curved(flat, out);
+  primitives::for_each_shape([&](auto kind) {
+    for (const auto& shape : decltype(kind)::of(flat)) decltype(kind)::of(out).push_back(as_told(shape));
+  });
   add_materials(flat, out);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     scene::Light light = scene.lights[i];

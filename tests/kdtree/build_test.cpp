@@ -50,11 +50,13 @@ TEST(Build, EmptyGeometryIsOneEmptyLeaf) {
 }
 
 TEST(Build, OnePrimitiveOfEachKind) {
-  scene::Geometry triangle, sphere, cone;
-  add_triangle(triangle, {0, 0, 0}, {1, 0, 0}, {0, 1, 1});
-  sphere.spheres.push_back({{1, 2, 3}, 2, 0});
-  cone.cones.push_back({{0, 0, 0}, {1, 2, 3}, 1, 0.5f, 0});
-  for (const scene::Geometry& g : {triangle, sphere, cone}) check_tree(g);
+  Random random(10);
+  primitives::for_each_kind([&](auto kind) {
+    SCOPED_TRACE(kind.kName);
+    scene::Geometry g;
+    add_primitives(kind, g, random, 1, 1);
+    check_tree(g);
+  });
 }
 
 TEST(Build, RandomPrimitives) {
@@ -226,7 +228,7 @@ TEST(Build, ThreadsDoNotShow) {
   Random random(18);
   scene::Geometry g;
   add_triangles(g, random, 40000, 0.3f);
-  add_spheres(g, random, 5000, 0.3f);
+  primitives::for_each_shape([&](auto kind) { add_primitives(kind, g, random, 2000, 0.3f); });
   for (const Quality quality : kQualities) {
     SCOPED_TRACE(testing::Message() << "quality " << static_cast<int>(quality));
     BuildConfig config;

@@ -93,10 +93,10 @@ class ShapeCheck {
       if (i > leaf.left) {
         ASSERT_LT(tree_.refs[i - 1], r);
       }
-      const std::size_t sizes[3] = {geometry_.triangles.size(), geometry_.spheres.size(),
-                                    geometry_.cones.size()};
-      ASSERT_LT(static_cast<std::uint32_t>(ref_kind(r)), 3u);
-      ASSERT_LT(ref_index(r), sizes[static_cast<std::uint32_t>(ref_kind(r))]);
+      const auto kind = static_cast<std::uint32_t>(ref_kind(r));
+      ASSERT_LT(kind, primitives::kKinds);
+      ASSERT_LT(ref_index(r),
+                primitives::with_kind(kind, [&](auto k) { return decltype(k)::of(geometry_).size(); }));
     }
   }
 
@@ -169,38 +169,21 @@ void check_complete(const Tree& tree, const scene::Geometry& geometry, int per_p
                     std::uint64_t seed) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   Random random(seed);
-  using scene::PrimitiveKind;
-  const auto check_all = [&](PrimitiveKind kind, std::size_t n, double tolerance, auto point) {
-    for (std::uint32_t i = 0; i < n && !testing::Test::HasFatalFailure(); ++i) {
-      for (int sample = 0; sample < per_primitive; ++sample)
-        expect_found(tree, point(i, sample), tolerance, kdtree::make_ref(kind, i));
-    }
-  };
-  check_all(PrimitiveKind::triangle, geometry.triangles.size(), 0, [&](std::uint32_t i, int sample) {
-    return triangle_point(geometry.triangles[i], sample, random);
+  Draw draw(seed);
+  primitives::for_each_kind([&](auto kind) {
+    using Kind = decltype(kind);
+    SCOPED_TRACE(Kind::kName);
+    const auto& all = Kind::of(geometry);
+    for (std::uint32_t i = 0; i < all.size() && !testing::Test::HasFatalFailure(); ++i)
+      for (int sample = 0; sample < per_primitive; ++sample) {
+        const kdtree::Ref ref = kdtree::make_ref(Kind::kKind, i);
+        // Points of shapes are off by some rounding of doubles of size 20.
+        if constexpr (Kind::kIsShape)
+          expect_found(tree, dvec3(Samples<Kind>::point(all[i], draw)), 1e-14, ref);
+        else
+          expect_found(tree, triangle_point(all[i], sample, random), 0, ref);
+      }
   });
-  // These points are off by some rounding of doubles of size 20.
-  check_all(PrimitiveKind::sphere, geometry.spheres.size(), 1e-14,
-            [&](std::uint32_t i, int) { return surface_point(geometry.spheres[i], random); });
-  check_all(PrimitiveKind::cone, geometry.cones.size(), 1e-14,
-            [&](std::uint32_t i, int) { return surface_point(geometry.cones[i], random); });
-}
-
-dvec3 surface_point(const scene::SphereGeometry& s, Random& random) {
-  dvec3 d;
-  do {
-    d = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)};
-  } while (glm::length(d) < 0.1);
-  return dvec3(s.center) + static_cast<double>(s.radius) * glm::normalize(d);
-}
-
-dvec3 surface_point(const scene::ConeGeometry& c, Random& random) {
-  const dvec3 axis = glm::normalize(dvec3(c.apex) - dvec3(c.base));
-  const dvec3 helper = std::abs(axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-  const dvec3 u = glm::normalize(glm::cross(axis, helper)), v = glm::cross(axis, u);
-  const double s = uniform(random, 0, 1), a = uniform(random, 0, 6.2831853f);
-  const double radius = c.base_radius + s * (static_cast<double>(c.apex_radius) - c.base_radius);
-  return dvec3(c.base) + s * (dvec3(c.apex) - dvec3(c.base)) + radius * (std::cos(a) * u + std::sin(a) * v);
 }
 
 }  // namespace kdray::test

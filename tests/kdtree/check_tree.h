@@ -15,8 +15,4 @@ void check_shape(const kdtree::Tree& tree, const scene::Geometry& geometry, int 
 void check_complete(const kdtree::Tree& tree, const scene::Geometry& geometry, int per_primitive,
                     std::uint64_t seed);
 
-// A surface point of a sphere or cone, to double precision.
-dvec3 surface_point(const scene::SphereGeometry& s, Random& random);
-dvec3 surface_point(const scene::ConeGeometry& c, Random& random);
-
 }  // namespace kdray::test

@@ -1,4 +1,4 @@
-// Clipped bounds against exact arithmetic (triangles) and closed forms (spheres and cones).
+// Clipped bounds against exact arithmetic (triangles) and closed forms (shapes).
 #include "kdtree/clip.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include "kdtree/integer_case.h"
 #include "kdtree/shapes.h"
 #include "math/rounding.h"
+#include "support/all_kinds.h"
 
 namespace kdray::test {
 namespace {
@@ -145,7 +146,7 @@ TEST(ClipTriangle, ContainsItsPoints) {
   EXPECT_GT(n_inside, 10000);
 }
 
-// ---- spheres and cones
+// ---- shapes
 // ---------------------------------------------------------------------------------------------
 
 // `found` must contain [lo, hi] and be no looser than rounding.
@@ -194,14 +195,33 @@ TEST(ClipCone, ClosedForms) {
   expect_bounds(primitives::clip(pointed, {{1, -9, -9}, {9, 9, 9}}), {1, -2, 0}, {2, 2, 2});
 }
 
+TEST(ClipDisc, ClosedForms) {
+  const scene::DiscGeometry flat{{0, 0, 1}, {0, 0, 1}, 2, 0};
+  expect_bounds(primitives::clip(flat, {{-9, -9, 0}, {9, 9, 2}}), {-2, -2, 1}, {2, 2, 1});
+  const double chord = std::sqrt(3.0);
+  expect_bounds(primitives::clip(flat, {{1, -9, 0}, {9, 9, 2}}), {1, -chord, 1}, {2, chord, 1});
+  EXPECT_TRUE(primitives::clip(flat, {{-9, -9, 1.5f}, {9, 9, 2}}).empty());   // above it
+  EXPECT_TRUE(primitives::clip(flat, {{1.5f, 1.5f, 0}, {9, 9, 2}}).empty());  // off the corner of its box
+  EXPECT_FALSE(
+      primitives::clip(flat, {{-0.5f, -0.5f, 1}, {0.5f, 0.5f, 2}}).empty());  // touched; it is filled
+  // A slanted one: the box's floor cuts it along a chord.
+  const float half = std::sqrt(0.5f);
+  const scene::DiscGeometry slanted{{0, 0, 0}, {half, 0, half}, 2, 0};
+  expect_bounds(primitives::clip(slanted, {{-9, -9, 0}, {9, 9, 9}}), {-std::sqrt(2.0), -2, 0},
+                {0, 2, std::sqrt(2.0)});
+  EXPECT_TRUE(primitives::clip(slanted, {{0.25f, -9, 0.25f}, {9, 9, 9}}).empty());  // its plane passes by
+}
+
 // Points of the surface in random boxes lie in the bounds, but for the point's own rounding.
-template <class Primitive>
-void check_samples(const std::vector<Primitive>& primitives, Random& random) {
+template <class Kind>
+void check_samples(const scene::Geometry& g, Random& random) {
   constexpr double kRounding = 1e-14;  // of points of size 20 in double
   int n_inside = 0;
-  for (const Primitive& p : primitives) {
+  Draw draw(random());
+  const auto point = [&](const auto& p) { return dvec3(Samples<Kind>::point(p, draw)); };
+  for (const auto& p : Kind::of(g)) {
     for (int trial = 0; trial < 20; ++trial) {
-      const dvec3 middle = surface_point(p, random);
+      const dvec3 middle = point(p);
       Bounds box;
       for (int k = 0; k < 3; ++k) {
         box.lo[k] = static_cast<float>(middle[k]) - uniform(random, 0, 1);
@@ -209,7 +229,7 @@ void check_samples(const std::vector<Primitive>& primitives, Random& random) {
       }
       const Bounds found = clip(p, box);
       for (int sample = 0; sample < 40; ++sample) {
-        const dvec3 q = sample == 0 ? middle : surface_point(p, random);
+        const dvec3 q = sample == 0 ? middle : point(p);
         bool inside = true;
         for (int k = 0; k < 3; ++k) inside &= box.lo[k] <= q[k] && q[k] <= box.hi[k];
         if (!inside) continue;
@@ -224,22 +244,17 @@ void check_samples(const std::vector<Primitive>& primitives, Random& random) {
   EXPECT_GT(n_inside, 1000);
 }
 
-TEST(ClipSphere, ContainsItsPoints) {
+template <class Kind>
+class ClipOf : public testing::Test {};
+TYPED_TEST_SUITE(ClipOf, AllShapes, KindNames);
+
+TYPED_TEST(ClipOf, ContainsItsPoints) {
   constexpr std::uint64_t kSeed = 7;
   SCOPED_TRACE(kSeed);
   Random random(kSeed);
   scene::Geometry g;
-  add_spheres(g, random, 400, 3);
-  check_samples(g.spheres, random);
-}
-
-TEST(ClipCone, ContainsItsPoints) {
-  constexpr std::uint64_t kSeed = 8;
-  SCOPED_TRACE(kSeed);
-  Random random(kSeed);
-  scene::Geometry g;
-  add_cones(g, random, 400, 3);
-  check_samples(g.cones, random);
+  add_primitives(TypeParam(), g, random, 400, 3);
+  check_samples<TypeParam>(g, random);
 }
 
 TEST(Rounding, IsOutward) {

@@ -33,25 +33,6 @@ void add_triangles(scene::Geometry& g, Random& random, int n, float size) {
   }
 }
 
-void add_spheres(scene::Geometry& g, Random& random, int n, float size) {
-  for (int i = 0; i < n; ++i)
-    g.spheres.push_back({random_vec3(random, -8, 8), uniform(random, 0.01f * size, size),
-                         static_cast<std::uint32_t>(g.spheres.size())});
-}
-
-void add_cones(scene::Geometry& g, Random& random, int n, float size) {
-  for (int i = 0; i < n; ++i) {
-    const vec3 base = random_vec3(random, -8, 8);
-    vec3 apex = base + random_vec3(random, -size, size);
-    if (apex == base) apex.x += size;
-    // Some cones are pointed, some tapered, and some are cylinders.
-    const float apex_radius = i % 3 == 0 ? 0 : uniform(random, 0, size);
-    const float base_radius = i % 5 == 1 ? apex_radius + 0.01f : uniform(random, 0.01f, size);
-    g.cones.push_back({base, apex, base_radius, i % 5 == 1 ? base_radius : apex_radius,
-                       static_cast<std::uint32_t>(g.cones.size())});
-  }
-}
-
 void add_architecture(scene::Geometry& g, Random& random, int n) {
   const auto whole = [&](int lo, int hi) {
     return static_cast<float>(std::uniform_int_distribution<int>(lo, hi)(random));
@@ -68,9 +49,8 @@ void add_architecture(scene::Geometry& g, Random& random, int n) {
 
 scene::Geometry mixed_geometry(Random& random, int n, float size) {
   scene::Geometry g;
-  add_triangles(g, random, n, size);
-  add_spheres(g, random, n / 2, size);
-  add_cones(g, random, n / 2, size);
+  primitives::for_each_kind(
+      [&](auto kind) { add_primitives(kind, g, random, kind.kIsShape ? n / 2 : n, size); });
   return g;
 }
 

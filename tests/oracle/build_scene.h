@@ -66,6 +66,12 @@ class SceneBuilder {
     scene_.ambient = color;
     return *this;
   }
+  // Anything else.
+  template <class Change>
+  SceneBuilder& change(const Change& change_scene) {
+    change_scene(scene_);
+    return *this;
+  }
   const scene::Scene& scene() const { return scene_; }
 
  private:

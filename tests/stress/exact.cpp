@@ -83,6 +83,14 @@ std::vector<Exact> roots_past_the_ends(const Exact3& o, const Exact3& d, const l
   return roots_of(o, d, cone, share);
 }
 
+// Anywhere in the plane: which hits near the rim are hits, rounding decides.
+std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Disc& disc) {
+  const Exact3 n = exactly(disc.normal);
+  const Exact along = dot(d, n);
+  if (sgn(along) == 0) return {};
+  return {Exact(dot(minus(exactly(disc.center), o), n) / along)};
+}
+
 double distance(const Exact3& p, const layout::Triangle& triangle) {
   const Exact3 a = exactly(triangle.v[0]);
   const Exact3 n = cross(minus(exactly(triangle.v[1]), a), minus(exactly(triangle.v[2]), a));
@@ -101,6 +109,11 @@ double distance(const Exact3& p, const layout::Cone& cone) {
   const Exact across = sgn(across2) > 0 ? Exact(sqrt(across2)) : Exact(0);
   const double slope = cone.slope;
   return Exact(across - cone.base_radius - cone.slope * s).get_d() / std::sqrt(1 + slope * slope);
+}
+
+double distance(const Exact3& p, const layout::Disc& disc) {
+  const Exact3 n = exactly(disc.normal);
+  return std::abs(Exact(dot(minus(p, exactly(disc.center)), n) / sqrt(dot(n, n))).get_d());
 }
 
 double ulp(double scale) {

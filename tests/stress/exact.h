@@ -28,14 +28,17 @@ Exact3 exactly(const float (&v)[3]);
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Triangle& triangle);
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Sphere& sphere);
 std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Cone& cone);
+std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Disc& disc);
 // The same of the cone carried on at both ends, by this share of its height.
 std::vector<Exact> roots_past_the_ends(const Exact3& origin, const Exact3& direction,
                                        const layout::Cone& cone, double share);
 
 // The distance from the surface's plane, sphere or cone; of a sphere or cone with its sign: negative inside.
+// (A kind that lacks one does not compile, in the tests that ask all kinds.)
 double distance(const Exact3& point, const layout::Triangle& triangle);
 double distance(const Exact3& point, const layout::Sphere& sphere);
 double distance(const Exact3& point, const layout::Cone& cone);
+double distance(const Exact3& point, const layout::Disc& disc);
 
 // |approximate - exact| in units of the last place of a float of `scale`'s size.
 double ulps(double approximate, const Exact& exact, double scale);

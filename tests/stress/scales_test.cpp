@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "conformance/samples.h"
 #include "image/scenes.h"
 #include "kdray/kdray.h"
 #include "oracle/primitives.h"
@@ -33,7 +34,13 @@ std::vector<int> exponents() {
 
 // All kinds of primitives, lights and rays.
 scene::Scene model() {
-  return test::every_light();
+  scene::Scene s = test::every_light();
+  test::Draw draw(kSeed);
+  primitives::for_each_kind([&](auto kind) {
+    for (std::uint32_t material = 0; material < 2; ++material)
+      test::Samples<decltype(kind)>::add(s, material, draw);
+  });
+  return s;
 }
 
 Picture picture_of(const scene::Scene& scene) {

@@ -1,7 +1,7 @@
 // What    No ray hits the surface that it leaves: reflected, refracted and shadow rays as kdray's shading
 //         spawns them, traced by every traversal. And how exact the hits are that they leave from: t and the
 //         hit point against exact arithmetic.
-// Shape   A triangle is flat: any hit of a ray's own triangle is wrong. From outside of a sphere or a cone as
+// Shape   A triangle or a disc is flat: any hit of a ray's own one is wrong. From outside of a sphere or a cone as
 //         well; from inside, the hit must be one of the exact roots of a ray that starts inside, exactly,
 //         else it is wrong. Excepted and counted are spheres and cones that are thinner than a few of the
 //         float steps at their coordinates.
@@ -12,7 +12,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <type_traits>
 
 #include "layout/tree.layout.h"
 #include "stress/exact.h"
@@ -20,6 +19,7 @@
 #include "stress/spawn.h"
 #include "stress/table.h"
 #include "stress/traced.h"
+#include "support/all_kinds.h"
 
 namespace kdray::stress {
 namespace {
@@ -123,7 +123,7 @@ scene::Scene spheres(std::uint64_t seed) {
   return s;
 }
 
-// Pointed, truncated, cylinders and discs that are all but flat.
+// Pointed, truncated, cylinders and cones that are all but flat.
 scene::Scene cones(std::uint64_t seed) {
   scene::Scene s = with_material();
   for (int i = 0; i < kPrimitives; ++i) {
@@ -140,7 +140,41 @@ scene::Scene cones(std::uint64_t seed) {
   return s;
 }
 
-// ---- What the kinds differ in
+scene::Scene discs(std::uint64_t seed) {
+  scene::Scene s = with_material();
+  for (int i = 0; i < kPrimitives; ++i) {
+    Random random(seed, static_cast<std::uint64_t>(i));
+    const double radius = static_cast<float>(random.log_uniform(1e-4, 1e4));
+    const dvec3 center(vec3(random.log_uniform(1e-4, 1e6) * random.direction()));
+    dvec3 normal = random.direction();
+    if (i % 4 == 0) normal = dvec3(0), normal[static_cast<int>(random.below(3))] = random.sign();
+    s.discs.push_back({center, normal, radius, 0, s.primitive_count()});
+  }
+  return s;
+}
+
+// ---- What the kinds differ in. A kind that lacks one of these does not compile.
+
+// The scenes of a kind; `share` of all rays.
+struct Family {
+  const char* name;
+  scene::Scene (*make)(std::uint64_t seed);
+  double share;
+};
+std::vector<Family> families_of(primitives::TriangleKind) {
+  return {{"triangles, coordinates 1e-8 to 1e8", triangles_of_any_coordinates, 0.3},
+          {"triangles, sizes 1e-14 to 1e9", triangles_of_any_size, 0.2},
+          {"triangles across the axes", triangles_across_axes, 0.1}};
+}
+std::vector<Family> families_of(primitives::SphereKind) {
+  return {{"spheres, radius 1e-4 to 1e4, to 1e6 off", spheres, 0.15}};
+}
+std::vector<Family> families_of(primitives::ConeKind) {
+  return {{"cones, radius 1e-4 to 1e4, to 1e6 off", cones, 0.15}};
+}
+std::vector<Family> families_of(primitives::DiscKind) {
+  return {{"discs, radius 1e-4 to 1e4, to 1e6 off", discs, 0.1}};
+}
 
 dvec3 point3(const float (&v)[3]) {
   return {v[0], v[1], v[2]};
@@ -161,6 +195,10 @@ Spot spot_on(const layout::Cone& c, Random& random) {
   return {point3(c.base) + s * axis + r * radial, glm::normalize(radial - slope * axis),
           std::max<double>(r, 1e-3 * c.height)};
 }
+Spot spot_on(const layout::Disc& d, Random& random) {
+  const dvec3 n = glm::normalize(point3(d.normal));
+  return {point3(d.center) + d.radius * std::sqrt(random.uniform()) * tangent_to(n, random), n, d.radius};
+}
 
 std::string described(const layout::Triangle& t) {
   std::string all = "triangle";
@@ -175,6 +213,10 @@ std::string described(const layout::Cone& c) {
   return fmt::format("cone {:a} {:a} {:a} axis {:a} {:a} {:a} base radius {:a} height {:a} slope {:a}",
                      c.base[0], c.base[1], c.base[2], c.axis[0], c.axis[1], c.axis[2], c.base_radius,
                      c.height, c.slope);
+}
+std::string described(const layout::Disc& d) {
+  return fmt::format("disc {:a} {:a} {:a} normal {:a} {:a} {:a} radius {:a}", d.center[0], d.center[1],
+                     d.center[2], d.normal[0], d.normal[1], d.normal[2], d.radius);
 }
 
 double largest_coordinate(const layout::Triangle& t) {
@@ -191,6 +233,10 @@ double largest_coordinate(const layout::Cone& c) {
   const dvec3 b = glm::abs(point3(c.base));
   return std::max({b.x, b.y, b.z}) + c.height + c.base_radius;
 }
+double largest_coordinate(const layout::Disc& d) {
+  const dvec3 c = glm::abs(point3(d.center));
+  return std::max({c.x, c.y, c.z}) + d.radius;
+}
 
 enum class Verdict { right, wrong, excepted };
 
@@ -204,8 +250,8 @@ struct Departure {
 };
 
 // A light that is nearer to the surface than rounding can tell is lit or not as rounding will have it.
-template <class Kind>
-bool ends_at_the_surface(const Kind& surface, const Ray& ray, const Departure& departure) {
+template <class Surface>
+bool ends_at_the_surface(const Surface& surface, const Ray& ray, const Departure& departure) {
   if (!departure.to_light) return false;
   Exact3 o = exactly(ray.origin), d = exactly(ray.direction);
   const double reach = glm::length(point3(ray.direction));
@@ -214,8 +260,15 @@ bool ends_at_the_surface(const Kind& surface, const Ray& ray, const Departure& d
 }
 
 // Whether a hit of the ray's own surface may be.
-Verdict judge(const layout::Triangle& surface, const Ray& ray, const Hit&, const Departure& departure) {
+template <class Flat>
+Verdict judge_flat(const Flat& surface, const Ray& ray, const Departure& departure) {
   return ends_at_the_surface(surface, ray, departure) ? Verdict::excepted : Verdict::wrong;
+}
+Verdict judge(const layout::Triangle& surface, const Ray& ray, const Hit&, const Departure& departure) {
+  return judge_flat(surface, ray, departure);
+}
+Verdict judge(const layout::Disc& surface, const Ray& ray, const Hit&, const Departure& departure) {
+  return judge_flat(surface, ray, departure);
 }
 // Whether a point of the surface that is moved inwards by the step may come out again: on the other side, or
 // across, where the blur is longer than half of the chord at that depth.
@@ -258,20 +311,6 @@ Verdict judge(const Curved& surface, const Ray& ray, const Hit& hit, const Depar
   return 64 * departure.step > departure.radius ? Verdict::excepted : Verdict::wrong;
 }
 
-template <class Kind>
-const auto& array_of(const prepare::Prepared& p) {
-  if constexpr (std::is_same_v<Kind, layout::Triangle>)
-    return p.flat.triangles;
-  else if constexpr (std::is_same_v<Kind, layout::Sphere>)
-    return p.flat.spheres;
-  else
-    return p.flat.cones;
-}
-template <class Kind>
-constexpr std::uint32_t kKind = std::is_same_v<Kind, layout::Triangle> ? KDRAY_KIND_TRIANGLE
-                                : std::is_same_v<Kind, layout::Sphere> ? KDRAY_KIND_SPHERE
-                                                                       : KDRAY_KIND_CONE;
-
 // The scene's own space is the world that its rays are made and traced in.
 PreparedScene in_local_space(const scene::Scene& model) {
   prepare::Prepared prepared = prepare::prepare(model, {});
@@ -283,6 +322,8 @@ PreparedScene in_local_space(const scene::Scene& model) {
 
 template <class Kind>
 class Case {
+  using Surface = typename Kind::Layout;
+
  public:
   Case(const scene::Scene& model, std::uint64_t seed)
       : prepared_(in_local_space(model)), renderer_(prepared_), spawner_(prepared_.prepared()), seed_(seed) {
@@ -304,7 +345,7 @@ class Case {
   }
 
  private:
-  const auto& primitives() const { return array_of<Kind>(prepared_.prepared()); }
+  const auto& primitives() const { return Kind::of(prepared_.prepared().flat); }
 
   ToSpawn aim(std::uint64_t number, float* t_min) const {
     Random random(seed_, number);
@@ -343,15 +384,16 @@ class Case {
       ToSpawn& h = aimed[i];
       h.t = hits[i].t, h.u = hits[i].u, h.v = hits[i].v;
       h.ref =
-          kKind<Kind> << KDRAY_REF_KIND_SHIFT | index_of_.at(static_cast<std::uint32_t>(hits[i].primitive));
+          Kind::kNumber << KDRAY_REF_KIND_SHIFT | index_of_.at(static_cast<std::uint32_t>(hits[i].primitive));
       met.push_back(h);
     }
     return met;
   }
 
-  const Kind& primitive_of(std::uint32_t ref) const { return primitives()[ref & KDRAY_REF_INDEX_MASK]; }
+  const Surface& primitive_of(std::uint32_t ref) const { return primitives()[ref & KDRAY_REF_INDEX_MASK]; }
 
   static float radius_at(const layout::Triangle&, const Spawned&) { return kInfinity; }
+  static float radius_at(const layout::Disc&, const Spawned&) { return kInfinity; }
   static float radius_at(const layout::Sphere& s, const Spawned&) { return s.radius; }
   static float radius_at(const layout::Cone& c, const Spawned& s) {
     const double along = glm::dot(point3(s.point) - point3(c.base), point3(c.axis));
@@ -362,7 +404,7 @@ class Case {
     rays_.clear(), departures_.clear();
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const Spawned& s = spawned[i];
-      const Kind& primitive = primitive_of(hits[i].ref);
+      const Surface& primitive = primitive_of(hits[i].ref);
       const bool inside = s.flags & kFromInside;
       const float step = static_cast<float>(glm::dot(glm::abs(point3(s.normal)), point3(s.point_error)));
       const float blur = static_cast<float>(glm::length(point3(s.point_error)));
@@ -391,7 +433,7 @@ class Case {
       if (verdict(i, rays_[i], hits[i]) != Verdict::wrong) continue;
       ++n;
       const Departure& departure = departures_[i];
-      const Kind& primitive = primitives()[index_of_.at(departure.primitive)];
+      const Surface& primitive = primitives()[index_of_.at(departure.primitive)];
       const Exact3 o = exactly(rays_[i].origin), d = exactly(rays_[i].direction);
       std::string all;
       for (const Exact& root : roots(o, d, primitive)) all += ' ' + std::to_string(root.get_d());
@@ -413,7 +455,7 @@ class Case {
 
   // The hit that was found, against exact arithmetic.
   void measure(const ToSpawn& h, const Spawned& s, Errors& errors) const {
-    const Kind& primitive = primitive_of(h.ref);
+    const Surface& primitive = primitive_of(h.ref);
     ASSERT_TRUE(std::isfinite(s.point[0] + s.point[1] + s.point[2] + s.normal[0] + s.normal[1] + s.normal[2]))
         << "seed " << seed_ << ", ray "
         << in_words(Ray{{h.origin[0], h.origin[1], h.origin[2]},
@@ -447,21 +489,21 @@ class Case {
   bool explained_ = false;
 };
 
-class SelfHits : public testing::Test {
+template <class Kind>
+class SelfHitsOf : public testing::Test {
  protected:
   void SetUp() override {
     if (devices().empty()) GTEST_SKIP() << "no OpenCL device";
     set_precision();
   }
 
-  template <class Kind>
-  void expect_none(const char* family, scene::Scene (*make)(std::uint64_t), double share) {
-    Tally tally("re-hits", family);
+  static void expect_none(const Family& family) {
+    Tally tally("re-hits", family.name);
     Errors errors;
-    errors.family = family;
-    const std::uint64_t wanted = rays_to_trace(share / 5);
+    errors.family = family.name;
+    const std::uint64_t wanted = rays_to_trace(family.share / 5);
     for (std::uint64_t scene = 0; tally.row(0).rays < wanted; ++scene) {
-      Case<Kind> one(make(kSeed + scene), kSeed + scene);
+      Case<Kind> one(family.make(kSeed + scene), kSeed + scene);
       one.trace(std::min<std::uint64_t>(wanted / 12 + 256, 1 << 17), tally, errors, is_full() ? 2000 : 500);
     }
     tally.publish();
@@ -472,21 +514,13 @@ class SelfHits : public testing::Test {
         << "a hit point is farther off its surface than the bound on its error";
   }
 };
+TYPED_TEST_SUITE(SelfHitsOf, test::AllKinds, test::KindNames);
 
-TEST_F(SelfHits, TrianglesOfAnyCoordinates) {
-  expect_none<layout::Triangle>("triangles, coordinates 1e-8 to 1e8", triangles_of_any_coordinates, 0.3);
-}
-TEST_F(SelfHits, TrianglesOfAnySize) {
-  expect_none<layout::Triangle>("triangles, sizes 1e-14 to 1e9", triangles_of_any_size, 0.2);
-}
-TEST_F(SelfHits, TrianglesAcrossAxes) {
-  expect_none<layout::Triangle>("triangles across the axes", triangles_across_axes, 0.1);
-}
-TEST_F(SelfHits, Spheres) {
-  expect_none<layout::Sphere>("spheres, radius 1e-4 to 1e4, to 1e6 off", spheres, 0.2);
-}
-TEST_F(SelfHits, Cones) {
-  expect_none<layout::Cone>("cones, radius 1e-4 to 1e4, to 1e6 off", cones, 0.2);
+TYPED_TEST(SelfHitsOf, ThereAreNone) {
+  for (const Family& family : families_of(TypeParam())) {
+    SCOPED_TRACE(family.name);
+    TestFixture::expect_none(family);
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "conformance/samples.h"
 #include "kdray/kdray.h"
 #include "oracle/build_scene.h"
 #include "support/device.h"
@@ -14,7 +15,7 @@
 namespace kdray {
 namespace {
 
-// Few triangles and cones and many spheres: what takes a node for a leaf reads far beyond the few.
+// Many spheres and few of every other kind: what takes a node for a leaf reads far beyond the few.
 scene::Scene blockers(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -31,8 +32,15 @@ scene::Scene blockers(unsigned seed) {
   for (int i = 0; i < 3; ++i) {
     const dvec3 p = point(), q = p + 0.2 * point(), r = p + 0.2 * point();
     b.triangle(p, q, r, any);
-    b.cone(p, 0.1, q, 0.05, any);
   }
+  test::Draw draw(seed);
+  b.change([&](scene::Scene& s) {
+    primitives::for_each_shape([&](auto kind) {
+      using Kind = decltype(kind);
+      if constexpr (!std::is_same_v<Kind, primitives::SphereKind>)
+        for (int i = 0; i < 3; ++i) test::Samples<Kind>::add(s, 0, draw);
+    });
+  });
   return b.scene();
 }
 

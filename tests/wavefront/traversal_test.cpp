@@ -11,10 +11,12 @@
 #include <numeric>
 #include <random>
 
+#include "conformance/samples.h"
 #include "kdray/kdray.h"
 #include "oracle/build_scene.h"
 #include "oracle/primitives.h"
 #include "support/device.h"
+#include "support/scene_fields.h"
 
 namespace kdray {
 namespace {
@@ -52,8 +54,6 @@ class Random {
     std::normal_distribution<double> normal;
     return glm::normalize(dvec3(normal(engine_), normal(engine_), normal(engine_)));
   }
-  // Sizes over two orders of magnitude.
-  double size() { return std::pow(10, uniform(-1.8, 0.0)); }
   template <class T>
   const T& of(const std::vector<T>& all) {
     return all[static_cast<std::size_t>(below(static_cast<int>(all.size())))];
@@ -69,24 +69,23 @@ class Random {
 
 const scene::Material kAny = oracle::matte(vec3(1));
 
-void add_triangles(oracle::SceneBuilder& b, Random& random, int n) {
-  for (int i = 0; i < n; ++i) {
-    const dvec3 p = random.grid_point(1);
-    const double size = random.size();
-    b.triangle(p, p + random.grid_point(size), p + random.grid_point(size), kAny);
-  }
+// n random ones of a kind.
+template <class Kind>
+void add(Kind, oracle::SceneBuilder& b, test::Draw& draw, int n) {
+  b.change([&](scene::Scene& s) {
+    const auto material = static_cast<std::uint32_t>(s.materials.size());
+    s.materials.push_back(kAny);
+    for (int i = 0; i < n; ++i) test::Samples<Kind>::add(s, material, draw);
+  });
 }
-void add_spheres(oracle::SceneBuilder& b, Random& random, int n) {
-  for (int i = 0; i < n; ++i)
-    b.sphere(random.grid_point(1), std::max(snapped(0.4 * random.size()), 0.01), kAny);
-}
-void add_cones(oracle::SceneBuilder& b, Random& random, int n) {
-  for (int i = 0; i < n; ++i) {
-    const dvec3 p = random.grid_point(1);
-    const double size = random.size();
-    const double apex_radius = i % 3 == 0 ? 0 : 0.2 * size * random.uniform(0.1, 1);
-    b.cone(p, 0.2 * size, p + size * random.direction(), apex_radius, kAny);
-  }
+
+// Points and lengths that are there yet.
+void put_on_grid(oracle::SceneBuilder& b) {
+  const auto length = [](double& r) {
+    if (r > 0) r = std::max(snapped(r), 1.0 / 1024);
+  };
+  const auto point = [](dvec3& p) { p = {snapped(p.x), snapped(p.y), snapped(p.z)}; };
+  b.change([&](scene::Scene& s) { test::change_fields(s, point, length); });
 }
 
 // A thousandth as wide as long, most of them along no axis.
@@ -121,37 +120,16 @@ void add_walls(oracle::SceneBuilder& b) {
 
 // ---- Rays.
 
-// A place on a primitive and a direction in its surface: along an edge, or a tangent.
-struct Place {
-  dvec3 point, along;
-};
+using test::Place;
 
-std::vector<Place> places_on(const scene::Scene& s, Random& random) {
+std::vector<Place> places_on(const scene::Scene& s, test::Draw& draw) {
+  constexpr int kOnEach = 3;
   std::vector<Place> places;
-  for (const scene::Triangle& t : s.triangles) {
-    dvec3 c[3];
-    for (int k = 0; k < 3; ++k) c[k] = s.vertices[t.vertex[static_cast<std::size_t>(k)]];
-    const int k = random.below(3);
-    const dvec3 a = c[k], edge = c[(k + 1) % 3] - a;
-    places.push_back({a, edge});
-    places.push_back({a + 0.5 * edge, edge});
-    places.push_back({(c[0] + c[1] + c[2]) / 3.0, edge});
-  }
-  for (const scene::Sphere& p : s.spheres) {
-    dvec3 axis(0);
-    axis[random.below(3)] = random.coin() ? 1 : -1;
-    const dvec3 d = random.direction();
-    places.push_back({p.center + p.radius * axis, dvec3(axis.y, axis.z, axis.x)});
-    places.push_back({p.center + p.radius * d, glm::cross(d, random.direction())});
-  }
-  for (const scene::Cone& c : s.cones) {
-    const dvec3 axis = c.apex - c.base;
-    const dvec3 side = glm::normalize(glm::cross(axis, random.direction()));
-    const dvec3 foot = c.base + c.base_radius * side, top = c.apex + c.apex_radius * side;
-    places.push_back({foot, top - foot});
-    places.push_back({0.5 * (foot + top), top - foot});
-    places.push_back({c.apex, axis});
-  }
+  primitives::for_each_kind([&](auto kind) {
+    using Kind = decltype(kind);
+    for (std::size_t i = 0; i < Kind::of(s).size(); ++i)
+      for (int k = 0; k < kOnEach; ++k) places.push_back(test::Samples<Kind>::place(s, i, draw));
+  });
   if (places.empty()) places.push_back({dvec3(0), dvec3(1, 0, 0)});
   return places;
 }
@@ -163,14 +141,16 @@ Ray make_ray(const dvec3& o, const dvec3& d, float t_min = 0, float t_max = kInf
 
 class RayMaker {
  public:
-  RayMaker(const scene::Scene& s, unsigned seed) : random_(seed), places_(places_on(s, random_)) {
+  RayMaker(const scene::Scene& s, unsigned seed) : random_(seed) {
+    test::Draw draw(seed);
+    places_ = places_on(s, draw);
     const DBox box = s.bounds();
     if (s.primitive_count() == 0) return;
     center_ = box.center();
     size_ = 0.5 * std::max({box.extent().x, box.extent().y, box.extent().z});
   }
 
-  // All kinds. The last n_along_surfaces() run along a surface, so that any rounding decides whether they
+  // Rays of every sort. The last n_along_surfaces() run along a surface, so that any rounding decides whether they
   // meet it.
   std::vector<Ray> all() {
     add_random(500);
@@ -476,48 +456,38 @@ class TraversalTest : public test::EachDevice {
   }
 };
 
-TEST_P(TraversalTest, Triangles) {
-  Random random(1);
-  oracle::SceneBuilder b;
-  add_triangles(b, random, 700);
-  expect_right(b.scene(), 2);
-}
-
-TEST_P(TraversalTest, Spheres) {
-  Random random(3);
-  oracle::SceneBuilder b;
-  add_spheres(b, random, 500);
-  expect_right(b.scene(), 4);
-}
-
-TEST_P(TraversalTest, Cones) {
-  Random random(5);
-  oracle::SceneBuilder b;
-  add_cones(b, random, 500);
-  expect_right(b.scene(), 6);
+TEST_P(TraversalTest, EachKind) {
+  primitives::for_each_kind([&](auto kind) {
+    SCOPED_TRACE(kind.kNames);
+    test::Draw draw(1);
+    oracle::SceneBuilder b;
+    add(kind, b, draw, kind.kIsShape ? 500 : 700);
+    put_on_grid(b);
+    expect_right(b.scene(), 2 + kind.kNumber);
+  });
 }
 
 // In turn, so that numbers in file order are not indices.
 TEST_P(TraversalTest, AllKindsMixed) {
   Random random(7);
+  test::Draw draw(7);
   oracle::SceneBuilder b;
-  for (int i = 0; i < 100; ++i) {
-    add_triangles(b, random, 3);
-    add_spheres(b, random, 1);
-    add_cones(b, random, 2);
-    add_needles(b, random, 1);
-  }
+  for (int i = 0; i < 100; ++i)
+    primitives::for_each_kind(
+        [&](auto kind) { add(kind, b, draw, 1 + (i + static_cast<int>(kind.kNumber)) % 3); });
+  put_on_grid(b);
+  add_needles(b, random, 100);
   expect_right(b.scene(), 8);
 }
 
 TEST_P(TraversalTest, OnePrimitive) {
-  oracle::SceneBuilder triangle, sphere, cone;
-  triangle.triangle({-1, -1, 0}, {1, -0.5, 0.25}, {0, 1, -0.5}, kAny);
-  sphere.sphere({0.5, -0.25, 0}, 0.75, kAny);
-  cone.cone({0, -1, 0}, 0.5, {0.25, 1, 0.5}, 0.125, kAny);
-  expect_right(triangle.scene(), 9);
-  expect_right(sphere.scene(), 10);
-  expect_right(cone.scene(), 11);
+  primitives::for_each_kind([&](auto kind) {
+    SCOPED_TRACE(kind.kName);
+    test::Draw draw(9);
+    oracle::SceneBuilder b;
+    add(kind, b, draw, 1);
+    expect_right(b.scene(), 9);
+  });
 }
 
 TEST_P(TraversalTest, AnEmptySceneHasNoHits) {
@@ -525,20 +495,20 @@ TEST_P(TraversalTest, AnEmptySceneHasNoHits) {
   expect_right(empty, 12);
 }
 
-// Each triangle up to four times, the copies far apart in the file: of equal t the smaller number is hit.
+// Each primitive four times, the copies far apart in the file: of equal t the smaller number is hit.
 TEST_P(TraversalTest, OfCoincidingPrimitivesTheSmallerNumberIsHit) {
   constexpr int kPrimitives = 150;
   oracle::SceneBuilder b;
   for (int copy = 0; copy < 4; ++copy) {
-    Random random(13);
-    add_triangles(b, random, kPrimitives);
-    add_spheres(b, random, kPrimitives);
-    add_cones(b, random, kPrimitives);
+    test::Draw draw(13);
+    primitives::for_each_kind([&](auto kind) { add(kind, b, draw, kPrimitives); });
   }
+  put_on_grid(b);
   const scene::Scene& model = b.scene();
   Subject s(model, GetParam());
   const std::vector<Ray> rays = RayMaker(model, 14).all();
-  for (const Hit& h : expect_walks_alike(s, rays, "whole rays")) ASSERT_LT(h.primitive, 3 * kPrimitives);
+  const int n = static_cast<int>(primitives::kKinds) * kPrimitives;
+  for (const Hit& h : expect_walks_alike(s, rays, "whole rays")) ASSERT_LT(h.primitive, n);
   expect_right(model, 14);
 }
 
@@ -569,12 +539,7 @@ TEST_P(TraversalTest, AHugeLeaf) {
 }
 
 scene::Scene moved(scene::Scene s, double scale, const dvec3& offset) {
-  for (dvec3& v : s.vertices) v = v * scale + offset;
-  for (scene::Sphere& p : s.spheres) p.center = p.center * scale + offset, p.radius *= scale;
-  for (scene::Cone& c : s.cones) {
-    c.base = c.base * scale + offset, c.apex = c.apex * scale + offset;
-    c.base_radius *= scale, c.apex_radius *= scale;
-  }
+  test::scale_and_move(s, scale, offset);
   return s;
 }
 
@@ -582,13 +547,11 @@ scene::Scene moved(scene::Scene s, double scale, const dvec3& offset) {
 // some length in a huge scene: the frustum from their ends overflows.
 TEST_P(TraversalTest, AnyPlaceAndScale) {
   for (const unsigned seed : {21u, 6021u}) {
-    Random random(seed);
+    test::Draw draw(seed);
     oracle::SceneBuilder b;
-    for (int i = 0; i < 50; ++i) {
-      add_triangles(b, random, 4);
-      add_spheres(b, random, 1);
-      add_cones(b, random, 1);
-    }
+    for (int i = 0; i < 50; ++i)
+      primitives::for_each_kind([&](auto kind) { add(kind, b, draw, kind.kIsShape ? 1 : 4); });
+    put_on_grid(b);
     expect_right(moved(b.scene(), 1, {1e6, -2e6, 3e5}), seed + 1, 0.01);
     expect_right(moved(b.scene(), 1e9, dvec3(0)), seed + 2);
     expect_right(moved(b.scene(), 1e-9, dvec3(0)), seed + 3);

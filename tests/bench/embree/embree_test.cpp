@@ -1,5 +1,5 @@
-// What    Embree sees the scene that kdray sees: triangles, spheres and open cones, in every mode. Skipped
-//         without Embree.
+// What    Embree sees the scene that kdray sees, every kind of primitive, in every mode. Skipped without
+//         Embree.
 #include "bench/embree/embree.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 
 #include "bench/race/compare_hits.h"
 #include "cli/program.h"
+#include "conformance/all_kinds.h"
 #include "generate/built_in.h"
 
 namespace kdray::bench {
@@ -21,12 +22,10 @@ std::vector<RayClass> classes_of(const scene::Scene& scene, Renderer& renderer) 
   });
 }
 
-class SeesTheSame : public testing::TestWithParam<const char*> {};
-
-TEST_P(SeesTheSame, InEveryMode) {
+void expect_to_see_the_same(scene::Scene model) {
   if (embree_version().empty()) GTEST_SKIP() << "built without Embree";
   KDRAY_NEED_DEVICE();
-  const Scene scene(generate::load_scene(GetParam()));
+  const Scene scene(std::move(model));
   Renderer renderer(scene);
   const auto scenes = make_embree_scenes(scene.model());
   for (const RayClass& c : classes_of(scene.model(), renderer)) {
@@ -40,6 +39,20 @@ TEST_P(SeesTheSame, InEveryMode) {
             << c.name << " " << contestant.mode << " " << v.name;
       }
   }
+}
+
+class SeesTheSame : public testing::TestWithParam<const char*> {};
+
+TEST_P(SeesTheSame, InEveryMode) {
+  expect_to_see_the_same(generate::load_scene(GetParam()));
+}
+
+template <class Kind>
+class SeesTheSameOf : public testing::Test {};
+TYPED_TEST_SUITE(SeesTheSameOf, test::AllKinds, test::KindNames);
+
+TYPED_TEST(SeesTheSameOf, InEveryMode) {
+  expect_to_see_the_same(test::scene_of<TypeParam>(60, 20261124));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SeesTheSame, testing::Values("tetra", "balls", "rings", "tree"),

@@ -59,9 +59,9 @@ std::vector<BoundedRef> boxes_of(const scene::Geometry& g) {
     const Bounds b = kdtree::bounds_from(box);
     refs.push_back({b.lo, static_cast<kdtree::Ref>(refs.size()), b.hi});
   };
-  for (const auto& t : g.triangles) add(scene::bounds_of(t));
-  for (const auto& s : g.spheres) add(scene::bounds_of(s));
-  for (const auto& c : g.cones) add(scene::bounds_of(c));
+  primitives::for_each_kind([&](auto kind) {
+    for (const auto& p : decltype(kind)::of(g)) add(scene::bounds_of(p));
+  });
   return refs;
 }
 
