@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "kdray/arrays.h"
 #include "kdray/cancel.h"
@@ -57,6 +58,36 @@ struct QueryOptions {
 
 struct QueryReport {
   std::uint64_t invalid = 0;  // rays that mean nothing, counted as misses
+};
+
+// All hits of rays: those of ray i are [splits[i], splits[i + 1]), sorted by t and, where that is equal, by their
+// order in the scene.
+struct AllHits {
+  std::vector<std::uint64_t> splits;  // one more than rays
+  std::vector<double> t;
+  std::vector<std::uint32_t> geometry, primitive;
+  std::vector<float> u, v;
+  std::vector<std::uint8_t> more;  // of each ray, 1: it has more than max_hits
+  QueryReport report;
+};
+
+struct AllHitsOptions : QueryOptions {
+  std::uint32_t max_hits = 0xffffffffu;  // of a ray: the first so many
+};
+
+// Of each point what lies nearest to it; of several at one distance the one that comes first in the scene.
+struct ClosestPointsOut {
+  ValuesOut distance = {};  // infinity: nothing lies within the radius
+  PointsOut point = {};
+  WordsOut geometry = {}, primitive = {};  // as HitsOut
+  ValuesOut u = {}, v = {};
+};
+
+struct PointOptions {
+  double radius = std::numeric_limits<double>::infinity();  // how far to look
+  // A point that is not finite: an error that names it, or one that has nothing near it, and is inside of nothing.
+  InvalidRays invalid = InvalidRays::error;
+  std::optional<Cancel> cancel = {};
 };
 
 }  // namespace kdray
