@@ -29,6 +29,10 @@ class NearRays {
   // Turns the distances of the hits of the rays that were taken last back to theirs.
   void give_back(std::span<Hit> hits) const;
 
+  // Whether any of the rays that were taken last was begun anew, and what a distance of the i-th then is.
+  bool has_moved() const { return !ahead_.empty(); }
+  float given_back(std::size_t i, float t) const { return static_cast<float>(t / shrink_ + ahead_[i]); }
+
  private:
   bool is_far(const Ray& ray) const;
   Ray begin_near(const Ray& ray, double& ahead) const;

@@ -1,0 +1,21 @@
+// What    Rays from outside that are none: what is wrong with them, and their refusal.
+// Errors  check_rays: ErrorCode::input for the first ray that is none, by its number: NaN anywhere, an
+//         infinite origin or t_min, a direction that is infinite or 0.
+#pragma once
+
+#include <span>
+
+#include "kdray/ray.h"
+
+namespace kdray::query {
+
+// In words, or null. The kernels let such a ray meet nothing, so whoever wants to may count it as a miss.
+const char* fault_of(const Ray& ray);
+
+void check_rays(std::span<const Ray> rays);
+
+// Whether the kernels leave its direction as long as it is (length_exponent() of query.clh): where they do so
+// with all rays of a launch, they need not look.
+bool is_ordinary(const Ray& ray);
+
+}  // namespace kdray::query

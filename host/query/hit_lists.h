@@ -1,0 +1,58 @@
+// What    Lists of hits on the device: one for each ray of a launch, sorted, of bounded size.
+// Shape   find() fills them; pack() then moves them together, read() takes them as they lie. Both look at what
+//         find() found last.
+// Errors  ErrorCode::internal where a walk failed.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/raw_vector.h"
+#include "kdray/ray.h"
+#include "layout/rays.layout.h"
+#include "query/near_rays.h"
+#include "query/target.h"
+#include "wavefront/stage.h"
+
+namespace kdray::query {
+
+// Where packed hits go: arrays that have room for them.
+struct HitArrays {
+  float* t;
+  std::uint32_t* primitive;
+  float *u, *v;
+};
+
+class HitLists {
+ public:
+  // Room for so many rays at a time, and for so many hits of all of them.
+  HitLists(const Target& target, Traversal traversal, const LocalSpace& space, std::size_t rays,
+           std::size_t hits);
+
+  // The first `capacity` hits of each ray; behind `after`, the ray's span of before, where that isn't empty.
+  // What is returned is valid until the next call.
+  std::span<const layout::QuerySpan> find(std::span<const Ray> rays, std::span<const layout::QuerySpan> after,
+                                          std::uint32_t capacity);
+
+  // The hits of ray i to places[i] and behind, `n` places in all.
+  void pack(std::span<const std::uint32_t> places, std::size_t n, const HitArrays& to);
+
+  // The lists, `capacity` hits each.
+  std::span<const layout::QueryHit> read();
+
+ private:
+  cl::Buffer& packed(cl::Buffer& buffer);
+
+  const Target& target_;
+  std::size_t most_hits_;
+  bool chunked_;
+  wavefront::Stage<kernels::CollectHits> collect_;
+  cl::Buffer rays_, after_, spans_, hits_;
+  cl::Buffer places_, t_, primitive_, u_, v_;
+  std::size_t n_rays_ = 0;
+  std::uint32_t capacity_ = 0;
+  RawVector<layout::QuerySpan> found_;
+  RawVector<layout::QueryHit> read_;
+};
+
+}  // namespace kdray::query

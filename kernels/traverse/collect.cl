@@ -1,0 +1,31 @@
+// What    All hits of query rays: a list for each, sorted, of as many as fit, and whether there are more.
+//         `space`: the scene's centre and scale (host/math/local_space.h).
+// Shape   The wide walk has one ray to a work-item, the batch walk KDRAY_CHUNK rays.
+// Cost    reads 32 B of the ray and the tree, writes 16 B and 16 B for each hit.
+// Errors  A ray whose walk failed has n_hits KDRAY_SPAN_INVALID; the host checks for it.
+#include "layout/arguments.h"
+#include "layout/traversal.h"
+#include "traverse/collect_batch.clh"
+
+__kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
+  const u32 item = (u32)get_global_id(0);
+  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  const RaySource source = ray_source(&scene, in_rays, 0, space, 0, any_length);
+  const Lists lists = {io_hits, out_spans, goes_on ? in_after : 0, capacity};
+#if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_WIDE
+  if (item >= n_rays) return;
+  RayIn in;
+  fetch_ray(&source, item, &in);
+  WideRay r;
+  begin_ray(&r, &in, world_max);
+  HitList list = list_of_ray(&source, &lists, item, &r);
+  collect_wide(&scene, &r, &list);
+  store_list(&source, &lists, item, &r, &list);
+#else
+  const u32 first = item * KDRAY_CHUNK;
+  if (first >= n_rays) return;
+  RayGroups all;
+  group_all(&all, first, min(n_rays, first + KDRAY_CHUNK));
+  collect_batch(&scene, &source, &lists, &all, world_max);
+#endif
+}
