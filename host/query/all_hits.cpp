@@ -13,36 +13,42 @@ namespace {
 using layout::QueryHit;
 using layout::QuerySpan;
 
-// Hits that a ray has room for in its first pass; few rays have more.
-constexpr std::uint32_t kFirst = 16;
-// Rays in one launch of it.
-constexpr std::size_t kChunk = std::size_t{1} << 17;
-// Later passes, of rays that have more: so many hits in a launch, and so many of a ray.
-constexpr std::size_t kLaterHits = std::size_t{1} << 20;
+// Hits that there is room for in a launch: 8 MiB, which stay in a cache on their way to where they are packed.
+// (With 32 MiB, memory that was touched for the first time took a tenth of the time.)
+constexpr std::size_t kLaunchHits = std::size_t{1} << 19;
+// Of these a ray has room for so many in its first pass: more where more than one ray of sixteen had more.
+constexpr std::uint32_t kLeastFirst = 8, kMostFirst = 64;
+// The same in later passes, which take the rays that have more.
 constexpr std::uint32_t kLeastLater = 64, kMostLater = 4096;
 
-// The passes of some rays, chunk by chunk.
+// The passes of rays that are taken chunk by chunk.
 class Passes {
  public:
-  Passes(const Target& target, std::size_t n_rays, const CollectOptions& options)
+  Passes(const Target& target, std::size_t n_rays, const RaysSeen& seen, const CollectOptions& options)
       : target_(target),
+        seen_(seen),
         max_hits_(options.max_hits),
-        capacity_(std::clamp(options.max_hits, 1u, kFirst)),
-        traversal_(options.traversal == Traversal::automatic
-                       ? (target.global ? Traversal::wide : Traversal::batch)
-                       : options.traversal),
-        chunk_(std::min(n_rays, kChunk)),
+        capacity_(std::clamp(options.max_hits, 1u, kLeastFirst)),
+        traversal_(options.traversal == Traversal::automatic && target.global ? Traversal::wide
+                                                                              : options.traversal),
         near_rays_(target.scene.geometry.space),
-        first_(target, traversal_, near_rays_.kernel_space(), chunk_, chunk_ * capacity_) {}
+        first_(target, traversal_, near_rays_.kernel_space(), std::min(n_rays, kLaunchHits / capacity_),
+               std::min(n_rays * capacity_, kLaunchHits)) {}
 
-  std::size_t chunk() const { return chunk_; }
+  // How many of the rays that are left the next chunk has.
+  std::size_t next_chunk(std::size_t left) const { return std::min(left, first_.most_hits() / capacity_); }
   HitLists& first_lists() { return first_; }
   const NearRays& near_rays() const { return near_rays_; }
 
   // The first pass of a chunk: what it found of each ray.
   std::span<const QuerySpan> first(std::span<const Ray> rays) {
-    rays_ = near_rays_.take(rays);
-    return first_.find(rays_, {}, capacity_);
+    rays_ = near_rays_.all_near(seen_.farthest) ? rays : near_rays_.take(rays);
+    const std::span<const QuerySpan> spans = first_.find(rays_, !seen_.ordinary, {}, capacity_);
+    const auto n_more = std::count_if(spans.begin(), spans.end(), [](const QuerySpan& s) { return s.more; });
+    if (static_cast<std::size_t>(n_more) > spans.size() / 16)
+      capacity_ =
+          std::min({2 * capacity_, kMostFirst, max_hits_, static_cast<std::uint32_t>(first_.most_hits())});
+    return spans;
   }
 
   // What further passes find of the chunk's rays whose span says that there is more, until max_hits:
@@ -54,8 +60,8 @@ class Passes {
       if (spans[i].more != 0 && spans[i].n_hits < max_hits_) rest.push_back({i, spans[i].n_hits, spans[i]});
     while (!rest.empty()) {
       std::vector<Rest> still;
-      for (std::size_t first = 0; first < rest.size(); first += kLaterHits / kLeastLater) {
-        const std::size_t n = std::min(rest.size() - first, kLaterHits / kLeastLater);
+      for (std::size_t first = 0; first < rest.size(); first += kLaunchHits / kLeastLater) {
+        const std::size_t n = std::min(rest.size() - first, kLaunchHits / kLeastLater);
         pass(std::span(rest).subspan(first, n), want_hits, found, still);
       }
       rest.swap(still);
@@ -72,16 +78,16 @@ class Passes {
   void pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still) {
     if (!later_)
       later_ = std::make_unique<HitLists>(target_, traversal_, near_rays_.kernel_space(),
-                                          kLaterHits / kLeastLater, kLaterHits);
+                                          kLaunchHits / kLeastLater, kLaunchHits);
     const auto capacity = static_cast<std::uint32_t>(
-        std::clamp<std::size_t>(kLaterHits / rest.size(), kLeastLater, kMostLater));
+        std::clamp<std::size_t>(kLaunchHits / rest.size(), kLeastLater, kMostLater));
     std::vector<Ray> rays;
     std::vector<QuerySpan> after;
     for (const Rest& r : rest) {
       rays.push_back(rays_[r.ray]);
       after.push_back(r.span);
     }
-    const std::span<const QuerySpan> spans = later_->find(rays, after, capacity);
+    const std::span<const QuerySpan> spans = later_->find(rays, !seen_.ordinary, after, capacity);
     const std::span<const QueryHit> hits = want_hits ? later_->read() : std::span<const QueryHit>();
     for (std::size_t k = 0; k < rest.size(); ++k) {
       const std::uint32_t n = std::min(spans[k].n_hits, max_hits_ - rest[k].n_hits);
@@ -93,9 +99,9 @@ class Passes {
   }
 
   const Target& target_;
+  RaysSeen seen_;
   std::uint32_t max_hits_, capacity_;
   Traversal traversal_;
-  std::size_t chunk_;
   NearRays near_rays_;
   HitLists first_;
   std::unique_ptr<HitLists> later_;
@@ -106,6 +112,7 @@ class Passes {
 struct Later {
   std::uint32_t ray;
   std::vector<QueryHit> hits;
+  bool more;
 };
 
 void put(const QueryHit& hit, const HitArrays& to, std::size_t at) {
@@ -123,13 +130,10 @@ class Collection {
 
   void add(std::span<const Ray> rays) {
     const std::span<const QuerySpan> spans = passes_.first(rays);
-    std::uint8_t* const more = to_.more.data() + n_rays_;
-    for (std::size_t i = 0; i < rays.size(); ++i) more[i] = spans[i].more != 0 || spans[i].n_hits > max_hits_;
     later_.clear();
     passes_.others(spans, true,
-                   [&](std::uint32_t i, std::span<const QueryHit> hits, std::uint32_t n, bool is_more) {
-                     later_.push_back({i, {hits.begin(), hits.begin() + n}});
-                     more[i] = is_more;
+                   [&](std::uint32_t i, std::span<const QueryHit> hits, std::uint32_t n, bool more) {
+                     later_.push_back({i, {hits.begin(), hits.begin() + n}, more});
                    });
     // A ray's passes stay in their order.
     std::stable_sort(later_.begin(), later_.end(),
@@ -154,12 +158,28 @@ class Collection {
       const std::uint32_t n_here = std::min(spans[i].n_hits, max_hits_);
       n_first += n_here;
       n += n_here;
-      for (; later != later_.end() && later->ray == i; ++later) n += later->hits.size();
+      bool more = spans[i].more != 0 || n_here < spans[i].n_hits;
+      for (; later != later_.end() && later->ray == i; ++later) {
+        n += later->hits.size();
+        more = later->more;
+      }
       to_.splits[n_rays_ + i + 1] = n;
+      to_.more[n_rays_ + i] = more;
     }
-    to_.t.resize(n), to_.primitive.resize(n), to_.u.resize(n), to_.v.resize(n);
-    chunk_ = {to_.t.data() + first, to_.primitive.data() + first, to_.u.data() + first, to_.v.data() + first};
+    make_room(first, n, spans.size());
     return n_first;
+  }
+
+  // For all hits that there will be, if the other chunks have as many.
+  void make_room(std::size_t first, std::size_t n, std::size_t n_rays) {
+    const double all = 1.05 * static_cast<double>(n) * static_cast<double>(to_.more.size()) /
+                       static_cast<double>(n_rays_ + n_rays);
+    const auto grow = [&](auto& array) {
+      if (array.capacity() < n) array.reserve(std::max(n, static_cast<std::size_t>(all)));
+      array.resize(n);
+      return array.data() + first;
+    };
+    chunk_ = {grow(to_.t), grow(to_.primitive), grow(to_.u), grow(to_.v)};
   }
 
   void fill(std::size_t n) {
@@ -203,26 +223,31 @@ class Collection {
 }  // namespace
 
 AllHits all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options) {
-  if (!options.faulty_miss) check_rays(rays);
+  const RaysSeen seen = look_at(rays);
+  if (!options.faulty_miss) refuse_faulty(rays, seen);
   AllHits all;
-  all.splits.assign(rays.size() + 1, 0);
-  all.more.assign(rays.size(), 0);
+  all.splits.resize(rays.size() + 1);
+  all.splits[0] = 0;
+  all.more.resize(rays.size());
   if (rays.empty()) return all;
-  Passes passes(target, rays.size(), options);
+  Passes passes(target, rays.size(), seen, options);
   Collection collection(all, passes, options.max_hits);
-  for (std::size_t first = 0; first < rays.size(); first += passes.chunk())
-    collection.add(rays.subspan(first, std::min(passes.chunk(), rays.size() - first)));
+  for (std::size_t first = 0, n = 0; first < rays.size(); first += n) {
+    n = passes.next_chunk(rays.size() - first);
+    collection.add(rays.subspan(first, n));
+  }
   return all;
 }
 
 std::vector<std::uint32_t> count_hits(const Target& target, std::span<const Ray> rays,
                                       const CollectOptions& options) {
-  if (!options.faulty_miss) check_rays(rays);
+  const RaysSeen seen = look_at(rays);
+  if (!options.faulty_miss) refuse_faulty(rays, seen);
   std::vector<std::uint32_t> counts(rays.size());
   if (rays.empty()) return counts;
-  Passes passes(target, rays.size(), options);
-  for (std::size_t first = 0; first < rays.size(); first += passes.chunk()) {
-    const std::size_t n = std::min(passes.chunk(), rays.size() - first);
+  Passes passes(target, rays.size(), seen, options);
+  for (std::size_t first = 0, n = 0; first < rays.size(); first += n) {
+    n = passes.next_chunk(rays.size() - first);
     const std::span<const QuerySpan> spans = passes.first(rays.subspan(first, n));
     for (std::size_t i = 0; i < n; ++i) counts[first + i] = std::min(spans[i].n_hits, options.max_hits);
     passes.others(spans, false, [&](std::uint32_t i, std::span<const QueryHit>, std::uint32_t more, bool) {

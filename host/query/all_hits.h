@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "base/raw_vector.h"
 #include "kdray/options.h"
 #include "kdray/ray.h"
 #include "query/target.h"
@@ -26,11 +27,11 @@ struct CollectOptions {
 };
 
 struct AllHits {
-  std::vector<std::uint64_t> splits;  // one more than rays
-  std::vector<float> t;
-  std::vector<std::uint32_t> primitive;  // number in file order
-  std::vector<float> u, v;               // as Hit's
-  std::vector<std::uint8_t> more;        // of each ray, 1: it has more than max_hits
+  RawVector<std::uint64_t> splits;  // one more than rays
+  RawVector<float> t;
+  RawVector<std::uint32_t> primitive;  // number in file order
+  RawVector<float> u, v;               // as Hit's
+  RawVector<std::uint8_t> more;        // of each ray, 1: it has more than max_hits
 };
 AllHits all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options = {});
 

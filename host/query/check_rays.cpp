@@ -1,6 +1,8 @@
 #include "query/check_rays.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,16 +28,58 @@ const char* fault_of(const Ray& ray) {
   return nullptr;
 }
 
+namespace {
+
+// fault_of() without a branch: 0 times what is finite is 0.
+bool is_ray(const Ray& r) {
+  const float nothing = 0 * r.origin[0] + 0 * r.origin[1] + 0 * r.origin[2] + 0 * r.direction[0] +
+                        0 * r.direction[1] + 0 * r.direction[2] + 0 * r.t_min;
+  const bool goes = (r.direction[0] != 0) | (r.direction[1] != 0) | (r.direction[2] != 0);
+  return (nothing == 0) & goes & (r.t_max == r.t_max);
+}
+
+float larger(float a, float b) {
+  return a > b ? a : b;
+}
+
+float largest(const float (&v)[3]) {
+  return larger(std::abs(v[0]), larger(std::abs(v[1]), std::abs(v[2])));
+}
+
+RaysSeen both(const RaysSeen& a, const RaysSeen& b) {
+  return {std::min(a.first_fault, b.first_fault), a.ordinary && b.ordinary, larger(a.farthest, b.farthest)};
+}
+
+}  // namespace
+
+RaysSeen look_at(std::span<const Ray> rays) {
+  const RaysSeen nothing{rays.size(), true, 0};
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, rays.size(), 1 << 14), nothing,
+      [&](const tbb::blocked_range<std::size_t>& range, RaysSeen seen) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          if (!is_ray(rays[i])) seen.first_fault = std::min(seen.first_fault, i);
+          seen.ordinary &= is_ordinary(rays[i]);
+          seen.farthest = larger(largest(rays[i].origin), seen.farthest);
+        }
+        return seen;
+      },
+      both);
+}
+
+void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen) {
+  if (seen.first_fault == rays.size()) return;
+  throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", seen.first_fault,
+                                            fault_of(rays[seen.first_fault])));
+}
+
 void check_rays(std::span<const Ray> rays) {
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (const char* fault = fault_of(rays[i]))
-      throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault));
+  refuse_faulty(rays, look_at(rays));
 }
 
 bool is_ordinary(const Ray& ray) {
-  const float largest =
-      std::max({std::abs(ray.direction[0]), std::abs(ray.direction[1]), std::abs(ray.direction[2])});
-  return largest >= 0x1p-8f && largest < 0x1p8f;
+  const float most = largest(ray.direction);
+  return (most >= 0x1p-8f) & (most < 0x1p8f);
 }
 
 }  // namespace kdray::query

@@ -1,8 +1,9 @@
 // What    Rays from outside that are none: what is wrong with them, and their refusal.
-// Errors  check_rays: ErrorCode::input for the first ray that is none, by its number: NaN anywhere, an
+// Errors  check_rays, refuse_faulty: ErrorCode::input for the first ray that is none, by its number: NaN anywhere, an
 //         infinite origin or t_min, a direction that is infinite or 0.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "kdray/ray.h"
@@ -11,6 +12,17 @@ namespace kdray::query {
 
 // In words, or null. The kernels let such a ray meet nothing, so whoever wants to may count it as a miss.
 const char* fault_of(const Ray& ray);
+
+// What one look at all rays tells.
+struct RaysSeen {
+  std::size_t first_fault;  // the number of the first that is none; as many as there are: all are
+  bool ordinary;            // the kernels need not look at the directions' lengths: is_ordinary() of each
+  float farthest;           // the largest coordinate of an origin
+};
+RaysSeen look_at(std::span<const Ray> rays);
+
+// Throws unless `seen` has no fault.
+void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen);
 
 void check_rays(std::span<const Ray> rays);
 

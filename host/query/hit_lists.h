@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "base/raw_vector.h"
@@ -28,11 +29,17 @@ class HitLists {
   // Room for so many rays at a time, and for so many hits of all of them.
   HitLists(const Target& target, Traversal traversal, const LocalSpace& space, std::size_t rays,
            std::size_t hits);
+  ~HitLists() { unmap(); }
+  HitLists(const HitLists&) = delete;
+  HitLists& operator=(const HitLists&) = delete;
+
+  std::size_t most_hits() const { return most_hits_; }
 
   // The first `capacity` hits of each ray; behind `after`, the ray's span of before, where that isn't empty.
-  // What is returned is valid until the next call.
-  std::span<const layout::QuerySpan> find(std::span<const Ray> rays, std::span<const layout::QuerySpan> after,
-                                          std::uint32_t capacity);
+  // `any_length`: directions may be of a length that is_ordinary() doesn't allow. What is returned is valid
+  // until the next call, and the rays have to stay as long.
+  std::span<const layout::QuerySpan> find(std::span<const Ray> rays, bool any_length,
+                                          std::span<const layout::QuerySpan> after, std::uint32_t capacity);
 
   // The hits of ray i to places[i] and behind, `n` places in all.
   void pack(std::span<const std::uint32_t> places, std::size_t n, const HitArrays& to);
@@ -41,17 +48,20 @@ class HitLists {
   std::span<const layout::QueryHit> read();
 
  private:
-  cl::Buffer& packed(cl::Buffer& buffer);
+  void unmap() noexcept;
+  void make_room_for_packed();
 
   const Target& target_;
   std::size_t most_hits_;
   bool chunked_;
   wavefront::Stage<kernels::CollectHits> collect_;
+  std::optional<wavefront::Stage<kernels::PackHits>> pack_;
+  cl::CommandQueue queue_;
   cl::Buffer rays_, after_, spans_, hits_;
-  cl::Buffer places_, t_, primitive_, u_, v_;
+  cl::Buffer t_, primitive_, u_, v_;
   std::size_t n_rays_ = 0;
   std::uint32_t capacity_ = 0;
-  RawVector<layout::QuerySpan> found_;
+  void* found_ = nullptr;  // spans_, mapped
   RawVector<layout::QueryHit> read_;
 };
 

@@ -23,6 +23,9 @@ class NearRays {
   // The space that the kernels take rays from; its centre and scale are floats.
   const LocalSpace& kernel_space() const { return kernel_space_; }
 
+  // Whether rays none of whose origins has a larger coordinate can stay as they are.
+  bool all_near(float farthest) const { return farthest <= limit_; }
+
   // The rays to trace: `rays` themselves, unless one of them is too far off. Valid until the next call.
   std::span<const Ray> take(std::span<const Ray> rays);
 

@@ -1,11 +1,31 @@
 // What    All hits of query rays: a list for each, sorted, of as many as fit, and whether there are more.
 //         `space`: the scene's centre and scale (host/math/local_space.h).
-// Shape   The wide walk has one ray to a work-item, the batch walk KDRAY_CHUNK rays.
+// Shape   The wide walk has one ray to a work-item, the others KDRAY_CHUNK rays.
 // Cost    reads 32 B of the ray and the tree, writes 16 B and 16 B for each hit.
 // Errors  A ray whose walk failed has n_hits KDRAY_SPAN_INVALID; the host checks for it.
 #include "layout/arguments.h"
 #include "layout/traversal.h"
 #include "traverse/collect_batch.clh"
+#include "traverse/collect_packet.clh"
+
+// See walk_rays of walk.clh.
+inline void collect_rays(const SceneArrays* scene, const RaySource* source, const Lists* lists, u32 first,
+                         u32 end, float world_max, float most_apart) {
+  RayGroups coherent, others;
+#if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_PACKET
+  (void)most_apart;
+  group_all(&coherent, first, end);
+  others.n = 0;
+#elif KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BATCH
+  (void)most_apart;
+  group_all(&others, first, end);
+  coherent.n = 0;
+#else
+  group_by_coherence(source, &coherent, &others, first, end, most_apart);
+#endif
+  if (coherent.n > 0) collect_packets(scene, source, lists, &coherent, world_max);
+  if (others.n > 0) collect_batch(scene, source, lists, &others, world_max);
+}
 
 __kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
@@ -18,14 +38,14 @@ __kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
   fetch_ray(&source, item, &in);
   WideRay r;
   begin_ray(&r, &in, world_max);
-  HitList list = list_of_ray(&source, &lists, item, &r);
+  HitList list = list_of_ray(&source, &lists, item, r.t_min, r.t);
+  r.t_min = list.t_min;
   collect_wide(&scene, &r, &list);
-  store_list(&source, &lists, item, &r, &list);
+  store_list(&source, &lists, item, &list, r.ref);
 #else
   const u32 first = item * KDRAY_CHUNK;
   if (first >= n_rays) return;
-  RayGroups all;
-  group_all(&all, first, min(n_rays, first + KDRAY_CHUNK));
-  collect_batch(&scene, &source, &lists, &all, world_max);
+  collect_rays(&scene, &source, &lists, first, min(n_rays, first + KDRAY_CHUNK), world_max,
+               KDRAY_COHERENT_DISTANCE * world_max * power_of_two(-source.exponent));
 #endif
 }
