@@ -5,7 +5,8 @@
 //         primitive. A hit counts where t_min < t < t_max; one in the start point, at t = 0, where t_min is
 //         0. A ray has any number of hits: what goes beyond a list on the device is found in further passes,
 //         in bounded memory but for the answer's own.
-// Errors  ErrorCode::input for a ray that is not one (check_rays.h), unless such are to miss.
+// Errors  ErrorCode::input for a ray that is not one (check_rays.h), unless such are to miss; ErrorCode::usage
+//         for the binary walk, which doesn't find them.
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "device/opencl_error.h"
 #include "layout/traversal.h"
 #include "query/launch.h"
@@ -12,20 +13,36 @@ namespace kdray::query {
 using layout::QueryHit;
 using layout::QuerySpan;
 
+namespace {
+
+// Memory of this size on the host is kept when it is freed, and need not be touched anew by the next call
+// (base/memory.h). What isn't used isn't touched.
+constexpr std::size_t kKept = std::size_t{32} << 20;
+
+std::size_t kept(std::size_t bytes) {
+  return bytes < kLargePages ? bytes : std::max(bytes, kKept);
+}
+
+}  // namespace
+
 HitLists::HitLists(const Target& target, Traversal traversal, const LocalSpace& space, std::size_t rays,
                    std::size_t hits)
     : target_(target),
       most_hits_(hits),
       chunked_(traversal != Traversal::wide),
       collect_(target.programs.kernel<kernels::CollectHits>(target.scene.features, traversal)),
+      pack_(target.programs.kernel<kernels::PackHits>(target.scene.features, traversal)),
       queue_(target.context.queues().front()),
       spans_(target.context.buffer(CL_MEM_READ_WRITE, rays * sizeof(QuerySpan), "the rays' counts")),
-      hits_(target.context.buffer(CL_MEM_READ_WRITE, hits * sizeof(QueryHit), "the rays' hits")) {
-  using K = kernels::CollectHits;
+      hits_(target.context.buffer(CL_MEM_READ_WRITE, kept(hits * sizeof(QueryHit)), "the rays' hits")) {
+  using C = kernels::CollectHits;
+  using P = kernels::PackHits;
   device::checked("finding hits", [&] {
     target.buffers.set_arguments(collect_);
-    collect_.set(K::space, float4(space)).set(K::world_max, world_max(target.scene.geometry.bounds));
-    collect_.set(K::spans, spans_).set(K::hits, hits_);
+    target.buffers.set_arguments(pack_);
+    collect_.set(C::space, float4(space)).set(C::world_max, world_max(target.scene.geometry.bounds));
+    collect_.set(C::spans, spans_).set(C::hits, hits_);
+    pack_.set(P::space, float4(space)).set(P::spans, spans_).set(P::hits, hits_);
   });
 }
 
@@ -40,6 +57,7 @@ std::span<const QuerySpan> HitLists::find(std::span<const Ray> rays, bool any_le
   unmap();
   n_rays_ = rays.size();
   capacity_ = capacity;
+  any_length_ = any_length;
   rays_ = target_.context.upload(rays.data(), rays.size_bytes(), nullptr, "the rays");
   after_ = target_.context.upload(after.data(), after.size_bytes(), nullptr, "where rays go on");
   device::checked("finding hits", [&] {
@@ -58,38 +76,49 @@ std::span<const QuerySpan> HitLists::find(std::span<const Ray> rays, bool any_le
   return found;
 }
 
-void HitLists::make_room_for_packed() {
-  if (pack_) return;
-  using K = kernels::PackHits;
-  pack_.emplace(target_.programs.kernel<K>(target_.scene.features));
-  for (cl::Buffer* buffer : {&t_, &primitive_, &u_, &v_})
-    *buffer = target_.context.buffer(CL_MEM_WRITE_ONLY, most_hits_ * 4, "packed hits");
-  pack_->set(K::spans, spans_).set(K::hits, hits_);
-  pack_->set(K::t, t_).set(K::primitive, primitive_).set(K::u, u_).set(K::v, v_);
-}
+namespace {
+
+// An array of the host's for kernels to write to: where the device works in the host's memory, as it is;
+// elsewhere by way of a buffer of the device's.
+class Written {
+ public:
+  Written(const device::Context& context, void* data, std::size_t bytes)
+      : data_(data), bytes_(bytes), lent_(context.lend(data, bytes, "packed hits")) {
+    if (!lent_()) own_ = context.buffer(CL_MEM_WRITE_ONLY, bytes, "packed hits");
+  }
+  const cl::Buffer& buffer() const { return lent_() ? lent_ : own_; }
+
+  // Waits for it.
+  void take(cl::CommandQueue& queue) {
+    if (!lent_()) return static_cast<void>(queue.enqueueReadBuffer(own_, CL_TRUE, 0, bytes_, data_));
+    void* const mapped = queue.enqueueMapBuffer(lent_, CL_TRUE, CL_MAP_READ, 0, bytes_);
+    queue.enqueueUnmapMemObject(lent_, mapped);
+  }
+
+ private:
+  void* data_;
+  std::size_t bytes_;
+  cl::Buffer lent_, own_;
+};
+
+}  // namespace
 
 void HitLists::pack(std::span<const std::uint32_t> places, std::size_t n, const HitArrays& to) {
-  using K = kernels::PackHits;
+  using P = kernels::PackHits;
+  const device::Context& context = target_.context;
   const cl::Buffer in_places =
-      target_.context.upload(places.data(), places.size_bytes(), nullptr, "the hits' places");
+      context.upload(places.data(), places.size_bytes(), nullptr, "the hits' places");
+  Written t(context, to.t, n * 4), primitive(context, to.primitive, n * 4);
+  Written u(context, to.u, n * 4), v(context, to.v, n * 4);
   device::checked("packing hits", [&] {
-    make_room_for_packed();
-    pack_->set(K::n_rays, static_cast<cl_uint>(n_rays_)).set(K::capacity, capacity_);
-    pack_->set(K::places, in_places);
-    pack_->launch(queue_, n_rays_, target_.work_group);
-    queue_.enqueueReadBuffer(t_, CL_FALSE, 0, n * 4, to.t);
-    queue_.enqueueReadBuffer(primitive_, CL_FALSE, 0, n * 4, to.primitive);
-    queue_.enqueueReadBuffer(u_, CL_FALSE, 0, n * 4, to.u);
-    queue_.enqueueReadBuffer(v_, CL_TRUE, 0, n * 4, to.v);
+    pack_.set(P::n_rays, static_cast<cl_uint>(n_rays_)).set(P::capacity, capacity_);
+    pack_.set(P::any_length, cl_uint{any_length_}).set(P::rays, rays_).set(P::places, in_places);
+    pack_.set(P::t, t.buffer()).set(P::primitive, primitive.buffer());
+    pack_.set(P::u, u.buffer()).set(P::v, v.buffer());
+    pack_.launch(queue_, n_rays_, target_.work_group);
+    for (Written* array : {&t, &primitive, &u, &v}) array->take(queue_);
+    queue_.finish();  // the arrays may go
   });
-}
-
-std::span<const QueryHit> HitLists::read() {
-  read_.resize(n_rays_ * capacity_);
-  device::checked("reading hits", [&] {
-    queue_.enqueueReadBuffer(hits_, CL_TRUE, 0, read_.size() * sizeof read_[0], read_.data());
-  });
-  return read_;
 }
 
 }  // namespace kdray::query

@@ -1,14 +1,11 @@
 // What    Lists of hits on the device: one for each ray of a launch, sorted, of bounded size.
-// Shape   find() fills them; pack() then moves them together, read() takes them as they lie. Both look at what
-//         find() found last.
+// Shape   find() fills them; pack() then moves them together into arrays of the host's.
 // Errors  ErrorCode::internal where a walk failed.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 
-#include "base/raw_vector.h"
 #include "kdray/ray.h"
 #include "layout/rays.layout.h"
 #include "query/near_rays.h"
@@ -41,28 +38,23 @@ class HitLists {
   std::span<const layout::QuerySpan> find(std::span<const Ray> rays, bool any_length,
                                           std::span<const layout::QuerySpan> after, std::uint32_t capacity);
 
-  // The hits of ray i to places[i] and behind, `n` places in all.
+  // The hits of ray i that were found last to places[i] and behind, `n` places in all.
   void pack(std::span<const std::uint32_t> places, std::size_t n, const HitArrays& to);
-
-  // The lists, `capacity` hits each.
-  std::span<const layout::QueryHit> read();
 
  private:
   void unmap() noexcept;
-  void make_room_for_packed();
 
   const Target& target_;
   std::size_t most_hits_;
   bool chunked_;
   wavefront::Stage<kernels::CollectHits> collect_;
-  std::optional<wavefront::Stage<kernels::PackHits>> pack_;
+  wavefront::Stage<kernels::PackHits> pack_;
   cl::CommandQueue queue_;
   cl::Buffer rays_, after_, spans_, hits_;
-  cl::Buffer t_, primitive_, u_, v_;
   std::size_t n_rays_ = 0;
   std::uint32_t capacity_ = 0;
+  bool any_length_ = false;
   void* found_ = nullptr;  // spans_, mapped
-  RawVector<layout::QueryHit> read_;
 };
 
 }  // namespace kdray::query

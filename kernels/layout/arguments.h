@@ -50,7 +50,7 @@
   X(Channels, "film/channels.cl", channels, KDRAY_CHANNELS_ARGUMENTS)                        \
   X(TraceQuery, "traverse/query.cl", trace_query, KDRAY_TRACE_QUERY_ARGUMENTS)               \
   X(CollectHits, "traverse/collect.cl", collect_hits, KDRAY_COLLECT_HITS_ARGUMENTS)          \
-  X(PackHits, "traverse/pack.cl", pack_hits, KDRAY_PACK_HITS_ARGUMENTS)                      \
+  X(PackHits, "traverse/collect.cl", pack_hits, KDRAY_PACK_HITS_ARGUMENTS)                   \
   X(Depart, "shade/depart.cl", depart, KDRAY_DEPART_ARGUMENTS)                               \
   X(TravelWave, "odprt/wave.cl", travel_wave, KDRAY_TRAVEL_WAVE_ARGUMENTS)                   \
   X(Receive, "odprt/receive.cl", receive, KDRAY_RECEIVE_ARGUMENTS)                           \
@@ -154,8 +154,12 @@
   X(IO, QueryHit, hits)
 
 #define KDRAY_PACK_HITS_ARGUMENTS(F, X) \
-  F(VALUE, u32, n_rays)                 \
+  F(VALUE, float4, space)               \
+  X(VALUE, u32, n_rays)                 \
   X(VALUE, u32, capacity)               \
+  X(VALUE, u32, any_length)             \
+  KDRAY_TRACED_ARRAYS(X)                \
+  X(IN, QueryRay, rays)                 \
   X(IN, QuerySpan, spans)               \
   X(IN, u32, places)                    \
   X(IN, QueryHit, hits)                 \

@@ -1,7 +1,9 @@
-// What    All hits of query rays: a list for each, sorted, of as many as fit, and whether there are more.
+// What    collect_hits: all hits of query rays: a list for each, sorted, of as many as fit, and whether there
+//         are more. pack_hits: the lists moved together as structures of arrays, those of ray i to places[i],
+//         with primitives' numbers for references and t in multiples of the direction as it was given.
 //         `space`: the scene's centre and scale (host/math/local_space.h).
-// Shape   The wide walk has one ray to a work-item, the others KDRAY_CHUNK rays.
-// Cost    reads 32 B of the ray and the tree, writes 16 B and 16 B for each hit.
+// Shape   The wide walk has one ray to a work-item, the others KDRAY_CHUNK rays; pack_hits has one.
+// Cost    collect_hits reads 32 B of the ray and the tree, writes 16 B and 16 B for each hit.
 // Errors  A ray whose walk failed has n_hits KDRAY_SPAN_INVALID; the host checks for it.
 #include "layout/arguments.h"
 #include "layout/traversal.h"
@@ -48,4 +50,20 @@ __kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
   collect_rays(&scene, &source, &lists, first, min(n_rays, first + KDRAY_CHUNK), world_max,
                KDRAY_COHERENT_DISTANCE * world_max * power_of_two(-source.exponent));
 #endif
+}
+
+__kernel void pack_hits(KDRAY_PARAMETERS(KDRAY_PACK_HITS_ARGUMENTS)) {
+  const u32 i = (u32)get_global_id(0);
+  if (i >= n_rays) return;
+  const SceneArrays scene = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TRACED_ARRAYS);
+  const RaySource source = ray_source(&scene, in_rays, 0, space, 0, any_length);
+  const i32 exponent = -query_exponent(&source, i) - source.exponent;
+  __global const QueryHit* hits = in_hits + (size_t)i * capacity;
+  const u32 n = in_spans[i].n_hits, first = in_places[i];
+  for (u32 k = 0; k < n; ++k) {
+    out_t[first + k] = scale_t(hits[k].t, exponent);
+    out_primitive[first + k] = primitive_number(&scene, (u32)hits[k].primitive);
+    out_u[first + k] = hits[k].u;
+    out_v[first + k] = hits[k].v;
+  }
 }
