@@ -47,13 +47,14 @@ float largest(const float (&v)[3]) {
 }
 
 RaysSeen both(const RaysSeen& a, const RaysSeen& b) {
-  return {std::min(a.first_fault, b.first_fault), a.ordinary && b.ordinary, larger(a.farthest, b.farthest)};
+  return {a.n_rays, std::min(a.first_fault, b.first_fault), a.ordinary && b.ordinary,
+          larger(a.farthest, b.farthest)};
 }
 
 }  // namespace
 
 RaysSeen look_at(std::span<const Ray> rays) {
-  const RaysSeen nothing{rays.size(), true, 0};
+  const RaysSeen nothing{rays.size(), rays.size(), true, 0};
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, rays.size(), 1 << 14), nothing,
       [&](const tbb::blocked_range<std::size_t>& range, RaysSeen seen) {
@@ -68,13 +69,21 @@ RaysSeen look_at(std::span<const Ray> rays) {
 }
 
 void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen) {
-  if (seen.first_fault == rays.size()) return;
+  if (seen.first_fault == seen.n_rays) return;
   throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", seen.first_fault,
                                             fault_of(rays[seen.first_fault])));
 }
 
 void check_rays(std::span<const Ray> rays) {
   refuse_faulty(rays, look_at(rays));
+}
+
+std::vector<Ray> without_faulty(std::span<const Ray> rays) {
+  constexpr Ray kNone{{0, 0, 0}, 0, {0, 0, 1}, -1};
+  std::vector<Ray> kept(rays.begin(), rays.end());
+  std::replace_if(
+      kept.begin(), kept.end(), [](const Ray& ray) { return !is_ray(ray); }, kNone);
+  return kept;
 }
 
 bool is_ordinary(const Ray& ray) {

@@ -5,17 +5,19 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "kdray/ray.h"
 
 namespace kdray::query {
 
-// In words, or null. The kernels let such a ray meet nothing, so whoever wants to may count it as a miss.
+// In words, or null.
 const char* fault_of(const Ray& ray);
 
 // What one look at all rays tells.
 struct RaysSeen {
-  std::size_t first_fault;  // the number of the first that is none; as many as there are: all are
+  std::size_t n_rays;
+  std::size_t first_fault;  // the number of the first that is none; n_rays: all are
   bool ordinary;            // the kernels need not look at the directions' lengths: is_ordinary() of each
   float farthest;           // the largest coordinate of an origin
 };
@@ -25,6 +27,9 @@ RaysSeen look_at(std::span<const Ray> rays);
 void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen);
 
 void check_rays(std::span<const Ray> rays);
+
+// The same rays, but for those that are none: these meet nothing.
+std::vector<Ray> without_faulty(std::span<const Ray> rays);
 
 // Whether the kernels leave its direction as long as it is (length_exponent() of query.clh): where they do so
 // with all rays of a launch, they need not look.

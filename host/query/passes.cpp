@@ -61,7 +61,9 @@ std::size_t Passes::next_chunk(std::size_t left) const {
 }
 
 std::span<const QuerySpan> Passes::first(std::span<const Ray> rays) {
-  rays_ = near_rays_.all_near(seen_.farthest) ? rays : near_rays_.take(rays);
+  rays_ = rays;
+  if (seen_.first_fault < seen_.n_rays) rays_ = kept_ = without_faulty(rays);
+  if (!near_rays_.all_near(seen_.farthest)) rays_ = near_rays_.take(rays_);
   const std::span<const QuerySpan> spans = first_.find(rays_, !seen_.ordinary, {}, capacity_);
   const auto n_more =
       std::count_if(spans.begin(), spans.end(), [](const QuerySpan& s) { return s.more != 0; });

@@ -68,6 +68,7 @@ class Passes {
   NearRays near_rays_;
   HitLists first_;
   std::unique_ptr<HitLists> later_;
+  std::vector<Ray> kept_;      // of the chunk in work, where some rays are none
   std::span<const Ray> rays_;  // of the chunk in work
 };
 

@@ -24,16 +24,18 @@ std::shared_ptr<wavefront::Programs> programs_of(const prepare::Prepared& p) {
   return programs;
 }
 
-prepare::Prepared prepared_in(const scene::Scene& scene, Space space) {
-  prepare::Prepared p = prepare::prepare(scene, TreeOptions{.binary_form = false});
+prepare::Prepared prepared_in(const scene::Scene& scene, Space space, Blocks blocks) {
+  const std::size_t as_many = blocks == Blocks::of_eight ? 1000000 : scene.primitive_count();
+  const kdtree::BuildConfig config = prepare::config_of(TreeOptions{}, as_many);
+  prepare::Prepared p = prepare::prepare(scene, scene::make_geometry(scene), config, false);
   if (space == Space::own) p.geometry.space = {};
   return p;
 }
 
 }  // namespace
 
-Asked::Asked(const scene::Scene& scene, Space space)
-    : prepared_(prepared_in(scene, space)),
+Asked::Asked(const scene::Scene& scene, Space space, Blocks blocks)
+    : prepared_(prepared_in(scene, space, blocks)),
       buffers_(context(), prepared_.flat, prepared_.wide),
       programs_(programs_of(prepared_)) {}
 

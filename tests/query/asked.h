@@ -17,10 +17,11 @@
 namespace kdray::test {
 
 enum class Space { own, worlds };
+enum class Blocks { suited, of_eight };  // of_eight: as a scene of a million primitives has them
 
 class Asked {
  public:
-  explicit Asked(const scene::Scene& scene, Space space = Space::own);
+  explicit Asked(const scene::Scene& scene, Space space = Space::own, Blocks blocks = Blocks::suited);
 
   query::Target target();
   std::span<const layout::Triangle> triangles() const { return prepared_.flat.triangles; }

@@ -172,7 +172,7 @@ void ask(Asked& mesh, const Family& family, std::uint64_t seed, std::size_t n) {
   EXPECT_EQ(counted, 0);
   EXPECT_EQ(unsorted, 0);
   // Every triangle for every ray: some rays of them.
-  const std::size_t step = std::max<std::size_t>(1, n * mesh.triangles().size() / 4000000);
+  const std::size_t step = std::max<std::size_t>(1, n * mesh.triangles().size() / 1000000);
   std::atomic<int> wrong{0};
   tbb::parallel_for(std::size_t{0}, n / step, [&](std::size_t k) {
     if (agrees(all, k * step, rays[k * step], mesh.triangles())) return;
