@@ -7,7 +7,8 @@ Committed::Committed(const PreparedScene& scene, query::GeometryTable table, con
       table_(std::move(table)),
       frame_(scene_.prepared().geometry),
       devices_(device, {}, scene_.prepared()),
-      sessions_(target(), table_.masks()),
+      target_(target()),
+      sessions_(target_),
       device_options_(device) {}
 
 Picture Committed::render(const RenderOptions& options) {
@@ -18,7 +19,12 @@ Picture Committed::render(const RenderOptions& options) {
 
 query::Target Committed::target() {
   Device& first = devices_.first();
-  return {first.context, first.buffers(), first.programs, scene_.prepared(), first.work_group, first.global};
+  query::Target target{first.context,     first.buffers(),  first.programs,
+                       scene_.prepared(), first.work_group, first.global};
+  target.space = LocalSpace();
+  if (const std::vector<std::uint32_t> masks = table_.masks(); !masks.empty())
+    target.masks = first.context.upload_copy(masks.data(), masks.size() * sizeof masks[0], "the masks");
+  return target;
 }
 
 }  // namespace kdray::api

@@ -20,7 +20,7 @@ class Committed {
 
   const PreparedScene& scene() const { return scene_; }
   Picture render(const RenderOptions& options);
-  query::Asked asked() { return {scene_.prepared(), table_, frame_, sessions_}; }
+  query::Asked asked() { return {target_, table_, frame_, sessions_}; }
 
  private:
   query::Target target();
@@ -29,6 +29,7 @@ class Committed {
   query::GeometryTable table_;
   query::LocalFrame frame_;
   DeviceSet devices_;
+  query::Target target_;
   query::Sessions sessions_;
   DeviceOptions device_options_;
   std::mutex rendering_;

@@ -8,6 +8,7 @@
 #include "api/committed.h"
 #include "base/timer.h"
 #include "kdray/kdray.h"
+#include "query/crossings.h"
 #include "scene/check_scene.h"
 #include "scene/frame.h"
 #include "scene/load.h"
@@ -241,6 +242,15 @@ QueryReport Scene::closest(const Rays& rays, const HitsOut& out, const QueryOpti
 QueryReport Scene::any(const Rays& rays, const BytesOut& out, const QueryOptions& options) const {
   const auto committed = impl_->asked();
   return query::any(committed->asked(), rays, out, options);
+}
+
+QueryReport Scene::count(const Rays& rays, const WordsOut& out, const QueryOptions& options) const {
+  const auto committed = impl_->asked();
+  return query::count(committed->asked(), rays, out, options);
+}
+AllHits Scene::all(const Rays& rays, const AllHitsOptions& options) const {
+  const auto committed = impl_->asked();
+  return query::all(committed->asked(), rays, options);
 }
 
 }  // namespace kdray

@@ -196,6 +196,13 @@ cl::Buffer Context::upload(const void* data, std::size_t bytes, std::shared_ptr<
   return upload_copy(data, bytes, what);
 }
 
+cl::Buffer Context::lend(void* data, std::size_t bytes, const std::string& what) const {
+  return checked("lending " + what, [&] {
+    if (bytes == 0 || bytes > found_.info.max_allocation || !works_in_host_memory()) return cl::Buffer();
+    return buffer_over(opened_->context, CL_MEM_WRITE_ONLY, data, bytes, nullptr);
+  });
+}
+
 cl::Buffer Context::upload_copy(const void* data, std::size_t bytes, const std::string& what) const {
   cl::Buffer copy = buffer(CL_MEM_READ_ONLY, bytes, what);
   if (bytes > 0)

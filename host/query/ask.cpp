@@ -12,10 +12,6 @@
 
 namespace kdray::query {
 
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 void throw_if_cancelled(const QueryOptions& options) {
   if (options.cancel && options.cancel->is_cancelled())
     throw Error(ErrorCode::cancelled, "the query was cancelled");
@@ -31,12 +27,16 @@ void check_out(std::size_t size, std::size_t n, const char* name) {
     throw Error(ErrorCode::input, fmt::format("{}: there are {} places for {} rays", name, size, n));
 }
 
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // Calls take(first, hits, local rays) for each chunk of hits, in turn.
 template <class Take>
 QueryReport trace_chunks(const Asked& asked, const RayArrays& rays, bool any_hit, bool as_refs,
                          const QueryOptions& options, const Take& take) {
-  const bool masked = asked.sessions.has_masks() || !rays.rays().masks.empty();
-  const Sessions::Borrowed session = asked.sessions.borrow({.masked = masked});
+  const bool masked = asked.target.masks() != nullptr;
+  const Sessions::Borrowed session = asked.sessions.borrow();
   LocalRays local(rays, asked.frame);
   for (std::size_t first = 0; first < rays.size(); first += session->chunk()) {
     throw_if_cancelled(options);
@@ -94,7 +94,7 @@ class HitWriter {
   GeometryTable::Place place_of(const layout::QueryHit& hit) const {
     if (missed(hit)) return {kNoGeometry, kNoPrimitive};
     const auto word = static_cast<std::uint32_t>(hit.primitive);
-    return asked_->table.of(wants_refs() ? number_of(asked_->scene.flat, word) : word);
+    return asked_->table.of(wants_refs() ? number_of(asked_->scene().flat, word) : word);
   }
 
   dvec3 point_of(std::size_t ray, double t) const {
@@ -103,7 +103,7 @@ class HitWriter {
 
   std::array<double, 3> normal_of(std::size_t ray, const layout::QueryHit& hit, double t) const {
     if (missed(hit)) return {0, 0, 0};
-    return array(normal_at(asked_->scene.flat, static_cast<std::uint32_t>(hit.primitive),
+    return array(normal_at(asked_->scene().flat, static_cast<std::uint32_t>(hit.primitive),
                            asked_->frame.space().local(point_of(ray, t))));
   }
 

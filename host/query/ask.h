@@ -15,11 +15,19 @@ namespace kdray::query {
 
 // What is asked: a scene that is ready, and what its numbers mean.
 struct Asked {
-  const prepare::Prepared& scene;
+  const Target& target;  // of rays in the scene's own space
   const GeometryTable& table;
   const LocalFrame& frame;
   Sessions& sessions;
+
+  const prepare::Prepared& scene() const { return target.scene; }
 };
+
+// What every query looks at on its way: ErrorCode::cancelled; ErrorCode::input for the first ray that means
+// nothing, where such are errors, and for an array of answers of another size.
+void throw_if_cancelled(const QueryOptions& options);
+void check_invalid(const LocalRays& rays, const QueryOptions& options);
+void check_out(std::size_t size, std::size_t n, const char* name);
 
 QueryReport closest(const Asked& asked, const Rays& rays, const HitsOut& out, const QueryOptions& options);
 

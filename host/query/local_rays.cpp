@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "query/check_rays.h"
 #include "query/grains.h"
 
 namespace kdray::query {
@@ -31,20 +32,11 @@ bool is_double(const View& view) {
 }
 
 // Of an ordinary length kernels make directions no shorter and no longer (query.clh).
-bool is_ordinary(double largest) {
+bool is_ordinary_length(double largest) {
   return largest >= 0x1p-8 && largest < 0x1p8;
 }
 
 }  // namespace
-
-const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max) {
-  if (!is_finite(origin)) return "its origin is not finite";
-  if (!is_finite(direction)) return "its direction is not finite";
-  if (direction == dvec3(0)) return "its direction is 0";
-  if (!std::isfinite(t_min)) return "its t_min is not finite";
-  if (std::isnan(t_max)) return "its t_max is not a number";
-  return nullptr;
-}
 
 RayArrays::RayArrays(const Rays& rays)
     : rays_(rays),
@@ -112,7 +104,7 @@ LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_directi
                            double t_max, bool in_double) const {
   LocalRay out{kNoRay, 0, exponent_};
   const double largest = largest_component(world_direction);
-  const int length = is_ordinary(largest) ? 0 : std::ilogb(largest);
+  const int length = is_ordinary_length(largest) ? 0 : std::ilogb(largest);
   const dvec3 direction =
       length == 0 ? world_direction
                   : dvec3(std::scalbn(world_direction.x, -length), std::scalbn(world_direction.y, -length),
@@ -143,8 +135,10 @@ LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_directi
 void LocalRays::fill(std::size_t first, std::size_t n, layout::QueryRay* out) {
   moved_.clear();
   const Ray* const structs = rays_->structs();
-  if (structs != nullptr && fill_structs(first, n, structs + first, out)) return;
-  fill_any(first, n, out);
+  if (structs == nullptr || !fill_structs(first, n, structs + first, out)) fill_any(first, n, out);
+  if (rays_->rays().masks.empty()) return;
+  for (std::size_t i = 0; i < n; ++i)
+    if (rays_->mask(first + i) == 0) out[i] = kNoRay;
 }
 
 // Rays of floats as nearly all are: finite, of ordinary length, not from too far off. False where one isn't.

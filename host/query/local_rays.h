@@ -24,9 +24,6 @@
 
 namespace kdray::query {
 
-// What is wrong with a ray that means nothing; null: nothing is.
-const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max);
-
 // The rows of arrays that have one for each ray, or one for all: checked once.
 class RayArrays {
  public:
@@ -90,7 +87,7 @@ class LocalRays {
  public:
   LocalRays(const RayArrays& rays, const LocalFrame& frame) : rays_(&rays), frame_(&frame) {}
 
-  // Fills out[0, n) with rays [first, first + n).
+  // Fills out[0, n) with rays [first, first + n). One whose mask has no bit meets nothing.
   void fill(std::size_t first, std::size_t n, layout::QueryRay* out);
 
   // Of ray i of the chunk that was filled last.

@@ -72,7 +72,7 @@ std::span<const Ray> NearRays::take(std::span<const Ray> rays) {
 void NearRays::give_back(std::span<Hit> hits) const {
   if (ahead_.empty()) return;
   for (std::size_t i = 0; i < hits.size(); ++i)
-    if (hits[i].primitive >= 0) hits[i].t = static_cast<float>(hits[i].t / shrink_ + ahead_[i]);
+    if (hits[i].primitive >= 0) hits[i].t = given_back(i, hits[i].t);
 }
 
 }  // namespace kdray::query

@@ -23,11 +23,18 @@ class NearRays {
   // The space that the kernels take rays from; its centre and scale are floats.
   const LocalSpace& kernel_space() const { return kernel_space_; }
 
+  // Whether rays none of whose origins has a larger coordinate can stay as they are.
+  bool all_near(float farthest) const { return farthest <= limit_; }
+
   // The rays to trace: `rays` themselves, unless one of them is too far off. Valid until the next call.
   std::span<const Ray> take(std::span<const Ray> rays);
 
   // Turns the distances of the hits of the rays that were taken last back to theirs.
   void give_back(std::span<Hit> hits) const;
+
+  // Whether any of the rays that were taken last was begun anew, and what a distance of the i-th then is.
+  bool has_moved() const { return !ahead_.empty(); }
+  float given_back(std::size_t i, float t) const { return static_cast<float>(t / shrink_ + ahead_[i]); }
 
  private:
   bool is_far(const Ray& ray) const;

@@ -11,6 +11,11 @@ inline cl_float4 float4(const vec3& v, float w = 0) {
   return cl_float4{{v.x, v.y, v.z, w}};
 }
 
+// The centre and the scale.
+inline cl_float4 float4(const LocalSpace& space) {
+  return float4(vec3(space.center), static_cast<float>(space.scale));
+}
+
 // The largest coordinate of a scene, in its own space.
 inline float world_max(const Box& bounds) {
   if (bounds.empty()) return 0;

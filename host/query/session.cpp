@@ -19,8 +19,8 @@ Traversal traversal_of(const Target& target) {
   return target.global ? Traversal::wide : Traversal::automatic;
 }
 
-layout::Features features_of(const Target& target, const SessionKind& kind) {
-  return target.scene.features | (kind.masked ? KDRAY_FEATURE_MASKS : 0);
+layout::Features features_to_trace(const Target& target) {
+  return target.scene.features | (target.masks() != nullptr ? KDRAY_FEATURE_MASKS : 0);
 }
 
 }  // namespace
@@ -31,17 +31,17 @@ cl::Buffer Session::buffer_of(Array<T>& array, cl_mem_flags flags, const char* w
   return device::buffer_over(context_->get(), flags, array.data(), array.bytes(), array.owner());
 }
 
-Session::Session(const Target& target, const SessionKind& kind, const cl::Buffer& masks)
+Session::Session(const Target& target)
     : context_(&target.context),
-      kind_(kind),
+      masked_(target.masks() != nullptr),
       queue_(target.context),
-      stage_(target.programs.kernel<kernels::TraceQuery>(features_of(target, kind), traversal_of(target))),
+      stage_(target.programs.kernel<kernels::TraceQuery>(features_to_trace(target), traversal_of(target))),
       work_group_(target.work_group),
       chunked_(!target.global),
       in_place_(target.context.works_in_host_memory()),
       rays_(target.global ? kGlobalChunk : kChunk),
       hits_(rays_.size()),
-      masks_(kind.masked ? rays_.size() : 1) {
+      masks_(masked_ ? rays_.size() : 1) {
   using K = kernels::TraceQuery;
   device::checked("getting ready to trace rays", [&] {
     ray_buffer_ = buffer_of(rays_, CL_MEM_READ_ONLY, "the rays");
@@ -50,7 +50,7 @@ Session::Session(const Target& target, const SessionKind& kind, const cl::Buffer
     set_scene_arguments(stage_, target);
     stage_.set(K::space, float4(vec3(0), 1)).set(K::any_length, cl_uint{0});
     stage_.set(K::rays, ray_buffer_).set(K::hits, hit_buffer_);
-    stage_.set(K::primitive_masks, masks).set(K::ray_masks, mask_buffer_);
+    stage_.set(K::primitive_masks, masked_ ? target.masks : mask_buffer_).set(K::ray_masks, mask_buffer_);
     // PoCL compiles a kernel for good at its first launch.
     const device::AtWork compiling(context_->builds());
     stage_.set(K::any_hit, cl_uint{0}).set(K::as_refs, cl_uint{0});
@@ -74,7 +74,7 @@ std::span<const layout::QueryHit> Session::trace(std::size_t n, bool any_hit, bo
     stage_.set(K::any_hit, cl_uint{any_hit}).set(K::as_refs, cl_uint{as_refs});
     if (!in_place_) {
       queue_.get().enqueueWriteBuffer(ray_buffer_, CL_TRUE, 0, n * sizeof rays_[0], rays_.data());
-      if (kind_.masked)
+      if (masked_)
         queue_.get().enqueueWriteBuffer(mask_buffer_, CL_TRUE, 0, n * sizeof masks_[0], masks_.data());
     }
     launch(n);
@@ -89,20 +89,11 @@ std::span<const layout::QueryHit> Session::trace(std::size_t n, bool any_hit, bo
   return hits;
 }
 
-Sessions::Sessions(const Target& target, std::span<const std::uint32_t> masks)
-    : target_(target), has_masks_(!masks.empty()) {
-  constexpr std::uint32_t kAll = 0xffffffffu;
-  masks_ = has_masks_ ? target.context.upload_copy(masks.data(), masks.size_bytes(), "the masks")
-                      : target.context.upload_copy(&kAll, sizeof kAll, "the masks");
-}
-
-Sessions::Borrowed Sessions::borrow(const SessionKind& kind) {
+Sessions::Borrowed Sessions::borrow() {
   const std::lock_guard lock(mutex_);
-  const auto same =
-      std::find_if(free_.begin(), free_.end(), [&](const auto& s) { return s->kind() == kind; });
-  if (same == free_.end()) return {new Session(target_, kind, masks_), Give(this)};
-  Session* const session = same->release();
-  free_.erase(same);
+  if (free_.empty()) return {new Session(target_), Give(this)};
+  Session* const session = free_.back().release();
+  free_.pop_back();
   return {session, Give(this)};
 }
 

@@ -26,17 +26,10 @@ namespace kdray::query {
 // A hit's primitive where the walk failed: KDRAY_QUERY_INVALID of query.clh.
 inline constexpr std::int32_t kFailedWalk = -2;
 
-struct SessionKind {
-  bool masked = false;  // rays and primitives have masks
-  bool operator==(const SessionKind&) const = default;
-};
-
 class Session {
  public:
-  // `masks`: one for each primitive by its number, where the kind is masked.
-  Session(const Target& target, const SessionKind& kind, const cl::Buffer& masks);
+  explicit Session(const Target& target);
 
-  const SessionKind& kind() const { return kind_; }
   std::size_t chunk() const { return rays_.size(); }
 
   // Where the rays of a chunk, in the scene's own space, and their masks are to be put.
@@ -53,7 +46,7 @@ class Session {
   cl::Buffer buffer_of(Array<T>& array, cl_mem_flags flags, const char* what);
 
   const device::Context* context_;
-  SessionKind kind_;
+  bool masked_;  // primitives have masks
   device::SpareQueue queue_;
   wavefront::Stage<kernels::TraceQuery> stage_;
   std::size_t work_group_;
@@ -66,15 +59,12 @@ class Session {
 
 class Sessions {
  public:
-  // `masks` of the primitives by number; empty: all of them have every bit.
-  Sessions(const Target& target, std::span<const std::uint32_t> masks);
+  explicit Sessions(const Target& target) : target_(target) {}
 
-  // A session of that kind, given back when the pointer goes.
+  // A session, given back when the pointer goes.
   class Give;
   using Borrowed = std::unique_ptr<Session, Give>;
-  Borrowed borrow(const SessionKind& kind);
-
-  bool has_masks() const { return has_masks_; }
+  Borrowed borrow();
 
   class Give {
    public:
@@ -89,8 +79,6 @@ class Sessions {
   void take_back(std::unique_ptr<Session> session);
 
   Target target_;
-  bool has_masks_;
-  cl::Buffer masks_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Session>> free_;
 };

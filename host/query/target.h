@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "device/context.h"
 #include "prepare/prepared.h"
@@ -18,6 +19,11 @@ struct Target {
   const prepare::Prepared& scene;
   std::size_t work_group;  // local size of kernels that take a ray to a work-item
   bool global = false;     // launches are to be short, and every lane is a work-item: a GPU
+  // The space that rays are given in, as the scene's own is in the world's; none: the world's.
+  std::optional<LocalSpace> space = {};
+  cl::Buffer masks = {};  // of each primitive, by its number; none: all bits
+
+  const LocalSpace& space_of_rays() const { return space ? *space : scene.geometry.space; }
 };
 
 }  // namespace kdray::query

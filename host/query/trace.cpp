@@ -1,14 +1,12 @@
 #include "query/trace.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 
 #include "base/timer.h"
 #include "device/opencl_error.h"
 #include "layout/rays.layout.h"
 #include "layout/traversal.h"
+#include "query/check_rays.h"
 #include "query/near_rays.h"
 #include "query/scene_arguments.h"
 #include "query/session.h"
@@ -22,33 +20,6 @@ static_assert(sizeof(Ray) == sizeof(layout::QueryRay) && sizeof(Hit) == sizeof(l
 
 // Rays in one launch: 512 MiB of them; and for a GPU, whose watchdog may end what takes seconds.
 constexpr std::size_t kRaysPerChunk = std::size_t{1} << 24, kBoundedLaunch = std::size_t{1} << 20;
-
-bool all_finite(const float (&v)[3]) {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
-const char* fault_of(const Ray& ray) {
-  if (!all_finite(ray.origin)) return "its origin is not finite";
-  if (!all_finite(ray.direction)) return "its direction is not finite";
-  if (ray.direction[0] == 0 && ray.direction[1] == 0 && ray.direction[2] == 0) return "its direction is 0";
-  if (!std::isfinite(ray.t_min)) return "its t_min is not finite";
-  if (std::isnan(ray.t_max)) return "its t_max is not a number";
-  return nullptr;
-}
-
-void check(std::span<const Ray> rays) {
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (const char* fault = fault_of(rays[i]))
-      throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault));
-}
-
-// Whether the kernels leave its direction as long as it is (length_exponent() of query.clh): where they do so
-// with all rays of a launch, they need not look.
-bool is_ordinary(const Ray& ray) {
-  const float largest =
-      std::max({std::abs(ray.direction[0]), std::abs(ray.direction[1]), std::abs(ray.direction[2])});
-  return largest >= 0x1p-8f && largest < 0x1p8f;
-}
 
 // PoCL compiles a kernel for good at its first launch: here one of as many work-items that finds no rays, not
 // in the time of tracing.
@@ -64,7 +35,7 @@ void warm_up(const device::Context& context, wavefront::Stage<kernels::TraceQuer
 
 Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions& options) {
   const device::Context& context = target.context;
-  check(rays);
+  check_rays(rays);
   Traced result{std::vector<Hit>(rays.size()),
                 std::vector<double>(static_cast<std::size_t>(std::max(options.repeat, 1)))};
   if (rays.empty()) return result;
@@ -81,7 +52,7 @@ Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions
   const LocalSpace& space = near_rays.kernel_space();
   device::checked("tracing rays", [&] {
     set_scene_arguments(stage, target);
-    stage.set(K::space, float4(vec3(space.center), static_cast<float>(space.scale)));
+    stage.set(K::space, float4(space));
     stage.set(K::any_hit, cl_uint{options.any_hit}).set(K::rays, ray_buffer).set(K::hits, hit_buffer);
     // Rays of the command line have no masks: what is bound for them is not read.
     stage.set(K::as_refs, cl_uint{0}).set(K::primitive_masks, hit_buffer).set(K::ray_masks, hit_buffer);

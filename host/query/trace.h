@@ -1,6 +1,5 @@
 // What    Traces rays from outside (kdray trace): closest hits or occlusion, in chunks that fit the device.
-// Errors  ErrorCode::input for a ray that is not one: NaN anywhere, an infinite origin or t_min, a direction
-//         that is infinite or 0; the message has the ray's number.
+// Errors  ErrorCode::input for a ray that is not one (check_rays.h); the message has the ray's number.
 #pragma once
 
 #include <span>

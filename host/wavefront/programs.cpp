@@ -36,7 +36,7 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 
 // The bits a file reads: a scene that differs elsewhere shares the program.
 layout::Features bits_read_by(const std::string& file) {
-  if (file == "traverse/query.cl") return kGeometry | KDRAY_FEATURE_MASKS;
+  if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
   if (file == "raygen/admit.cl") return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
   if (file == "film/add.cl") return 0;
   if (file == "film/channels.cl") return kGeometry | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
@@ -123,6 +123,7 @@ Programs::Key Programs::key_of(const Wanted& w) const {
 // By a thread each: compilers work on several programs at once, and where they don't they take turns. But
 // Oclgrind 21.10's are not safe in several threads, nor in another than the first: they crash.
 void Programs::build(const std::vector<Wanted>& wanted) {
+  const std::lock_guard lock(mutex_);
   const Timer timer;
   const auto when = context_->info().platform == "Oclgrind" ? std::launch::deferred : std::launch::async;
   std::map<Key, std::future<cl::Program>> building;
@@ -141,6 +142,7 @@ void Programs::build(const std::vector<Wanted>& wanted) {
 
 const cl::Program& Programs::program(const Wanted& wanted) {
   build({wanted});
+  const std::lock_guard lock(mutex_);
   return programs_.at(key_of(wanted));
 }
 

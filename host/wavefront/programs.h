@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <mutex>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -45,7 +46,10 @@ class Programs {
   void build(const std::vector<Wanted>& wanted);
 
   double build_seconds() const { return build_seconds_; }
-  std::size_t n_built() const { return programs_.size(); }
+  std::size_t n_built() const {
+    const std::lock_guard lock(mutex_);
+    return programs_.size();
+  }
   static std::size_t n_known();  // files that a program can be built of
 
  private:
@@ -61,6 +65,7 @@ class Programs {
   int stack_size_, wide_stack_size_, block_;
   bool prefetch_, far_;
   double build_seconds_ = 0;
+  mutable std::mutex mutex_;  // of what is built: queries of several threads ask for kernels
   std::map<Key, cl::Program> programs_;
 };
 

@@ -49,6 +49,8 @@
   X(Add, "film/add.cl", add, KDRAY_ADD_ARGUMENTS)                                            \
   X(Channels, "film/channels.cl", channels, KDRAY_CHANNELS_ARGUMENTS)                        \
   X(TraceQuery, "traverse/query.cl", trace_query, KDRAY_TRACE_QUERY_ARGUMENTS)               \
+  X(CollectHits, "traverse/collect.cl", collect_hits, KDRAY_COLLECT_HITS_ARGUMENTS)          \
+  X(PackHits, "traverse/collect.cl", pack_hits, KDRAY_PACK_HITS_ARGUMENTS)                   \
   X(Depart, "shade/depart.cl", depart, KDRAY_DEPART_ARGUMENTS)                               \
   X(TravelWave, "odprt/wave.cl", travel_wave, KDRAY_TRAVEL_WAVE_ARGUMENTS)                   \
   X(Receive, "odprt/receive.cl", receive, KDRAY_RECEIVE_ARGUMENTS)                           \
@@ -139,6 +141,37 @@
   X(IN, u32, ray_masks)                   \
   X(IN, QueryRay, rays)                   \
   X(OUT, QueryHit, hits)
+
+// The hits are `capacity` for each ray; `after`, where the rays' last pass ended, is read where there was one.
+#define KDRAY_COLLECT_HITS_ARGUMENTS(F, X) \
+  F(VALUE, float4, space)                  \
+  X(VALUE, float, world_max)               \
+  X(VALUE, u32, n_rays)                    \
+  X(VALUE, u32, capacity)                  \
+  X(VALUE, u32, goes_on)                   \
+  X(VALUE, u32, any_length)                \
+  KDRAY_TRACED_ARRAYS(X)                   \
+  X(IN, u32, primitive_masks)              \
+  X(IN, u32, ray_masks)                    \
+  X(IN, QueryRay, rays)                    \
+  X(IN, QuerySpan, after)                  \
+  X(OUT, QuerySpan, spans)                 \
+  X(IO, QueryHit, hits)
+
+#define KDRAY_PACK_HITS_ARGUMENTS(F, X) \
+  F(VALUE, float4, space)               \
+  X(VALUE, u32, n_rays)                 \
+  X(VALUE, u32, capacity)               \
+  X(VALUE, u32, any_length)             \
+  KDRAY_TRACED_ARRAYS(X)                \
+  X(IN, QueryRay, rays)                 \
+  X(IN, QuerySpan, spans)               \
+  X(IN, u32, places)                    \
+  X(IN, QueryHit, hits)                 \
+  X(OUT, float, t)                      \
+  X(OUT, u32, primitive)                \
+  X(OUT, float, u)                      \
+  X(OUT, float, v)
 
 #define KDRAY_DEPART_ARGUMENTS(F, X) \
   F(VALUE, u32, n_rays)              \

@@ -91,6 +91,8 @@
 #define KDRAY_OCCLUDED 1u
 #define KDRAY_OCCLUSION_INVALID 2u  // the stack was too small
 
+#define KDRAY_SPAN_INVALID 0xffffffffu
+
 KDRAY_LAYOUT_BEGIN
 // kdray::Ray and kdray::Hit of the public interface.
 typedef struct QueryRay {
@@ -107,5 +109,15 @@ typedef struct QueryHit {
   float u, v;
 } QueryHit;
 KDRAY_ASSERT_SIZE(QueryHit, 16)
+
+// What a pass found of a ray's hits, and where the next begins: behind the hit at last_t (in the scene's own
+// space) of primitive last_number.
+typedef struct QuerySpan {
+  u32 n_hits;  // or KDRAY_SPAN_INVALID
+  u32 more;    // 1: there are others behind
+  float last_t;
+  u32 last_number;
+} QuerySpan;
+KDRAY_ASSERT_SIZE(QuerySpan, 16)
 KDRAY_LAYOUT_END
 #endif

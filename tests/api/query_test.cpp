@@ -275,5 +275,73 @@ TEST_P(Query, APictureCanBeCancelled) {
   EXPECT_EQ(scene.render(small).width, 16) << "the next one is rendered as ever";
 }
 
+TEST_P(Query, CrossingsOfACubeAreTwoOrNoneWhereverRaysGo) {
+  constexpr unsigned kSeed = 5;
+  std::mt19937 random(kSeed);
+  std::uniform_int_distribution<int> grid(-2, 2);
+  for (const std::array<double, 3>& center :
+       {std::array<double, 3>{0, 0, 0}, {500'000.125, 4'649'776.25, 312.5}}) {
+    const Scene scene = cube_at(center, 1);
+    // Through corners, edges and faces: from grid points outside of the cube to others.
+    std::vector<double> origins, directions;
+    for (int i = 0; i < 20'000; ++i) {
+      std::array<double, 3> from{}, to{};
+      for (std::size_t k = 0; k < 3; ++k) from[k] = 3 * grid(random), to[k] = grid(random);
+      if (std::max({std::abs(from[0]), std::abs(from[1]), std::abs(from[2])}) < 2 || from == to) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        origins.push_back(center[k] + from[k]);
+        directions.push_back(to[k] - from[k]);
+      }
+    }
+    const std::size_t n = origins.size() / 3;
+    std::vector<std::uint32_t> counts(n);
+    scene.count({origins, directions}, counts);
+    const AllHits all = scene.all({origins, directions});
+    ASSERT_EQ(all.splits.size(), n + 1);
+    for (std::size_t i = 0; i < n; ++i) {
+      ASSERT_EQ(counts[i] % 2, 0u) << "seed " << kSeed << ", ray " << i;
+      ASSERT_LE(counts[i], 2u);
+      ASSERT_EQ(all.splits[i + 1] - all.splits[i], counts[i]);
+      for (std::uint64_t k = all.splits[i]; k < all.splits[i + 1]; ++k) {
+        // On the cube's surface.
+        double most = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+          most = std::max(most, std::abs(origins[3 * i + c] + all.t[k] * directions[3 * i + c] - center[c]));
+        EXPECT_NEAR(most, 1, 1e-6);
+        EXPECT_LT(all.primitive[k], 12u);
+      }
+    }
+  }
+}
+
+TEST_P(Query, CrossingsKnowMasksAndRaysThatMeanNothing) {
+  const Cube cube;
+  Scene scene;
+  scene.add_mesh({cube.at(0, 0, 0), cube.triangles}, {.mask = 1});
+  const GeometryId other = scene.add_mesh({cube.at(0, 0, 4), cube.triangles}, {.mask = 2});
+  scene.commit(options());
+  const std::vector<float> from = {0.25f, 0.1f, 9}, down = {0, 0, -1};
+  const std::vector<std::uint32_t> masks = {0, 1, 2, 3};
+  std::vector<std::uint32_t> counts(4);
+  scene.count({from, down, {}, {}, masks}, counts);
+  EXPECT_EQ(counts, (std::vector<std::uint32_t>{0, 2, 2, 4}));
+  const AllHits all = scene.all({from, down, {}, {}, masks});
+  EXPECT_EQ(all.splits, (std::vector<std::uint64_t>{0, 0, 2, 4, 8}));
+  EXPECT_EQ(all.geometry, (std::vector<std::uint32_t>{0, 0, other, other, other, other, 0, 0}));
+  EXPECT_EQ(all.t, (std::vector<double>{8, 10, 4, 6, 4, 6, 8, 10}));
+  AllHitsOptions first;
+  first.max_hits = 1;
+  const AllHits nearest = scene.all({from, down, {}, {}, masks}, first);
+  EXPECT_EQ(nearest.splits, (std::vector<std::uint64_t>{0, 0, 1, 2, 3}));
+  EXPECT_EQ(nearest.more, (std::vector<std::uint8_t>{0, 1, 1, 1}));
+
+  const std::vector<float> nowhere = {0, 0, 0};
+  AllHitsOptions counted;
+  counted.invalid = InvalidRays::miss;
+  EXPECT_EQ(scene.all({from, nowhere}, counted).report.invalid, 1u);
+  counts.resize(1);
+  EXPECT_TRUE(fails([&] { scene.count({from, nowhere}, counts); }, "ray 0: its direction is 0"));
+}
+
 }  // namespace
 }  // namespace kdray

@@ -106,6 +106,11 @@ class Scene {
   QueryReport closest(const Rays& rays, const HitsOut& out, const QueryOptions& options = {}) const;
   // 1 for each ray that hits anything between t_min and t_max, else 0.
   QueryReport any(const Rays& rays, const BytesOut& out, const QueryOptions& options = {}) const;
+  // How many surfaces each ray crosses, and all of these crossings. Each counts once, at edges and vertices
+  // too: a ray that begins and ends outside of a closed mesh crosses it an even number of times. A hit in the
+  // start point (t = 0) counts when t_min is 0 and is left out when t_min is above it.
+  QueryReport count(const Rays& rays, const WordsOut& out, const QueryOptions& options = {}) const;
+  AllHits all(const Rays& rays, const AllHitsOptions& options = {}) const;
 
  private:
   struct Impl;

@@ -1,0 +1,45 @@
+// What    All hits of rays from outside, or how many there are. Every crossing of a surface counts once, at
+//         edges and vertices too (kernels/intersect/crossing.clh): a ray from outside of a closed mesh to
+//         outside has an even number.
+// Shape   The hits of ray i are [splits[i], splits[i + 1]), sorted by t and, where that is equal, by
+//         primitive. A hit counts where t_min < t < t_max; one in the start point, at t = 0, where t_min is
+//         0. A ray has any number of hits: what goes beyond a list on the device is found in further passes,
+//         in bounded memory but for the answer's own.
+// Errors  ErrorCode::input for a ray that is not one (check_rays.h), unless such are to miss; ErrorCode::usage
+//         for the binary walk, which doesn't find them.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/raw_vector.h"
+#include "kdray/options.h"
+#include "kdray/ray.h"
+#include "query/target.h"
+
+namespace kdray::query {
+
+struct CollectOptions {
+  std::uint32_t max_hits = std::numeric_limits<std::uint32_t>::max();  // of a ray: the first so many
+  Traversal traversal = Traversal::automatic;  // wide or batch, or as the target has it
+  bool faulty_miss = false;                    // rays that are none meet nothing
+  std::span<const std::uint32_t> masks =
+      {};  // of each ray; none: all bits; counts where primitives have masks
+};
+
+struct LocalHits {
+  RawVector<std::uint64_t> splits;  // one more than rays
+  RawVector<float> t;
+  RawVector<std::uint32_t> primitive;  // number in file order
+  RawVector<float> u, v;               // as Hit's
+  RawVector<std::uint8_t> more;        // of each ray, 1: it has more than max_hits
+};
+LocalHits all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options = {});
+
+// Of each ray; max_hits where there are more.
+std::vector<std::uint32_t> count_hits(const Target& target, std::span<const Ray> rays,
+                                      const CollectOptions& options = {});
+
+}  // namespace kdray::query

@@ -1,0 +1,40 @@
+// What    Rays from outside that are none: what is wrong with them, and their refusal.
+// Errors  check_rays, refuse_faulty: ErrorCode::input for the first ray that is none, by its number: NaN anywhere, an
+//         infinite origin or t_min, a direction that is infinite or 0.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kdray/ray.h"
+#include "math/vec.h"
+
+namespace kdray::query {
+
+// In words, or null.
+const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max);
+const char* fault_of(const Ray& ray);
+
+// What one look at all rays tells.
+struct RaysSeen {
+  std::size_t n_rays;
+  std::size_t first_fault;  // the number of the first that is none; n_rays: all are
+  bool ordinary;            // the kernels need not look at the directions' lengths: is_ordinary() of each
+  float farthest;           // the largest coordinate of an origin
+};
+RaysSeen look_at(std::span<const Ray> rays);
+
+// Throws unless `seen` has no fault.
+void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen);
+
+void check_rays(std::span<const Ray> rays);
+
+// The same rays, but for those that are none: these meet nothing.
+std::vector<Ray> without_faulty(std::span<const Ray> rays);
+
+// Whether the kernels leave its direction as long as it is (length_exponent() of query.clh): where they do so
+// with all rays of a launch, they need not look.
+bool is_ordinary(const Ray& ray);
+
+}  // namespace kdray::query

@@ -1,0 +1,77 @@
+// What    The passes in which all hits of rays are found, chunk by chunk: a first one with short lists, which
+//         are enough for nearly all rays, and further ones for the rays that have more.
+// Shape   For each chunk first(), then others(), and pack() of first_lists() for the hits of the first pass.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/raw_vector.h"
+#include "kdray/options.h"
+#include "query/all_hits.h"
+#include "query/check_rays.h"
+#include "query/hit_lists.h"
+#include "query/near_rays.h"
+
+namespace kdray::query {
+
+// Hits by themselves, as structures of arrays.
+struct Hits {
+  RawVector<float> t, u, v;
+  RawVector<std::uint32_t> primitive;
+
+  Hits() = default;
+  explicit Hits(std::size_t n) : t(n), u(n), v(n), primitive(n) {}
+  std::size_t size() const { return t.size(); }
+  HitArrays arrays() { return {t.data(), primitive.data(), u.data(), v.data()}; }
+
+  Hits some(std::size_t first, std::size_t n) const;
+  // The hits [first, first + n) to place `at` and behind.
+  void copy(std::size_t first, std::size_t n, const HitArrays& to, std::size_t at) const;
+};
+
+class Passes {
+ public:
+  // `seen`: of all rays.
+  Passes(const Target& target, std::size_t n_rays, const RaysSeen& seen, const CollectOptions& options);
+
+  // How many of the rays that are left the next chunk has.
+  std::size_t next_chunk(std::size_t left) const;
+  HitLists& first_lists() { return first_; }
+  const NearRays& near_rays() const { return near_rays_; }  // of the chunk in work
+
+  // The first pass of a chunk: what it found of each ray.
+  std::span<const layout::QuerySpan> first(std::span<const Ray> rays, std::span<const std::uint32_t> masks);
+
+  // Told n more hits of ray i of the chunk, in their order, and whether it has others.
+  using Found = std::function<void(std::uint32_t i, Hits&& hits, std::uint32_t n, bool more)>;
+
+  // Finds all that the chunk's rays have beyond the first pass, but no more than max_hits of a ray. `spans` is
+  // what first() returned; `hits` are empty unless they are wanted.
+  void others(std::span<const layout::QuerySpan> spans, bool want_hits, const Found& found);
+
+ private:
+  struct Rest {
+    std::uint32_t ray, n_hits;
+    layout::QuerySpan span;
+  };
+  void pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still);
+  Hits packed(std::span<const layout::QuerySpan> spans);
+
+  const Target& target_;
+  RaysSeen seen_;
+  std::uint32_t max_hits_, capacity_;
+  Traversal traversal_;
+  bool masked_;
+  NearRays near_rays_;
+  HitLists first_;
+  std::unique_ptr<HitLists> later_;
+  std::vector<Ray> kept_;      // of the chunk in work, where some rays are none
+  std::span<const Ray> rays_;  // of the chunk in work
+  std::span<const std::uint32_t> masks_;
+};
+
+}  // namespace kdray::query
