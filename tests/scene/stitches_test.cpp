@@ -1,4 +1,4 @@
-// Whose normal a stitch is shaded by.
+// The normals that stitches are shaded by.
 #include "scene/stitches.h"
 
 #include <gtest/gtest.h>

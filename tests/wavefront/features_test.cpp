@@ -36,10 +36,10 @@ constexpr layout::Features kT = KDRAY_FEATURE_KIND(TRIANGLE), kS = KDRAY_FEATURE
                            kDiffuse = KDRAY_FEATURE_DIFFUSE, kLights = KDRAY_FEATURE_LIGHTS,
                            kFallOff = KDRAY_FEATURE_ATTENUATION, kDirectional = KDRAY_FEATURE_DIRECTIONAL,
                            kSpot = KDRAY_FEATURE_SPOT, kBackground = KDRAY_FEATURE_BACKGROUND,
-                           kSamples = KDRAY_FEATURE_SUPERSAMPLE;
-constexpr layout::Features kLit = kDiffuse | kLights, kAll = kT | kS | kC | kSmooth | kNumbers | kReflect |
-                                                             kTransmit | kSpecular | kLit | kFallOff |
-                                                             kDirectional | kSpot | kBackground | kSamples;
+                           kSamples = KDRAY_FEATURE_SUPERSAMPLE, kStitches = KDRAY_FEATURE_STITCHES;
+constexpr layout::Features kLit = kDiffuse | kLights,
+                           kAll = kT | kS | kC | kStitches | kSmooth | kNumbers | kReflect | kTransmit |
+                                  kSpecular | kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples;
 
 bool has(layout::Features mask, layout::Features bit) {
   return (mask & bit) != 0;
@@ -81,6 +81,10 @@ void add_triangles(scene::Scene& s, layout::Features mask, std::uint32_t first_n
     if (i == 1 && has(mask, kSmooth)) t.normal = {0, 1, 2};
     s.triangles.push_back(t);
   }
+  if (!has(mask, kStitches)) return;
+  // An edge of the first, and its middle.
+  s.vertices.push_back({0, -1, -2});
+  s.triangles.push_back({.vertex = {0, 6, 1}, .number = first_number + 2});
 }
 
 scene::Scene scene_of(layout::Features mask) {
@@ -203,9 +207,9 @@ class FeaturesTest : public test::EachDevice {
 };
 
 TEST_P(FeaturesTest, Geometry) {
-  draw({0, kT, kT | kLit, kS | kLit, kC | kLit, kT | kSmooth | kLit, kT | kNumbers | kLit,
-        kS | kNumbers | kLit, kC | kNumbers | kLit, kT | kS | kLit, kT | kC | kLit, kS | kC | kLit,
-        kT | kS | kC | kNumbers | kLit});
+  draw({0, kT, kT | kLit, kS | kLit, kC | kLit, kT | kSmooth | kLit, kT | kStitches | kLit,
+        kT | kNumbers | kLit, kS | kNumbers | kLit, kC | kNumbers | kLit, kT | kS | kLit, kT | kC | kLit,
+        kS | kC | kLit, kT | kS | kC | kNumbers | kLit});
 }
 
 TEST_P(FeaturesTest, Materials) {
