@@ -20,7 +20,7 @@ inline constexpr std::int64_t kNowhere = -1;
 struct Aimed {
   Ray ray;
   std::int64_t component = kNowhere;  // that it begins in
-  std::int64_t target = kNowhere;     // triangles, then spheres, then cones, in Geometry's order
+  std::int64_t target = kNowhere;     // kind by kind, in Geometry's order
 };
 
 struct InsideOrigin {

@@ -1,5 +1,5 @@
-// What every kind owes the tree: bounds and clipping that contain the surface, whatever the rounding, held
-// against random points of it in long double.
+// What every kind owes the scene and the tree: faults refused; bounds and clipping that contain the surface,
+// whatever the rounding, held against random points of it in long double.
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +11,7 @@
 #include "kdtree/clip.h"
 #include "scene/check_scene.h"
 #include "scene/transform.h"
+#include "support/scene_fields.h"
 
 namespace kdray::test {
 namespace {
@@ -120,19 +121,50 @@ TYPED_TEST(GeometryOf, ClippingTightens) {
   EXPECT_GT(smaller, n / 3);
 }
 
-TYPED_TEST(GeometryOf, ANumberThatIsNoneIsRefused) {
+// One field of one shape at a time, by what the field means.
+TYPED_TEST(GeometryOf, FaultsOfEachFieldAreRefused) {
   if constexpr (TypeParam::kIsShape) {
-    const auto bad = [&](auto change) {
+    using primitives::Meaning;
+    const auto refuses = [&](const auto& field, double number) {
       scene::Scene s = this->scene_;
-      std::apply([&](const auto&... field) { (change(TypeParam::of(s)[7].*field.member), ...); },
-                 fields_of(static_cast<const typename TypeParam::Source*>(nullptr)));
-      return s;
+      auto& value = TypeParam::of(s)[7].*field.member;
+      if constexpr (requires { value.x = number; })
+        value = field.meaning == Meaning::direction ? dvec3(number) : dvec3(0, 0, number);
+      else
+        value = number;
+      EXPECT_THROW(scene::check_scene(s), Error) << field.key << " " << number;
     };
-    const auto to_nan = [](auto& value) { value = std::remove_reference_t<decltype(value)>(NAN); };
-    EXPECT_THROW(scene::check_scene(bad(to_nan)), Error);
-    const auto to_zero = [](auto& value) { value = std::remove_reference_t<decltype(value)>(0); };
-    EXPECT_THROW(scene::check_scene(bad(to_zero)), Error);
+    const auto refuses_faults = [&](const auto& field) {
+      refuses(field, NAN), refuses(field, INFINITY);
+      if (field.meaning == Meaning::direction || field.meaning == Meaning::above_zero) refuses(field, 0);
+      if (field.meaning != Meaning::direction && field.meaning != Meaning::point) refuses(field, -1);
+    };
+    std::apply([&](const auto&... field) { (refuses_faults(field), ...); },
+               fields_of(TypeParam::of(this->scene_).data()));
   }
+}
+
+// What is too small for a float beside the others is dropped, and counted.
+TYPED_TEST(GeometryOf, DropsWhatVanishes) {
+  if constexpr (TypeParam::kIsShape) {
+    scene::Scene s = scene_of<TypeParam>(1, kSeed);
+    scale_and_move(s, 1e-60, dvec3(0));
+    Samples<TypeParam>::add(s, 0, this->random_);
+    const scene::Geometry g = scene::make_geometry(s);
+    EXPECT_EQ(g.dropped_degenerate, 1u);
+    ASSERT_EQ(TypeParam::of(g).size(), 1u);
+    EXPECT_EQ(TypeParam::of(g)[0].source, 1u);
+  }
+}
+
+TYPED_TEST(GeometryOf, ItsMiddleIsWithinItsBounds) {
+  if constexpr (TypeParam::kIsShape)
+    for (const auto& shape : TypeParam::of(this->scene_)) {
+      const DBox b = bounds_of(shape);
+      const dvec3 middle = middle_of(shape), slack(1e-12);
+      EXPECT_TRUE(glm::all(glm::lessThanEqual(b.lo - slack, middle)) &&
+                  glm::all(glm::lessThanEqual(middle, b.hi + slack)));
+    }
 }
 
 // A scene moved, turned and enlarged is the same to rays that are moved with it: its bounds follow.

@@ -5,6 +5,7 @@
 
 #include "device/context.h"
 #include "layout/frame.layout.h"
+#include "layout/kinds.h"
 #include "layout/primitives.layout.h"
 #include "layout/rays.layout.h"
 #include "layout/shading.layout.h"
@@ -31,11 +32,11 @@ struct Probe {
     "__builtin_offsetof(" #type ", " #field ")", offsetof(type, field) \
   }
 
-const std::vector<Probe> kProbes = {SIZE(KdNode),
-                                    SIZE(Triangle),
+// Of each kind of primitive.
+#define PRIMITIVE(NAME, name, names, Struct) SIZE(Struct), OFFSET(Struct, number), OFFSET(Struct, material),
+
+const std::vector<Probe> kProbes = {KDRAY_KINDS(PRIMITIVE) SIZE(KdNode),
                                     SIZE(VertexNormals),
-                                    SIZE(Sphere),
-                                    SIZE(Cone),
                                     SIZE(Material),
                                     SIZE(Light),
                                     SIZE(QueryRay),
@@ -48,18 +49,14 @@ const std::vector<Probe> kProbes = {SIZE(KdNode),
                                     SIZE(SimdAnswers),
                                     OFFSET(KdNode, word1),
                                     OFFSET(Triangle, v),
-                                    OFFSET(Triangle, number),
-                                    OFFSET(Triangle, material),
                                     OFFSET(Triangle, normals),
                                     OFFSET(Sphere, radius),
-                                    OFFSET(Sphere, number),
-                                    OFFSET(Sphere, material),
                                     OFFSET(Cone, base_radius),
                                     OFFSET(Cone, axis),
                                     OFFSET(Cone, height),
                                     OFFSET(Cone, slope),
-                                    OFFSET(Cone, number),
-                                    OFFSET(Cone, material),
+                                    OFFSET(Disc, radius),
+                                    OFFSET(Disc, normal),
                                     OFFSET(Material, diffuse),
                                     OFFSET(Material, specular),
                                     OFFSET(Material, reflect),

@@ -21,6 +21,7 @@ scene::Scene mixed_scene() {
   s.spheres = {{.center = {2, 0, 0}, .radius = 0.5, .material = 1, .number = 0}};
   s.cones = {
       {.base = {0, 0, 0}, .apex = {0, 0, 4}, .base_radius = 2, .apex_radius = 1, .material = 0, .number = 2}};
+  s.discs = {{.center = {1, 0, 0}, .normal = {0, 0, 4}, .radius = 0.5, .material = 1, .number = 4}};
   s.materials = {{.emission = vec3(0.25f), .ambient = vec3(0.5f), .shine = 7},
                  {.transmit = vec3(1), .index = 1.5f}};
   s.ambient = vec3(0.5f);
@@ -31,8 +32,9 @@ kdtree::Tree leaf_of_all() {
   using scene::PrimitiveKind;
   kdtree::Tree tree;
   tree.refs = {kdtree::make_ref(PrimitiveKind::triangle, 0), kdtree::make_ref(PrimitiveKind::triangle, 1),
-               kdtree::make_ref(PrimitiveKind::sphere, 0), kdtree::make_ref(PrimitiveKind::cone, 0)};
-  tree.nodes = {{.left = 0, .right = 4}};
+               kdtree::make_ref(PrimitiveKind::sphere, 0), kdtree::make_ref(PrimitiveKind::cone, 0),
+               kdtree::make_ref(PrimitiveKind::disc, 0)};
+  tree.nodes = {{.left = 0, .right = 5}};
   return tree;
 }
 
@@ -52,6 +54,9 @@ TEST(Flatten, KeepsNumbersMaterialsAndNormals) {
   EXPECT_EQ(flat.cones[0].height, 4.0f * scale);
   EXPECT_EQ(flat.cones[0].slope, -0.25f);
   EXPECT_EQ(flat.cones[0].axis[2], 1.0f);
+  EXPECT_EQ(flat.discs[0].radius, 0.5f * scale);
+  EXPECT_EQ(flat.discs[0].normal[2], 1.0f);
+  EXPECT_EQ(flat.discs[0].number, 4u);
   EXPECT_EQ(flat.materials[0].unshadowed[0], 0.5f);  // emission + ambient * Camb
   EXPECT_EQ(flat.materials[1].index, 1.5f);
 }
@@ -109,7 +114,7 @@ TEST(Flatten, PacksInnerNodesAndLeaves) {
   const scene::Scene s = mixed_scene();
   kdtree::Tree tree = leaf_of_all();
   tree.nodes = {
-      {.axis = 1, .split = -0.75f, .left = 1, .right = 2}, {.left = 0, .right = 3}, {.left = 3, .right = 1}};
+      {.axis = 1, .split = -0.75f, .left = 1, .right = 2}, {.left = 0, .right = 3}, {.left = 3, .right = 2}};
   const FlatScene flat = flatten(s, scene::make_geometry(s), tree);
   EXPECT_EQ(std::bit_cast<float>(flat.nodes[0].word0), -0.75f);
   EXPECT_EQ(flat.nodes[0].word1, 2u << 2 | 1u);
@@ -117,7 +122,7 @@ TEST(Flatten, PacksInnerNodesAndLeaves) {
   EXPECT_EQ(flat.nodes[2].word0, 3u);
 }
 
-// Below: a leaf; above: groups of two and of one with one more leaf behind them.
+// Below: a leaf; above: groups of two and of one with one more leaf, of two, behind them.
 TEST(Flatten, GroupsAreOneLeafOfTheBinaryForm) {
   const scene::Scene s = mixed_scene();
   kdtree::Tree tree = leaf_of_all();
@@ -128,7 +133,7 @@ TEST(Flatten, GroupsAreOneLeafOfTheBinaryForm) {
                 {.left = 0, .right = 2},
                 {.left = 2, .right = 1},
                 {.left = 3, .right = 0},
-                {.left = 3, .right = 1}};
+                {.left = 3, .right = 2}};
   const FlatScene flat = flatten(s, scene::make_geometry(s), tree);
   ASSERT_EQ(flat.nodes.size(), 5u);
   EXPECT_EQ(flat.nodes[0].word1, 4u << 2 | 0u);
@@ -137,15 +142,15 @@ TEST(Flatten, GroupsAreOneLeafOfTheBinaryForm) {
   EXPECT_EQ(flat.nodes[2].word1, 3u << 2 | KDRAY_NODE_LEAF);
   EXPECT_EQ(flat.nodes[3].word1, 0u << 2 | KDRAY_NODE_LEAF);
   EXPECT_EQ(flat.nodes[4].word0, 3u);
-  EXPECT_EQ(flat.nodes[4].word1, 1u << 2 | KDRAY_NODE_LEAF);
-  EXPECT_EQ(flat.refs.size(), 4u);
+  EXPECT_EQ(flat.nodes[4].word1, 2u << 2 | KDRAY_NODE_LEAF);
+  EXPECT_EQ(flat.refs.size(), 5u);
 }
 
 TEST(Flatten, RefusesATreeInAnotherOrder) {
   const scene::Scene s = mixed_scene();
   kdtree::Tree tree = leaf_of_all();
   tree.nodes = {
-      {.axis = 0, .split = 0, .left = 2, .right = 1}, {.left = 0, .right = 3}, {.left = 3, .right = 1}};
+      {.axis = 0, .split = 0, .left = 2, .right = 1}, {.left = 0, .right = 3}, {.left = 3, .right = 2}};
   EXPECT_THROW((void)flatten(s, scene::make_geometry(s), tree), Error);
 }
 

@@ -29,39 +29,43 @@ bool within(double t, const Ray& ray) {
 
 }  // namespace
 
+// A kind that the oracle doesn't know does not compile: here, and in the switches below.
 World::World(const scene::Scene& scene) : scene_(scene) {
   DBox box;
-  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-    const scene::Triangle& t = scene.triangles[i];
-    const dvec3 p[3] = {scene.vertices[t.vertex[0]], scene.vertices[t.vertex[1]],
-                        scene.vertices[t.vertex[2]]};
-    for (const dvec3& corner : p) box.grow(corner);
-    const dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
-    if (normal == dvec3(0)) continue;  // no area: nothing to hit
-    shapes_.push_back({Kind::triangle, i, static_cast<int>(t.number), p[0], p[1], p[2], 0, 0, normal});
-  }
-  for (std::uint32_t i = 0; i < scene.spheres.size(); ++i) {
-    const scene::Sphere& s = scene.spheres[i];
-    box.grow(s.center - s.radius), box.grow(s.center + s.radius);
-    shapes_.push_back({Kind::sphere, i, static_cast<int>(s.number), s.center, {}, {}, s.radius, 0, {}});
-  }
-  for (std::uint32_t i = 0; i < scene.cones.size(); ++i) {
-    const scene::Cone& c = scene.cones[i];
-    const double r = std::max(c.base_radius, c.apex_radius);
-    for (const dvec3& end : {c.base, c.apex}) box.grow(end - r), box.grow(end + r);
-    shapes_.push_back(
-        {Kind::cone, i, static_cast<int>(c.number), c.base, c.apex, {}, c.base_radius, c.apex_radius, {}});
-  }
-  for (std::uint32_t i = 0; i < scene.discs.size(); ++i) {
-    const scene::Disc& d = scene.discs[i];
-    box.grow(d.center - d.radius), box.grow(d.center + d.radius);
-    const dvec3 normal = glm::normalize(d.normal);
-    shapes_.push_back({Kind::disc, i, static_cast<int>(d.number), d.center, {}, {}, d.radius, 0, normal});
-  }
-  static_assert(primitives::kKinds == 4, "a kind that the oracle doesn't know");
+  primitives::for_each_kind([&](auto kind) {
+    std::uint32_t source = 0;
+    for (const auto& p : decltype(kind)::of(scene)) add(p, source++, box);
+  });
   std::sort(shapes_.begin(), shapes_.end(),
             [](const Shape& l, const Shape& r) { return l.number < r.number; });
   if (!box.empty()) extent_ = 0.5 * std::max({box.extent().x, box.extent().y, box.extent().z});
+}
+
+void World::add(const scene::Triangle& t, std::uint32_t source, DBox& box) {
+  const dvec3 p[3] = {scene_.vertices[t.vertex[0]], scene_.vertices[t.vertex[1]],
+                      scene_.vertices[t.vertex[2]]};
+  for (const dvec3& corner : p) box.grow(corner);
+  const dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
+  if (normal == dvec3(0)) return;  // no area: nothing to hit
+  shapes_.push_back({Kind::triangle, source, static_cast<int>(t.number), p[0], p[1], p[2], 0, 0, normal});
+}
+
+void World::add(const scene::Sphere& s, std::uint32_t source, DBox& box) {
+  box.grow(s.center - s.radius), box.grow(s.center + s.radius);
+  shapes_.push_back({Kind::sphere, source, static_cast<int>(s.number), s.center, {}, {}, s.radius, 0, {}});
+}
+
+void World::add(const scene::Cone& c, std::uint32_t source, DBox& box) {
+  const double r = std::max(c.base_radius, c.apex_radius);
+  for (const dvec3& end : {c.base, c.apex}) box.grow(end - r), box.grow(end + r);
+  shapes_.push_back(
+      {Kind::cone, source, static_cast<int>(c.number), c.base, c.apex, {}, c.base_radius, c.apex_radius, {}});
+}
+
+void World::add(const scene::Disc& d, std::uint32_t source, DBox& box) {
+  box.grow(d.center - d.radius), box.grow(d.center + d.radius);
+  const dvec3 normal = glm::normalize(d.normal);
+  shapes_.push_back({Kind::disc, source, static_cast<int>(d.number), d.center, {}, {}, d.radius, 0, normal});
 }
 
 Hit World::closest(const Ray& ray, double grow) const {

@@ -57,7 +57,7 @@ class World {
   std::size_t size() const { return shapes_.size(); }
 
  private:
-  enum class Kind { triangle, sphere, cone, disc };
+  using Kind = primitives::PrimitiveKind;
   struct Shape {
     Kind kind;
     std::uint32_t source;  // index into the scene's array of that kind
@@ -67,6 +67,10 @@ class World {
     dvec3 normal{0};  // triangle: its length is twice the area; disc
   };
 
+  void add(const scene::Triangle& t, std::uint32_t source, DBox& box);
+  void add(const scene::Sphere& s, std::uint32_t source, DBox& box);
+  void add(const scene::Cone& c, std::uint32_t source, DBox& box);
+  void add(const scene::Disc& d, std::uint32_t source, DBox& box);
   Hit intersect(const Shape& shape, const Ray& ray, double grow) const;
   Hit intersect_triangle(const Shape& s, const Ray& ray, double grow) const;
   Hit intersect_sphere(const Shape& s, const Ray& ray, double grow) const;

@@ -2,8 +2,10 @@
 //         required, and the same defaults. Values for every key are made up from the schema itself, so a key
 //         added to one side only fails here.
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "scene/importers.h"
 #include "scene/json_keys.h"
@@ -68,6 +70,18 @@ json example(const json& root, const json& rule, const std::string& key) {
   }
   const double low = rule.value("minimum", 1.0);
   return type == "integer" ? json(static_cast<int>(std::max(low, 2.0))) : json(std::max(low, 1.0));
+}
+
+// By their fields.
+template <class Shape>
+void expect_equal(const std::vector<Shape>& a, const std::vector<Shape>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const auto expect = [&](const auto& field) {
+      EXPECT_TRUE(a[i].*field.member == b[i].*field.member) << field.key;
+    };
+    std::apply([&](const auto&... field) { (expect(field), ...); }, fields_of(a.data()));
+  }
 }
 
 class Schema : public ::testing::Test {
@@ -173,11 +187,31 @@ TEST_F(Schema, TellsTheReadersDefaults) {
       }
       ASSERT_EQ(a.lights.size(), b.lights.size());
       for (std::size_t i = 0; i < a.lights.size(); ++i) EXPECT_EQ(a.lights[i].color, b.lights[i].color);
-      ASSERT_EQ(a.cones.size(), b.cones.size());
-      for (std::size_t i = 0; i < a.cones.size(); ++i)
-        EXPECT_EQ(a.cones[i].apex_radius, b.cones[i].apex_radius);
+      primitives::for_each_shape(
+          [&](auto kind) { expect_equal(decltype(kind)::of(a), decltype(kind)::of(b)); });
     }
   }
+}
+
+// docs/scenes.md has an item for each kind of shape, with all its fields.
+TEST(ScenesPage, NamesEveryKindAndItsFields) {
+  std::ifstream page(std::string(KDRAY_SOURCE_DIR) + "/docs/scenes.md");
+  std::map<std::string, std::string> items;  // of lists, by the word they begin with
+  std::string word;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("- `")) word = line.substr(3, line.find('`', 3) - 3);
+    if (!line.starts_with("- `") && !line.starts_with("  ")) word.clear();
+    items[word] += line;
+  }
+  primitives::for_each_shape([&](auto kind) {
+    ASSERT_TRUE(items.contains(kind.kName)) << kind.kName;
+    const auto expect = [&](const auto& field) {
+      EXPECT_NE(items[kind.kName].find("`" + std::string(field.key) + "`"), std::string::npos)
+          << kind.kName << ": " << field.key;
+    };
+    std::apply([&](const auto&... field) { (expect(field), ...); },
+               fields_of(static_cast<const typename decltype(kind)::Source*>(nullptr)));
+  });
 }
 
 }  // namespace

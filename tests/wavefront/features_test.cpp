@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "conformance/samples.h"
 #include "flatten/features.h"
 #include "flatten/flatten.h"
 #include "flatten/frame.h"
@@ -29,17 +30,19 @@
 namespace kdray::wavefront {
 namespace {
 
-constexpr layout::Features kT = KDRAY_FEATURE_KIND(TRIANGLE), kS = KDRAY_FEATURE_KIND(SPHERE),
-                           kC = KDRAY_FEATURE_KIND(CONE), kSmooth = KDRAY_FEATURE_SMOOTH,
+constexpr layout::Features kT = KDRAY_FEATURE_KIND(TRIANGLE), kSmooth = KDRAY_FEATURE_SMOOTH,
                            kNumbers = KDRAY_FEATURE_NUMBERS, kReflect = KDRAY_FEATURE_REFLECT,
                            kTransmit = KDRAY_FEATURE_TRANSMIT, kSpecular = KDRAY_FEATURE_SPECULAR,
                            kDiffuse = KDRAY_FEATURE_DIFFUSE, kLights = KDRAY_FEATURE_LIGHTS,
                            kFallOff = KDRAY_FEATURE_ATTENUATION, kDirectional = KDRAY_FEATURE_DIRECTIONAL,
                            kSpot = KDRAY_FEATURE_SPOT, kBackground = KDRAY_FEATURE_BACKGROUND,
                            kSamples = KDRAY_FEATURE_SUPERSAMPLE, kStitches = KDRAY_FEATURE_STITCHES;
+constexpr layout::Features kKinds = (KDRAY_FEATURE_OF_KIND(primitives::kKinds) - 1) & KDRAY_FEATURE_ALL_KINDS;
 constexpr layout::Features kLit = kDiffuse | kLights,
-                           kAll = kT | kS | kC | kStitches | kSmooth | kNumbers | kReflect | kTransmit |
-                                  kSpecular | kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples;
+                           kAll = kKinds | kStitches | kSmooth | kNumbers | kReflect | kTransmit | kSpecular |
+                                  kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples;
+
+constexpr std::uint64_t kSeed = 3;
 
 bool has(layout::Features mask, layout::Features bit) {
   return (mask & bit) != 0;
@@ -93,15 +96,14 @@ scene::Scene scene_of(layout::Features mask) {
   s.lights = lights_of(mask);
   const std::uint32_t first_number = has(mask, kNumbers) ? 3 : 0;
   if (has(mask, kT)) add_triangles(s, mask, first_number);
-  if (has(mask, kS))
-    s.spheres = {{.center = {-0.6, 0, 0}, .radius = 0.8, .number = first_number},
-                 {.center = {0.9, -0.2, 0.7}, .radius = 0.5, .number = first_number + 1}};
-  if (has(mask, kC))
-    s.cones = {{.base = {0.2, -1, 0.2},
-                .apex = {0.4, 1.2, 0},
-                .base_radius = 0.7,
-                .apex_radius = 0.2,
-                .number = first_number}};
+  test::Draw draw(kSeed);
+  primitives::for_each_shape([&](auto kind) {
+    if (!has(mask, KDRAY_FEATURE_OF_KIND(kind.kNumber))) return;
+    for (std::uint32_t i = 0; i < 30; ++i) {
+      test::Samples<decltype(kind)>::add(s, 0, draw);
+      decltype(kind)::of(s).back().number = first_number + i;
+    }
+  });
   if (has(mask, kBackground)) s.background = {0.1f, 0.2f, 0.3f};
   s.camera = scene::Camera{.from = {0.5, 0.8, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 0.7};
   return s;
@@ -179,7 +181,7 @@ class FeaturesTest : public test::EachDevice {
  protected:
   const device::Context context_{GetParam(), 1};
 
-  void draw(std::initializer_list<layout::Features> masks) {
+  void draw(const std::vector<layout::Features>& masks) {
     for (const layout::Features mask : masks) {
       Subject subject(context_, mask);
       SCOPED_TRACE(fmt::format("{:#010x}: {}", mask, fmt::join(flatten::feature_names(mask).on, ", ")));
@@ -187,13 +189,13 @@ class FeaturesTest : public test::EachDevice {
       const Drawn drawn = subject.draw(kByStages);
       const Counters& n = drawn.counters;
       EXPECT_EQ(n.primary, 63u * (has(mask, kSamples) ? 3 : 1));
-      EXPECT_EQ(n.primary_hit > 0, has(mask, kT | kS | kC));
+      EXPECT_EQ(n.primary_hit > 0, has(mask, kKinds));
       EXPECT_EQ(n.shadow > 0, has(mask, kLights));
       // Glass reflects too, where refraction is impossible.
       EXPECT_EQ(n.reflected > 0, has(mask, kReflect | (n.reflected > 0 ? kTransmit : 0)));
       EXPECT_EQ(n.refracted > 0, has(mask, kTransmit));
       const bool all_dark = std::ranges::all_of(drawn.film, [](layout::i64 sum) { return sum == 0; });
-      EXPECT_EQ(all_dark, !has(mask, kT | kS | kC | kBackground));
+      EXPECT_EQ(all_dark, !has(mask, kKinds | kBackground));
     }
   }
 
@@ -206,17 +208,30 @@ class FeaturesTest : public test::EachDevice {
   }
 };
 
+std::vector<layout::Features> kinds() {
+  std::vector<layout::Features> all;
+  primitives::for_each_kind([&](auto kind) { all.push_back(KDRAY_FEATURE_OF_KIND(kind.kNumber)); });
+  return all;
+}
+
+// Each kind alone and with each other.
 TEST_P(FeaturesTest, Geometry) {
-  draw({0, kT, kT | kLit, kS | kLit, kC | kLit, kT | kSmooth | kLit, kT | kStitches | kLit,
-        kT | kNumbers | kLit, kS | kNumbers | kLit, kC | kNumbers | kLit, kT | kS | kLit, kT | kC | kLit,
-        kS | kC | kLit, kT | kS | kC | kNumbers | kLit});
+  std::vector<layout::Features> masks{0, kT, kT | kSmooth | kLit, kT | kStitches | kLit,
+                                      kKinds | kNumbers | kLit};
+  for (const layout::Features a : kinds()) {
+    masks.push_back(a | kNumbers | kLit);
+    for (const layout::Features b : kinds())
+      if (a <= b) masks.push_back(a | b | kLit);
+  }
+  draw(masks);
 }
 
 TEST_P(FeaturesTest, Materials) {
   draw({kT | kDiffuse, kT | kSpecular, kT | kReflect, kT | kTransmit, kT | kSpecular | kLights,
         kT | kSpecular | kLit, kT | kReflect | kLit, kT | kTransmit | kLit, kT | kReflect | kTransmit | kLit,
-        kS | kReflect | kLit, kS | kTransmit | kLit, kC | kReflect | kLit, kC | kTransmit | kLit,
         kT | kSmooth | kSpecular | kLit, kT | kSmooth | kReflect | kLit, kT | kSmooth | kTransmit | kLit});
+  for (const layout::Features kind : kinds())
+    if (kind != kT) draw({kind | kReflect | kLit, kind | kTransmit | kLit});
 }
 
 TEST_P(FeaturesTest, Lights) {
