@@ -19,10 +19,10 @@ namespace kdray {
 
 struct ChildEnd {
   bool started = true;
-  bool timed_out = false;  // it was killed
-  int signal = 0;          // the signal that it died of; 0: it didn't, or this can't be known
-  int status = -1;         // its exit status; -1: it has none
-  std::string report;      // what it wrote to kReport, as far as it came
+  bool timed_out = false;   // it was killed
+  int signal = 0;           // the signal that it died of; 0: it didn't, or this can't be known
+  int status = -1;          // its exit status; -1: it has none
+  std::string report = {};  // what it wrote to kReport, as far as it came
 };
 
 struct ChildOptions {
