@@ -1,17 +1,14 @@
 #include "device/verdicts.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <map>
 #include <mutex>
 #include <string_view>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "base/cache_folder.h"
 #include "base/error.h"
@@ -44,18 +41,6 @@ std::optional<Verdict> parsed(const std::string& entry) {
   for (const std::string_view word : {kPassed, kFailed})
     if (entry.starts_with(word)) return Verdict{word == kPassed, entry.substr(word.size())};
   return std::nullopt;
-}
-
-// What drivers' variables begin with: PoCL's, Mesa's, NVIDIA's, AMD's, Intel's, Oclgrind's; and the linker's,
-// which decides what is loaded.
-constexpr std::string_view kPrefixes[] = {
-    "POCL_",  "RUSTICL_", "MESA_", "GALLIUM_", "LP_",  "LIBGL_",    "NIR_", "CLOVER_", "RADV_",
-    "AMD_",   "ROC",      "HSA_",  "HIP_",     "GPU_", "CUDA_",     "NV_",  "NVIDIA_", "CL_",
-    "INTEL_", "ONEAPI_",  "NEO",   "IGC_",     "ZE_",  "OCLGRIND_", "LD_"};
-
-bool is_of_drivers(std::string_view variable) {
-  return !variable.starts_with("POCL_CACHE_DIR=") &&
-         std::ranges::any_of(kPrefixes, [&](std::string_view p) { return variable.starts_with(p); });
 }
 
 }  // namespace
@@ -117,14 +102,6 @@ bool Mark::is_left(const Verdicts& verdicts, const Hash& key) {
 void Mark::forget(const Verdicts& verdicts, const Hash& key) {
   if (verdicts.keeps() && is_left(verdicts, key))
     ::unlink(entry_file(verdicts.folder(), key, kMarkEnding).c_str());
-}
-
-std::string environment_of_drivers() {
-  std::vector<std::string> set;
-  for (char** variable = environ; variable && *variable; ++variable)
-    if (is_of_drivers(*variable)) set.emplace_back(*variable);
-  std::sort(set.begin(), set.end());
-  return fmt::format("{}", fmt::join(set, "\n"));
 }
 
 }  // namespace kdray::device

@@ -57,8 +57,4 @@ class Mark {
   int descriptor_ = -1;
 };
 
-// The variables that drivers and their compilers read, sorted, but for those that only say where things are
-// kept.
-std::string environment_of_drivers();
-
 }  // namespace kdray::device

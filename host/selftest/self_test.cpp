@@ -114,9 +114,9 @@ std::string fault_of(const device::Context& opened) {
 
 Hash verdict_key(const cl::Device& device) {
   const char* const form = std::getenv("KDRAY_SIMD");
-  return device::program_key(device::identity_of(device) + "\n" + device::environment_of_drivers(),
-                             device::expand_source(kVectorsTest) + device::expand_source(kProgram),
-                             std::string("self-test ") + (form ? form : ""));
+  return device::program_key(
+      device::identity_of(device), device::expand_source(kProgram),
+      fmt::format("self-test {} {}", form ? form : "", in_hex(hash_of(device::expand_source(kVectorsTest)))));
 }
 
 device::Verdict passed_with(device::Simd form) {

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
+#include <string_view>
 #include <system_error>
-
-#include "device/verdicts.h"
 
 namespace kdray::trial {
 
@@ -29,6 +29,26 @@ Driver read(const fs::path& file) {
     driver.unreadable =
         is_text ? "the file can't be read or is empty" : "the file is no text with a library's name";
   return driver;
+}
+
+// What variables begin with that switch drivers on, or others in their place, and those that say which
+// libraries are loaded. Variables that choose among a driver's devices are not of them: batch systems set
+// them anew for each job.
+constexpr std::string_view kSwitches[] = {
+    "POCL_", "RUSTICL_", "CLOVER_",    "MESA_",     "GALLIUM_",         "LP_",        "LIBGL_",
+    "NEO",   "IGC_",     "CL_CONFIG_", "OCLGRIND_", "LD_LIBRARY_PATH=", "LD_PRELOAD="};
+
+bool is_switch(std::string_view variable) {
+  return !variable.starts_with("POCL_CACHE_DIR=") &&
+         std::ranges::any_of(kSwitches, [&](std::string_view s) { return variable.starts_with(s); });
+}
+
+std::string switches() {
+  std::vector<std::string> set;
+  for (char** variable = environ; variable && *variable; ++variable)
+    if (is_switch(*variable)) set.emplace_back(*variable);
+  std::sort(set.begin(), set.end());
+  return fmt::format("{}", fmt::join(set, "\n"));
 }
 
 // A file's size and the moment of its last change: another one has others.
@@ -70,9 +90,9 @@ std::vector<Driver> registered_drivers() {
 // package brings another one.
 Hash key_of(const Driver& driver) {
   const bool has_folder = driver.library.find('/') != std::string::npos;
-  return hash_of(fmt::format(
-      "kdray driver 1\n{}\n{}\n{}\n{}\n{}", driver.file.string(), state_of(driver.file), driver.library,
-      state_of(has_folder ? driver.library : "/etc/ld.so.cache"), device::environment_of_drivers()));
+  return hash_of(fmt::format("kdray driver 1\n{}\n{}\n{}\n{}\n{}", driver.file.string(),
+                             state_of(driver.file), driver.library,
+                             state_of(has_folder ? driver.library : "/etc/ld.so.cache"), switches()));
 }
 
 }  // namespace kdray::trial

@@ -25,8 +25,8 @@ struct Driver {
 std::filesystem::path vendors_folder();    // where *.icd files are looked for
 std::vector<Driver> registered_drivers();  // sorted by file name
 
-// The key that a driver's verdict is kept under: its files, what the dynamic linker knows, and what the
-// environment says to drivers.
+// The key that a driver's verdict is kept under: of its files, of what the dynamic linker knows, and of the
+// variables that switch drivers on.
 Hash key_of(const Driver& driver);
 
 }  // namespace kdray::trial

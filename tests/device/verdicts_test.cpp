@@ -10,7 +10,6 @@
 #include <random>
 
 #include "support/folder.h"
-#include "support/variable.h"
 
 namespace kdray::device {
 namespace {
@@ -122,15 +121,6 @@ TEST(Marks, NeedAFolderToBeMade) {
   const Hash key = new_key();
   const Mark mark(Verdicts(), key);
   EXPECT_FALSE(Mark::is_left(Verdicts(), key));
-}
-
-TEST(DriversEnvironment, IsWhatDriversRead) {
-  const test::Variable cache("POCL_CACHE_DIR", "/somewhere"), vendors("OCL_ICD_VENDORS", "/elsewhere");
-  const test::Variable mesa("RUSTICL_ENABLE", "llvmpipe"), other("KDRAY_TEST_UNRELATED", "1");
-  const std::string environment = environment_of_drivers();
-  EXPECT_NE(environment.find("RUSTICL_ENABLE=llvmpipe"), std::string::npos);
-  for (const char* const name : {"POCL_CACHE_DIR", "OCL_ICD_VENDORS", "KDRAY_TEST_UNRELATED"})
-    EXPECT_EQ(environment.find(name), std::string::npos) << name;
 }
 
 }  // namespace
