@@ -10,6 +10,8 @@
 #include "device/faults.h"
 #include "device/program_cache.h"
 #include "selftest/self_test.h"
+#include "trial/devices.h"
+#include "trial/listing.h"
 
 namespace kdray::api {
 
@@ -38,6 +40,30 @@ device::Builds builds_of(const DeviceOptions& options) {
   return {cache_in(options.programs), options.building, options.remember_programs};
 }
 
+device::Verdicts verdicts_of(const DeviceOptions& options) {
+  const bool keeps = !options.programs.empty();
+  return device::Verdicts(keeps ? options.programs : default_program_folder(), keeps);
+}
+
+std::vector<std::string> leave_out_drivers(const DeviceOptions& o) {
+  std::vector<std::string> reasons;
+  for (const trial::DriverVerdict& d : trial::mind_drivers({verdicts_of(o), o.device, o.building}))
+    if (d.left_out) reasons.push_back(d.in_words());
+  return reasons;
+}
+
+namespace {
+
+// Drivers that are left out are told of; where no device is left without them, they are why.
+void tell_of_drivers(const DeviceOptions& o) {
+  const std::vector<std::string> reasons = leave_out_drivers(o);
+  if (!reasons.empty() && device::find_devices().empty()) throw Error(ErrorCode::no_device, reasons.front());
+  for (const std::string& why : reasons)
+    if (o.left_out) o.left_out(why);
+}
+
+}  // namespace
+
 OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults_asked) {
   check(o);
   const device::Faults faults(faults_asked);
@@ -47,12 +73,20 @@ OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults_ask
   options.compute_units = o.compute_units;
   options.builds = builds_of(o);
   options.left_out = o.left_out;
+  trial::DeviceTrials trials(verdicts_of(o), false, o.building);
+  options.judge = [&](const std::vector<device::FoundDevice>& candidates, std::size_t i) {
+    const Timer timer;
+    const std::string why = trials.why_not(candidates, i);
+    opened.seconds.self_test += timer.seconds();
+    return why;
+  };
   options.check = [&](const device::Context& context) {
     const Timer timer;
     selftest::require(context, faults.fails_self_test(context.info().number));
     opened.seconds.self_test += timer.seconds();
   };
   const Timer timer;
+  tell_of_drivers(o);
   opened.contexts = device::open_contexts(o.device, options);
   opened.seconds.start = timer.seconds() - opened.seconds.self_test;
   return opened;

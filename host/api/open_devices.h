@@ -6,11 +6,20 @@
 #include <vector>
 
 #include "device/context.h"
+#include "device/verdicts.h"
 #include "kdray/kdray.h"
 
 namespace kdray::api {
 
 device::Builds builds_of(const DeviceOptions& options);
+
+// Where verdicts on devices are kept: with the programs. Without a folder for those nothing is written, but
+// what other runs have found out in the default one counts.
+device::Verdicts verdicts_of(const DeviceOptions& options);
+
+// Leaves out drivers that can't even be asked for their devices (trial/listing.h), before OpenCL's first
+// call, and says why, a line for each.
+std::vector<std::string> leave_out_drivers(const DeviceOptions& options);
 
 struct OpenedDevices {
   std::vector<device::Context> contexts;

@@ -12,7 +12,6 @@ namespace kdray::cli {
 
 namespace {
 
-constexpr const char* kText = "compiling kernels for this scene and device; later runs find them";
 constexpr auto kNoticeEvery = std::chrono::milliseconds(500);
 
 void draw_line(const std::string& line) {
@@ -58,10 +57,10 @@ void BuildNotice::watch() {
       continue;
     }
     if (output_.draw) {
-      output_.draw(fmt::format("{}: {:.0f} s", kText, seconds));
+      output_.draw(fmt::format("{}: {:.0f} s", output_.text, seconds));
       drawn = true;
     } else if (!std::exchange(said, true) && output_.say) {
-      output_.say(kText);
+      output_.say(output_.text);
     }
     changed_.wait_for(lock, kNoticeEvery);
   }
@@ -69,9 +68,13 @@ void BuildNotice::watch() {
 }
 
 BuildNotice::Output notice_on_stderr(bool quiet) {
-  if (quiet) return {};
-  if (can_redraw()) return {{}, draw_line};
-  return {[](const std::string& text) { say(text); }, {}};
+  BuildNotice::Output output;
+  if (quiet) return output;
+  if (can_redraw())
+    output.draw = draw_line;
+  else
+    output.say = [](const std::string& text) { say(text); };
+  return output;
 }
 
 }  // namespace kdray::cli

@@ -21,6 +21,7 @@ class BuildNotice {
   struct Output {
     std::function<void(const std::string&)> say;
     std::function<void(const std::string&)> draw;
+    std::string text = "compiling kernels for this scene and device; later runs find them";
   };
   explicit BuildNotice(Output output, double patience_seconds = 1);
   ~BuildNotice();

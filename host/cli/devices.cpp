@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "cli/build_notice.h"
 #include "cli/command.h"
 #include "cli/message.h"
 #include "cli/output.h"
@@ -15,7 +16,7 @@ namespace kdray::cli {
 
 namespace {
 
-std::string as_text(const std::vector<DeviceInfo>& devices) {
+std::string as_text(const std::vector<DeviceInfo>& devices, const std::vector<std::string>& left_out) {
   std::string text;
   for (const DeviceInfo& d : devices) {
     text += fmt::format("{}  {}\n", d.number, one_line(d.name));
@@ -30,6 +31,7 @@ std::string as_text(const std::vector<DeviceInfo>& devices) {
                       d.double_precision ? "yes" : "no");
     if (!d.usable) text += fmt::format("   not usable: {}\n", one_line(d.why_not));
   }
+  for (const std::string& why : left_out) text += fmt::format("left out: {}\n", one_line(why));
   return text;
 }
 
@@ -56,8 +58,17 @@ std::string as_json(const std::vector<DeviceInfo>& devices) {
 int run(bool json) {
   DeviceOptions options;
   options.programs = default_program_folder();
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+  BuildNotice::Output output = notice_on_stderr(false);
+  output.text = "compiling kernels to test the devices; later runs know the outcome";
+  BuildNotice notice(output);
+  options.building = [&](bool begins) { notice.tell(begins); };
   const std::vector<DeviceInfo> all = devices(options);
-  print(json ? as_json(all) : as_text(all));
+  notice.mute();
+  print(json ? as_json(all) : as_text(all, left_out));
+  if (json)
+    for (const std::string& why : left_out) say("left out: " + why);
   for (const DeviceInfo& d : all)
     if (d.usable) return 0;
   if (const std::string& why = device::pocl_cache().unusable; all.empty() && !why.empty())

@@ -1,6 +1,7 @@
 // What    kdray doctor: looks at everything kdray needs from the machine, and says in plain words what
 //         is missing and what to do about it. Ends with a picture and a few rays of known answer on each
-//         usable device.
+//         usable device. Drivers are tried in processes of their own (trial/trial.h), and what comes of it
+//         is remembered in place of older verdicts.
 // Errors  Exit code 3 when no device is usable (ErrorCode::no_device), so that scripts can ask it.
 #include <fmt/format.h>
 
@@ -14,8 +15,13 @@
 #include "cli/opencl_probe.h"
 #include "cli/output.h"
 #include "cli/self_test.h"
+#include "device/platform.h"
 #include "device/pocl_cache.h"
+#include "device/verdicts.h"
 #include "kdray/kdray.h"
+#include "selftest/self_test.h"
+#include "trial/devices.h"
+#include "trial/listing.h"
 
 namespace kdray::cli {
 
@@ -24,6 +30,8 @@ namespace {
 constexpr const char* kInstall =
     "install PoCL, which runs on the CPU: 'apt install pocl-opencl-icd' (Debian, Ubuntu), 'dnf install pocl' "
     "(Fedora); or your GPU's OpenCL driver";
+
+constexpr const char* kAnew = "install its package again, or remove the .icd file";
 
 void good(const std::string& text) {
   print("[ok]   " + one_line(text) + "\n");
@@ -45,15 +53,26 @@ void check_environment() {
   }
 }
 
+// Asks each driver for its devices, in a process of its own, and leaves out those that don't survive that;
+// only then are the others opened here.
 void check_drivers() {
-  const std::vector<Driver> drivers = find_drivers();
-  if (drivers.empty()) bad("no OpenCL driver is registered in " + vendors_folder(), kInstall);
-  for (const Driver& d : drivers) {
-    if (d.opens)
-      good(fmt::format("driver {} ({})", d.library, d.file));
-    else
-      bad(fmt::format("driver {} ({}): {}", d.library, d.file, d.why_not),
-          "install its package again, or remove the .icd file");
+  trial::ListingOptions options;
+  options.verdicts = device::Verdicts(default_program_folder());
+  options.anew = true;
+  const std::vector<trial::DriverVerdict>& drivers = trial::mind_drivers(options);
+  if (drivers.empty()) bad("no OpenCL driver is registered in " + trial::vendors_folder().string(), kInstall);
+  for (const trial::DriverVerdict& d : drivers) {
+    const std::string name = fmt::format("driver {} ({})", d.driver.library, d.driver.where());
+    if (!d.driver.unreadable.empty()) {
+      bad(fmt::format("{}: {}", name, d.driver.unreadable), kAnew);
+    } else if (d.left_out) {
+      bad(fmt::format("{}: it {}", name, d.verdict.text),
+          "kdray leaves it out: update the driver, or remove the .icd file");
+    } else if (const std::string why = why_not_opened(d.driver.library); !why.empty()) {
+      bad(fmt::format("{}: {}", name, why), kAnew);
+    } else {
+      good(name);
+    }
   }
 }
 
@@ -103,23 +122,36 @@ std::string tried(const std::function<std::string()>& test) {
   }
 }
 
+// What is wrong with the device, in a child process where it can be had; empty: nothing.
+std::string fault_of(const device::FoundDevice& found) {
+  const auto here = [&found] { return self_test(std::to_string(found.info.number)); };
+  const auto in_child = [&found] {
+    trial::Trial picture(trial::Subject::picture, selftest::verdict_key(found.device));
+    return picture.outcome();
+  };
+  trial::Outcome outcome = trial::try_anew(found, device::Verdicts(default_program_folder()));
+  if (outcome.verdict && outcome.verdict->passed) outcome = in_child();
+  if (!outcome.verdict) return tried(here);
+  return outcome.verdict->passed ? "" : outcome.verdict->text;
+}
+
 // Returns how many devices are usable and pass the self-test.
 int check_devices() {
   int passed = 0;
-  for (const DeviceInfo& d : devices()) {
+  for (const device::FoundDevice& found : device::find_devices()) {
+    const DeviceInfo& d = found.info;
     const std::string name = fmt::format("device {} {}", d.number, d.name);
     if (!d.usable) {
       bad(fmt::format("{}: {}", name, d.why_not),
           "kdray can't use it; another device or a newer driver may do");
       continue;
     }
-    const std::string wrong = tried([&d] { return self_test(std::to_string(d.number)); });
+    const std::string wrong = tried([&found] { return fault_of(found); });
     if (wrong.empty()) {
       good(name + ": the test picture and rays are right");
       ++passed;
     } else {
-      bad(fmt::format("{}: the self-test fails: {}", name, wrong),
-          "update its driver; choose another with --device");
+      bad(fmt::format("{}: {}", name, wrong), "update its driver; choose another with --device");
     }
   }
   return passed;

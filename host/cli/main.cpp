@@ -9,6 +9,7 @@
 #include "cli/command_line.h"
 #include "cli/start_bench.h"
 #include "cli/suggest.h"
+#include "cli/try.h"
 #include "kdray/error.h"
 
 namespace kdray::cli {
@@ -44,5 +45,6 @@ int run_kdray(int argc, char** argv) {
 }  // namespace kdray::cli
 
 int main(int argc, char** argv) {
+  kdray::cli::try_if_asked(argc, argv);
   return kdray::cli::run_program([&] { return kdray::cli::run_kdray(argc, argv); });
 }

@@ -4,50 +4,13 @@
 
 #include <CL/cl.h>
 #include <algorithm>
-#include <cctype>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string_view>
 
 extern char** environ;
 
-namespace fs = std::filesystem;
-
 namespace kdray::cli {
 
 namespace {
-
-std::string variable(const char* name) {
-  const char* const value = std::getenv(name);
-  return value ? value : "";
-}
-
-void try_to_open(Driver& driver) {
-  void* const handle = ::dlopen(driver.library.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  driver.opens = handle != nullptr;
-  if (!handle) {
-    const char* const reason = ::dlerror();
-    driver.why_not = reason ? reason : "unknown reason";
-  }
-  // The library is not closed again: the loader is about to open it too, and drivers dislike being unloaded.
-}
-
-// An .icd file: its first line names the library.
-Driver inspect(const fs::path& file) {
-  Driver driver{.file = file.string(), .library = {}, .why_not = {}};
-  std::ifstream in(file);
-  std::getline(in, driver.library);
-  const bool is_text = std::none_of(driver.library.begin(), driver.library.end(),
-                                    [](unsigned char c) { return std::iscntrl(c) && !std::isspace(c); });
-  if (!is_text) driver.library.clear();
-  if (driver.library.empty())
-    driver.why_not =
-        is_text ? "the file can't be read or is empty" : "the file is no text with a library's name";
-  else
-    try_to_open(driver);
-  return driver;
-}
 
 std::string platform_text(cl_platform_id platform, cl_platform_info what) {
   std::size_t size = 0;
@@ -59,25 +22,11 @@ std::string platform_text(cl_platform_id platform, cl_platform_info what) {
 
 }  // namespace
 
-std::string vendors_folder() {
-  const std::string set = variable("OCL_ICD_VENDORS");
-  return set.empty() ? "/etc/OpenCL/vendors" : set;
-}
-
-std::vector<Driver> find_drivers() {
-  std::vector<Driver> drivers;
-  const fs::path place = vendors_folder();
-  std::error_code error;
-  if (place.extension() == ".icd") return {inspect(place)};
-  if (place.filename().string().find(".so") != std::string::npos && !fs::is_directory(place, error)) {
-    Driver driver{.file = "OCL_ICD_VENDORS", .library = place.string(), .why_not = {}};
-    try_to_open(driver);
-    return {driver};
-  }
-  for (fs::directory_iterator i(place, error), end; !error && i != end; i.increment(error))
-    if (i->path().extension() == ".icd") drivers.push_back(inspect(i->path()));
-  std::sort(drivers.begin(), drivers.end(), [](const Driver& a, const Driver& b) { return a.file < b.file; });
-  return drivers;
+// The library is not closed again: the loader is about to open it too, and drivers dislike being unloaded.
+std::string why_not_opened(const std::string& library) {
+  if (::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL)) return "";
+  const char* const reason = ::dlerror();
+  return reason ? reason : "unknown reason";
 }
 
 std::vector<Platform> find_platforms() {

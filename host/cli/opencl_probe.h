@@ -1,8 +1,6 @@
-// What    What OpenCL's loader sees on this machine, step by step: the drivers that are registered,
-//         whether they can be opened, the platforms they give, the devices those have. `kdray doctor`
+// What    What OpenCL's loader sees on this machine, step by step: whether the drivers that are registered
+//         (trial/drivers.h) can be opened, the platforms they give, the devices those have. `kdray doctor`
 //         explains each step that fails.
-// Source  The loader is ocl-icd or Khronos': *.icd files in /etc/OpenCL/vendors, or where OCL_ICD_VENDORS
-//         points: another folder, a single .icd file, or a library.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +8,6 @@
 #include <vector>
 
 namespace kdray::cli {
-
-struct Driver {
-  std::string file;     // /etc/OpenCL/vendors/pocl.icd, or OCL_ICD_VENDORS
-  std::string library;  // its first line: libpocl.so.2; empty when unreadable
-  bool opens = false;
-  std::string why_not;  // the dynamic linker's words
-};
 
 struct Platform {
   std::string name, version;
@@ -27,8 +18,9 @@ struct Variable {
   std::string name, value;
 };
 
-std::string vendors_folder();        // where *.icd files are looked for
-std::vector<Driver> find_drivers();  // sorted by file name
+// Why the dynamic linker can't open this library, in its words; empty: it can.
+std::string why_not_opened(const std::string& library);
+
 std::vector<Platform> find_platforms();
 std::vector<Variable> opencl_environment();  // OCL_*, POCL_* and CUDA_VISIBLE_DEVICES, as far as set
 

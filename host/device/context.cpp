@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -223,22 +224,33 @@ Context open_checked(const std::string& spec, int n_queues, const OpenOptions& o
   return context;
 }
 
-// The best device that can be opened and passes.
-Context open_best(int n_queues, const OpenOptions& o) {
+// One that may be opened and passes, or the reason why it can't be used.
+std::optional<Context> try_to_open(const std::vector<FoundDevice>& candidates, std::size_t i, int n_queues,
+                                   const OpenOptions& o, std::string& why) {
+  if (o.judge) why = o.judge(candidates, i);
+  if (!why.empty()) return std::nullopt;
+  try {
+    return open_checked(std::to_string(candidates[i].info.number), n_queues, o);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::no_device) throw;
+    why = error.what();
+    return std::nullopt;
+  }
+}
+
+// The best device of those that the spec leaves to kdray.
+Context open_best(const std::string& spec, int n_queues, const OpenOptions& o) {
   std::string why;
-  for (const int number : devices_by_preference()) {
-    try {
-      Context context = open_checked(std::to_string(number), n_queues, o);
-      if (!why.empty() && o.left_out) o.left_out(why);
-      return context;
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::no_device) throw;
-      if (!why.empty() && o.left_out) o.left_out(why);
-      why = error.what();
-    }
+  const std::vector<FoundDevice> candidates = devices_by_preference(spec);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    std::string this_one;
+    const std::optional<Context> context = try_to_open(candidates, i, n_queues, o, this_one);
+    if (!why.empty() && o.left_out) o.left_out(why);
+    if (context) return *context;
+    why = this_one;
   }
   if (!why.empty()) throw Error(ErrorCode::no_device, why);
-  return Context("auto", n_queues);  // throws, saying what there is
+  return Context(spec, n_queues);  // throws, saying what there is
 }
 
 }  // namespace
@@ -252,7 +264,8 @@ std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& 
     if (n > 1 && spec.empty())
       throw Error(ErrorCode::usage, fmt::format("the list of devices '{}' has an empty name in it", specs));
     const int queues = std::max(options.n_queues / n + (i < options.n_queues % n ? 1 : 0), 1);
-    contexts.push_back(is_auto(spec) ? open_best(queues, options) : open_checked(spec, queues, options));
+    const bool chosen = is_auto(spec) || is_kind(spec);
+    contexts.push_back(chosen ? open_best(spec, queues, options) : open_checked(spec, queues, options));
   }
   return contexts;
 }

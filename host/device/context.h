@@ -83,17 +83,21 @@ class Context {
   Simd simd_ = Simd::portable;
 };
 
+// Why the `i`th of the candidates, the best first, is not to be opened at all; empty: it may be.
+using Judge = std::function<std::string(const std::vector<FoundDevice>& candidates, std::size_t i)>;
+
 struct OpenOptions {
   int n_queues = 1;       // in all: dealt out in turn, at least one for each device
   int compute_units = 0;  // of each device; 0: all
   Builds builds = {};
+  Judge judge = {};                                // of devices that nobody asked for by name or number
   std::function<void(const Context&)> check = {};  // throws ErrorCode::no_device for a device not to be used
-  std::function<void(const std::string&)> left_out = {};  // told why, where "auto" goes on to another device
+  std::function<void(const std::string&)> left_out = {};  // told why, where it goes on to another device
 };
 
-// A context on each of the devices of `specs` (choose_device's, with commas between them). "auto" takes the
-// next device where one can't be opened or doesn't pass the check; a device that was asked for in another way
-// throws what it threw.
+// A context on each of the devices of `specs` (choose_device's, with commas between them). "auto" and a kind
+// take the next device where one can't be used, can't be opened or doesn't pass the check; a device that was
+// asked for by name or number throws what it threw.
 std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& options);
 std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units = 0);
 

@@ -66,7 +66,7 @@ bool is_number(const std::string& text) {
 
 bool matches(const DeviceInfo& info, const std::string& spec) {
   if (is_number(spec)) return info.number == std::stoi(spec);
-  if (spec == "cpu" || spec == "gpu" || spec == "accelerator") return info.kind == spec;
+  if (is_kind(spec)) return info.kind == spec;
   return lower(info.name).find(spec) != std::string::npos ||
          lower(info.platform).find(spec) != std::string::npos;
 }
@@ -93,10 +93,16 @@ bool is_auto(const std::string& spec) {
   return spec.empty() || lower(spec) == "auto";
 }
 
-std::vector<int> devices_by_preference() {
-  std::vector<int> numbers;
-  for (const FoundDevice& d : by_preference(find_devices())) numbers.push_back(d.info.number);
-  return numbers;
+bool is_kind(const std::string& spec) {
+  const std::string kind = lower(spec);
+  return kind == "cpu" || kind == "gpu" || kind == "accelerator";
+}
+
+std::vector<FoundDevice> devices_by_preference(const std::string& spec) {
+  std::vector<FoundDevice> devices = by_preference(find_devices());
+  if (is_kind(spec))
+    std::erase_if(devices, [kind = lower(spec)](const FoundDevice& d) { return d.info.kind != kind; });
+  return devices;
 }
 
 std::vector<FoundDevice> find_devices() {

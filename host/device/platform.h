@@ -21,8 +21,11 @@ std::vector<FoundDevice> find_devices();
 // Whether a spec leaves the choice to kdray: "auto" or empty.
 bool is_auto(const std::string& spec);
 
-// The numbers of the usable ones, as "auto" prefers them: GPUs, CPUs, others.
-std::vector<int> devices_by_preference();
+// Whether it names a kind of device, and no device: "cpu", "gpu", "accelerator".
+bool is_kind(const std::string& spec);
+
+// The usable ones that "auto", or a kind, leaves the choice of, as kdray prefers them: GPUs, CPUs, others.
+std::vector<FoundDevice> devices_by_preference(const std::string& spec = "auto");
 
 // spec: "auto" (a GPU if there is a usable one, else a CPU), "cpu", "gpu", a number, or a part of a device's
 // or platform's name. Throws ErrorCode::no_device, listing what there is.

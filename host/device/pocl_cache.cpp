@@ -1,21 +1,17 @@
 #include "device/pocl_cache.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <optional>
-#include <random>
+#include <memory>
 
 #include "base/cache_folder.h"
-#include "base/temporary.h"
+#include "base/temporary_folder.h"
 
 namespace kdray::device {
 
@@ -42,30 +38,14 @@ fs::path kdrays_own() {
   return folder.empty() ? folder : folder / "pocl";
 }
 
-// What processes that were killed have left behind.
-void sweep(const fs::path& where) {
-  std::error_code error;
-  for (fs::directory_iterator i(where, error), end; !error && i != end; i.increment(error)) {
-    int process = 0;
-    if (std::sscanf(i->path().filename().c_str(), "kdray-pocl-%d-", &process) != 1) continue;
-    struct stat status {};
-    if (::lstat(i->path().c_str(), &status) != 0 || status.st_uid != ::geteuid()) continue;
-    std::error_code ignored;
-    if (process > 0 && ::kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(i->path(), ignored);
-  }
-}
-
 // Removed at the end. PoCL's own clean-up comes before that, since it begins to work after this is made.
 fs::path make_temporary() {
   std::error_code error;
   const fs::path where = fs::temp_directory_path(error);
   if (error || !why_no_cache(where).empty()) return {};
-  sweep(where);
-  static std::optional<Temporary> folder;
-  folder.emplace(where / fmt::format("{}{}-{:08x}", kTemporary, ::getpid(), std::random_device()()));
-  if (::mkdir(folder->path().c_str(), 0700) == 0) return folder->path();
-  folder->forget();
-  return {};
+  static std::unique_ptr<Temporary> folder;
+  folder = make_temporary_folder(kTemporary);
+  return folder ? folder->path() : fs::path();
 }
 
 PoclCache choose() {

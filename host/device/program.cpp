@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include "device/opencl_error.h"
 #include "device/pocl_cache.h"
@@ -33,30 +36,40 @@ std::string text_of(const std::string& name) {
   throw Error(ErrorCode::internal, fmt::format("kernel source '{}' is not embedded", name));
 }
 
-// The name in an include line of ours; empty for every other line (and for <system> includes).
-std::string included_name(const std::string& line) {
-  constexpr std::string_view kInclude = "#include \"";
-  if (!line.starts_with(kInclude)) return "";
-  return line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
+constexpr std::string_view kInclude = "#include \"";  // of ours; <system> includes are left alone
+
+// Where the next line begins that includes a file of ours, from `first` on, which begins a line.
+std::size_t next_include(std::string_view source, std::size_t first) {
+  std::size_t at = source.find(kInclude, first);
+  while (at != std::string_view::npos && at > 0 && source[at - 1] != '\n') at = source.find(kInclude, at + 1);
+  return std::min(at, source.size());
 }
 
-void expand(const std::string& name, const std::string& source, std::set<std::string>& seen,
-            std::string& out) {
+// Whole pieces between includes are copied, not lines: every start makes the keys of some sources.
+void expand(const std::string& name, std::string_view source, std::set<std::string>& seen, std::string& out) {
   seen.insert(name);
-  std::istringstream text(source);
   out += fmt::format("#line 1 \"{}\"\n", name);
-  std::string line;
-  for (int number = 1; std::getline(text, line); ++number) {
-    const std::string included = included_name(line);
-    if (included.empty()) {
-      out += line + '\n';
-    } else if (!seen.contains(included)) {
+  std::ptrdiff_t number = 1;
+  for (std::size_t at = 0; at < source.size();) {
+    const std::size_t include = next_include(source, at);
+    const std::string_view piece = source.substr(at, include - at);
+    out += piece;
+    number += std::ranges::count(piece, '\n');
+    if (include == source.size()) break;
+    const std::size_t end = std::min(source.find('\n', include), source.size());
+    const std::size_t begin = include + kInclude.size();
+    const std::string_view line = source.substr(begin, end - begin);
+    const std::string included(line.substr(0, line.find('"')));
+    if (seen.contains(included)) {
+      out += '\n';
+    } else {
       expand(included, text_of(included), seen, out);
       out += fmt::format("#line {} \"{}\"\n", number + 1, name);
-    } else {
-      out += '\n';
     }
+    ++number;
+    at = end + 1;
   }
+  if (!out.ends_with('\n')) out += '\n';
 }
 
 std::string first_error(const std::string& log) {

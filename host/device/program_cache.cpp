@@ -12,7 +12,6 @@ namespace kdray::device {
 namespace {
 
 constexpr const char* kEnding = ".program";
-constexpr const char* kPassed = "passed";
 
 // The binary of the program's first device; the others are parts of the same. Empty where the driver gives
 // none.
@@ -68,14 +67,6 @@ std::size_t ProgramCache::keep() {
   }
   if (n > 0) shrink_folder(folder_, kEnding, max_bytes_);
   return n;
-}
-
-bool ProgramCache::has_passed(const Hash& key) const {
-  return read_entry(file_of(key), key) == kPassed;
-}
-
-void ProgramCache::note_passed(const Hash& key) {
-  write(key, kPassed);
 }
 
 bool ProgramCache::write(const Hash& key, const std::string& bytes) const {

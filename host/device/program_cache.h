@@ -37,9 +37,7 @@ class ProgramCache {
   // too large.
   std::size_t keep();
 
-  // Whether something of this key was found right before: the self-test's outcome needs no binary.
-  bool has_passed(const Hash& key) const;
-  void note_passed(const Hash& key);
+  const std::filesystem::path& folder() const { return folder_; }
 
  private:
   std::filesystem::path file_of(const Hash& key) const;

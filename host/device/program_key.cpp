@@ -12,13 +12,18 @@ namespace kdray::device {
 
 namespace {
 
-// What Linux tells of the first core; empty elsewhere.
-std::string processor() {
+std::string read_processor() {
   std::ifstream in("/proc/cpuinfo");
   std::string text;
   for (std::string line; std::getline(in, line) && !line.empty();)
     for (const std::string_view fact : {"vendor_id", "cpu family", "model", "stepping", "flags", "Features"})
       if (line.starts_with(fact)) text += line + '\n';
+  return text;
+}
+
+// What Linux tells of the first core; empty elsewhere. It takes a tenth of a millisecond for each core.
+const std::string& processor() {
+  static const std::string text = read_processor();
   return text;
 }
 

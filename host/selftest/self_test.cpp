@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <mutex>
-#include <set>
-#include <utility>
+#include <optional>
 
 #include "device/opencl_error.h"
 #include "device/program.h"
@@ -22,6 +23,7 @@ namespace kdray::selftest {
 namespace {
 
 constexpr const char* kProgram = "traverse/query.cl";
+constexpr const char* kVectorsTest = "common/simd_test.cl";
 
 float number(std::uint32_t bits) {
   return std::bit_cast<float>(bits);
@@ -48,12 +50,10 @@ std::string check_occlusion(const std::vector<Hit>& hits) {
   return "";
 }
 
-// The key is of the device with its driver, and of the kernels.
-Hash key_of(const device::Context& context) {
-  const std::string identity = device::checked(
-      "asking " + context.info().name, [&] { return device::identity_of(context.opened().devices.front()); });
-  return device::program_key(identity, device::expand_source(kProgram),
-                             "self-test " + device::build_option(context.simd()));
+// With the programs that are kept, if they are.
+device::Verdicts verdicts_of(const device::Context& context) {
+  const std::shared_ptr<device::ProgramCache>& cache = context.builds().cache;
+  return device::Verdicts(cache ? cache->folder() : std::filesystem::path());
 }
 
 }  // namespace
@@ -112,20 +112,33 @@ std::string fault_of(const device::Context& opened) {
   return fault.empty() ? check_occlusion(known.trace(true)) : fault;
 }
 
+Hash verdict_key(const cl::Device& device) {
+  const char* const form = std::getenv("KDRAY_SIMD");
+  return device::program_key(
+      device::identity_of(device), device::expand_source(kProgram),
+      fmt::format("self-test {} {}", form ? form : "", in_hex(hash_of(device::expand_source(kVectorsTest)))));
+}
+
+device::Verdict passed_with(device::Simd form) {
+  return {true, device::build_option(form)};
+}
+
 void require(const device::Context& context, bool fail) {
   static std::mutex mutex;
-  static std::set<std::pair<std::uint64_t, std::uint64_t>> passed;
   const std::lock_guard lock(mutex);
-  const Hash key = key_of(context);
-  const std::shared_ptr<device::ProgramCache>& cache = context.builds().cache;
-  if (!fail && (passed.contains({key.high, key.low}) || (cache && cache->has_passed(key)))) return;
+  const Hash key = device::checked("asking " + context.info().name,
+                                   [&] { return verdict_key(context.opened().devices.front()); });
+  const device::Verdicts verdicts = verdicts_of(context);
+  const std::optional<device::Verdict> known = verdicts.find(key);
+  const device::Verdict passed = passed_with(context.simd());
+  if (!fail && known == passed) return;
   const std::string fault = fail ? "told to fail" : fault_of(context);
+  if (!fault.empty() && !fail && !known) verdicts.note(key, {false, "fails the self-test: " + fault});
   if (!fault.empty())
     throw Error(ErrorCode::no_device,
                 fmt::format("{} fails the self-test: {}; try another device or driver, see `kdray devices`",
                             context.info().name, fault));
-  passed.insert({key.high, key.low});
-  if (cache) cache->note_passed(key);
+  if (!known || known->passed) verdicts.note(key, passed);
 }
 
 }  // namespace kdray::selftest

@@ -1,8 +1,8 @@
 // What    Whether a device computes rightly: it traces rays of known hits through the tree, by the program
 //         that queries use, and every bit is compared.
-// Shape   It takes a program of its own, so that the outcome is kept beside built programs: a device that has
-//         passed with this driver and these kernels is not asked again by other processes. The vector
-//         operations are tested at every start (device/simd.h).
+// Shape   It takes a program of its own, so that the outcome is kept beside built programs as a verdict: a
+//         device that has passed with this driver and these kernels is not asked again by other processes.
+//         The vector operations are tested at every start (device/simd.h).
 //         A device that is no CPU may round otherwise (division, the order of a builtin's steps): there hits
 //         may be off by 1e-5.
 #pragma once
@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "base/hash.h"
 #include "device/context.h"
+#include "device/verdicts.h"
 #include "kdray/ray.h"
 #include "selftest/known_case.h"
 
@@ -20,8 +22,16 @@ namespace kdray::selftest {
 std::string fault_of(const device::Context& context);
 
 // Throws ErrorCode::no_device, naming device and fault, unless the device passes, or has passed before. With
-// `fail` it does as if the device computed wrongly.
+// `fail` it does as if the device computed wrongly. A device that has failed before is tested anew, and the
+// verdict on it stays: whoever calls this wants that very device.
 void require(const device::Context& context, bool fail = false);
+
+// The key that the verdict on a device is kept under: of the device with its driver, of the kernels that
+// test it, and of what the environment asks for. The device need not have been opened. Throws cl::Error.
+Hash verdict_key(const cl::Device& device);
+
+// The verdict on a device that has passed with these vectors.
+device::Verdict passed_with(device::Simd form);
 
 // What the device answers to known_rays(). The table of answers is made of this, when a change of the kernels
 // is meant to change bits.

@@ -1,5 +1,6 @@
 #include "verify/tracer.h"
 
+#include "api/open_devices.h"
 #include "device/opencl_error.h"
 #include "layout/rays.layout.h"
 #include "layout/tree.layout.h"
@@ -11,6 +12,11 @@ namespace kdray::verify {
 namespace {
 
 constexpr std::size_t kWorkGroup = 16;
+
+DeviceOptions one_queue(DeviceOptions options) {
+  options.queues = 1;
+  return options;
+}
 
 template <class Primitive>
 void name_refs(const Array<Primitive>& primitives, std::uint32_t kind, std::vector<std::uint32_t>& ref_of) {
@@ -33,7 +39,7 @@ prepare::Prepared in_local_space(prepare::Prepared prepared) {
 
 Tracer::Tracer(const prepare::Prepared& scene, const DeviceOptions& device)
     : scene_(scene),
-      context_(device::open_contexts(device.device, 1, device.compute_units).front()),
+      context_(api::open_devices(one_queue(device)).contexts.front()),
       buffers_(context_, scene.flat, scene.wide),
       programs_(context_, scene.tree_depth, scene.wide),
       ref_of_(scene.counts.primitives, KDRAY_REF_MISS) {

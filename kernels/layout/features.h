@@ -24,7 +24,7 @@
 #define KDRAY_FEATURE_NUMBERS KDRAY_FEATURE(33)
 // Rays and primitives of queries that meet only where their masks have a bit in common; removes looking at
 // them.
-#define KDRAY_FEATURE_MASKS KDRAY_FEATURE(34)
+#define KDRAY_FEATURE_MASKS KDRAY_FEATURE(35)
 #define KDRAY_FEATURE_REFLECT KDRAY_FEATURE(40)   // removes reflected rays (and, with TRANSMIT, the pool)
 #define KDRAY_FEATURE_TRANSMIT KDRAY_FEATURE(41)  // removes refracted rays
 #define KDRAY_FEATURE_SPECULAR KDRAY_FEATURE(42)  // removes highlights

@@ -256,14 +256,6 @@ TEST_P(ProgramCacheTest, AFailedBuildIsNotKept) {
   EXPECT_EQ(b.cache->keep(), 0u);
 }
 
-TEST_P(ProgramCacheTest, OutcomesAreKeptByTheirKey) {
-  ProgramCache cache(folder_.path());
-  EXPECT_FALSE(cache.has_passed(kKey));
-  cache.note_passed(kKey);
-  EXPECT_TRUE(ProgramCache(folder_.path()).has_passed(kKey));
-  EXPECT_FALSE(cache.has_passed({7, 8}));
-}
-
 KDRAY_FOR_EACH_DEVICE(ProgramCacheTest);
 
 }  // namespace

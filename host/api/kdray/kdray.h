@@ -162,7 +162,8 @@ std::filesystem::path default_program_folder();
 void keep_programs(const DeviceOptions& device);
 
 // All OpenCL devices; empty when there is no platform. Never throws for want of a device. A device that fails
-// the self-test is not usable; of the options, those on built programs count.
+// the self-test is not usable; of the options, those on built programs count, and left_out, which is told of
+// drivers that can't be asked for their devices.
 std::vector<DeviceInfo> devices(const DeviceOptions& options = {});
 
 }  // namespace kdray

@@ -77,7 +77,7 @@ struct DeviceOptions {
   std::function<void(const std::string&)> tunings_ignored = {};
   // True: a compiler begins to work; false: it ends. From any thread; may nest.
   std::function<void(bool)> building = {};
-  // Told of each device that "auto" would prefer, but can't use.
+  // Told of each device that kdray would prefer, but can't use, and of each driver that it has to leave out.
   std::function<void(const std::string&)> left_out = {};
 };
 

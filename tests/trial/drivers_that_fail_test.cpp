@@ -1,0 +1,345 @@
+// What    Drivers that hang, crash and refuse, beside those of this machine: kdray leaves them out, says so
+//         in one line, remembers it, and uses what else there is. A driver of the tests' own
+//         (fake_driver.cpp) goes wrong as it is told.
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "cli/program.h"
+#include "support/folder.h"
+#include "trial/drivers.h"
+
+namespace kdray::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kName = "Fake device";
+constexpr double kLimit = 5;  // seconds of a trial, in place of the usual 15
+
+// Whether a process is there and no zombie.
+bool lives(int process) {
+  std::ifstream in("/proc/" + std::to_string(process) + "/stat");
+  std::string number, name, state;
+  return in >> number >> name >> state && state != "Z";
+}
+
+class DriversThatFail : public testing::Test {
+ protected:
+  void SetUp() override {
+    KDRAY_NEED_DEVICE();
+    fs::create_directory(folder_ / "vendors");
+    for (const trial::Driver& d : trial::registered_drivers())
+      if (!d.is_library) fs::copy_file(d.file, folder_ / "vendors" / d.file.filename());
+    // What is known of this machine's devices before the other driver is there.
+    ASSERT_TRUE(succeeds(run({"devices"}, RunOptions{})));
+    register_fake();
+    ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "1", "-o", folder_ / "balls.nff"})));
+  }
+
+  void register_fake() const { folder_.put("vendors/fake.icd", FAKE_DRIVER_LIBRARY "\n"); }
+  void leave_fake_alone() const {
+    for (const auto& entry : fs::directory_iterator(folder_ / "vendors"))
+      if (entry.path().filename() != "fake.icd") fs::remove(entry.path());
+  }
+
+  Outcome run(const std::vector<std::string>& arguments, RunOptions options) const {
+    std::map<std::string, std::string> environment = {{"OCL_ICD_VENDORS", (folder_ / "vendors").string()},
+                                                      {"KDRAY_CACHE_DIR", (folder_ / "cache").string()},
+                                                      {"KDRAY_TRIAL_SECONDS", fmt::format("{}", kLimit)},
+                                                      {"FAKE_DRIVER_LOG", (folder_ / "log").string()}};
+    for (const auto& [name, value] : options.environment) environment[name] = value;
+    options.environment = environment;
+    return kdray(arguments, options);
+  }
+  // The driver goes wrong in this way.
+  Outcome run(const std::vector<std::string>& arguments, const std::string& wrong) const {
+    return run(arguments, {.environment = {{"FAKE_DRIVER", wrong}}});
+  }
+  std::vector<std::string> render(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"render", folder_ / "balls.nff", "--size", "32x32",
+                                          "-o",     folder_ / "a.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  // How often the driver was asked for this.
+  std::size_t n_asked(const std::string& where) const { return processes_asked(where).size(); }
+  std::vector<int> processes_asked(const std::string& where) const {
+    std::vector<int> processes;
+    std::istringstream log(folder_.get("log"));
+    std::string what;
+    for (int process = 0; log >> what >> process;)
+      if (what == where) processes.push_back(process);
+    return processes;
+  }
+  std::size_t n_builds() const { return n_asked("build"); }
+
+  testing::AssertionResult all_have_ended() const {
+    for (const char* const where : {"load", "list", "build"})
+      for (const int process : processes_asked(where)) {
+        for (int i = 0; i < 500 && lives(process); ++i)
+          std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        if (lives(process)) return testing::AssertionFailure() << process << " lives";
+      }
+    return testing::AssertionSuccess();
+  }
+
+  // The device is listed as not usable for that reason, at once the next time, and another one renders.
+  void expect_left_out(const std::string& wrong, const std::string& why) const {
+    SCOPED_TRACE(wrong);
+    const Outcome first = run({"devices"}, wrong);
+    ASSERT_TRUE(succeeds(first));
+    const std::string line = fmt::format("not usable: {} {}", kName, why);
+    EXPECT_NE(first.out.find(line), std::string::npos) << first.out;
+    EXPECT_LT(first.seconds, kLimit + 10);
+    const std::size_t builds = n_builds();
+    EXPECT_NE(run({"devices"}, wrong).out.find(line), std::string::npos) << "not remembered";
+    const Outcome picture = run(render(), wrong);
+    EXPECT_TRUE(succeeds(picture));
+    EXPECT_NE(picture.err.find(fmt::format("kdray: {} {}", kName, why)), std::string::npos) << picture.err;
+    EXPECT_TRUE(fs::exists(folder_ / "a.png"));
+    EXPECT_EQ(n_builds(), builds) << "it was tried again";
+    EXPECT_TRUE(all_have_ended());
+  }
+  // The same for a driver that can't be asked for its devices.
+  void expect_driver_left_out(const std::string& wrong, const std::string& why) const {
+    SCOPED_TRACE(wrong);
+    const Outcome first = run({"devices"}, wrong);
+    ASSERT_TRUE(succeeds(first));
+    const std::string line = fmt::format("left out: the driver {} (fake.icd) {}", FAKE_DRIVER_LIBRARY, why);
+    EXPECT_NE(first.out.find(line), std::string::npos) << first.out;
+    EXPECT_EQ(first.out.find(kName), std::string::npos) << first.out;
+    const std::size_t loads = n_asked("load");
+    EXPECT_NE(run({"devices"}, wrong).out.find(line), std::string::npos) << "not remembered";
+    const Outcome picture = run(render(), wrong);
+    EXPECT_TRUE(succeeds(picture));
+    EXPECT_NE(picture.err.find("(fake.icd) " + why), std::string::npos) << picture.err;
+    EXPECT_EQ(n_asked("load"), loads) << "it was tried again";
+    EXPECT_TRUE(all_have_ended());
+  }
+
+  const Folder folder_;
+};
+
+TEST_F(DriversThatFail, OneThatHangsInTheSelfTest) {
+  expect_left_out("hang-build", "takes longer than 5 s for the self-test");
+}
+
+TEST_F(DriversThatFail, OneThatCrashesInTheSelfTest) {
+  expect_left_out("crash-build", "crashes (SIGSEGV) in the self-test");
+}
+
+TEST_F(DriversThatFail, OneThatAborts) {
+  expect_left_out("abort-build", "crashes (SIGABRT) in the self-test");
+}
+
+TEST_F(DriversThatFail, OneThatEndsTheProgram) {
+  expect_left_out("exit-build", "ends the program in the self-test");
+}
+
+TEST_F(DriversThatFail, OneThatRefusesToCompile) {
+  expect_left_out("refuse-build",
+                  "fails the self-test: the device's compiler refuses common/simd_test.cl: 1 error found");
+}
+
+TEST_F(DriversThatFail, OneThatBuildsWhatNobodyCanRun) {
+  expect_left_out(
+      "", "fails the self-test: making the kernel simd_test: clCreateKernel gave CL_OUT_OF_RESOURCES");
+}
+
+TEST_F(DriversThatFail, OneThatHangsWhenItIsAskedForItsDevices) {
+  expect_driver_left_out("hang-list", "takes longer than 5 s to list its devices");
+}
+
+TEST_F(DriversThatFail, OneThatCrashesWhenItIsAskedForItsDevices) {
+  expect_driver_left_out("crash-list", "crashes (SIGSEGV) when it is asked for its devices");
+}
+
+TEST_F(DriversThatFail, OneThatCrashesWhenItIsLoaded) {
+  expect_driver_left_out("crash-load", "crashes (SIGSEGV) when it is asked for its devices");
+}
+
+TEST_F(DriversThatFail, JsonSaysIt) {
+  const Outcome device = run({"devices", "--json"}, "crash-build");
+  ASSERT_TRUE(succeeds(device));
+  const Json list = Json::parse(device.out);
+  const auto fake = std::ranges::find_if(list, [](const Json& d) { return d["name"] == kName; });
+  ASSERT_NE(fake, list.end());
+  EXPECT_FALSE((*fake)["usable"]);
+  EXPECT_NE((*fake)["why_not"].get<std::string>().find("crashes"), std::string::npos);
+}
+
+TEST_F(DriversThatFail, TheFirstPictureDoesNotWaitForDevicesThatNobodyWants) {
+  ASSERT_TRUE(succeeds(run(render({"--device", "cpu"}), "hang-build")));
+  EXPECT_EQ(n_builds(), 0u);
+}
+
+TEST_F(DriversThatFail, QuietSaysNothing) {
+  const Outcome picture = run(render({"-q"}), "crash-build");
+  ASSERT_TRUE(succeeds(picture));
+  EXPECT_EQ(picture.err, "");
+}
+
+TEST_F(DriversThatFail, DeviceInsists) {
+  ASSERT_TRUE(succeeds(run({"devices"}, "crash-build")));
+  EXPECT_EQ(run(render({"--device", "fake"}), "crash-build").signal, SIGSEGV);
+  const Outcome refused = run(render({"--device", "fake"}), "refuse-build");
+  EXPECT_TRUE(fails_with(refused, 3, "the device's compiler refuses"));
+  EXPECT_NE(run({"devices"}, "").out.find("crashes (SIGSEGV)"), std::string::npos) << "the verdict stays";
+}
+
+TEST_F(DriversThatFail, DeviceInsistsOnADriverByItsFile) {
+  ASSERT_TRUE(succeeds(run({"devices"}, "crash-list")));
+  EXPECT_EQ(run(render({"--device", "fake.icd"}), "crash-list").signal, SIGSEGV);
+  EXPECT_TRUE(succeeds(run(render({"--device", "cpu"}), "crash-list")));
+}
+
+TEST_F(DriversThatFail, AnotherVersionIsTriedAnew) {
+  ASSERT_TRUE(succeeds(run({"devices"}, "crash-build")));
+  const std::size_t builds = n_builds();
+  const RunOptions upgraded = {.environment = {{"FAKE_DRIVER", "abort-build"}, {"FAKE_DRIVER_VERSION", "2"}}};
+  EXPECT_NE(run({"devices"}, upgraded).out.find("crashes (SIGABRT)"), std::string::npos);
+  EXPECT_GT(n_builds(), builds);
+}
+
+TEST_F(DriversThatFail, ALibraryThatHasChangedIsAskedAnew) {
+  fs::copy_file(FAKE_DRIVER_LIBRARY, folder_ / "libfake.so");
+  folder_.put("vendors/fake.icd", (folder_ / "libfake.so").string() + "\n");
+  EXPECT_NE(run({"devices"}, "crash-list").out.find("left out"), std::string::npos);
+  EXPECT_NE(run({"devices"}, "refuse-build").out.find("left out"), std::string::npos) << "not remembered";
+  fs::last_write_time(folder_ / "libfake.so", fs::file_time_type::clock::now() + std::chrono::hours(1));
+  EXPECT_EQ(run({"devices"}, "refuse-build").out.find("left out"), std::string::npos);
+}
+
+TEST_F(DriversThatFail, DoctorTriesAnewAndNamesThem) {
+  ASSERT_TRUE(succeeds(run({"devices"}, "crash-build")));
+  const RunOptions patient = {.environment = {{"FAKE_DRIVER", "abort-build"}, {"KDRAY_TRIAL_SECONDS", "60"}},
+                              .limit_seconds = 200};
+  const Outcome doctor = run({"doctor"}, patient);
+  ASSERT_TRUE(succeeds(doctor)) << "the other devices are all right";
+  EXPECT_NE(doctor.out.find(fmt::format("{}: crashes (SIGABRT) in the self-test", kName)), std::string::npos)
+      << doctor.out;
+  EXPECT_NE(doctor.out.find("the test picture and rays are right"), std::string::npos) << doctor.out;
+  EXPECT_NE(run({"devices"}, "").out.find("crashes (SIGABRT)"), std::string::npos) << "a new verdict";
+  const Outcome list = run(
+      {"doctor"},
+      {.environment = {{"FAKE_DRIVER", "crash-list"}, {"KDRAY_TRIAL_SECONDS", "60"}}, .limit_seconds = 200});
+  EXPECT_TRUE(succeeds(list));
+  EXPECT_NE(list.out.find("(SIGSEGV) when it is asked for its devices"), std::string::npos) << list.out;
+}
+
+TEST_F(DriversThatFail, NothingNeedsToBeRemembered) {
+  for (const char* const cache : {"", "/proc/none"}) {
+    const RunOptions options = {.environment = {{"FAKE_DRIVER", "crash-build"},
+                                                {"KDRAY_CACHE_DIR", cache},
+                                                {"KDRAY_TRIAL_SECONDS", "60"}},
+                                .limit_seconds = 200};
+    const Outcome run_without = run(render(), options);
+    EXPECT_TRUE(succeeds(run_without));
+    EXPECT_NE(run_without.err.find("crashes (SIGSEGV)"), std::string::npos) << run_without.err;
+  }
+}
+
+TEST_F(DriversThatFail, NoCacheKnowsWhatIsKnownAndWritesNothing) {
+  ASSERT_TRUE(succeeds(run(render({"--no-cache"}), "crash-build")));
+  const std::size_t builds = n_builds();
+  EXPECT_EQ(builds, 1u);
+  ASSERT_TRUE(succeeds(run(render({"--no-cache"}), "crash-build")));
+  EXPECT_EQ(n_builds(), builds + 1) << "nothing was written";
+  ASSERT_TRUE(succeeds(run(render(), "crash-build")));
+  ASSERT_TRUE(succeeds(run(render({"--no-cache"}), "crash-build")));
+  EXPECT_EQ(n_builds(), builds + 2) << "it was known";
+}
+
+TEST_F(DriversThatFail, SeveralProcessesAtOnce) {
+  std::vector<Outcome> runs(4);
+  std::vector<std::thread> threads;
+  for (Outcome& one : runs) threads.emplace_back([&] { one = run({"devices"}, "crash-build"); });
+  for (std::thread& thread : threads) thread.join();
+  for (const Outcome& one : runs) {
+    EXPECT_TRUE(succeeds(one));
+    EXPECT_NE(one.out.find("crashes (SIGSEGV) in the self-test"), std::string::npos) << one.out;
+  }
+}
+
+TEST_F(DriversThatFail, CtrlCEndsTheTrialToo) {
+  const Outcome stopped =
+      run({"devices"}, {.environment = {{"FAKE_DRIVER", "hang-build"}, {"KDRAY_TRIAL_SECONDS", "50"}},
+                        .signal = SIGINT,
+                        .signal_seconds = 2});
+  EXPECT_EQ(stopped.signal, SIGINT);
+  EXPECT_TRUE(all_have_ended());
+  EXPECT_NE(run({"devices"}, "crash-build").out.find("crashes"), std::string::npos) << "that was no verdict";
+}
+
+// There is nothing to choose, so the first start goes wrong as the driver does; the next knows better.
+TEST_F(DriversThatFail, TheOnlyOneIsSurvivedTheSecondTime) {
+  leave_fake_alone();
+  EXPECT_EQ(run(render(), "crash-build").signal, SIGSEGV);
+  EXPECT_TRUE(fails_with(run(render(), "crash-build"), 3, "crashes (SIGSEGV) in the self-test"));
+  const std::size_t builds = n_builds();
+  EXPECT_TRUE(fails_with(run(render(), "crash-build"), 3, "crashes (SIGSEGV) in the self-test"));
+  EXPECT_EQ(n_builds(), builds);
+}
+
+TEST_F(DriversThatFail, TheOnlyOneThatHangsIsToldAfterCtrlC) {
+  leave_fake_alone();
+  const Outcome stopped =
+      run(render(), {.environment = {{"FAKE_DRIVER", "hang-build"}}, .signal = SIGINT, .signal_seconds = 2});
+  EXPECT_EQ(stopped.signal, SIGINT);
+  EXPECT_TRUE(fails_with(run(render(), "hang-build"), 3, "takes longer than 5 s for the self-test"));
+}
+
+TEST_F(DriversThatFail, TheOnlyOneMayBeADriverThatCannotBeAsked) {
+  leave_fake_alone();
+  EXPECT_EQ(run({"devices"}, "crash-list").signal, SIGSEGV);
+  const Outcome second = run({"devices"}, "crash-list");
+  EXPECT_EQ(second.code, 3);
+  EXPECT_NE(second.out.find("crashes (SIGSEGV) when it is asked for its devices"), std::string::npos)
+      << second.out;
+  EXPECT_TRUE(fails_with(run(render(), "crash-list"), 3, "crashes (SIGSEGV) when it is asked"));
+}
+
+// Whoever uses the library has another program, which can't try anything.
+class LibraryUser : public DriversThatFail {
+ protected:
+  Outcome use(const std::string& wrong, const std::string& program) const {
+    return run(
+        {folder_ / "cache" / "programs"},
+        {.program = LIBRARY_USER, .environment = {{"FAKE_DRIVER", wrong}, {"KDRAY_PROGRAM", program}}});
+  }
+};
+
+TEST_F(LibraryUser, IsServedByKdray) {
+  const Outcome first = use("crash-build", KDRAY_PROGRAM);
+  ASSERT_TRUE(succeeds(first));
+  EXPECT_NE(first.out.find("Fake device: Fake device crashes (SIGSEGV)"), std::string::npos) << first.out;
+  EXPECT_NE(first.out.find(": usable"), std::string::npos) << first.out;
+  EXPECT_EQ(use("crash-build", "/none").out, first.out) << "what is known needs no program";
+}
+
+TEST_F(LibraryUser, ProgramsThatAreNotKdrayGiveNoVerdict) {
+  for (const char* const program : {"/bin/true", "/bin/false", "/bin/cat"}) {
+    const Outcome refused = use("refuse-build", program);
+    ASSERT_TRUE(succeeds(refused));
+    EXPECT_NE(refused.out.find("the device's compiler refuses"), std::string::npos) << refused.out;
+  }
+}
+
+TEST_F(LibraryUser, WithoutAProgramItIsSurvivedTheSecondTime) {
+  EXPECT_EQ(use("crash-build", "/none").signal, SIGSEGV);
+  const Outcome second = use("crash-build", "/none");
+  ASSERT_TRUE(succeeds(second));
+  EXPECT_NE(second.out.find("has ended or held up a program that tested it"), std::string::npos)
+      << second.out;
+}
+
+}  // namespace
+}  // namespace kdray::test
