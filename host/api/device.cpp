@@ -92,6 +92,12 @@ double DeviceSet::build_seconds() const {
   return seconds;
 }
 
+wavefront::ProgramsUsed DeviceSet::programs_used() const {
+  wavefront::ProgramsUsed used;
+  for (const Device& d : devices_) used.add(d.programs.used());
+  return used;
+}
+
 double DeviceSet::upload_seconds() const {
   double seconds = 0;
   for (const Device& d : devices_) seconds += d.upload_seconds;

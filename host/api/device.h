@@ -69,6 +69,7 @@ class DeviceSet {
   std::uint32_t n_units() const;
   double build_seconds() const;
   double upload_seconds() const;
+  wavefront::ProgramsUsed programs_used() const;
 
  private:
   std::deque<Device> devices_;

@@ -35,7 +35,7 @@ void check(const DeviceOptions& o) {
 }  // namespace
 
 device::Builds builds_of(const DeviceOptions& options) {
-  return {cache_in(options.programs), options.building};
+  return {cache_in(options.programs), options.building, options.exact_programs};
 }
 
 OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults_asked) {

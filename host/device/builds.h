@@ -15,6 +15,8 @@ struct Builds {
   // Is told true when a compiler begins its work and false when it ends. Calls come from any thread and may
   // nest.
   std::function<void(bool)> watch = {};
+  // Programs of just the bits that are wanted, though others may be there that cover them (variant.h).
+  bool exact = false;
 };
 
 // Tells `watch` of a compiler's work as long as it lives.

@@ -113,6 +113,10 @@ cl::Program Context::build(const std::string& file, const std::string& options) 
   return build_program(opened_->context, opened_->devices, file, options, builds_);
 }
 
+BuiltVariant Context::build(const std::string& file, const Variant& wanted) const {
+  return build_variant(opened_->context, opened_->devices, file, wanted, builds_);
+}
+
 cl::Program Context::build_text(const std::string& name, const std::string& text,
                                 const std::string& options) const {
   return build_source(opened_->context, opened_->devices, name, expand_text(name, text), options, builds_);

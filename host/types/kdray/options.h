@@ -66,6 +66,9 @@ struct DeviceOptions {
   int compute_units = 0;  // that many of the device's, as a sub-device; 0: all of them
   Schedule schedule = Schedule::automatic;
   std::filesystem::path programs = {};  // folder where built programs are looked for and kept; empty: none
+  // Programs of just the scene's features are made though there may be some in that folder that have more and
+  // would do: these take a few percent longer over a frame, and no seconds to compile.
+  bool exact_programs = false;
   // File of what `kdray tune` found; empty, or none there: what kdray ships with.
   std::filesystem::path tunings = {};
   // Told why, in a line, where that file is of no use.
