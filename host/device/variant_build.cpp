@@ -39,9 +39,11 @@ class Search {
 
   // The mask to compile for, where nothing serves.
   std::uint64_t mask_to_build() const {
-    const std::vector<std::uint64_t> others = cache_.masks_of(family(wanted_.options));
-    const auto n = std::ranges::count_if(others, [&](std::uint64_t mask) { return !covers(mask, wanted_); });
-    return static_cast<std::size_t>(n) < kOwnPrograms ? wanted_.mask : wanted_.mask | wanted_.spare;
+    const std::uint64_t everything = wanted_.mask | wanted_.spare;
+    const auto n = std::ranges::count_if(cache_.masks_of(family(wanted_.options)), [&](std::uint64_t mask) {
+      return (mask | wanted_.spare) == everything && !covers(mask, wanted_);
+    });
+    return static_cast<std::size_t>(n) < kOwnPrograms ? wanted_.mask : everything;
   }
 
   ProgramKey key(std::uint64_t mask) const { return variant_key(identity_, source_, wanted_.options, mask); }

@@ -54,8 +54,10 @@ scene::Material material_of(layout::Features mask) {
   return m;
 }
 
-// Above the objects, so that some shadows fall on them.
+// Above the objects, so that some shadows fall on them. Where the mask has none, but nothing shines either, there
+// is one that changes nothing.
 std::vector<scene::Light> lights_of(layout::Features mask) {
+  if (!has(mask, kLights) && !has(mask, kDiffuse | kSpecular)) return {{.position = {1, 4, 3}}};
   if (!has(mask, kLights)) return {};
   std::vector<scene::Light> lights{{.position = {1, 4, 3}, .color = vec3(0.5f)},
                                    {.position = {-4, 3, 1}, .color = vec3(0.3f)}};
@@ -139,6 +141,9 @@ class Subject {
     return drawn;
   }
 
+  // The programs have all that they may have, the host goes by the scene as before.
+  void have_everything() { programs_.have_everything(); }
+
   std::vector<film::Channel> channels() {
     layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
     Schedule{}.apply(frame, features_);
@@ -171,6 +176,13 @@ const Schedule kByStages{.tile_width = 4,
                          .work_group = 8,
                          .fill = 0};
 
+void expect_the_same(const Drawn& one, const Drawn& other) {
+  EXPECT_EQ(one.film, other.film);
+#define KDRAY_EXPECT_THE_SAME(name, field, key) EXPECT_EQ(one.counters.name, other.counters.name) << key;
+  KDRAY_COUNTERS(KDRAY_EXPECT_THE_SAME)
+#undef KDRAY_EXPECT_THE_SAME
+}
+
 class FeaturesTest : public test::EachDevice {
  protected:
   const device::Context context_{GetParam(), 1};
@@ -190,7 +202,18 @@ class FeaturesTest : public test::EachDevice {
       EXPECT_EQ(n.refracted > 0, has(mask, kTransmit));
       const bool all_dark = std::ranges::all_of(drawn.film, [](layout::i64 sum) { return sum == 0; });
       EXPECT_EQ(all_dark, !has(mask, kT | kS | kC | kBackground));
+      expect_the_same_with_everything(subject, drawn);
     }
+  }
+
+  // By programs that take the place of the scene's own (device/variant.h): no bit, and no ray, is another.
+  void expect_the_same_with_everything(Subject& subject, const Drawn& drawn) {
+    subject.have_everything();
+    SCOPED_TRACE("with everything");
+    expect_the_same(subject.draw(kByStages), drawn);
+    Schedule fused = kByStages;
+    fused.fused = true;
+    EXPECT_EQ(subject.draw(fused).film, drawn.film);
   }
 
   void expect_the_same_in_one_launch(Traversal walk) {
