@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::size_t kDefaultWorkGroup = 64;
 
+}  // namespace
+
 bool runs_globally(const DeviceOptions& options, const device::Context& context) {
   if (options.schedule == Schedule::automatic) return context.info().kind != "cpu";
   return options.schedule == Schedule::global;
 }
-
-}  // namespace
 
 std::size_t work_group_of(const DeviceOptions& options, const device::Context& context) {
   const std::size_t largest = context.max_work_group();

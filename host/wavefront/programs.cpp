@@ -102,11 +102,18 @@ Programs::Programs(const device::Context& context, int tree_depth, const flatten
                std::move(more_options)) {}
 
 // Large trees are deep ones.
-std::vector<TreeForm> Programs::usual_forms() {
-  std::vector<TreeForm> forms;
-  for (const int block : {4, 8})
-    for (const auto& [stack, bytes] : {std::pair<int, std::size_t>{63, 0}, {95, kNear + 1}, {127, kFar + 1}})
-      forms.push_back({.depth = 0, .stack = stack, .block = block, .bytes = bytes});
+std::vector<Programs::UsualForm> Programs::usual_forms() {
+  const std::size_t near_mib = kNear >> 20, far_mib = kFar >> 20;
+  std::vector<UsualForm> forms;
+  for (const int block : {4, 8}) {
+    const auto add = [&](int stack, std::size_t bytes, const std::string& size) {
+      forms.push_back({{.depth = 0, .stack = stack, .block = block, .bytes = bytes},
+                       fmt::format("scenes of {}, in blocks of {}", size, block)});
+    };
+    add(63, 0, fmt::format("up to {} MiB", near_mib));
+    add(95, kNear + 1, fmt::format("{} to {} MiB", near_mib, far_mib));
+    add(127, kFar + 1, fmt::format("over {} MiB", far_mib));
+  }
   return forms;
 }
 

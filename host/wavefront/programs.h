@@ -44,7 +44,11 @@ class Programs {
            std::string more_options = {});
 
   // Forms of trees such that programs for them serve nearly all scenes there are.
-  static std::vector<TreeForm> usual_forms();
+  struct UsualForm {
+    TreeForm form;
+    std::string scenes;  // in words
+  };
+  static std::vector<UsualForm> usual_forms();
 
   // From now on programs have all features that they may have, whatever is wanted of them.
   void have_everything() { everything_ = true; }
