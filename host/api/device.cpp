@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::size_t kDefaultWorkGroup = 64;
 
+}  // namespace
+
 bool runs_globally(const DeviceOptions& options, const device::Context& context) {
   if (options.schedule == Schedule::automatic) return context.info().kind != "cpu";
   return options.schedule == Schedule::global;
 }
-
-}  // namespace
 
 std::size_t work_group_of(const DeviceOptions& options, const device::Context& context) {
   const std::size_t largest = context.max_work_group();
@@ -90,6 +90,12 @@ double DeviceSet::build_seconds() const {
   double seconds = 0;
   for (const Device& d : devices_) seconds += d.programs.build_seconds();
   return seconds;
+}
+
+wavefront::ProgramsUsed DeviceSet::programs_used() const {
+  wavefront::ProgramsUsed used;
+  for (const Device& d : devices_) used.add(d.programs.used());
+  return used;
 }
 
 double DeviceSet::upload_seconds() const {

@@ -21,6 +21,9 @@ namespace kdray::api {
 // The local size that the options ask for, else the default as far as the device goes along.
 std::size_t work_group_of(const DeviceOptions& options, const device::Context& context);
 
+// Schedule::global, asked for or by the kind of device.
+bool runs_globally(const DeviceOptions& options, const device::Context& context);
+
 class Device {
  public:
   // `scene` has to outlive the device.
@@ -38,7 +41,7 @@ class Device {
 
   device::Context context;
   std::size_t work_group;
-  bool global;  // Schedule::global, asked for or by the kind of device
+  bool global;  // runs_globally()
   wavefront::Programs programs;
   double upload_seconds = 0;
   Tuned tuned;
@@ -69,6 +72,7 @@ class DeviceSet {
   std::uint32_t n_units() const;
   double build_seconds() const;
   double upload_seconds() const;
+  wavefront::ProgramsUsed programs_used() const;
 
  private:
   std::deque<Device> devices_;

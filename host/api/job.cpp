@@ -17,8 +17,10 @@ void use_core(State& state, Job& job) {
   constexpr layout::Features kTraces = KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT;
   if (!(job.features & kTraces) || job.frame.keep_weightless) return;
   if (!state.core) state.core = flatten::core_of(state.scene.flat);
+  // Without faces the frame's core stays empty: a program with faces then asks about none.
+  if (!state.core->has_faces) return;
   state.core->apply(job.frame, state.scene.flat.lights);
-  if (state.core->has_faces) job.features |= KDRAY_FEATURE_FACES;
+  job.features |= KDRAY_FEATURE_FACES;
 }
 
 }  // namespace

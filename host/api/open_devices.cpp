@@ -37,7 +37,10 @@ void check(const DeviceOptions& o) {
 }  // namespace
 
 device::Builds builds_of(const DeviceOptions& options) {
-  return {cache_in(options.programs), options.building, options.remember_programs};
+  return {.cache = cache_in(options.programs),
+          .watch = options.building,
+          .remember = options.remember_programs,
+          .exact = options.exact_programs};
 }
 
 device::Verdicts verdicts_of(const DeviceOptions& options) {

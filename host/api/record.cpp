@@ -69,9 +69,11 @@ Statistics::Samples samples_told(const layout::Frame& frame, const std::optional
           std::move(adaptive)};
 }
 
-void record_preparations(Statistics::Seconds& seconds, const State& state) {
-  seconds.compile = state.devices.build_seconds();
-  seconds.upload = state.devices.upload_seconds();
+void record_preparations(Statistics& statistics, const State& state) {
+  statistics.seconds.compile = state.devices.build_seconds();
+  statistics.seconds.upload = state.devices.upload_seconds();
+  const wavefront::ProgramsUsed used = state.devices.programs_used();
+  statistics.programs = {used.compiled, used.found, used.covering, flatten::feature_names(used.spare).on};
 }
 
 void add_devices(Statistics::Division& division, const DeviceSet& devices) {
@@ -118,7 +120,7 @@ void record_frame(Statistics& statistics, const State& state, const Job& job, Dr
     return found == drawn.stage_seconds.end() ? 0.0 : found->second;
   };
   Statistics::Seconds& seconds = statistics.seconds;
-  record_preparations(seconds, state);
+  record_preparations(statistics, state);
   seconds.render = drawn.render_seconds;
   seconds.trace = stage("trace_closest") + stage("trace_shadow");
   seconds.shade = stage("shade");
@@ -149,7 +151,7 @@ void record_frame(Statistics& statistics, const State& state, const Job& job, Dr
 }
 
 void record_query(Statistics& statistics, const State& state, const Query& query) {
-  record_preparations(statistics.seconds, state);
+  record_preparations(statistics, state);
   statistics.seconds.trace = query.seconds;
   statistics.rays = {.total = query.rays, .kinds = {}};
   statistics.mrays_per_s = mrays_per_s(query.rays, query.seconds);

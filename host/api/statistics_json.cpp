@@ -202,6 +202,11 @@ Json statistics_json(const Statistics& s) {
                {"tree", tree_json(s.tree)},
                {"memory", memory_json(s.memory)},
                {"features", {{"on", s.features.on}, {"off", s.features.off}}},
+               {"programs",
+                {{"compiled", s.programs.compiled},
+                 {"found", s.programs.found},
+                 {"covering", s.programs.covering},
+                 {"spare", s.programs.spare}}},
                {"device", device_json(s)}};
   if (s.mode.name.empty()) return json;
   json["rays"] = rays_json(s.rays);

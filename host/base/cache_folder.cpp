@@ -64,6 +64,18 @@ fs::path entry_file(const fs::path& folder, const Hash& key, std::string_view en
   return folder / (in_hex(key) + std::string(ending));
 }
 
+std::vector<Hash> keys_in(const fs::path& folder, std::string_view ending) {
+  std::vector<Hash> keys;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (!is_entry(name, ending)) continue;
+    keys.push_back(
+        {std::stoull(name.substr(0, 16), nullptr, 16), std::stoull(name.substr(16, 16), nullptr, 16)});
+  }
+  return keys;
+}
+
 void touch_entry(const fs::path& entry) {
   ::utimensat(AT_FDCWD, entry.c_str(), nullptr, 0);
 }

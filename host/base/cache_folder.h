@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "base/hash.h"
 
@@ -19,6 +20,10 @@ std::filesystem::path user_cache_folder();
 // `ending` is the entries' own, as ".scene".
 std::filesystem::path entry_file(const std::filesystem::path& folder, const Hash& key,
                                  std::string_view ending);
+
+// The keys of the entries that are in the folder now, in no order. A file that bears an entry's name need not
+// be one: whoever reads it has to look.
+std::vector<Hash> keys_in(const std::filesystem::path& folder, std::string_view ending);
 
 // Marks the entry as used just now; that it can't be (a folder for reading only) is no error.
 void touch_entry(const std::filesystem::path& entry);

@@ -23,5 +23,6 @@ Command add_generate(CLI::App& kdray);
 Command add_compare(CLI::App& kdray);
 Command add_verify(CLI::App& kdray);
 Command add_tune(CLI::App& kdray);
+Command add_warm_up(CLI::App& kdray);
 
 }  // namespace kdray::cli

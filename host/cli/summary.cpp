@@ -48,13 +48,29 @@ std::string share_of(double skipped, double traced, const char* what) {
                      in_words(all), what);
 }
 
-// "no cones, no spot"
-std::string features_left_out(const Json& features) {
-  std::vector<std::string> off;
-  if (const auto names = features.find("off"); names != features.end() && names->is_array())
-    for (const Json& name : *names)
-      if (name.is_string()) off.push_back("no " + name.get<std::string>());
+std::vector<std::string> names_in(const Json& object, const char* key) {
+  std::vector<std::string> names;
+  if (const auto list = object.find(key); list != object.end() && list->is_array())
+    for (const Json& name : *list)
+      if (name.is_string()) names.push_back(name.get<std::string>());
+  return names;
+}
+
+// "no cones, no spot": what neither the scene nor its programs have.
+std::string features_left_out(const Json& stats) {
+  std::vector<std::string> off = names_in(part(stats, "features"), "off");
+  for (const std::string& spare : names_in(part(stats, "programs"), "spare")) std::erase(off, spare);
+  for (std::string& name : off) name = "no " + name;
   return fmt::format("{}", fmt::join(off, ", "));
+}
+
+// "kernels kept from another scene, which also have discs, spot"
+std::string spare_in_words(const Json& programs) {
+  const std::vector<std::string> spare = names_in(programs, "spare");
+  if (spare.empty()) return "";
+  return fmt::format("kernels {}, which also have {}",
+                     number(programs, "compiled") > 0 ? "compiled for any scene" : "kept from another scene",
+                     fmt::join(spare, ", "));
 }
 
 // "41% of 2.3 M shadow rays and 3% of 1 M secondary rays proven needless"
@@ -125,7 +141,7 @@ std::string left_out_line(const Json& stats) {
   const double programs = number(mode, "programs"), known = number(mode, "programs_known");
   const double too_deep = number(part(part(stats, "rays"), "skipped"), "too_deep");
   std::vector<std::string> parts = {
-      features_left_out(part(stats, "features")),
+      features_left_out(stats), spare_in_words(part(stats, "programs")),
       known > programs ? fmt::format("{} of {} programs built", programs, known) : "",
       rays_left_out(part(stats, "rays")), too_deep > 0 ? in_words(too_deep) + " rays too deep" : ""};
   std::erase(parts, "");

@@ -144,6 +144,7 @@ int run(TuneArgs& o) {
   if (!o.merge.empty()) return merge_files(o);
   o.device.tunings.clear();  // the start is what kdray ships with
   o.device.programs = default_program_folder();
+  o.device.exact_programs = true;
   const bool built_in = o.scenes.empty();
   TuneScenes scenes;
   for (const std::string& name : built_in ? kBuiltIn : o.scenes)

@@ -17,6 +17,8 @@ struct Builds {
   std::function<void(bool)> watch = {};
   // Programs stay in memory until the process ends: who builds the same again is given the same.
   bool remember = false;
+  // Programs of just the bits that are wanted, though others may be there that cover them (variant.h).
+  bool exact = false;
 };
 
 // Tells `watch` of a compiler's work as long as it lives.

@@ -117,33 +117,42 @@ namespace {
 // By all that a program is made of. Like what is opened, they are never destroyed.
 class RememberedPrograms {
  public:
+  using Key = std::tuple<const Opened*, std::string, std::string, std::string>;
+
   template <class Build>
-  static cl::Program find_or(const std::tuple<const Opened*, std::string, std::string, std::string>& key,
-                             const Build& build) {
+  static BuiltVariant find_or(const Key& key, const Build& build) {
     static auto* all = new RememberedPrograms;
     {
       const std::lock_guard lock(all->mutex_);
-      if (const auto place = all->programs_.find(key); place != all->programs_.end()) return place->second;
+      if (const auto place = all->programs_.find(key); place != all->programs_.end()) {
+        BuiltVariant found = place->second;
+        found.compiled = false;
+        return found;
+      }
     }
-    const cl::Program program = build();  // side by side with others
+    const BuiltVariant built = build();  // side by side with others
     const std::lock_guard lock(all->mutex_);
-    return all->programs_.emplace(key, program).first->second;
+    all->programs_.emplace(key, built);
+    return built;
   }
 
  private:
   std::mutex mutex_;
-  std::map<std::tuple<const Opened*, std::string, std::string, std::string>, cl::Program> programs_;
+  std::map<Key, BuiltVariant> programs_;
 };
 
 }  // namespace
 
 cl::Program Context::build(const std::string& file, const std::string& options) const {
-  const auto build = [&] {
-    return build_program(opened_->context, opened_->devices, file, options, builds_);
-  };
+  return build_program(opened_->context, opened_->devices, file, options, builds_);
+}
+
+BuiltVariant Context::build(const std::string& file, const Variant& wanted) const {
+  const auto build = [&] { return build_variant(opened_->context, opened_->devices, file, wanted, builds_); };
   if (!builds_.remember) return build();
   const char* const folder = std::getenv("KDRAY_KERNEL_DIR");
-  return RememberedPrograms::find_or({opened_, folder ? folder : "", file, options}, build);
+  return RememberedPrograms::find_or(
+      {opened_, folder ? folder : "", file, options_with(wanted.options, wanted.mask)}, build);
 }
 
 cl::Program Context::build_text(const std::string& name, const std::string& text,

@@ -16,6 +16,7 @@
 #include "device/opencl.h"
 #include "device/platform.h"
 #include "device/simd.h"
+#include "device/variant_build.h"
 
 namespace kdray::device {
 
@@ -44,6 +45,7 @@ class Context {
   std::size_t n_sub_devices() const { return opened_->devices.size(); }
 
   cl::Program build(const std::string& file, const std::string& options) const;
+  BuiltVariant build(const std::string& file, const Variant& wanted) const;
   // A source that is no file of kernels/, but may include them.
   cl::Program build_text(const std::string& name, const std::string& text, const std::string& options) const;
 

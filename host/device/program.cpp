@@ -110,14 +110,12 @@ std::string expand_source(const std::string& file) {
   return expand_text(file, text_of(file));
 }
 
-cl::Program try_build(const cl::Context& context, const std::vector<cl::Device>& devices,
-                      const std::string& source, const std::string& options, const Builds& builds,
-                      std::string& log) {
-  Hash key;
-  if (builds.cache) {
-    key = program_key(identity_of(devices.front()), source, options);
-    if (const auto found = builds.cache->find(context, devices, key, options)) return *found;
-  }
+namespace {
+
+// Notes what it has built for the cache, under the key, where there is one. Empty where the compiler refuses.
+cl::Program compile(const cl::Context& context, const std::vector<cl::Device>& devices,
+                    const std::string& source, const std::string& options, const ProgramKey& key,
+                    const Builds& builds, std::string& log) {
   const AtWork at_work(builds);
   cl::Program program(context, source);
   try {
@@ -131,16 +129,42 @@ cl::Program try_build(const cl::Context& context, const std::vector<cl::Device>&
   return program;
 }
 
+[[noreturn]] void report_failed_build(const std::vector<cl::Device>& devices, const std::string& file,
+                                      const std::string& options, const std::string& source,
+                                      const std::string& log) {
+  const cl::Platform platform(devices.front().getInfo<CL_DEVICE_PLATFORM>());
+  report_failed_build(platform.getInfo<CL_PLATFORM_NAME>(), file, options, source, log);
+}
+
+}  // namespace
+
+cl::Program try_build(const cl::Context& context, const std::vector<cl::Device>& devices,
+                      const std::string& source, const std::string& options, const Builds& builds,
+                      std::string& log) {
+  Hash key;
+  if (builds.cache) {
+    key = program_key(identity_of(devices.front()), source, options);
+    if (const auto found = builds.cache->find(context, devices, key, options)) return *found;
+  }
+  return compile(context, devices, source, options, key, builds, log);
+}
+
+cl::Program compile_source(const cl::Context& context, const std::vector<cl::Device>& devices,
+                           const std::string& name, const std::string& source, const std::string& options,
+                           const ProgramKey& key, const Builds& builds) {
+  std::string log;
+  const cl::Program program = compile(context, devices, source, options, key, builds, log);
+  if (program() == nullptr) report_failed_build(devices, name, options, source, log);
+  return program;
+}
+
 cl::Program build_source(const cl::Context& context, const std::vector<cl::Device>& devices,
                          const std::string& name, const std::string& source, const std::string& options,
                          const Builds& builds) {
   std::string log;
   cl::Program program =
       checked("building " + name, [&] { return try_build(context, devices, source, options, builds, log); });
-  if (program() == nullptr) {
-    const cl::Platform platform(devices.front().getInfo<CL_DEVICE_PLATFORM>());
-    report_failed_build(platform.getInfo<CL_PLATFORM_NAME>(), name, options, source, log);
-  }
+  if (program() == nullptr) report_failed_build(devices, name, options, source, log);
   return program;
 }
 

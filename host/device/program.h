@@ -10,6 +10,7 @@
 
 #include "device/builds.h"
 #include "device/opencl.h"
+#include "device/program_key.h"
 
 namespace kdray::device {
 
@@ -29,6 +30,11 @@ cl::Program try_build(const cl::Context& context, const std::vector<cl::Device>&
 cl::Program build_source(const cl::Context& context, const std::vector<cl::Device>& devices,
                          const std::string& name, const std::string& source, const std::string& options,
                          const Builds& builds = {});
+
+// Compiles it whatever the cache holds, for which it is noted under the key; throws where it is refused.
+cl::Program compile_source(const cl::Context& context, const std::vector<cl::Device>& devices,
+                           const std::string& name, const std::string& source, const std::string& options,
+                           const ProgramKey& key, const Builds& builds);
 
 cl::Program build_program(const cl::Context& context, const std::vector<cl::Device>& devices,
                           const std::string& file, const std::string& options, const Builds& builds = {});

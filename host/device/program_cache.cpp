@@ -26,15 +26,15 @@ std::string binary_of(const cl::Program& program) {
 
 }  // namespace
 
-std::filesystem::path ProgramCache::file_of(const Hash& key) const {
-  return entry_file(folder_, key, kEnding);
+std::filesystem::path ProgramCache::file_of(const ProgramKey& key) const {
+  return entry_file(folder_, key.name, kEnding);
 }
 
 std::optional<cl::Program> ProgramCache::find(const cl::Context& context,
-                                              const std::vector<cl::Device>& devices, const Hash& key,
-                                              const std::string& options) {
+                                              const std::vector<cl::Device>& devices, const ProgramKey& key,
+                                              const std::string& options) const {
   const std::filesystem::path file = file_of(key);
-  const std::optional<std::string> bytes = read_entry(file, key);
+  const std::optional<std::string> bytes = read_entry(file, key.content);
   if (!bytes) return std::nullopt;
   try {
     const std::vector<unsigned char> binary(bytes->begin(), bytes->end());
@@ -47,15 +47,22 @@ std::optional<cl::Program> ProgramCache::find(const cl::Context& context,
   }
 }
 
-void ProgramCache::built(const Hash& key, const cl::Program& program) {
+std::vector<std::uint64_t> ProgramCache::masks_of(std::uint64_t family) const {
+  std::vector<std::uint64_t> masks;
+  for (const Hash& name : keys_in(folder_, kEnding))
+    if (name.high == family) masks.push_back(name.low);
+  return masks;
+}
+
+void ProgramCache::built(const ProgramKey& key, const cl::Program& program) {
   const std::lock_guard lock(mutex_);
-  const bool known =
-      std::any_of(built_.begin(), built_.end(), [&](const auto& noted) { return noted.first == key; });
+  const bool known = std::any_of(built_.begin(), built_.end(),
+                                 [&](const auto& noted) { return noted.first.content == key.content; });
   if (!known) built_.emplace_back(key, program);
 }
 
 std::size_t ProgramCache::keep() {
-  std::vector<std::pair<Hash, cl::Program>> built;
+  std::vector<std::pair<ProgramKey, cl::Program>> built;
   {
     const std::lock_guard lock(mutex_);
     built.swap(built_);
@@ -69,11 +76,11 @@ std::size_t ProgramCache::keep() {
   return n;
 }
 
-bool ProgramCache::write(const Hash& key, const std::string& bytes) const {
+bool ProgramCache::write(const ProgramKey& key, const std::string& bytes) const {
   try {
     std::error_code error;  // told by write_entry
     std::filesystem::create_directories(folder_, error);
-    write_entry(file_of(key), key, bytes);
+    write_entry(file_of(key), key.content, bytes);
     return true;
   } catch (const Error&) {
     return false;

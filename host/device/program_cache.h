@@ -17,6 +17,7 @@
 
 #include "base/hash.h"
 #include "device/opencl.h"
+#include "device/program_key.h"
 
 namespace kdray::device {
 
@@ -29,9 +30,12 @@ class ProgramCache {
 
   // The program of that key, ready to be used on all of these devices, which are parts of one.
   std::optional<cl::Program> find(const cl::Context& context, const std::vector<cl::Device>& devices,
-                                  const Hash& key, const std::string& options);
+                                  const ProgramKey& key, const std::string& options) const;
 
-  void built(const Hash& key, const cl::Program& program);
+  // The masks of a family's programs (program_key.h) that are there, as far as names of files tell.
+  std::vector<std::uint64_t> masks_of(std::uint64_t family) const;
+
+  void built(const ProgramKey& key, const cl::Program& program);
 
   // Writes the new entries and returns their number. The least recently used entries go where the folder gets
   // too large.
@@ -40,13 +44,13 @@ class ProgramCache {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  std::filesystem::path file_of(const Hash& key) const;
-  bool write(const Hash& key, const std::string& bytes) const;
+  std::filesystem::path file_of(const ProgramKey& key) const;
+  bool write(const ProgramKey& key, const std::string& bytes) const;
 
   std::filesystem::path folder_;
   std::uint64_t max_bytes_;
   std::mutex mutex_;
-  std::vector<std::pair<Hash, cl::Program>> built_;  // to be kept
+  std::vector<std::pair<ProgramKey, cl::Program>> built_;  // to be kept
 };
 
 }  // namespace kdray::device

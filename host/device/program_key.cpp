@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "device/variant.h"
+
 namespace kdray::device {
 
 namespace {
@@ -54,6 +56,16 @@ Hash program_key(const std::string& identity, const std::string& source, const s
   // The lengths keep what belongs to one apart from what belongs to the next.
   return hash_of(fmt::format("kdray program 1 {} {} {}\n{}\n{}\n{}", identity.size(), options.size(),
                              source.size(), identity, options, source));
+}
+
+std::uint64_t family_of(const std::string& identity, const std::string& source, const std::string& options) {
+  return program_key(identity, source, "family " + options).high;
+}
+
+ProgramKey variant_key(const std::string& identity, const std::string& source, const std::string& options,
+                       std::uint64_t mask) {
+  return {program_key(identity, source, options_with(options, mask)), family_of(identity, source, options),
+          mask};
 }
 
 }  // namespace kdray::device

@@ -47,6 +47,24 @@ layout::Features bits_read_by(const std::string& file) {
   return kGeometry;
 }
 
+// The bits that a file's program may have though they are not wanted: not the rules that are off, by which rays
+// are counted; not masks, which a scene has to have; and not in ODPRT what sizes its plan (odprt/admit.clh).
+layout::Features spare_bits_of(const std::string& file) {
+  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS);
+  if (file == "odprt/wave.cl")
+    bits &= ~(KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS);
+  return bits;
+}
+
+// A program with a larger stack serves as well. Sizes are rounded up, so that scenes of like depth share
+// programs.
+constexpr int kBinaryStacks = 8, kLargestBinaryStack = 64, kWideStacks = 32, kLeastWideStack = 64,
+              kLargestWideStack = 128;
+
+int rounded_up(int stack, int step) {
+  return (stack / step + 1) * step;
+}
+
 int number_of(Traversal traversal) {
   switch (traversal) {
     case Traversal::binary:
@@ -64,17 +82,41 @@ int number_of(Traversal traversal) {
 
 }  // namespace
 
-// Rounded up, so that scenes of like depth share programs.
-Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
-                   std::string more_options)
+void ProgramsUsed::add(const ProgramsUsed& other) {
+  compiled += other.compiled, found += other.found, covering += other.covering;
+  spare |= other.spare;
+}
+
+Programs::Programs(const device::Context& context, const TreeForm& form, std::string more_options)
     : context_(&context),
       more_options_(std::move(more_options)),
-      stack_size_((tree_depth / 8 + 1) * 8),
-      wide_stack_size_((wide.stack_size / 32 + 1) * 32),
-      block_(wide.block),
-      prefetch_(wide.bytes() > kNear),
-      far_(wide.bytes() > kFar) {
+      stack_size_(rounded_up(form.depth, kBinaryStacks)),
+      wide_stack_size_(std::max(rounded_up(form.stack, kWideStacks), kLeastWideStack)),
+      block_(form.block),
+      prefetch_(form.bytes > kNear),
+      far_(form.bytes > kFar) {
   use({});
+}
+
+Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
+                   std::string more_options)
+    : Programs(context, TreeForm{tree_depth, wide.stack_size, wide.block, wide.bytes()},
+               std::move(more_options)) {}
+
+// Large trees are deep ones.
+std::vector<Programs::UsualForm> Programs::usual_forms() {
+  const std::size_t near_mib = kNear >> 20, far_mib = kFar >> 20;
+  std::vector<UsualForm> forms;
+  for (const int block : {4, 8}) {
+    const auto add = [&](int stack, std::size_t bytes, const std::string& size) {
+      forms.push_back({{.depth = 0, .stack = stack, .block = block, .bytes = bytes},
+                       fmt::format("scenes of {}, in blocks of {}", size, block)});
+    };
+    add(63, 0, fmt::format("up to {} MiB", near_mib));
+    add(95, kNear + 1, fmt::format("{} to {} MiB", near_mib, far_mib));
+    add(127, kFar + 1, fmt::format("over {} MiB", far_mib));
+  }
+  return forms;
 }
 
 // What is left to the kernels' own defaults isn't named, so that their programs are the same as ever.
@@ -89,22 +131,34 @@ void Programs::use(const Tuning& t) {
   if (t.distance > 0) walk_options_ += fmt::format(" -DKDRAY_COHERENT_DISTANCE={:.4f}f", 0.001 * t.distance);
 }
 
-std::string Programs::options_for(layout::Features features, Traversal traversal, Precision precision) const {
+std::string Programs::options_for(Traversal traversal, Precision precision, int stack) const {
   const bool in_double = precision == Precision::float64;  // whose vectors have the portable form alone
   std::string options =
-      fmt::format("-cl-std=CL1.2 -DKDRAY_FEATURES={:#018x}ul {}", features,
-                  device::build_option(in_double ? device::Simd::portable : context_->simd()));
+      "-cl-std=CL1.2 " + device::build_option(in_double ? device::Simd::portable : context_->simd());
   if (in_double) options += " -DKDRAY_PRECISION=64";
   if (traversal == Traversal::binary) {
-    options += fmt::format(" -DKDRAY_STACK_SIZE={}", stack_size_);
+    options += fmt::format(" -DKDRAY_STACK_SIZE={}", stack);
   } else {
     options += fmt::format(" -DKDRAY_TRAVERSAL={} -DKDRAY_BLOCK={} -DKDRAY_WIDE_STACK={}",
-                           number_of(traversal), block_, wide_stack_size_) +
+                           number_of(traversal), block_, stack) +
                walk_options_;
   }
   if (context_->rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";
   if (!more_options_.empty()) options += " " + more_options_;
   return options;
+}
+
+device::Variant Programs::variant_for(const Key& key) const {
+  const auto& [file, bits, traversal, precision, walk] = key;
+  const bool binary = traversal == Traversal::binary;
+  const int stack = binary ? stack_size_ : wide_stack_size_;
+  device::Variant variant{
+      .options = options_for(traversal, precision, stack), .mask = bits, .spare = spare_bits_of(file)};
+  const int step = binary ? kBinaryStacks : kWideStacks;
+  for (int larger = stack + step; larger <= (binary ? kLargestBinaryStack : kLargestWideStack);
+       larger += step)
+    variant.instead.push_back(options_for(traversal, precision, larger));
+  return variant;
 }
 
 std::size_t Programs::n_known() {
@@ -116,7 +170,8 @@ std::size_t Programs::n_known() {
 }
 
 Programs::Key Programs::key_of(const Wanted& w) const {
-  return {w.file, w.features & bits_read_by(w.file), w.traversal, w.precision,
+  const layout::Features wanted = w.features | (everything_ ? spare_bits_of(w.file) : 0);
+  return {w.file, wanted & bits_read_by(w.file), w.traversal, w.precision,
           w.traversal == Traversal::binary ? std::string() : walk_options_};
 }
 
@@ -126,17 +181,23 @@ void Programs::build(const std::vector<Wanted>& wanted) {
   const std::lock_guard lock(mutex_);
   const Timer timer;
   const auto when = context_->info().platform == "Oclgrind" ? std::launch::deferred : std::launch::async;
-  std::map<Key, std::future<cl::Program>> building;
+  std::map<Key, std::future<device::BuiltVariant>> building;
   for (const Wanted& w : wanted) {
     const Key key = key_of(w);
     if (programs_.contains(key) || building.contains(key)) continue;
-    building.emplace(key, std::async(when, [this, key] {
-                       const auto& [file, bits, traversal, precision, walk] = key;
-                       return context_->build(file, options_for(bits, traversal, precision));
-                     }));
+    building.emplace(
+        key, std::async(when, [this, key] { return context_->build(std::get<0>(key), variant_for(key)); }));
   }
   if (building.empty()) return;
-  for (auto& [key, program] : building) programs_.emplace(key, program.get());
+  for (auto& [key, future] : building) {
+    const device::BuiltVariant built = future.get();
+    const layout::Features spare = built.mask & ~std::get<1>(key);
+    used_.add({.compiled = built.compiled,
+               .found = !built.compiled && spare == 0,
+               .covering = !built.compiled && spare != 0,
+               .spare = spare});
+    programs_.emplace(key, built.program);
+  }
   build_seconds_ += timer.seconds();
 }
 

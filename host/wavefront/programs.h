@@ -1,5 +1,7 @@
 // What    The programs of a render, each built for the feature bits it reads, kept for the next render.
-// Shape   One program per kernel file; programs that the features make needless are not built.
+// Shape   One program per kernel file; programs that the features make needless are not built. A program that is
+//         kept from another scene and has more than is wanted may take a program's place (device/variant.h): its
+//         answers are the same, and so is what the host makes for it.
 #pragma once
 
 #include <map>
@@ -10,18 +12,47 @@
 
 #include "device/context.h"
 #include "device/kernel.h"
+#include "device/variant.h"
 #include "flatten/wide.h"
 #include "kdray/options.h"
 #include "layout/features.h"
 
 namespace kdray::wavefront {
 
+// What programs depend on of the trees that they walk.
+struct TreeForm {
+  int depth = 0;          // of the binary tree: sizes that walk's stack
+  int stack = 0;          // what a walk of the wide form stacks at most
+  int block = 4;          // of the wide form
+  std::size_t bytes = 0;  // of the wide form
+};
+
+// What the programs of a render came from.
+struct ProgramsUsed {
+  std::size_t compiled = 0;    // by this process
+  std::size_t found = 0;       // kept from another, of just the features that are wanted
+  std::size_t covering = 0;    // kept from another, and of more features
+  layout::Features spare = 0;  // features that some of them have and nobody wanted
+
+  void add(const ProgramsUsed& other);
+};
+
 class Programs {
  public:
-  // `tree_depth` sizes the binary walk's stack, the wide form its own walks' and their blocks.
   // `more_options`: for all builds.
+  Programs(const device::Context& context, const TreeForm& form, std::string more_options = {});
   Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
            std::string more_options = {});
+
+  // Forms of trees such that programs for them serve nearly all scenes there are.
+  struct UsualForm {
+    TreeForm form;
+    std::string scenes;  // in words
+  };
+  static std::vector<UsualForm> usual_forms();
+
+  // From now on programs have all features that they may have, whatever is wanted of them.
+  void have_everything() { everything_ = true; }
 
   // The constants of the walks from now on; what was built with others is kept.
   void use(const Tuning& tuning);
@@ -46,6 +77,7 @@ class Programs {
   void build(const std::vector<Wanted>& wanted);
 
   double build_seconds() const { return build_seconds_; }
+  const ProgramsUsed& used() const { return used_; }
   std::size_t n_built() const {
     const std::lock_guard lock(mutex_);
     return programs_.size();
@@ -58,14 +90,16 @@ class Programs {
 
   Key key_of(const Wanted& wanted) const;
   const cl::Program& program(const Wanted& wanted);
-  std::string options_for(layout::Features features, Traversal traversal, Precision precision) const;
+  device::Variant variant_for(const Key& key) const;
+  std::string options_for(Traversal traversal, Precision precision, int stack) const;
 
   const device::Context* context_;
   std::string more_options_, walk_options_;
   int stack_size_, wide_stack_size_, block_;
-  bool prefetch_, far_;
+  bool prefetch_, far_, everything_ = false;
   double build_seconds_ = 0;
   mutable std::mutex mutex_;  // of what is built: queries of several threads ask for kernels
+  ProgramsUsed used_;
   std::map<Key, cl::Program> programs_;
 };
 

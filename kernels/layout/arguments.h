@@ -237,6 +237,17 @@
 #define KDRAY_PARAMETER_CONSTANT(type, name) __constant const type* name
 #define KDRAY_PARAMETER_VALUE(type, name) type name
 
+// The same parameters handed on to a function that takes them: wave_of(slice_id,
+// KDRAY_HAND_ON(KDRAY_WAVE_ARGUMENTS)).
+#define KDRAY_HAND_ON(LIST) LIST(KDRAY_HANDED, KDRAY_NEXT_HANDED)
+#define KDRAY_HANDED(access, type, name) KDRAY_HANDED_##access(name)
+#define KDRAY_NEXT_HANDED(access, type, name) , KDRAY_HANDED_##access(name)
+#define KDRAY_HANDED_IN(name) in_##name
+#define KDRAY_HANDED_OUT(name) out_##name
+#define KDRAY_HANDED_IO(name) io_##name
+#define KDRAY_HANDED_CONSTANT(name) name
+#define KDRAY_HANDED_VALUE(name) name
+
 // A group of arrays that are read, as members of a struct and as its initial value from a kernel's
 // parameters.
 #define KDRAY_MEMBERS(GROUP) GROUP(KDRAY_MEMBER)

@@ -109,8 +109,7 @@ inline void begin_account(__global Traffic* traffic) {
   traffic->n_lost = traffic->n_traced = 0;
 }
 
-__kernel void travel_wave(KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARGUMENTS)) {
-  const u32 slice_id = (u32)get_global_id(0);
+KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARGUMENTS)) {
   if (slice_id >= travel->n_slices) return;
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   const Travels t = {&scene,
@@ -132,4 +131,8 @@ __kernel void travel_wave(KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARGUMENTS)) {
     if (!run_wave(&t, tiles, frame, slice_id, &shaders, counted ? &census : 0, &streams)) break;
   }
   t.traffic->n_waves = n;
+}
+
+__kernel void travel_wave(KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARGUMENTS)) {
+  take_waves((u32)get_global_id(0), KDRAY_HAND_ON(KDRAY_TRAVEL_WAVE_ARGUMENTS));
 }

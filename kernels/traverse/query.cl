@@ -12,6 +12,7 @@
 #include "traverse/walk.clh"
 #include "traverse/wide.clh"
 
+#if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
 // The binary tree has its own ray and its own two forms.
 inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 i, real3 root_lo,
                          real3 root_hi, float world_max) {
@@ -30,6 +31,7 @@ inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 
     store_query_hit(source, i, hit.t, hit.ref, hit.u, hit.v);
   }
 }
+#endif
 
 __kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);

@@ -1,6 +1,7 @@
 // What    A whole wave in one launch: a work-item takes its slice through all stages, admit to add.
 // Shape   One work-item per slice. The same functions as the stages' own kernels, so that pictures are the
 //         same.
+//         The kernel itself does nothing but call: see KDRAY_APART.
 // Why     A slice's streams stay in the cache of the core that works on it: stage by stage, over all slices,
 //         they go through the last cache or memory between any two stages. No core waits for others between
 //         stages.
@@ -14,8 +15,7 @@
 #include "traverse/trace_slice.clh"
 #include "wave/clock.clh"
 
-__kernel void wave(KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)) {
-  const u32 slice_id = (u32)get_global_id(0);
+KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)) {
   if (slice_id >= n_slices) return;
   __global Slice* slice = io_slices + slice_id;
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
@@ -48,4 +48,8 @@ __kernel void wave(KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)) {
     } while (KDRAY_HAS_LIGHTS && first_light < frame->n_lights);
     io_tile_cycles[tile] += since - start;
   }
+}
+
+__kernel void wave(KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)) {
+  take_waves((u32)get_global_id(0), KDRAY_HAND_ON(KDRAY_WAVE_ARGUMENTS));
 }

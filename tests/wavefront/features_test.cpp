@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -57,8 +56,10 @@ scene::Material material_of(layout::Features mask) {
   return m;
 }
 
-// Above the objects, so that some shadows fall on them.
+// Above the objects, so that some shadows fall on them. Where the mask has none, but nothing shines either, there
+// is one that changes nothing.
 std::vector<scene::Light> lights_of(layout::Features mask) {
+  if (!has(mask, kLights) && !has(mask, kDiffuse | kSpecular)) return {{.position = {1, 4, 3}}};
   if (!has(mask, kLights)) return {};
   std::vector<scene::Light> lights{{.position = {1, 4, 3}, .color = vec3(0.5f)},
                                    {.position = {-4, 3, 1}, .color = vec3(0.3f)}};
@@ -145,6 +146,9 @@ class Subject {
     return drawn;
   }
 
+  // The programs have all that they may have, the host goes by the scene as before.
+  void have_everything() { programs_.have_everything(); }
+
   std::vector<film::Channel> channels() {
     layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
     Schedule{}.apply(frame, features_);
@@ -177,6 +181,57 @@ const Schedule kByStages{.tile_width = 4,
                          .work_group = 8,
                          .fill = 0};
 
+std::vector<layout::Features> kinds() {
+  std::vector<layout::Features> all;
+  primitives::for_each_kind([&](auto kind) { all.push_back(KDRAY_FEATURE_OF_KIND(kind.kNumber)); });
+  return all;
+}
+
+// Each kind alone and with each other.
+std::vector<layout::Features> geometry_masks() {
+  std::vector<layout::Features> masks{0, kT, kT | kSmooth | kLit, kT | kStitches | kLit,
+                                      kKinds | kNumbers | kLit};
+  for (const layout::Features a : kinds()) {
+    masks.push_back(a | kNumbers | kLit);
+    for (const layout::Features b : kinds())
+      if (a <= b) masks.push_back(a | b | kLit);
+  }
+  return masks;
+}
+
+std::vector<layout::Features> materials_masks() {
+  std::vector<layout::Features> masks{kT | kDiffuse,
+                                      kT | kSpecular,
+                                      kT | kReflect,
+                                      kT | kTransmit,
+                                      kT | kSpecular | kLights,
+                                      kT | kSpecular | kLit,
+                                      kT | kReflect | kLit,
+                                      kT | kTransmit | kLit,
+                                      kT | kReflect | kTransmit | kLit,
+                                      kT | kSmooth | kSpecular | kLit,
+                                      kT | kSmooth | kReflect | kLit,
+                                      kT | kSmooth | kTransmit | kLit};
+  for (const layout::Features kind : kinds())
+    if (kind != kT) masks.insert(masks.end(), {kind | kReflect | kLit, kind | kTransmit | kLit});
+  return masks;
+}
+
+const std::vector<layout::Features> kLightsMasks = {kT | kLit | kFallOff,
+                                                    kT | kLit | kDirectional,
+                                                    kT | kLit | kSpot,
+                                                    kT | kLit | kFallOff | kDirectional,
+                                                    kT | kLit | kFallOff | kSpot,
+                                                    kT | kLit | kDirectional | kSpot,
+                                                    kT | kLit | kSpecular | kSpot};
+const std::vector<layout::Features> kFilmMasks = {kBackground,
+                                                  kT | kBackground,
+                                                  kT | kLit | kSamples,
+                                                  kT | kLit | kSamples | kBackground,
+                                                  kT | kReflect | kBackground,
+                                                  kT | kTransmit | kBackground,
+                                                  kT | kReflect | kLit | kSamples};
+
 class FeaturesTest : public test::EachDevice {
  protected:
   const device::Context context_{GetParam(), 1};
@@ -199,6 +254,23 @@ class FeaturesTest : public test::EachDevice {
     }
   }
 
+  // By programs that take the place of the scene's own (device/variant.h): no bit, and no ray, is another.
+  void expect_the_same_with_everything(const std::vector<layout::Features>& masks, const Schedule& schedule) {
+    for (const layout::Features mask : masks) {
+      Subject subject(context_, mask);
+      SCOPED_TRACE(fmt::format("{:#010x}: {}", mask, fmt::join(flatten::feature_names(mask).on, ", ")));
+      const Drawn own = subject.draw(kByStages);
+      subject.have_everything();
+      const Drawn everything = subject.draw(schedule);
+      EXPECT_EQ(everything.film, own.film);
+#define KDRAY_EXPECT_THE_SAME(name, field, key) \
+  EXPECT_EQ(everything.counters.name, own.counters.name) << (key);
+      KDRAY_COUNTERS_OF_TRACED(KDRAY_EXPECT_THE_SAME)
+      KDRAY_COUNTERS_OF_SKIPPED(KDRAY_EXPECT_THE_SAME)
+#undef KDRAY_EXPECT_THE_SAME
+    }
+  }
+
   void expect_the_same_in_one_launch(Traversal walk) {
     Subject subject(context_, kAll);
     Schedule schedule = kByStages;
@@ -208,41 +280,20 @@ class FeaturesTest : public test::EachDevice {
   }
 };
 
-std::vector<layout::Features> kinds() {
-  std::vector<layout::Features> all;
-  primitives::for_each_kind([&](auto kind) { all.push_back(KDRAY_FEATURE_OF_KIND(kind.kNumber)); });
-  return all;
-}
-
-// Each kind alone and with each other.
 TEST_P(FeaturesTest, Geometry) {
-  std::vector<layout::Features> masks{0, kT, kT | kSmooth | kLit, kT | kStitches | kLit,
-                                      kKinds | kNumbers | kLit};
-  for (const layout::Features a : kinds()) {
-    masks.push_back(a | kNumbers | kLit);
-    for (const layout::Features b : kinds())
-      if (a <= b) masks.push_back(a | b | kLit);
-  }
-  draw(masks);
+  draw(geometry_masks());
 }
 
 TEST_P(FeaturesTest, Materials) {
-  draw({kT | kDiffuse, kT | kSpecular, kT | kReflect, kT | kTransmit, kT | kSpecular | kLights,
-        kT | kSpecular | kLit, kT | kReflect | kLit, kT | kTransmit | kLit, kT | kReflect | kTransmit | kLit,
-        kT | kSmooth | kSpecular | kLit, kT | kSmooth | kReflect | kLit, kT | kSmooth | kTransmit | kLit});
-  for (const layout::Features kind : kinds())
-    if (kind != kT) draw({kind | kReflect | kLit, kind | kTransmit | kLit});
+  draw(materials_masks());
 }
 
 TEST_P(FeaturesTest, Lights) {
-  draw({kT | kLit | kFallOff, kT | kLit | kDirectional, kT | kLit | kSpot,
-        kT | kLit | kFallOff | kDirectional, kT | kLit | kFallOff | kSpot, kT | kLit | kDirectional | kSpot,
-        kT | kLit | kSpecular | kSpot});
+  draw(kLightsMasks);
 }
 
 TEST_P(FeaturesTest, Film) {
-  draw({kBackground, kT | kBackground, kT | kLit | kSamples, kT | kLit | kSamples | kBackground,
-        kT | kReflect | kBackground, kT | kTransmit | kBackground, kT | kReflect | kLit | kSamples});
+  draw(kFilmMasks);
 }
 
 TEST_P(FeaturesTest, All) {
@@ -264,6 +315,18 @@ TEST_P(FeaturesTest, OneLaunchOfBatches) {
 }
 TEST_P(FeaturesTest, OneLaunchOfAllWalks) {
   expect_the_same_in_one_launch(Traversal::automatic);
+}
+
+// Buffers are as large as the scene's own features make them, so that Oclgrind sees what is out of bounds.
+TEST_P(FeaturesTest, EverythingStageByStage) {
+  expect_the_same_with_everything(
+      {0, kT, kT | kReflect, kT | kSmooth | kLit, kS | kTransmit | kLit, kBackground}, kByStages);
+}
+TEST_P(FeaturesTest, EverythingInOneLaunch) {
+  Schedule fused = kByStages;
+  fused.fused = true;
+  for (const auto& masks : {geometry_masks(), materials_masks(), kLightsMasks, kFilmMasks})
+    expect_the_same_with_everything(masks, fused);
 }
 
 // NaN of both signs, infinity, small and large numbers, indices far outside of any array.

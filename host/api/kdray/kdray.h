@@ -161,6 +161,20 @@ std::filesystem::path default_program_folder();
 // build, so best when the picture is out. A folder that can't be written is no error.
 void keep_programs(const DeviceOptions& device);
 
+// A program, or a few that are used together, that warm_up() looked for.
+struct WarmProgram {
+  std::string device, what;
+  double seconds = 0;     // to find it, or to compile and keep it
+  bool compiled = false;  // it was not there
+};
+
+// Compiles beforehand what frames in PDPRT and queries, both with the walk chosen by itself, need of nearly any
+// scene, and keeps it in DeviceOptions::programs: from then on they wait for no compiler there (docs/design/start.md).
+// Takes half a minute or more where nothing is there yet; `told` hears of each program. Throws ErrorCode::input
+// where nothing can be kept, ErrorCode::usage where no folder is named.
+std::vector<WarmProgram> warm_up(const DeviceOptions& device,
+                                 const std::function<void(const WarmProgram&)>& told = {});
+
 // All OpenCL devices; empty when there is no platform. Never throws for want of a device. A device that fails
 // the self-test is not usable; of the options, those on built programs count, and left_out, which is told of
 // drivers that can't be asked for their devices.

@@ -71,6 +71,9 @@ struct DeviceOptions {
   std::filesystem::path programs = {};  // folder where built programs are looked for and kept; empty: none
   // What is built stays in memory for others of this process: for programs that commit many scenes.
   bool remember_programs = false;
+  // Programs of just the scene's features are made though there may be some in that folder that have more and
+  // would do: these take a few percent longer over a frame, and no seconds to compile.
+  bool exact_programs = false;
   // File of what `kdray tune` found; empty, or none there: what kdray ships with.
   std::filesystem::path tunings = {};
   // Told why, in a line, where that file is of no use.

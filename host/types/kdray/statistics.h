@@ -78,6 +78,14 @@ struct Statistics {
     std::vector<std::string> on, off;
   };
 
+  // Where the kernels' programs came from.
+  struct Programs {
+    std::uint64_t compiled = 0;      // by this process
+    std::uint64_t found = 0;         // kept from an earlier one, for just these features
+    std::uint64_t covering = 0;      // kept from an earlier one, for these features and more
+    std::vector<std::string> spare;  // features that some of them have though the scene doesn't need them
+  };
+
   // What a device's settings were looked for by, and where they are from.
   struct DeviceTuning {
     std::string from;  // "shipped", "given", or the file and the features of its entry
@@ -161,6 +169,7 @@ struct Statistics {
   double mrays_per_s = 0;
   Memory memory;
   Features features;
+  Programs programs;
   DeviceInfo device;  // the first, which queries take
   DeviceTuning tuning;
   Mode mode;

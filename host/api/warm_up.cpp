@@ -1,0 +1,127 @@
+// What    Programs made before they are wanted: for each of the forms of trees that nearly all scenes have, those
+//         of frames and of queries, with all that a scene may need. A small scene is brought into that form,
+//         and each program is launched on it once, since drivers compile the last of it then.
+#include <utility>
+#include <vector>
+
+#include "api/device.h"
+#include "api/open_devices.h"
+#include "api/precision.h"
+#include "base/timer.h"
+#include "device/program_cache.h"
+#include "flatten/frame.h"
+#include "kdtree/build.h"
+#include "prepare/prepared.h"
+#include "query/trace.h"
+#include "scene/geometry.h"
+#include "selftest/known_case.h"
+#include "wavefront/channels.h"
+#include "wavefront/wavefront.h"
+
+namespace kdray::api {
+
+namespace {
+
+constexpr int kSide = 16;  // pixels
+
+// The self-test's scene, in blocks of that many primitives.
+prepare::Prepared scene_in_blocks(int block) {
+  const scene::Scene known = selftest::known_scene();
+  prepare::Prepared made = prepare::prepare(known, TreeOptions{});
+  const scene::Geometry geometry = scene::make_geometry(known);
+  const kdtree::Tree tree =
+      kdtree::build(geometry, prepare::config_of(TreeOptions{}, made.counts.primitives));
+  made.wide = flatten::make_wide(tree, made.flat, block);
+  return made;
+}
+
+// A device's programs for trees of a form.
+class Warming {
+ public:
+  Warming(const device::Context& context, const DeviceOptions& options, const prepare::Prepared& scene,
+          const wavefront::TreeForm& form, const Tuning& tuning)
+      : context_(context),
+        scene_(scene),
+        work_group_(work_group_of(options, context)),
+        global_(runs_globally(options, context)),
+        buffers_(context, scene.flat, scene.wide),
+        programs_(context, form) {
+    programs_.use(tuning);
+    programs_.have_everything();
+  }
+
+  // A Wavefront launches its kernels as it is made.
+  void frames() {
+    const RenderOptions o = flatten::resolved({.width = kSide, .height = kSide}, {});
+    layout::Frame frame = flatten::make_frame(scene_.settings, scene_.geometry, o);
+    wavefront::Schedule schedule{.tile_width = kSide, .tile_height = kSide, .n_slices = 1, .fused = !global_};
+    schedule.work_group = work_group_;
+    schedule.traversal = traversal_in(Precision::float32, Traversal::automatic, context_.info());
+    schedule.apply(frame, scene_.features);
+    const wavefront::Room room{.tiles = 1, .pixels = std::size_t{kSide} * kSide};
+    const wavefront::Wavefront wavefront(context_, context_.queues().front(), buffers_, programs_, frame,
+                                         schedule, scene_.features, room);
+  }
+
+  void queries() {
+    const Ray ray{{0, 0, 0}, 0, {0, 0, -1}, 1};
+    const Traversal traversal = global_ ? Traversal::wide : Traversal::automatic;
+    (void)query::trace({context_, buffers_, programs_, scene_, work_group_, global_}, std::span(&ray, 1),
+                       {.traversal = traversal});
+  }
+
+  bool compiled() const { return programs_.used().compiled > 0; }
+
+ private:
+  const device::Context& context_;
+  const prepare::Prepared& scene_;
+  std::size_t work_group_;
+  bool global_;
+  const wavefront::SceneBuffers buffers_;
+  wavefront::Programs programs_;
+};
+
+// Writes what was compiled, so that nothing of it is lost where what follows is broken off.
+void keep(const DeviceOptions& options, device::ProgramCache& cache) {
+  if (cache.keep() == 0)
+    throw input_error(options.programs.string(), 0, "no program can be kept there",
+                      "free some space, or name another folder (--cache, KDRAY_CACHE_DIR)");
+}
+
+}  // namespace
+
+}  // namespace kdray::api
+
+namespace kdray {
+
+std::vector<WarmProgram> warm_up(const DeviceOptions& options,
+                                 const std::function<void(const WarmProgram&)>& told) {
+  using namespace api;
+  if (options.programs.empty())
+    throw Error(ErrorCode::usage, "there is no folder to keep programs in; name one with --cache");
+  const OpenedDevices opened = open_devices(options);
+  const tune::Database tunings = read_tunings(options);
+  device::ProgramCache& cache = *builds_of(options).cache;
+  cache.keep();  // what the opening has compiled
+  std::vector<WarmProgram> all;
+  for (const device::Context& context : opened.contexts)
+    for (const auto& [form, scenes] : wavefront::Programs::usual_forms()) {
+      const prepare::Prepared scene = scene_in_blocks(form.block);
+      const Tuning tuning = tuned_for(context, runs_globally(options, context), scene.features, tunings,
+                                      options.tunings.string())
+                                .settings;
+      const auto make = [&](const std::string& work, void (Warming::*launch)()) {
+        const Timer timer;
+        Warming warming(context, options, scene, form, tuning);
+        (warming.*launch)();
+        if (warming.compiled()) keep(options, cache);
+        all.push_back({context.info().name, work + " of " + scenes, timer.seconds(), warming.compiled()});
+        if (told) told(all.back());
+      };
+      make("frames", &Warming::frames);
+      make("queries", &Warming::queries);
+    }
+  return all;
+}
+
+}  // namespace kdray
