@@ -62,6 +62,17 @@ int number_of(Traversal traversal) {
 
 }  // namespace
 
+namespace {
+
+// The most entries of a walk that visits a node's children in any order: seven are left behind on each level, and eight
+// lie on the last. A wide node is a node of the binary tree, or below the deepest one a leaf of several kinds.
+int most_siblings(int tree_depth) {
+  const int levels = (tree_depth / 8 + 1) * 8 + 2;
+  return 7 * levels + 8;
+}
+
+}  // namespace
+
 // Rounded up, so that scenes of like depth share programs.
 Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
                    std::string more_options)
@@ -69,6 +80,7 @@ Programs::Programs(const device::Context& context, int tree_depth, const flatten
       more_options_(std::move(more_options)),
       stack_size_((tree_depth / 8 + 1) * 8),
       wide_stack_size_((wide.stack_size / 32 + 1) * 32),
+      closest_stack_size_(most_siblings(tree_depth)),
       block_(wide.block),
       prefetch_(wide.bytes() > kNear),
       far_(wide.bytes() > kFar) {
@@ -87,7 +99,8 @@ void Programs::use(const Tuning& t) {
   if (t.distance > 0) walk_options_ += fmt::format(" -DKDRAY_COHERENT_DISTANCE={:.4f}f", 0.001 * t.distance);
 }
 
-std::string Programs::options_for(layout::Features features, Traversal traversal, Precision precision) const {
+std::string Programs::options_for(const std::string& file, layout::Features features, Traversal traversal,
+                                  Precision precision) const {
   const bool in_double = precision == Precision::float64;  // whose vectors have the portable form alone
   std::string options =
       fmt::format("-cl-std=CL1.2 -DKDRAY_FEATURES={:#018x}ul {}", features,
@@ -100,6 +113,8 @@ std::string Programs::options_for(layout::Features features, Traversal traversal
                            number_of(traversal), block_, wide_stack_size_) +
                walk_options_;
   }
+  if (file == "closest/closest_points.cl")
+    options += fmt::format(" -DKDRAY_CLOSEST_STACK={}", closest_stack_size_);
   if (context_->rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";
   if (!more_options_.empty()) options += " " + more_options_;
   return options;
@@ -129,7 +144,7 @@ void Programs::build(const std::vector<Wanted>& wanted) {
     if (programs_.contains(key) || building.contains(key)) continue;
     building.emplace(key, std::async(when, [this, key] {
                        const auto& [file, bits, traversal, precision, walk] = key;
-                       return context_->build(file, options_for(bits, traversal, precision));
+                       return context_->build(file, options_for(file, bits, traversal, precision));
                      }));
   }
   if (building.empty()) return;

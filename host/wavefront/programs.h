@@ -54,11 +54,12 @@ class Programs {
 
   Key key_of(const Wanted& wanted) const;
   const cl::Program& program(const Wanted& wanted);
-  std::string options_for(layout::Features features, Traversal traversal, Precision precision) const;
+  std::string options_for(const std::string& file, layout::Features features, Traversal traversal,
+                          Precision precision) const;
 
   const device::Context* context_;
   std::string more_options_, walk_options_;
-  int stack_size_, wide_stack_size_, block_;
+  int stack_size_, wide_stack_size_, closest_stack_size_, block_;
   bool prefetch_, far_;
   double build_seconds_ = 0;
   std::map<Key, cl::Program> programs_;
