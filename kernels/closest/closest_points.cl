@@ -14,5 +14,5 @@ __kernel void closest_points(KDRAY_PARAMETERS(KDRAY_CLOSEST_POINTS_ARGUMENTS)) {
   PointWalk w;
   begin_point(&w, in_points + item, root_lo, root_hi, reach);
   walk_to_closest(&scene, &w);
-  store_closest(&w, out_closest + item);
+  store_closest(&scene, &w, out_closest + item);
 }
