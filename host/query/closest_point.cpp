@@ -15,6 +15,7 @@
 #include "device/opencl_error.h"
 #include "layout/closest.layout.h"
 #include "math/rounding.h"
+#include "query/nearby_order.h"
 #include "wavefront/stage.h"
 
 namespace kdray::query {
@@ -30,7 +31,8 @@ constexpr std::size_t kPointsPerChunk = std::size_t{1} << 19, kGrain = 4096;
 constexpr double kPointReach = double{KDRAY_POINT_REACH};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What a point is asked from: itself in the scene's own space. A point that is over 2^25 times the scene's size away is
+// What    a point is asked from: itself in the scene's own space. A point that is over 2^25 times the scene's
+//         size away is
 // moved towards the scene until it isn't: what is closest stays so, but for 2^-50 of the distance.
 struct Places {
   const LocalSpace& space;
@@ -38,12 +40,9 @@ struct Places {
 
   bool is_far(const dvec3& from_center) const { return !(largest_component(from_center) <= far); }
 
-  QueryPoint place_of(const dvec3& point) const {
+  dvec3 place_of(const dvec3& point) const {
     const dvec3 from_center = point - space.center;
-    dvec3 local = from_center * space.scale;
-    if (is_far(from_center)) local = direction_of(point) * kPointReach;
-    return {{std::bit_cast<layout::u64>(local.x), std::bit_cast<layout::u64>(local.y),
-             std::bit_cast<layout::u64>(local.z)}};
+    return is_far(from_center) ? direction_of(point) * kPointReach : from_center * space.scale;
   }
 
   // Halved, so that the difference of the largest doubles is one.
@@ -56,6 +55,11 @@ struct Places {
     return 2 * safe_length(0.5 * point - 0.5 * space.center - 0.5 * (closest / space.scale));
   }
 };
+
+QueryPoint packed(const dvec3& place) {
+  return {{std::bit_cast<layout::u64>(place.x), std::bit_cast<layout::u64>(place.y),
+           std::bit_cast<layout::u64>(place.z)}};
+}
 
 double number_of(layout::u64 bits, layout::u32 form) {
   if (form == KDRAY_FORM_DOUBLE) return std::bit_cast<double>(bits);
@@ -100,7 +104,8 @@ class Asking {
         radius_(radius),
         stage_(target.programs.kernel<K>(target.scene.features, Traversal::wide)),
         queue_(target.context.queues().front()),
-        places_of_points_(chunk),
+        order_(target.scene.geometry.bounds),
+        queries_(chunk),
         hits_(chunk),
         in_(target.context.buffer(CL_MEM_READ_ONLY, chunk * sizeof(QueryPoint), "the points")),
         out_(target.context.buffer(CL_MEM_WRITE_ONLY, chunk * sizeof(ClosestHit), "the closest points")) {
@@ -117,20 +122,15 @@ class Asking {
 
   void ask(std::span<const dvec3> points, std::span<ClosestPoint> answers) {
     const std::size_t n = points.size();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kGrain), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i)
-        places_of_points_[i] = places_.place_of(points[i]);
-    });
-    queue_.enqueueWriteBuffer(in_, CL_TRUE, 0, n * sizeof(QueryPoint), places_of_points_.data());
+    const std::span<const std::uint32_t> order = put_in_order(points);
+    queue_.enqueueWriteBuffer(in_, CL_TRUE, 0, n * sizeof(QueryPoint), queries_.data());
     stage_.set(K::n_points, static_cast<cl_uint>(n));
     launch(n);
     queue_.enqueueReadBuffer(out_, CL_TRUE, 0, n * sizeof(ClosestHit), hits_.data());
     std::atomic<bool> invalid = false;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kGrain), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        if (hits_[i].number == KDRAY_CLOSEST_INVALID) invalid = true;
-        answers[i] = answer_of(places_, points[i], hits_[i], radius_);
-      }
+    for_grains(n, [&](std::size_t i) {
+      if (hits_[i].number == KDRAY_CLOSEST_INVALID) invalid = true;
+      answers[order[i]] = answer_of(places_, points[order[i]], hits_[i], radius_);
     });
     if (invalid)
       throw Error(ErrorCode::internal,
@@ -139,6 +139,24 @@ class Asking {
 
  private:
   using K = kernels::ClosestPoints;
+
+  template <class Work>
+  static void for_grains(std::size_t n, const Work& work) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kGrain), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
+    });
+  }
+
+  // Makes the queries, and tells which points they are of.
+  std::span<const std::uint32_t> put_in_order(std::span<const dvec3> points) {
+    cells_.resize(points.size());
+    for_grains(points.size(),
+               [&](std::size_t i) { cells_[i] = order_.cell_of(places_.place_of(points[i])); });
+    const std::span<const std::uint32_t> order = order_.sorted(cells_);
+    for_grains(points.size(),
+               [&](std::size_t i) { queries_[i] = packed(places_.place_of(points[order[i]])); });
+    return order;
+  }
 
   void launch(std::size_t n) {
     stage_.launch(queue_, n, target_.work_group);
@@ -150,7 +168,9 @@ class Asking {
   double radius_;
   wavefront::Stage<K> stage_;
   cl::CommandQueue queue_;
-  std::vector<QueryPoint> places_of_points_;
+  NearbyOrder order_;
+  std::vector<std::uint32_t> cells_;
+  std::vector<QueryPoint> queries_;
   std::vector<ClosestHit> hits_;
   cl::Buffer in_, out_;
 };

@@ -62,16 +62,11 @@ int number_of(Traversal traversal) {
 
 }  // namespace
 
-namespace {
-
-// The most entries of a walk that visits a node's children in any order: seven are left behind on each level, and eight
-// lie on the last. A wide node is a node of the binary tree, or below the deepest one a leaf of several kinds.
-int most_siblings(int tree_depth) {
+// A wide node is a node of the binary tree, or below the deepest one a leaf of several kinds.
+int any_order_stack_size(int tree_depth) {
   const int levels = (tree_depth / 8 + 1) * 8 + 2;
   return 7 * levels + 8;
 }
-
-}  // namespace
 
 // Rounded up, so that scenes of like depth share programs.
 Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
@@ -80,7 +75,7 @@ Programs::Programs(const device::Context& context, int tree_depth, const flatten
       more_options_(std::move(more_options)),
       stack_size_((tree_depth / 8 + 1) * 8),
       wide_stack_size_((wide.stack_size / 32 + 1) * 32),
-      closest_stack_size_(most_siblings(tree_depth)),
+      any_order_stack_size_(any_order_stack_size(tree_depth)),
       block_(wide.block),
       prefetch_(wide.bytes() > kNear),
       far_(wide.bytes() > kFar) {
@@ -114,7 +109,7 @@ std::string Programs::options_for(const std::string& file, layout::Features feat
                walk_options_;
   }
   if (file == "closest/closest_points.cl")
-    options += fmt::format(" -DKDRAY_CLOSEST_STACK={}", closest_stack_size_);
+    options += fmt::format(" -DKDRAY_CLOSEST_STACK={}", any_order_stack_size_);
   if (context_->rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";
   if (!more_options_.empty()) options += " " + more_options_;
   return options;

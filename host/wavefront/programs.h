@@ -15,6 +15,10 @@
 
 namespace kdray::wavefront {
 
+// The most entries of a walk of the wide form that visits a node's children in any order: seven are left
+// behind on each level, and eight lie on the last.
+int any_order_stack_size(int tree_depth);
+
 class Programs {
  public:
   // `tree_depth` sizes the binary walk's stack, the wide form its own walks' and their blocks.
@@ -59,7 +63,7 @@ class Programs {
 
   const device::Context* context_;
   std::string more_options_, walk_options_;
-  int stack_size_, wide_stack_size_, closest_stack_size_, block_;
+  int stack_size_, wide_stack_size_, any_order_stack_size_, block_;
   bool prefetch_, far_;
   double build_seconds_ = 0;
   std::map<Key, cl::Program> programs_;

@@ -1,6 +1,6 @@
 // What    The closest point of the scene to each of n points: its distance, place, primitive, u and v.
-// Shape   One point to a work-item. reach: a radius in local lengths, beyond which nothing need be found (the host
-//         compares the distance itself).
+// Shape   One point to a work-item. reach: a radius in local lengths, beyond which nothing need be found (the
+//         host compares the distance itself).
 // Cost    reads 24 B of the point and the tree, writes 48 B.
 // Errors  a leaf of an unknown kind gives the number KDRAY_CLOSEST_INVALID; the host checks for it.
 #include "closest/walk.clh"
