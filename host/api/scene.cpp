@@ -9,6 +9,7 @@
 #include "base/timer.h"
 #include "kdray/kdray.h"
 #include "query/crossings.h"
+#include "query/points.h"
 #include "scene/check_scene.h"
 #include "scene/frame.h"
 #include "scene/load.h"
@@ -251,6 +252,21 @@ QueryReport Scene::count(const Rays& rays, const WordsOut& out, const QueryOptio
 AllHits Scene::all(const Rays& rays, const AllHitsOptions& options) const {
   const auto committed = impl_->asked();
   return query::all(committed->asked(), rays, options);
+}
+
+QueryReport Scene::closest_points(const Points& points, const ClosestPointsOut& out,
+                                  const PointOptions& options) const {
+  const auto committed = impl_->asked();
+  return query::closest_points(committed->asked(), points, out, options);
+}
+QueryReport Scene::inside(const Points& points, const BytesOut& out, const PointOptions& options) const {
+  const auto committed = impl_->asked();
+  return query::inside(committed->asked(), points, out, options);
+}
+QueryReport Scene::signed_distance(const Points& points, const ValuesOut& out,
+                                   const PointOptions& options) const {
+  const auto committed = impl_->asked();
+  return query::signed_distance(committed->asked(), points, out, options);
 }
 
 }  // namespace kdray

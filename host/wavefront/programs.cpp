@@ -82,6 +82,12 @@ int number_of(Traversal traversal) {
 
 }  // namespace
 
+// A wide node is a node of the binary tree, or below the deepest one a leaf of several kinds.
+int any_order_stack_size(int tree_depth) {
+  const int levels = (tree_depth / 8 + 1) * 8 + 2;
+  return 7 * levels + 8;
+}
+
 void ProgramsUsed::add(const ProgramsUsed& other) {
   compiled += other.compiled, found += other.found, covering += other.covering;
   spare |= other.spare;
@@ -92,6 +98,7 @@ Programs::Programs(const device::Context& context, const TreeForm& form, std::st
       more_options_(std::move(more_options)),
       stack_size_(rounded_up(form.depth, kBinaryStacks)),
       wide_stack_size_(std::max(rounded_up(form.stack, kWideStacks), kLeastWideStack)),
+      any_order_stack_size_(any_order_stack_size(form.depth)),
       block_(form.block),
       prefetch_(form.bytes > kNear),
       far_(form.bytes > kFar) {
@@ -131,7 +138,8 @@ void Programs::use(const Tuning& t) {
   if (t.distance > 0) walk_options_ += fmt::format(" -DKDRAY_COHERENT_DISTANCE={:.4f}f", 0.001 * t.distance);
 }
 
-std::string Programs::options_for(Traversal traversal, Precision precision, int stack) const {
+std::string Programs::options_for(const std::string& file, Traversal traversal, Precision precision,
+                                  int stack) const {
   const bool in_double = precision == Precision::float64;  // whose vectors have the portable form alone
   std::string options =
       "-cl-std=CL1.2 " + device::build_option(in_double ? device::Simd::portable : context_->simd());
@@ -143,6 +151,8 @@ std::string Programs::options_for(Traversal traversal, Precision precision, int 
                            number_of(traversal), block_, stack) +
                walk_options_;
   }
+  if (file == "closest/closest_points.cl")
+    options += fmt::format(" -DKDRAY_CLOSEST_STACK={}", any_order_stack_size_);
   if (context_->rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";
   if (!more_options_.empty()) options += " " + more_options_;
   return options;
@@ -153,11 +163,11 @@ device::Variant Programs::variant_for(const Key& key) const {
   const bool binary = traversal == Traversal::binary;
   const int stack = binary ? stack_size_ : wide_stack_size_;
   device::Variant variant{
-      .options = options_for(traversal, precision, stack), .mask = bits, .spare = spare_bits_of(file)};
+      .options = options_for(file, traversal, precision, stack), .mask = bits, .spare = spare_bits_of(file)};
   const int step = binary ? kBinaryStacks : kWideStacks;
   for (int larger = stack + step; larger <= (binary ? kLargestBinaryStack : kLargestWideStack);
        larger += step)
-    variant.instead.push_back(options_for(traversal, precision, larger));
+    variant.instead.push_back(options_for(file, traversal, precision, larger));
   return variant;
 }
 

@@ -37,6 +37,10 @@ struct ProgramsUsed {
   void add(const ProgramsUsed& other);
 };
 
+// The most entries of a walk of the wide form that visits a node's children in any order: seven are left
+// behind on each level, and eight lie on the last.
+int any_order_stack_size(int tree_depth);
+
 class Programs {
  public:
   // `more_options`: for all builds.
@@ -91,11 +95,11 @@ class Programs {
   Key key_of(const Wanted& wanted) const;
   const cl::Program& program(const Wanted& wanted);
   device::Variant variant_for(const Key& key) const;
-  std::string options_for(Traversal traversal, Precision precision, int stack) const;
+  std::string options_for(const std::string& file, Traversal traversal, Precision precision, int stack) const;
 
   const device::Context* context_;
   std::string more_options_, walk_options_;
-  int stack_size_, wide_stack_size_, block_;
+  int stack_size_, wide_stack_size_, any_order_stack_size_, block_;
   bool prefetch_, far_, everything_ = false;
   double build_seconds_ = 0;
   mutable std::mutex mutex_;  // of what is built: queries of several threads ask for kernels

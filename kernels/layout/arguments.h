@@ -40,20 +40,21 @@
   KDRAY_LOOK_ARRAYS(X)
 
 // All kernels: X(the host's name, file, function, list).
-#define KDRAY_KERNELS(X)                                                                     \
-  X(Wave, "wave/wave.cl", wave, KDRAY_WAVE_ARGUMENTS)                                        \
-  X(Admit, "raygen/admit.cl", admit, KDRAY_ADMIT_ARGUMENTS)                                  \
-  X(TraceClosest, "traverse/trace_closest.cl", trace_closest, KDRAY_TRACE_CLOSEST_ARGUMENTS) \
-  X(Shade, "shade/shade.cl", shade, KDRAY_SHADE_ARGUMENTS)                                   \
-  X(TraceShadow, "traverse/trace_shadow.cl", trace_shadow, KDRAY_TRACE_SHADOW_ARGUMENTS)     \
-  X(Add, "film/add.cl", add, KDRAY_ADD_ARGUMENTS)                                            \
-  X(Channels, "film/channels.cl", channels, KDRAY_CHANNELS_ARGUMENTS)                        \
-  X(TraceQuery, "traverse/query.cl", trace_query, KDRAY_TRACE_QUERY_ARGUMENTS)               \
-  X(CollectHits, "traverse/collect.cl", collect_hits, KDRAY_COLLECT_HITS_ARGUMENTS)          \
-  X(PackHits, "traverse/collect.cl", pack_hits, KDRAY_PACK_HITS_ARGUMENTS)                   \
-  X(Depart, "shade/depart.cl", depart, KDRAY_DEPART_ARGUMENTS)                               \
-  X(TravelWave, "odprt/wave.cl", travel_wave, KDRAY_TRAVEL_WAVE_ARGUMENTS)                   \
-  X(Receive, "odprt/receive.cl", receive, KDRAY_RECEIVE_ARGUMENTS)                           \
+#define KDRAY_KERNELS(X)                                                                        \
+  X(Wave, "wave/wave.cl", wave, KDRAY_WAVE_ARGUMENTS)                                           \
+  X(Admit, "raygen/admit.cl", admit, KDRAY_ADMIT_ARGUMENTS)                                     \
+  X(TraceClosest, "traverse/trace_closest.cl", trace_closest, KDRAY_TRACE_CLOSEST_ARGUMENTS)    \
+  X(Shade, "shade/shade.cl", shade, KDRAY_SHADE_ARGUMENTS)                                      \
+  X(TraceShadow, "traverse/trace_shadow.cl", trace_shadow, KDRAY_TRACE_SHADOW_ARGUMENTS)        \
+  X(Add, "film/add.cl", add, KDRAY_ADD_ARGUMENTS)                                               \
+  X(Channels, "film/channels.cl", channels, KDRAY_CHANNELS_ARGUMENTS)                           \
+  X(TraceQuery, "traverse/query.cl", trace_query, KDRAY_TRACE_QUERY_ARGUMENTS)                  \
+  X(CollectHits, "traverse/collect.cl", collect_hits, KDRAY_COLLECT_HITS_ARGUMENTS)             \
+  X(PackHits, "traverse/collect.cl", pack_hits, KDRAY_PACK_HITS_ARGUMENTS)                      \
+  X(ClosestPoints, "closest/closest_points.cl", closest_points, KDRAY_CLOSEST_POINTS_ARGUMENTS) \
+  X(Depart, "shade/depart.cl", depart, KDRAY_DEPART_ARGUMENTS)                                  \
+  X(TravelWave, "odprt/wave.cl", travel_wave, KDRAY_TRAVEL_WAVE_ARGUMENTS)                      \
+  X(Receive, "odprt/receive.cl", receive, KDRAY_RECEIVE_ARGUMENTS)                              \
   X(SimdTest, "common/simd_test.cl", simd_test, KDRAY_SIMD_TEST_ARGUMENTS)
 
 #define KDRAY_WAVE_ARGUMENTS(F, X) \
@@ -172,6 +173,15 @@
   X(OUT, u32, primitive)                \
   X(OUT, float, u)                      \
   X(OUT, float, v)
+
+#define KDRAY_CLOSEST_POINTS_ARGUMENTS(F, X) \
+  F(VALUE, float4, root_lo)                  \
+  X(VALUE, float4, root_hi)                  \
+  X(VALUE, float, reach)                     \
+  X(VALUE, u32, n_points)                    \
+  KDRAY_TRACED_ARRAYS(X)                     \
+  X(IN, QueryPoint, points)                  \
+  X(OUT, ClosestHit, closest)
 
 #define KDRAY_DEPART_ARGUMENTS(F, X) \
   F(VALUE, u32, n_rays)              \

@@ -343,5 +343,60 @@ TEST_P(Query, CrossingsKnowMasksAndRaysThatMeanNothing) {
   EXPECT_TRUE(fails([&] { scene.count({from, nowhere}, counts); }, "ray 0: its direction is 0"));
 }
 
+TEST_P(Query, PointsKnowWhatIsNearAndWhetherTheyAreInside) {
+  constexpr unsigned kSeed = 6;
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> anywhere(-3, 3);
+  for (const std::array<double, 3>& center :
+       {std::array<double, 3>{0, 0, 0}, {500'000.125, 4'649'776.25, 312.5}}) {
+    const Scene scene = cube_at(center, 1);
+    constexpr std::size_t kPoints = 50'000;
+    std::vector<double> points;
+    for (std::size_t i = 0; i < 3 * kPoints; ++i) points.push_back(center[i % 3] + anywhere(random));
+    std::vector<double> distance(kPoints), sign(kPoints);
+    std::vector<std::uint8_t> inside(kPoints);
+    std::vector<std::uint32_t> geometry(kPoints), primitive(kPoints);
+    std::vector<std::array<double, 3>> nearest(kPoints);
+    scene.closest_points(
+        points, {.distance = distance, .point = nearest, .geometry = geometry, .primitive = primitive});
+    scene.inside(points, inside);
+    scene.signed_distance(points, sign);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      // The cube's own formula, of the coordinates less the centre (exact).
+      double out2 = 0, most = -3, step2 = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double x = std::abs(points[3 * i + k] - center[k]);
+        out2 += std::pow(std::max(x - 1, 0.0), 2);
+        most = std::max(most, x - 1);
+        step2 += std::pow(nearest[i][k] - points[3 * i + k], 2);
+      }
+      const double expected = most <= 0 ? most : std::sqrt(out2);
+      ASSERT_EQ(inside[i], most < 0) << "seed " << kSeed << ", point " << i;
+      ASSERT_NEAR(sign[i], expected, 4e-16 * std::max(1.0, std::abs(expected)) + 1e-15) << i;
+      ASSERT_EQ(distance[i], std::abs(sign[i]));
+      ASSERT_NEAR(std::sqrt(step2), distance[i], 2e-9);
+      ASSERT_EQ(geometry[i], 0u);
+      ASSERT_LT(primitive[i], 12u);
+    }
+  }
+}
+
+TEST_P(Query, PointsThatAreNotFiniteAreRefusedOrCounted) {
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  const std::vector<double> points = {0, 0, 0, 0, std::numeric_limits<double>::quiet_NaN(), 0, 0, 0, 9};
+  std::vector<double> distance(3);
+  EXPECT_TRUE(fails([&] { scene.signed_distance(points, distance); }, "point 1"));
+  PointOptions options;
+  options.invalid = InvalidRays::miss;
+  options.radius = 5;
+  EXPECT_EQ(scene.signed_distance(points, distance, options).invalid, 1u);
+  EXPECT_EQ(distance[0], -1);
+  EXPECT_TRUE(std::isinf(distance[1]));
+  EXPECT_EQ(distance[2], kInfinity) << "beyond the radius";
+  std::vector<std::uint8_t> inside(3);
+  scene.inside(points, inside, options);
+  EXPECT_EQ(inside, (std::vector<std::uint8_t>{1, 0, 0}));
+}
+
 }  // namespace
 }  // namespace kdray

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "device/context.h"
+#include "layout/closest.layout.h"
 #include "layout/frame.layout.h"
 #include "layout/kinds.h"
 #include "layout/primitives.layout.h"
@@ -41,6 +42,8 @@ const std::vector<Probe> kProbes = {KDRAY_KINDS(PRIMITIVE) SIZE(KdNode),
                                     SIZE(Light),
                                     SIZE(QueryRay),
                                     SIZE(QueryHit),
+                                    SIZE(QueryPoint),
+                                    SIZE(ClosestHit),
                                     SIZE(Frame),
                                     SIZE(Slice),
                                     SIZE(WideNode),
@@ -75,6 +78,10 @@ const std::vector<Probe> kProbes = {KDRAY_KINDS(PRIMITIVE) SIZE(KdNode),
                                     OFFSET(QueryRay, t_max),
                                     OFFSET(QueryHit, primitive),
                                     OFFSET(QueryHit, u),
+                                    OFFSET(ClosestHit, distance),
+                                    OFFSET(ClosestHit, u),
+                                    OFFSET(ClosestHit, number),
+                                    OFFSET(ClosestHit, form),
                                     OFFSET(Frame, hither),
                                     OFFSET(Frame, forward),
                                     OFFSET(Frame, x_scale),
@@ -124,7 +131,8 @@ class LayoutTest : public test::EachDevice {};
 
 TEST_P(LayoutTest, TheDeviceSeesTheSameStructs) {
   std::string source;
-  for (const char* header : {"frame", "primitives", "rays", "shading", "simd_test", "tree", "verify", "wide"})
+  for (const char* header :
+       {"closest", "frame", "primitives", "rays", "shading", "simd_test", "tree", "verify", "wide"})
     source += "#include \"layout/" + std::string(header) + ".layout.h\"\n";
   source += "__kernel void probe(__global uint* out) {\n";
   for (std::size_t i = 0; i < kProbes.size(); ++i)

@@ -3,7 +3,7 @@
 # each traversal where there is a choice; with none, and with each bit alone (where code that is switched off leaves
 # unused names behind). Kernels with explicit vectors pass for x86-64 with AVX-512 too, in all forms of common/simd.clh, down
 # to LLVM's code: whether the target has a builtin is not asked before. In double (KDRAY_PRECISION=64) the kernels of the binary
-# walk pass: not odprt's, nor the test of float's vectors.
+# walk pass: not odprt's, nor those of the wide form alone, nor the test of float's vectors.
 set -u
 clang=$1 kernels=$2
 common="-cl-std=CL1.2 -Xclang -finclude-default-header -Wall -Wextra -Wundef -Werror -I$kernels -x cl"
@@ -25,6 +25,11 @@ compiles() {
       [[ $text == *common/simd.clh* ]] || continue
       for form in $forms; do echo "$x86 -DKDRAY_TRAVERSAL=$walk -DKDRAY_SIMD=$form $file"; done
     done
+    if [[ $text == *common/precise.clh* ]]; then  # decides in doubles, or in floats where there are none
+      echo "$plain -DKDRAY_PRECISE=32 $file"
+      echo "$plain -DKDRAY_PRECISE=64 $file"
+      continue
+    fi
     [[ $file == */odprt/* || $file == */simd_test.cl ]] && continue
     double="-DKDRAY_PRECISION=64 $file"
     echo "$plain $double"

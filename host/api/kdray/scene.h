@@ -112,6 +112,16 @@ class Scene {
   QueryReport count(const Rays& rays, const WordsOut& out, const QueryOptions& options = {}) const;
   AllHits all(const Rays& rays, const AllHitsOptions& options = {}) const;
 
+  // The point of the scene that is nearest to each of these.
+  QueryReport closest_points(const Points& points, const ClosestPointsOut& out,
+                             const PointOptions& options = {}) const;
+  // 1 for each point that lies inside of closed surfaces: of an odd number of them. Points are rounded to floats
+  // of the scene's own space.
+  QueryReport inside(const Points& points, const BytesOut& out, const PointOptions& options = {}) const;
+  // The distance to the nearest surface, negative inside.
+  QueryReport signed_distance(const Points& points, const ValuesOut& out,
+                              const PointOptions& options = {}) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -1,0 +1,151 @@
+#include "query/points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/error.h"
+#include "query/all_hits.h"
+#include "query/closest_point.h"
+#include "query/grains.h"
+
+namespace kdray::query {
+
+namespace {
+
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 18;
+
+// Chunks of points as they can be asked for: those that are not finite are put at the origin, and remembered.
+class PointChunks {
+ public:
+  PointChunks(const Points& points, const PointOptions& options) : points_(points), options_(&options) {}
+
+  std::span<const dvec3> take(std::size_t first) {
+    if (options_->cancel && options_->cancel->is_cancelled())
+      throw Error(ErrorCode::cancelled, "the query was cancelled");
+    const std::size_t n = std::min(kPointsAtOnce, points_.size() - first);
+    taken_.resize(n);
+    invalid_.clear();
+    for_each_grain(n, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto p = points_[first + i];
+        taken_[i] = {p[0], p[1], p[2]};
+      }
+    });
+    for (std::size_t i = 0; i < n; ++i)
+      if (!is_finite(taken_[i])) leave_out(first, i);
+    return taken_;
+  }
+
+  bool is_invalid(std::size_t i) const {
+    return !invalid_.empty() && std::binary_search(invalid_.begin(), invalid_.end(), i);
+  }
+  std::uint64_t n_invalid() const { return n_invalid_; }
+
+ private:
+  void leave_out(std::size_t first, std::size_t i) {
+    if (options_->invalid == InvalidRays::error)
+      throw Error(ErrorCode::input,
+                  fmt::format("point {} is not finite; take it out or repair it", first + i));
+    taken_[i] = dvec3(0);
+    invalid_.push_back(i);
+    ++n_invalid_;
+  }
+
+  Points points_;
+  const PointOptions* options_;
+  std::vector<dvec3> taken_;
+  std::vector<std::size_t> invalid_;  // of the chunk in work, in order
+  std::uint64_t n_invalid_ = 0;
+};
+
+// 1 for each point that an odd number of surfaces lies around. Any direction serves, since every crossing counts
+// once; this one lies in no plane that models are likely to have faces in, which would cost time.
+std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const dvec3> points) {
+  std::vector<Ray> rays(points.size());
+  for_each_grain(points.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const vec3 at(asked.frame.space().local(points[i]));
+      rays[i] = {{at.x, at.y, at.z}, 0, {0.1803f, 0.2741f, 1}, std::numeric_limits<float>::infinity()};
+    }
+  });
+  return count_hits(asked.target, rays);
+}
+
+template <class Take>
+QueryReport for_each_chunk(const Points& points, const PointOptions& options, const Take& take) {
+  PointChunks chunks(points, options);
+  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce)
+    take(first, chunks.take(first), chunks);
+  return {chunks.n_invalid()};
+}
+
+}  // namespace
+
+QueryReport closest_points(const Asked& asked, const Points& points, const ClosestPointsOut& out,
+                           const PointOptions& options) {
+  const std::size_t n = points.size();
+  check_out(out.distance.size(), n, "distance");
+  check_out(out.point.size(), n, "point");
+  check_out(out.geometry.size(), n, "geometry");
+  check_out(out.primitive.size(), n, "primitive");
+  check_out(out.u.size(), n, "u");
+  check_out(out.v.size(), n, "v");
+  return for_each_chunk(
+      points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+        constexpr ClosestPoint kNothing{std::numeric_limits<double>::infinity(),
+                                        dvec3(std::numeric_limits<double>::infinity()), -1, 0, 0};
+        const ClosestPoints found = query::closest_points(asked.target, some, options.radius);
+        const auto fill = [&](const auto& column, const auto& value_of) {
+          if (column.empty()) return;
+          column.fill(first, some.size(), [&](std::size_t i) {
+            const bool nothing = found.points[i - first].primitive < 0 || chunks.is_invalid(i - first);
+            const ClosestPoint& p = nothing ? kNothing : found.points[i - first];
+            return value_of(p);
+          });
+        };
+        const auto place_of = [&](const ClosestPoint& p) {
+          return p.primitive < 0 ? GeometryTable::Place{kNoGeometry, kNoPrimitive}
+                                 : asked.table.of(static_cast<std::uint32_t>(p.primitive));
+        };
+        fill(out.distance, [](const ClosestPoint& p) { return std::array{p.distance}; });
+        fill(out.point, [](const ClosestPoint& p) { return std::array{p.point.x, p.point.y, p.point.z}; });
+        fill(out.geometry, [&](const ClosestPoint& p) { return std::array{place_of(p).geometry}; });
+        fill(out.primitive, [&](const ClosestPoint& p) { return std::array{place_of(p).primitive}; });
+        fill(out.u, [](const ClosestPoint& p) { return std::array{p.u}; });
+        fill(out.v, [](const ClosestPoint& p) { return std::array{p.v}; });
+      });
+}
+
+QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out,
+                   const PointOptions& options) {
+  check_out(out.size(), points.size(), "inside");
+  return for_each_chunk(points, options,
+                        [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+                          const std::vector<std::uint32_t> counts = crossings_above(asked, some);
+                          if (out.empty()) return;
+                          out.fill(first, some.size(), [&](std::size_t i) {
+                            const bool in = counts[i - first] % 2 == 1 && !chunks.is_invalid(i - first);
+                            return std::array{static_cast<std::uint8_t>(in)};
+                          });
+                        });
+}
+
+QueryReport signed_distance(const Asked& asked, const Points& points, const ValuesOut& out,
+                            const PointOptions& options) {
+  check_out(out.size(), points.size(), "distance");
+  return for_each_chunk(
+      points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+        const ClosestPoints found = query::closest_points(asked.target, some, options.radius);
+        const std::vector<std::uint32_t> counts = crossings_above(asked, some);
+        if (out.empty()) return;
+        out.fill(first, some.size(), [&](std::size_t i) {
+          const double distance = chunks.is_invalid(i - first) ? std::numeric_limits<double>::infinity()
+                                                               : found.points[i - first].distance;
+          return std::array{counts[i - first] % 2 == 1 ? -distance : distance};
+        });
+      });
+}
+
+}  // namespace kdray::query
