@@ -50,10 +50,12 @@ class DriversThatFail : public testing::Test {
   }
 
   Outcome run(const std::vector<std::string>& arguments, RunOptions options) const {
-    std::map<std::string, std::string> environment = {{"OCL_ICD_VENDORS", (folder_ / "vendors").string()},
-                                                      {"KDRAY_CACHE_DIR", (folder_ / "cache").string()},
-                                                      {"KDRAY_TRIAL_SECONDS", fmt::format("{}", kLimit)},
-                                                      {"FAKE_DRIVER_LOG", (folder_ / "log").string()}};
+    std::map<std::string, std::string> environment = {
+        {"OCL_ICD_VENDORS", (folder_ / "vendors").string()},
+        {"KDRAY_CACHE_DIR", (folder_ / "cache").string()},
+        {"KDRAY_TRIAL_SECONDS", fmt::format("{}", kLimit)},
+        {"FAKE_DRIVER_LOG", (folder_ / "log").string()},
+        {"ASAN_OPTIONS", "handle_segv=0:handle_abort=0"}};  // crashes are to be crashes
     for (const auto& [name, value] : options.environment) environment[name] = value;
     options.environment = environment;
     return kdray(arguments, options);
