@@ -4,7 +4,8 @@
 //         nothing, and what it writes to stdout and stderr is lost: drivers chatter there. It leads a process
 //         group of its own, which is killed as a whole, so that what it has started goes with it.
 // Errors  None are thrown: a program that can't be started is an end like any other.
-// Threads Any; a Child serves one at a time.
+// Threads Any; a Child serves one at a time. The thread that starts it has to live as long as it: with that
+//         thread the child is killed (live_as_child_of).
 #pragma once
 
 #include <sys/types.h>

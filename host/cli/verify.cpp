@@ -77,7 +77,9 @@ int run(const VerifyArgs& o) {
   const Timer total;
   RunFiles files;
   check_options(o, files);
-  open_device(o.device);
+  DeviceOptions device = o.device;
+  if (!o.quiet) device.left_out = [](const std::string& why) { say(why); };
+  open_device(device);
   Timer step;
   const scene::Scene scene = load_model(o.scene);
   files.read_scene(scene.files);

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/error.h"
 #include "base/temporary_folder.h"
 #include "device/platform.h"
 #include "device/pocl_cache.h"
@@ -100,7 +101,12 @@ void try_in_children(std::vector<Case>& cases, const ListingOptions& options) {
 void show_only(const std::vector<const Driver*>& drivers) {
   static std::unique_ptr<Temporary> folder;
   folder = make_temporary_folder(kTemporary);
-  if (!folder) return;
+  if (!folder)
+    throw Error(
+        ErrorCode::no_device,
+        fmt::format("a driver of {} has to be left out, which takes a folder for temporary files: set "
+                    "TMPDIR to one of yours",
+                    vendors_folder().string()));
   show(folder->path() / "left", drivers);
   ::setenv(kVendors, (folder->path() / "left").c_str(), 1);
 }

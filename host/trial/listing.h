@@ -5,6 +5,7 @@
 //         driver that is the only one is asked in this process, under a mark (device/verdicts.h): there is
 //         nothing else to fall back on, and the usual case is as fast as without all this. Where a mark was
 //         left behind it goes to a child, too.
+// Errors  ErrorCode::no_device: a driver has to be left out, and that folder can't be made.
 // Threads The first call sets an environment variable where a driver is left out, and comes before OpenCL's
 //         first.
 #pragma once

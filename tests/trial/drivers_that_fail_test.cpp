@@ -1,132 +1,17 @@
 // What    Drivers that hang, crash and refuse, beside those of this machine: kdray leaves them out, says so
 //         in one line, remembers it, and uses what else there is. A driver of the tests' own
 //         (fake_driver.cpp) goes wrong as it is told.
-#include <fmt/format.h>
+#include "trial/failing_driver.h"
+
 #include <signal.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <thread>
-
-#include "cli/program.h"
-#include "support/folder.h"
-#include "trial/drivers.h"
 
 namespace kdray::test {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-constexpr const char* kName = "Fake device";
-constexpr double kLimit = 5;  // seconds of a trial, in place of the usual 15
-
-// Whether a process is there and no zombie.
-bool lives(int process) {
-  std::ifstream in("/proc/" + std::to_string(process) + "/stat");
-  std::string number, name, state;
-  return in >> number >> name >> state && state != "Z";
-}
-
-class DriversThatFail : public testing::Test {
- protected:
-  void SetUp() override {
-    KDRAY_NEED_DEVICE();
-    fs::create_directory(folder_ / "vendors");
-    for (const trial::Driver& d : trial::registered_drivers())
-      if (!d.is_library) fs::copy_file(d.file, folder_ / "vendors" / d.file.filename());
-    // What is known of this machine's devices before the other driver is there.
-    ASSERT_TRUE(succeeds(run({"devices"}, RunOptions{})));
-    register_fake();
-    ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "1", "-o", folder_ / "balls.nff"})));
-  }
-
-  void register_fake() const { folder_.put("vendors/fake.icd", FAKE_DRIVER_LIBRARY "\n"); }
-  void leave_fake_alone() const {
-    for (const auto& entry : fs::directory_iterator(folder_ / "vendors"))
-      if (entry.path().filename() != "fake.icd") fs::remove(entry.path());
-  }
-
-  Outcome run(const std::vector<std::string>& arguments, RunOptions options) const {
-    std::map<std::string, std::string> environment = {{"OCL_ICD_VENDORS", (folder_ / "vendors").string()},
-                                                      {"KDRAY_CACHE_DIR", (folder_ / "cache").string()},
-                                                      {"KDRAY_TRIAL_SECONDS", fmt::format("{}", kLimit)},
-                                                      {"FAKE_DRIVER_LOG", (folder_ / "log").string()}};
-    for (const auto& [name, value] : options.environment) environment[name] = value;
-    options.environment = environment;
-    return kdray(arguments, options);
-  }
-  // The driver goes wrong in this way.
-  Outcome run(const std::vector<std::string>& arguments, const std::string& wrong) const {
-    return run(arguments, {.environment = {{"FAKE_DRIVER", wrong}}});
-  }
-  std::vector<std::string> render(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments = {"render", folder_ / "balls.nff", "--size", "32x32",
-                                          "-o",     folder_ / "a.png"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-  }
-
-  // How often the driver was asked for this.
-  std::size_t n_asked(const std::string& where) const { return processes_asked(where).size(); }
-  std::vector<int> processes_asked(const std::string& where) const {
-    std::vector<int> processes;
-    std::istringstream log(folder_.get("log"));
-    std::string what;
-    for (int process = 0; log >> what >> process;)
-      if (what == where) processes.push_back(process);
-    return processes;
-  }
-  std::size_t n_builds() const { return n_asked("build"); }
-
-  testing::AssertionResult all_have_ended() const {
-    for (const char* const where : {"load", "list", "build"})
-      for (const int process : processes_asked(where)) {
-        for (int i = 0; i < 500 && lives(process); ++i)
-          std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        if (lives(process)) return testing::AssertionFailure() << process << " lives";
-      }
-    return testing::AssertionSuccess();
-  }
-
-  // The device is listed as not usable for that reason, at once the next time, and another one renders.
-  void expect_left_out(const std::string& wrong, const std::string& why) const {
-    SCOPED_TRACE(wrong);
-    const Outcome first = run({"devices"}, wrong);
-    ASSERT_TRUE(succeeds(first));
-    const std::string line = fmt::format("not usable: {} {}", kName, why);
-    EXPECT_NE(first.out.find(line), std::string::npos) << first.out;
-    EXPECT_LT(first.seconds, kLimit + 10);
-    const std::size_t builds = n_builds();
-    EXPECT_NE(run({"devices"}, wrong).out.find(line), std::string::npos) << "not remembered";
-    const Outcome picture = run(render(), wrong);
-    EXPECT_TRUE(succeeds(picture));
-    EXPECT_NE(picture.err.find(fmt::format("kdray: {} {}", kName, why)), std::string::npos) << picture.err;
-    EXPECT_TRUE(fs::exists(folder_ / "a.png"));
-    EXPECT_EQ(n_builds(), builds) << "it was tried again";
-    EXPECT_TRUE(all_have_ended());
-  }
-  // The same for a driver that can't be asked for its devices.
-  void expect_driver_left_out(const std::string& wrong, const std::string& why) const {
-    SCOPED_TRACE(wrong);
-    const Outcome first = run({"devices"}, wrong);
-    ASSERT_TRUE(succeeds(first));
-    const std::string line = fmt::format("left out: the driver {} (fake.icd) {}", FAKE_DRIVER_LIBRARY, why);
-    EXPECT_NE(first.out.find(line), std::string::npos) << first.out;
-    EXPECT_EQ(first.out.find(kName), std::string::npos) << first.out;
-    const std::size_t loads = n_asked("load");
-    EXPECT_NE(run({"devices"}, wrong).out.find(line), std::string::npos) << "not remembered";
-    const Outcome picture = run(render(), wrong);
-    EXPECT_TRUE(succeeds(picture));
-    EXPECT_NE(picture.err.find("(fake.icd) " + why), std::string::npos) << picture.err;
-    EXPECT_EQ(n_asked("load"), loads) << "it was tried again";
-    EXPECT_TRUE(all_have_ended());
-  }
-
-  const Folder folder_;
-};
 
 TEST_F(DriversThatFail, OneThatHangsInTheSelfTest) {
   expect_left_out("hang-build", "takes longer than 5 s for the self-test");
@@ -210,11 +95,12 @@ TEST_F(DriversThatFail, AnotherVersionIsTriedAnew) {
 }
 
 TEST_F(DriversThatFail, ALibraryThatHasChangedIsAskedAnew) {
-  fs::copy_file(FAKE_DRIVER_LIBRARY, folder_ / "libfake.so");
+  std::filesystem::copy_file(FAKE_DRIVER_LIBRARY, folder_ / "libfake.so");
   folder_.put("vendors/fake.icd", (folder_ / "libfake.so").string() + "\n");
   EXPECT_NE(run({"devices"}, "crash-list").out.find("left out"), std::string::npos);
   EXPECT_NE(run({"devices"}, "refuse-build").out.find("left out"), std::string::npos) << "not remembered";
-  fs::last_write_time(folder_ / "libfake.so", fs::file_time_type::clock::now() + std::chrono::hours(1));
+  std::filesystem::last_write_time(folder_ / "libfake.so",
+                                   std::filesystem::file_time_type::clock::now() + std::chrono::hours(1));
   EXPECT_EQ(run({"devices"}, "refuse-build").out.find("left out"), std::string::npos);
 }
 
@@ -305,40 +191,6 @@ TEST_F(DriversThatFail, TheOnlyOneMayBeADriverThatCannotBeAsked) {
   EXPECT_NE(second.out.find("crashes (SIGSEGV) when it is asked for its devices"), std::string::npos)
       << second.out;
   EXPECT_TRUE(fails_with(run(render(), "crash-list"), 3, "crashes (SIGSEGV) when it is asked"));
-}
-
-// Whoever uses the library has another program, which can't try anything.
-class LibraryUser : public DriversThatFail {
- protected:
-  Outcome use(const std::string& wrong, const std::string& program) const {
-    return run(
-        {folder_ / "cache" / "programs"},
-        {.program = LIBRARY_USER, .environment = {{"FAKE_DRIVER", wrong}, {"KDRAY_PROGRAM", program}}});
-  }
-};
-
-TEST_F(LibraryUser, IsServedByKdray) {
-  const Outcome first = use("crash-build", KDRAY_PROGRAM);
-  ASSERT_TRUE(succeeds(first));
-  EXPECT_NE(first.out.find("Fake device: Fake device crashes (SIGSEGV)"), std::string::npos) << first.out;
-  EXPECT_NE(first.out.find(": usable"), std::string::npos) << first.out;
-  EXPECT_EQ(use("crash-build", "/none").out, first.out) << "what is known needs no program";
-}
-
-TEST_F(LibraryUser, ProgramsThatAreNotKdrayGiveNoVerdict) {
-  for (const char* const program : {"/bin/true", "/bin/false", "/bin/cat"}) {
-    const Outcome refused = use("refuse-build", program);
-    ASSERT_TRUE(succeeds(refused));
-    EXPECT_NE(refused.out.find("the device's compiler refuses"), std::string::npos) << refused.out;
-  }
-}
-
-TEST_F(LibraryUser, WithoutAProgramItIsSurvivedTheSecondTime) {
-  EXPECT_EQ(use("crash-build", "/none").signal, SIGSEGV);
-  const Outcome second = use("crash-build", "/none");
-  ASSERT_TRUE(succeeds(second));
-  EXPECT_NE(second.out.find("has ended or held up a program that tested it"), std::string::npos)
-      << second.out;
 }
 
 }  // namespace
