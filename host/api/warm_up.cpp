@@ -1,6 +1,8 @@
 // What    Programs made before they are wanted: for each of the forms of trees that nearly all scenes have, those
 //         of frames and of queries, with all that a scene may need. A small scene is brought into that form,
 //         and each program is launched on it once, since drivers compile the last of it then.
+#include <filesystem>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -81,11 +83,23 @@ class Warming {
   wavefront::Programs programs_;
 };
 
+[[noreturn]] void report_unkept(const std::filesystem::path& folder) {
+  throw input_error(folder.string(), 0, "no program can be kept there",
+                    "free some space, or name another folder (--cache, KDRAY_CACHE_DIR)");
+}
+
+// Before anything is compiled for nothing.
+void check(const std::filesystem::path& folder) {
+  if (folder.empty())
+    throw Error(ErrorCode::usage, "there is no folder to keep programs in; name one with --cache");
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder, error)) report_unkept(folder);
+}
+
 // Writes what was compiled, so that nothing of it is lost where what follows is broken off.
 void keep(const DeviceOptions& options, device::ProgramCache& cache) {
-  if (cache.keep() == 0)
-    throw input_error(options.programs.string(), 0, "no program can be kept there",
-                      "free some space, or name another folder (--cache, KDRAY_CACHE_DIR)");
+  if (cache.keep() == 0) report_unkept(options.programs);
 }
 
 }  // namespace
@@ -97,8 +111,7 @@ namespace kdray {
 std::vector<WarmProgram> warm_up(const DeviceOptions& options,
                                  const std::function<void(const WarmProgram&)>& told) {
   using namespace api;
-  if (options.programs.empty())
-    throw Error(ErrorCode::usage, "there is no folder to keep programs in; name one with --cache");
+  check(options.programs);
   const OpenedDevices opened = open_devices(options);
   const tune::Database tunings = read_tunings(options);
   device::ProgramCache& cache = *builds_of(options).cache;
