@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "conformance/samples.h"
 #include "image/render.h"
 #include "image/scenes.h"
 #include "oracle/build_scene.h"
@@ -165,6 +166,11 @@ scene::Scene soup(unsigned seed, int n) {
     if (i % 4 == 2) b.triangle(p, p + vector(size), p + vector(size), any);
     if (i % 4 == 3) b.triangle(p, p + vector(3 * size), p + vector(0.05 * size), any);
   }
+  Draw draw(seed);
+  b.change([&](scene::Scene& s) {
+    for (int i = 0; i < n / 20; ++i)
+      primitives::for_each_kind([&](auto kind) { Samples<decltype(kind)>::add(s, 0, draw); });
+  });
   return b.scene();
 }
 

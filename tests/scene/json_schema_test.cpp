@@ -127,6 +127,13 @@ TEST_F(Schema, ListsTheKeysOfTheReader) {
   }
 }
 
+// Or it is no object of any scene.
+TEST_F(Schema, RefersToEachDefinition) {
+  const std::string all = root_.dump();
+  for (const auto& [name, rule] : root_.at("$defs").items())
+    EXPECT_NE(all.find("\"#/$defs/" + name + "\""), std::string::npos) << name;
+}
+
 TEST_F(Schema, EveryKeyIsRead) {
   for (const JsonKeys& keys : json_keys::kAll) {
     const std::string name(keys.name);
