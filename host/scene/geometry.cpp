@@ -119,7 +119,7 @@ class Maker {
         out_.sources[end++] = static_cast<std::uint32_t>(i);
         const Box box = bounds_of(t);
         found.bounds.grow(box);
-        found.fine += is_fine(box);
+        found.fine += !is_stitch(t) && is_fine(box);  // a stitch has no shadow to lose
       }
       kept[first / kGrain] = end - first;
       facts[first / kGrain] = found;

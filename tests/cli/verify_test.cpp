@@ -81,6 +81,33 @@ TEST(VerifyCommand, FlippedAndDoubledFacesByTheirNumbers) {
   EXPECT_TRUE(says(run, "[note] doubled faces     1 whose")) << run.err;
 }
 
+// A side has a corner more on the edge to the bottom; a triangle without area is in between, another has two
+// corners in one.
+TEST(VerifyCommand, StitchesCloseAndAreCounted) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene =
+      folder.put("stitched.obj", std::string(kCorners) +
+                                     "v 0.5 0 0\nf 5 6 7 8\nf 1 9 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n" +
+                                     kBottom + "f 1 2 9\nf 9 9 2\n");
+  const Outcome run = verify(scene, {"--stats", "-"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_TRUE(says(run, "1, 1 of them watertight")) << run.err;
+  EXPECT_TRUE(says(run, "1 triangle without area")) << run.err;
+  EXPECT_TRUE(says(run, "[note] degenerate        1 with corners in one place")) << run.err;
+  const Json mesh = Json::parse(run.out)["mesh"];
+  EXPECT_EQ(mesh["stitches"], 1);
+  EXPECT_EQ(mesh["dropped_degenerate"], 1);
+  EXPECT_EQ(mesh["open_edges"]["count"], 0);
+  const Json info = Json::parse(kdray({"info", scene.string(), "--json"}).out)["primitives"];
+  EXPECT_EQ(info["stitches"], 1);
+  EXPECT_EQ(info["dropped_degenerate"], 1);
+  EXPECT_EQ(info["triangles"], 15);
+  EXPECT_NE(
+      kdray({"info", scene.string()}).out.find("; 1 of the triangles without area; 1 degenerate dropped"),
+      std::string::npos);
+}
+
 TEST(VerifyCommand, SpheresConesAndNothing) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
