@@ -36,23 +36,27 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // moved towards the scene until it isn't: what is closest stays so, but for 2^-50 of the distance.
 struct Places {
   const LocalSpace& space;
-  double far = space.world_length(kPointReach);
-
-  bool is_far(const dvec3& from_center) const { return !(largest_component(from_center) <= far); }
 
   dvec3 place_of(const dvec3& point) const {
-    const dvec3 from_center = point - space.center;
-    return is_far(from_center) ? direction_of(point) * kPointReach : from_center * space.scale;
+    const dvec3 local = local_of(point);
+    return is_far(local) ? safe_normalize(half_way(point)) * kPointReach : local;
   }
 
-  // Halved, so that the difference of the largest doubles is one.
-  dvec3 direction_of(const dvec3& point) const { return safe_normalize(0.5 * point - 0.5 * space.center); }
-
-  // Of a far point, whose place was another, from the place itself.
+  // Of a far point, whose place was another, from the point itself.
   double distance(const dvec3& point, const dvec3& closest, double local) const {
+    if (!is_far(local_of(point))) return space.world_length(local);
+    return 2 * safe_length(half_way(point) - 0.5 * (closest / space.scale));
+  }
+
+ private:
+  static bool is_far(const dvec3& local) { return !(largest_component(local) <= kPointReach); }
+
+  // The difference of the largest doubles isn't one, that of their halves is.
+  dvec3 half_way(const dvec3& point) const { return 0.5 * point - 0.5 * space.center; }
+
+  dvec3 local_of(const dvec3& point) const {
     const dvec3 from_center = point - space.center;
-    if (!is_far(from_center)) return space.world_length(local);
-    return 2 * safe_length(0.5 * point - 0.5 * space.center - 0.5 * (closest / space.scale));
+    return is_finite(from_center) ? from_center * space.scale : half_way(point) * (2 * space.scale);
   }
 };
 

@@ -144,6 +144,20 @@ TEST_P(ClosestPromises, PointsAtTheEndOfDoublesAreAnswered) {
   }
 }
 
+// Where the way from the scene's centre is no double.
+TEST_P(ClosestPromises, ScenesAtTheEndOfDoublesAreToo) {
+  Asked asked(moved(soup(20, 0), 1e307, {-1e308, 0, 0}), GetParam());
+  const std::vector<dvec3> points = {{0.5e308, 0, 0}, {1.6e308, 1e307, 0}, {-1e308, 1e306, 3e306}};
+  const std::vector<ClosestPoint> found = ask(asked, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_GE(found[i].primitive, 0) << i;
+    const double expected = safe_length(0.25 * points[i] - 0.25 * found[i].point);
+    if (4 * expected < kInfinity) {
+      EXPECT_NEAR(0.25 * found[i].distance / expected, 1, 1e-9) << i;
+    }
+  }
+}
+
 TEST_P(ClosestPromises, WhatIsNoPointIsRefused) {
   DeviceScene asked(soup(3, 0), GetParam());
   const auto with = [&](const dvec3& point, double radius) {

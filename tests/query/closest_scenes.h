@@ -37,7 +37,7 @@ scene::Scene all_kinds();
 // Triangles alone are moved.
 scene::Scene moved(scene::Scene s, double scale, const dvec3& by);
 
-// In the world.
+// They are in the world.
 std::vector<dvec3> points_for(const DeviceScene& asked, std::size_t n);
 
 }  // namespace kdray::test
