@@ -33,7 +33,7 @@ TEST_F(Intervals, AreOpen) {
   EXPECT_EQ(count(ray_from(o, d, 0, -1)), 0);
   EXPECT_EQ(count(ray_from(o, d, 3, 3)), 0);
   EXPECT_EQ(count(ray_from(o, d, 4, 2)), 0);
-  // Behind the start.
+  // These lie behind the start.
   EXPECT_EQ(distances(ray_from(o, -d, -1e30f)), (std::vector<float>{-4, -2}));
   EXPECT_EQ(distances(ray_from({0.25f, 0.5f, 0}, d, -5)), (std::vector<float>{-1, 1}));
   EXPECT_EQ(distances(ray_from({0.25f, 0.5f, 0}, d, -5, 0)), std::vector<float>{-1});

@@ -76,7 +76,7 @@ TEST_F(Lists, GiveTheFirstSoManyAndSayWhetherThereAreMore) {
   std::vector<Ray> rays;
   for (int i = 0; i < 200; ++i) {
     stress::Random random(9, static_cast<std::uint64_t>(i));
-    // Of one to a hundred squares.
+    // They end below, in or above the stack.
     Ray r = own.upward(random.uniform(0, 8), random.uniform(0, 8));
     r.t_max = static_cast<float>(random.uniform(0, 110));
     rays.push_back(r);
