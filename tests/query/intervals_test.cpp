@@ -74,6 +74,19 @@ TEST_F(Intervals, ReachFarRays) {
   }
 }
 
+// What was done to one chunk's rays isn't done to the next one's.
+TEST_F(Intervals, ReachFarRaysBesideOthers) {
+  std::vector<Ray> rays(200000, ray_from({0.25f, 0.5f, -3}, {0, 0, 1}));
+  for (const std::size_t i : {0u, 1u, 70000u, 199999u}) rays[i] = ray_from({0, 0.25f, -1e30f}, {0, 0, 1e30f});
+  const query::AllHits all = cube().all(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(all.splits[i + 1] - all.splits[i], 2) << i;
+    const bool far = rays[i].origin[2] < -3;
+    ASSERT_NEAR(all.t[all.splits[i]], far ? 1 : 2, 1e-5) << i;
+    ASSERT_NEAR(all.t[all.splits[i] + 1], far ? 1 : 4, 1e-5) << i;
+  }
+}
+
 TEST_F(Intervals, ReachScenesThatNoFloatScales) {
   for (const double scale : {1e-36, 1e36}) {
     Asked asked(stress::placed(stress::cube(), scale, dvec3(0)), Space::worlds);
