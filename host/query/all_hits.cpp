@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "query/check_rays.h"
 #include "query/passes.h"
 
 namespace kdray::query {
@@ -122,30 +121,32 @@ class Collection {
 
 }  // namespace
 
-LocalHits all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options) {
-  const RaysSeen seen = look_at(rays);
-  if (!options.faulty_miss) refuse_faulty(rays, seen);
-  LocalHits all;
+void all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options,
+              LocalHits& all) {
   all.splits.resize(rays.size() + 1);
   all.splits[0] = 0;
   all.more.resize(rays.size());
-  if (rays.empty()) return all;
-  Passes passes(target, rays.size(), seen, options);
+  all.t.clear(), all.primitive.clear(), all.u.clear(), all.v.clear();
+  if (rays.empty()) return;
+  Passes passes(target, rays.size(), options);
   Collection collection(all, passes, options.max_hits);
   for (std::size_t first = 0, n = 0; first < rays.size(); first += n) {
     n = passes.next_chunk(rays.size() - first);
     collection.add(rays.subspan(first, n), masks_of(options, first, n));
   }
+}
+
+LocalHits all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options) {
+  LocalHits all;
+  all_hits(target, rays, options, all);
   return all;
 }
 
 std::vector<std::uint32_t> count_hits(const Target& target, std::span<const Ray> rays,
                                       const CollectOptions& options) {
-  const RaysSeen seen = look_at(rays);
-  if (!options.faulty_miss) refuse_faulty(rays, seen);
   std::vector<std::uint32_t> counts(rays.size());
   if (rays.empty()) return counts;
-  Passes passes(target, rays.size(), seen, options);
+  Passes passes(target, rays.size(), options);
   for (std::size_t first = 0, n = 0; first < rays.size(); first += n) {
     n = passes.next_chunk(rays.size() - first);
     const std::span<const QuerySpan> spans =

@@ -5,8 +5,8 @@
 //         primitive. A hit counts where t_min < t < t_max; one in the start point, at t = 0, where t_min is
 //         0. A ray has any number of hits: what goes beyond a list on the device is found in further passes,
 //         in bounded memory but for the answer's own.
-// Errors  ErrorCode::input for a ray that is not one (check_rays.h), unless such are to miss; ErrorCode::usage
-//         for the binary walk, which doesn't find them.
+// Errors  ErrorCode::input for a ray that is not one (check_rays.h), unless such are to miss;
+//         ErrorCode::usage for the binary walk, which doesn't find all hits.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +37,9 @@ struct LocalHits {
   RawVector<std::uint8_t> more;        // of each ray, 1: it has more than max_hits
 };
 LocalHits all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options = {});
+
+// The same in place of what `all` held, whose memory serves again.
+void all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options, LocalHits& all);
 
 // Of each ray; max_hits where there are more.
 std::vector<std::uint32_t> count_hits(const Target& target, std::span<const Ray> rays,

@@ -5,11 +5,22 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include "base/error.h"
 
 namespace kdray::query {
+
+namespace {
+
+// Of a direction's largest component, where the kernels leave it as long as it is.
+constexpr float kShortest = 0x1p-8f, kLongest = 0x1p8f;
+
+}  // namespace
 
 const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max) {
   if (!is_finite(origin)) return "its origin is not finite";
@@ -27,47 +38,79 @@ const char* fault_of(const Ray& ray) {
 
 namespace {
 
-// fault_of() without a branch: 0 times what is finite is 0.
-bool is_ray(const Ray& r) {
-  const float nothing = 0 * r.origin[0] + 0 * r.origin[1] + 0 * r.origin[2] + 0 * r.direction[0] +
-                        0 * r.direction[1] + 0 * r.direction[2] + 0 * r.t_min;
-  const bool goes = (r.direction[0] != 0) | (r.direction[1] != 0) | (r.direction[2] != 0);
-  return (nothing == 0) & goes & (r.t_max == r.t_max);
-}
+// The bits of floats without signs are ordered as their sizes are; what is no number comes last.
+constexpr std::uint32_t kInfinite = 0x7f800000u;
 
-float larger(float a, float b) {
-  return a > b ? a : b;
-}
+// What some rays come to, over which compilers make vectors of a ray's eight words: all their other forms
+// branch, and took a tenth of the time of tracing coherent rays.
+class Looked {
+ public:
+  void at(const Ray& ray) {
+    const auto words = std::bit_cast<std::array<std::uint32_t, 8>>(ray);
+    std::array<std::uint32_t, 8> size{};
+    for (std::size_t k = 0; k < 8; ++k) size[k] = words[k] & 0x7fffffffu;
+    // These set the sign's bit where a word is infinite or no number; of t_max, no number alone.
+    for (std::size_t k = 0; k < 8; ++k) beyond_[k] |= size[k] + (k == 7 ? 0x007fffffu : 0x00800000u);
+    for (std::size_t k = 0; k < 8; ++k)
+      largest_[k] = std::max(largest_[k], static_cast<std::int32_t>(size[k]));
+    const std::uint32_t length = std::max({size[4], size[5], size[6]});
+    shortest_ = std::min(shortest_, length);
+    longest_ = std::max(longest_, length);
+  }
+  void add(const Looked& other) {
+    for (std::size_t k = 0; k < 8; ++k) {
+      beyond_[k] |= other.beyond_[k];
+      largest_[k] = std::max(largest_[k], other.largest_[k]);
+    }
+    shortest_ = std::min(shortest_, other.shortest_);
+    longest_ = std::max(longest_, other.longest_);
+  }
 
-float largest(const float (&v)[3]) {
-  return larger(std::abs(v[0]), larger(std::abs(v[1]), std::abs(v[2])));
-}
+  bool all_are_rays() const {
+    std::uint32_t any = 0;
+    for (const std::uint32_t word : beyond_) any |= word;
+    return any >> 31 == 0 && shortest_ > 0;
+  }
+  bool all_are_ordinary() const {
+    return shortest_ >= std::bit_cast<std::uint32_t>(kShortest) &&
+           longest_ < std::bit_cast<std::uint32_t>(kLongest);
+  }
+  float farthest() const {
+    return std::bit_cast<float>(
+        static_cast<std::uint32_t>(std::max({largest_[0], largest_[1], largest_[2]})));
+  }
 
-RaysSeen both(const RaysSeen& a, const RaysSeen& b) {
-  return {a.n_rays, std::min(a.first_fault, b.first_fault), a.ordinary && b.ordinary,
-          larger(a.farthest, b.farthest)};
-}
+ private:
+  std::array<std::uint32_t, 8> beyond_{};
+  std::array<std::int32_t, 8> largest_{};
+  std::uint32_t shortest_ = kInfinite, longest_ = 0;
+};
+
+static_assert(sizeof(Ray) == 32 && offsetof(Ray, direction) == 16 && offsetof(Ray, t_max) == 28);
 
 }  // namespace
 
 RaysSeen look_at(std::span<const Ray> rays) {
-  const RaysSeen nothing{rays.size(), rays.size(), true, 0};
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, rays.size(), 1 << 14), nothing,
-      [&](const tbb::blocked_range<std::size_t>& range, RaysSeen seen) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          if (!is_ray(rays[i])) seen.first_fault = std::min(seen.first_fault, i);
-          seen.ordinary &= is_ordinary(rays[i]);
-          seen.farthest = larger(largest(rays[i].origin), seen.farthest);
-        }
-        return seen;
+  const Looked seen = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, rays.size(), 1 << 14), Looked(),
+      [&](const tbb::blocked_range<std::size_t>& range, Looked looked) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) looked.at(rays[i]);
+        return looked;
       },
-      both);
+      [](Looked a, const Looked& b) {
+        a.add(b);
+        return a;
+      });
+  std::size_t fault = rays.size();
+  if (!seen.all_are_rays())
+    fault = static_cast<std::size_t>(std::find_if(rays.begin(), rays.end(), fault_of) - rays.begin());
+  const float farthest = seen.farthest();
+  return {rays.size(), fault, seen.all_are_ordinary(), std::isnan(farthest) ? HUGE_VALF : farthest};
 }
 
-void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen) {
+void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen, std::size_t first) {
   if (seen.first_fault == seen.n_rays) return;
-  throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", seen.first_fault,
+  throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", first + seen.first_fault,
                                             fault_of(rays[seen.first_fault])));
 }
 
@@ -79,13 +122,14 @@ std::vector<Ray> without_faulty(std::span<const Ray> rays) {
   constexpr Ray kNone{{0, 0, 0}, 0, {0, 0, 1}, -1};
   std::vector<Ray> kept(rays.begin(), rays.end());
   std::replace_if(
-      kept.begin(), kept.end(), [](const Ray& ray) { return !is_ray(ray); }, kNone);
+      kept.begin(), kept.end(), [](const Ray& ray) { return fault_of(ray) != nullptr; }, kNone);
   return kept;
 }
 
 bool is_ordinary(const Ray& ray) {
-  const float most = largest(ray.direction);
-  return (most >= 0x1p-8f) & (most < 0x1p8f);
+  const auto& d = ray.direction;
+  const float most = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+  return most >= kShortest && most < kLongest;
 }
 
 }  // namespace kdray::query

@@ -1,6 +1,6 @@
 // What    Rays from outside that are none: what is wrong with them, and their refusal.
-// Errors  check_rays, refuse_faulty: ErrorCode::input for the first ray that is none, by its number: NaN anywhere, an
-//         infinite origin or t_min, a direction that is infinite or 0.
+// Errors  check_rays, refuse_faulty: ErrorCode::input for the first ray that is none, by its number: NaN
+//         anywhere, an infinite origin or t_min, a direction that is infinite or 0.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace kdray::query {
 const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max);
 const char* fault_of(const Ray& ray);
 
-// What one look at all rays tells.
+// What one look at rays tells.
 struct RaysSeen {
   std::size_t n_rays;
   std::size_t first_fault;  // the number of the first that is none; n_rays: all are
@@ -25,8 +25,8 @@ struct RaysSeen {
 };
 RaysSeen look_at(std::span<const Ray> rays);
 
-// Throws unless `seen` has no fault.
-void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen);
+// Throws unless `seen` has no fault. `first`: the number of the first of these rays.
+void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen, std::size_t first = 0);
 
 void check_rays(std::span<const Ray> rays);
 

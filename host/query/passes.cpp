@@ -10,8 +10,8 @@ using layout::QuerySpan;
 
 namespace {
 
-// Hits that there is room for in a launch: 8 MiB, which stay in a cache on their way to where they are packed;
-// and more for a GPU, which wants a million rays at a time.
+// Hits that there is room for in a launch: 8 MiB, which stay in a cache on their way to where they are
+// packed; and more for a GPU, which wants a million rays at a time.
 constexpr std::size_t kLaunchHits = std::size_t{1} << 19, kGpuLaunchHits = std::size_t{1} << 23;
 // Of these a ray has room for so many in its first pass: more where more than one ray of sixteen had more.
 constexpr std::uint32_t kLeastFirst = 8, kMostFirst = 64;
@@ -45,9 +45,9 @@ void Hits::copy(std::size_t first, std::size_t n, const HitArrays& to, std::size
   std::copy_n(v.begin() + from, n, to.v + at);
 }
 
-Passes::Passes(const Target& target, std::size_t n_rays, const RaysSeen& seen, const CollectOptions& options)
+Passes::Passes(const Target& target, std::size_t n_rays, const CollectOptions& options)
     : target_(target),
-      seen_(seen),
+      faulty_miss_(options.faulty_miss),
       max_hits_(options.max_hits),
       capacity_(std::clamp(options.max_hits, 1u, kLeastFirst)),
       traversal_(walk_for(target, options.traversal)),
@@ -62,10 +62,15 @@ std::size_t Passes::next_chunk(std::size_t left) const {
 }
 
 std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
+  seen_ = look_at(rays);
+  if (!faulty_miss_) refuse_faulty(rays, seen_, n_taken_);
+  n_taken_ += rays.size();
   rays_ = rays;
   masks_ = masks;
   if (seen_.first_fault < seen_.n_rays) rays_ = kept_ = without_faulty(rays);
-  if (!near_rays_.all_near(seen_.farthest)) rays_ = near_rays_.take(rays_);
+  const bool all_near = near_rays_.all_near(seen_.farthest);
+  const std::span<const Ray> taken = near_rays_.take(all_near ? std::span<const Ray>() : rays_);
+  if (!all_near) rays_ = taken;
   const std::span<const QuerySpan> spans = first_.find({rays_, masks_}, !seen_.ordinary, {}, capacity_);
   const auto n_more =
       std::count_if(spans.begin(), spans.end(), [](const QuerySpan& s) { return s.more != 0; });

@@ -35,22 +35,22 @@ struct Hits {
 
 class Passes {
  public:
-  // `seen`: of all rays.
-  Passes(const Target& target, std::size_t n_rays, const RaysSeen& seen, const CollectOptions& options);
+  Passes(const Target& target, std::size_t n_rays, const CollectOptions& options);
 
   // How many of the rays that are left the next chunk has.
   std::size_t next_chunk(std::size_t left) const;
   HitLists& first_lists() { return first_; }
   const NearRays& near_rays() const { return near_rays_; }  // of the chunk in work
 
-  // The first pass of a chunk: what it found of each ray.
+  // The first pass of the next chunk: what it found of each ray. (Looked at just before they are traced, the
+  // rays come from memory once.)
   std::span<const layout::QuerySpan> first(std::span<const Ray> rays, std::span<const std::uint32_t> masks);
 
   // Told n more hits of ray i of the chunk, in their order, and whether it has others.
   using Found = std::function<void(std::uint32_t i, Hits&& hits, std::uint32_t n, bool more)>;
 
-  // Finds all that the chunk's rays have beyond the first pass, but no more than max_hits of a ray. `spans` is
-  // what first() returned; `hits` are empty unless they are wanted.
+  // Finds all that the chunk's rays have beyond the first pass, but no more than max_hits of a ray. `spans`
+  // is what first() returned; `hits` are empty unless they are wanted.
   void others(std::span<const layout::QuerySpan> spans, bool want_hits, const Found& found);
 
  private:
@@ -62,15 +62,18 @@ class Passes {
   Hits packed(std::span<const layout::QuerySpan> spans);
 
   const Target& target_;
-  RaysSeen seen_;
+  bool faulty_miss_;
   std::uint32_t max_hits_, capacity_;
   Traversal traversal_;
   bool masked_;
   NearRays near_rays_;
   HitLists first_;
   std::unique_ptr<HitLists> later_;
-  std::vector<Ray> kept_;      // of the chunk in work, where some rays are none
-  std::span<const Ray> rays_;  // of the chunk in work
+  std::size_t n_taken_ = 0;  // rays of the chunks so far
+  // Of the chunk in work: its rays, and what holds them where some are none.
+  RaysSeen seen_{};
+  std::span<const Ray> rays_;
+  std::vector<Ray> kept_;
   std::span<const std::uint32_t> masks_;
 };
 

@@ -4,11 +4,14 @@
 //         `space`: the scene's centre and scale (host/math/local_space.h).
 // Shape   The wide walk has one ray to a work-item, the others KDRAY_CHUNK rays; pack_hits has one.
 // Cost    collect_hits reads 32 B of the ray and the tree, writes 16 B and 16 B for each hit.
-// Errors  A ray whose walk failed has n_hits KDRAY_SPAN_INVALID; the host checks for it.
+// Errors  There is no kernel in double, and none that walks the binary tree. A ray whose walk failed has
+//         n_hits KDRAY_SPAN_INVALID; the host checks for it.
 #include "layout/arguments.h"
 #include "layout/traversal.h"
 #include "traverse/collect_batch.clh"
 #include "traverse/collect_packet.clh"
+
+#if KDRAY_PRECISION == 32  // the wide form has no other
 
 // See walk_rays of walk.clh.
 inline void collect_rays(const SceneArrays* scene, const RaySource* source, const Lists* lists, u32 first,
@@ -67,3 +70,5 @@ __kernel void pack_hits(KDRAY_PARAMETERS(KDRAY_PACK_HITS_ARGUMENTS)) {
     out_v[first + k] = hits[k].v;
   }
 }
+
+#endif

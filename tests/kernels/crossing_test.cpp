@@ -49,17 +49,19 @@ class Numbers {
  public:
   explicit Numbers(unsigned seed) : random_(seed) {}
   float any() {
-    const std::uint32_t mantissa = random_() % 4 == 0 ? random_() >> 9 : (random_() % 8) << 20;
-    const std::uint32_t exponent = few_ ? base_ + random_() % 3 : 1 + random_() % 186;
-    const float v = std::bit_cast<float>((random_() & 1u) << 31 | exponent << 23 | mantissa);
-    return random_() % 16 == 0 ? 0.0f : v;
+    const std::uint32_t mantissa = next() % 4 == 0 ? next() >> 9 : (next() % 8) << 20;
+    const std::uint32_t exponent = few_ ? base_ + next() % 3 : 1 + next() % 186;
+    const float v = std::bit_cast<float>((next() & 1u) << 31 | exponent << 23 | mantissa);
+    return next() % 16 == 0 ? 0.0f : v;
   }
   void choose() {
-    few_ = random_() % 4 != 0;
-    base_ = 1 + random_() % 180;
+    few_ = next() % 4 != 0;
+    base_ = 1 + next() % 180;
   }
 
  private:
+  std::uint32_t next() { return static_cast<std::uint32_t>(random_()); }
+
   std::mt19937 random_;
   bool few_ = true;
   std::uint32_t base_ = 1;

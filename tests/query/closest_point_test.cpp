@@ -9,9 +9,9 @@
 #include <cstring>
 #include <limits>
 
-#include "query/device_scene.h"
 #include "query/closest_judge.h"
 #include "query/closest_scenes.h"
+#include "query/device_scene.h"
 #include "query/exact_distance.h"
 #include "support/device.h"
 #include "support/errors.h"

@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "query/device_scene.h"
 #include "query/closest_point.h"
 #include "query/closest_scenes.h"
+#include "query/device_scene.h"
 #include "support/device.h"
 #include "support/errors.h"
 
@@ -21,7 +21,8 @@ using query::ClosestPoint;
 constexpr double kInfinity = std::numeric_limits<double>::infinity(),
                  kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<ClosestPoint> ask(DeviceScene& asked, const std::vector<dvec3>& points, double radius = kInfinity) {
+std::vector<ClosestPoint> ask(DeviceScene& asked, const std::vector<dvec3>& points,
+                              double radius = kInfinity) {
   return query::closest_points(asked.target(), points, radius).points;
 }
 
@@ -146,7 +147,7 @@ TEST_P(ClosestPromises, PointsAtTheEndOfDoublesAreAnswered) {
 
 // Where the way from the scene's centre is no double.
 TEST_P(ClosestPromises, ScenesAtTheEndOfDoublesAreToo) {
-  Asked asked(moved(soup(20, 0), 1e307, {-1e308, 0, 0}), GetParam());
+  DeviceScene asked(moved(soup(20, 0), 1e307, {-1e308, 0, 0}), GetParam());
   const std::vector<dvec3> points = {{0.5e308, 0, 0}, {1.6e308, 1e307, 0}, {-1e308, 1e306, 3e306}};
   const std::vector<ClosestPoint> found = ask(asked, points);
   for (std::size_t i = 0; i < points.size(); ++i) {

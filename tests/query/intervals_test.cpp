@@ -33,7 +33,7 @@ TEST_F(Intervals, AreOpen) {
   EXPECT_EQ(count(ray_from(o, d, 0, -1)), 0);
   EXPECT_EQ(count(ray_from(o, d, 3, 3)), 0);
   EXPECT_EQ(count(ray_from(o, d, 4, 2)), 0);
-  // Behind the start.
+  // These lie behind the start.
   EXPECT_EQ(distances(ray_from(o, -d, -1e30f)), (std::vector<float>{-4, -2}));
   EXPECT_EQ(distances(ray_from({0.25f, 0.5f, 0}, d, -5)), (std::vector<float>{-1, 1}));
   EXPECT_EQ(distances(ray_from({0.25f, 0.5f, 0}, d, -5, 0)), std::vector<float>{-1});
@@ -71,6 +71,19 @@ TEST_F(Intervals, ReachFarRays) {
     EXPECT_NEAR(t[1], 1, 1e-5);
     EXPECT_LE(t[0], t[1]);
     EXPECT_EQ(count(ray_from({0, 0.25f, -far}, {0, 0, far}, 0, 0.5f)), 0);
+  }
+}
+
+// What was done to one chunk's rays isn't done to the next one's.
+TEST_F(Intervals, ReachFarRaysBesideOthers) {
+  std::vector<Ray> rays(200000, ray_from({0.25f, 0.5f, -3}, {0, 0, 1}));
+  for (const std::size_t i : {0u, 1u, 70000u, 199999u}) rays[i] = ray_from({0, 0.25f, -1e30f}, {0, 0, 1e30f});
+  const query::LocalHits all = cube().all(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(all.splits[i + 1] - all.splits[i], 2) << i;
+    const bool far = rays[i].origin[2] < -3;
+    ASSERT_NEAR(all.t[all.splits[i]], far ? 1 : 2, 1e-5) << i;
+    ASSERT_NEAR(all.t[all.splits[i] + 1], far ? 1 : 4, 1e-5) << i;
   }
 }
 

@@ -1,5 +1,5 @@
-// What    All hits are the same bits by every walk, and hold the closest hit: in closed meshes and in scenes of
-//         every kind.
+// What    All hits are the same bits by every walk, and hold the closest hit: in closed meshes and in scenes
+//         of every kind.
 #include <algorithm>
 #include <cstring>
 
