@@ -29,8 +29,6 @@ void check_out(std::size_t size, std::size_t n, const char* name) {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Calls take(first, hits, local rays) for each chunk of hits, in turn.
 template <class Take>
 QueryReport trace_chunks(const Asked& asked, const RayArrays& rays, bool any_hit, bool as_refs,
@@ -76,7 +74,7 @@ class HitWriter {
                   [&](std::size_t ray) { return value_of(ray, hits[ray - first]); });
     };
     const auto t_of = [&](std::size_t ray, const layout::QueryHit& hit) {
-      return missed(hit) ? kInfinity : local.world_t(ray - first, hit.t);
+      return missed(hit) ? HUGE_VAL : local.world_t(ray - first, hit.t);
     };
     fill(out_.t, [&](std::size_t ray, const auto& hit) { return std::array{t_of(ray, hit)}; });
     fill(out_.geometry, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).geometry}; });
@@ -98,7 +96,7 @@ class HitWriter {
   }
 
   dvec3 point_of(std::size_t ray, double t) const {
-    return std::isinf(t) ? dvec3(kInfinity) : rays_->origin(ray) + t * rays_->direction(ray);
+    return std::isinf(t) ? dvec3(HUGE_VAL) : rays_->origin(ray) + t * rays_->direction(ray);
   }
 
   std::array<double, 3> normal_of(std::size_t ray, const layout::QueryHit& hit, double t) const {

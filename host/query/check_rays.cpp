@@ -103,7 +103,8 @@ RaysSeen look_at(std::span<const Ray> rays) {
       });
   std::size_t fault = rays.size();
   if (!seen.all_are_rays())
-    fault = static_cast<std::size_t>(std::find_if(rays.begin(), rays.end(), fault_of) - rays.begin());
+    fault = static_cast<std::size_t>(
+        std::find_if(rays.begin(), rays.end(), [](const Ray& r) { return fault_of(r); }) - rays.begin());
   const float farthest = seen.farthest();
   return {rays.size(), fault, seen.all_are_ordinary(), std::isnan(farthest) ? HUGE_VALF : farthest};
 }

@@ -14,7 +14,6 @@ namespace kdray::query {
 
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kFarOff = 0x1p60;  // in local lengths; its square is a float still
 
 // A ray that meets nothing.
@@ -86,10 +85,10 @@ LocalFrame::LocalFrame(const scene::Geometry& geometry)
 
 // Where the line enters the bounds, in multiples of the direction; infinity: it passes them by.
 double LocalFrame::distance_ahead(const dvec3& origin, const dvec3& direction) const {
-  double enter = -kInfinite, leave = kInfinite;
+  double enter = -HUGE_VAL, leave = HUGE_VAL;
   for (int k = 0; k < 3; ++k) {
     if (direction[k] == 0) {
-      if (origin[k] < lo_[k] || origin[k] > hi_[k]) return kInfinite;
+      if (origin[k] < lo_[k] || origin[k] > hi_[k]) return HUGE_VAL;
       continue;
     }
     const double a = (lo_[k] - origin[k]) / direction[k], b = (hi_[k] - origin[k]) / direction[k];
@@ -97,7 +96,7 @@ double LocalFrame::distance_ahead(const dvec3& origin, const dvec3& direction) c
     leave = std::min(leave, std::max(a, b));
   }
   // These are off by some roundings: a ray that all but touches the bounds has to go on.
-  return enter <= leave + 0x1p-48 * std::abs(leave) ? enter : kInfinite;
+  return enter <= leave + 0x1p-48 * std::abs(leave) ? enter : HUGE_VAL;
 }
 
 LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_direction, double t_min,
