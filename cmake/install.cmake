@@ -23,6 +23,15 @@ foreach(program kdray_cli kdray_bench_program)
   endif()
 endforeach()
 
+if(TARGET kdray_c)
+  install(TARGETS kdray_c EXPORT kdray LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(FILES host/capi/kdray.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  configure_file(cmake/kdray.pc.in ${PROJECT_BINARY_DIR}/kdray.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/kdray.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endif()
+install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+
 # The program holds the kernels; as text they are there to be read, and to be changed under KDRAY_KERNEL_DIR.
 install(DIRECTORY kernels/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kdray/kernels
         FILES_MATCHING PATTERN "*.cl" PATTERN "*.clh" PATTERN "layout/*.h")

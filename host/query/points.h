@@ -1,5 +1,5 @@
-// What    The queries of points: *closest point*, *inside* and *signed distance*, from a program's arrays to its
-//         arrays.
+// What    The queries of points: *closest point*, *inside* and *signed distance*, from a program's arrays
+//         to its arrays.
 // Errors  As kdray/query.h says.
 // Threads As many calls at once as there are threads.
 #pragma once

@@ -115,8 +115,8 @@ class Scene {
   // The point of the scene that is nearest to each of these.
   QueryReport closest_points(const Points& points, const ClosestPointsOut& out,
                              const PointOptions& options = {}) const;
-  // 1 for each point that lies inside of closed surfaces: of an odd number of them. Points are rounded to floats
-  // of the scene's own space.
+  // 1 for each point that lies inside of closed surfaces: of an odd number of them. Points are rounded to
+  // floats of the scene's own space.
   QueryReport inside(const Points& points, const BytesOut& out, const PointOptions& options = {}) const;
   // The distance to the nearest surface, negative inside.
   QueryReport signed_distance(const Points& points, const ValuesOut& out,

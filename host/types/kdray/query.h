@@ -60,8 +60,8 @@ struct QueryReport {
   std::uint64_t invalid = 0;  // rays that mean nothing, counted as misses
 };
 
-// All hits of rays: those of ray i are [splits[i], splits[i + 1]), sorted by t and, where that is equal, by their
-// order in the scene.
+// All hits of rays: those of ray i are [splits[i], splits[i + 1]), sorted by t and, where that is equal, by
+// their order in the scene.
 struct AllHits {
   std::vector<std::uint64_t> splits;  // one more than rays
   std::vector<double> t;
@@ -85,7 +85,8 @@ struct ClosestPointsOut {
 
 struct PointOptions {
   double radius = std::numeric_limits<double>::infinity();  // how far to look
-  // A point that is not finite: an error that names it, or one that has nothing near it, and is inside of nothing.
+  // A point that is not finite: an error that names it, or one that has nothing near it, and is inside of
+  // nothing.
   InvalidRays invalid = InvalidRays::error;
   std::optional<Cancel> cancel = {};
 };

@@ -1,0 +1,15 @@
+// What    What the opaque handles of kdray.h are.
+#pragma once
+
+#include "capi/kdray.h"
+#include "kdray/kdray.h"
+
+struct kdray_scene {
+  kdray::Scene scene;
+};
+struct kdray_cancel {
+  kdray::Cancel cancel;
+};
+struct kdray_all_hits {
+  kdray::AllHits hits;
+};

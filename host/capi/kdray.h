@@ -1,0 +1,222 @@
+/* What    kdray's C interface: scenes of a program's own arrays, queries of rays and points, pictures. It
+ *         is what kdray/scene.h is in C++, by the same names, and says there in full what each thing means.
+ * Shape   C99. Handles are opaque. A struct begins with its size, so that it can grow: set all of it to 0,
+ *         then `size` to sizeof it; what is left 0 or NULL has the default that is named beside it. Arrays
+ *         are views of the program's memory: a first element, a count of rows, the bytes from one row to
+ *         the next (0: none between them) and a type. count = 0 leaves an array out.
+ * Errors  Every function that can fail returns a status, and kdray_last_error() has the message of the
+ *         thread's last failure. A call that fails has changed nothing of the scene; answers may be half
+ *         written.
+ * Threads One thread at a time adds, changes and commits; any number may ask, also while another commits.
+ */
+#ifndef KDRAY_H
+#define KDRAY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define KDRAY_API __attribute__((visibility("default")))
+#else
+#define KDRAY_API
+#endif
+
+typedef enum kdray_status {
+  KDRAY_OK = 0,
+  KDRAY_INPUT = 1, /* an array or a file is at fault; the message names it, and the element */
+  KDRAY_USAGE = 2,
+  KDRAY_NO_DEVICE = 3,
+  KDRAY_OUT_OF_MEMORY = 4,
+  KDRAY_INTERNAL = 5, /* kdray's own fault */
+  KDRAY_CANCELLED = 6
+} kdray_status;
+
+typedef enum kdray_type {
+  KDRAY_FLOAT32 = 1,
+  KDRAY_FLOAT64 = 2,
+  KDRAY_UINT32 = 3,
+  KDRAY_INT32 = 4,
+  KDRAY_UINT64 = 5,
+  KDRAY_INT64 = 6,
+  KDRAY_UINT8 = 7
+} kdray_type;
+
+/* What is read, and what is written. */
+typedef struct kdray_in {
+  const void* data;
+  size_t count;
+  size_t stride;
+  int32_t type; /* kdray_type */
+} kdray_in;
+typedef struct kdray_out {
+  void* data;
+  size_t count;
+  size_t stride;
+  int32_t type;
+} kdray_out;
+
+#define KDRAY_NO_GEOMETRY 0xffffffffu
+#define KDRAY_NO_PRIMITIVE 0xffffffffu
+
+/* Of this thread's last call that failed; "" before any. Valid until the next. */
+KDRAY_API const char* kdray_last_error(void);
+/* 10000 * major + 100 * minor + patch, of the library that is loaded. */
+KDRAY_API uint32_t kdray_version(void);
+
+/* ---- Scenes */
+
+typedef struct kdray_scene kdray_scene;
+
+KDRAY_API kdray_status kdray_scene_new(kdray_scene** scene);
+/* A scene file is geometry 0. */
+KDRAY_API kdray_status kdray_scene_load(const char* file, kdray_scene** scene);
+/* NULL is no error. */
+KDRAY_API void kdray_scene_free(kdray_scene* scene);
+
+typedef struct kdray_geometry_options {
+  size_t size;
+  const char* name;  /* NULL: none */
+  uint32_t mask;     /* 0: every bit. A ray meets the geometry where both masks have a bit in common. */
+  uint32_t material; /* of kdray_add_material */
+} kdray_geometry_options;
+
+/* `triangles`: rows of three indices (32 or 64 bits); `normals`: count = 0, or one for each vertex.
+ * Here and below options may be NULL, and so may `id`. */
+KDRAY_API kdray_status kdray_add_mesh(kdray_scene* scene, kdray_in vertices, kdray_in triangles,
+                                      kdray_in normals, const kdray_geometry_options* options, uint32_t* id);
+/* Radii: one for each, or one for all. */
+KDRAY_API kdray_status kdray_add_spheres(kdray_scene* scene, kdray_in centers, kdray_in radii,
+                                         const kdray_geometry_options* options, uint32_t* id);
+KDRAY_API kdray_status kdray_add_cones(kdray_scene* scene, kdray_in bases, kdray_in base_radii,
+                                       kdray_in apexes, kdray_in apex_radii,
+                                       const kdray_geometry_options* options, uint32_t* id);
+KDRAY_API kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdray_in normals, kdray_in radii,
+                                       const kdray_geometry_options* options, uint32_t* id);
+
+KDRAY_API kdray_status kdray_update_vertices(kdray_scene* scene, uint32_t mesh, kdray_in vertices,
+                                             kdray_in normals);
+KDRAY_API kdray_status kdray_remove(kdray_scene* scene, uint32_t geometry);
+KDRAY_API kdray_status kdray_enable(kdray_scene* scene, uint32_t geometry, int enabled);
+KDRAY_API kdray_status kdray_set_mask(kdray_scene* scene, uint32_t geometry, uint32_t mask);
+
+/* The Whitted terms, each with its colour (red, green, blue) multiplied in. */
+typedef struct kdray_material {
+  size_t size;
+  float emission[3], ambient[3], diffuse[3], specular[3], reflect[3], transmit[3];
+  float shine;
+  float index; /* of refraction; 0: 1 */
+} kdray_material;
+KDRAY_API kdray_status kdray_add_material(kdray_scene* scene, const kdray_material* material, uint32_t* id);
+
+typedef struct kdray_camera {
+  size_t size;
+  double from[3], at[3], up[3];
+  double fov;         /* of the picture's height, in degrees; 0: 45 */
+  double ortho_width; /* above 0: orthographic */
+} kdray_camera;
+
+typedef struct kdray_commit_options {
+  size_t size;
+  int32_t quality;    /* 0 balanced, 1 fast, 2 best */
+  const char* device; /* as --device; NULL: the best there is */
+} kdray_commit_options;
+KDRAY_API kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* options);
+
+/* ---- Questions */
+
+/* Ends a call of another thread, which then returns KDRAY_CANCELLED. */
+typedef struct kdray_cancel kdray_cancel;
+KDRAY_API kdray_status kdray_cancel_new(kdray_cancel** cancel);
+KDRAY_API void kdray_cancel_now(kdray_cancel* cancel);
+KDRAY_API void kdray_cancel_free(kdray_cancel* cancel);
+
+/* One row of an array may serve for all rays. */
+typedef struct kdray_rays {
+  size_t size;
+  kdray_in origins, directions; /* rows of three */
+  kdray_in t_min, t_max;        /* count = 0: 0 and infinity */
+  kdray_in masks;               /* uint32; count = 0: every bit */
+} kdray_rays;
+
+typedef struct kdray_query_options {
+  size_t size;
+  int32_t invalid_miss; /* 0: a ray or point that means nothing is an error; 1: it misses, and is counted */
+  const kdray_cancel* cancel; /* NULL: nobody ends it */
+  double radius;              /* of points: how far to look; 0: any distance */
+  uint64_t* n_invalid;        /* NULL, or told how many meant nothing */
+} kdray_query_options;
+
+/* Of each ray what it hits first. */
+typedef struct kdray_hits {
+  size_t size;
+  kdray_out t;                   /* floats of either kind; infinity: a miss */
+  kdray_out geometry, primitive; /* uint32 */
+  kdray_out u, v;                /* floats */
+  kdray_out normal, point;       /* rows of three floats */
+} kdray_hits;
+
+KDRAY_API kdray_status kdray_closest(const kdray_scene* scene, const kdray_rays* rays, const kdray_hits* hits,
+                                     const kdray_query_options* options);
+/* hit: uint8, 1 or 0. */
+KDRAY_API kdray_status kdray_any(const kdray_scene* scene, const kdray_rays* rays, kdray_out hit,
+                                 const kdray_query_options* options);
+/* counts: uint32. Every crossing once, at edges and vertices too. */
+KDRAY_API kdray_status kdray_count(const kdray_scene* scene, const kdray_rays* rays, kdray_out counts,
+                                   const kdray_query_options* options);
+
+/* All hits: those of ray i are [splits[i], splits[i + 1]). The arrays are the handle's. */
+typedef struct kdray_all_hits kdray_all_hits;
+typedef struct kdray_all_hits_view {
+  size_t size;
+  size_t n_rays;
+  const uint64_t* splits; /* n_rays + 1 */
+  const double* t;
+  const uint32_t *geometry, *primitive;
+  const float *u, *v;
+  const uint8_t* more; /* of each ray, 1: it has more than max_hits */
+} kdray_all_hits_view;
+/* max_hits: of a ray, the first so many; 0: all. */
+KDRAY_API kdray_status kdray_all(const kdray_scene* scene, const kdray_rays* rays, uint32_t max_hits,
+                                 const kdray_query_options* options, kdray_all_hits** hits);
+KDRAY_API kdray_status kdray_all_hits_get(const kdray_all_hits* hits, kdray_all_hits_view* view);
+KDRAY_API void kdray_all_hits_free(kdray_all_hits* hits);
+
+typedef struct kdray_closest_points_out {
+  size_t size;
+  kdray_out distance;
+  kdray_out point;
+  kdray_out geometry, primitive;
+  kdray_out u, v;
+} kdray_closest_points_out;
+KDRAY_API kdray_status kdray_closest_points(const kdray_scene* scene, kdray_in points,
+                                            const kdray_closest_points_out* out,
+                                            const kdray_query_options* options);
+/* inside: uint8. */
+KDRAY_API kdray_status kdray_inside(const kdray_scene* scene, kdray_in points, kdray_out inside,
+                                    const kdray_query_options* options);
+/* distance: floats, negative inside. */
+KDRAY_API kdray_status kdray_signed_distance(const kdray_scene* scene, kdray_in points, kdray_out distance,
+                                             const kdray_query_options* options);
+
+/* ---- Pictures */
+
+typedef struct kdray_picture_options {
+  size_t size;
+  int32_t width, height;      /* 0: 1024 */
+  int32_t samples;            /* of a pixel; 0: 1 */
+  int32_t depth;              /* 0: 5 */
+  const kdray_camera* camera; /* NULL: all that there is, from the front, the right and above */
+  const kdray_cancel* cancel;
+} kdray_picture_options;
+/* rgb: 3 * width * height linear values, from the top left. */
+KDRAY_API kdray_status kdray_render(const kdray_scene* scene, const kdray_picture_options* options,
+                                    float* rgb, size_t n_values);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

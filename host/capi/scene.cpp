@@ -1,0 +1,139 @@
+// The scene's part of kdray.h: what it is made of.
+#include <utility>
+
+#include "capi/edge.h"
+#include "capi/handles.h"
+
+namespace kdray::capi {
+
+std::string& last_error() {
+  thread_local std::string message;
+  return message;
+}
+
+void refuse(const std::string& what) {
+  throw Error(ErrorCode::usage, what);
+}
+
+namespace {
+
+GeometryOptions options_of(const kdray_geometry_options* given) {
+  const kdray_geometry_options o = grown(given, "options");
+  GeometryOptions options;
+  if (o.name != nullptr) options.name = o.name;
+  if (o.mask != 0) options.mask = o.mask;
+  options.material = o.material;
+  return options;
+}
+
+void put(std::uint32_t* id, std::uint32_t value) {
+  if (id != nullptr) *id = value;
+}
+
+Color color(const float (&c)[3]) {
+  return {c[0], c[1], c[2]};
+}
+
+}  // namespace
+
+}  // namespace kdray::capi
+
+using namespace kdray;
+using namespace kdray::capi;
+
+const char* kdray_last_error(void) {
+  return last_error().c_str();
+}
+uint32_t kdray_version(void) {
+  return KDRAY_VERSION_NUMBER;
+}
+
+kdray_status kdray_scene_new(kdray_scene** scene) {
+  return guarded([&] { *needed(scene, "scene") = new kdray_scene; });
+}
+kdray_status kdray_scene_load(const char* file, kdray_scene** scene) {
+  return guarded([&] {
+    needed(scene, "scene");
+    *scene = new kdray_scene{Scene::load(needed(file, "file"))};
+  });
+}
+void kdray_scene_free(kdray_scene* scene) {
+  delete scene;
+}
+
+kdray_status kdray_add_mesh(kdray_scene* scene, kdray_in vertices, kdray_in triangles, kdray_in normals,
+                            const kdray_geometry_options* options, uint32_t* id) {
+  return guarded([&] {
+    const Mesh mesh{view_of<Points>(vertices, "vertices"), view_of<Triples>(triangles, "triangles"),
+                    view_of<Points>(normals, "normals")};
+    put(id, needed(scene, "scene")->scene.add_mesh(mesh, options_of(options)));
+  });
+}
+kdray_status kdray_add_spheres(kdray_scene* scene, kdray_in centers, kdray_in radii,
+                               const kdray_geometry_options* options, uint32_t* id) {
+  return guarded([&] {
+    const Spheres spheres{view_of<Points>(centers, "centers"), view_of<Values>(radii, "radii")};
+    put(id, needed(scene, "scene")->scene.add_spheres(spheres, options_of(options)));
+  });
+}
+kdray_status kdray_add_cones(kdray_scene* scene, kdray_in bases, kdray_in base_radii, kdray_in apexes,
+                             kdray_in apex_radii, const kdray_geometry_options* options, uint32_t* id) {
+  return guarded([&] {
+    const Cones cones{view_of<Points>(bases, "bases"), view_of<Points>(apexes, "apexes"),
+                      view_of<Values>(base_radii, "base_radii"), view_of<Values>(apex_radii, "apex_radii")};
+    put(id, needed(scene, "scene")->scene.add_cones(cones, options_of(options)));
+  });
+}
+kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdray_in normals, kdray_in radii,
+                             const kdray_geometry_options* options, uint32_t* id) {
+  return guarded([&] {
+    const Discs discs{view_of<Points>(centers, "centers"), view_of<Points>(normals, "normals"),
+                      view_of<Values>(radii, "radii")};
+    put(id, needed(scene, "scene")->scene.add_discs(discs, options_of(options)));
+  });
+}
+
+kdray_status kdray_update_vertices(kdray_scene* scene, uint32_t mesh, kdray_in vertices, kdray_in normals) {
+  return guarded([&] {
+    needed(scene, "scene")
+        ->scene.update_vertices(mesh, view_of<Points>(vertices, "vertices"),
+                                view_of<Points>(normals, "normals"));
+  });
+}
+kdray_status kdray_remove(kdray_scene* scene, uint32_t geometry) {
+  return guarded([&] { needed(scene, "scene")->scene.remove(geometry); });
+}
+kdray_status kdray_enable(kdray_scene* scene, uint32_t geometry, int enabled) {
+  return guarded([&] { needed(scene, "scene")->scene.enable(geometry, enabled != 0); });
+}
+kdray_status kdray_set_mask(kdray_scene* scene, uint32_t geometry, uint32_t mask) {
+  return guarded([&] { needed(scene, "scene")->scene.set_mask(geometry, mask); });
+}
+
+kdray_status kdray_add_material(kdray_scene* scene, const kdray_material* material, uint32_t* id) {
+  return guarded([&] {
+    const kdray_material m = grown(needed(material, "material"), "material");
+    put(id, needed(scene, "scene")
+                ->scene.add_material({.emission = color(m.emission),
+                                      .ambient = color(m.ambient),
+                                      .diffuse = color(m.diffuse),
+                                      .specular = color(m.specular),
+                                      .reflect = color(m.reflect),
+                                      .transmit = color(m.transmit),
+                                      .shine = m.shine,
+                                      .index = m.index == 0 ? 1.0f : m.index}));
+  });
+}
+
+kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* given) {
+  return guarded([&] {
+    const kdray_commit_options o = grown(given, "options");
+    constexpr BuildQuality kQualities[] = {BuildQuality::balanced, BuildQuality::fast, BuildQuality::best};
+    if (o.quality < 0 || o.quality > 2) refuse("options: the quality may be 0, 1 or 2");
+    CommitOptions options;
+    options.tree.quality = kQualities[o.quality];
+    if (o.device != nullptr) options.device.device = o.device;
+    options.device.programs = default_program_folder();
+    needed(scene, "scene")->scene.commit(options);
+  });
+}

@@ -1,0 +1,138 @@
+/* What    Uses the C interface as a C99 program would: answers that are known, and what is wrong, told.
+ * Errors  Status 1, with a line for each wrong answer. Without a device: says so, status 0. */
+#include <kdray.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failures = 0;
+
+static void expect(int good, const char* what) {
+  if (!good) fprintf(stderr, "wrong: %s (%s)\n", what, kdray_last_error()), ++failures;
+}
+
+static const float corners[24] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
+static const uint32_t faces[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                   1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+
+static kdray_in floats(const float* data, size_t count) {
+  kdray_in in = {data, count, 0, KDRAY_FLOAT32};
+  return in;
+}
+static kdray_in doubles(const double* data, size_t count) {
+  kdray_in in = {data, count, 0, KDRAY_FLOAT64};
+  return in;
+}
+
+static void check_what_is_wrong(kdray_scene* scene) {
+  kdray_in none = {0}, vertices = floats(corners, 8), triangles = {faces, 12, 0, KDRAY_UINT32};
+  kdray_geometry_options unsized = {0};
+  uint32_t beyond[3] = {0, 1, 8};
+  kdray_in bad = {beyond, 1, 0, KDRAY_UINT32}, of_floats = {faces, 12, 0, KDRAY_FLOAT32},
+           null = {NULL, 8, 0, KDRAY_FLOAT32};
+  expect(kdray_add_mesh(NULL, vertices, triangles, none, NULL, NULL) == KDRAY_USAGE, "no scene");
+  expect(kdray_add_mesh(scene, null, triangles, none, NULL, NULL) == KDRAY_USAGE, "no data");
+  expect(strstr(kdray_last_error(), "vertices") != NULL, "the array is named");
+  expect(kdray_add_mesh(scene, vertices, of_floats, none, NULL, NULL) == KDRAY_USAGE,
+         "indices that are floats");
+  expect(kdray_add_mesh(scene, vertices, bad, none, NULL, NULL) == KDRAY_INPUT, "an index beyond all");
+  expect(strstr(kdray_last_error(), "triangles[0]") != NULL, "the element is named");
+  expect(kdray_add_mesh(scene, vertices, triangles, none, &unsized, NULL) == KDRAY_USAGE,
+         "a struct without its size");
+  expect(kdray_remove(scene, 7) == KDRAY_USAGE, "a geometry that isn't there");
+  expect(kdray_scene_load("no/such/file.obj", &scene) == KDRAY_INPUT, "a file that isn't there");
+  expect(kdray_count(scene, NULL, (kdray_out){0}, NULL) != KDRAY_OK, "no rays");
+  kdray_scene_free(NULL);
+  kdray_all_hits_free(NULL);
+  kdray_cancel_free(NULL);
+}
+
+static void check_answers(const kdray_scene* scene, uint32_t box) {
+  const double origins[6] = {0.25, 0.5, 5, 9, 9, 9}, down[3] = {0, 0, -2};
+  double t[2];
+  uint32_t geometry[2], counts[2];
+  uint8_t hit[2], inside = 9;
+  const double point[3] = {0.5, 0.25, 0.125};
+  double distance = 0;
+  uint64_t n_invalid = 9;
+  kdray_rays rays = {0};
+  kdray_hits hits = {0};
+  kdray_query_options options = {0};
+  kdray_all_hits* all = NULL;
+  kdray_all_hits_view view = {0};
+  kdray_out out = {counts, 2, 0, KDRAY_UINT32};
+  rays.size = sizeof rays;
+  rays.origins = doubles(origins, 2);
+  rays.directions = doubles(down, 1);
+  hits.size = sizeof hits;
+  hits.t.data = t, hits.t.count = 2, hits.t.type = KDRAY_FLOAT64;
+  hits.geometry.data = geometry, hits.geometry.count = 2, hits.geometry.type = KDRAY_UINT32;
+  options.size = sizeof options;
+  options.n_invalid = &n_invalid;
+  expect(kdray_closest(scene, &rays, &hits, &options) == KDRAY_OK, "closest");
+  expect(t[0] == 2 && isinf(t[1]) && geometry[0] == box && geometry[1] == KDRAY_NO_GEOMETRY, "what is hit");
+  expect(n_invalid == 0, "no invalid rays");
+  expect(kdray_count(scene, &rays, out, NULL) == KDRAY_OK && counts[0] == 2 && counts[1] == 0, "count");
+  expect(kdray_any(scene, &rays, (kdray_out){hit, 2, 0, KDRAY_UINT8}, NULL) == KDRAY_OK && hit[0] == 1 &&
+             hit[1] == 0,
+         "any");
+  view.size = sizeof view;
+  expect(kdray_all(scene, &rays, 0, NULL, &all) == KDRAY_OK && kdray_all_hits_get(all, &view) == KDRAY_OK,
+         "all");
+  expect(view.n_rays == 2 && view.splits[1] == 2 && view.splits[2] == 2 && view.t[0] == 2 && view.t[1] == 2.5,
+         "all hits");
+  kdray_all_hits_free(all);
+  expect(kdray_inside(scene, doubles(point, 1), (kdray_out){&inside, 1, 0, KDRAY_UINT8}, NULL) == KDRAY_OK &&
+             inside == 1,
+         "inside");
+  expect(kdray_signed_distance(scene, doubles(point, 1), (kdray_out){&distance, 1, 0, KDRAY_FLOAT64}, NULL) ==
+                 KDRAY_OK &&
+             distance == -0.125,
+         "signed distance");
+  hits.t.count = 1;
+  expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_INPUT, "too few places");
+}
+
+static void check_cancel_and_picture(const kdray_scene* scene) {
+  static float rgb[3 * 16 * 16];
+  kdray_picture_options picture = {0};
+  kdray_cancel* cancel = NULL;
+  picture.size = sizeof picture;
+  picture.width = picture.height = 16;
+  expect(kdray_render(scene, &picture, rgb, sizeof rgb / sizeof rgb[0]) == KDRAY_OK, "a picture");
+  expect(rgb[3 * (8 * 16 + 8)] > 0, "something in the middle of it");
+  expect(kdray_render(scene, &picture, rgb, 7) == KDRAY_USAGE, "too few values");
+  expect(kdray_cancel_new(&cancel) == KDRAY_OK, "a cancel");
+  kdray_cancel_now(cancel);
+  {
+    const double origin[3] = {0, 0, 5}, down[3] = {0, 0, -1};
+    uint32_t n;
+    kdray_rays rays = {0};
+    kdray_query_options options = {0};
+    rays.size = sizeof rays, rays.origins = doubles(origin, 1), rays.directions = doubles(down, 1);
+    options.size = sizeof options, options.cancel = cancel;
+    expect(kdray_count(scene, &rays, (kdray_out){&n, 1, 0, KDRAY_UINT32}, &options) == KDRAY_CANCELLED,
+           "cancelled");
+  }
+  kdray_cancel_free(cancel);
+}
+
+int main(void) {
+  kdray_scene* scene = NULL;
+  kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
+  uint32_t box = 9;
+  kdray_status status;
+  expect(kdray_version() > 0, "a version");
+  expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
+  expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, NULL, &box) == KDRAY_OK && box == 0,
+         "a mesh");
+  check_what_is_wrong(scene);
+  status = kdray_commit(scene, NULL);
+  if (status == KDRAY_NO_DEVICE) return puts("no OpenCL device: skipped"), 0;
+  expect(status == KDRAY_OK, "commit");
+  check_answers(scene, box);
+  check_cancel_and_picture(scene);
+  kdray_scene_free(scene);
+  puts(failures == 0 ? "c_interface: all right" : "c_interface: wrong answers");
+  return failures == 0 ? 0 : 1;
+}
