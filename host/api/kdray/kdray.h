@@ -198,10 +198,10 @@ struct WarmProgram {
   bool compiled = false;  // it was not there
 };
 
-// Compiles beforehand what frames in PDPRT and queries, both with the walk chosen by itself, need of nearly any
-// scene, and keeps it in DeviceOptions::programs: from then on they wait for no compiler there (docs/design/start.md).
-// Takes half a minute or more where nothing is there yet; `told` hears of each program. Throws ErrorCode::input
-// where nothing can be kept, ErrorCode::usage where no folder is named.
+// Compiles beforehand what frames in PDPRT and queries, both with the walk chosen by itself, need of nearly
+// any scene, and keeps it in DeviceOptions::programs: from then on they wait for no compiler there
+// (docs/design/start.md). Takes half a minute or more where nothing is there yet; `told` hears of each
+// program. Throws ErrorCode::input where nothing can be kept, ErrorCode::usage where no folder is named.
 std::vector<WarmProgram> warm_up(const DeviceOptions& device,
                                  const std::function<void(const WarmProgram&)>& told = {});
 
