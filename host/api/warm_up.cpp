@@ -1,6 +1,7 @@
-// What    Programs made before they are wanted: for each of the forms of trees that nearly all scenes have, those
-//         of frames and of queries, with all that a scene may need. A small scene is brought into that form,
-//         and each program is launched on it once, since drivers compile the last of it then.
+// What    Programs made before they are wanted: for each of the forms of trees that nearly all scenes have,
+//         those of frames and of queries, with all that a scene may need.
+// Shape   A small scene is brought into blocks of that form, and each program is launched on it once, since
+//         drivers compile the last of it then.
 #include <filesystem>
 #include <system_error>
 #include <utility>

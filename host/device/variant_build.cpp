@@ -11,8 +11,8 @@ namespace kdray::device {
 
 namespace {
 
-// How many programs of a family are made for just what was wanted. The next that is needed is made for all that
-// any scene could want.
+// How many programs of a family are made for just what was wanted. The next that is needed is made for all
+// that any scene could want.
 constexpr std::size_t kOwnPrograms = 2;
 
 // Looks through the cache for a program that serves.

@@ -1,5 +1,5 @@
-// What    Builds a program of which there may be variants (variant.h): the one that was asked for where the cache
-//         has it, else one there that covers it, else anew.
+// What    Builds a program of which there may be variants (variant.h): the one that was asked for where the
+//         cache has it, else one there that covers it, else anew.
 // Shape   What is compiled anew is for just what is wanted, until a few programs of its family are there that
 //         don't do: then it is for everything, and nothing of the family is compiled again.
 // Errors  As building (program.h): ErrorCode::no_device where the compiler refuses the program.

@@ -47,8 +47,9 @@ layout::Features bits_read_by(const std::string& file) {
   return kGeometry;
 }
 
-// The bits that a file's program may have though they are not wanted: not the rules that are off, by which rays
-// are counted; not masks, which a scene has to have; and not in ODPRT what sizes its plan (odprt/admit.clh).
+// The bits that a file's program may have though they are not wanted: not the rules that are off, by which
+// rays are counted; not masks, which a scene has to have; and not in ODPRT what sizes its plan
+// (odprt/admit.clh).
 layout::Features spare_bits_of(const std::string& file) {
   layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS);
   if (file == "odprt/wave.cl")

@@ -39,7 +39,7 @@ void Schedule::apply(layout::Frame& frame, layout::Features features) const {
   const std::uint32_t spawned = spawned_per_ray(features);
   frame.pool_size = spawned == 0 ? 0 : (1 + spawned) * batch_size;
   frame.pool_capacity = capacity_for(frame.pool_size);
-  // Of lights that change nothing a program with lights is to know nothing.
+  // A program that has lights all the same is to find none.
   if (!(features & KDRAY_FEATURE_LIGHTS)) frame.n_lights = 0;
   frame.light_batch = std::min({light_batch, frame.n_lights, std::uint32_t{KDRAY_MAX_LIGHT_BATCH}});
   frame.shadow_capacity = frame.light_batch * frame.batch_capacity;

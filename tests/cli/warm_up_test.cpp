@@ -39,7 +39,8 @@ constexpr const char* kRich = R"({
     {"type": "directional", "direction": [0, -1, -0.3], "color": 0.4}],
   "objects": [
     {"type": "sphere", "center": [-1, 0, 0], "radius": 1, "material": "glass"},
-    {"type": "cone", "base": [1.5, -1, 0], "apex": [1.5, 1, 0], "base_radius": 0.8, "apex_radius": 0, "material": "matt"}]
+    {"type": "cone", "base": [1.5, -1, 0], "apex": [1.5, 1, 0], "base_radius": 0.8, "apex_radius": 0,
+     "material": "matt"}]
 })";
 
 class WarmUp : public testing::Test {
@@ -116,7 +117,8 @@ TEST_F(WarmUp, NeedsAFolderThatItCanKeepProgramsIn) {
                          "no folder to keep programs in"));
   folder_.put("file", "a file, where a folder is wanted");
   EXPECT_TRUE(fails_with(kdray({"warm-up", "--cache", folder_ / "file"}), 1, "no program can be kept there"));
-  EXPECT_TRUE(fails_with(kdray({"warm-up", "--device", "no such device", "--cache", folder_ / "cache"}), 3, "no such device"));
+  EXPECT_TRUE(fails_with(kdray({"warm-up", "--device", "no such device", "--cache", folder_ / "cache"}), 3,
+                         "no such device"));
   EXPECT_TRUE(fails_with(kdray({"warm-up", "scene.nff"}), 2, "scene.nff"));
 }
 

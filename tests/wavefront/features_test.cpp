@@ -56,8 +56,8 @@ scene::Material material_of(layout::Features mask) {
   return m;
 }
 
-// Above the objects, so that some shadows fall on them. Where the mask has none, but nothing shines either, there
-// is one that changes nothing.
+// Above the objects, so that some shadows fall on them. Where the mask has none, but nothing shines either,
+// there is one that changes nothing.
 std::vector<scene::Light> lights_of(layout::Features mask) {
   if (!has(mask, kLights) && !has(mask, kDiffuse | kSpecular)) return {{.position = {1, 4, 3}}};
   if (!has(mask, kLights)) return {};
