@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "conformance/all_kinds.h"
-#include "query/device_scene.h"
 #include "query/closest_point.h"
+#include "query/device_scene.h"
 #include "support/device.h"
 
 namespace kdray::test {
@@ -20,7 +20,7 @@ constexpr double kRounding =
     4e-6;                         // of the scene, whose size is 3, to floats; of cones again, to the kernels'
 constexpr double kSpacing = 0.1;  // more than between places of a primitive
 
-struct Place {
+struct SurfacePlace {
   dvec3 world;
   std::int32_t number;
 };
@@ -32,9 +32,9 @@ class ClosestOf : public testing::Test {
     if (usable_devices().empty()) GTEST_SKIP() << "no OpenCL device";
   }
 
-  std::vector<Place> places() {
+  std::vector<SurfacePlace> places() {
     const scene::Geometry geometry = scene::make_geometry(scene_);
-    std::vector<Place> places;
+    std::vector<SurfacePlace> places;
     for (const auto& primitive : Kind::of(geometry))
       for (int i = 0; i < kSamples; ++i)
         places.push_back(
@@ -48,7 +48,7 @@ class ClosestOf : public testing::Test {
   }
 
   scene::Scene scene_ = scene_of<Kind>(kPrimitives, kSeed);
-  Random random_{kSeed + 2};
+  Draw random_{kSeed + 2};
 
  private:
   std::int32_t number_of(const auto& primitive) const {
@@ -63,12 +63,12 @@ TYPED_TEST_SUITE(ClosestOf, AllKinds, KindNames);
 TYPED_TEST(ClosestOf, NoPlaceIsCloserThanTheClosest) {
   DeviceScene asked(this->scene_, usable_devices().front());
   const std::vector<dvec3> points = this->points(400);
-  const std::vector<Place> places = this->places();
+  const std::vector<SurfacePlace> places = this->places();
   const std::vector<query::ClosestPoint> found =
       query::closest_points(asked.target(), points, std::numeric_limits<double>::infinity()).points;
   for (std::size_t i = 0; i < points.size(); ++i) {
     double nearest = std::numeric_limits<double>::infinity(), of_found = nearest;
-    for (const Place& place : places) {
+    for (const SurfacePlace& place : places) {
       const double distance = glm::length(place.world - points[i]);
       nearest = std::min(nearest, distance);
       if (place.number == found[i].primitive) of_found = std::min(of_found, distance);
@@ -90,7 +90,7 @@ TYPED_TEST(ClosestOf, PlacesOfItAreNoDistanceAway) {
   for (const query::ClosestPoint& p : query::closest_points(asked.target(), again, anywhere).points)
     ASSERT_LE(p.distance, 1e-12) << "seed " << kSeed;
   std::vector<dvec3> on;
-  for (const Place& place : this->places()) on.push_back(place.world);
+  for (const SurfacePlace& place : this->places()) on.push_back(place.world);
   for (const query::ClosestPoint& p : query::closest_points(asked.target(), on, anywhere).points)
     ASSERT_LE(p.distance, kRounding) << "seed " << kSeed;
 }
