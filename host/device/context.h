@@ -68,8 +68,8 @@ class Context {
   // which `owner` then keeps as long as the buffer lives; elsewhere a copy.
   cl::Buffer upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,
                     const std::string& what) const;
-  // A buffer for writing to memory of the caller's, who keeps it as long as the buffer lives, where the device
-  // works in the host's; elsewhere none. What commands wrote there is seen once it has been mapped.
+  // A buffer for writing to memory of the caller's, who keeps it as long as the buffer lives, where the
+  // device works in the host's; elsewhere none. What commands wrote there is seen once it has been mapped.
   cl::Buffer lend(void* data, std::size_t bytes, const std::string& what) const;
   // Uploads a copy of the data, also where the device could use it in place.
   cl::Buffer upload_copy(const void* data, std::size_t bytes, const std::string& what) const;

@@ -60,8 +60,8 @@ class PointChunks {
   std::uint64_t n_invalid_ = 0;
 };
 
-// 1 for each point that an odd number of surfaces lies around. Any direction serves, since every crossing counts
-// once; this one lies in no plane that models are likely to have faces in, which would cost time.
+// 1 for each point that an odd number of surfaces lies around. Any direction serves, since every crossing
+// counts once; this one lies in no plane that models are likely to have faces in, which would cost time.
 std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const dvec3> points) {
   std::vector<Ray> rays(points.size());
   for_each_grain(points.size(), [&](std::size_t begin, std::size_t end) {

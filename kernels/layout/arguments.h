@@ -143,7 +143,8 @@
   X(IN, QueryRay, rays)                   \
   X(OUT, QueryHit, hits)
 
-// The hits are `capacity` for each ray; `after`, where the rays' last pass ended, is read where there was one.
+// The hits are `capacity` for each ray; `after`, where the rays' last pass ended, is read where there was
+// one.
 #define KDRAY_COLLECT_HITS_ARGUMENTS(F, X) \
   F(VALUE, float4, space)                  \
   X(VALUE, float, world_max)               \

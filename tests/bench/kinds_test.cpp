@@ -1,5 +1,5 @@
-// What    Every kind of primitive in the benches, from the list of kinds: normals and rays against the oracle,
-//         materials, counts and words.
+// What    Every kind of primitive in the benches, from the list of kinds: normals and rays against the
+//         oracle, materials, counts and words.
 #include <gtest/gtest.h>
 
 #include <sstream>

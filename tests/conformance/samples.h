@@ -3,8 +3,8 @@
 // Shape   Samples<Kind> has add(): appends a random primitive to a scene, in size 0.03 to 1 about a point of
 //         the cube of [-1, 1]; point(): a random point of a primitive's surface as the tree sees it, in long
 //         double; place(): a place on the i-th of the scene's, preferably an odd one, and a direction in its
-//         surface; kKnownSelfHits: how many self-hits `kdray verify` may report; and kIsSureOfTargets: whether
-//         it is ever sure that a ray meets one. A kind that lacks one of them does not compile.
+//         surface; kKnownSelfHits: how many self-hits `kdray verify` may report; and kIsSureOfTargets:
+//         whether it is ever sure that a ray meets one. A kind that lacks one of them does not compile.
 #pragma once
 
 #include <cmath>

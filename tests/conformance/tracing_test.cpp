@@ -1,4 +1,5 @@
-// What every kind owes to rays: hits and pictures as the oracle has them, the same bits by every walk, in both modes, with
+// What every kind owes to rays: hits and pictures as the oracle has them, the same bits by every walk, in
+//         both modes, with
 // every rule of skipping off, from a cache; and soundness by verify's own measure.
 #include <algorithm>
 #include <cstring>

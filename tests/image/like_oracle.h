@@ -1,5 +1,6 @@
-// What    A picture held against the oracle's: every pixel within a quarter of an 8-bit step in linear RGB, but
-//         for those whose ray tree takes another path a hundredth of a pixel aside; of these, few may differ.
+// What    A picture held against the oracle's: every pixel within a quarter of an 8-bit step in linear RGB,
+//         but for those whose ray tree takes another path a hundredth of a pixel aside; of these, few may
+//         differ.
 #pragma once
 
 #include <fmt/format.h>

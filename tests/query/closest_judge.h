@@ -9,8 +9,8 @@
 #include <mutex>
 #include <string>
 
-#include "query/device_scene.h"
 #include "query/closest_point.h"
+#include "query/device_scene.h"
 
 namespace kdray::test {
 

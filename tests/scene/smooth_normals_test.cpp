@@ -70,8 +70,8 @@ TEST(SmoothNormals, OfABallPointAwayFromItsMiddle) {
       EXPECT_LT(glm::length(normal(s, t, k) - s.vertices[s.triangles[t].vertex[k]]), 0.02);
 }
 
-// A triangle without area takes part in whatever is at its corners, though it turns against all of that; where
-// there is nothing but its like, it stays without.
+// A triangle without area takes part in whatever is at its corners, though it turns against all of that;
+// where there is nothing but its like, it stays without.
 TEST(SmoothNormals, OfATriangleWithoutAreaAreItsNeighbours) {
   Scene s;
   add(s, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});

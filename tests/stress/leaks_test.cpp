@@ -122,8 +122,8 @@ TEST_P(Leaks, RealMeshes) {
 }
 
 // Where the sizes are powers of two or the place is a whole number, the grid's numbers are the kernels' and
-// what was made without area has none; elsewhere rounding bends it. The quick part has every mesh as it is, and
-// each somewhere else.
+// what was made without area has none; elsewhere rounding bends it. The quick part has every mesh as it is,
+// and each somewhere else.
 TEST_P(Leaks, Stitched) {
   struct Place {
     double scale, sizes_away;

@@ -1,10 +1,10 @@
 // What    No ray hits the surface that it leaves: reflected, refracted and shadow rays as kdray's shading
 //         spawns them, traced by every traversal. And how exact the hits are that they leave from: t and the
 //         hit point against exact arithmetic.
-// Shape   A triangle or a disc is flat: any hit of a ray's own one is wrong. From outside of a sphere or a cone as
-//         well; from inside, the hit must be one of the exact roots of a ray that starts inside, exactly,
-//         else it is wrong. Excepted and counted are spheres and cones that are thinner than a few of the
-//         float steps at their coordinates.
+// Shape   A triangle or a disc is flat: any hit of a ray's own one is wrong. From outside of a sphere or a
+//         cone as well; from inside, the hit must be one of the exact roots of a ray that starts inside,
+//         exactly, else it is wrong. Excepted and counted are spheres and cones that are thinner than a few
+//         of the float steps at their coordinates.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

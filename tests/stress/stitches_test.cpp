@@ -1,6 +1,6 @@
-// Meshes on a grid of whole numbers whose T-junctions are closed by triangles without area: rays between points
-// of the grid, exactly through corners and along edges, by every walk and in double; without these triangles
-// such rays do leak. And what becomes of rays that hit such a triangle or leave its neighbours.
+// Meshes on a grid of whole numbers whose T-junctions are closed by triangles without area: rays between
+// points of the grid, exactly through corners and along edges, by every walk and in double; without these
+// triangles such rays do leak. And what becomes of rays that hit such a triangle or leave its neighbours.
 #include <gtest/gtest.h>
 
 #include <algorithm>

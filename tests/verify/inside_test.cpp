@@ -64,8 +64,8 @@ TEST(Inside, ComponentsAreToldApartAndTurnsDoNotMatter) {
   }
 }
 
-// A box with many stitches is where the box is, but in the planes of its edges: the stitches part nothing. (Seed
-// 3.)
+// A box with many stitches is where the box is, but in the planes of its edges: the stitches part nothing.
+// (Seed 3.)
 TEST(Inside, StitchesDoNotMatter) {
   test::LatticeMesh box = test::lattice_box(60);
   test::divide_edges(box, 40, 1);

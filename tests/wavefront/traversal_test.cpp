@@ -150,8 +150,8 @@ class RayMaker {
     size_ = 0.5 * std::max({box.extent().x, box.extent().y, box.extent().z});
   }
 
-  // Rays of every sort. The last n_along_surfaces() run along a surface, so that any rounding decides whether they
-  // meet it.
+  // Rays of every sort. The last n_along_surfaces() run along a surface, so that any rounding decides
+  // whether they meet it.
   std::vector<Ray> all() {
     add_random(500);
     add_coherent(24);
