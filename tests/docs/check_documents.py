@@ -100,7 +100,7 @@ def check_length(page):
 
 def check_both_ways(page):
     """A page of the logbook and those that it says explain its subject link each other."""
-    explained = re.findall(r"\]\((\.\./(?:design/)?\w+\.md)\)", page.read_text().split("\n## ")[0])
+    explained = re.findall(r"\]\((\.\./(?:design/)?[\w-]+\.md)\)", page.read_text().split("\n## ")[0])
     if not explained:
         fault(page, 1, "its head links no page that explains the subject")
     for target in explained:
