@@ -117,7 +117,7 @@ std::vector<Programs::UsualForm> Programs::usual_forms() {
   std::vector<UsualForm> forms;
   for (const int block : {4, 8}) {
     const auto add = [&](int stack, std::size_t bytes, const std::string& size) {
-      forms.push_back({{.depth = 0, .stack = stack, .block = block, .bytes = bytes},
+      forms.push_back({{.depth = kLargestBinaryStack - 1, .stack = stack, .block = block, .bytes = bytes},
                        fmt::format("scenes of {}, in blocks of {}", size, block)});
     };
     add(63, 0, fmt::format("up to {} MiB", near_mib));

@@ -111,6 +111,23 @@ TEST_F(WarmUp, ServesWhatComesAfterIt) {
   expect_served({"trace", folder_ / "tetra.nff", "--rays", folder_ / "rays.npy", "--any-hit"}, ".npy");
 }
 
+// A program for each stage, each of which has to be there.
+TEST_F(WarmUp, ServesTheScheduleOfGpusToo) {
+  KDRAY_NEED_DEVICE();
+  const std::vector<std::string> common = {"--schedule", "global", "--cache", folder_ / "cache"};
+  std::vector<std::string> arguments = {"warm-up", "-q"};
+  arguments.insert(arguments.end(), common.begin(), common.end());
+  ASSERT_TRUE(succeeds(kdray(arguments, {.limit_seconds = kLimit})));
+  folder_.put("rich.json", kRich);
+  arguments = {"render", folder_ / "rich.json", "--size",  "40x30",
+               "-o",     folder_ / "a.png",     "--stats", folder_ / "s.json"};
+  arguments.insert(arguments.end(), common.begin(), common.end());
+  ASSERT_TRUE(succeeds(kdray(arguments)));
+  const Json used = Json::parse(folder_.get("s.json")).at("programs");
+  EXPECT_EQ(used.at("compiled"), 0) << used;
+  EXPECT_GT(used.at("covering"), 1) << used;
+}
+
 TEST_F(WarmUp, NeedsAFolderThatItCanKeepProgramsIn) {
   KDRAY_NEED_DEVICE();
   EXPECT_TRUE(fails_with(kdray({"warm-up"}, {.environment = {{"KDRAY_CACHE_DIR", ""}}}), 2,
