@@ -97,8 +97,8 @@ class AblationScene {
     return f;
   }
 
-  // The first call compiles, and a driver may finish only at the first launch; neither counts as rendering. So
-  // the time to compile is what the first call takes beside rendering, less what the second one does.
+  // The first call compiles, and a driver may finish only at the first launch; neither counts as rendering.
+  // So the time to compile is what the first call takes beside rendering, less what the second one does.
   AblationRow first_frames(const Ablation& ablation) {
     const bool usual = ablation.kind == Ablation::Kind::none, compiles = usual || ablation.keep != 0;
     const Frame first = frame(ablation), second = frame(ablation);

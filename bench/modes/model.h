@@ -3,7 +3,8 @@
 //         stated network.
 // Shape   PDPRT: the tiles' seconds through tiles.h. ODPRT: the wide tree cut into subtrees and dealt
 //         to queues as host/odprt does it, by the cost of a pilot sample; the lives of a larger sample
-//         (lives.h) sent along the subtrees they pass (paths.h, traffic.h) through events.h. Both are scaled to one core's measured time.
+//         (lives.h) sent along the subtrees they pass (paths.h, traffic.h) through events.h. Both
+//         are scaled to one core's measured time.
 // Why     docs/bench.md has the assumptions and the limits.
 #pragma once
 

@@ -63,8 +63,8 @@ inline bool is_level(const TriangleInBlock& t) {
   return level != 0;
 }
 
-// Writes KDRAY_ROW_TRIANGLE_LIMIT of a block of kLanes triangles: the factor of each one's limit, negative where
-// the triangle is level, so that kernels learn both from one row. The compiler makes vectors of it.
+// Writes KDRAY_ROW_TRIANGLE_LIMIT of a block of kLanes triangles: the factor of each one's limit, negative
+// where the triangle is level, so that kernels learn both from one row. The compiler makes vectors of it.
 template <std::uint32_t kLanes>
 void write_limits(layout::u32* rows) {
   std::array<layout::u32, kLanes> limits;

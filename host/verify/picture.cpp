@@ -148,8 +148,8 @@ class Panel {
     return size / at->distance * view_.scale < pixels;
   }
 
-  // Puts the marks onto the picture. Of several on one pixel the last that isn't hidden shows, or the last of all
-  // where all are.
+  // Puts the marks onto the picture. Of several on one pixel the last that isn't hidden shows, or the last of
+  // all where all are.
   void finish() {
     for (std::size_t i = 0; i < size(); ++i) {
       if (marks_[i].seen > 0) pixel(i) = glm::mix(pixel(i), marks_[i].color, marks_[i].seen);

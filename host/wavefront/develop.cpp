@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-// A function of several forms (target_clones) has the loader ask which one to take, before a sanitizer is ready
-// for any code: with sanitizers there is one form.
+// Of a function in several forms (target_clones) one is chosen while the program is being loaded, before a
+// sanitizer is ready for any code: with sanitizers there is one form.
 #if defined(__SANITIZE_ADDRESS__)
 #define KDRAY_SANITIZED
 #elif defined(__has_feature)

@@ -28,9 +28,9 @@ constexpr layout::Features kShading =
 constexpr std::size_t kNear = 4 << 20;
 
 // One larger than this is a fine mesh's, outside of all caches: rays part sooner, and where packets wait for
-// memory batches do something else. So sixteen rays have to be more alike there to be a packet: by
-// directions that differ by so many percent at most, in so many of four pairs. The dragon's mirror rays go 1.15
-// times as fast; in scenes of 38 MB and less the same costs up to a fifth.
+// memory batches do something else. So sixteen rays have to be more alike there to be a packet: in so many of
+// four pairs the directions differ by so many percent at most. The dragon's mirror rays go 1.15 times as
+// fast; in scenes of 38 MB and less the same costs up to a fifth.
 constexpr std::size_t kFar = 48 << 20;
 constexpr int kFarSpread = 5, kFarPairs = 3;
 

@@ -125,8 +125,8 @@ class Sweep {
     }
   }
 
-  // Finds for each bin a cost that none of its planes is below, and for the cell one that its best plane is not
-  // above. Bins that can't have that plane are dead.
+  // Finds for each bin a cost that none of its planes is below, and for the cell one that its best plane is
+  // not above. Bins that can't have that plane are dead.
   void bound() {
     for (int axis = 0; axis < 3; ++axis) {
       std::uint32_t below = 0, above = static_cast<std::uint32_t>(refs_.size());
