@@ -64,7 +64,7 @@ class AblationScene {
   }
 
  private:
-  // These include the features of the last frame.
+  // To be called after a frame: which features are on is known from then on.
   AblationRun describe() const {
     const nlohmann::json facts = api::statistics_json(renderer_.statistics());
     return {name_,
@@ -97,8 +97,8 @@ class AblationScene {
     return f;
   }
 
-  // The first frame compiles, the last of it at the first launch, which belongs to no frame: what it takes
-  // longer than the second, beside rendering, is the time to compile.
+  // The first call compiles, and a driver may finish only at the first launch; neither counts as rendering.
+  // So the time to compile is what the first call takes beside rendering, less what the second one does.
   AblationRow first_frames(const Ablation& ablation) {
     const bool usual = ablation.kind == Ablation::Kind::none, compiles = usual || ablation.keep != 0;
     const Frame first = frame(ablation), second = frame(ablation);

@@ -13,8 +13,6 @@
 
 namespace kdray::bench {
 
-inline constexpr double kDefaultMinWeight = 0.5 / 255 / 12.92;  // what can't change an 8-bit picture
-
 struct Setting {
   std::string group, name, label;  // label: short, for a plot whose colours tell the groups
   int samples = 16, depth = 16;

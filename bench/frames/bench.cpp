@@ -21,7 +21,6 @@ namespace kdray::bench {
 namespace {
 
 constexpr int kPovrayRounds = 3;
-constexpr double kMinWeight = 0.5 / 255 / 12.92;  // kdray's default: what can't change an 8-bit picture
 
 // A frame's time and that of its stages.
 std::map<std::string, double> times_of_frame(const Statistics::Seconds& s) {
@@ -51,8 +50,8 @@ class FrameBench {
     embree_ = make_embree_scenes(scene_.model());
     if (embree_) make_primary();
     if (has_povray() && is_nff(name))
-      povray_ =
-          std::make_unique<Povray>(scene_.model(), options.width, options.height, options.depth, kMinWeight);
+      povray_ = std::make_unique<Povray>(scene_.model(), options.width, options.height, options.depth,
+                                         kDefaultMinWeight);
   }
 
   FrameResult run() {

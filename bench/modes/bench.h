@@ -1,6 +1,6 @@
 // What    `kdray bench modes`: the thesis' comparison. A frame by one core alone, by PDPRT's divisions and by
 //         ODPRT's balances, for growing numbers of queues; and what the model predicts for queues that are
-//         not there (modes_model.h).
+//         not there (model.h).
 // Shape   Interleaved: a round is a frame of every row's; one before that is not counted. A queue has one
 //         core while there are cores; beyond that several queues share one, and the row says so. The rows of
 //         a scene each keep a Renderer, so that the rounds of a dynamic balance are the frames of a sequence.

@@ -5,7 +5,7 @@
 //         thing in their way, since that is where a walk from cell to cell ends.
 // Why     The rays are not the frame's own, which never leave the device, but are made by its rules. Normals
 //         are those of the surfaces (not interpolated), and a cone of light is taken for a sphere:
-//         modes_model.h holds their numbers against the frame's.
+//         model.h holds their numbers against the frame's.
 #pragma once
 
 #include <cstdint>

@@ -100,7 +100,7 @@ std::string model_table(const ModesRun& run, const ModelOptions& options) {
     out += fmt::format("  checked: {:<18}{:>3} queue{} {} predicted {:.4g}, measured {:.4g}, {:+.1f}%\n",
                        c.scheme, c.queues, c.queues == 1 ? ": " : "s:", c.what, c.predicted, c.measured,
                        100 * c.error());
-  out += "  at the most:";
+  out += "  at best:";
   for (const char* const scheme : {"pdprt bag", "odprt pilot"})
     if (const Prediction* const p = fastest(model, scheme))
       out += fmt::format(" {} {:.1f} times one core, on {} queues;", scheme, p->efficiency * p->queues,
@@ -227,7 +227,7 @@ std::string table_of(const ModesRun& run, const ModesOptions& options) {
     if (row.failure.empty()) out += line_of(run, row);
     shared |= row.failure.empty() && row.shares_cores();
   }
-  if (shared) out += "  * several queues share a core: no speed-up can come of them\n";
+  if (shared) out += "  * several queues share a core: they are no faster for it\n";
   out += failures_of(run);
   for (const ModesRow& row : run.rows)
     if (row.differing_pixels > 0)

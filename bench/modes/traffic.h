@@ -1,4 +1,4 @@
-// What    The journeys of a sample's rays from queue to queue, for modes_events.h, by the rules of ODPRT
+// What    The journeys of a sample's rays from queue to queue, for events.h, by the rules of ODPRT
 //         (kernels/odprt).
 // Shape   Eye rays begin with the queue that they enter first, or on queues in turn, others where their
 //         parent ended. A ray asks the queues whose cells it enters, in the order in which it first does,

@@ -1,4 +1,6 @@
-// What    An entry of the program cache: some bytes in a file, under a key.
+// What    An entry of the program cache: some bytes in a file, under a key. The file is named by
+//         the 32 hex digits of ProgramKey::name (program_key.h), with the ending .program; the key within is
+//         ProgramKey::content.
 // Shape   A header (magic, version, size, key, a checksum of the bytes and one of the header), then the
 //         bytes.
 // Why     PoCL ends the process when it is given a binary that was cut or changed: nothing may reach it that

@@ -54,7 +54,7 @@ bool read_rows(png_structp png, png_bytepp rows) {
   return true;
 }
 
-// The bytes of the picture as compressed in the file, before palette and grey were widened.
+// How many bytes the picture's data are after inflating, before palette and grey are widened.
 double stored_bytes(png_structp png, png_infop info, int bits_per_pixel) {
   return static_cast<double>(png_get_image_width(png, info)) * bits_per_pixel / 8 *
          png_get_image_height(png, info);

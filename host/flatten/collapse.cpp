@@ -203,6 +203,10 @@ CollapsedPart collapse(const kdtree::Tree& tree, const Openings& openings, const
   return part;
 }
 
+// A walk pushes the children that it meets, at most all n of the node, far to near, and pops the nearest.
+// While it is below a child, only those behind that child are left of the node's: so a subtree needs the most
+// of n and, over its children, of the number behind plus what the child's subtree needs. Rays of an octant
+// share one order, so this is summed up for each octant, children before parents; a leaf pushes nothing.
 StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>& cuts) {
   constexpr StackNeeds kNothing{};
   std::vector<StackNeeds> needs(part.nodes.size());

@@ -13,10 +13,6 @@ namespace {
 
 constexpr int kDefaultSize = 1024, kDefaultDepth = 5, kMaxDepth = 64, kMaxSamples = 65536, kMaxSide = 65536;
 
-// Half of an 8-bit step where sRGB's curve is steepest (slope 12.92, in the dark): no smaller change shows in
-// a PNG.
-constexpr double kDefaultMinWeight = 0.5 / 255 / 12.92;
-
 int pick(int option, const std::optional<int>& setting, int fallback) {
   return option > 0 ? option : setting.value_or(fallback);
 }

@@ -31,12 +31,12 @@ struct TriangleInBlock {
   }
 };
 
-// |n|_1 of the normal that the kernels compute in float, or more. With u = 2^-24, an edge is off by u of
-// itself, a product of two by 3u, a component by 3u of the products' sizes and u of itself: here and there
-// together by less than 8u of `size` and 4u of `sum`. What underflows is below 2^-140.
-// To it what sign_limit adds for the tilt (intersect/triangle.clh): at most 8 times the square of the edges'
-// largest component.
-inline float normal_bound(const TriangleInBlock& t) {
+// The factor of sign_limit (intersect/triangle.clh) that the triangle alone decides, or more: |n|_1 of the
+// normal that the kernels compute in float, and what is added for the tilt, at most 8 times the square of the
+// edges' largest component. With u = 2^-24, an edge is off by u of itself, a product of two by 3u, a component
+// by 3u of the products' sizes and u of itself: here and there together by less than 8u of `size` and 4u of
+// `sum`. What underflows is below 2^-140.
+inline float sign_limit_factor(const TriangleInBlock& t) {
   float e[2][3];
   for (int k = 0; k < 3; ++k) {
     e[0][k] = t(1, k) - t(0, k);
@@ -63,16 +63,17 @@ inline bool is_level(const TriangleInBlock& t) {
   return level != 0;
 }
 
-// The limits of a block of kLanes triangles; the compiler makes vectors of it.
+// Writes KDRAY_ROW_TRIANGLE_LIMIT of a block of kLanes triangles: the factor of each one's limit, negative
+// where the triangle is level, so that kernels learn both from one row. The compiler makes vectors of it.
 template <std::uint32_t kLanes>
-void write_normal_bounds(layout::u32* rows) {
-  std::array<layout::u32, kLanes> bounds;
+void write_limits(layout::u32* rows) {
+  std::array<layout::u32, kLanes> limits;
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
     const TriangleInBlock t{rows + lane, kLanes};
-    const float bound = normal_bound(t);
-    bounds[lane] = bits(is_level(t) ? -bound : bound);
+    const float factor = sign_limit_factor(t);
+    limits[lane] = bits(is_level(t) ? -factor : factor);
   }
-  std::copy(bounds.begin(), bounds.end(), rows + KDRAY_ROW_TRIANGLE_LIMIT * kLanes);
+  std::copy(limits.begin(), limits.end(), rows + KDRAY_ROW_TRIANGLE_LIMIT * kLanes);
 }
 
 // A stitch has no normal: all that is asked near t = 0 is how far it is from the ray's origin (stitch_t).
@@ -108,8 +109,8 @@ void clear_lanes(std::uint32_t first, std::uint32_t block, std::size_t n_rows, l
 }
 
 // What follows from the vertices, for all lanes at once.
-void write_normal_bounds(std::uint32_t block, layout::u32* words) {
-  block == 8 ? write_normal_bounds<8>(words) : write_normal_bounds<4>(words);
+void write_limits(std::uint32_t block, layout::u32* words) {
+  block == 8 ? write_limits<8>(words) : write_limits<4>(words);
 }
 
 // Writes a leaf's blocks of one kind, from `words` on.
@@ -130,7 +131,7 @@ void write_blocks(Kind, const kdtree::Tree& tree, const kdtree::RefRun& run,
     }
     if (n < block) clear_lanes(n, block, kRows, words);
     if (!kTriangles) continue;
-    write_normal_bounds(block, words);
+    write_limits(block, words);
     layout::u32* const limits = words + KDRAY_ROW_TRIANGLE_LIMIT * block;
     mark_stitches(primitives, tree.refs.data() + run.first + done, n, limits);
     std::fill(limits + n, limits + block, bits(NAN));
@@ -188,9 +189,9 @@ class Writer {
     return child + static_cast<layout::u32>(places.first_node);
   }
 
-  void write_leaf(std::uint32_t leaf, std::uint32_t number, std::size_t first) const {
-    const kdtree::RefRun run = leaf_run(tree_, leaf, number);
-    primitives::with_kind(number, [&](auto kind) {
+  void write_leaf(std::uint32_t leaf, std::uint32_t kind_number, std::size_t first) const {
+    const kdtree::RefRun run = leaf_run(tree_, leaf, kind_number);
+    primitives::with_kind(kind_number, [&](auto kind) {
       using Kind = decltype(kind);
       write_blocks(kind, tree_, run, Kind::of(primitives_), block_,
                    Kind::blocks_of(form_).data() + first * Kind::kRows * block_);

@@ -1,7 +1,9 @@
 // What    The cost model: what a split plane is expected to cost a ray that enters the cell, and which of two
-//         splits is the better one.
+//         splits is the better one. The exact builder's; the binned one has the same in float
+//         (binned/cost-inl.h: TestCost and PlaneCosts). A change here is a change there.
 // Shape   Areas are half surface areas in double: the exact values of float boxes to 2^-50, flat cells
-//         included.
+//         included. When a plane is no better than a leaf is not decided here: choose_split in
+//         exact/subtree.cpp and cheaper_than_leaf in binned/subtree-inl.h stop.
 // Units   BuildConfig's Ct and Ci.
 // Source  MacDonald and Booth 1990; Wald and Havran 2006, equations 1 to 4.
 #pragma once

@@ -61,7 +61,7 @@ struct Close {
   void operator()(std::FILE* f) const { std::fclose(f); }
 };
 
-std::string read_packed(const std::filesystem::path& path, std::size_t max_bytes) {
+std::string read_bytes(const std::filesystem::path& path, std::size_t max_bytes) {
   const std::string file = path.string();
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
@@ -172,7 +172,7 @@ std::string unxz(const std::string& packed, const std::string& file, std::size_t
 }  // namespace
 
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) {
-  std::string bytes = read_packed(file, max_bytes);
+  std::string bytes = read_bytes(file, max_bytes);
   FilesRead::add(file, bytes);
   return unpacked(std::move(bytes), file, max_bytes);
 }

@@ -24,8 +24,8 @@ Crossing crossing(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c
   const int ca = scene::orient_sign(across_x(c), across_x(a), across_x(p));
   if (ab * bc < 0 || bc * ca < 0 || ca * ab < 0) return Crossing::none;
   if (ab == 0 || bc == 0 || ca == 0) return Crossing::unsure;
-  // Volume of (a, b, c, p): on which side of the plane p lies; the turn seen along x says which side is the
-  // far one.
+  // The sign of this volume tells on which side of the plane p lies. The triangle's winding, seen along x,
+  // tells which side lies ahead of the ray.
   const dvec3 u = a - p, v = b - p, w = c - p;
   const dvec3 m = glm::cross(v, w);
   const double volume = glm::dot(u, m);

@@ -148,7 +148,8 @@ class Panel {
     return size / at->distance * view_.scale < pixels;
   }
 
-  // Puts the marks onto the picture. Where several lie the last that is not hidden is seen.
+  // Puts the marks onto the picture. Of several on one pixel the last that isn't hidden shows, or the last of
+  // all where all are.
   void finish() {
     for (std::size_t i = 0; i < size(); ++i) {
       if (marks_[i].seen > 0) pixel(i) = glm::mix(pixel(i), marks_[i].color, marks_[i].seen);
@@ -191,7 +192,8 @@ class Panel {
     return Projected{static_cast<int>(x), static_cast<int>(y), glm::length(way)};
   }
 
-  // Whether nothing is in front of the place but its own surface about it.
+  // Whether the place is seen: in its pixel or one beside it the first surface lies no nearer than the place
+  // does, give or take a little for the slope of its own surface.
   bool is_visible(const Projected& at) const {
     for (int v = std::max(at.y - 1, 0); v <= std::min(at.y + 1, height_ - 1); ++v)
       for (int u = std::max(at.x - 1, 0); u <= std::min(at.x + 1, width_ - 1); ++u)

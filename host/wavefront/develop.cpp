@@ -7,7 +7,8 @@
 #include <limits>
 #include <vector>
 
-// Which of several forms of a function is taken is asked before a sanitizer is ready.
+// Of a function in several forms (target_clones) one is chosen while the program is being loaded, before a
+// sanitizer is ready for any code: with sanitizers there is one form.
 #if defined(__SANITIZE_ADDRESS__)
 #define KDRAY_SANITIZED
 #elif defined(__has_feature)
@@ -23,40 +24,40 @@ namespace {
 constexpr std::size_t kGrain = 1 << 15;  // pixels to a task: 1 MiB of sums and picture
 
 // Neighbouring tiles of one row.
-struct Run {
+struct TileSpan {
   std::uint32_t row, first_column, end_column;
 };
 
-// Runs as long as can be: sums and picture are read and written in the order in which they lie.
-std::vector<Run> runs_of(std::span<const layout::u32> tiles) {
+// Spans as long as can be: sums and picture are read and written in the order in which they lie.
+std::vector<TileSpan> spans_of(std::span<const layout::u32> tiles) {
   std::vector<layout::u32> sorted(tiles.begin(), tiles.end());
   std::sort(sorted.begin(), sorted.end());  // by row, then by column
-  std::vector<Run> runs;
+  std::vector<TileSpan> spans;
   for (const layout::u32 tile : sorted) {
     const std::uint32_t row = KDRAY_TILE_ROW(tile), column = KDRAY_TILE_COLUMN(tile);
-    if (!runs.empty() && runs.back().row == row && runs.back().end_column == column)
-      ++runs.back().end_column;
+    if (!spans.empty() && spans.back().row == row && spans.back().end_column == column)
+      ++spans.back().end_column;
     else
-      runs.push_back({row, column, column + 1});
+      spans.push_back({row, column, column + 1});
   }
-  return runs;
+  return spans;
 }
 
 // Calls take(pixel, n) for the pixels of the tiles, row by row: n from the picture's pixel on.
 template <class Take>
 void for_each_row(const layout::Frame& frame, std::span<const layout::u32> tiles, const Take& take) {
-  const auto take_run = [&](const Run& run) {
-    const std::size_t x = std::size_t{run.first_column} * frame.tile_width;
+  const auto take_span = [&](const TileSpan& span) {
+    const std::size_t x = std::size_t{span.first_column} * frame.tile_width;
     const std::size_t end_x =
-        std::min<std::size_t>(std::size_t{run.end_column} * frame.tile_width, frame.width);
+        std::min<std::size_t>(std::size_t{span.end_column} * frame.tile_width, frame.width);
     const std::size_t end_y =
-        std::min<std::size_t>((std::size_t{run.row} + 1) * frame.tile_height, frame.height);
-    for (std::size_t y = std::size_t{run.row} * frame.tile_height; y < end_y; ++y)
+        std::min<std::size_t>((std::size_t{span.row} + 1) * frame.tile_height, frame.height);
+    for (std::size_t y = std::size_t{span.row} * frame.tile_height; y < end_y; ++y)
       take(y * frame.width + x, end_x - x);
   };
-  const std::vector<Run> runs = runs_of(tiles);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size()), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) take_run(runs[i]);
+  const std::vector<TileSpan> spans = spans_of(tiles);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, spans.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) take_span(spans[i]);
   });
 }
 
@@ -100,13 +101,13 @@ class Developer {
 }  // namespace
 
 void develop(Films films, int samples, std::span<vec3> pixels) {
-  const Developer developed(static_cast<std::uint32_t>(samples));
+  const Developer developer(static_cast<std::uint32_t>(samples));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kGrain), [&](const auto& range) {
     const auto to = pixels.subspan(range.begin(), range.size());
-    if (films.size() == 1) return developed(films.front().subspan(3 * range.begin(), 3 * range.size()), to);
+    if (films.size() == 1) return developer(films.front().subspan(3 * range.begin(), 3 * range.size()), to);
     std::vector<layout::i64> sums(3 * range.size());
     add_pieces(films, 3 * range.begin(), sums);
-    developed(sums, to);
+    developer(sums, to);
   });
 }
 
@@ -118,9 +119,9 @@ void add_up(Films films, std::span<layout::i64> sums) {
 
 void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
                    std::span<const layout::u32> tiles, std::span<vec3> picture) {
-  const Developer developed(frame.n_samples);
+  const Developer developer(frame.n_samples);
   for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
-    developed(sums.subspan(3 * (pixel - first_pixel), 3 * n), picture.subspan(pixel, n));
+    developer(sums.subspan(3 * (pixel - first_pixel), 3 * n), picture.subspan(pixel, n));
   });
 }
 

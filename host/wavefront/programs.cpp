@@ -28,9 +28,9 @@ constexpr layout::Features kShading =
 constexpr std::size_t kNear = 4 << 20;
 
 // One larger than this is a fine mesh's, outside of all caches: rays part sooner, and where packets wait for
-// memory batches do something else. So they get groups that are a little less than alike (in percent; of four
-// pairs). The dragon's mirror rays go 1.15 times as fast; in scenes of 38 MB and less the same costs up to a
-// fifth. (64 MiB before groups, which made the dragon's form 61.)
+// memory batches do something else. So sixteen rays have to be more alike there to be a packet: in so many of
+// four pairs the directions differ by so many percent at most. The dragon's mirror rays go 1.15 times as
+// fast; in scenes of 38 MB and less the same costs up to a fifth.
 constexpr std::size_t kFar = 48 << 20;
 constexpr int kFarSpread = 5, kFarPairs = 3;
 
@@ -141,7 +141,7 @@ void Programs::use(const Tuning& t) {
 
 std::string Programs::options_for(const std::string& file, Traversal traversal, Precision precision,
                                   int stack) const {
-  const bool in_double = precision == Precision::float64;  // whose vectors have the portable form alone
+  const bool in_double = precision == Precision::float64;  // double has only the portable vector form
   std::string options =
       "-cl-std=CL1.2 " + device::build_option(in_double ? device::Simd::portable : context_->simd());
   if (in_double) options += " -DKDRAY_PRECISION=64";

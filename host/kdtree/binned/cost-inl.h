@@ -1,4 +1,5 @@
-// What    The expected costs of planes across one axis of a cell, as many at once as a vector has lanes.
+// What    The expected costs of planes across one axis of a cell, as many at once as a vector has lanes: the
+//         cost model of kdtree/sah.h (LeafCost and AxisCosts) in float. A change there is a change here.
 // Shape   Costs are floats without contraction: the same bits on every instruction set. Lengths are taken
 //         relative to the cell's longest, so that neither tiny nor huge scenes leave the range of floats.
 #if defined(KDRAY_BINNED_COST_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -54,6 +55,7 @@ class TestCost {
   float inverse_block_, round_up_, whole_, each_;
 };
 
+// AxisCosts (kdtree/sah.h) in floats; cheaper_than_leaf (subtree-inl.h) has the rule when to stop.
 class PlaneCosts {
  public:
   PlaneCosts(const BuildConfig& config, const Bounds& contents, int axis) : tests_(config.block) {

@@ -125,7 +125,8 @@ class Sweep {
     }
   }
 
-  // The costs that no plane of a bin is below, and that some plane of it is not above.
+  // Finds for each bin a cost that none of its planes is below, and for the cell one that its best plane is
+  // not above. Bins that can't have that plane are dead.
   void bound() {
     for (int axis = 0; axis < 3; ++axis) {
       std::uint32_t below = 0, above = static_cast<std::uint32_t>(refs_.size());

@@ -117,10 +117,14 @@ enum class PixelGrid { centers, corners };  // corners: the outermost rays go th
 // (docs/design/adaptive.md).
 constexpr double kDefaultAdaptiveTarget = 0.0075;
 
+// The default of RenderOptions::min_weight: half of an 8-bit step where sRGB's curve is steepest (slope 12.92,
+// in the dark), since no smaller change shows in a PNG.
+constexpr double kDefaultMinWeight = 0.5 / 255 / 12.92;
+
 struct RenderOptions {
   int width = 0, height = 0;  // 0: what the scene asks for, or 1024x1024
   int depth = 0;              // 0: what the scene asks for, or 5; the eye ray is depth 1
-  double min_weight = -1;     // < 0: what the scene asks for, or the default; 0: no cut
+  double min_weight = -1;     // < 0: what the scene asks for, or kDefaultMinWeight; 0: no cut
   int samples = 0;            // per pixel, stratified; 0: what the scene asks for, or 1
   // > 0: as many samples in each pixel as an RMSE of that, in linear RGB, is believed to take.
   double adaptive_target = 0;
