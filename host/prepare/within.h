@@ -19,7 +19,8 @@ inline std::string megabytes(std::uint64_t bytes) {
   return fmt::format("{:.1f}M", static_cast<double>(bytes) / (1 << 20));
 }
 
-// What `make` returns for a config has bytes(). `warning` says that the tree is coarser than asked for, and is
+// What `make` returns for a config has bytes(). `warning` says that the tree is coarser than asked for, and
+//         is
 // left alone where it isn't.
 template <class Make>
 auto make_within(kdtree::BuildConfig config, std::uint64_t most_bytes, Make&& make, std::string& warning) {

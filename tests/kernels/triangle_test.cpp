@@ -329,6 +329,26 @@ TEST_P(TriangleTest, SeenEdgeOnIsNoHitInAnyForm) {
   }
 }
 
+// From beyond an edge's end along it: the ray lies in the triangle's plane to the last bit, rounding lets
+// it be met at the edge's end, and no other triangle there is. (Found by tests/stress, of a mesh from whose
+// inside it leaked.)
+TEST_P(TriangleTest, ATriangleAheadIsMetByARayInItsPlane) {
+  const std::array<vec3, 3> triangle{vec3(-477.125f, 134.25f, 477.125f),
+                                     vec3(-723.860352f, 28.8427734f, 1032.42676f),
+                                     vec3(-415.8125f, 148.875f, 622.25f)};
+  const vec3 origin(-0x1.d31ce6p+8f, 0x1.150df4p+7f, 0x1.c6977ep+8f),
+      direction(-0x1.40634p+7f, -0x1.11be8p+6f, 0x1.68882p+8f);
+  const std::vector<Case> in{make_case(origin, direction, triangle)};
+  const Found found = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false").front();
+  EXPECT_TRUE(found.hit);
+  EXPECT_NEAR(found.t, 0.25748, 1e-5);
+  for (const int lanes : {1, 4, 8, 16}) {
+    const auto out = test::run_kernel<FoundInLanes>(GetParam(), kLanesSource, in, lanes_options(lanes));
+    EXPECT_TRUE(out.front().met) << lanes;
+    EXPECT_EQ(out.front().settled_t, found.t) << lanes;
+  }
+}
+
 KDRAY_FOR_EACH_DEVICE(TriangleTest);
 
 }  // namespace

@@ -289,23 +289,12 @@ class Left {
   std::vector<std::uint32_t> from_;
 };
 
-// Its upper side goes through the origin, where points are moved off their faces by next to nothing.
-test::LatticeMesh box_below_the_origin() {
-  test::LatticeMesh box = test::lattice_box(1000 * 1000);
-  for (auto& v : box.vertices) v[1] -= 2 * 1000 * 1000;
-  test::divide_edges(box, 600, 9);
-  box.name = "box below the origin";
-  return box;
-}
-
 // By the code that shades, and without telling the walks what a ray has left.
 TEST(StitchesLeft, AreNotHitAgainAndShadedAsTheirNeighbours) {
   if (devices().empty()) GTEST_SKIP() << "no OpenCL device";
   Tally tally("re-hits", "stitches");
   std::size_t n_hits = 0;
-  std::vector<test::LatticeMesh> meshes = test::stitched_meshes();
-  meshes.push_back(box_below_the_origin());
-  for (const test::LatticeMesh& m : meshes) {
+  for (const test::LatticeMesh& m : test::stitched_meshes()) {
     SCOPED_TRACE(m.name);
     Left left(m);
     left.hit(rays_to_trace(0.05));

@@ -57,6 +57,14 @@ class Divider {
   std::map<Point, std::uint32_t> number_of_;
 };
 
+// Its upper side goes through the origin, as a floor does: rays that leave it are hardly moved off.
+LatticeMesh box_below_the_origin(std::int64_t step) {
+  LatticeMesh box = lattice_box(step);
+  for (Point& p : box.vertices) p[1] -= 2 * step;
+  box.name += " below the origin";
+  return box;
+}
+
 LatticeMesh divided(LatticeMesh mesh, std::size_t n, unsigned seed) {
   divide_edges(mesh, n, seed);
   mesh.name += ", " + std::to_string(n) + " edges divided";
@@ -130,6 +138,7 @@ std::vector<LatticeMesh> stitched_meshes() {
   std::vector<LatticeMesh> all;
   all.push_back(divided(lattice_box(60), 40, 1));
   all.push_back(divided(lattice_box(2 * 1000 * 1000), 600, 2));
+  all.push_back(divided(box_below_the_origin(1000 * 1000), 600, 6));
   all.push_back(divided(lattice_ball(6, 20, 12, 3), 300, 3));
   all.push_back(divided(lattice_ball(16, 1 << 15, 1 << 7, 4), 1200, 4));
   all.push_back(divided(lattice_ball(24, 1 << 11, 1 << 11, 5), 500, 5));

@@ -117,8 +117,8 @@ enum class PixelGrid { centers, corners };  // corners: the outermost rays go th
 // (docs/design/adaptive.md).
 constexpr double kDefaultAdaptiveTarget = 0.0075;
 
-// The default of RenderOptions::min_weight: half of an 8-bit step where sRGB's curve is steepest (slope 12.92,
-// in the dark), since no smaller change shows in a PNG.
+// The default of RenderOptions::min_weight: half of an 8-bit step where sRGB's curve is steepest (slope
+// 12.92, in the dark), since no smaller change shows in a PNG.
 constexpr double kDefaultMinWeight = 0.5 / 255 / 12.92;
 
 struct RenderOptions {
