@@ -303,7 +303,7 @@ TEST_P(Query, CrossingsOfACubeAreTwoOrNoneWhereverRaysGo) {
       ASSERT_LE(counts[i], 2u);
       ASSERT_EQ(all.splits[i + 1] - all.splits[i], counts[i]);
       for (std::uint64_t k = all.splits[i]; k < all.splits[i + 1]; ++k) {
-        // On the cube's surface.
+        // Each lies on the cube's surface.
         double most = 0;
         for (std::size_t c = 0; c < 3; ++c)
           most = std::max(most, std::abs(origins[3 * i + c] + all.t[k] * directions[3 * i + c] - center[c]));

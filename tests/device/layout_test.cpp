@@ -33,7 +33,7 @@ struct Probe {
     "__builtin_offsetof(" #type ", " #field ")", offsetof(type, field) \
   }
 
-// Of each kind of primitive.
+// These are of each kind of primitive.
 #define PRIMITIVE(NAME, name, names, Struct) SIZE(Struct), OFFSET(Struct, number), OFFSET(Struct, material),
 
 const std::vector<Probe> kProbes = {KDRAY_KINDS(PRIMITIVE) SIZE(KdNode),

@@ -127,7 +127,7 @@ TEST_F(Schema, ListsTheKeysOfTheReader) {
   }
 }
 
-// Or it is no object of any scene.
+// Otherwise it is no object of any scene.
 TEST_F(Schema, RefersToEachDefinition) {
   const std::string all = root_.dump();
   for (const auto& [name, rule] : root_.at("$defs").items())
