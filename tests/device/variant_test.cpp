@@ -79,7 +79,8 @@ class VariantTest : public test::EachDevice {
 
   // As a process of its own would: builds, uses and keeps it.
   Told build(const Variant& variant, bool exact = false) {
-    const Builds builds{std::make_shared<ProgramCache>(folder_), {}, exact};
+    const Builds builds{
+        .cache = std::make_shared<ProgramCache>(folder_), .watch = {}, .remember = false, .exact = exact};
     const Opened& opened = context_.opened();
     const BuiltVariant built = build_variant(opened.context, opened.devices, "mask.cl", variant, builds);
     const Told told = run(built);
