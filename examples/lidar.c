@@ -1,4 +1,4 @@
-/* What    A LiDAR sweep over a hilly ground with a few houses, written as PLY points: kdray in C.
+/* What    A LiDAR sweep over a hilly ground with a few silos, written as PLY points: kdray in C.
  * Use     lidar OUT.ply
  * Errors  Status 1, with kdray's line.
  */

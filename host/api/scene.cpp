@@ -53,12 +53,12 @@ scene::Scene only_settings(const scene::Scene& scene) {
   settings.lights = scene.lights;
   settings.unlit = scene.unlit;
   settings.camera = scene.camera;
+  settings.framing = scene.framing;
   settings.cameras = scene.cameras;
   settings.background = scene.background;
   settings.ambient = scene.ambient;
   settings.settings = scene.settings;
   settings.warnings = scene.warnings;
-  settings.files = scene.files;
   settings.load_options = scene.load_options;
   return settings;
 }
@@ -66,6 +66,7 @@ scene::Scene only_settings(const scene::Scene& scene) {
 }  // namespace
 
 scene::Part& Scene::Impl::part(GeometryId id) {
+  if (id < first_part() && file_removed) no_such(id);
   if (id < first_part()) throw Error(ErrorCode::usage, "geometry 0 is the file's: it can't be changed");
   const std::size_t i = id - first_part();
   if (i >= parts.size() || !parts[i]) no_such(id);
@@ -91,6 +92,12 @@ const scene::Scene& Scene::Impl::model() {
   for (const auto& part : parts)
     if (part && part->enabled) enabled.push_back(&*part);
   scene::assemble(all, enabled, materials);
+  // It is the file's no more, and is not to be kept as the file's (host/cache). What was made up for the file
+  // alone is made up anew.
+  all.files.clear();
+  if (all.framing.camera) all.camera.reset();
+  if (all.framing.lights) all.lights.clear();
+  all.framing = {};
   scene::frame_scene(all);
   assembled = std::move(all);
   changed = false;
@@ -127,6 +134,7 @@ Scene Scene::from_memory(std::string bytes, const std::filesystem::path& name, c
 }
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {
+  impl_->base.name = "the scene";
   impl_->changed = true;  // a camera and lights are to be made up
 }
 Scene::Scene(scene::Scene&& model) : impl_(std::make_unique<Impl>()) {
@@ -191,13 +199,16 @@ MaterialId Scene::add_material(const Material& material) {
   return static_cast<MaterialId>(impl_->materials.size() - 1);
 }
 void Scene::add_light(const Light& light) {
-  impl_->base.lights.push_back(scene::light_of(light));
+  const scene::Light made = scene::light_of(light);
+  if (impl_->base.framing.lights) impl_->base.lights.clear();  // those that were made up
+  impl_->base.framing.lights = false;
+  impl_->base.lights.push_back(made);
   impl_->changed = true;
 }
 void Scene::set_camera(const Camera& camera) {
   impl_->base.camera = scene::camera_of(camera);
   impl_->base.cameras = {*impl_->base.camera};
-  impl_->base.framing = {};
+  impl_->base.framing.camera = false;
   impl_->changed = true;
 }
 void Scene::set_background(const Color& color) {
@@ -210,7 +221,7 @@ void Scene::set_ambient(const Color& color) {
 }
 
 std::uint32_t Scene::primitives() const {
-  return impl_->model().primitive_count();
+  return impl_->table().size();
 }
 const std::vector<std::string>& Scene::warnings() const {
   return impl_->base.warnings;
@@ -226,6 +237,10 @@ void Scene::commit(const CommitOptions& options) {
   api::open_device(options.device, {});  // without a device there is no use in building a tree
   const auto committed =
       std::make_shared<api::Committed>(PreparedScene(*this, options.tree), impl_->table(), options.device);
+  if (impl_->assembled) {  // there is no need to hold all arrays twice
+    impl_->assembled.reset();
+    impl_->changed = true;
+  }
   const std::lock_guard lock(impl_->mutex);
   impl_->committed = committed;
 }

@@ -48,6 +48,10 @@ Struct grown(const Struct* given, const char* name) {
   if (given == nullptr) return whole;
   if (given->size < sizeof(std::size_t)) refuse(std::string(name) + ": its size is not set");
   std::memcpy(&whole, given, std::min(given->size, sizeof whole));
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
+  if (given->size > sizeof whole &&
+      std::any_of(bytes + sizeof whole, bytes + given->size, [](unsigned char byte) { return byte != 0; }))
+    refuse(std::string(name) + ": has something that this version of kdray doesn't know");
   return whole;
 }
 

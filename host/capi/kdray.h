@@ -1,5 +1,6 @@
 /* What    kdray's C interface: scenes of a program's own arrays, queries of rays and points, pictures. It
  *         is what kdray/scene.h is in C++, by the same names, and says there in full what each thing means.
+ *         Lights, backgrounds and a scene's own camera are C++'s alone yet.
  * Shape   C99. Handles are opaque. A struct begins with its size, so that it can grow: set all of it to 0,
  *         then `size` to sizeof it; what is left 0 or NULL has the default that is named beside it. Arrays
  *         are views of the program's memory: a first element, a count of rows, the bytes from one row to
@@ -101,6 +102,7 @@ KDRAY_API kdray_status kdray_update_vertices(kdray_scene* scene, uint32_t mesh, 
                                              kdray_in normals);
 KDRAY_API kdray_status kdray_remove(kdray_scene* scene, uint32_t geometry);
 KDRAY_API kdray_status kdray_enable(kdray_scene* scene, uint32_t geometry, int enabled);
+/* Here 0 means no bit: no ray meets it. Masks are for rays; points see every geometry. */
 KDRAY_API kdray_status kdray_set_mask(kdray_scene* scene, uint32_t geometry, uint32_t mask);
 
 /* The Whitted terms, each with its colour (red, green, blue) multiplied in. */
@@ -125,6 +127,10 @@ typedef struct kdray_commit_options {
   const char* device; /* as --device; NULL: the best there is */
 } kdray_commit_options;
 KDRAY_API kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* options);
+
+/* Writes what the device's compiler has made into kdray's cache folder, so that later processes need not
+ * wait for it: takes a second or so, best when there is time. A folder that can't be written is no error. */
+KDRAY_API kdray_status kdray_keep_programs(void);
 
 /* ---- Questions */
 
@@ -206,10 +212,11 @@ KDRAY_API kdray_status kdray_signed_distance(const kdray_scene* scene, kdray_in 
 
 typedef struct kdray_picture_options {
   size_t size;
-  int32_t width, height;      /* 0: 1024 */
-  int32_t samples;            /* of a pixel; 0: 1 */
-  int32_t depth;              /* 0: 5 */
-  const kdray_camera* camera; /* NULL: all that there is, from the front, the right and above */
+  int32_t width, height; /* 0: 1024 */
+  int32_t samples;       /* of a pixel; 0: 1 */
+  int32_t depth;         /* 0: 5 */
+  const kdray_camera*
+      camera; /* NULL: the file's, or all that there is, from the front, the right and above */
   const kdray_cancel* cancel;
 } kdray_picture_options;
 /* rgb: 3 * width * height linear values, from the top left. */

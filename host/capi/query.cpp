@@ -151,6 +151,9 @@ kdray_status kdray_render(const kdray_scene* scene, const kdray_picture_options*
                           size_t n_values) {
   return guarded([&] {
     const kdray_picture_options o = grown(given, "options");
+    const Scene& asked_of = needed(scene, "scene")->scene;
+    needed(rgb, "rgb");
+    if (o.width < 0 || o.height < 0) refuse("options: the picture's size is below 0");
     RenderOptions options;
     options.width = o.width > 0 ? o.width : 1024;
     options.height = o.height > 0 ? o.height : 1024;
@@ -163,7 +166,7 @@ kdray_status kdray_render(const kdray_scene* scene, const kdray_picture_options*
     if (n_values != wanted)
       refuse("rgb: there are " + std::to_string(n_values) + " values for a picture of " +
              std::to_string(wanted));
-    const Picture picture = needed(scene, "scene")->scene.render(options);
-    std::copy(picture.rgb.begin(), picture.rgb.end(), needed(rgb, "rgb"));
+    const Picture picture = asked_of.render(options);
+    std::copy(picture.rgb.begin(), picture.rgb.end(), rgb);
   });
 }

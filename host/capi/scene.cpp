@@ -137,3 +137,10 @@ kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* given)
     needed(scene, "scene")->scene.commit(options);
   });
 }
+kdray_status kdray_keep_programs(void) {
+  return guarded([] {
+    DeviceOptions device;
+    device.programs = default_program_folder();
+    keep_programs(device);
+  });
+}

@@ -1,10 +1,10 @@
 // What    Built programs kept between runs, as the binaries that OpenCL gives (docs/design/start.md).
 // Shape   find() looks for an entry; built() only notes what had to be compiled; keep() writes the notes
 //         down, when the picture is out. An entry's file is "<32 hex digits>.program", the digits those of
-//         ProgramKey::name: a variant's family and mask, or the key itself (program_key.h). For one
-//         thing PoCL compiles once more when it is asked for a binary; for another a binary that is asked for
-//         after the first launch holds the machine code of that launch's work-group size too. Several
-//         threads and processes may use a folder at once.
+//         ProgramKey::name: a variant's family and mask, or the key itself (program_key.h). For one thing
+//         PoCL compiles once more when it is asked for a binary; for another a binary that is asked for after
+//         the first launch holds the machine code of that launch's work-group size too. Several threads and
+//         processes may use a folder at once.
 // Errors  None: an entry that is damaged, or that the driver refuses, counts as none; a folder that can't be
 //         written is left.
 #pragma once

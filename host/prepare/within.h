@@ -20,8 +20,7 @@ inline std::string megabytes(std::uint64_t bytes) {
 }
 
 // What `make` returns for a config has bytes(). `warning` says that the tree is coarser than asked for, and
-//         is
-// left alone where it isn't.
+// is left alone where it isn't.
 template <class Make>
 auto make_within(kdtree::BuildConfig config, std::uint64_t most_bytes, Make&& make, std::string& warning) {
   constexpr double kCoarsest = 256;

@@ -24,7 +24,7 @@ void check_invalid(const LocalRays& rays, const QueryOptions& options) {
 
 void check_out(std::size_t size, std::size_t n, const char* name) {
   if (size != 0 && size != n)
-    throw Error(ErrorCode::input, fmt::format("{}: there are {} places for {} rays", name, size, n));
+    throw Error(ErrorCode::input, fmt::format("{}: there are {} places for {} answers", name, size, n));
 }
 
 namespace {

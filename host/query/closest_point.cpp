@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/timer.h"
 #include "device/opencl_error.h"
+#include "device/spare_queue.h"
 #include "layout/closest.layout.h"
 #include "math/rounding.h"
 #include "query/nearby_order.h"
@@ -107,7 +108,8 @@ class Asking {
         places_{target.scene.geometry.space},
         radius_(radius),
         stage_(target.programs.kernel<K>(target.scene.features, Traversal::wide)),
-        queue_(target.context.queues().front()),
+        spare_(target.context),
+        queue_(spare_.get()),
         order_(target.scene.geometry.bounds),
         queries_(chunk),
         hits_(chunk),
@@ -171,6 +173,7 @@ class Asking {
   Places places_;
   double radius_;
   wavefront::Stage<K> stage_;
+  device::SpareQueue spare_;
   cl::CommandQueue queue_;
   NearbyOrder order_;
   std::vector<std::uint32_t> cells_;

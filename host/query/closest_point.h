@@ -5,7 +5,7 @@
 //         found: primitive -1, distance infinite.
 // Errors  Against the primitives as the kernels have them, floats about the scene's centre, the distance is
 //         right to 2^-40 of itself, or to 2^-98 of the scene's size where that is more; on a device that does
-//         not compute in double to a float's last place, or 2^-38 of the scene's size. A point is rounded
+//         not compute in double to 2^-36, or to 2^-28 of the scene's size. A point is rounded
 //         once, to a double about the scene's centre: within the scene's bounds not at all.
 //         (docs/design/closest-point.md) ErrorCode::input for a point that is not finite, with its index, and
 //         for a radius that is no number or below 0.

@@ -63,6 +63,7 @@ const Ray* RayArrays::structs() const {
   for (const std::size_t stride :
        {rays_.origins.stride(), rays_.directions.stride(), rays_.t_min.stride(), rays_.t_max.stride()})
     if (stride != sizeof(Ray)) return nullptr;
+  if (reinterpret_cast<std::uintptr_t>(first) % alignof(Ray) != 0) return nullptr;
   const Ray* const rays = reinterpret_cast<const Ray*>(first);
   const bool in_place = rays_.t_min.first_of<const float>() == &rays->t_min &&
                         rays_.directions.first_of<const float>() == rays->direction &&
@@ -117,7 +118,6 @@ LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_directi
   if (!(largest_component(origin) <= (in_double ? near_ : kFarOff))) {
     ahead = distance_ahead(origin, direction);
     if (!std::isfinite(ahead)) return out;
-    ahead = std::max(ahead, 0.0);
     for (int k = 0; k < 3; ++k) origin[k] = std::fma(ahead, direction[k], origin[k]) + rest[k] * space_.scale;
     if (!(largest_component(origin) <= kFarOff)) return out;
   }
@@ -125,7 +125,9 @@ LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_directi
     out.ray.origin[k] = static_cast<float>(origin[k]);
     out.ray.direction[k] = static_cast<float>(direction[k]);
   }
-  out.ray.t_min = static_cast<float>(std::scalbn(t_min, -out.exponent) - ahead);
+  // Finite, as every ray's: beyond float's range nothing lies between it and the scene.
+  constexpr double kMost = std::numeric_limits<float>::max();
+  out.ray.t_min = static_cast<float>(std::clamp(std::scalbn(t_min, -out.exponent) - ahead, -kMost, kMost));
   out.ray.t_max = static_cast<float>(std::scalbn(t_max, -out.exponent) - ahead);
   out.ahead = std::scalbn(ahead, out.exponent);
   return out;
@@ -134,14 +136,14 @@ LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_directi
 void LocalRays::fill(std::size_t first, std::size_t n, layout::QueryRay* out) {
   moved_.clear();
   const Ray* const structs = rays_->structs();
-  if (structs == nullptr || !fill_structs(first, n, structs + first, out)) fill_any(first, n, out);
+  if (structs == nullptr || !fill_structs(n, structs + first, out)) fill_any(first, n, out);
   if (rays_->rays().masks.empty()) return;
   for (std::size_t i = 0; i < n; ++i)
     if (rays_->mask(first + i) == 0) out[i] = kNoRay;
 }
 
 // Rays of floats as nearly all are: finite, of ordinary length, not from too far off. False where one isn't.
-bool LocalRays::fill_structs(std::size_t, std::size_t n, const Ray* rays, layout::QueryRay* out) const {
+bool LocalRays::fill_structs(std::size_t n, const Ray* rays, layout::QueryRay* out) const {
   const LocalSpace& space = frame_->space();
   const double scale = space.scale, limit = kFarOff / scale;
   const auto t_scale = static_cast<float>(scale);
@@ -164,6 +166,7 @@ bool LocalRays::fill_structs(std::size_t, std::size_t n, const Ray* rays, layout
         out[i].direction[k] = ray.direction[k];
       }
       out[i].t_min = ray.t_min * t_scale;
+      plain &= std::isfinite(out[i].t_min);
       out[i].t_max = ray.t_max * t_scale;
     }
     if (!plain) all.store(false, std::memory_order_relaxed);

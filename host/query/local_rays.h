@@ -6,7 +6,8 @@
 //         In double a ray begins where it enters the scene's bounds, so that it is as exact there as one that
 //         starts beside them: origin + ahead * direction is rounded once, to float, whatever `ahead` is,
 //         and t comes back as ahead + t in double. A ray of floats is begun elsewhere only from over 2^60
-//         times the scene's size away. All else that happens to a ray here is exact.
+//         times the scene's size away. Else the origin, less the scene's centre, and the
+//         direction are rounded to float once; lengths change by powers of two.
 #pragma once
 
 #include <cstdint>
@@ -72,6 +73,10 @@ class LocalFrame {
   // The exponent of rays that need no more: those of ordinary length that are not moved.
   int exponent() const { return exponent_; }
   const LocalSpace& space() const { return space_; }
+  // Whether a point, in the scene's own space, lies outside of its bounds for certain.
+  bool is_outside(const dvec3& local) const {
+    return glm::any(glm::lessThan(local, lo_)) || glm::any(glm::greaterThan(local, hi_));
+  }
 
  private:
   double distance_ahead(const dvec3& origin, const dvec3& direction) const;
@@ -92,8 +97,8 @@ class LocalRays {
 
   // Of ray i of the chunk that was filled last.
   double world_t(std::size_t i, float t) const {
-    const double scaled =
-        moved_.empty() ? std::ldexp(t, frame_->exponent()) : std::ldexp(t, moved_[i].exponent);
+    const double scaled = moved_.empty() ? std::ldexp(double{t}, frame_->exponent())
+                                         : std::ldexp(double{t}, moved_[i].exponent);
     return moved_.empty() ? scaled : moved_[i].ahead + scaled;
   }
 
@@ -105,7 +110,7 @@ class LocalRays {
     double ahead;
     int exponent;
   };
-  bool fill_structs(std::size_t first, std::size_t n, const Ray* rays, layout::QueryRay* out) const;
+  bool fill_structs(std::size_t n, const Ray* rays, layout::QueryRay* out) const;
   void fill_any(std::size_t first, std::size_t n, layout::QueryRay* out);
   void note_invalid(std::size_t first, std::size_t n);
 

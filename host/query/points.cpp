@@ -60,17 +60,23 @@ class PointChunks {
   std::uint64_t n_invalid_ = 0;
 };
 
-// 1 for each point that an odd number of surfaces lies around. Any direction serves, since every crossing
-// counts once; this one lies in no plane that models are likely to have faces in, which would cost time.
+// How many surfaces each point has above it: an odd number inside of closed ones. Any direction serves, since
+// every crossing counts once; this one lies in no plane that models are likely to have faces in, which would
+// cost time. Masks are for rays: points see every geometry.
 std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const dvec3> points) {
   std::vector<Ray> rays(points.size());
   for_each_grain(points.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const vec3 at(asked.frame.space().local(points[i]));
-      rays[i] = {{at.x, at.y, at.z}, 0, {0.1803f, 0.2741f, 1}, std::numeric_limits<float>::infinity()};
+      const dvec3 local = asked.frame.space().local(points[i]);
+      const bool outside = asked.frame.is_outside(local);
+      const vec3 at = outside ? vec3(0) : vec3(local);
+      const float end = std::numeric_limits<float>::infinity();
+      rays[i] = {{at.x, at.y, at.z}, 0, {0.1803f, 0.2741f, 1}, outside ? -end : end};
     }
   });
-  return count_hits(asked.target, rays);
+  Target unmasked = asked.target;
+  unmasked.masks = cl::Buffer();
+  return count_hits(unmasked, rays);
 }
 
 template <class Take>

@@ -70,6 +70,7 @@ void Session::launch(std::size_t n) {
 
 std::span<const layout::QueryHit> Session::trace(std::size_t n, bool any_hit, bool as_refs) {
   using K = kernels::TraceQuery;
+  sound_ = false;
   device::checked("tracing rays", [&] {
     stage_.set(K::any_hit, cl_uint{any_hit}).set(K::as_refs, cl_uint{as_refs});
     if (!in_place_) {
@@ -81,25 +82,32 @@ std::span<const layout::QueryHit> Session::trace(std::size_t n, bool any_hit, bo
     if (!in_place_)
       queue_.get().enqueueReadBuffer(hit_buffer_, CL_TRUE, 0, n * sizeof hits_[0], hits_.data());
   });
+  sound_ = true;
   const std::span<const layout::QueryHit> hits(hits_.data(), n);
   if (std::any_of(hits.begin(), hits.end(),
                   [](const layout::QueryHit& h) { return h.primitive == kFailedWalk; }))
     throw Error(ErrorCode::internal,
-                "a ray overflowed the traversal's stack; please report it with the scene");
+                "a ray met a primitive of a kind that its kernel lacks; please report it with the scene");
   return hits;
 }
 
 Sessions::Borrowed Sessions::borrow() {
-  const std::lock_guard lock(mutex_);
-  if (free_.empty()) return {new Session(target_), Give(this)};
-  Session* const session = free_.back().release();
-  free_.pop_back();
-  return {session, Give(this)};
+  std::unique_ptr<Session> session;
+  if (const std::lock_guard lock(mutex_); !free_.empty()) {
+    session = std::move(free_.back());
+    free_.pop_back();
+  }
+  if (!session) session = std::make_unique<Session>(target_);  // which may compile: others go on
+  return {session.release(), Give(this)};
 }
 
 void Sessions::take_back(std::unique_ptr<Session> session) {
+  if (!session->is_sound()) return;  // something may still be running on it
   const std::lock_guard lock(mutex_);
-  free_.push_back(std::move(session));
+  try {
+    free_.push_back(std::move(session));
+  } catch (const std::bad_alloc&) {  // the next one is made anew
+  }
 }
 
 }  // namespace kdray::query

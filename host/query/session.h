@@ -30,6 +30,7 @@ class Session {
  public:
   explicit Session(const Target& target);
 
+  bool is_sound() const { return sound_; }  // the last launch has ended as it should
   std::size_t chunk() const { return rays_.size(); }
 
   // Where the rays of a chunk, in the scene's own space, and their masks are to be put.
@@ -46,6 +47,7 @@ class Session {
   cl::Buffer buffer_of(Array<T>& array, cl_mem_flags flags, const char* what);
 
   const device::Context* context_;
+  bool sound_ = true;
   bool masked_;  // primitives have masks
   device::SpareQueue queue_;
   wavefront::Stage<kernels::TraceQuery> stage_;

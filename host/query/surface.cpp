@@ -17,7 +17,7 @@ dvec3 corner(const layout::Triangle& t, int i) {
   return {t.v[i][0], t.v[i][1], t.v[i][2]};
 }
 
-// Differences of floats are exact in double, and so are their products: the sum is rounded twice.
+// In double, which floats' differences and products leave with next to no rounding.
 dvec3 normal_of(const layout::Triangle& t) {
   const dvec3 a = corner(t, 0), n = glm::cross(corner(t, 1) - a, corner(t, 2) - a);
   return n == dvec3(0) ? n : safe_normalize(n);

@@ -202,6 +202,13 @@ Material material_of(const kdray::Material& m) {
 
 Light light_of(const kdray::Light& l) {
   constexpr double kRadians = std::numbers::pi / 180;
+  static_assert(static_cast<int>(kdray::Light::Kind::spot) == static_cast<int>(LightKind::spot));
+  if (l.kind != kdray::Light::Kind::point && l.kind != kdray::Light::Kind::directional &&
+      l.kind != kdray::Light::Kind::spot)
+    refuse("light: there is no such kind");
+  const auto good_angle = [](double degrees) { return degrees >= 0 && degrees <= 180; };
+  if (!good_angle(l.inner_degrees) || !good_angle(l.outer_degrees))
+    refuse("light: the spot's angles may be 0 to 180 degrees");
   Light light;
   light.kind = static_cast<LightKind>(l.kind);
   light.position = vector(l.position);

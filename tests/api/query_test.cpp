@@ -119,7 +119,7 @@ TEST_P(Query, SizesThatDontMatchAreToldByName) {
   std::vector<double> t(2);
   EXPECT_TRUE(fails([&] { scene.closest({two, three}, {.t = t}); }, "2 of origins for 3 rays"));
   std::vector<double> few(1);
-  EXPECT_TRUE(fails([&] { scene.closest({two, two}, {.t = few}); }, "t: there are 1 places for 2 rays"));
+  EXPECT_TRUE(fails([&] { scene.closest({two, two}, {.t = few}); }, "t: there are 1 places for 2 answers"));
   EXPECT_TRUE(fails([&] { scene.closest({two, {}}, {.t = t}); }, "origins without directions"));
 }
 
@@ -396,6 +396,61 @@ TEST_P(Query, PointsThatAreNotFiniteAreRefusedOrCounted) {
   std::vector<std::uint8_t> inside(3);
   scene.inside(points, inside, options);
   EXPECT_EQ(inside, (std::vector<std::uint8_t>{1, 0, 0}));
+}
+
+// Sizes and lengths at the ends of float's range, which doubles hold: the same cube, scaled by powers of two.
+TEST_P(Query, DoublesAreAnsweredBeyondTheRangeOfFloats) {
+  for (const int size : {-300, -130, 0, 130, 300}) {
+    const Scene scene = cube_at({0, 0, 0}, std::ldexp(1.0, size));
+    for (const int length : {-200, -40, 0, 40, 200}) {
+      SCOPED_TRACE(std::to_string(size) + ", " + std::to_string(length));
+      const double unit = std::ldexp(1.0, size), step = std::ldexp(1.0, length);
+      const std::vector<double> from = {0.25 * unit, 0.1 * unit, 1.75 * unit}, down = {0, 0, -step};
+      std::vector<double> t(1);
+      scene.closest({from, down}, {.t = t});
+      EXPECT_EQ(t[0], std::ldexp(0.75, size - length));
+      const AllHits all = scene.all({from, down});
+      EXPECT_EQ(all.t,
+                (std::vector<double>{std::ldexp(0.75, size - length), std::ldexp(2.75, size - length)}));
+    }
+  }
+}
+
+TEST_P(Query, RaysAndPointsFromBeyondAllAreNoErrors) {
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  const std::vector<double> from = {1e300, 0.25, 0.125, 0.25, 0.125, 5}, along = {-1, 0, 0, 0, 0, -1};
+  const std::vector<double> late = {0, 1e300};  // the second begins behind everything
+  std::vector<std::uint32_t> counts(2, 9);
+  scene.count({from, along, late}, counts);
+  EXPECT_EQ(counts[1], 0u);
+  const std::vector<double> points = {1e300, 0, 0, 0, 0, 0.5};
+  std::vector<std::uint8_t> inside(2, 9);
+  scene.inside(points, inside);
+  EXPECT_EQ(inside, (std::vector<std::uint8_t>{0, 1}));
+  std::vector<double> distance(2);
+  scene.signed_distance(points, distance);
+  EXPECT_EQ(distance, (std::vector<double>{1e300, -0.5}));
+}
+
+// t below 0 is on the line as well.
+TEST_P(Query, HitsBehindAFarOriginAreFound) {
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  const std::vector<double> from = {0.25, 0.125, 1e6}, up = {0, 0, 1}, first = {-2e6};
+  std::vector<double> t(1);
+  scene.closest({from, up, first}, {.t = t});
+  EXPECT_NEAR(t[0], -1e6 - 1, 1e-6);
+}
+
+TEST_P(Query, ArraysOfNoWholeRowsAndRowsThatOverlapAreRefused) {
+  const Scene scene = cube_at({0, 0, 0}, 1);
+  const std::vector<double> seven(7, 1.0);
+  std::vector<double> t(2);
+  EXPECT_TRUE(fails(
+      [&] {
+        scene.closest({seven, seven}, {.t = t});
+      },
+      "7 values is no whole number of rows of 3"));
+  EXPECT_TRUE(fails([&] { HitsOut{.t = {t.data(), 2, 4}}; }, "4 bytes apart"));
 }
 
 }  // namespace

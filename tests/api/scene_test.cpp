@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include "support/device.h"
 #include "support/errors.h"
+#include "support/folder.h"
 #include "support/meshes.h"
 
 namespace kdray {
@@ -216,6 +217,33 @@ TEST_P(MadeScene, ASceneFromAFileTakesMore) {
   scene.commit(options());
   scene.closest({from, down}, a.out());
   EXPECT_EQ(a.geometry, (std::vector<std::uint32_t>{1, kNoGeometry}));
+}
+
+// What is in the cache under a file's name is the file's alone.
+TEST_P(MadeScene, AChangedSceneIsNotKeptAsItsFile) {
+  const test::Folder folder;
+  const auto file = folder.put("triangle.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n");
+  const SceneCache cache({.folder = folder / "cache", .min_seconds = 0});
+  Scene scene = Scene::load(file);
+  scene.commit(options());
+  EXPECT_TRUE(cache.keep(scene.prepared()));
+  const Cube cube;
+  scene.add_mesh({cube.vertices, cube.triangles});
+  scene.commit(options());
+  EXPECT_FALSE(cache.keep(scene.prepared()));
+}
+
+// A camera and lights that were made up for a file alone are made up anew for all that is there.
+TEST_P(MadeScene, WhatWasMadeUpForAFileIsMadeUpAnew) {
+  const std::string text = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
+  const Cube cube;
+  Scene scene = Scene::from_memory(text, "triangle.obj");
+  const dvec3 before = scene.model().camera->from;
+  scene.add_mesh({cube.at(50, 0, 0), cube.triangles});
+  EXPECT_GT(glm::length(scene.model().camera->from - before), 10) << "it steps back to show both";
+  scene.add_light({.position = {0, 0, 9}});
+  EXPECT_EQ(scene.model().lights.size(), 1u);
+  EXPECT_TRUE(fails([&] { scene.add_light({.kind = static_cast<Light::Kind>(7)}); }, "no such kind"));
 }
 
 }  // namespace

@@ -132,6 +132,7 @@ int main(void) {
   expect(status == KDRAY_OK, "commit");
   check_answers(scene, box);
   check_cancel_and_picture(scene);
+  expect(kdray_keep_programs() == KDRAY_OK, "programs are kept");
   kdray_scene_free(scene);
   puts(failures == 0 ? "c_interface: all right" : "c_interface: wrong answers");
   return failures == 0 ? 0 : 1;

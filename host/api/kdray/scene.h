@@ -1,6 +1,6 @@
-// What    A scene: read from a file, or made of a program's own arrays; and, once it is committed, what can
-//         be asked of it: closest hits, occlusion.
-// Shape   A Scene is what the program says of it; commit() makes of it what queries are put to. Until the
+// What    A scene: read from a file, or made of a program's own arrays; and, once it is committed, what can be
+//         asked of it: hits, crossings, closest points, what is inside, pictures.
+// Shape   A Scene is the program's description; commit() turns it into what queries see. Until the
 //         next commit() queries go on over what was committed, whatever is added, moved or removed
 //         meanwhile.
 // Errors  Everything throws kdray::Error. An array that is wrong is ErrorCode::input, and the message names
@@ -46,7 +46,7 @@ struct GeometryInfo {
 
 class Scene {
  public:
-  Scene();  // of nothing
+  Scene();  // empty
 
   // A scene read from a file (formats: docs/scenes.md). What is in it is geometry 0.
   static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
@@ -88,7 +88,8 @@ class Scene {
 
   std::uint32_t primitives() const;
   const std::vector<std::string>& warnings() const;  // what the loader left out or changed, one line each
-  const scene::Scene& model() const;                 // all of it together
+  // All of it together. It is put together by the first call after a change: not for several threads at once.
+  const scene::Scene& model() const;
   double load_seconds() const;
 
   // ---- What can be asked of it.
@@ -118,7 +119,8 @@ class Scene {
   // 1 for each point that lies inside of closed surfaces: of an odd number of them. Points are rounded to
   // floats of the scene's own space.
   QueryReport inside(const Points& points, const BytesOut& out, const PointOptions& options = {}) const;
-  // The distance to the nearest surface, negative inside.
+  // The distance to the nearest surface, negative inside; infinity, or minus infinity, where nothing lies within
+  // the radius.
   QueryReport signed_distance(const Points& points, const ValuesOut& out,
                               const PointOptions& options = {}) const;
 

@@ -3,7 +3,8 @@
 //         two of them.
 // Shape   A view is a first element, a number of rows, the bytes from one row to the next (0: none between
 //         them) and which type the values are of. N values make a row.
-// Errors  None are found here: whoever takes a view checks its size and its values.
+// Errors  ErrorCode::input for values that make no whole number of rows, and for rows to be written that
+//         overlap. Whoever takes a view checks its size and its values.
 // Threads A view refers to memory that the caller keeps, and leaves alone, as long as a call lasts.
 #pragma once
 
@@ -12,8 +13,11 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <variant>
+
+#include "kdray/error.h"
 
 namespace kdray {
 
@@ -26,11 +30,16 @@ class Rows {
 
   Rows() = default;
 
+  // clang-format off
   template <class T>
-  requires(std::is_same_v<T, Types> || ...) || (std::is_same_v<const T, Types> || ...)
-                                                   Rows(T* first, std::size_t n, std::size_t stride_bytes = 0)
-      : first_(as_held(first)),
-  n_(n), stride_(stride_bytes == 0 ? N * sizeof(T) : stride_bytes) {}
+    requires(std::is_same_v<T, Types> || ...) || (std::is_same_v<const T, Types> || ...)
+  Rows(T* first, std::size_t n, std::size_t stride_bytes = 0)
+      : first_(as_held(first)), n_(n), stride_(stride_bytes == 0 ? N * sizeof(T) : stride_bytes) {
+    if ((!std::is_const_v<Types> && ...) && n > 1 && stride_ < N * sizeof(T))
+      throw Error(ErrorCode::input, "rows of " + std::to_string(N * sizeof(T)) + " bytes that are to be written lie " +
+                                        std::to_string(stride_) + " bytes apart");
+  }
+  // clang-format on
 
   // n rows of N values, one after the other; or n values where N is 1.
   template <class Range>
@@ -77,14 +86,6 @@ class Rows {
     return first ? *first : nullptr;
   }
 
-  // The rows from `first` on, `n` of them.
-  Rows part(std::size_t first, std::size_t n) const {
-    Rows some = *this;
-    std::visit([&](auto* p) { some.first_ = at(p, first, 0); }, first_);
-    some.n_ = n;
-    return some;
-  }
-
  private:
   template <class T>
   static auto as_held(T* first) {
@@ -105,7 +106,12 @@ class Rows {
   }
   template <class T>
   requires std::is_arithmetic_v<T>
-  static Rows of_range(T* values, std::size_t n) { return Rows(values, n / N); }
+  static Rows of_range(T* values, std::size_t n) {
+    if (n % N != 0)
+      throw Error(ErrorCode::input, "an array of " + std::to_string(n) +
+                                        " values is no whole number of rows of " + std::to_string(N));
+    return Rows(values, n / N);
+  }
 
   template <class T>
   T* at(T* first, std::size_t i, std::size_t k) const {

@@ -1,6 +1,7 @@
 // What    Tells a query or a picture to end, from any thread.
-// Errors  The call that is told so throws ErrorCode::cancelled within a tenth of a second or so; what it had
-//         begun is lost, and what it worked on is as it was.
+// Errors  The call that is told so throws ErrorCode::cancelled when the launch in work has ended: mostly within
+//         a tenth of a second, later where rays have very many hits each. The scene is as it was; answers may
+//         be half written.
 #pragma once
 
 #include <atomic>

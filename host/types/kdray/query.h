@@ -3,7 +3,7 @@
 //         that isn't wanted is an empty view, and is not computed.
 // Units   The scene's; t counts in multiples of the direction as it was given.
 // Errors  kdray::Error: ErrorCode::input for sizes that don't match and, unless InvalidRays::miss says
-//         otherwise, for a ray that means nothing (NaN anywhere, an infinite origin, a direction that is
+//         otherwise, for an invalid ray (NaN anywhere, an infinite origin or t_min, a direction that is
 //         infinite or 0), with its number; ErrorCode::cancelled.
 #pragma once
 
@@ -19,7 +19,8 @@
 
 namespace kdray {
 
-// The rays origin + t*direction, t_min < t < t_max. What has one row is the same for all rays.
+// The rays origin + t*direction, t_min < t < t_max (Scene::count says of t = 0). What has one row is the same
+// for all rays.
 struct Rays {
   Points origins, directions;
   Values t_min = {}, t_max = {};  // empty: 0 and infinity
@@ -37,15 +38,17 @@ struct Rays {
   }
 };
 
-// Of each ray what it hits first; of several at one distance the one that comes first in the scene.
+// Of each ray what it hits first; of several at one distance the one that comes first in the scene. A miss has
+// u, v and normal 0, and a point at infinity.
 struct HitsOut {
   ValuesOut t = {};         // infinity: a miss
   WordsOut geometry = {};   // kNoGeometry: a miss
   WordsOut primitive = {};  // of the geometry, from 0; kNoPrimitive: a miss
   // Triangles: weights of the second and third corner; cones: u from base to apex.
   ValuesOut u = {}, v = {};
-  PointsOut normal =
-      {};                // of unit length, of the surface as it is (no vertex normals), to the mesh's outside
+  // Of unit length, of the surface as it is (no vertex normals): of a triangle to the side from which its
+  // corners run counterclockwise, of a sphere outward, of a cone away from its axis.
+  PointsOut normal = {};
   PointsOut point = {};  // origin + t*direction
 };
 
@@ -57,7 +60,7 @@ struct QueryOptions {
 };
 
 struct QueryReport {
-  std::uint64_t invalid = 0;  // rays that mean nothing, counted as misses
+  std::uint64_t invalid = 0;  // invalid rays or points, which counted as misses
 };
 
 // All hits of rays: those of ray i are [splits[i], splits[i + 1]), sorted by t and, where that is equal, by
@@ -83,6 +86,7 @@ struct ClosestPointsOut {
   ValuesOut u = {}, v = {};
 };
 
+// Masks are for rays: points see every geometry.
 struct PointOptions {
   double radius = std::numeric_limits<double>::infinity();  // how far to look
   // A point that is not finite: an error that names it, or one that has nothing near it, and is inside of
