@@ -1,5 +1,5 @@
-// What    A scene: read from a file, or made of a program's own arrays; and, once it is committed, what can be
-//         asked of it: hits, crossings, closest points, what is inside, pictures.
+// What    A scene: read from a file, or made of a program's own arrays; and, once it is committed, what can
+//         be asked of it: hits, crossings, closest points, what is inside, pictures.
 // Shape   A Scene is the program's description; commit() turns it into what queries see. Until the
 //         next commit() queries go on over what was committed, whatever is added, moved or removed
 //         meanwhile.
@@ -119,8 +119,8 @@ class Scene {
   // 1 for each point that lies inside of closed surfaces: of an odd number of them. Points are rounded to
   // floats of the scene's own space.
   QueryReport inside(const Points& points, const BytesOut& out, const PointOptions& options = {}) const;
-  // The distance to the nearest surface, negative inside; infinity, or minus infinity, where nothing lies within
-  // the radius.
+  // The distance to the nearest surface, negative inside; infinity, or minus infinity, where nothing lies
+  // within the radius.
   QueryReport signed_distance(const Points& points, const ValuesOut& out,
                               const PointOptions& options = {}) const;
 

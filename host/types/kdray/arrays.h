@@ -36,8 +36,9 @@ class Rows {
   Rows(T* first, std::size_t n, std::size_t stride_bytes = 0)
       : first_(as_held(first)), n_(n), stride_(stride_bytes == 0 ? N * sizeof(T) : stride_bytes) {
     if ((!std::is_const_v<Types> && ...) && n > 1 && stride_ < N * sizeof(T))
-      throw Error(ErrorCode::input, "rows of " + std::to_string(N * sizeof(T)) + " bytes that are to be written lie " +
-                                        std::to_string(stride_) + " bytes apart");
+      throw Error(ErrorCode::input, "rows of " + std::to_string(N * sizeof(T)) +
+                                        " bytes that are to be written lie " + std::to_string(stride_) +
+                                        " bytes apart");
   }
   // clang-format on
 

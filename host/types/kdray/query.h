@@ -38,8 +38,8 @@ struct Rays {
   }
 };
 
-// Of each ray what it hits first; of several at one distance the one that comes first in the scene. A miss has
-// u, v and normal 0, and a point at infinity.
+// Of each ray what it hits first; of several at one distance the one that comes first in the scene. A miss
+// has u, v and normal 0, and a point at infinity.
 struct HitsOut {
   ValuesOut t = {};         // infinity: a miss
   WordsOut geometry = {};   // kNoGeometry: a miss
