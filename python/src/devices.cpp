@@ -1,0 +1,58 @@
+// What there is to trace with.
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "parts.h"
+
+namespace kdray::python {
+
+namespace {
+
+namespace nb = nanobind;
+
+nb::dict facts_of(const DeviceInfo& d) {
+  nb::dict facts;
+  facts["number"] = d.number;
+  facts["name"] = d.name;
+  facts["platform"] = d.platform;
+  facts["version"] = d.version;
+  facts["driver"] = d.driver;
+  facts["kind"] = d.kind;
+  facts["compute_units"] = d.compute_units;
+  facts["memory"] = d.global_memory;
+  facts["vectors"] = d.vectors;
+  facts["double_precision"] = d.double_precision;
+  facts["usable"] = d.usable;
+  facts["why_not"] = d.why_not;
+  return facts;
+}
+
+}  // namespace
+
+void add_devices(nb::module_& module) {
+  module.def("devices", [] {
+    std::vector<DeviceInfo> found;
+    std::vector<std::string> left_out;
+    {
+      const nb::gil_scoped_release released;
+      DeviceOptions options;
+      options.programs = default_program_folder();
+      options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+      found = devices(options);
+    }
+    nb::list all;
+    for (const DeviceInfo& device : found) all.append(facts_of(device));
+    return nb::make_tuple(all, left_out);
+  });
+  module.def(
+      "keep_programs",
+      [] {
+        DeviceOptions options;
+        options.programs = default_program_folder();
+        keep_programs(options);
+      },
+      nb::call_guard<nb::gil_scoped_release>());
+  module.def("program_folder", [] { return default_program_folder().string(); });
+}
+
+}  // namespace kdray::python

@@ -1,0 +1,129 @@
+// Pictures: of a scene, and to files.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "arrays.h"
+#include "film/write.h"
+#include "interrupt.h"
+#include "parts.h"
+
+namespace kdray::python {
+
+namespace {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+using Pixels = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+using Progress = std::function<void(double)>;
+using CameraNumbers = std::array<double, 12>;  // from, at, up, fov, ortho_width, hither
+
+Camera camera_of(const CameraNumbers& n) {
+  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n[10], n[11]};
+}
+
+// Calls Python's function, whose exceptions end the picture.
+std::function<void(double)> told(const std::optional<Progress>& progress) {
+  if (!progress) return {};
+  return [&progress = *progress](double share) {
+    const nb::gil_scoped_acquire gil;
+    progress(share);
+  };
+}
+
+template <class T>
+T named(const std::string& name, std::initializer_list<std::pair<const char*, T>> values, const char* what) {
+  std::string all;
+  for (const auto& [n, value] : values) {
+    if (name == n) return value;
+    all += (all.empty() ? "\"" : ", \"") + std::string(n) + "\"";
+  }
+  throw Error(ErrorCode::usage, std::string(what) + " is one of " + all + ", not \"" + name + "\"");
+}
+
+RenderOptions options_of(int width, int height, int samples, int depth, double min_weight, double adaptive,
+                         const std::string& mode, const std::string& precision) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.samples = samples;
+  o.depth = depth;
+  o.min_weight = min_weight;
+  o.adaptive_target = adaptive;
+  o.mode =
+      named<Mode>(mode, {{"auto", Mode::automatic}, {"pdprt", Mode::pdprt}, {"odprt", Mode::odprt}}, "mode");
+  o.precision = named<Precision>(precision, {{"float", Precision::float32}, {"double", Precision::float64}},
+                                 "precision");
+  o.cancel = cancel_on_signals();
+  return o;
+}
+
+nb::tuple arrays_of(Picture&& picture) {
+  nb::dict channels;
+  for (Channel& channel : picture.channels) channels[channel.name.c_str()] = owned(std::move(channel.values));
+  return nb::make_tuple(picture.width, picture.height, owned(std::move(picture.rgb)), channels,
+                        picture.warnings);
+}
+
+film::Image image_of(const Pixels& pixels) {
+  if (pixels.shape(2) != 3) throw Error(ErrorCode::input, "a picture has three values to a pixel");
+  film::Image image{static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)), {}};
+  image.pixels.resize(pixels.shape(0) * pixels.shape(1));
+  const float* const values = pixels.data();
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return image;
+}
+
+std::vector<film::Channel> channels_of(const std::vector<std::pair<std::string, std::vector<float>>>& given) {
+  std::vector<film::Channel> channels;
+  for (const auto& [name, values] : given) channels.push_back({name, values});
+  return channels;
+}
+
+}  // namespace
+
+void add_pictures(nb::module_& module, SceneClass scene) {
+  scene.def(
+      "render",
+      [](const Scene& s, const std::optional<CameraNumbers>& camera, int width, int height, int samples,
+         int depth, double min_weight, double adaptive, const std::string& mode, const std::string& precision,
+         const std::vector<std::string>& channels, const std::optional<Progress>& progress) {
+        Picture picture;
+        {
+          RenderOptions o = options_of(width, height, samples, depth, min_weight, adaptive, mode, precision);
+          if (camera) o.camera = camera_of(*camera);
+          o.channels = channels;
+          const nb::gil_scoped_release released;
+          o.progress = told(progress);
+          picture = s.render(o);
+        }
+        return arrays_of(std::move(picture));
+      },
+      "camera"_a.none(), "width"_a, "height"_a, "samples"_a, "depth"_a, "min_weight"_a, "adaptive"_a,
+      "mode"_a, "precision"_a, "channels"_a, "progress"_a.none());
+  module.def(
+      "write_picture",
+      [](const std::string& file, const Pixels& pixels,
+         const std::vector<std::pair<std::string, std::vector<float>>>& channels, double gamma, int bits) {
+        film::WriteOptions options{{gamma == 0, gamma}, bits};
+        const film::Written written =
+            film::write_picture(file, image_of(pixels), channels_of(channels), options);
+        std::vector<std::string> files;
+        for (const auto& path : written.files) files.push_back(path.string());
+        return files;
+      },
+      "file"_a, "pixels"_a, "channels"_a, "gamma"_a, "bits"_a);
+  module.def("encode_png", [](const Pixels& pixels) {
+    const std::string bytes = film::encode_picture(film::PictureFormat::png, image_of(pixels), {}, {});
+    return nb::bytes(bytes.data(), bytes.size());
+  });
+}
+
+}  // namespace kdray::python

@@ -1,0 +1,131 @@
+// What a scene is made of.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "arrays.h"
+#include "parts.h"
+
+namespace kdray::python {
+
+namespace {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using Released = nb::call_guard<nb::gil_scoped_release>;
+
+BuildQuality quality_of(const std::string& name) {
+  if (name == "fast") return BuildQuality::fast;
+  if (name == "balanced") return BuildQuality::balanced;
+  if (name == "best") return BuildQuality::best;
+  throw Error(ErrorCode::usage, "quality is \"fast\", \"balanced\" or \"best\", not \"" + name + "\"");
+}
+
+void add_geometries(SceneClass& scene) {
+  scene.def(
+      "add_mesh",
+      [](Scene& s, const In& vertices, const In& triangles, const In& normals, const std::string& name,
+         std::uint32_t mask, std::uint32_t material) {
+        return s.add_mesh({points_of(vertices), triples_of(triangles), points_of(normals)},
+                          {name, mask, material});
+      },
+      Released(), "vertices"_a, "triangles"_a, "normals"_a.none(), "name"_a, "mask"_a, "material"_a);
+  scene.def(
+      "add_spheres",
+      [](Scene& s, const In& centers, const In& radii, const std::string& name, std::uint32_t mask,
+         std::uint32_t material) {
+        return s.add_spheres({points_of(centers), values_of(radii)}, {name, mask, material});
+      },
+      Released());
+  scene.def(
+      "add_cones",
+      [](Scene& s, const In& p0, const In& r0, const In& p1, const In& r1, const std::string& name,
+         std::uint32_t mask, std::uint32_t material) {
+        return s.add_cones({points_of(p0), points_of(p1), values_of(r0), values_of(r1)},
+                           {name, mask, material});
+      },
+      Released());
+  scene.def(
+      "add_discs",
+      [](Scene& s, const In& centers, const In& normals, const In& radii, const std::string& name,
+         std::uint32_t mask, std::uint32_t material) {
+        return s.add_discs({points_of(centers), points_of(normals), values_of(radii)},
+                           {name, mask, material});
+      },
+      Released());
+  scene.def(
+      "update_vertices",
+      [](Scene& s, GeometryId id, const In& vertices, const In& normals) {
+        s.update_vertices(id, points_of(vertices), points_of(normals));
+      },
+      Released(), "id"_a, "vertices"_a, "normals"_a.none());
+  scene.def("remove", &Scene::remove);
+  scene.def("enable", &Scene::enable);
+  scene.def("set_mask", &Scene::set_mask);
+  scene.def("geometries", &Scene::geometries);
+  scene.def("info", [](const Scene& s, GeometryId id) {
+    const GeometryInfo info = s.info(id);
+    return nb::make_tuple(info.name, info.mask, info.primitives, info.enabled);
+  });
+  scene.def("primitives", &Scene::primitives);
+  scene.def("warnings", &Scene::warnings);
+}
+
+void add_looks(SceneClass& scene) {
+  scene.def("add_material",
+            [](Scene& s, const Color& emission, const Color& ambient, const Color& diffuse,
+               const Color& specular, const Color& reflect, const Color& transmit, float shine, float index) {
+              return s.add_material({emission, ambient, diffuse, specular, reflect, transmit, shine, index});
+            });
+  scene.def("add_light",
+            [](Scene& s, const std::string& kind, const Vec3& position, const Vec3& direction,
+               const Color& color, const Vec3& attenuation, double range, double inner, double outer) {
+              const Light::Kind k = kind == "point"         ? Light::Kind::point
+                                    : kind == "directional" ? Light::Kind::directional
+                                    : kind == "spot"        ? Light::Kind::spot
+                                                            : throw Error(ErrorCode::usage,
+                                                                          "a light is \"point\", \"directional\" or "
+                                                                                 "\"spot\", not \"" +
+                                                                              kind + "\"");
+              s.add_light({k, position, direction, color, attenuation, range, inner, outer});
+            });
+  scene.def("set_camera", [](Scene& s, const Vec3& from, const Vec3& at, const Vec3& up, double fov,
+                             double ortho_width, double hither) {
+    s.set_camera({from, at, up, fov, ortho_width, hither});
+  });
+  scene.def("set_background", &Scene::set_background);
+  scene.def("set_ambient", &Scene::set_ambient);
+}
+
+}  // namespace
+
+SceneClass add_scene(nb::module_& module) {
+  SceneClass scene(module, "Scene");
+  scene.def(nb::init<>());
+  scene.def_static(
+      "load",
+      [](const std::string& file, std::optional<double> smooth_degrees) {
+        return Scene::load(file, {smooth_degrees});
+      },
+      Released(), "file"_a, "smooth_degrees"_a.none());
+  add_geometries(scene);
+  add_looks(scene);
+  scene.def(
+      "commit",
+      [](Scene& s, const std::string& quality, const std::string& device, int compute_units,
+         bool binary_form) {
+        CommitOptions options;
+        options.tree.quality = quality_of(quality);
+        options.tree.binary_form = binary_form;
+        options.device.device = device;
+        options.device.compute_units = compute_units;
+        options.device.programs = default_program_folder();
+        s.commit(options);
+      },
+      Released(), "quality"_a, "device"_a, "compute_units"_a, "binary_form"_a);
+  return scene;
+}
+
+}  // namespace kdray::python
