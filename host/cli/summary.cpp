@@ -96,10 +96,22 @@ std::string picture_in_words(const Json& stats) {
 }
 
 // "in 130 ms, 33 Mrays/s; 0.45 s in all"
-std::string speed_in_words(const Json& stats) {
+std::string speed_in_words(const Json& stats, const char* of = "rays") {
   const Json& seconds = part(stats, "seconds");
-  return fmt::format("in {}, {:.3g} Mrays/s; {} in all", seconds_in_words(number(seconds, work_of(seconds))),
-                     number(stats, "mrays_per_s"), seconds_in_words(number(seconds, "total")));
+  return fmt::format("in {}, {:.3g} M{}/s; {} in all", seconds_in_words(number(seconds, work_of(seconds))),
+                     number(stats, "mrays_per_s"), of, seconds_in_words(number(seconds, "total")));
+}
+
+// "3 of 5 rays hit", "12 crossings of 5 rays"
+std::string answers_in_words(const Json& hits) {
+  const double found = number(hits, "hits"), rays = number(hits, "rays"), points = number(hits, "points");
+  const std::string asked = hits.value("asked", "closest");
+  if (asked == "all") return fmt::format("{} hits of {} rays", found, rays);
+  if (asked == "count") return fmt::format("{} crossings of {} rays", found, rays);
+  if (asked == "closest_point") return fmt::format("closest points of {} of {} points", found, points);
+  if (asked == "inside" || asked == "signed_distance")
+    return fmt::format("{} of {} points inside", found, points);
+  return fmt::format("{} of {} rays hit", found, rays);
 }
 
 void say_if_any(const std::string& line) {
@@ -166,8 +178,8 @@ std::string render_line(const Json& stats) {
 
 std::string trace_line(const Json& stats) {
   const Json& hits = part(stats, "hits");
-  return fmt::format("{}: {} of {} rays hit, {}", hits.value("file", ""), number(hits, "hits"),
-                     number(hits, "rays"), speed_in_words(stats));
+  return fmt::format("{}: {}, {}", hits.value("file", ""), answers_in_words(hits),
+                     speed_in_words(stats, hits.contains("points") ? "points" : "rays"));
 }
 
 std::string cold_start_line(const Json& stats) {
