@@ -29,7 +29,6 @@ using layout::QueryPoint;
 constexpr std::size_t kPointsPerChunk = std::size_t{1} << 19;
 
 constexpr double kPointReach = double{KDRAY_POINT_REACH};
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // What    a point is asked from: itself in the scene's own space. A point that is over 2^25 times the scene's
 //         size away is
