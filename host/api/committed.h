@@ -29,6 +29,7 @@ class Committed {
   // Of a query over so many rays or points that took this long, and of all that came before it.
   Statistics statistics(std::uint64_t n_asked, std::span<const double> seconds) const;
   double build_seconds() const { return devices_.build_seconds(); }  // compiling, until now
+  bool has_compiled() const { return devices_.programs_used().compiled > 0; }
 
  private:
   query::Target target();
