@@ -1,6 +1,19 @@
 #include "api/committed.h"
 
+#include "api/record.h"
+#include "base/median.h"
+
 namespace kdray::api {
+
+namespace {
+
+query::GeometryTable table_of_one(const prepare::Prepared& scene) {
+  query::GeometryTable table;
+  table.add(0, static_cast<std::uint32_t>(scene.counts.primitives), 0xffffffffu);
+  return table;
+}
+
+}  // namespace
 
 Committed::Committed(const PreparedScene& scene, query::GeometryTable table, const DeviceOptions& device)
     : scene_(scene),
@@ -10,6 +23,17 @@ Committed::Committed(const PreparedScene& scene, query::GeometryTable table, con
       target_(target()),
       sessions_(target_),
       device_options_(device) {}
+
+Committed::Committed(const PreparedScene& scene, const DeviceOptions& device)
+    : Committed(scene, table_of_one(scene.prepared()), device) {}
+
+Statistics Committed::statistics(std::uint64_t n_asked, std::span<const double> seconds) const {
+  Statistics statistics = first_statistics(scene_.prepared(), devices_);
+  record_query(
+      statistics, devices_,
+      {.rays = n_asked, .repeat = seconds.size(), .seconds = median({seconds.begin(), seconds.end()})});
+  return statistics;
+}
 
 Picture Committed::render(const RenderOptions& options) {
   const std::lock_guard lock(rendering_);

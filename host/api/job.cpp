@@ -5,7 +5,7 @@
 #include "flatten/features.h"
 #include "flatten/frame.h"
 #include "layout/features.h"
-#include "scene/part.h"
+#include "scene/added_geometry.h"
 
 namespace kdray::api {
 

@@ -69,10 +69,10 @@ Statistics::Samples samples_told(const layout::Frame& frame, const std::optional
           std::move(adaptive)};
 }
 
-void record_preparations(Statistics& statistics, const State& state) {
-  statistics.seconds.compile = state.devices.build_seconds();
-  statistics.seconds.upload = state.devices.upload_seconds();
-  const wavefront::ProgramsUsed used = state.devices.programs_used();
+void record_preparations(Statistics& statistics, const DeviceSet& devices) {
+  statistics.seconds.compile = devices.build_seconds();
+  statistics.seconds.upload = devices.upload_seconds();
+  const wavefront::ProgramsUsed used = devices.programs_used();
   statistics.programs = {used.compiled, used.found, used.covering, flatten::feature_names(used.spare).on};
 }
 
@@ -97,18 +97,18 @@ Statistics::DeviceTuning tuning_told(const Tuned& tuned) {
   return {tuned.from, tuned.settings, k.device, k.driver, k.kernels, k.schedule, k.features};
 }
 
-Statistics first_statistics(const State& state) {
+Statistics first_statistics(const prepare::Prepared& scene, const DeviceSet& devices) {
   Statistics s;
-  s.seconds.start = state.devices.open_seconds().start;
-  s.seconds.self_test = state.devices.open_seconds().self_test;
-  s.seconds.build = state.scene.seconds.build;
-  s.seconds.flatten = state.scene.seconds.flatten;
-  s.scene = scene_told(state.scene);
-  s.tree = tree_told(state.scene);
-  s.memory.scene_bytes = state.scene_bytes;
-  s.device = state.devices.first().context.info();
-  s.tuning = tuning_told(state.devices.first().tuned);
-  s.features = features_told(state.scene.features);
+  s.seconds.start = devices.open_seconds().start;
+  s.seconds.self_test = devices.open_seconds().self_test;
+  s.seconds.build = scene.seconds.build;
+  s.seconds.flatten = scene.seconds.flatten;
+  s.scene = scene_told(scene);
+  s.tree = tree_told(scene);
+  s.memory.scene_bytes = scene.bytes();
+  s.device = devices.first().context.info();
+  s.tuning = tuning_told(devices.first().tuned);
+  s.features = features_told(scene.features);
   return s;
 }
 
@@ -120,7 +120,7 @@ void record_frame(Statistics& statistics, const State& state, const Job& job, Dr
     return found == drawn.stage_seconds.end() ? 0.0 : found->second;
   };
   Statistics::Seconds& seconds = statistics.seconds;
-  record_preparations(statistics, state);
+  record_preparations(statistics, state.devices);
   seconds.render = drawn.render_seconds;
   seconds.trace = stage("trace_closest") + stage("trace_shadow");
   seconds.shade = stage("shade");
@@ -150,14 +150,14 @@ void record_frame(Statistics& statistics, const State& state, const Job& job, Dr
                      .repeat = {}};
 }
 
-void record_query(Statistics& statistics, const State& state, const Query& query) {
-  record_preparations(statistics, state);
+void record_query(Statistics& statistics, const DeviceSet& devices, const Query& query) {
+  record_preparations(statistics, devices);
   statistics.seconds.trace = query.seconds;
   statistics.rays = {.total = query.rays, .kinds = {}};
   statistics.mrays_per_s = mrays_per_s(query.rays, query.seconds);
   statistics.mode = {.name = "query",
                      .queues = 1,
-                     .work_group = state.devices.first().work_group,
+                     .work_group = devices.first().work_group,
                      .traversal = name_of(query.traversal),
                      .precision = name_of(query.precision),
                      .division = {},

@@ -1,5 +1,5 @@
-// What    Fills in a Renderer's Statistics from what its rooms tell: the scene, the tree, rays, samples,
-//         queues.
+// What    Fills in the Statistics of a Renderer, or of a scene that is asked, from what its rooms tell: the
+//         scene, the tree, rays, samples, queues.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 namespace kdray::api {
 
 // What is known before the first frame.
-Statistics first_statistics(const State& state);
+Statistics first_statistics(const prepare::Prepared& scene, const DeviceSet& devices);
 
 Statistics::Features features_told(layout::Features mask);
 Statistics::DeviceTuning tuning_told(const Tuned& tuned);
@@ -37,6 +37,6 @@ struct Query {
   Traversal traversal = Traversal::automatic;
   Precision precision = Precision::float32;
 };
-void record_query(Statistics& statistics, const State& state, const Query& query);
+void record_query(Statistics& statistics, const DeviceSet& devices, const Query& query);
 
 }  // namespace kdray::api

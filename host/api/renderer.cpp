@@ -53,7 +53,8 @@ class Preparing {
 
 struct Renderer::Impl {
   Impl(const PreparedScene& prepared, const DeviceOptions& options, const api::Hooks& hooks)
-      : state(prepared.prepared(), options, hooks), statistics(api::first_statistics(state)) {}
+      : state(prepared.prepared(), options, hooks),
+        statistics(api::first_statistics(state.scene, state.devices)) {}
 
   Picture render(const RenderOptions& options);
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
@@ -98,7 +99,7 @@ std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, 
       {.any_hit = any_hit, .traversal = traversal, .precision = precision, .repeat = repeat});
   statistics.seconds.prepare =
       preparing.beside(std::accumulate(result.seconds.begin(), result.seconds.end(), 0.0));
-  api::record_query(statistics, state,
+  api::record_query(statistics, state.devices,
                     {.rays = rays.size(),
                      .repeat = result.seconds.size(),
                      .seconds = median(result.seconds),

@@ -10,10 +10,10 @@
 #include "kdray/kdray.h"
 #include "query/crossings.h"
 #include "query/points.h"
+#include "scene/added_geometry.h"
 #include "scene/check_scene.h"
 #include "scene/frame.h"
 #include "scene/load.h"
-#include "scene/part.h"
 
 namespace kdray {
 
@@ -23,19 +23,19 @@ struct Scene::Impl {
   GeometryInfo file_info;  // of it
   bool file_removed = false;
   double load_seconds = 0;
-  std::vector<std::optional<scene::Part>> parts;  // by id, after the file's; none: removed
+  std::vector<std::optional<scene::AddedGeometry>> geometries;  // by id, after the file's; none: removed
   std::vector<scene::Material> materials;
   bool changed = false;  // since `assembled` was made
 
-  mutable std::optional<scene::Scene> assembled;  // base and parts together, where there are parts
+  mutable std::optional<scene::Scene> assembled;  // base and geometries together, where there are some
 
   std::mutex mutex;  // of `committed`
   std::shared_ptr<api::Committed> committed;
 
-  GeometryId first_part() const { return has_file ? 1 : 0; }
+  GeometryId first_added() const { return has_file ? 1 : 0; }
   bool is_file(GeometryId id) const { return has_file && id == 0 && !file_removed; }
-  scene::Part& part(GeometryId id);
-  GeometryId add(scene::Part&& part, const GeometryOptions& options);
+  scene::AddedGeometry& added(GeometryId id);
+  GeometryId add(scene::AddedGeometry&& geometry, const GeometryOptions& options);
   const scene::Scene& model();
   query::GeometryTable table() const;
   std::shared_ptr<api::Committed> asked();
@@ -65,32 +65,32 @@ scene::Scene only_settings(const scene::Scene& scene) {
 
 }  // namespace
 
-scene::Part& Scene::Impl::part(GeometryId id) {
-  if (id < first_part() && file_removed) no_such(id);
-  if (id < first_part()) throw Error(ErrorCode::usage, "geometry 0 is the file's: it can't be changed");
-  const std::size_t i = id - first_part();
-  if (i >= parts.size() || !parts[i]) no_such(id);
-  return *parts[i];
+scene::AddedGeometry& Scene::Impl::added(GeometryId id) {
+  if (id < first_added() && file_removed) no_such(id);
+  if (id < first_added()) throw Error(ErrorCode::usage, "geometry 0 is the file's: it can't be changed");
+  const std::size_t i = id - first_added();
+  if (i >= geometries.size() || !geometries[i]) no_such(id);
+  return *geometries[i];
 }
 
-GeometryId Scene::Impl::add(scene::Part&& part, const GeometryOptions& options) {
+GeometryId Scene::Impl::add(scene::AddedGeometry&& geometry, const GeometryOptions& options) {
   if (options.material >= std::max<std::size_t>(materials.size(), 1))
     throw Error(ErrorCode::usage, fmt::format("there is no material {}; add it first", options.material));
-  part.name = options.name;
-  part.mask = options.mask;
-  part.material = options.material;
-  parts.emplace_back(std::move(part));
+  geometry.name = options.name;
+  geometry.mask = options.mask;
+  geometry.material = options.material;
+  geometries.emplace_back(std::move(geometry));
   changed = true;
-  return first_part() + static_cast<GeometryId>(parts.size() - 1);
+  return first_added() + static_cast<GeometryId>(geometries.size() - 1);
 }
 
 const scene::Scene& Scene::Impl::model() {
   if (!changed) return assembled ? *assembled : base;
   const bool with_file = has_file && !file_removed && file_info.enabled;
   scene::Scene all = with_file ? base : only_settings(base);
-  std::vector<const scene::Part*> enabled;
-  for (const auto& part : parts)
-    if (part && part->enabled) enabled.push_back(&*part);
+  std::vector<const scene::AddedGeometry*> enabled;
+  for (const auto& geometry : geometries)
+    if (geometry && geometry->enabled) enabled.push_back(&*geometry);
   scene::assemble(all, enabled, materials);
   // It is the file's no more, and is not to be kept as the file's (host/cache). What was made up for the file
   // alone is made up anew.
@@ -107,9 +107,10 @@ const scene::Scene& Scene::Impl::model() {
 query::GeometryTable Scene::Impl::table() const {
   query::GeometryTable table;
   if (has_file && !file_removed && file_info.enabled) table.add(0, base.primitive_count(), file_info.mask);
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (parts[i] && parts[i]->enabled)
-      table.add(first_part() + static_cast<GeometryId>(i), parts[i]->primitive_count(), parts[i]->mask);
+  for (std::size_t i = 0; i < geometries.size(); ++i)
+    if (geometries[i] && geometries[i]->enabled)
+      table.add(first_added() + static_cast<GeometryId>(i), geometries[i]->primitive_count(),
+                geometries[i]->mask);
   return table;
 }
 
@@ -147,50 +148,50 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
 GeometryId Scene::add_mesh(const Mesh& mesh, const GeometryOptions& options) {
-  return impl_->add(scene::make_part(mesh), options);
+  return impl_->add(scene::make_added(mesh), options);
 }
 GeometryId Scene::add_spheres(const Spheres& spheres, const GeometryOptions& options) {
-  return impl_->add(scene::make_part(spheres), options);
+  return impl_->add(scene::make_added(spheres), options);
 }
 GeometryId Scene::add_cones(const Cones& cones, const GeometryOptions& options) {
-  return impl_->add(scene::make_part(cones), options);
+  return impl_->add(scene::make_added(cones), options);
 }
 GeometryId Scene::add_discs(const Discs& discs, const GeometryOptions& options) {
-  return impl_->add(scene::make_part(discs), options);
+  return impl_->add(scene::make_added(discs), options);
 }
 
 void Scene::update_vertices(GeometryId mesh, const Points& vertices, const Points& normals) {
-  scene::move_vertices(impl_->part(mesh), vertices, normals);
+  scene::move_vertices(impl_->added(mesh), vertices, normals);
   impl_->changed = true;
 }
 void Scene::remove(GeometryId geometry) {
   if (impl_->is_file(geometry)) {
     impl_->file_removed = true;
   } else {
-    static_cast<void>(impl_->part(geometry));
-    impl_->parts[geometry - impl_->first_part()].reset();
+    static_cast<void>(impl_->added(geometry));
+    impl_->geometries[geometry - impl_->first_added()].reset();
   }
   impl_->changed = true;
 }
 void Scene::enable(GeometryId geometry, bool enabled) {
-  (impl_->is_file(geometry) ? impl_->file_info.enabled : impl_->part(geometry).enabled) = enabled;
+  (impl_->is_file(geometry) ? impl_->file_info.enabled : impl_->added(geometry).enabled) = enabled;
   impl_->changed = true;
 }
 void Scene::set_mask(GeometryId geometry, std::uint32_t mask) {
-  (impl_->is_file(geometry) ? impl_->file_info.mask : impl_->part(geometry).mask) = mask;
+  (impl_->is_file(geometry) ? impl_->file_info.mask : impl_->added(geometry).mask) = mask;
 }
 
 std::vector<GeometryId> Scene::geometries() const {
   std::vector<GeometryId> ids;
   if (impl_->has_file && !impl_->file_removed) ids.push_back(0);
-  for (std::size_t i = 0; i < impl_->parts.size(); ++i)
-    if (impl_->parts[i]) ids.push_back(impl_->first_part() + static_cast<GeometryId>(i));
+  for (std::size_t i = 0; i < impl_->geometries.size(); ++i)
+    if (impl_->geometries[i]) ids.push_back(impl_->first_added() + static_cast<GeometryId>(i));
   return ids;
 }
 GeometryInfo Scene::info(GeometryId geometry) const {
   if (impl_->is_file(geometry)) return impl_->file_info;
-  const scene::Part& part = impl_->part(geometry);
-  return {part.name, part.mask, part.primitive_count(), part.enabled};
+  const scene::AddedGeometry& added = impl_->added(geometry);
+  return {added.name, added.mask, added.primitive_count(), added.enabled};
 }
 
 MaterialId Scene::add_material(const Material& material) {

@@ -107,15 +107,21 @@ void write_atomically(const fs::path& file, const std::function<void(const fs::p
   temporary->forget();
 }
 
-void write_bytes(const fs::path& temporary, const fs::path& shown, std::string_view content) {
-  std::FILE* stream = std::fopen(temporary.c_str(), "ab");
+void write_pieces(const fs::path& temporary, const fs::path& shown,
+                  const std::function<void(const Sink&)>& produce) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(temporary.c_str(), "ab"), std::fclose);
   if (!stream) throw cannot_write(shown, errno, folder_of(shown));
-  // fwrite wants a pointer even for nothing.
-  bool good = content.empty() || std::fwrite(content.data(), 1, content.size(), stream) == content.size();
-  int error = errno;
+  produce([&](std::string_view piece) {
+    // fwrite wants a pointer even for nothing.
+    if (!piece.empty() && std::fwrite(piece.data(), 1, piece.size(), stream.get()) != piece.size())
+      throw cannot_write(shown, errno, folder_of(shown));
+  });
   // A full disk may show only when the buffer is flushed.
-  if (std::fclose(stream) != 0 && good) good = false, error = errno;
-  if (!good) throw cannot_write(shown, error, folder_of(shown));
+  if (std::fclose(stream.release()) != 0) throw cannot_write(shown, errno, folder_of(shown));
+}
+
+void write_bytes(const fs::path& temporary, const fs::path& shown, std::string_view content) {
+  write_pieces(temporary, shown, [&](const Sink& sink) { sink(content); });
 }
 
 void write_file(const fs::path& file, std::string_view content) {

@@ -25,6 +25,13 @@ void write_file(const std::filesystem::path& file, std::string_view content);
 // Throws what write_atomically would throw for this name, so that a long job can fail before it starts.
 void check_writable(const std::filesystem::path& file);
 
+// Takes the next bytes of what is being written.
+using Sink = std::function<void(std::string_view)>;
+
+// Appends to a file being written what `produce` hands to its sink, piece by piece; `shown` as below.
+void write_pieces(const std::filesystem::path& temporary, const std::filesystem::path& shown,
+                  const std::function<void(const Sink&)>& produce);
+
 // Appends to a file being written, `shown` being the name for messages (the temporary's would puzzle the
 // user).
 void write_bytes(const std::filesystem::path& temporary, const std::filesystem::path& shown,

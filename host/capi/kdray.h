@@ -1,6 +1,5 @@
 /* What    kdray's C interface: scenes of a program's own arrays, queries of rays and points, pictures. It
  *         is what kdray/scene.h is in C++, by the same names, and says there in full what each thing means.
- *         Lights, backgrounds and a scene's own camera are C++'s alone yet.
  * Shape   C99. Handles are opaque. A struct begins with its size, so that it can grow: set all of it to 0,
  *         then `size` to sizeof it; what is left 0 or NULL has the default that is named beside it. Arrays
  *         are views of the program's memory: a first element, a count of rows, the bytes from one row to
@@ -119,7 +118,32 @@ typedef struct kdray_camera {
   double from[3], at[3], up[3];
   double fov;         /* of the picture's height, in degrees; 0: 45 */
   double ortho_width; /* above 0: orthographic */
+  double hither;      /* nothing is seen nearer than this */
 } kdray_camera;
+/* A scene without a camera is seen as a whole, from the front, the right and above. */
+KDRAY_API kdray_status kdray_set_camera(kdray_scene* scene, const kdray_camera* camera);
+
+typedef enum kdray_light_kind {
+  KDRAY_POINT_LIGHT = 0,
+  KDRAY_DIRECTIONAL_LIGHT = 1,
+  KDRAY_SPOT_LIGHT = 2
+} kdray_light_kind;
+typedef struct kdray_light {
+  size_t size;
+  int32_t kind;          /* kdray_light_kind */
+  double position[3];    /* of point and spot lights */
+  double direction[3];   /* of directional and spot lights: the way the light travels; all 0: (0, 0, -1) */
+  float color[3];        /* red, green, blue; all 0: white */
+  double attenuation[3]; /* 1 / (a[0] + a[1]*d + a[2]*d^2); all 0: 1, 0, 0 */
+  double range;          /* 0: any distance */
+  double inner_degrees, outer_degrees; /* of spot lights: half angles; outer 0: 45 */
+} kdray_light;
+/* A scene without lights gets some. */
+KDRAY_API kdray_status kdray_add_light(kdray_scene* scene, const kdray_light* light);
+
+/* Linear red, green and blue: of what is seen where nothing is, and of light from everywhere. */
+KDRAY_API kdray_status kdray_set_background(kdray_scene* scene, const float rgb[3]);
+KDRAY_API kdray_status kdray_set_ambient(kdray_scene* scene, const float rgb[3]);
 
 typedef struct kdray_commit_options {
   size_t size;
@@ -212,11 +236,10 @@ KDRAY_API kdray_status kdray_signed_distance(const kdray_scene* scene, kdray_in 
 
 typedef struct kdray_picture_options {
   size_t size;
-  int32_t width, height; /* 0: 1024 */
-  int32_t samples;       /* of a pixel; 0: 1 */
-  int32_t depth;         /* 0: 5 */
-  const kdray_camera*
-      camera; /* NULL: the file's, or all that there is, from the front, the right and above */
+  int32_t width, height;      /* 0: 1024 */
+  int32_t samples;            /* of a pixel; 0: 1 */
+  int32_t depth;              /* 0: 5 */
+  const kdray_camera* camera; /* NULL: the scene's own */
   const kdray_cancel* cancel;
 } kdray_picture_options;
 /* rgb: 3 * width * height linear values, from the top left. */

@@ -3,6 +3,7 @@
 
 #include "capi/edge.h"
 #include "capi/handles.h"
+#include "capi/values.h"
 
 namespace kdray::capi {
 
@@ -36,19 +37,6 @@ kdray_status asked(const kdray_scene* scene, const kdray_query_options* given, c
     const QueryReport report = ask(needed(scene, "scene")->scene, o);
     if (o.n_invalid != nullptr) *o.n_invalid = report.invalid;
   });
-}
-
-std::array<double, 3> vector(const double (&v)[3]) {
-  return {v[0], v[1], v[2]};
-}
-
-Camera camera_of(const kdray_camera* given) {
-  const kdray_camera c = grown(given, "camera");
-  Camera camera{.from = vector(c.from), .at = vector(c.at)};
-  if (vector(c.up) != Vec3{0, 0, 0}) camera.up = vector(c.up);
-  if (c.fov != 0) camera.fov = c.fov;
-  camera.ortho_width = c.ortho_width;
-  return camera;
 }
 
 }  // namespace

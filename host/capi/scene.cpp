@@ -3,6 +3,7 @@
 
 #include "capi/edge.h"
 #include "capi/handles.h"
+#include "capi/values.h"
 
 namespace kdray::capi {
 
@@ -30,11 +31,39 @@ void put(std::uint32_t* id, std::uint32_t value) {
   if (id != nullptr) *id = value;
 }
 
-Color color(const float (&c)[3]) {
-  return {c[0], c[1], c[2]};
+constexpr Light::Kind kLightKinds[] = {Light::Kind::point, Light::Kind::directional, Light::Kind::spot};
+
+// What is left 0 has C++'s default, where that is another; kdray.h says so beside each.
+Light light_of(const kdray_light& l) {
+  const Light usual;
+  if (l.kind < KDRAY_POINT_LIGHT || l.kind > KDRAY_SPOT_LIGHT) refuse("light: there is no such kind");
+  return {.kind = kLightKinds[l.kind],
+          .position = vector(l.position),
+          .direction = vector_or(l.direction, usual.direction),
+          .color = color(l.color) == Color{0, 0, 0} ? usual.color : color(l.color),
+          .attenuation = vector_or(l.attenuation, usual.attenuation),
+          .range = l.range == 0 ? usual.range : l.range,
+          .inner_degrees = l.inner_degrees,
+          .outer_degrees = l.outer_degrees == 0 ? usual.outer_degrees : l.outer_degrees};
+}
+
+Color color_at(const float* rgb, const char* name) {
+  needed(rgb, name);
+  return {rgb[0], rgb[1], rgb[2]};
 }
 
 }  // namespace
+
+Camera camera_of(const kdray_camera* given) {
+  const kdray_camera c = grown(given, "camera");
+  const Camera usual;
+  return {.from = vector(c.from),
+          .at = vector(c.at),
+          .up = vector_or(c.up, usual.up),
+          .fov = c.fov == 0 ? usual.fov : c.fov,
+          .ortho_width = c.ortho_width,
+          .hither = c.hither};
+}
 
 }  // namespace kdray::capi
 
@@ -123,6 +152,20 @@ kdray_status kdray_add_material(kdray_scene* scene, const kdray_material* materi
                                       .shine = m.shine,
                                       .index = m.index == 0 ? 1.0f : m.index}));
   });
+}
+
+kdray_status kdray_add_light(kdray_scene* scene, const kdray_light* light) {
+  return guarded(
+      [&] { needed(scene, "scene")->scene.add_light(light_of(grown(needed(light, "light"), "light"))); });
+}
+kdray_status kdray_set_camera(kdray_scene* scene, const kdray_camera* camera) {
+  return guarded([&] { needed(scene, "scene")->scene.set_camera(camera_of(needed(camera, "camera"))); });
+}
+kdray_status kdray_set_background(kdray_scene* scene, const float rgb[3]) {
+  return guarded([&] { needed(scene, "scene")->scene.set_background(color_at(rgb, "rgb")); });
+}
+kdray_status kdray_set_ambient(kdray_scene* scene, const float rgb[3]) {
+  return guarded([&] { needed(scene, "scene")->scene.set_ambient(color_at(rgb, "rgb")); });
 }
 
 kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* given) {

@@ -58,13 +58,17 @@ void check_picture_fits(const PictureNeeds& picture, std::uint64_t free) {
                   smaller.height));
 }
 
-void check_rays_fit(std::uint64_t n_rays, std::uint64_t free) {
-  const std::uint64_t most = free / kRayBytes;
-  if (n_rays <= most) return;
+void check_rows_fit(const char* name, std::uint64_t n_rows, std::uint64_t bytes_each, std::uint64_t free) {
+  const std::uint64_t most = free / bytes_each;
+  if (n_rows <= most) return;
   throw Error(ErrorCode::out_of_memory,
-              fmt::format("{} rays take about {} of memory, and {} are free; {} at a time would fit",
-                          in_words(static_cast<double>(n_rays)), bytes_in_words(n_rays * kRayBytes),
+              fmt::format("{} {} take about {} of memory, and {} are free; {} at a time would fit",
+                          in_words(static_cast<double>(n_rows)), name, bytes_in_words(n_rows * bytes_each),
                           bytes_in_words(free), in_words(static_cast<double>(most - most / 5))));
+}
+
+void check_rays_fit(std::uint64_t n_rays, std::uint64_t free) {
+  check_rows_fit("rays", n_rays, kRayBytes, free);
 }
 
 }  // namespace kdray::cli

@@ -23,7 +23,10 @@ std::uint64_t picture_bytes(const PictureNeeds& picture);
 
 void check_picture_fits(const PictureNeeds& picture, std::uint64_t free);
 
-// `n_rays` of `trace`.
+// `n_rays` of `trace` that a Renderer traces.
 void check_rays_fit(std::uint64_t n_rays, std::uint64_t free);
+
+// Rows of `name` ("points") that take so many bytes each, with their answers.
+void check_rows_fit(const char* name, std::uint64_t n_rows, std::uint64_t bytes_each, std::uint64_t free);
 
 }  // namespace kdray::cli

@@ -95,11 +95,29 @@ std::string picture_in_words(const Json& stats) {
                      samples > 1 ? fmt::format(" of {:.3g} samples", samples) : "");
 }
 
+// Of `trace` this may be points, too.
+const char* what_was_asked(const Json& stats) {
+  return part(stats, "hits").contains("points") ? "points" : "rays";
+}
+
 // "in 130 ms, 33 Mrays/s; 0.45 s in all"
 std::string speed_in_words(const Json& stats) {
   const Json& seconds = part(stats, "seconds");
-  return fmt::format("in {}, {:.3g} Mrays/s; {} in all", seconds_in_words(number(seconds, work_of(seconds))),
-                     number(stats, "mrays_per_s"), seconds_in_words(number(seconds, "total")));
+  return fmt::format("in {}, {:.3g} M{}/s; {} in all", seconds_in_words(number(seconds, work_of(seconds))),
+                     number(stats, "mrays_per_s"), what_was_asked(stats),
+                     seconds_in_words(number(seconds, "total")));
+}
+
+// "3 of 5 rays hit", "12 crossings of 5 rays"
+std::string answers_in_words(const Json& hits) {
+  const double found = number(hits, "hits"), rays = number(hits, "rays"), points = number(hits, "points");
+  const std::string asked = hits.value("asked", "closest");
+  if (asked == "all") return fmt::format("{} hits of {} rays", found, rays);
+  if (asked == "count") return fmt::format("{} crossings of {} rays", found, rays);
+  if (asked == "closest_point") return fmt::format("closest points of {} of {} points", found, points);
+  if (asked == "inside" || asked == "signed_distance")
+    return fmt::format("{} of {} points inside", found, points);
+  return fmt::format("{} of {} rays hit", found, rays);
 }
 
 void say_if_any(const std::string& line) {
@@ -132,8 +150,9 @@ std::string rays_line(const Json& stats) {
   std::vector<std::string> kinds;
   for (const char* const name : {"primary", "shadow", "reflected", "refracted"})
     if (const double n = number(rays, name); n > 0) kinds.push_back(fmt::format("{} {}", in_words(n), name));
-  return fmt::format("{} rays{}{}: {:.3g} Mrays/s", in_words(number(rays, "total")),
-                     kinds.empty() ? "" : ", ", fmt::join(kinds, ", "), number(stats, "mrays_per_s"));
+  const char* const of = what_was_asked(stats);
+  return fmt::format("{} {}{}{}: {:.3g} M{}/s", in_words(number(rays, "total")), of,
+                     kinds.empty() ? "" : ", ", fmt::join(kinds, ", "), number(stats, "mrays_per_s"), of);
 }
 
 std::string left_out_line(const Json& stats) {
@@ -166,8 +185,7 @@ std::string render_line(const Json& stats) {
 
 std::string trace_line(const Json& stats) {
   const Json& hits = part(stats, "hits");
-  return fmt::format("{}: {} of {} rays hit, {}", hits.value("file", ""), number(hits, "hits"),
-                     number(hits, "rays"), speed_in_words(stats));
+  return fmt::format("{}: {}, {}", hits.value("file", ""), answers_in_words(hits), speed_in_words(stats));
 }
 
 std::string cold_start_line(const Json& stats) {

@@ -12,7 +12,7 @@ namespace kdray::cli {
 // "balls.png: 1024x1024, 5.5 M rays in 130 ms, 42 Mrays/s; 450 ms in all"
 std::string render_line(const Json& stats);
 
-// "hits.npy: 3 of 5 rays hit, in 1 ms, 0.005 Mrays/s; 20 ms in all"
+// "hits.npy: 3 of 5 rays hit, in 1 ms, 0.005 Mrays/s; 20 ms in all", or what else was asked.
 std::string trace_line(const Json& stats);
 
 // "a first start took 8.2 s of it (compiling kernels 6.1 s, ...); the next finds the kernels built"; empty

@@ -15,13 +15,6 @@
 
 namespace kdray::query {
 
-namespace {
-
-// Of a direction's largest component, where the kernels leave it as long as it is.
-constexpr float kShortest = 0x1p-8f, kLongest = 0x1p8f;
-
-}  // namespace
-
 const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max) {
   if (!is_finite(origin)) return "its origin is not finite";
   if (!is_finite(direction)) return "its direction is not finite";
@@ -129,8 +122,7 @@ std::vector<Ray> without_faulty(std::span<const Ray> rays) {
 
 bool is_ordinary(const Ray& ray) {
   const auto& d = ray.direction;
-  const float most = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-  return most >= kShortest && most < kLongest;
+  return is_ordinary_length(std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}));
 }
 
 }  // namespace kdray::query

@@ -33,8 +33,14 @@ void check_rays(std::span<const Ray> rays);
 // The same rays, but for those that are none: these meet nothing.
 std::vector<Ray> without_faulty(std::span<const Ray> rays);
 
-// Whether the kernels leave its direction as long as it is (length_exponent() of query.clh): where they do so
-// with all rays of a launch, they need not look.
+// Whether a direction whose largest component this is is traced as long as it is: others are scaled to about
+// unit length (length_exponent() of query.clh). Where that is so of all rays of a launch, the kernels need not
+// look.
+inline constexpr float kShortest = 0x1p-8f, kLongest = 0x1p8f;
+template <class Real>
+constexpr bool is_ordinary_length(Real largest) {
+  return largest >= Real{kShortest} && largest < Real{kLongest};
+}
 bool is_ordinary(const Ray& ray);
 
 }  // namespace kdray::query

@@ -1,8 +1,6 @@
 #include "query/closest_point.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -16,6 +14,7 @@
 #include "device/spare_queue.h"
 #include "layout/closest.layout.h"
 #include "math/rounding.h"
+#include "query/grains.h"
 #include "query/nearby_order.h"
 #include "wavefront/stage.h"
 
@@ -27,10 +26,9 @@ using layout::ClosestHit;
 using layout::QueryPoint;
 
 // Points in one launch: 38 MiB with their answers; for a GPU enough to fill it.
-constexpr std::size_t kPointsPerChunk = std::size_t{1} << 19, kGrain = 4096;
+constexpr std::size_t kPointsPerChunk = std::size_t{1} << 19;
 
 constexpr double kPointReach = double{KDRAY_POINT_REACH};
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // What    a point is asked from: itself in the scene's own space. A point that is over 2^25 times the scene's
 //         size away is
@@ -72,14 +70,12 @@ double number_of(layout::u64 bits, layout::u32 form) {
          double{std::bit_cast<float>(static_cast<layout::u32>(bits >> 32))};
 }
 
-constexpr ClosestPoint kNothing{kInfinity, dvec3(0), -1, 0, 0};
-
 ClosestPoint answer_of(const Places& places, const dvec3& point, const ClosestHit& hit, double radius) {
-  if (hit.number < 0) return kNothing;
+  if (hit.number < 0) return kNoClosestPoint;
   const dvec3 local(number_of(hit.point[0], hit.form), number_of(hit.point[1], hit.form),
                     number_of(hit.point[2], hit.form));
   const double distance = places.distance(point, local, number_of(hit.distance, hit.form));
-  if (distance > radius) return kNothing;
+  if (distance > radius) return kNoClosestPoint;
   return {distance, places.space.world(local), hit.number, hit.u, hit.v};
 }
 
@@ -134,7 +130,7 @@ class Asking {
     launch(n);
     queue_.enqueueReadBuffer(out_, CL_TRUE, 0, n * sizeof(ClosestHit), hits_.data());
     std::atomic<bool> invalid = false;
-    for_grains(n, [&](std::size_t i) {
+    for_each_index(n, [&](std::size_t i) {
       if (hits_[i].number == KDRAY_CLOSEST_INVALID) invalid = true;
       answers[order[i]] = answer_of(places_, points[order[i]], hits_[i], radius_);
     });
@@ -146,21 +142,14 @@ class Asking {
  private:
   using K = kernels::ClosestPoints;
 
-  template <class Work>
-  static void for_grains(std::size_t n, const Work& work) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kGrain), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
-    });
-  }
-
   // Makes the queries, and tells which points they are of.
   std::span<const std::uint32_t> put_in_order(std::span<const dvec3> points) {
     cells_.resize(points.size());
-    for_grains(points.size(),
-               [&](std::size_t i) { cells_[i] = order_.cell_of(places_.place_of(points[i])); });
+    for_each_index(points.size(),
+                   [&](std::size_t i) { cells_[i] = order_.cell_of(places_.place_of(points[i])); });
     const std::span<const std::uint32_t> order = order_.sorted(cells_);
-    for_grains(points.size(),
-               [&](std::size_t i) { queries_[i] = packed(places_.place_of(points[order[i]])); });
+    for_each_index(points.size(),
+                   [&](std::size_t i) { queries_[i] = packed(places_.place_of(points[order[i]])); });
     return order;
   }
 
@@ -191,7 +180,7 @@ std::size_t first_not_finite(std::span<const dvec3> points) {
 
 ClosestPoints closest_points(const Target& target, std::span<const dvec3> points, double radius) {
   check_points(points, radius);
-  ClosestPoints result{std::vector<ClosestPoint>(points.size(), kNothing)};
+  ClosestPoints result{std::vector<ClosestPoint>(points.size(), kNoClosestPoint)};
   if (points.empty() || target.scene.geometry.bounds.empty()) return result;
   const std::size_t chunk = std::min(points.size(), kPointsPerChunk);
   device::checked("finding closest points", [&] {

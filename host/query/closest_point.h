@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,10 @@ struct ClosestPoint {
   std::int32_t primitive;  // its number in file order, or -1
   float u, v;
 };
+
+// What there is where nothing lies within the radius.
+inline constexpr ClosestPoint kNoClosestPoint{std::numeric_limits<double>::infinity(),
+                                              dvec3(std::numeric_limits<double>::infinity()), -1, 0, 0};
 
 struct ClosestPoints {
   std::vector<ClosestPoint> points;

@@ -52,14 +52,13 @@ void add(const Asked& asked, const LocalRays& local, const LocalHits& hits, std:
   to.t.resize(before + n);
   to.geometry.resize(before + n);
   to.primitive.resize(before + n);
-  for_each_grain(n_rays, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t k = hits.splits[i]; k < hits.splits[i + 1]; ++k) {
-        const GeometryTable::Place place = asked.table.of(hits.primitive[k]);
-        to.t[before + k] = local.world_t(i, hits.t[k]);
-        to.geometry[before + k] = place.geometry;
-        to.primitive[before + k] = place.primitive;
-      }
+  for_each_index(n_rays, [&](std::size_t i) {
+    for (std::size_t k = hits.splits[i]; k < hits.splits[i + 1]; ++k) {
+      const GeometryTable::Place place = asked.table.of(hits.primitive[k]);
+      to.t[before + k] = local.world_t(i, hits.t[k]);
+      to.geometry[before + k] = place.geometry;
+      to.primitive[before + k] = place.primitive;
+    }
   });
 }
 

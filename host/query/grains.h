@@ -17,4 +17,12 @@ void for_each_grain(std::size_t n, const Work& work) {
                     [&](std::size_t grain) { work(grain * kGrain, std::min(n, (grain + 1) * kGrain)); });
 }
 
+// work(i) for each i of [0, n), in grains.
+template <class Work>
+void for_each_index(std::size_t n, const Work& work) {
+  for_each_grain(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
+  });
+}
+
 }  // namespace kdray::query

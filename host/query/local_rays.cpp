@@ -9,12 +9,11 @@
 #include "base/error.h"
 #include "query/check_rays.h"
 #include "query/grains.h"
+#include "query/near_rays.h"
 
 namespace kdray::query {
 
 namespace {
-
-constexpr double kFarOff = 0x1p60;  // in local lengths; its square is a float still
 
 // A ray that meets nothing.
 constexpr layout::QueryRay kNoRay{{0, 0, 0}, 0, {1, 0, 0}, -std::numeric_limits<float>::infinity()};
@@ -28,11 +27,6 @@ void check_size(std::size_t size, std::size_t n, const char* name) {
 template <class View>
 bool is_double(const View& view) {
   return !view.empty() && view.template first_of<const double>() != nullptr;
-}
-
-// Of an ordinary length kernels make directions no shorter and no longer (query.clh).
-bool is_ordinary_length(double largest) {
-  return largest >= 0x1p-8 && largest < 0x1p8;
 }
 
 }  // namespace
@@ -115,11 +109,11 @@ LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_directi
   const dvec3 back = world_origin - origin, rest = (world_origin - (origin + back)) - (space_.center - back);
   origin *= space_.scale;
   double ahead = 0;  // in multiples of the local direction
-  if (!(largest_component(origin) <= (in_double ? near_ : kFarOff))) {
+  if (!(largest_component(origin) <= (in_double ? near_ : kFar))) {
     ahead = distance_ahead(origin, direction);
     if (!std::isfinite(ahead)) return out;
     for (int k = 0; k < 3; ++k) origin[k] = std::fma(ahead, direction[k], origin[k]) + rest[k] * space_.scale;
-    if (!(largest_component(origin) <= kFarOff)) return out;
+    if (!(largest_component(origin) <= kFar)) return out;
   }
   for (int k = 0; k < 3; ++k) {
     out.ray.origin[k] = static_cast<float>(origin[k]);
@@ -145,7 +139,7 @@ void LocalRays::fill(std::size_t first, std::size_t n, layout::QueryRay* out) {
 // Rays of floats as nearly all are: finite, of ordinary length, not from too far off. False where one isn't.
 bool LocalRays::fill_structs(std::size_t n, const Ray* rays, layout::QueryRay* out) const {
   const LocalSpace& space = frame_->space();
-  const double scale = space.scale, limit = kFarOff / scale;
+  const double scale = space.scale, limit = kFar / scale;
   const auto t_scale = static_cast<float>(scale);
   if (!std::isfinite(limit) || !(t_scale >= std::numeric_limits<float>::min()) || std::isinf(t_scale))
     return false;
@@ -158,7 +152,7 @@ bool LocalRays::fill_structs(std::size_t n, const Ray* rays, layout::QueryRay* o
           std::max({std::abs(ray.direction[0]), std::abs(ray.direction[1]), std::abs(ray.direction[2])});
       const float sum = (ray.direction[0] - ray.direction[0]) + (ray.direction[1] - ray.direction[1]) +
                         (ray.direction[2] - ray.direction[2]) + (ray.t_min - ray.t_min);
-      plain &= sum == 0 && largest >= 0x1p-8f && largest < 0x1p8f && ray.t_max == ray.t_max;
+      plain &= sum == 0 && is_ordinary_length(largest) && ray.t_max == ray.t_max;
       for (int k = 0; k < 3; ++k) {
         const double from = ray.origin[k] - space.center[k];
         plain &= std::abs(from) <= limit;

@@ -8,7 +8,6 @@ namespace kdray::query {
 
 namespace {
 
-constexpr double kFar = 0x1p60;  // in local lengths; its square is a float still
 constexpr double kMostScale =
     0x1p100;  // of the kernels' space; its inverse and its product with kFar are floats
 

@@ -3,7 +3,8 @@
 //         float can be multiplied by. They are begun anew where they come nearest to the scene's centre, in
 //         double.
 // Shape   NearRays says which space and which rays a kernel is to be given, and turns the distances it
-//         answers back. Rays that need none of this stay as they are.
+//         answers back. Rays that need none of this stay as they are, where they are: that is what it is
+//         for. Rays of any other arrays are moved to the scene's own space one by one (local_rays.h).
 // Errors  A ray that passes the scene by at over 2^60 times its size meets nothing.
 #pragma once
 
@@ -15,6 +16,9 @@
 #include "math/local_space.h"
 
 namespace kdray::query {
+
+// Rays that begin beyond so many local lengths are begun anew; its square is a float still.
+inline constexpr double kFar = 0x1p60;
 
 class NearRays {
  public:

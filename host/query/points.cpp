@@ -27,11 +27,9 @@ class PointChunks {
     const std::size_t n = std::min(kPointsAtOnce, points_.size() - first);
     taken_.resize(n);
     invalid_.clear();
-    for_each_grain(n, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto p = points_[first + i];
-        taken_[i] = {p[0], p[1], p[2]};
-      }
+    for_each_index(n, [&](std::size_t i) {
+      const auto p = points_[first + i];
+      taken_[i] = {p[0], p[1], p[2]};
     });
     for (std::size_t i = 0; i < n; ++i)
       if (!is_finite(taken_[i])) leave_out(first, i);
@@ -65,14 +63,12 @@ class PointChunks {
 // cost time. Masks are for rays: points see every geometry.
 std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const dvec3> points) {
   std::vector<Ray> rays(points.size());
-  for_each_grain(points.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const dvec3 local = asked.frame.space().local(points[i]);
-      const bool outside = asked.frame.is_outside(local);
-      const vec3 at = outside ? vec3(0) : vec3(local);
-      const float end = std::numeric_limits<float>::infinity();
-      rays[i] = {{at.x, at.y, at.z}, 0, {0.1803f, 0.2741f, 1}, outside ? -end : end};
-    }
+  for_each_index(points.size(), [&](std::size_t i) {
+    const dvec3 local = asked.frame.space().local(points[i]);
+    const bool outside = asked.frame.is_outside(local);
+    const vec3 at = outside ? vec3(0) : vec3(local);
+    const float end = std::numeric_limits<float>::infinity();
+    rays[i] = {{at.x, at.y, at.z}, 0, {0.1803f, 0.2741f, 1}, outside ? -end : end};
   });
   Target unmasked = asked.target;
   unmasked.masks = cl::Buffer();
@@ -100,15 +96,11 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
   check_out(out.v.size(), n, "v");
   return for_each_chunk(
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        constexpr ClosestPoint kNothing{std::numeric_limits<double>::infinity(),
-                                        dvec3(std::numeric_limits<double>::infinity()), -1, 0, 0};
         const ClosestPoints found = query::closest_points(asked.target, some, options.radius);
         const auto fill = [&](const auto& column, const auto& value_of) {
           if (column.empty()) return;
           column.fill(first, some.size(), [&](std::size_t i) {
-            const bool nothing = found.points[i - first].primitive < 0 || chunks.is_invalid(i - first);
-            const ClosestPoint& p = nothing ? kNothing : found.points[i - first];
-            return value_of(p);
+            return value_of(chunks.is_invalid(i - first) ? kNoClosestPoint : found.points[i - first]);
           });
         };
         const auto place_of = [&](const ClosestPoint& p) {

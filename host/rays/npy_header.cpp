@@ -160,9 +160,16 @@ NpyHeader parse_header(std::string_view text, const std::string& file) {
   return Parser(text, file).dictionary();
 }
 
-std::string make_header(std::string_view type, std::uint64_t n_items) {
-  std::string text = "{'descr': " + std::string(type) + ", 'fortran_order': False, 'shape': (" +
-                     std::to_string(n_items) + ",), }";
+std::string shape_text(std::span<const std::uint64_t> shape) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < shape.size() && i < 6; ++i)
+    text += (i > 0 ? ", " : "") + std::to_string(shape[i]);
+  return text + (shape.size() > 6 ? ", ...)" : shape.size() == 1 ? ",)" : ")");
+}
+
+std::string make_header(std::string_view type, std::span<const std::uint64_t> shape) {
+  std::string text =
+      "{'descr': " + std::string(type) + ", 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
   constexpr std::size_t kPreamble = 10, kAlignment = 64;
   const std::size_t used = kPreamble + text.size() + 1;
   text.append((kAlignment - used % kAlignment) % kAlignment, ' ');

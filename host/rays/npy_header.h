@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,7 +33,10 @@ NpyPreamble parse_preamble(std::string_view start, const std::string& file);
 NpyHeader parse_header(std::string_view text, const std::string& file);
 
 // Makes the magic number, version 1.0 and the dictionary, padded with spaces so that the data begins at a
-// multiple of 64 bytes.
-std::string make_header(std::string_view type, std::uint64_t n_items);
+// multiple of 64 bytes. `type` is Python's text of it, quotes included.
+std::string make_header(std::string_view type, std::span<const std::uint64_t> shape);
+
+// "(3,)", "(3, 8)"; of more than six sizes the first.
+std::string shape_text(std::span<const std::uint64_t> shape);
 
 }  // namespace kdray::rays

@@ -4,20 +4,20 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "scene/added_geometry.h"
 #include "scene/check_scene.h"
-#include "scene/part.h"
 
 namespace kdray::scene {
 
 namespace {
 
-// Where a part's elements begin in the scene.
+// Where a geometry's elements begin in the scene.
 struct Offsets {
   std::size_t vertices, normals, triangles;
   std::uint32_t number, material;
 };
 
-void put_mesh(Scene& scene, const Part& part, const Offsets& at) {
+void put_mesh(Scene& scene, const AddedGeometry& geometry, const Offsets& at) {
   constexpr std::size_t kGrain = std::size_t{1} << 15;
   const auto copy = [](const auto& from, auto& to, std::size_t first, const auto& changed) {
     tbb::parallel_for(std::size_t{0}, (from.size() + kGrain - 1) / kGrain, [&](std::size_t grain) {
@@ -25,45 +25,45 @@ void put_mesh(Scene& scene, const Part& part, const Offsets& at) {
         to[first + i] = changed(from[i], i);
     });
   };
-  copy(part.vertices, scene.vertices, at.vertices, [](const dvec3& v, std::size_t) { return v; });
-  copy(part.normals, scene.normals, at.normals, [](const vec3& n, std::size_t) { return n; });
-  copy(part.triangles, scene.triangles, at.triangles, [&](Triangle t, std::size_t i) {
+  copy(geometry.vertices, scene.vertices, at.vertices, [](const dvec3& v, std::size_t) { return v; });
+  copy(geometry.normals, scene.normals, at.normals, [](const vec3& n, std::size_t) { return n; });
+  copy(geometry.triangles, scene.triangles, at.triangles, [&](Triangle t, std::size_t i) {
     for (std::uint32_t& v : t.vertex) v += static_cast<std::uint32_t>(at.vertices);
     for (std::uint32_t& n : t.normal)
       if (n != kNone) n += static_cast<std::uint32_t>(at.normals);
-    t.material = at.material + part.material;
+    t.material = at.material + geometry.material;
     t.number = at.number + static_cast<std::uint32_t>(i);
     return t;
   });
 }
 
 template <class Kind>
-void put_shapes(Kind, Scene& scene, const Part& part, const Offsets& at) {
+void put_shapes(Kind, Scene& scene, const AddedGeometry& geometry, const Offsets& at) {
   auto& shapes = Kind::of(scene);
   std::uint32_t number = at.number;
-  for (auto shape : Kind::of(part)) {
-    shape.material = at.material + part.material;
+  for (auto shape : Kind::of(geometry)) {
+    shape.material = at.material + geometry.material;
     shape.number = number++;
     shapes.push_back(shape);
   }
 }
 
-void put(Scene& scene, const Part& part, const Offsets& at) {
-  put_mesh(scene, part, at);
-  primitives::for_each_shape([&](auto kind) { put_shapes(kind, scene, part, at); });
+void put(Scene& scene, const AddedGeometry& geometry, const Offsets& at) {
+  put_mesh(scene, geometry, at);
+  primitives::for_each_shape([&](auto kind) { put_shapes(kind, scene, geometry, at); });
 }
 
-Offsets after(const Offsets& at, const Part& part) {
-  return {at.vertices + part.vertices.size(), at.normals + part.normals.size(),
-          at.triangles + part.triangles.size(), at.number + part.primitive_count(), at.material};
+Offsets after(const Offsets& at, const AddedGeometry& geometry) {
+  return {at.vertices + geometry.vertices.size(), at.normals + geometry.normals.size(),
+          at.triangles + geometry.triangles.size(), at.number + geometry.primitive_count(), at.material};
 }
 
 // Indices into vertices have 32 bits, and numbers as well; references have 28 (check_scene.h).
-void check_capacity(const Scene& scene, std::span<const Part* const> parts) {
+void check_capacity(const Scene& scene, std::span<const AddedGeometry* const> geometries) {
   std::uint64_t n_vertices = scene.vertices.size(), n_primitives = scene.primitive_count();
-  for (const Part* const part : parts) {
-    n_vertices += part->vertices.size();
-    n_primitives += part->primitive_count();
+  for (const AddedGeometry* const geometry : geometries) {
+    n_vertices += geometry->vertices.size();
+    n_primitives += geometry->primitive_count();
   }
   if (n_vertices >= kNone || n_primitives >= kMaxPrimitivesPerKind)
     throw Error(ErrorCode::input, fmt::format("{} vertices and {} primitives in one scene; split it",
@@ -72,20 +72,21 @@ void check_capacity(const Scene& scene, std::span<const Part* const> parts) {
 
 }  // namespace
 
-void assemble(Scene& scene, std::span<const Part* const> parts, std::span<const Material> materials) {
-  check_capacity(scene, parts);
+void assemble(Scene& scene, std::span<const AddedGeometry* const> geometries,
+              std::span<const Material> materials) {
+  check_capacity(scene, geometries);
   Offsets at{scene.vertices.size(), scene.normals.size(), scene.triangles.size(), scene.primitive_count(),
              static_cast<std::uint32_t>(scene.materials.size())};
   scene.materials.insert(scene.materials.end(), materials.begin(), materials.end());
-  if (materials.empty() && !parts.empty()) scene.materials.push_back(material_of({}));
+  if (materials.empty() && !geometries.empty()) scene.materials.push_back(material_of({}));
   Offsets end = at;
-  for (const Part* const part : parts) end = after(end, *part);
+  for (const AddedGeometry* const geometry : geometries) end = after(end, *geometry);
   scene.vertices.resize(end.vertices);
   scene.normals.resize(end.normals);
   scene.triangles.resize(end.triangles);
-  for (const Part* const part : parts) {
-    put(scene, *part, at);
-    at = after(at, *part);
+  for (const AddedGeometry* const geometry : geometries) {
+    put(scene, *geometry, at);
+    at = after(at, *geometry);
   }
 }
 

@@ -44,6 +44,23 @@ TEST(WriteFile, TheTargetAppearsOnlyWhenItIsWhole) {
   EXPECT_EQ(folder.get("a.txt"), "one two");
 }
 
+TEST(WriteFile, PiecesAreWrittenInTheirOrder) {
+  const test::Folder folder;
+  write_pieces(folder / "a.txt", "a.txt", [](const Sink& sink) {
+    sink("one ");
+    sink("");
+    sink("two");
+  });
+  EXPECT_EQ(folder.get("a.txt"), "one two");
+  const auto to_full = [](std::size_t n_bytes) {
+    return [=] {
+      write_pieces("/dev/full", "b.txt", [&](const Sink& sink) { sink(std::string(n_bytes, 'x')); });
+    };
+  };
+  for (const std::size_t n_bytes : {std::size_t{1}, std::size_t{1} << 20})
+    EXPECT_TRUE(fails(to_full(n_bytes), "b.txt: the disk is full"));
+}
+
 TEST(WriteFile, KeepsPermissionsAndFollowsLinks) {
   const test::Folder folder;
   const fs::path file = folder.put("real.txt", "old");

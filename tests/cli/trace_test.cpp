@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "cli/npy_files.h"
 #include "cli/program.h"
 #include "cli/scenes.h"
 #include "support/folder.h"
@@ -25,22 +26,8 @@ struct HitRow {
   float u, v;
 };
 
-// NumPy format 1.0: magic, version, the header's length, a dictionary padded to 64 bytes, the data.
-std::string npy(const std::string& dictionary, const std::string& data) {
-  std::string header = dictionary;
-  while ((10 + header.size() + 1) % 64 != 0) header += ' ';
-  header += '\n';
-  std::string bytes("\x93NUMPY\x01\x00", 8);
-  bytes += static_cast<char>(header.size() & 255);
-  bytes += static_cast<char>(header.size() >> 8);
-  return bytes + header + data;
-}
-
 std::string rays_npy(const std::vector<std::array<float, 8>>& rays) {
-  std::string data(rays.size() * 32, '\0');
-  std::memcpy(data.data(), rays.data(), data.size());
-  return npy("{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(rays.size()) + ", 8), }",
-             data);
+  return npy_of("<f4", rays);
 }
 
 std::vector<HitRow> hits_of(const std::string& bytes) {
@@ -148,7 +135,7 @@ TEST(TraceCommand, FaultyRaysAreNamedAndLeaveNothing) {
   EXPECT_TRUE(refuses("no numbers", "r.npy"));
   EXPECT_TRUE(refuses(rays_npy(kRays).substr(0, 200), "r.npy"));
   EXPECT_TRUE(refuses(
-      npy("{'descr': '<f8', 'fortran_order': False, 'shape': (1, 8), }", std::string(64, '\0')), "r.npy"));
+      npy("{'descr': '<f2', 'fortran_order': False, 'shape': (1, 8), }", std::string(16, '\0')), "r.npy"));
   EXPECT_TRUE(
       refuses(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (9000000000, 8), }", ""), "r.npy"));
   EXPECT_FALSE(fs::exists(folder / "h.npy"));

@@ -150,6 +150,22 @@ TEST(Summary, IsOneLine) {
   EXPECT_EQ(cold_start_line(stats), "");
 }
 
+TEST(Summary, NamesWhatWasAsked) {
+  Json stats = Json::parse(R"({
+    "seconds": {"trace": 0.5, "total": 2}, "rays": {"total": 5}, "mrays_per_s": 1.0,
+    "hits": {"file": "h.npz", "rays": 5, "hits": 7}})");
+  const std::string speed = ", in 500 ms, 1 Mrays/s; 2 s in all";
+  stats["hits"]["asked"] = "all";
+  EXPECT_EQ(trace_line(stats), "h.npz: 7 hits of 5 rays" + speed);
+  stats["hits"]["asked"] = "count";
+  EXPECT_EQ(trace_line(stats), "h.npz: 7 crossings of 5 rays" + speed);
+  stats["hits"] = {{"file", "p.npy"}, {"asked", "closest_point"}, {"points", 5}, {"hits", 4}};
+  EXPECT_EQ(trace_line(stats), "p.npy: closest points of 4 of 5 points, in 500 ms, 1 Mpoints/s; 2 s in all");
+  EXPECT_EQ(rays_line(stats), "5 points: 1 Mpoints/s");
+  stats["hits"]["asked"] = "signed_distance";
+  EXPECT_EQ(trace_line(stats), "p.npy: 4 of 5 points inside, in 500 ms, 1 Mpoints/s; 2 s in all");
+}
+
 TEST(Summary, AColdStartIsTold) {
   const Json stats = Json::parse(R"({
     "seconds": {"self_test": 1.5, "start": 0.001, "compile": 4, "total": 9}})");

@@ -93,6 +93,60 @@ static void check_answers(const kdray_scene* scene, uint32_t box) {
   expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_INPUT, "too few places");
 }
 
+/* A corner of the picture and its middle, of the box's upper side as it is seen from above. */
+static void expect_colors(const kdray_scene* scene, const float (*sides)[3], const char* what) {
+  static float rgb[3 * 16 * 16];
+  kdray_picture_options picture = {0};
+  int at, k;
+  picture.size = sizeof picture;
+  picture.width = picture.height = 16;
+  expect(kdray_render(scene, &picture, rgb, sizeof rgb / sizeof rgb[0]) == KDRAY_OK, what);
+  for (at = 0; at < 2; ++at)
+    for (k = 0; k < 3; ++k) expect(fabsf(rgb[3 * at * (8 * 16 + 8) + k] - sides[at][k]) < 1e-5f, what);
+}
+
+/* The usual material is 0.8 of diffuse and 0.08 of ambient light. */
+static void check_looks(void) {
+  const float background[3] = {0.25f, 0.5f, 0.75f}, ambient[3] = {0, 0.5f, 1}, dark[3] = {0, 0, 0},
+              negative[3] = {0, -1, 0};
+  const float lit[2][3] = {{0.25f, 0.5f, 0.75f}, {0.4f, 0.84f, 0.88f}};
+  const float from_below[2][3] = {{0, 0, 0}, {0, 0, 0}};
+  kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
+  kdray_scene* scene = NULL;
+  kdray_light light = {0};
+  kdray_camera camera = {0};
+  light.size = sizeof light, camera.size = sizeof camera;
+  expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
+  expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, NULL, NULL) == KDRAY_OK, "a mesh");
+  light.kind = 3;
+  expect(kdray_add_light(scene, &light) == KDRAY_USAGE, "a light of no kind");
+  light.kind = KDRAY_SPOT_LIGHT, light.outer_degrees = 200;
+  expect(kdray_add_light(scene, &light) == KDRAY_INPUT, "an angle beyond all");
+  light.kind = KDRAY_DIRECTIONAL_LIGHT, light.outer_degrees = 0; /* down, which is its default */
+  light.color[0] = 0.5f, light.color[1] = light.color[2] = 1;
+  expect(kdray_add_light(scene, &light) == KDRAY_OK, "a light");
+  expect(kdray_add_light(scene, NULL) == KDRAY_USAGE, "no light");
+  camera.from[0] = camera.from[1] = camera.at[0] = camera.at[1] = 0.5, camera.from[2] = 4;
+  camera.ortho_width = 2;
+  expect(kdray_set_camera(scene, &camera) == KDRAY_OK, "a camera");
+  camera.ortho_width = -2;
+  expect(kdray_set_camera(scene, &camera) == KDRAY_INPUT, "a picture of less than nothing");
+  expect(kdray_set_camera(scene, NULL) == KDRAY_USAGE, "no camera");
+  expect(kdray_set_background(scene, background) == KDRAY_OK, "a background");
+  expect(kdray_set_background(scene, negative) == KDRAY_INPUT, "a background below 0");
+  expect(kdray_set_ambient(scene, ambient) == KDRAY_OK, "ambient light");
+  expect(kdray_set_ambient(scene, NULL) == KDRAY_USAGE, "no ambient light");
+  expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit");
+  expect_colors(scene, lit, "a box that is lit from above");
+  camera.from[2] = -4, camera.ortho_width = 2;
+  expect(kdray_set_camera(scene, &camera) == KDRAY_OK, "another camera");
+  expect(kdray_set_background(scene, dark) == KDRAY_OK && kdray_set_ambient(scene, dark) == KDRAY_OK,
+         "darkness");
+  expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit again");
+  expect_colors(scene, from_below, "its lower side in the dark");
+  kdray_scene_free(scene);
+}
+
 static void check_cancel_and_picture(const kdray_scene* scene) {
   static float rgb[3 * 16 * 16];
   kdray_picture_options picture = {0};
@@ -132,6 +186,7 @@ int main(void) {
   expect(status == KDRAY_OK, "commit");
   check_answers(scene, box);
   check_cancel_and_picture(scene);
+  check_looks();
   expect(kdray_keep_programs() == KDRAY_OK, "programs are kept");
   kdray_scene_free(scene);
   puts(failures == 0 ? "c_interface: all right" : "c_interface: wrong answers");

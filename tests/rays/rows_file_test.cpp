@@ -1,12 +1,13 @@
-#include "rays/npy.h"
+#include "rays/rows_file.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
 
-#include "rays/npy_header.h"
+#include "kdray/ray.h"
 #include "support/errors.h"
 #include "support/folder.h"
 
@@ -27,6 +28,10 @@ std::string ray_bytes(int n_rays) {
   std::vector<float> values;
   for (int i = 0; i < 8 * n_rays; ++i) values.push_back(static_cast<float>(i) + 0.25f);
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+std::vector<Ray> read_rays(const std::filesystem::path& file) {
+  return RowsFile(file, kRays).read<Ray>();
 }
 
 const std::string kDictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (3, 8), }\n";
@@ -53,6 +58,27 @@ TEST(ReadRays, NoRaysAreRays) {
           .empty());
 }
 
+TEST(ReadRows, DoublesAndPointsAreReadAsTheyAre) {
+  const test::Folder folder;
+  const std::array<double, 8> ray = {1e300, 0.1, -0.1, 1e-300, 1, 2, 3, HUGE_VAL};
+  const std::string bytes(reinterpret_cast<const char*>(ray.data()), sizeof ray);
+  RowsFile rays(
+      folder.put("r.npy", file_of("{'descr': '<f8', 'fortran_order': True, 'shape': (1, 8)}", bytes)), kRays);
+  EXPECT_TRUE(rays.in_double());
+  EXPECT_EQ(rays.row_bytes(), 64u);
+  EXPECT_EQ((rays.read<std::array<double, 8>>()), std::vector{ray});
+  EXPECT_EQ((rays.read<std::array<double, 8>>()), std::vector{ray}) << "a second time";
+  EXPECT_TRUE(fails([&] { rays.read<Ray>(); }, "another size", ErrorCode::internal));
+
+  const auto file =
+      folder.put("p.npy", file_of("{'descr': '<f4', 'fortran_order': False, 'shape': (8, 3)}", ray_bytes(3)));
+  RowsFile points(file, kPoints);
+  EXPECT_FALSE(points.in_double());
+  ASSERT_EQ(points.size(), 8u);
+  EXPECT_EQ((points.read<std::array<float, 3>>()[7]), (std::array{21.25f, 22.25f, 23.25f}));
+  EXPECT_TRUE(fails([&] { RowsFile(file, kRays); }, "has the shape (8, 3) but rays are N x 8"));
+}
+
 TEST(ReadRays, RefusesOtherArraysAndSaysWhatToDo) {
   const test::Folder folder;
   const auto reading = [&](const std::string& type, const std::string& order, const std::string& shape) {
@@ -61,8 +87,10 @@ TEST(ReadRays, RefusesOtherArraysAndSaysWhatToDo) {
                          ray_bytes(3)));
     return [=] { read_rays(file); };
   };
-  EXPECT_TRUE(fails(reading("'<f8'", "False", "(3, 8)"), "save rays.astype('<f4')"));
+  EXPECT_TRUE(fails(reading("'<f2'", "False", "(3, 8)"), "save rays.astype('<f4')"));
   EXPECT_TRUE(fails(reading("'>f4'", "False", "(3, 8)"), "save rays.astype('<f4')"));
+  EXPECT_TRUE(fails(reading("'>f8'", "False", "(3, 8)"), "save rays.astype('<f8')"));
+  EXPECT_TRUE(fails(reading("'|O'", "False", "(3, 8)"), "holds the type '|O'"));
   EXPECT_TRUE(fails(reading("'<f4'", "True", "(3, 8)"), "numpy.ascontiguousarray"));
   EXPECT_TRUE(fails(reading("'<f4'", "False", "(24,)"), "has the shape (24,)"));
   EXPECT_TRUE(fails(reading("'<f4'", "False", "()"), "has the shape ()"));
@@ -125,43 +153,6 @@ TEST(ReadRays, EveryTruncationAndDamageIsRefusedOrRead) {
       EXPECT_EQ(error.code(), ErrorCode::input) << "seed " << kSeed;
     }
   }
-}
-
-TEST(WriteHits, IsWhatNumpyWrites) {
-  const test::Folder folder;
-  const std::vector<Hit> hits = {{1.5f, 7, 0.25f, 0.5f}, {INFINITY, -1, 0, 0}};
-  write_hits(folder / "h.npy", hits);
-  const std::string bytes = folder.get("h.npy");
-  // The dictionary as numpy.save writes it for such an array; how far it pads is left open by the format.
-  const std::string text =
-      "{'descr': [('t', '<f4'), ('primitive', '<i4'), ('u', '<f4'), ('v', '<f4')], "
-      "'fortran_order': False, 'shape': (2,), }";
-  ASSERT_GT(bytes.size(), 2 * sizeof(Hit));
-  const std::size_t begin = bytes.size() - 2 * sizeof(Hit);
-  EXPECT_EQ(begin % 64, 0u);
-  EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
-  EXPECT_EQ(bytes.substr(10, text.size()), text);
-  EXPECT_EQ(bytes.find_first_not_of(' ', 10 + text.size()), begin - 1);
-  EXPECT_EQ(bytes[begin - 1], '\n');
-  EXPECT_EQ(std::memcmp(bytes.data() + begin, hits.data(), 2 * sizeof(Hit)), 0);
-}
-
-TEST(WriteHits, HeadersAreAlignedAndReadBack) {
-  for (std::uint64_t n : {0ull, 9ull, 10ull, 99999ull, 18446744073709551615ull}) {
-    const std::string header = make_header("'<f4'", n);
-    EXPECT_EQ(header.size() % 64, 0u);
-    const NpyPreamble preamble = parse_preamble(header, "h.npy");
-    EXPECT_EQ(preamble.bytes + preamble.header_bytes, header.size());
-    const NpyHeader parsed = parse_header(std::string_view(header).substr(preamble.bytes), "h.npy");
-    EXPECT_EQ(parsed.shape, std::vector<std::uint64_t>{n});
-    EXPECT_EQ(parsed.type, "<f4");
-  }
-}
-
-TEST(WriteHits, NoHitsAreAFileToo) {
-  const test::Folder folder;
-  write_hits(folder / "h.npy", {});
-  EXPECT_NE(folder.get("h.npy").find("'shape': (0,)"), std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "scene/part.h"
+#include "scene/added_geometry.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -109,18 +109,18 @@ std::vector<Shape> make_shapes(std::size_t n, const char* names, const Make& mak
 
 }  // namespace
 
-Part make_part(const Mesh& mesh) {
-  Part part;
+AddedGeometry make_added(const Mesh& mesh) {
+  AddedGeometry geometry;
   const std::size_t n = mesh.triangles.size(), n_vertices = mesh.vertices.size();
   check_capacity(n, "triangles");
   if (n_vertices > 0xfffffffeu) refuse("vertices: over 2^32 - 2 of them; split the mesh");
-  part.vertices = finite_points(mesh.vertices, "vertices");
-  part.normals = unit_normals(mesh.normals, n_vertices);
-  part.triangles.resize(n);
-  const bool smooth = !part.normals.empty();
+  geometry.vertices = finite_points(mesh.vertices, "vertices");
+  geometry.normals = unit_normals(mesh.normals, n_vertices);
+  geometry.triangles.resize(n);
+  const bool smooth = !geometry.normals.empty();
   const std::size_t bad = first_fault(n, [&](std::size_t i) {
     const auto corners = mesh.triangles[i];
-    Triangle& t = part.triangles[i];
+    Triangle& t = geometry.triangles[i];
     for (std::size_t k = 0; k < 3; ++k) {
       // A negative index becomes one beyond all.
       if (static_cast<std::uint64_t>(corners[k]) >= n_vertices) return false;
@@ -132,59 +132,59 @@ Part make_part(const Mesh& mesh) {
   if (bad < n)
     refuse(fmt::format("triangles[{}]: an index of {} is out of range; there are {} vertices", bad,
                        in_words(mesh.triangles, bad), n_vertices));
-  return part;
+  return geometry;
 }
 
-Part make_part(const kdray::Spheres& spheres) {
+AddedGeometry make_added(const kdray::Spheres& spheres) {
   const std::size_t n = spheres.centers.size();
   check_values(spheres.radii, "radii", n);
-  Part part;
-  part.spheres = make_shapes<Sphere>(n, "spheres", [&](std::size_t i) {
+  AddedGeometry geometry;
+  geometry.spheres = make_shapes<Sphere>(n, "spheres", [&](std::size_t i) {
     return Sphere{.center = vector(spheres.centers[i]), .radius = value_for(spheres.radii, i)};
   });
-  return part;
+  return geometry;
 }
 
-Part make_part(const kdray::Cones& cones) {
+AddedGeometry make_added(const kdray::Cones& cones) {
   const std::size_t n = cones.bases.size();
   check_rows(cones.apexes, "apexes", n);
   check_values(cones.base_radii, "base_radii", n);
   check_values(cones.apex_radii, "apex_radii", n);
-  Part part;
-  part.cones = make_shapes<Cone>(n, "cones", [&](std::size_t i) {
+  AddedGeometry geometry;
+  geometry.cones = make_shapes<Cone>(n, "cones", [&](std::size_t i) {
     return Cone{.base = vector(cones.bases[i]),
                 .apex = vector(cones.apexes[i]),
                 .base_radius = value_for(cones.base_radii, i),
                 .apex_radius = value_for(cones.apex_radii, i)};
   });
-  return part;
+  return geometry;
 }
 
-Part make_part(const kdray::Discs& discs) {
+AddedGeometry make_added(const kdray::Discs& discs) {
   const std::size_t n = discs.centers.size();
   check_rows(discs.normals, "normals", n);
   check_values(discs.radii, "radii", n);
-  Part part;
-  part.discs = make_shapes<Disc>(n, "discs", [&](std::size_t i) {
+  AddedGeometry geometry;
+  geometry.discs = make_shapes<Disc>(n, "discs", [&](std::size_t i) {
     return Disc{.center = vector(discs.centers[i]),
                 .normal = vector(discs.normals[i]),
                 .radius = value_for(discs.radii, i)};
   });
-  return part;
+  return geometry;
 }
 
-void move_vertices(Part& part, const Points& vertices, const Points& normals) {
-  if (part.triangles.empty() && part.vertices.empty())
+void move_vertices(AddedGeometry& geometry, const Points& vertices, const Points& normals) {
+  if (geometry.triangles.empty() && geometry.vertices.empty())
     throw Error(ErrorCode::usage, "only meshes have vertices that can be moved");
-  if (vertices.size() != part.vertices.size())
-    refuse(fmt::format("vertices: {} of them; the mesh has {}", vertices.size(), part.vertices.size()));
-  if (!part.normals.empty() && normals.empty())
+  if (vertices.size() != geometry.vertices.size())
+    refuse(fmt::format("vertices: {} of them; the mesh has {}", vertices.size(), geometry.vertices.size()));
+  if (!geometry.normals.empty() && normals.empty())
     refuse("normals: none; the mesh has them, so give one for each of the moved vertices");
-  if (part.normals.empty() && !normals.empty()) refuse("normals: the mesh was added without");
+  if (geometry.normals.empty() && !normals.empty()) refuse("normals: the mesh was added without");
   RawVector<dvec3> moved = finite_points(vertices, "vertices");
   RawVector<vec3> turned = unit_normals(normals, vertices.size());
-  part.vertices = std::move(moved);
-  part.normals = std::move(turned);
+  geometry.vertices = std::move(moved);
+  geometry.normals = std::move(turned);
 }
 
 Material material_of(const kdray::Material& m) {

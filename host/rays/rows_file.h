@@ -1,0 +1,56 @@
+// What    Rays and points from a NumPy file (docs/cli.md): rows of a fixed number of values, float32 or
+//         float64.
+// Shape   Format versions 1 to 3, little endian, C order, N x the number of values; 0 rows allowed. The
+//         header is held against the file's size before anything is read, so that a caller knows how much
+//         there will be.
+// Errors  kdray::Error, ErrorCode::input: not NumPy, wrong type, order or shape, cut short; the message says
+//         what was found and what is wanted. The values are not judged here.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace kdray::rays {
+
+// What a file is to hold, in words for messages.
+struct RowsWanted {
+  const char* name;  // as in "rays are N x 8"
+  std::uint64_t n_values;
+  const char* columns;
+};
+inline constexpr RowsWanted kRays{"rays", 8, "origin x y z, t_min, direction x y z, t_max"};
+inline constexpr RowsWanted kPoints{"points", 3, "x y z"};
+
+class RowsFile {
+ public:
+  RowsFile(const std::filesystem::path& file, const RowsWanted& wanted);
+
+  std::uint64_t size() const { return n_rows_; }  // rows
+  bool in_double() const { return in_double_; }
+  std::uint64_t row_bytes() const { return n_values_ * (in_double_ ? sizeof(double) : sizeof(float)); }
+
+  // All of them; a Row is as many floats, or where in_double() doubles, as were wanted.
+  template <class Row>
+  std::vector<Row> read() {
+    std::vector<Row> rows(static_cast<std::size_t>(n_rows_));
+    read_into(rows.data(), sizeof(Row));
+    return rows;
+  }
+
+ private:
+  void seek(std::uint64_t position);
+  void read_bytes(void* to, std::size_t n_bytes);
+  void read_into(void* rows, std::size_t bytes_of_row);
+  [[noreturn]] void cannot_be_read() const;
+
+  std::string name_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream_;
+  std::uint64_t n_values_, n_rows_ = 0, data_begin_ = 0;
+  bool in_double_ = false;
+};
+
+}  // namespace kdray::rays
