@@ -2,6 +2,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -21,6 +22,7 @@ namespace nb = nanobind;
 using namespace nb::literals;
 
 using Pixels = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+using Values = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
 using Progress = std::function<void(double)>;
 using CameraNumbers = std::array<double, 12>;  // from, at, up, fov, ortho_width, hither
 
@@ -81,10 +83,17 @@ film::Image image_of(const Pixels& pixels) {
   return image;
 }
 
-std::vector<film::Channel> channels_of(const std::vector<std::pair<std::string, std::vector<float>>>& given) {
+std::vector<film::Channel> channels_of(const std::vector<std::pair<std::string, Values>>& given) {
   std::vector<film::Channel> channels;
-  for (const auto& [name, values] : given) channels.push_back({name, values});
+  for (const auto& [name, values] : given)
+    channels.push_back({name, std::vector<float>(values.data(), values.data() + values.size())});
   return channels;
+}
+
+void check_channels(const Pixels& pixels, const std::vector<film::Channel>& channels) {
+  for (const film::Channel& channel : channels)
+    if (channel.values.size() != pixels.shape(0) * pixels.shape(1))
+      throw Error(ErrorCode::input, "the channel " + channel.name + " is not of the picture's size");
 }
 
 }  // namespace
@@ -111,10 +120,12 @@ void add_pictures(nb::module_& module, SceneClass scene) {
   module.def(
       "write_picture",
       [](const std::string& file, const Pixels& pixels,
-         const std::vector<std::pair<std::string, std::vector<float>>>& channels, double gamma, int bits) {
-        film::WriteOptions options{{gamma == 0, gamma}, bits};
-        const film::Written written =
-            film::write_picture(file, image_of(pixels), channels_of(channels), options);
+         const std::vector<std::pair<std::string, Values>>& channels, double gamma, int bits) {
+        if (bits != 8 && bits != 16) throw Error(ErrorCode::usage, "a PNG has 8 or 16 bits");
+        const std::vector<film::Channel> beside = channels_of(channels);
+        check_channels(pixels, beside);
+        const film::WriteOptions options{{gamma == 0, gamma}, bits};
+        const film::Written written = film::write_picture(file, image_of(pixels), beside, options);
         std::vector<std::string> files;
         for (const auto& path : written.files) files.push_back(path.string());
         return files;

@@ -1,0 +1,166 @@
+"""Rows of whatever was given: the arrays that kdray._core reads in place.
+
+A row's values lie side by side, in native byte order, as float32 or float64 (or integers, for
+indices). What is like that already is not copied, whatever lies between two rows.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import errors
+
+ArrayLike = Any  # npt.ArrayLike, or anything with __dlpack__
+Array = npt.NDArray[Any]
+Floats = npt.NDArray[Any]  # float32 or float64
+Shape = tuple[int, ...]
+
+
+def as_array(values: ArrayLike, name: str) -> Array:
+    """`values` as an array of NumPy's, without a copy where it has memory of its own."""
+    if isinstance(values, np.ndarray):
+        return values
+    if hasattr(values, "__dlpack__") and not hasattr(values, "__array__"):
+        try:
+            return np.from_dlpack(values)
+        except (BufferError, RuntimeError, TypeError, ValueError) as why:
+            raise errors.InputError(f"{name}: can't be read through DLPack: {why}") from why
+    try:
+        return np.asarray(values)
+    except (TypeError, ValueError) as why:
+        raise errors.InputError(f"{name}: not an array: {why}") from why
+
+
+def _floats(array: Array, name: str) -> Floats:
+    if array.dtype.kind == "f":
+        if array.dtype.itemsize in (4, 8) and array.dtype.isnative:
+            return array
+        return array.astype(np.float32 if array.dtype.itemsize < 8 else np.float64)
+    if array.dtype.kind in "iub" and array.size:
+        return array.astype(np.float64)
+    if array.size == 0:
+        return array.astype(np.float32)
+    raise errors.InputError(f"{name}: numbers are wanted, not {array.dtype}")
+
+
+def _side_by_side(rows: Array) -> Array:
+    last = rows.ndim - 1
+    good = rows.strides[0] >= 0 and (last == 0 or rows.shape[last] == 1 or rows.strides[last] == rows.itemsize)
+    return rows if good else np.ascontiguousarray(rows)
+
+
+def vectors(values: ArrayLike, name: str) -> tuple[Floats, Shape]:
+    """n x 3 floats of an array of shape (..., 3), and that shape without the 3."""
+    array = _floats(as_array(values, name), name)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        if array.size == 0 and array.ndim == 1:
+            return np.empty((0, 3), array.dtype), (0,)
+        raise errors.InputError(f"{name}: the shape is to be (..., 3), not {array.shape}")
+    return _side_by_side(array.reshape(-1, 3)), array.shape[:-1]
+
+
+def scalars(values: ArrayLike, name: str) -> tuple[Floats, Shape]:
+    """n floats of an array of any shape, and that shape."""
+    array = _floats(as_array(values, name), name)
+    return _side_by_side(array.reshape(-1)), array.shape
+
+
+def triangles(values: ArrayLike, name: str = "triangles") -> Array:
+    """n x 3 indices, signed or not, of 32 or 64 bits."""
+    array = as_array(values, name)
+    if array.size == 0:
+        return np.empty((0, 3), np.uint32)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise errors.InputError(f"{name}: the shape is to be (n, 3), not {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise errors.InputError(f"{name}: indices are whole numbers, not {array.dtype}")
+    if array.dtype.itemsize not in (4, 8) or not array.dtype.isnative:
+        array = array.astype(np.int64 if array.dtype.kind == "i" else np.uint64)
+    return _side_by_side(array)
+
+
+def masks(values: ArrayLike, name: str = "mask") -> tuple[Array, Shape]:
+    """32 bits for each element, and the array's shape."""
+    array = as_array(values, name)
+    if array.dtype == np.uint32:
+        return _side_by_side(array.reshape(-1)), array.shape
+    if array.dtype.kind not in "iu" or (array.size and (array.min() < -(2**31) or array.max() >= 2**32)):
+        raise errors.InputError(f"{name}: a mask has 32 bits")
+    return array.reshape(-1).astype(np.int64).astype(np.uint32), array.shape
+
+
+def mask_bits(mask: int) -> int:
+    """A geometry's mask as a whole number of 32 bits; -1 is all of them."""
+    if not -(2**31) <= mask < 2**32:
+        raise errors.InputError(f"mask: {mask} has more than 32 bits")
+    return int(mask) & 0xFFFFFFFF
+
+
+def for_writing(array: Array, shape: Shape, types: tuple[type, ...], name: str) -> Array:
+    """`array` as rows that results can be written to; it is the caller's own memory."""
+    if not isinstance(array, np.ndarray):
+        raise errors.InputError(f"{name}: results are written to arrays of NumPy's, not to {type(array).__name__}")
+    if array.shape != shape or array.dtype.type not in types or not array.dtype.isnative:
+        wanted = " or ".join(np.dtype(t).name for t in types)
+        raise errors.InputError(
+            f"{name}: the array is to be of shape {shape} and {wanted}, not {array.shape} and {array.dtype}"
+        )
+    if not array.flags.writeable or not array.flags.c_contiguous:
+        raise errors.InputError(f"{name}: the array can't be written, or isn't in C order")
+    return array
+
+
+class RayArrays:
+    """Rays as `kdray._core` takes them, and the shape of their results."""
+
+    __slots__ = ("directions", "dtype", "masks", "n", "origins", "shape", "t_max", "t_min")
+
+    def __init__(
+        self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike, t_max: ArrayLike, mask: ArrayLike | None
+    ) -> None:
+        self.origins, o_shape = vectors(origins, "origins")
+        self.directions, d_shape = vectors(directions, "directions")
+        shapes = [("origins", o_shape), ("directions", d_shape)]
+        self.dtype = np.result_type(self.origins, self.directions)
+        self.t_min: Floats | None = None
+        self.t_max: Floats | None = None
+        self.masks: Array | None = None
+        if not (isinstance(t_min, (int, float)) and t_min == 0):
+            self.t_min, shape = scalars(t_min, "t_min")
+            shapes.append(("t_min", shape))
+        if not (isinstance(t_max, float) and t_max == np.inf):
+            self.t_max, shape = scalars(t_max, "t_max")
+            shapes.append(("t_max", shape))
+        if mask is not None:
+            self.masks, shape = masks(mask)
+            shapes.append(("mask", shape))
+        self.shape = _common(shapes)
+        self.n = int(np.prod(self.shape, dtype=np.int64))
+        if self.n == 0:  # an empty array can't stand for "the same for all"
+            self.origins = self.directions = np.empty((0, 3), self.dtype)
+            self.t_min = self.t_max = self.masks = None
+
+    def given(self) -> tuple[Array | None, ...]:
+        """The arguments that every query of rays begins with."""
+        return self.origins, self.directions, self.t_min, self.t_max, self.masks
+
+    def part(self, first: int, end: int) -> RayArrays:
+        """The rays first to end."""
+        part = object.__new__(RayArrays)
+        part.dtype, part.n, part.shape = self.dtype, end - first, (end - first,)
+        for name in ("origins", "directions", "t_min", "t_max", "masks"):
+            rows = getattr(self, name)
+            setattr(part, name, rows if rows is None or len(rows) == 1 else rows[first:end])
+        return part
+
+
+def _common(shapes: list[tuple[str, Shape]]) -> Shape:
+    """The shape that all have, but for those of one element, which stand for all rays."""
+    several = [(name, shape) for name, shape in shapes if any(extent != 1 for extent in shape)]
+    for name, shape in several[1:]:
+        if shape != several[0][1]:
+            raise errors.InputError(f"{name} has shape {shape} where {several[0][0]} has {several[0][1]}")
+    return several[0][1] if several else max((shape for _, shape in shapes), key=len)

@@ -1,0 +1,68 @@
+"""Cameras, lights and materials: what pictures need beside shapes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+Vector = Sequence[float]
+Color = Sequence[float]
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where a picture is seen from.
+
+    `fov` is of the picture's full height, in degrees. `ortho_width` above 0 makes the camera
+    orthographic: it is the picture's width in the scene's units. Nothing nearer than `hither` is seen.
+    """
+
+    origin: Vector = (0.0, 0.0, 5.0)
+    target: Vector = (0.0, 0.0, 0.0)
+    up: Vector = (0.0, 1.0, 0.0)
+    fov: float = 45.0
+    ortho_width: float = 0.0
+    hither: float = 0.0
+
+    def numbers(self) -> list[float]:
+        """Its twelve numbers, for kdray._core."""
+        numbers = [float(x) for x in (*self.origin, *self.target, *self.up, self.fov, self.ortho_width, self.hither)]
+        if len(numbers) != 12:
+            raise ValueError("a camera's origin, target and up have three coordinates each")
+        return numbers
+
+
+@dataclass(frozen=True)
+class Light:
+    """A light: "point", "directional" or "spot".
+
+    `direction` is the way it travels. `attenuation` (a, b, c) divides by ``a + b*d + c*d*d`` at
+    distance d. `inner` and `outer` are a spot's half angles in degrees, full light inside of the inner one.
+    """
+
+    kind: str = "point"
+    position: Vector = (0.0, 0.0, 0.0)
+    direction: Vector = (0.0, 0.0, -1.0)
+    color: Color = (1.0, 1.0, 1.0)
+    attenuation: Vector = (1.0, 0.0, 0.0)
+    range: float = math.inf
+    inner: float = 0.0
+    outer: float = 45.0
+
+
+@dataclass(frozen=True)
+class Material:
+    """Whitted's terms, linear RGB, each with its colour multiplied in.
+
+    `shine` is the exponent of the highlight, `index` that of refraction. The default is a matt light grey.
+    """
+
+    diffuse: Color = (0.8, 0.8, 0.8)
+    ambient: Color | None = None  # a tenth of `diffuse`
+    emission: Color = (0.0, 0.0, 0.0)
+    specular: Color = (0.0, 0.0, 0.0)
+    reflect: Color = (0.0, 0.0, 0.0)
+    transmit: Color = (0.0, 0.0, 0.0)
+    shine: float = 1.0
+    index: float = 1.0

@@ -1,0 +1,611 @@
+"""`Scene`: shapes in, answers and pictures out."""
+
+from __future__ import annotations
+
+import copy
+import math
+import os
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arrays, _core, _drivers, errors
+from ._arrays import Array, ArrayLike, RayArrays
+from .hits import AllHits, ClosestPoints, Hits
+from .looks import Camera, Color, Light, Material
+from .picture import Picture
+from .progress import Progress, teller
+
+_FLOATS = (np.float32, np.float64)
+_AT_ONCE = 1 << 20  # rays between two words of progress
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """What `Scene.info` tells of one geometry."""
+
+    id: int
+    name: str
+    mask: int
+    primitives: int
+    enabled: bool
+
+
+@dataclass
+class _Added:
+    """What a geometry was added by, to make it again."""
+
+    method: str
+    arrays: tuple[Array | None, ...]
+    material: int | None
+
+    def copy(self) -> _Added:
+        return _Added(self.method, self.arrays, self.material)
+
+
+class Scene:
+    """Geometries by id, and what can be asked of them.
+
+    ``Scene(device="auto")`` is empty; `kdray.load` reads a file. Add meshes, spheres, cones and discs, in whatever
+    units they are (float64 vertices keep what float32 would lose: the scene is moved to its own centre first), then
+    ask. The first question after a change builds the tree; `commit` does so at a time of your choosing.
+
+    Any number of threads may ask one scene at once; one thread at a time may change it. Questions let go of the GIL,
+    and Ctrl-C ends them.
+
+    Shapes: rays are two arrays of shape (..., 3) of float32 or float64, in any layout; results have the shape (...).
+    What has a single row (one origin, one t_min) is the same for all rays. Hits lie where ``t_min < t < t_max``, and t
+    counts in multiples of the direction.
+
+    A scene can be copied and pickled; it then holds its arrays, or the name of the file that it was read from.
+    """
+
+    def __init__(self, *, device: str = "auto", compute_units: int = 0) -> None:
+        """`device`: "auto", "cpu", "gpu", a number of `kdray.devices()` or a part of a name.
+
+        `compute_units`: only so many of the device's cores; 0 is all.
+        """
+        self._start(_core.Scene(), device, compute_units)
+
+    def _start(self, core: Any, device: str, compute_units: int) -> None:
+        self._core = core
+        self._device, self._compute_units = device, compute_units
+        self._file: tuple[str, float | None] | None = None
+        self._added: dict[int, _Added] = {}  # by id
+        self._materials: list[Material] = []
+        self._lights: list[Light] = []
+        self._colors: dict[str, Color] = {}  # "background", "ambient"
+        self._changed, self._committed, self._binary_form, self._quality = True, False, False, "balanced"
+        self._lock = threading.RLock()
+
+    # ---- What it is made of
+
+    def add_mesh(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        mask: int = -1,
+        name: str | None = None,
+        material: int | None = None,
+    ) -> int:
+        """Adds triangles and returns their geometry id; arrays are copied.
+
+        `vertices` (n, 3), `triangles` (m, 3) indices into them, `normals` (n, 3) for smooth shading. A ray sees the
+        geometry where its mask and this one have a bit in common. `material` is one of `add_material`. Raises
+        InputError that names the element: an index out of range, a NaN.
+        """
+        v, _ = _arrays.vectors(vertices, "vertices")
+        n = None if normals is None else _arrays.vectors(normals, "normals")[0]
+        return self._add("add_mesh", (v, _arrays.triangles(triangles), n), name, mask, material)
+
+    def add_spheres(
+        self,
+        centers: ArrayLike,
+        radii: ArrayLike,
+        *,
+        mask: int = -1,
+        name: str | None = None,
+        material: int | None = None,
+    ) -> int:
+        """Adds exact spheres: `centers` (n, 3), `radii` (n,) or one for all, above 0."""
+        return self._add("add_spheres", (_points(centers, "centers"), _scalars(radii, "radii")), name, mask, material)
+
+    def add_cones(
+        self,
+        p0: ArrayLike,
+        r0: ArrayLike,
+        p1: ArrayLike,
+        r1: ArrayLike,
+        *,
+        mask: int = -1,
+        name: str | None = None,
+        material: int | None = None,
+    ) -> int:
+        """Adds truncated cones without caps, from p0 (n, 3) with radius r0 to p1 with r1 (equal: cylinders)."""
+        arrays = (_points(p0, "p0"), _scalars(r0, "r0"), _points(p1, "p1"), _scalars(r1, "r1"))
+        return self._add("add_cones", arrays, name, mask, material)
+
+    def add_discs(
+        self,
+        centers: ArrayLike,
+        normals: ArrayLike,
+        radii: ArrayLike,
+        *,
+        mask: int = -1,
+        name: str | None = None,
+        material: int | None = None,
+    ) -> int:
+        """Adds flat discs: `centers` (n, 3), `normals` (n, 3) of any length, `radii` (n,) or one for all."""
+        arrays = (_points(centers, "centers"), _points(normals, "normals"), _scalars(radii, "radii"))
+        return self._add("add_discs", arrays, name, mask, material)
+
+    def _add(
+        self, method: str, arrays: tuple[Array | None, ...], name: str | None, mask: int, material: int | None
+    ) -> int:
+        with self._lock:
+            bits = _arrays.mask_bits(mask)
+            geometry = int(getattr(self._core, method)(*arrays, name or "", bits, material or 0))
+            kept = tuple(None if a is None else a.copy() for a in arrays)
+            self._added[geometry] = _Added(method, kept, material)
+            self._changed = True
+            return geometry
+
+    def update_vertices(self, id: int, vertices: ArrayLike, normals: ArrayLike | None = None) -> None:
+        """New places for a mesh's vertices, as many as it has; ids and numbers stay."""
+        v, _ = _arrays.vectors(vertices, "vertices")
+        n = None if normals is None else _arrays.vectors(normals, "normals")[0]
+        with self._lock:
+            self._core.update_vertices(id, v, n)
+            added = self._added[id]
+            added.arrays = (v.copy(), added.arrays[1], None if n is None else n.copy())
+            self._changed = True
+
+    def remove(self, id: int) -> None:
+        """Takes a geometry out; its id is not given again."""
+        with self._lock:
+            self._core.remove(id)
+            self._added.pop(id, None)
+            self._changed = True
+
+    def enable(self, id: int, enabled: bool = True) -> None:
+        """Shows a geometry again, or hides it (`enabled=False`), without losing it."""
+        with self._lock:
+            self._core.enable(id, enabled)
+            self._changed = True
+
+    def set_mask(self, id: int, mask: int) -> None:
+        """Another mask for a geometry."""
+        with self._lock:
+            self._core.set_mask(id, _arrays.mask_bits(mask))
+            self._changed = True
+
+    @property
+    def geometries(self) -> list[Geometry]:
+        """All geometries, by id."""
+        return [self.info(id) for id in self._core.geometries()]
+
+    def info(self, id: int) -> Geometry:
+        """Name, mask and number of primitives of a geometry."""
+        return Geometry(id, *self._core.info(id))
+
+    @property
+    def primitives(self) -> int:
+        """How many triangles, spheres, cones and discs are enabled."""
+        return int(self._core.primitives())
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the reader of its file left out or changed, a line each."""
+        return list(self._core.warnings())
+
+    # ---- How it looks
+
+    def add_material(self, material: Material) -> int:
+        """Adds a material, for `add_mesh(..., material=)`."""
+        m = material
+        ambient = m.ambient if m.ambient is not None else [0.1 * c for c in m.diffuse]
+        with self._lock:
+            number = self._core.add_material(
+                m.emission, ambient, m.diffuse, m.specular, m.reflect, m.transmit, m.shine, m.index
+            )
+            self._materials.append(m)
+            self._changed = True
+            return int(number)
+
+    def add_light(self, light: Light) -> None:
+        """Adds a light. (Without any, a picture gets two.)"""
+        with self._lock:
+            self._core.add_light(
+                light.kind,
+                light.position,
+                light.direction,
+                light.color,
+                light.attenuation,
+                light.range,
+                light.inner,
+                light.outer,
+            )
+            self._lights.append(light)
+            self._changed = True
+
+    def set_background(self, color: Color) -> None:
+        """The colour of rays that hit nothing, linear RGB."""
+        with self._lock:
+            self._core.set_background(color)
+            self._colors["background"] = tuple(color)
+            self._changed = True
+
+    def set_ambient(self, color: Color) -> None:
+        """The light that comes from everywhere, linear RGB."""
+        with self._lock:
+            self._core.set_ambient(color)
+            self._colors["ambient"] = tuple(color)
+            self._changed = True
+
+    # ---- Committing
+
+    def commit(self, quality: str = "balanced") -> Scene:
+        """Builds the tree of what the scene is now: "fast", "balanced" or "best". Never changes a hit.
+
+        Questions from other threads are answered from the state before until it returns.
+        """
+        with self._lock:
+            self._quality = quality
+            self._commit()
+        return self
+
+    def _commit(self) -> None:
+        _drivers.choose()
+        self._changed = False  # by now: what is changed meanwhile is for the next one
+        try:
+            self._core.commit(self._quality, self._device, self._compute_units, self._binary_form)
+        except BaseException:
+            self._changed = True
+            raise
+        self._committed = True
+
+    def _ready(self) -> Any:
+        if self._changed:
+            with self._lock:
+                if self._changed:
+                    self._commit()
+        return self._core
+
+    # ---- Rays
+
+    def closest_hit(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0,
+        t_max: ArrayLike = math.inf,
+        mask: ArrayLike | None = None,
+        out: Hits | None = None,
+        *,
+        fields: Iterable[str] = Hits._names,
+        strict: bool = False,
+        progress: Progress = False,
+    ) -> Hits:
+        """What each ray hits first.
+
+        float64 rays are met in the scene's own frame, to double's precision in t; results are float32 for float32
+        rays. `fields` names the arrays of `Hits` that are wanted: fewer are faster. `out` is a Hits to write into.
+        Rays that mean nothing (NaN, no direction) are misses, or with `strict` an InputError that names the first.
+        """
+        rays = RayArrays(origins, directions, t_min, t_max, mask)
+        columns = _hit_columns(rays, out, tuple(fields))
+        rows = {name: _as_rows(column, _width(name)) for name, column in columns.items()}
+        core = self._ready()
+
+        def ask(part: RayArrays, first: int, end: int) -> None:
+            cut = {name: column[first:end] for name, column in rows.items()}
+            core.closest(*part.given(), strict, *(cut.get(name) for name in Hits._names))
+
+        _in_parts(rays, ask, progress, "closest_hit")
+        return out if out is not None else Hits(columns)
+
+    def any_hit(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0,
+        t_max: ArrayLike = math.inf,
+        mask: ArrayLike | None = None,
+        out: npt.NDArray[np.bool_] | None = None,
+        *,
+        strict: bool = False,
+        progress: Progress = False,
+    ) -> npt.NDArray[np.bool_]:
+        """Whether each ray hits anything between t_min and t_max; for shadows and lines of sight."""
+        rays = RayArrays(origins, directions, t_min, t_max, mask)
+        result = _result(out, rays.shape, np.bool_, "out")
+        rows = _as_rows(result).view(np.uint8)
+        core = self._ready()
+
+        def ask(part: RayArrays, first: int, end: int) -> None:
+            core.any(*part.given(), strict, rows[first:end])
+
+        _in_parts(rays, ask, progress, "any_hit")
+        return result
+
+    def count_hits(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0,
+        t_max: ArrayLike = math.inf,
+        mask: ArrayLike | None = None,
+        out: npt.NDArray[np.uint32] | None = None,
+        *,
+        strict: bool = False,
+        progress: Progress = False,
+    ) -> npt.NDArray[np.uint32]:
+        """How many surfaces each ray crosses (uint32), each once, through edges and vertices too.
+
+        A ray from outside of a closed mesh to its outside has an even count, always.
+        """
+        rays = RayArrays(origins, directions, t_min, t_max, mask)
+        result = _result(out, rays.shape, np.uint32, "out")
+        rows = _as_rows(result)
+        core = self._ready()
+
+        def ask(part: RayArrays, first: int, end: int) -> None:
+            core.count(*part.given(), strict, rows[first:end])
+
+        _in_parts(rays, ask, progress, "count_hits")
+        return result
+
+    def all_hits(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0,
+        t_max: ArrayLike = math.inf,
+        mask: ArrayLike | None = None,
+        *,
+        max_hits: int | None = None,
+        strict: bool = False,
+    ) -> AllHits:
+        """Every crossing of every ray, sorted by t, or the first `max_hits` of each ray."""
+        most = 0xFFFFFFFF if max_hits is None else max_hits
+        if not 0 <= most <= 0xFFFFFFFF:
+            raise errors.UsageError(f"max_hits: {max_hits} is out of range")
+        rays = RayArrays(origins, directions, t_min, t_max, mask)
+        return AllHits(*self._ready().all(*rays.given(), strict, most))
+
+    # ---- Points
+
+    def closest_point(
+        self,
+        points: ArrayLike,
+        radius: float = math.inf,
+        *,
+        fields: Iterable[str] = ClosestPoints._names,
+        strict: bool = False,
+    ) -> ClosestPoints:
+        """Of each point (..., 3) the nearest point of any surface within `radius`."""
+        rows, shape = _arrays.vectors(points, "points")
+        wanted = _known(fields, ClosestPoints._names)
+        columns: dict[str, Array] = {}
+        for name in wanted:
+            columns[name] = np.empty((*shape, 3) if name == "point" else shape, _type_of(name, rows.dtype))
+        cut = {name: _as_rows(column, _width(name)) for name, column in columns.items()}
+        self._ready().closest_points(rows, radius, strict, *(cut.get(name) for name in ClosestPoints._names))
+        return ClosestPoints(columns)
+
+    def signed_distance(
+        self,
+        points: ArrayLike,
+        radius: float = math.inf,
+        out: npt.NDArray[Any] | None = None,
+        *,
+        strict: bool = False,
+    ) -> npt.NDArray[Any]:
+        """The distance to the nearest surface, negative inside of closed ones; of the points' type."""
+        rows, shape = _arrays.vectors(points, "points")
+        result = _result(out, shape, *(_FLOATS if out is not None else (rows.dtype.type,)), "out")
+        self._ready().signed_distance(rows, radius, strict, _as_rows(result))
+        return result
+
+    def contains(
+        self, points: ArrayLike, out: npt.NDArray[np.bool_] | None = None, *, strict: bool = False
+    ) -> npt.NDArray[np.bool_]:
+        """Whether each point lies inside: of an odd number of closed surfaces. Exact, without a vote."""
+        rows, shape = _arrays.vectors(points, "points")
+        result = _result(out, shape, np.bool_, "out")
+        self._ready().inside(rows, strict, _as_rows(result).view(np.uint8))
+        return result
+
+    # ---- Pictures
+
+    def render(
+        self,
+        camera: Camera | None = None,
+        size: tuple[int, int] = (1024, 1024),
+        samples: int = 1,
+        depth: int = 5,
+        *,
+        adaptive: bool | float = False,
+        channels: Iterable[str] = (),
+        min_weight: float | None = None,
+        mode: str = "auto",
+        precision: str = "float",
+        progress: Progress = False,
+    ) -> Picture:
+        """A Whitted picture, `size` = (width, height), by `camera` or one that sees all of the scene.
+
+        `samples` per pixel, or `adaptive`: as many as each pixel needs (a float: the error in linear RGB that is
+        aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth", "normal", "primitive", "cost".
+        `min_weight`: rays that change a pixel by less are left out; 0 traces all.
+        """
+        named = list(channels)
+        binary = bool(named) or precision == "double"
+        if binary and not self._binary_form:
+            with self._lock:
+                self._binary_form = self._changed = True
+        width, height = size
+        w, h, rgb, planes, warnings = self._ready().render(
+            camera.numbers() if camera is not None else None,
+            width,
+            height,
+            samples,
+            depth,
+            -1.0 if min_weight is None else min_weight,
+            0.0075 if adaptive is True else float(adaptive),
+            mode,
+            precision,
+            named,
+            teller(progress, "render"),
+        )
+        return Picture(rgb.reshape(h, w, 3), _planes(planes, h, w), list(warnings))
+
+    # ---- Copies
+
+    def __getstate__(self) -> dict[str, Any]:
+        with self._lock:
+            infos = [self.info(id) for id in self._core.geometries()]
+            names = ("_device", "_compute_units", "_quality", "_file", "_materials", "_lights", "_colors")
+            return {name: copy.copy(getattr(self, name)) for name in names} | {
+                "added": {id: added.copy() for id, added in self._added.items()},
+                "infos": infos,
+            }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        file = state["_file"]
+        core = _core.Scene.load(*file) if file else _core.Scene()
+        self._start(core, state["_device"], state["_compute_units"])
+        self._file, self._quality = file, state["_quality"]
+        for material in state["_materials"]:
+            self.add_material(material)
+        for light in state["_lights"]:
+            self.add_light(light)
+        for name, color in state["_colors"].items():
+            getattr(self, "set_" + name)(color)
+        infos = {info.id: info for info in state["infos"]}
+        if file and 0 not in infos:
+            self._core.remove(0)
+        for id in range(1 if file else 0, max(infos, default=-1) + 1):
+            self._add_again(state["added"].get(id), infos.get(id))
+        for id, info in infos.items():
+            self._core.enable(id, info.enabled)
+            self._core.set_mask(id, info.mask)
+
+    def _add_again(self, added: _Added | None, info: Geometry | None) -> None:
+        """A geometry by the id that it had; one that was removed leaves its id."""
+        if added is None or info is None:
+            nothing = np.empty((0, 3), np.float32)
+            self._core.remove(self._core.add_spheres(nothing, nothing[:, 0], "", 0, 0))
+        else:
+            self._add(added.method, added.arrays, info.name, info.mask, added.material)
+
+    def __copy__(self) -> Scene:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Scene:
+        return self.copy()
+
+    def copy(self) -> Scene:
+        """A scene of its own, with the same ids."""
+        made = type(self).__new__(type(self))
+        made.__setstate__(self.__getstate__())
+        return made
+
+    def __repr__(self) -> str:
+        return f"<kdray.Scene of {len(self._core.geometries())} geometries, {self.primitives} primitives>"
+
+
+def load(path: str | os.PathLike[str], *, smooth: float | None = None, device: str = "auto") -> Scene:
+    """A scene from a file: .obj, .ply, .stl, .gltf, .glb, .nff, kdray's .json, also .gz and .xz of these.
+
+    What is in it is geometry 0. `smooth`: triangles without normals get some where the surface turns by no more
+    than so many degrees. Raises InputError with file, line, what is wrong and what to do.
+    """
+    scene = Scene.__new__(Scene)
+    file = (os.path.abspath(os.fspath(path)), smooth)
+    scene._start(_core.Scene.load(*file), device, 0)
+    scene._file = file
+    return scene
+
+
+# ---- Small things
+
+
+def _points(values: ArrayLike, name: str) -> Array:
+    return _arrays.vectors(values, name)[0]
+
+
+def _scalars(values: ArrayLike, name: str) -> Array:
+    return _arrays.scalars(values, name)[0]
+
+
+def _known(fields: Iterable[str], names: tuple[str, ...]) -> list[str]:
+    wanted = list(fields)
+    for name in wanted:
+        if name not in names:
+            raise errors.UsageError(f"there is no field {name!r}; there are {', '.join(names)}")
+    return wanted
+
+
+def _width(name: str) -> int:
+    """How many values of a field there are for each ray or point."""
+    return 3 if name in ("normal", "point") else 1
+
+
+def _type_of(name: str, of_rays: Any) -> Any:
+    if name in ("geometry", "primitive"):
+        return np.int32
+    return np.float32 if name in ("u", "v") else of_rays
+
+
+def _hit_columns(rays: RayArrays, out: Hits | None, fields: tuple[str, ...]) -> dict[str, Array]:
+    columns: dict[str, Array] = {}
+    if out is None:
+        for name in _known(fields, Hits._names):
+            shape = (*rays.shape, 3) if _width(name) == 3 else rays.shape
+            columns[name] = np.empty(shape, _type_of(name, rays.dtype))
+        return columns
+    if not isinstance(out, Hits):
+        raise errors.InputError(f"out: a kdray.Hits is wanted, not {type(out).__name__}")
+    for name in out.fields:
+        shape = (*rays.shape, 3) if _width(name) == 3 else rays.shape
+        types = (np.int32,) if name in ("geometry", "primitive") else _FLOATS
+        columns[name] = _arrays.for_writing(getattr(out, name), shape, types, f"out.{name}")
+    return columns
+
+
+def _as_rows(column: Array, values: int = 1) -> Array:
+    """The memory of a result as rows of so many values, for `kdray._core`; a view, never a copy."""
+    if column.dtype == np.int32:
+        column = column.view(np.uint32)
+    return column.reshape(-1) if values == 1 else column.reshape(-1, values)
+
+
+def _result(out: Array | None, shape: tuple[int, ...], *types_and_name: Any) -> Array:
+    *types, name = types_and_name
+    if out is None:
+        return np.empty(shape, types[0])
+    return _arrays.for_writing(out, shape, tuple(types), name)
+
+
+def _in_parts(
+    rays: RayArrays, ask: Callable[[RayArrays, int, int], None], progress: Progress, what: str
+) -> None:
+    """Asks for all rays at once, or so many at a time that there is something to tell."""
+    tell = teller(progress, what)
+    if tell is None or rays.n <= _AT_ONCE:
+        ask(rays, 0, rays.n)
+        return
+    for first in range(0, rays.n, _AT_ONCE):
+        end = min(first + _AT_ONCE, rays.n)
+        ask(rays.part(first, end), first, end)
+        tell(end / rays.n)
+
+
+def _planes(planes: dict[str, Array], height: int, width: int) -> dict[str, npt.NDArray[np.float32]]:
+    return {name: values.reshape(height, width) for name, values in planes.items()}
