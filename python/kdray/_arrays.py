@@ -53,7 +53,7 @@ def _side_by_side(rows: Array) -> Array:
 
 
 def vectors(values: ArrayLike, name: str) -> tuple[Floats, Shape]:
-    """n x 3 floats of an array of shape (..., 3), and that shape without the 3."""
+    """N x 3 floats of an array of shape (..., 3), and that shape without the 3."""
     array = _floats(as_array(values, name), name)
     if array.ndim == 0 or array.shape[-1] != 3:
         if array.size == 0 and array.ndim == 1:
@@ -63,13 +63,13 @@ def vectors(values: ArrayLike, name: str) -> tuple[Floats, Shape]:
 
 
 def scalars(values: ArrayLike, name: str) -> tuple[Floats, Shape]:
-    """n floats of an array of any shape, and that shape."""
+    """N floats of an array of any shape, and that shape."""
     array = _floats(as_array(values, name), name)
     return _side_by_side(array.reshape(-1)), array.shape
 
 
 def triangles(values: ArrayLike, name: str = "triangles") -> Array:
-    """n x 3 indices, signed or not, of 32 or 64 bits."""
+    """N x 3 indices, signed or not, of 32 or 64 bits."""
     array = as_array(values, name)
     if array.size == 0:
         return np.empty((0, 3), np.uint32)
@@ -119,7 +119,12 @@ class RayArrays:
     __slots__ = ("directions", "dtype", "masks", "n", "origins", "shape", "t_max", "t_min")
 
     def __init__(
-        self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike, t_max: ArrayLike, mask: ArrayLike | None
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike,
+        t_max: ArrayLike,
+        mask: ArrayLike | None,
     ) -> None:
         self.origins, o_shape = vectors(origins, "origins")
         self.directions, d_shape = vectors(directions, "directions")

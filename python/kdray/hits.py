@@ -45,6 +45,8 @@ class Hits(_Columns):
 
     __slots__ = ("_geometry", "_normal", "_point", "_primitive", "_t", "_u", "_v")
     _names = ("t", "geometry", "primitive", "u", "v", "normal", "point")
+    _t: Array | None
+    _geometry: Array | None
 
     t = _column("t", "float32 or float64, as the rays: multiples of the direction; infinity for a miss.")
     geometry = _column("geometry", "int32: the geometry's id; -1 for a miss.")

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from .errors import UsageError
+
 Vector = Sequence[float]
 Color = Sequence[float]
 
@@ -29,7 +31,7 @@ class Camera:
         """Its twelve numbers, for kdray._core."""
         numbers = [float(x) for x in (*self.origin, *self.target, *self.up, self.fov, self.ortho_width, self.hither)]
         if len(numbers) != 12:
-            raise ValueError("a camera's origin, target and up have three coordinates each")
+            raise UsageError("a camera's origin, target and up have three coordinates each")
         return numbers
 
 

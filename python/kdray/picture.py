@@ -27,6 +27,7 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
         channels: dict[str, npt.NDArray[np.float32]] | None = None,
         warnings: list[str] | None = None,
     ) -> Picture:
+        """Pixels (height, width, 3), linear; for `save` of whatever a program has computed."""
         picture = np.asarray(pixels, dtype=np.float32).view(cls)
         picture.channels = channels or {}
         picture.warnings = warnings or []

@@ -63,7 +63,7 @@ def lidar_rays(
     `azimuths` in degrees, or `steps` of them all around, counterclockwise from x seen from above (z is up).
     `rotations` (n, 3, 3) or (3, 3): how it is held, from its own frame to the world's.
     """
-    place, shape = vectors(positions, "positions")
+    place, _ = vectors(positions, "positions")
     if azimuths is None:
         azimuths = np.arange(steps) * (360.0 / steps)
     a = np.radians(np.asarray(azimuths, np.float64).reshape(-1))

@@ -450,6 +450,9 @@ class Scene:
             with self._lock:
                 self._binary_form = self._changed = True
         width, height = size
+        for name, value in (("the width", width), ("the height", height), ("samples", samples), ("depth", depth)):
+            if value < 1:
+                raise errors.UsageError(f"{name} is at least 1, not {value}")
         w, h, rgb, planes, warnings = self._ready().render(
             camera.numbers() if camera is not None else None,
             width,
@@ -593,9 +596,7 @@ def _result(out: Array | None, shape: tuple[int, ...], *types_and_name: Any) -> 
     return _arrays.for_writing(out, shape, tuple(types), name)
 
 
-def _in_parts(
-    rays: RayArrays, ask: Callable[[RayArrays, int, int], None], progress: Progress, what: str
-) -> None:
+def _in_parts(rays: RayArrays, ask: Callable[[RayArrays, int, int], None], progress: Progress, what: str) -> None:
     """Asks for all rays at once, or so many at a time that there is something to tell."""
     tell = teller(progress, what)
     if tell is None or rays.n <= _AT_ONCE:

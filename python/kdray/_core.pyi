@@ -1,0 +1,171 @@
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from numpy.typing import NDArray
+
+class Scene:
+    def __init__(self) -> None: ...
+    @staticmethod
+    def load(file: str, smooth_degrees: float | None) -> Scene: ...
+    def add_mesh(
+        self,
+        vertices: NDArray[Any] | None,
+        triangles: NDArray[Any] | None,
+        normals: NDArray[Any] | None,
+        name: str,
+        mask: int,
+        material: int,
+    ) -> int: ...
+    def add_spheres(
+        self, arg0: NDArray[Any] | None, arg1: NDArray[Any] | None, arg2: str, arg3: int, arg4: int, /
+    ) -> int: ...
+    def add_cones(
+        self,
+        arg0: NDArray[Any] | None,
+        arg1: NDArray[Any] | None,
+        arg2: NDArray[Any] | None,
+        arg3: NDArray[Any] | None,
+        arg4: str,
+        arg5: int,
+        arg6: int,
+        /,
+    ) -> int: ...
+    def add_discs(
+        self,
+        arg0: NDArray[Any] | None,
+        arg1: NDArray[Any] | None,
+        arg2: NDArray[Any] | None,
+        arg3: str,
+        arg4: int,
+        arg5: int,
+        /,
+    ) -> int: ...
+    def update_vertices(self, id: int, vertices: NDArray[Any] | None, normals: NDArray[Any] | None) -> None: ...
+    def remove(self, arg: int, /) -> None: ...
+    def enable(self, arg0: int, arg1: bool, /) -> None: ...
+    def set_mask(self, arg0: int, arg1: int, /) -> None: ...
+    def geometries(self) -> list[int]: ...
+    def info(self, arg: int, /) -> tuple[Any, ...]: ...
+    def primitives(self) -> int: ...
+    def warnings(self) -> list[str]: ...
+    def add_material(
+        self,
+        arg0: Sequence[float],
+        arg1: Sequence[float],
+        arg2: Sequence[float],
+        arg3: Sequence[float],
+        arg4: Sequence[float],
+        arg5: Sequence[float],
+        arg6: float,
+        arg7: float,
+        /,
+    ) -> int: ...
+    def add_light(
+        self,
+        arg0: str,
+        arg1: Sequence[float],
+        arg2: Sequence[float],
+        arg3: Sequence[float],
+        arg4: Sequence[float],
+        arg5: float,
+        arg6: float,
+        arg7: float,
+        /,
+    ) -> None: ...
+    def set_camera(
+        self,
+        arg0: Sequence[float],
+        arg1: Sequence[float],
+        arg2: Sequence[float],
+        arg3: float,
+        arg4: float,
+        arg5: float,
+        /,
+    ) -> None: ...
+    def set_background(self, arg: Sequence[float], /) -> None: ...
+    def set_ambient(self, arg: Sequence[float], /) -> None: ...
+    def commit(self, quality: str, device: str, compute_units: int, binary_form: bool) -> None: ...
+    def closest(
+        self,
+        origins: NDArray[Any] | None,
+        directions: NDArray[Any] | None,
+        t_min: NDArray[Any] | None,
+        t_max: NDArray[Any] | None,
+        masks: NDArray[Any] | None,
+        strict: bool,
+        t: NDArray[Any] | None,
+        geometry: NDArray[Any] | None,
+        primitive: NDArray[Any] | None,
+        u: NDArray[Any] | None,
+        v: NDArray[Any] | None,
+        normal: NDArray[Any] | None,
+        point: NDArray[Any] | None,
+    ) -> int: ...
+    def any(
+        self,
+        origins: NDArray[Any] | None,
+        directions: NDArray[Any] | None,
+        t_min: NDArray[Any] | None,
+        t_max: NDArray[Any] | None,
+        masks: NDArray[Any] | None,
+        strict: bool,
+        out: NDArray[Any] | None,
+    ) -> int: ...
+    def count(
+        self,
+        origins: NDArray[Any] | None,
+        directions: NDArray[Any] | None,
+        t_min: NDArray[Any] | None,
+        t_max: NDArray[Any] | None,
+        masks: NDArray[Any] | None,
+        strict: bool,
+        out: NDArray[Any] | None,
+    ) -> int: ...
+    def all(
+        self,
+        origins: NDArray[Any] | None,
+        directions: NDArray[Any] | None,
+        t_min: NDArray[Any] | None,
+        t_max: NDArray[Any] | None,
+        masks: NDArray[Any] | None,
+        strict: bool,
+        max_hits: int,
+    ) -> tuple[Any, ...]: ...
+    def closest_points(
+        self,
+        points: NDArray[Any] | None,
+        radius: float,
+        strict: bool,
+        distance: NDArray[Any] | None,
+        point: NDArray[Any] | None,
+        geometry: NDArray[Any] | None,
+        primitive: NDArray[Any] | None,
+        u: NDArray[Any] | None,
+        v: NDArray[Any] | None,
+    ) -> int: ...
+    def inside(self, arg0: NDArray[Any] | None, arg1: bool, arg2: NDArray[Any] | None, /) -> int: ...
+    def signed_distance(
+        self, arg0: NDArray[Any] | None, arg1: float, arg2: bool, arg3: NDArray[Any] | None, /
+    ) -> int: ...
+    def render(
+        self,
+        camera: Sequence[float] | None,
+        width: int,
+        height: int,
+        samples: int,
+        depth: int,
+        min_weight: float,
+        adaptive: float,
+        mode: str,
+        precision: str,
+        channels: Sequence[str],
+        progress: Callable[[float], None] | None,
+    ) -> tuple[Any, ...]: ...
+
+def write_picture(
+    file: str, pixels: NDArray[Any], channels: Sequence[tuple[str, NDArray[Any]]], gamma: float, bits: int
+) -> list[str]: ...
+def encode_png(arg: NDArray[Any], /) -> bytes: ...
+def devices() -> tuple[Any, ...]: ...
+def keep_programs() -> None: ...
+def program_folder() -> str: ...

@@ -1,0 +1,92 @@
+"""Pictures: what they show, and files."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import kdray
+
+
+@pytest.fixture(scope="module")
+def lit() -> kdray.Scene:
+    scene = kdray.Scene()
+    scene.add_spheres([0, 0, 0], 1)
+    scene.set_background((0, 0, 1))
+    return scene
+
+
+def test_the_ball_is_where_rays_hit_it(lit):
+    camera = kdray.Camera((0, 1, 5), fov=30)
+    picture = lit.render(camera, (60, 40), channels=["depth", "primitive"])
+    assert picture.shape == (40, 60, 3) and picture.dtype == np.float32
+    o, d = kdray.pinhole_rays(camera, 60, 40)
+    hits = lit.closest_hit(o, d)
+    np.testing.assert_array_equal(picture.channels["primitive"] >= 0, hits.hit)
+    depth = picture.channels["depth"]
+    length = np.linalg.norm(d, axis=-1)
+    np.testing.assert_allclose(depth[hits.hit], (hits.t * length)[hits.hit], rtol=1e-5)
+    assert (picture[~hits.hit] == [0, 0, 1]).all() and (picture[hits.hit, 2] < 1).all()
+
+
+def test_orthographic_rays_are_those_of_pictures(lit):
+    camera = kdray.Camera((0, 0, 5), ortho_width=4)
+    picture = lit.render(camera, (32, 24), channels=["primitive"])
+    np.testing.assert_array_equal(
+        picture.channels["primitive"] >= 0, lit.closest_hit(*kdray.pinhole_rays(camera, 32, 24)).hit
+    )
+
+
+def test_colors_are_those_of_the_material():
+    scene = kdray.Scene()
+    glow = scene.add_material(kdray.Material(emission=(0.25, 0.5, 1), diffuse=(0, 0, 0)))
+    scene.add_spheres([0, 0, 0], 1, material=glow)
+    scene.set_ambient((0, 0, 0))
+    picture = scene.render(kdray.Camera((0, 0, 5)), (3, 3))
+    np.testing.assert_allclose(picture[1, 1], [0.25, 0.5, 1], atol=1e-6)
+
+
+def test_saving(lit, tmp_path):
+    picture = lit.render(size=(20, 10), channels=["depth"])
+    files = picture.save(tmp_path / "a.png")
+    assert [file.rsplit("/", 1)[1] for file in files] == ["a.png", "a.depth.png"]
+    assert (tmp_path / "a.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    assert picture.save(tmp_path / "a.exr") == [str(tmp_path / "a.exr")]
+    assert picture._repr_png_()[:4] == b"\x89PNG"
+    assert picture[:4].channels == {} and picture[:4].save(tmp_path / "part.png")
+    with pytest.raises(kdray.InputError, match="bmp"):
+        picture.save(tmp_path / "a.bmp")
+    with pytest.raises(ValueError, match="height x width x 3"):
+        picture[0].save(tmp_path / "row.png")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.depth.png", "a.exr", "a.png", "part.png"]
+
+
+def test_pickled_pictures_are_the_same(lit):
+    picture = lit.render(size=(8, 8), channels=["depth"])
+    again = pickle.loads(pickle.dumps(picture))
+    np.testing.assert_array_equal(again, picture)
+    np.testing.assert_array_equal(again.channels["depth"], picture.channels["depth"])
+
+
+def test_progress_is_told_and_may_end_it(lit):
+    told = []
+    lit.render(size=(256, 256), samples=4, progress=told.append)
+    assert told == sorted(told) and told[-1] == 1
+
+    def stop(share):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        lit.render(size=(256, 256), progress=stop)
+
+
+def test_wrong_options(lit):
+    with pytest.raises(kdray.UsageError, match="mode is one of"):
+        lit.render(size=(8, 8), mode="fast")
+    for wrong in ({"size": (0, 8)}, {"samples": 0}, {"depth": -1}):
+        with pytest.raises(kdray.UsageError, match="at least 1"):
+            lit.render(**wrong)
+    with pytest.raises(kdray.UsageError, match="three coordinates"):
+        lit.render(kdray.Camera((0, 0)))
+    with pytest.raises(kdray.Error):
+        lit.render(kdray.Camera((0, 0, 5), up=(0, 0, 1)), size=(8, 8))

@@ -1,0 +1,239 @@
+"""What rays and points are told, held against plain NumPy."""
+
+import numpy as np
+import pytest
+
+import kdray
+
+FLOATS = (np.float32, np.float64)
+
+
+def brute_force(vertices, triangles, origins, directions):
+    """t of the nearest triangle in double, infinity where there is none (Moeller and Trumbore)."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    e1, e2 = b - a, c - a
+    best = np.full(len(origins), np.inf)
+    for i, (o, d) in enumerate(zip(origins, directions, strict=True)):
+        p = np.cross(d, e2)
+        det = np.einsum("ij,ij->i", e1, p)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = o - a
+            u = np.einsum("ij,ij->i", s, p) / det
+            q = np.cross(s, e1)
+            v = q @ d / det
+            t = np.einsum("ij,ij->i", e2, q) / det
+        t[~((u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0))] = np.inf
+        best[i] = t.min()
+    return best
+
+
+@pytest.mark.parametrize("dtype", FLOATS)
+def test_closest_hit_is_brute_forces(ball, ball_mesh, rng, dtype):
+    vertices, triangles = ball_mesh
+    o = (3 * rng.normal(size=(400, 3))).astype(dtype)
+    d = (rng.normal(size=(400, 3)) - o / 3).astype(dtype)
+    hits = ball.closest_hit(o, d)
+    expected = brute_force(vertices, triangles, o.astype(float), d.astype(float))
+    assert hits.t.dtype == dtype
+    np.testing.assert_array_equal(np.isinf(hits.t), np.isinf(expected))
+    finite = np.isfinite(expected)
+    assert finite.any() and not finite.all()
+    np.testing.assert_allclose(hits.t[finite], expected[finite], rtol=3e-6)
+
+
+def test_a_hit_has_all_its_fields(ball, ball_mesh, rng):
+    vertices, triangles = ball_mesh
+    o = 3 * rng.normal(size=(500, 3))
+    d = -o + 0.3 * rng.normal(size=o.shape)
+    hits = ball.closest_hit(o, d)
+    hit = hits.hit
+    assert hits.fields == ("t", "geometry", "primitive", "u", "v", "normal", "point")
+    assert (hits.geometry[hit] == 0).all() and (hits.geometry[~hit] == -1).all()
+    assert (hits.primitive[~hit] == -1).all() and hits.primitive.dtype == np.int32
+    a, b, c = (vertices[triangles[hits.primitive[hit], k]] for k in range(3))
+    u, v = hits.u[hit, None], hits.v[hit, None]
+    np.testing.assert_allclose((1 - u - v) * a + u * b + v * c, hits.point[hit], atol=2e-6)
+    np.testing.assert_allclose(o[hit] + hits.t[hit, None] * d[hit], hits.point[hit], atol=1e-12)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    np.testing.assert_allclose(hits.normal[hit], normal, atol=1e-4)
+    assert (hits.normal[~hit] == 0).all() and np.isinf(hits.point[~hit]).all()
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (7,), (3, 5), (3, 3), (2, 1, 4), (0,), (4, 0, 2)])
+def test_results_have_the_shape_of_the_rays(ball, shape):
+    o = np.zeros((*shape, 3)) + [0, 0, 5]
+    hits = ball.closest_hit(o, [0, 0, -1])
+    for name in hits.fields:
+        wide = (*shape, 3) if name in ("normal", "point") else shape
+        assert getattr(hits, name).shape == wide, name
+    assert ball.any_hit(o, [0, 0, -1]).shape == shape
+    assert ball.count_hits(o, [0, 0, -1]).shape == shape
+    assert ball.contains(o).shape == shape
+    assert ball.closest_point(o).point.shape == (*shape, 3)
+    assert (hits.t == 4).all() and (ball.count_hits(o, [0, 0, -1]) == 2).all()
+
+
+def test_layout_and_type_do_not_matter(ball, rng):
+    o = rng.normal(size=(64, 3)) * 2
+    d = rng.normal(size=(64, 3))
+    expected = ball.closest_hit(o, d).t
+    both = np.concatenate([o, d], axis=1)
+    wide = np.zeros((128, 3))
+    wide[::2] = o
+    readonly = o.copy()
+    readonly.flags.writeable = False
+    for origins, directions in (
+        (both[:, :3], both[:, 3:]),
+        (np.asfortranarray(o), np.asfortranarray(d)),
+        (wide[::2], d),
+        (o[::-1][::-1], d),
+        (readonly, d),
+        (o.astype(">f8"), d),
+        (o.tolist(), d.tolist()),
+        (memoryview(o), d),
+        (OnlyDLPack(o), OnlyDLPack(d)),
+    ):
+        np.testing.assert_array_equal(ball.closest_hit(origins, directions).t, expected)
+    np.testing.assert_array_equal(ball.closest_hit(o[::-1], d[::-1]).t, expected[::-1])
+    half = ball.closest_hit(o.astype(np.float16), d.astype(np.float16))
+    assert half.t.dtype == np.float32
+
+
+class OnlyDLPack:
+    """What arrays of other libraries look like."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __dlpack__(self, **named):
+        return self._array.__dlpack__(**named)
+
+    def __dlpack_device__(self):
+        return self._array.__dlpack_device__()
+
+
+def test_bounds_of_rays(ball):
+    o, d = [0, 0, 5.0], [0, 0, -1.0]
+    assert ball.closest_hit(o, d, t_min=4.5).t == 6
+    assert np.isinf(ball.closest_hit(o, d, t_max=3.5).t)
+    assert ball.closest_hit([o, o], d, t_min=[0, 4.5]).t.tolist() == [4, 6]
+    assert ball.any_hit([o, o], d, t_max=np.array([3.5, 4.5], np.float32)).tolist() == [False, True]
+    assert ball.count_hits([o] * 3, d, t_min=[0, 4.5, 6.5]).tolist() == [2, 1, 0]
+
+
+def test_masks_of_rays_and_geometries():
+    scene = kdray.Scene()
+    near = scene.add_spheres([0, 0, 0], 1, mask=1)
+    far = scene.add_spheres([0, 0, -5], 1, mask=2)
+    o, d = [[0, 0, 5.0]] * 4, [0, 0, -1.0]
+    assert scene.closest_hit(o, d, mask=[1, 2, 3, 4]).geometry.tolist() == [near, far, near, -1]
+    assert scene.count_hits(o, d, mask=np.array([1, 2, 3, 4], np.uint32)).tolist() == [2, 2, 4, 0]
+    scene.set_mask(near, 4)
+    assert scene.closest_hit(o, d, mask=[1, 2, 3, 4]).geometry.tolist() == [-1, far, far, near]
+
+
+def test_all_hits_are_sorted_and_counted(ball, rng):
+    o = 3 * rng.normal(size=(300, 3))
+    d = rng.normal(size=(300, 3)) - o
+    hits = ball.all_hits(o, d)
+    counts = ball.count_hits(o, d)
+    assert hits.splits.dtype == np.int64 and hits.splits[-1] == len(hits)
+    np.testing.assert_array_equal(hits.counts, counts)
+    outside = ~ball.contains(o)
+    assert outside.any() and (counts[outside] % 2 == 0).all() and (counts[~outside] % 2 == 1).all()
+    first = counts > 0
+    np.testing.assert_array_equal(hits.t[hits.splits[:-1][first]], ball.closest_hit(o, d).t[first])
+    same_ray = hits.ray[1:] == hits.ray[:-1]
+    assert (np.diff(hits.t)[same_ray] >= 0).all()
+    two = ball.all_hits(o, d, max_hits=1)
+    np.testing.assert_array_equal(two.counts, np.minimum(counts, 1))
+    np.testing.assert_array_equal(two.more, counts > 1)
+
+
+def test_points(ball, ball_mesh, rng):
+    vertices, _ = ball_mesh
+    points = rng.normal(size=(200, 3))
+    distance = ball.closest_point(points).distance
+    nearest = np.linalg.norm(points[:, None] - vertices, axis=2).min(axis=1)
+    assert (distance <= nearest + 2e-7).all()  # vertices are floats about the centre
+    inside = ball.contains(points)
+    np.testing.assert_array_equal(ball.signed_distance(points), np.where(inside, -distance, distance))
+    radius = np.linalg.norm(points, axis=1)
+    np.testing.assert_array_equal(inside[radius > 1], False)
+    np.testing.assert_array_equal(inside[radius < 0.98], True)
+    assert np.isinf(ball.closest_point([9, 9, 9], radius=1).distance)
+
+
+def test_utm_coordinates_keep_a_millimetre():
+    corner = np.array([500000.123, 5400000.456, 123.789])
+    box = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * 0.001
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]]
+    faces += [[2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+    scene = kdray.Scene()
+    scene.add_mesh(corner + box, faces)
+    o = corner + [0.0003, 0.0004, 10000]
+    hits = scene.all_hits(o, [0, 0, -1])
+    np.testing.assert_allclose(hits.t, [9999.999, 10000], rtol=0, atol=2e-9)
+
+
+def test_out_is_written_in_place(ball, rng):
+    o, d = rng.normal(size=(2, 50, 3)).astype(np.float32) * 2
+    hits = ball.closest_hit(o, d)
+    again = ball.closest_hit(o[:1], d[:1], fields=("t",))
+    with pytest.raises(kdray.InputError, match=r"out\.t"):
+        ball.closest_hit(o, d, out=again)
+    t = hits.t
+    expected = t.copy()
+    t[:] = 0
+    assert ball.closest_hit(o, d, out=hits) is hits
+    np.testing.assert_array_equal(t, expected)
+    found = np.zeros(50, bool)
+    assert ball.any_hit(o, d, out=found) is found
+    np.testing.assert_array_equal(found, hits.hit)
+    for wrong in (np.zeros(50), np.zeros(49, bool), np.zeros(100, bool)[::2], found.tolist()):
+        with pytest.raises(kdray.InputError, match="out"):
+            ball.any_hit(o, d, out=wrong)
+
+
+def test_fields_that_are_not_asked_for_are_not_there(ball):
+    hits = ball.closest_hit([0, 0, 5], [0, 0, -1], fields=("t", "normal"))
+    assert hits.fields == ("t", "normal")
+    with pytest.raises(AttributeError, match="fields="):
+        _ = hits.u
+    with pytest.raises(kdray.UsageError, match="there is no field 'colour'"):
+        ball.closest_hit([0, 0, 5], [0, 0, -1], fields=("colour",))
+
+
+def test_rays_that_mean_nothing(ball):
+    o = [[0, 0, 5], [np.nan, 0, 5], [0, 0, 5], [np.inf, 0, 0]]
+    d = [[0, 0, -1], [0, 0, -1], [0, 0, 0], [0, 0, -1]]
+    assert ball.closest_hit(o, d).hit.tolist() == [True, False, False, False]
+    assert ball.count_hits(o, d).tolist() == [2, 0, 0, 0]
+    with pytest.raises(kdray.InputError, match="ray 1"):
+        ball.closest_hit(o, d, strict=True)
+    assert ball.contains([[0, 0, np.nan]]).tolist() == [False]
+
+
+def test_an_empty_scene_has_nothing_to_hit():
+    scene = kdray.Scene()
+    assert not scene.closest_hit([0, 0, 5], [0, 0, -1]).hit
+    assert np.isinf(scene.signed_distance([0, 0, 0]))
+    assert len(scene.all_hits([[0, 0, 5]], [0, 0, -1])) == 0
+
+
+@pytest.mark.parametrize(
+    ("origins", "directions", "named", "message"),
+    [
+        ([[0, 0]], [0, 0, 1], {}, r"origins: the shape is to be \(\.\.\., 3\), not \(1, 2\)"),
+        ([["a", "b", "c"]], [0, 0, 1], {}, "origins: numbers are wanted"),
+        ([[0, 0, 1j]], [0, 0, 1], {}, "origins: numbers are wanted"),
+        ([[0, 0, 0]] * 2, [[0, 0, 1]] * 3, {}, r"directions has shape \(3,\) where origins has \(2,\)"),
+        ([[0, 0, 0]] * 2, [0, 0, 1], {"t_min": [0] * 3}, r"t_min has shape \(3,\)"),
+        ([[0, 0, 0]], [0, 0, 1], {"mask": [2**32]}, "mask: a mask has 32 bits"),
+        ([[0, 0, 0]], [0, 0, 1], {"mask": [0.5]}, "mask: a mask has 32 bits"),
+    ],
+)
+def test_what_is_wrong_is_named(ball, origins, directions, named, message):
+    with pytest.raises(kdray.InputError, match=message):
+        ball.closest_hit(origins, directions, **named)
