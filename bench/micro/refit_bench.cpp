@@ -78,7 +78,9 @@ RaySet picture_rays(std::size_t n) {
   const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(n)));
   for (std::size_t y = 0; y < side; ++y)
     for (std::size_t x = 0; x < side; ++x) {
-      const auto at = [&](std::size_t i) { return 1.4f * (2 * (static_cast<float>(i) + 0.5f) / static_cast<float>(side) - 1); };
+      const auto at = [&](std::size_t i) {
+        return 1.4f * (2 * (static_cast<float>(i) + 0.5f) / static_cast<float>(side) - 1);
+      };
       rays.origins.insert(rays.origins.end(), {0, 0, 5});
       rays.directions.insert(rays.directions.end(), {at(x), at(y), -5});
     }
@@ -87,8 +89,8 @@ RaySet picture_rays(std::size_t n) {
 
 std::string row(const char* what, const std::vector<double>& built, const std::vector<double>& refitted) {
   const double a = median(built), b = median(refitted);
-  return fmt::format("{:<16} build {:8.2f} ms   refit {:8.2f} ms   refit/build {:.3f}\n", what, 1e3 * a, 1e3 * b,
-                     b / a);
+  return fmt::format("{:<16} build {:8.2f} ms   refit {:8.2f} ms   refit/build {:.3f}\n", what, 1e3 * a,
+                     1e3 * b, b / a);
 }
 
 int run(std::uint32_t n, int rounds, std::size_t n_rays, double by) {
@@ -113,7 +115,9 @@ int run(std::uint32_t n, int rounds, std::size_t n_rays, double by) {
       if (side == &refitted) growth = std::max(growth, report.growth);
       if (round < 0 && side == &refitted) first = seconds;
       side->commit.push_back(seconds);
-      if (round == 0) fmt::print("update {:.1f} ms, all {:.1f} ms, refitted {}\n", 1e3 * updated, 1e3 * seconds, report.refitted);
+      if (round == 0)
+        fmt::print("update {:.1f} ms, all {:.1f} ms, refitted {}\n", 1e3 * updated, 1e3 * seconds,
+                   report.refitted);
     }
     std::vector<double> warm;
     for (Side* side : {&built, &refitted}) side->ask(picture.rays(), warm);
@@ -124,11 +128,13 @@ int run(std::uint32_t n, int rounds, std::size_t n_rays, double by) {
     for (std::size_t i = 0; i < built.t.size(); ++i)
       differ += built.t[i] != refitted.t[i] || built.primitive[i] != refitted.primitive[i];
     if (round < 0)
-      for (Side* side : {&built, &refitted}) side->commit.clear(), side->random.clear(), side->coherent.clear();
+      for (Side* side : {&built, &refitted})
+        side->commit.clear(), side->random.clear(), side->coherent.clear();
   }
   fmt::print("first refit {:.1f} ms; growth {:.3f}; {} hits differ\n", 1e3 * first, growth, differ);
   fmt::print("{}{}{}", row("update+commit", built.commit, refitted.commit),
-             row("random rays", built.random, refitted.random), row("picture's rays", built.coherent, refitted.coherent));
+             row("random rays", built.random, refitted.random),
+             row("picture's rays", built.coherent, refitted.coherent));
   return differ == 0 ? 0 : 1;
 }
 

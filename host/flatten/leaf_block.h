@@ -42,12 +42,14 @@ inline bool has_child(const layout::WideNode& node, std::uint32_t slot) {
 
 // The i-th block of triangles: how many of its lanes hold some, and whether its leaf ends here.
 struct LeafBlock {
-  const layout::u32* indices = nullptr;
+  const layout::u32* words = nullptr;
+  const layout::u32* indices = nullptr;  // the last of its rows
   std::uint32_t n = 0;
   bool is_last = false;
 
   LeafBlock(const Array<layout::u32>& blocks, std::size_t i, std::uint32_t block)
-      : indices(blocks.data() + (i * KDRAY_TRIANGLE_ROWS + KDRAY_ROW_TRIANGLE_INDEX) * block) {
+      : words(blocks.data() + i * KDRAY_TRIANGLE_ROWS * block),
+        indices(words + KDRAY_ROW_TRIANGLE_INDEX * block) {
     while (n < block && !is_last) is_last = (indices[n++] & KDRAY_WIDE_LAST) != 0;
   }
   std::uint32_t index(std::uint32_t lane) const { return indices[lane] & KDRAY_REF_INDEX_MASK; }

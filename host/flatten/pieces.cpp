@@ -6,15 +6,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "flatten/leaf_block.h"
 
 namespace kdray::flatten {
 
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // ---- Cutting: weights in double
 
@@ -52,80 +49,102 @@ Polygon within(const Polygon& from, const Weights& distances) {
   return kept;
 }
 
-Piece around(const Polygon& polygon) {
-  constexpr double kRounding = 0x1p-30;  // of weights: a thousand times what there is
-  if (polygon.n == 0) return Piece::nothing();
-  Piece piece;
-  for (std::size_t k = 0; k < 3; ++k) {
-    double lo = 1, hi = 0;
-    for (std::size_t i = 0; i < polygon.n; ++i) {
-      lo = std::min(lo, polygon.corner[i][k]);
-      hi = std::max(hi, polygon.corner[i][k]);
+// The hexagon around a polygon: all places whose weights are within its. Its corners have, for each order of
+// the weights, the largest first one, then the largest second one.
+Polygon hexagon_around(const Polygon& polygon) {
+  constexpr std::size_t kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {2, 0, 1}, {2, 1, 0}, {1, 2, 0}, {1, 0, 2}};
+  Weights lo{1, 1, 1}, hi{0, 0, 0};
+  for (std::size_t i = 0; i < polygon.n; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], polygon.corner[i][k]);
+      hi[k] = std::max(hi[k], polygon.corner[i][k]);
     }
-    piece.lo[k] = static_cast<std::uint8_t>(std::clamp(std::floor(256 * (lo - kRounding)), 0.0, 255.0));
-    piece.last[k] =
-        static_cast<std::uint8_t>(std::clamp(std::ceil(256 * (hi + kRounding)), 1.0, 256.0) - 1);
+  Polygon hexagon;
+  for (const auto& [i, j, k] : kOrders) {
+    Weights w;
+    w[i] = std::min(hi[i], 1 - lo[j] - lo[k]);
+    w[j] = std::min(hi[j], 1 - w[i] - lo[k]);
+    w[k] = 1 - w[i] - w[j];
+    hexagon.add(w);
+  }
+  return hexagon;
+}
+
+std::uint8_t byte_of(double weight) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(weight, 0.0, 1.0)));
+}
+
+Piece piece_of(const Polygon& polygon) {
+  if (polygon.n == 0) return Piece::nothing();
+  if (polygon.n > Piece::kCorners) return piece_of(hexagon_around(polygon));
+  Piece piece;
+  for (std::size_t i = 0; i < Piece::kCorners; ++i) {
+    const Weights& w = polygon.corner[std::min(i, polygon.n - 1)];
+    piece.corners[i] = {byte_of(w[1]), byte_of(w[2])};
   }
   return piece;
 }
 
 // ---- Moving: floats, all lanes at once
 
-// The corners of a piece's hexagon: for each order (i, j, k) of the weights, the largest first one, then the
-// largest second one. Weights are 256ths, of which floats get every sum right.
-constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-
 template <std::uint32_t kLanes>
 using Lanes = std::array<float, kLanes>;
 
+// Along one axis.
 template <std::uint32_t kLanes>
-struct Span {  // along one axis
+struct Span {
   Lanes<kLanes> lo, hi;
 };
 
 template <std::uint32_t kLanes>
-Box bounds_of_pieces(const layout::u32* words, const std::uint8_t* pieces, std::uint32_t n) {
-  using Row = Lanes<kLanes>;
-  std::array<Row, 3> lo, hi;
-  for (std::uint32_t k = 0; k < 3; ++k)
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      lo[k][lane] = static_cast<float>(pieces[k * kLanes + lane]) * 0x1p-8f;
-      hi[k][lane] = static_cast<float>(pieces[(3 + k) * kLanes + lane] + 1) * 0x1p-8f;
+using Weighted = std::array<std::array<Lanes<kLanes>, 2>, Piece::kCorners>;
+
+template <std::uint32_t kLanes>
+Weighted<kLanes> weights_of(const std::uint8_t* pieces) {
+  Weighted<kLanes> weights;
+  for (auto& corner : weights)
+    for (Lanes<kLanes>& row : corner)
+      for (float& weight : row) weight = static_cast<float>(*pieces++) * (1.0f / 255);
+  return weights;
+}
+
+// A weight is off by half a 255th, and by the rounding of floats; a sum of three products by less than 8u of
+// the largest term. But no piece is larger than its triangle, which is what makes whole ones exact.
+template <std::uint32_t kLanes>
+Span<kLanes> span_of(const Weighted<kLanes>& weights, const layout::u32* words, std::size_t axis) {
+  constexpr float kByte = 0.5f / 255 * 1.001f;
+  const auto coordinate = [&](std::size_t corner, std::uint32_t lane) {
+    return std::bit_cast<float>(words[(3 * corner + axis) * kLanes + lane]);
+  };
+  Span<kLanes> span;
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const float p = coordinate(0, lane), q = coordinate(1, lane), r = coordinate(2, lane);
+    const float e = q - p, f = r - p;
+    float least = 0x1p127f, most = -0x1p127f;
+    for (const auto& w : weights) {
+      const float at = p + (w[0][lane] * e + w[1][lane] * f);
+      least = std::min(least, at);
+      most = std::max(most, at);
     }
-  std::array<std::array<Row, 3>, 6> weights;
-  for (std::size_t o = 0; o < 6; ++o) {
-    const auto [i, j, k] = kOrders[o];
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      const float a = std::min(hi[i][lane], 1 - lo[j][lane] - lo[k][lane]);
-      const float b = std::min(hi[j][lane], 1 - a - lo[k][lane]);
-      weights[o][i][lane] = a;
-      weights[o][j][lane] = b;
-      weights[o][k][lane] = 1 - a - b;
-    }
+    const float largest = std::max(std::max(std::abs(p), std::abs(q)), std::abs(r));
+    const float off = kByte * (std::abs(e) + std::abs(f)) + (largest * 0x1p-20f + 0x1p-126f);
+    span.lo[lane] = std::max(least - off, std::min(std::min(p, q), r));
+    span.hi[lane] = std::min(most + off, std::max(std::max(p, q), r));
   }
+  return span;
+}
+
+template <std::uint32_t kLanes>
+Box bounds_of_pieces(const layout::u32* words, const std::uint8_t* pieces, std::uint32_t n) {
+  const Weighted<kLanes> weights = weights_of<kLanes>(pieces);
   Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto coordinate = [&](std::uint32_t corner, std::uint32_t lane) {
-      return std::bit_cast<float>(words[(3 * corner + static_cast<std::uint32_t>(axis)) * kLanes + lane]);
-    };
-    Span<kLanes> span;
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      const float p = coordinate(0, lane), q = coordinate(1, lane), r = coordinate(2, lane);
-      float least = kInfinity, most = -kInfinity;
-      for (std::size_t o = 0; o < 6; ++o) {
-        const float at = weights[o][0][lane] * p + weights[o][1][lane] * q + weights[o][2][lane] * r;
-        least = std::min(least, at);
-        most = std::max(most, at);
-      }
-      // A sum of three is off by less than 4u of the largest; and no piece is larger than its triangle.
-      const float off = std::max({std::abs(p), std::abs(q), std::abs(r)}) * 0x1p-22f + 0x1p-126f;
-      span.lo[lane] = std::max(least - off, std::min({p, q, r}));
-      span.hi[lane] = std::min(most + off, std::max({p, q, r}));
-    }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Span<kLanes> span = span_of<kLanes>(weights, words, axis);
+    const auto k = static_cast<int>(axis);
     for (std::uint32_t lane = 0; lane < n; ++lane) {
-      if (lo[0][lane] > hi[0][lane]) continue;  // nothing
-      box.lo[axis] = std::min(box.lo[axis], span.lo[lane]);
-      box.hi[axis] = std::max(box.hi[axis], span.hi[lane]);
+      if (pieces[lane] == Piece::kNowhere && pieces[kLanes + lane] == Piece::kNowhere) continue;
+      box.lo[k] = std::min(box.lo[k], span.lo[lane]);
+      box.hi[k] = std::max(box.hi[k], span.hi[lane]);
     }
   }
   return box;
@@ -133,56 +152,59 @@ Box bounds_of_pieces(const layout::u32* words, const std::uint8_t* pieces, std::
 
 }  // namespace
 
-Piece piece_of(const layout::Triangle& t, const Box& box) {
+Piece Piece::nothing() {
+  Piece piece;
+  piece.corners.fill({kNowhere, kNowhere});
+  return piece;
+}
+
+Piece piece_of(const TriangleInBlock& t, const Box& box) {
   double largest = 0;
   for (int axis = 0; axis < 3; ++axis)
-    for (int v = 0; v < 3; ++v) largest = std::max(largest, std::abs(double{t.v[v][axis]}));
+    for (int v = 0; v < 3; ++v) largest = std::max(largest, std::abs(double{t(v, axis)}));
   Polygon polygon;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float a = t.v[0][axis], b = t.v[1][axis], c = t.v[2][axis];
-    const auto k = static_cast<int>(axis);
-    const bool below = std::min({a, b, c}) < box.lo[k], above = std::max({a, b, c}) > box.hi[k];
+  for (int axis = 0; axis < 3; ++axis) {
+    const float a = t(0, axis), b = t(1, axis), c = t(2, axis);
+    const bool below = std::min({a, b, c})<box.lo[axis], above = std::max({a, b, c})> box.hi[axis];
     if (!below && !above) continue;
     if (polygon.n == 0) {
       polygon.add({1, 0, 0});
       polygon.add({0, 1, 0});
       polygon.add({0, 0, 1});
     }
-    const double lo = box.lo[k] - 0x1p-40 * largest, hi = box.hi[k] + 0x1p-40 * largest;
+    const double lo = box.lo[axis] - 0x1p-40 * largest, hi = box.hi[axis] + 0x1p-40 * largest;
     if (below) polygon = within(polygon, {a - lo, b - lo, c - lo});
     if (above) polygon = within(polygon, {hi - a, hi - b, hi - c});
     if (polygon.n == 0) return Piece::nothing();
   }
-  return polygon.n == 0 ? Piece::whole() : around(polygon);
+  return polygon.n == 0 ? Piece::whole() : piece_of(polygon);
 }
 
-Pieces::Pieces(const WideForm& form, const Array<layout::Triangle>& triangles)
+Pieces::Pieces(const WideForm& form)
     : block_(static_cast<std::size_t>(form.block)),
       bytes_(form.triangle_blocks.size() / KDRAY_TRIANGLE_ROWS * kRows) {
   constexpr std::size_t kGrain = 256;  // nodes
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, form.nodes.size(), kGrain), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) cut(form, triangles, i);
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      for (std::uint32_t slot = 0; slot < kWidth; ++slot)
+        if (is_leaf_of<primitives::TriangleKind>(form.nodes[i].child[slot]))
+          cut_leaf(form, form.nodes[i].child[slot], bounds_of_child(form.nodes[i], slot));
   });
 }
 
-void Pieces::cut(const WideForm& form, const Array<layout::Triangle>& triangles, std::size_t node) {
-  const layout::WideNode& at = form.nodes[node];
+void Pieces::cut_leaf(const WideForm& form, layout::u32 leaf, const Box& box) {
   const auto block = static_cast<std::uint32_t>(block_);
-  for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
-    if (!is_leaf_of<primitives::TriangleKind>(at.child[slot])) continue;
-    const Box box = bounds_of_child(at, slot);
-    std::size_t i = at.child[slot] & KDRAY_WIDE_FIRST_MASK;
-    for (LeafBlock b(form.triangle_blocks, i, block);; b = LeafBlock(form.triangle_blocks, ++i, block)) {
-      std::uint8_t* const rows = bytes_.data() + i * kRows * block_;
-      for (std::uint32_t lane = 0; lane < block; ++lane) {
-        const Piece piece = lane < b.n ? piece_of(triangles[b.index(lane)], box) : Piece::nothing();
-        for (std::size_t k = 0; k < 3; ++k) {
-          rows[k * block + lane] = piece.lo[k];
-          rows[(3 + k) * block + lane] = piece.last[k];
-        }
-      }
-      if (b.is_last) break;
+  bool more = true;
+  for (std::size_t i = leaf & KDRAY_WIDE_FIRST_MASK; more; ++i) {
+    const LeafBlock at(form.triangle_blocks, i, block);
+    std::uint8_t* const rows = bytes_.data() + i * kRows * block_;
+    for (std::uint32_t lane = 0; lane < block; ++lane) {
+      const Piece piece =
+          lane < at.n ? piece_of(TriangleInBlock{at.words + lane, block}, box) : Piece::nothing();
+      for (std::size_t c = 0; c < Piece::kCorners; ++c)
+        for (std::size_t k = 0; k < 2; ++k) rows[(2 * c + k) * block + lane] = piece.corners[c][k];
     }
+    more = !at.is_last;
   }
 }
 

@@ -15,6 +15,9 @@ namespace {
 // The top of the form, each of whose nodes lets other threads take its children.
 constexpr int kShared = 4;
 
+// Blocks ahead of the one in work, whose triangles are fetched.
+constexpr std::size_t kAhead = 2;
+
 // What is known of a subtree: its bounds, and the sum of its surfaces times their steps.
 struct Below {
   Box box;
@@ -78,8 +81,8 @@ std::size_t blocks_of_leaf(const WideForm& form, layout::u32 leaf) {
   primitives::with_kind(leaf_kind(leaf), [&](auto kind) {
     using Kind = decltype(kind);
     const auto block = static_cast<std::size_t>(form.block);
-    const layout::u32* last = Kind::blocks_of(form).data() +
-                              ((leaf & KDRAY_WIDE_FIRST_MASK) + 1) * Kind::kRows * block - 1;
+    const layout::u32* last =
+        Kind::blocks_of(form).data() + ((leaf & KDRAY_WIDE_FIRST_MASK) + 1) * Kind::kRows * block - 1;
     for (n = 1; (*last & KDRAY_WIDE_LAST) == 0; last += Kind::kRows * block) ++n;
   });
   return n;
@@ -106,6 +109,7 @@ class Mover {
     std::size_t n = 0;
     for (bool more = true; more; ++n) {
       const std::size_t i = (leaf & KDRAY_WIDE_FIRST_MASK) + n;
+      prefetch(i + kAhead);
       const LeafBlock old(from_.triangle_blocks, i, block_);
       layout::u32* const words = to_.triangle_blocks.data() + i * KDRAY_TRIANGLE_ROWS * block_;
       write(old, words);
@@ -116,6 +120,14 @@ class Mover {
   }
 
  private:
+  // The triangles of a block that is written soon: leaves follow each other.
+  void prefetch(std::size_t i) const {
+    const std::size_t at = (i * KDRAY_TRIANGLE_ROWS + KDRAY_ROW_TRIANGLE_INDEX) * block_;
+    if (at + block_ > from_.triangle_blocks.size()) return;
+    for (std::size_t lane = 0; lane < block_; ++lane)
+      __builtin_prefetch(triangles_.data() + (from_.triangle_blocks[at + lane] & KDRAY_REF_INDEX_MASK));
+  }
+
   void write(const LeafBlock& old, layout::u32* words) const {
     constexpr std::size_t kRows = KDRAY_TRIANGLE_ROWS - 1;  // but for the index
     for (std::uint32_t lane = 0; lane < old.n; ++lane) {

@@ -31,8 +31,7 @@ double growth_of(double now, double built) {
 
 }  // namespace
 
-Fitting::Fitting(const Prepared& built)
-    : pieces(built.wide, built.flat.triangles), cost(flatten::expected_cost(built.wide)) {}
+Fitting::Fitting(const Prepared& built) : pieces(built.wide), cost(flatten::expected_cost(built.wide)) {}
 
 Refitted refit(const scene::Scene& scene, const Prepared& last, const Fitting& fitting, double most_growth) {
   const Timer timer;
