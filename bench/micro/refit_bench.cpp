@@ -1,12 +1,13 @@
 // What    A mesh that is bent by up to a tenth of its size: commits that refit against commits that build, and
 //         rays over either, in turn. Prints medians as a table; hits of both are compared bit for bit.
-// Shape   refit_bench [subdivisions] [rounds] [rays]: the displaced sphere of generate/displaced_sphere.h (700
+// Shape   refit_bench [subdivisions] [rounds] [rays] [bend] [degrees]: the displaced sphere of generate/displaced_sphere.h (700
 //         has a million triangles). Each round bends it otherwise.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
 #include "base/median.h"
@@ -32,8 +33,14 @@ Arrays sphere(std::uint32_t n) {
   return arrays;
 }
 
-// A mesh of radius 1, so a tenth of its size is 0.2.
-std::vector<double> bent(const std::vector<double>& vertices, double by, double phase) {
+// A mesh of radius 1, so a tenth of its size is 0.2. It is turned first, about the diagonal.
+std::vector<double> bent(const std::vector<double>& from, double by, double degrees, double phase) {
+  const dmat4 turn = glm::rotate(dmat4(1), glm::radians(degrees), glm::normalize(dvec3(1, 1, 1)));
+  std::vector<double> vertices;
+  for (std::size_t i = 0; i < from.size(); i += 3) {
+    const dvec3 v(turn * glm::dvec4(from[i], from[i + 1], from[i + 2], 1));
+    vertices.insert(vertices.end(), {v.x, v.y, v.z});
+  }
   std::vector<double> moved = vertices;
   for (std::size_t i = 0; i < moved.size(); i += 3) {
     moved[i] += by * std::sin(2 * vertices[i + 1] + phase);
@@ -93,7 +100,7 @@ std::string row(const char* what, const std::vector<double>& built, const std::v
                      1e3 * b, b / a);
 }
 
-int run(std::uint32_t n, int rounds, std::size_t n_rays, double by) {
+int run(std::uint32_t n, int rounds, std::size_t n_rays, double by, double degrees) {
   const Arrays mesh = sphere(n);
   Side built, refitted;
   for (Side* side : {&built, &refitted}) {
@@ -101,23 +108,19 @@ int run(std::uint32_t n, int rounds, std::size_t n_rays, double by) {
     side->scene.commit({});
   }
   const RaySet random = random_rays(n_rays), picture = picture_rays(n_rays);
-  fmt::print("{} triangles, bent by {}\n", mesh.triangles.size() / 3, by);
+  fmt::print("{} triangles, bent by {}, turned by {} degrees\n", mesh.triangles.size() / 3, by, degrees);
   std::size_t differ = 0;
   double growth = 0, first = 0;
   for (int round = -1; round < rounds; ++round) {
-    const std::vector<double> moved = bent(mesh.vertices, by, 0.7 * round);
+    const std::vector<double> moved = bent(mesh.vertices, by, degrees, 0.7 * round);
     for (Side* side : {&built, &refitted}) {
       const Timer timer;
       side->scene.update_vertices(0, moved);
-      const double updated = timer.seconds();
       const CommitReport report = side->scene.commit({.refit_growth = side == &built ? 0.0 : 100.0});
       const double seconds = timer.seconds();
       if (side == &refitted) growth = std::max(growth, report.growth);
       if (round < 0 && side == &refitted) first = seconds;
       side->commit.push_back(seconds);
-      if (round == 0)
-        fmt::print("update {:.1f} ms, all {:.1f} ms, refitted {}\n", 1e3 * updated, 1e3 * seconds,
-                   report.refitted);
     }
     std::vector<double> warm;
     for (Side* side : {&built, &refitted}) side->ask(picture.rays(), warm);
@@ -144,5 +147,5 @@ int run(std::uint32_t n, int rounds, std::size_t n_rays, double by) {
 int main(int n, char** arguments) {
   const auto argument = [&](int i, double otherwise) { return n > i ? std::atof(arguments[i]) : otherwise; };
   return kdray::run(static_cast<std::uint32_t>(argument(1, 700)), static_cast<int>(argument(2, 7)),
-                    static_cast<std::size_t>(argument(3, 1 << 20)), argument(4, 0.2));
+                    static_cast<std::size_t>(argument(3, 1 << 20)), argument(4, 0.2), argument(5, 0));
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 
+#include "flatten/collapse.h"
 #include "flatten/leaf_block.h"
+#include "flatten/orders.h"
 #include "flatten/triangle_block.h"
 
 namespace kdray::flatten {
@@ -18,16 +20,13 @@ constexpr int kShared = 4;
 // Blocks ahead of the one in work, whose triangles are fetched.
 constexpr std::size_t kAhead = 2;
 
-// What is known of a subtree: its bounds, and the sum of its surfaces times their steps.
+// What is known of a subtree: its bounds, the sum of its surfaces times their steps, and what a walk stacks.
 struct Below {
   Box box;
   double steps = 0;
-
-  void add(const Box& child, double of_child) {
-    box.grow(child);
-    steps += of_child;
-  }
+  StackNeeds needs{};
 };
+using BelowSlots = std::array<Below, kWidth>;
 
 double surface(const Box& box) {
   const dvec3 e = box.empty() ? dvec3(0) : dvec3(box.hi) - dvec3(box.lo);
@@ -40,7 +39,7 @@ double cost_of_root(const Below& root) {
 }
 
 // Visits the form's nodes, children before parents. Leaf: the bounds and the steps of a child that is a leaf,
-// in (node, slot). Done: told of a node, with what is below each of its slots.
+// in (node, slot). Done: told of a node, with what is below each of its slots; returns what it stacks.
 template <class Leaf, class Done>
 class FromBelow {
  public:
@@ -49,7 +48,7 @@ class FromBelow {
 
   Below visit(std::size_t index, int level = 0) const {
     const layout::WideNode& node = form_.nodes[index];
-    std::array<Below, kWidth> below{};
+    BelowSlots below{};
     const auto visit_slot = [&](std::uint32_t slot) {
       if (!has_child(node, slot)) return;
       if (is_leaf(node.child[slot])) {
@@ -64,9 +63,12 @@ class FromBelow {
     } else {
       for (std::uint32_t slot = 0; slot < kWidth; ++slot) visit_slot(slot);
     }
-    done_(index, below);
     Below all;
-    for (const Below& b : below) all.add(b.box, b.steps);  // in one order, whatever the threads
+    all.needs = done_(index, below);
+    for (const Below& b : below) {  // in one order, whatever the threads
+      all.box.grow(b.box);
+      all.steps += b.steps;
+    }
     return all;
   }
 
@@ -91,7 +93,7 @@ std::size_t blocks_of_leaf(const WideForm& form, layout::u32 leaf) {
 // A leaf where it was: its own bounds.
 Below as_it_was(const WideForm& form, const layout::WideNode& node, std::uint32_t slot) {
   const Box box = bounds_of_child(node, slot);
-  return {box, surface(box) * static_cast<double>(blocks_of_leaf(form, node.child[slot]))};
+  return {box, surface(box) * static_cast<double>(blocks_of_leaf(form, node.child[slot])), {}};
 }
 
 // Writes the leaves of triangles.
@@ -116,7 +118,7 @@ class Mover {
       box.grow(bounds_of_pieces(words, pieces_.of_block(i), old.n, block_));
       more = !old.is_last;
     }
-    return {box, surface(box) * static_cast<double>(n)};
+    return {box, surface(box) * static_cast<double>(n), {}};
   }
 
  private:
@@ -152,7 +154,7 @@ double expected_cost(const WideForm& form) {
   const auto leaf = [&](const layout::WideNode& node, std::uint32_t slot) {
     return as_it_was(form, node, slot);
   };
-  const auto done = [](std::size_t, const std::array<Below, kWidth>&) {};
+  const auto done = [](std::size_t, const BelowSlots&) { return StackNeeds{}; };
   return cost_of_root(FromBelow(form, leaf, done).visit(0));
 }
 
@@ -167,12 +169,22 @@ Refit refit(const WideForm& form, const Pieces& pieces, const Array<layout::Tria
     const layout::u32 child = node.child[slot];
     return is_leaf_of<primitives::TriangleKind>(child) ? mover.leaf(child) : as_it_was(form, node, slot);
   };
-  const auto done = [&](std::size_t index, const std::array<Below, kWidth>& below) {
+  const auto done = [&](std::size_t index, const BelowSlots& below) {
     layout::WideNode& out = to.nodes[index];
     out = form.nodes[index];
-    for (std::uint32_t slot = 0; slot < kWidth; ++slot) set_bounds(out, slot, below[slot].box);
+    std::array<const StackNeeds*, kWidth> needs{};
+    std::uint32_t n = 0;
+    for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+      set_bounds(out, slot, below[slot].box);
+      needs[slot] = &below[slot].needs;
+      n += has_child(out, slot) ? 1 : 0;
+    }
+    order_anew(out, n);
+    return needs_of_node(out.order, n, needs);
   };
-  made.cost = cost_of_root(FromBelow(form, leaf, done).visit(0));
+  const Below root = FromBelow(form, leaf, done).visit(0);
+  made.cost = cost_of_root(root);
+  to.stack_size = *std::max_element(root.needs.begin(), root.needs.end());
   return made;
 }
 

@@ -13,6 +13,7 @@
 
 #include "flatten/flat_of.h"
 #include "flatten/leaf_block.h"
+#include "flatten/orders.h"
 #include "kdtree/build.h"
 #include "kdtree/shapes.h"
 
@@ -220,15 +221,116 @@ TEST(RefitForm, OfWhatHasNotMovedIsTheSameButForBytes) {
     const Refit same = refit(s.wide, Pieces(s.wide), s.flat.triangles);
     EXPECT_TRUE(same_bits(same.form.triangle_blocks, s.wide.triangle_blocks));
     EXPECT_EQ(same.form.sphere_blocks.data(), s.wide.sphere_blocks.data());
-    EXPECT_EQ(same.form.stack_size, s.wide.stack_size);
     // Pieces of many corners are hexagons; on the other hand they are cut by all of a cell's planes.
     EXPECT_NEAR(same.cost, expected_cost(s.wide), 0.1 * same.cost);
     EXPECT_EQ(same.cost, expected_cost(same.form));
-    for (std::size_t i = 0; i < s.wide.nodes.size(); ++i) {
-      const layout::WideNode &a = same.form.nodes[i], &b = s.wide.nodes[i];
-      EXPECT_EQ(std::memcmp(a.child, b.child, sizeof a.child), 0);
-      EXPECT_EQ(std::memcmp(a.order, b.order, sizeof a.order), 0);
+    for (std::size_t i = 0; i < s.wide.nodes.size(); ++i)
+      EXPECT_EQ(std::memcmp(same.form.nodes[i].child, s.wide.nodes[i].child, sizeof s.wide.nodes[i].child),
+                0);
+  }
+}
+
+// ---- Orders
+
+std::vector<std::uint32_t> slots_of(const layout::WideNode& node, std::size_t octant) {
+  std::vector<std::uint32_t> near_to_far;
+  for (std::uint32_t i = 0; i < kWidth; ++i) near_to_far.push_back(node.order[octant] >> (3 * (7 - i)) & 7u);
+  return near_to_far;
+}
+
+// Whether a ray of the octant may meet box a, and box b after it.
+bool leads(const layout::WideNode& node, std::uint32_t a, std::uint32_t b, std::size_t octant) {
+  bool may = true;
+  for (std::size_t k = 0; k < 3; ++k)
+    may &= octant >> k & 1 ? node.bounds[k][0][b] < node.bounds[k][1][a]
+                           : node.bounds[k][1][b] > node.bounds[k][0][a];
+  return may;
+}
+
+// The most that a walk has on its stack which pushes all children of a node.
+int height_of(const WideForm& form, std::size_t index, std::size_t octant, int height) {
+  const layout::WideNode& node = form.nodes[index];
+  int n = 0, most = 0;
+  for (std::uint32_t slot = 0; slot < kWidth; ++slot) n += has_child(node, slot);
+  most = height + n;
+  const std::vector<std::uint32_t> slots = slots_of(node, octant);
+  for (int i = 0; i < n; ++i)
+    if (const layout::u32 child = node.child[slots[static_cast<std::size_t>(i)]]; !is_leaf(child))
+      most = std::max(most, height_of(form, child, octant, height + n - 1 - i));
+  return most;
+}
+
+// Of pairs of children, in all octants, those that are visited the wrong way round, and all.
+struct Pairs {
+  std::size_t wrong = 0, all = 0;
+
+  void add(const layout::WideNode& node, std::size_t octant) {
+    const std::vector<std::uint32_t> slots = slots_of(node, octant);
+    for (std::uint32_t i = 0; i < kWidth && has_child(node, slots[i]); ++i)
+      for (std::uint32_t j = 0; j < i; ++j) {
+        ++all;
+        wrong += leads(node, slots[i], slots[j], octant) && !leads(node, slots[j], slots[i], octant);
+      }
+  }
+};
+
+void check_orders(const WideForm& form) {
+  int stack = 0;
+  for (std::size_t octant = 0; octant < 8; ++octant) {
+    stack = std::max(stack, height_of(form, 0, octant, 0));
+    for (const layout::WideNode& node : form.nodes) {
+      const std::vector<std::uint32_t> slots = slots_of(node, octant);
+      std::uint32_t seen = 0;
+      for (std::uint32_t i = 0; i < kWidth; ++i) {
+        seen |= 1u << slots[i];
+        ASSERT_TRUE(i == 0 || has_child(node, slots[i - 1]) || !has_child(node, slots[i]))
+            << "those without child are the farthest";
+      }
+      ASSERT_EQ(seen, 0xffu);
     }
+  }
+  EXPECT_EQ(stack, form.stack_size);
+}
+
+TEST(RefitForm, OrdersAreWholeOnAStackThatIsLargeEnough) {
+  Random random(kSeed);
+  for (const Subject& s : subjects()) {
+    SCOPED_TRACE(s.name);
+    const Pieces pieces(s.wide);
+    check_orders(refit(s.wide, pieces, s.flat.triangles).form);
+    check_orders(refit(s.wide, pieces, moved(s.flat.triangles, random)).form);
+  }
+}
+
+// Where cells are parted by planes, what is right stays right.
+TEST(RefitForm, OrdersOfPlanesStayFrontToBack) {
+  for (const Subject& s : subjects()) {
+    if (s.name.find("groups") != std::string::npos) continue;
+    SCOPED_TRACE(s.name);
+    Pairs pairs;
+    for (layout::WideNode node : s.wide.nodes) {
+      std::uint32_t n = 0;
+      for (std::uint32_t slot = 0; slot < kWidth; ++slot) n += has_child(node, slot);
+      order_anew(node, n);
+      for (std::size_t octant = 0; octant < 8; ++octant) pairs.add(node, octant);
+    }
+    EXPECT_EQ(pairs.wrong, 0) << "of " << pairs.all;
+  }
+}
+
+// A scene that is turned by half a circle: orders are turned with it, where cells are parted by planes.
+TEST(RefitForm, OrdersTurnWithTheScene) {
+  for (const Subject& s : subjects()) {
+    if (s.name.find("groups") != std::string::npos || s.flat.spheres.size() > 0) continue;
+    SCOPED_TRACE(s.name);
+    auto turned = Array<layout::Triangle>::copy_of({s.flat.triangles.data(), s.flat.triangles.size()});
+    for (layout::Triangle& t : turned)
+      for (auto& corner : t.v) corner[0] = -corner[0], corner[1] = -corner[1];
+    const WideForm form = refit(s.wide, Pieces(s.wide), turned).form;
+    Pairs pairs;
+    for (const layout::WideNode& node : form.nodes)
+      for (std::size_t octant = 0; octant < 8; ++octant) pairs.add(node, octant);
+    EXPECT_LE(pairs.wrong, pairs.all / 50) << pairs.all;
   }
 }
 
