@@ -4,6 +4,7 @@
 
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "api/committed.h"
 #include "base/timer.h"
@@ -47,6 +48,7 @@ struct Scene::Impl {
   void reshape();
   std::optional<PreparedScene> refit(const CommitOptions& options, CommitReport& report);
   PreparedScene build(const CommitOptions& options);
+  void settle(const CommitReport& report);
   query::GeometryTable table() const;
   std::shared_ptr<api::Committed> asked();
 };
@@ -105,11 +107,19 @@ void Scene::Impl::reshape() {
 const scene::Scene& Scene::Impl::model() {
   if (!changed) return assembled ? *assembled : base;
   const bool with_file = has_file && !file_removed && file_info.enabled;
-  scene::Scene all = with_file ? base : only_settings(base);
   std::vector<const scene::Part*> enabled;
   for (const auto& part : parts)
     if (part && part->enabled) enabled.push_back(&*part);
-  scene::assemble(all, enabled, materials);
+  const bool moved = assembled && !reshaped;  // since then
+  scene::Scene all = with_file && !moved ? base : only_settings(base);
+  if (moved) {
+    scene::Scene before = std::move(*assembled);
+    assembled.reset();
+    if (with_file) all.materials = base.materials;
+    scene::assemble_moved(all, std::move(before), enabled, materials);
+  } else {
+    scene::assemble(all, enabled, materials);
+  }
   // It is the file's no more, and is not to be kept as the file's (host/cache). What was made up for the file
   // alone is made up anew.
   all.files.clear();
@@ -278,19 +288,24 @@ PreparedScene Scene::Impl::build(const CommitOptions& options) {
   return PreparedScene(std::move(made));
 }
 
+// After a commit. All arrays are held twice only where vertices go on moving.
+void Scene::Impl::settle(const CommitReport& report) {
+  if (assembled && !fitting) {
+    assembled.reset();
+    changed = true;
+  }
+  touched = reshaped = false;
+  growth = report.refitted ? report.growth : 1;
+  if (!report.refitted) fitting.reset();
+}
+
 CommitReport Scene::commit(const CommitOptions& options) {
   api::open_device(options.device, {});  // without a device there is no use in building a tree
   CommitReport report;
   std::optional<PreparedScene> ready = impl_->refit(options, report);
   if (!ready) ready = impl_->build(options);
   const auto committed = std::make_shared<api::Committed>(*ready, impl_->table(), options.device);
-  if (impl_->assembled) {  // there is no need to hold all arrays twice
-    impl_->assembled.reset();
-    impl_->changed = true;
-  }
-  impl_->touched = impl_->reshaped = false;
-  impl_->growth = report.refitted ? report.growth : 1;
-  if (!report.refitted) impl_->fitting.reset();
+  impl_->settle(report);
   const std::lock_guard lock(impl_->mutex);
   impl_->committed = committed;
   return report;

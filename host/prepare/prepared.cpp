@@ -109,13 +109,13 @@ void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& 
   primitives::for_each_kind(
       [&](auto kind) { decltype(kind)::of(made.counts) = decltype(kind)::of(geometry).size(); });
   made.counts.stitches = geometry.stitches.size();
-  made.features = flatten::features_of(scene, geometry);
 }
 
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
                  const kdtree::BuildConfig& config, bool binary_form) {
   Prepared made;
   describe(made, scene, geometry);
+  made.features = flatten::features_of(scene, geometry);
 
   Timer step;
   const kdtree::Tree tree = kdtree::build(geometry, config);

@@ -61,8 +61,8 @@ Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
                  const kdtree::BuildConfig& config, bool binary_form = true);
 
-// Writes what has nothing to do with the tree: settings, counts, features, warnings, and of the geometry all
-// but its bounds.
+// Writes what has nothing to do with the tree: settings, counts, warnings, and of the geometry all but its
+// bounds.
 void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& geometry);
 
 }  // namespace kdray::prepare

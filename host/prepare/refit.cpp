@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "base/timer.h"
+#include "flatten/features.h"
 #include "flatten/refit.h"
 
 namespace kdray::prepare {
@@ -25,6 +26,13 @@ bool are_same(const Array<layout::Triangle>& a, const Array<layout::Triangle>& b
                               std::logical_and<>());
 }
 
+// Those of the same triangles, which take a look at each of them, where they wear something else.
+layout::Features features_of(const Prepared& last, const scene::Scene& scene,
+                             const scene::Geometry& geometry) {
+  return scene.materials == last.settings.materials ? flatten::features_in_light(last.features, scene)
+                                                    : flatten::features_of(scene, geometry);
+}
+
 double growth_of(double now, double built) {
   return now > 0 && built > 0 ? now / built : 1;
 }
@@ -42,6 +50,7 @@ Refitted refit(const scene::Scene& scene, const Prepared& last, const Fitting& f
   Refitted made{{}, growth_of(fit.cost, fitting.cost)};
   if (!(made.growth <= most_growth)) return made;
   Prepared& out = made.scene.emplace(last);
+  out.features = features_of(last, scene, geometry);
   describe(out, scene, geometry);
   out.geometry.bounds = geometry.bounds;
   out.flat.triangles = geometry.triangles;

@@ -52,4 +52,9 @@ vec3 color_of(const Color& c, const char* name);
 // part, the default one.
 void assemble(Scene& scene, std::span<const Part* const> parts, std::span<const Material> materials);
 
+// The same where, since `before` was assembled of them, only vertices and normals of the parts have changed:
+// `scene` has no primitives, and takes over those of `before`.
+void assemble_moved(Scene& scene, Scene&& before, std::span<const Part* const> parts,
+                    std::span<const Material> materials);
+
 }  // namespace kdray::scene
