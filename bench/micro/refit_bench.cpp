@@ -1,7 +1,7 @@
-// What    A mesh that is bent by up to a tenth of its size: commits that refit against commits that build, and
-//         rays over either, in turn. Prints medians as a table; hits of both are compared bit for bit.
-// Shape   refit_bench [subdivisions] [rounds] [rays] [bend] [degrees]: the displaced sphere of generate/displaced_sphere.h (700
-//         has a million triangles). Each round bends it otherwise.
+// What    A mesh that is bent by up to a tenth of its size: commits that refit against commits that build,
+//         and rays over either, in turn. Prints medians as a table; hits of both are compared bit for bit.
+// Shape   refit_bench [subdivisions] [rounds] [rays] [bend] [degrees]: the displaced sphere of
+//         generate/displaced_sphere.h (700 has a million triangles). Each round bends it otherwise.
 #include <fmt/format.h>
 
 #include <algorithm>

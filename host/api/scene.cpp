@@ -288,7 +288,7 @@ PreparedScene Scene::Impl::build(const CommitOptions& options) {
   return PreparedScene(std::move(made));
 }
 
-// After a commit. All arrays are held twice only where vertices go on moving.
+// Ends a commit. All arrays are held twice only where vertices go on moving.
 void Scene::Impl::settle(const CommitReport& report) {
   if (assembled && !fitting) {
     assembled.reset();

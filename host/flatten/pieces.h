@@ -1,13 +1,14 @@
-// What    Which part of its triangle each lane of the wide form's leaves stands for: a *piece*, in the weights
-//         of the triangle's corners, so that it moves with them. It is what a refit makes new bounds of.
+// What    Which part of its triangle each lane of the wide form's leaves stands for: a *piece*, in the
+//         weights of the triangle's corners, so that it moves with them. It is what a refit makes new bounds
+//         of.
 // Shape   A piece is a convex polygon of up to six corners: what a box cuts out of a triangle; where that has
 //         more corners, the hexagon around it whose sides go along the triangle's. A corner is the weights of
 //         the triangle's second and third corner, a byte each, in 255ths. Those of a block are rows of bytes,
 //         a lane beside the other.
 // Errors  Every place of a triangle is in one of its pieces, whatever the rounding: the tree has a leaf whose
-//         contents hold it (docs/design/kdtree.md), and a piece is cut by its leaf's contents, which are taken
-//         2^-40 larger for it. Weights are rounded to the nearest byte, and bounds are widened by what that
-//         may be. Of a moved triangle the place of the same weights is in the same piece.
+//         contents hold it (docs/design/kdtree.md), and a piece is cut by its leaf's contents, which are
+//         taken 2^-40 larger for it. Weights are rounded to the nearest byte, and bounds are widened by what
+//         that may be. Of a moved triangle the place of the same weights is in the same piece.
 #pragma once
 
 #include <array>

@@ -1,8 +1,8 @@
 // What    The wide form of a scene whose triangles have moved: the nodes and leaves of the form as it was
 //         built, with bounds and corners of where the triangles are now; and what a ray is expected to cost.
-// Shape   What doesn't change is shared with the old form, as blocks of other kinds, or copied, as the words of
-//         children. Bounds are those of the pieces (pieces.h), joined from the leaves to the root; orders follow
-//         them (orders.h), and the stack's size follows the orders.
+// Shape   What doesn't change is shared with the old form, as blocks of other kinds, or copied, as the words
+//         of children. Bounds are those of the pieces (pieces.h), joined from the leaves to the root; orders
+//         follow them (orders.h), and the stack's size follows the orders.
 // Why     A walk asks no more of the form than that some leaf whose bounds hold a place of a primitive names
 //         it (docs/design/refit.md): orders may be wrong, and bounds may overlap.
 #pragma once

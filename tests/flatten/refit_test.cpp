@@ -1,6 +1,6 @@
-// Refitted forms: a place of a moved triangle lies in a leaf that names it, below boxes that hold it, whatever
-// cells had cut the triangle; an unmoved form keeps its bounds but for the rounding of bytes; costs are those
-// of a sum written down plainly.
+// Refitted forms: a place of a moved triangle lies in a leaf that names it, below boxes that hold it,
+// whatever cells had cut the triangle; an unmoved form keeps its bounds but for the rounding of bytes; costs
+// are those of a sum written down plainly.
 #include "flatten/refit.h"
 
 #include <gtest/gtest.h>

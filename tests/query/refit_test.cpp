@@ -1,5 +1,5 @@
-// What    All hits over a refitted tree are those over a built one, bit for bit, by every walk: in closed meshes
-//         that are bent, sheared and flattened, in blocks of four and of eight, and beside shapes.
+// What    All hits over a refitted tree are those over a built one, bit for bit, by every walk: in closed
+//         meshes that are bent, sheared and flattened, in blocks of four and of eight, and beside shapes.
 #include "prepare/refit.h"
 
 #include <algorithm>

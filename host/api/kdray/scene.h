@@ -35,8 +35,8 @@ struct Picture;
 struct CommitOptions {
   TreeOptions tree = {.binary_form = false};
   DeviceOptions device = {.remember_programs = true};  // the first device answers queries
-  // Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has grown
-  // by more than this since it was built. 0: it is always built anew (docs/embed.md).
+  // Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has
+  // grown by more than this since it was built. 0: it is always built anew (docs/embed.md).
   double refit_growth = 1.5;
 };
 
