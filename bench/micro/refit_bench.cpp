@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
@@ -49,18 +50,35 @@ std::vector<double> bent(const std::vector<double>& from, double by, double degr
   return moved;
 }
 
+// Wall time, and the processor's of all threads, which tells more where others are at work.
+struct Seconds {
+  std::vector<double> wall, processor;
+};
+
+class Stopwatch {
+ public:
+  void add_to(Seconds& seconds) const {
+    seconds.wall.push_back(timer_.seconds());
+    seconds.processor.push_back(static_cast<double>(std::clock() - clock_) / CLOCKS_PER_SEC);
+  }
+
+ private:
+  Timer timer_;
+  std::clock_t clock_ = std::clock();
+};
+
 struct Side {
   Scene scene;
-  std::vector<double> commit, random, coherent, points;
+  Seconds commit, random, coherent;
   std::vector<double> t;
   std::vector<std::uint32_t> primitive;
 
-  void ask(const Rays& rays, std::vector<double>& seconds) {
+  void ask(const Rays& rays, Seconds& seconds) {
     t.resize(rays.origins.size());
     primitive.resize(t.size());
-    const Timer timer;
+    const Stopwatch watch;
     scene.closest(rays, {.t = t, .primitive = primitive});
-    seconds.push_back(timer.seconds());
+    watch.add_to(seconds);
   }
 };
 
@@ -94,10 +112,10 @@ RaySet picture_rays(std::size_t n) {
   return rays;
 }
 
-std::string row(const char* what, const std::vector<double>& built, const std::vector<double>& refitted) {
-  const double a = median(built), b = median(refitted);
-  return fmt::format("{:<16} build {:8.2f} ms   refit {:8.2f} ms   refit/build {:.3f}\n", what, 1e3 * a,
-                     1e3 * b, b / a);
+std::string row(const char* what, const Seconds& built, const Seconds& refitted) {
+  const double a = median(built.wall), b = median(refitted.wall);
+  return fmt::format("{:<16} build {:8.2f} ms   refit {:8.2f} ms   refit/build {:.3f}   processor {:.3f}\n",
+                     what, 1e3 * a, 1e3 * b, b / a, median(refitted.processor) / median(built.processor));
 }
 
 int run(std::uint32_t n, int rounds, std::size_t n_rays, double by, double degrees) {
@@ -114,15 +132,14 @@ int run(std::uint32_t n, int rounds, std::size_t n_rays, double by, double degre
   for (int round = -1; round < rounds; ++round) {
     const std::vector<double> moved = bent(mesh.vertices, by, degrees, 0.7 * round);
     for (Side* side : {&built, &refitted}) {
-      const Timer timer;
+      const Stopwatch watch;
       side->scene.update_vertices(0, moved);
       const CommitReport report = side->scene.commit({.refit_growth = side == &built ? 0.0 : 100.0});
-      const double seconds = timer.seconds();
+      watch.add_to(side->commit);
       if (side == &refitted) growth = std::max(growth, report.growth);
-      if (round < 0 && side == &refitted) first = seconds;
-      side->commit.push_back(seconds);
     }
-    std::vector<double> warm;
+    if (round < 0) first = refitted.commit.wall.front();
+    Seconds warm;
     for (Side* side : {&built, &refitted}) side->ask(picture.rays(), warm);
     for (Side* side : {&built, &refitted}) side->ask(random.rays(), side->random);
     for (std::size_t i = 0; i < n_rays; ++i)
@@ -131,8 +148,7 @@ int run(std::uint32_t n, int rounds, std::size_t n_rays, double by, double degre
     for (std::size_t i = 0; i < built.t.size(); ++i)
       differ += built.t[i] != refitted.t[i] || built.primitive[i] != refitted.primitive[i];
     if (round < 0)
-      for (Side* side : {&built, &refitted})
-        side->commit.clear(), side->random.clear(), side->coherent.clear();
+      for (Side* side : {&built, &refitted}) side->commit = {}, side->random = {}, side->coherent = {};
   }
   fmt::print("first refit {:.1f} ms; growth {:.3f}; {} hits differ\n", 1e3 * first, growth, differ);
   fmt::print("{}{}{}", row("update+commit", built.commit, refitted.commit),
