@@ -4,10 +4,12 @@
 
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "api/committed.h"
 #include "base/timer.h"
 #include "kdray/kdray.h"
+#include "prepare/refit.h"
 #include "query/crossings.h"
 #include "query/points.h"
 #include "scene/added_geometry.h"
@@ -25,9 +27,14 @@ struct Scene::Impl {
   double load_seconds = 0;
   std::vector<std::optional<scene::AddedGeometry>> geometries;  // by id, after the file's; none: removed
   std::vector<scene::Material> materials;
-  bool changed = false;  // since `assembled` was made
+  bool changed = false;   // since `assembled` was made
+  bool touched = false;   // since the last commit(), but for masks
+  bool reshaped = false;  // since then: other geometries, not only other vertices or another look
 
   mutable std::optional<scene::Scene> assembled;  // base and geometries together, where there are some
+
+  std::unique_ptr<const prepare::Fitting> fitting;  // of the tree as it was built, once it was refitted
+  double growth = 1;  // of what a ray is expected to cost, from then to what is committed
 
   std::mutex mutex;  // of `committed`
   std::shared_ptr<api::Committed> committed;
@@ -37,6 +44,11 @@ struct Scene::Impl {
   scene::AddedGeometry& added(GeometryId id);
   GeometryId add(scene::AddedGeometry&& geometry, const GeometryOptions& options);
   const scene::Scene& model();
+  void touch();
+  void reshape();
+  std::optional<PreparedScene> refit(const CommitOptions& options, CommitReport& report);
+  PreparedScene build(const CommitOptions& options);
+  void settle(const CommitReport& report);
   query::GeometryTable table() const;
   std::shared_ptr<api::Committed> asked();
 };
@@ -80,18 +92,34 @@ GeometryId Scene::Impl::add(scene::AddedGeometry&& geometry, const GeometryOptio
   geometry.mask = options.mask;
   geometry.material = options.material;
   geometries.emplace_back(std::move(geometry));
-  changed = true;
+  reshape();
   return first_added() + static_cast<GeometryId>(geometries.size() - 1);
+}
+
+void Scene::Impl::touch() {
+  changed = touched = true;
+}
+void Scene::Impl::reshape() {
+  touch();
+  reshaped = true;
 }
 
 const scene::Scene& Scene::Impl::model() {
   if (!changed) return assembled ? *assembled : base;
   const bool with_file = has_file && !file_removed && file_info.enabled;
-  scene::Scene all = with_file ? base : only_settings(base);
   std::vector<const scene::AddedGeometry*> enabled;
   for (const auto& geometry : geometries)
     if (geometry && geometry->enabled) enabled.push_back(&*geometry);
-  scene::assemble(all, enabled, materials);
+  const bool moved = assembled && !reshaped;  // since then
+  scene::Scene all = with_file && !moved ? base : only_settings(base);
+  if (moved) {
+    scene::Scene before = std::move(*assembled);
+    assembled.reset();
+    if (with_file) all.materials = base.materials;
+    scene::assemble_moved(all, std::move(before), enabled, materials);
+  } else {
+    scene::assemble(all, enabled, materials);
+  }
   // It is the file's no more, and is not to be kept as the file's (host/cache). What was made up for the file
   // alone is made up anew.
   all.files.clear();
@@ -136,7 +164,7 @@ Scene Scene::from_memory(std::string bytes, const std::filesystem::path& name, c
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {
   impl_->base.name = "the scene";
-  impl_->changed = true;  // a camera and lights are to be made up
+  impl_->touch();  // a camera and lights are to be made up
 }
 Scene::Scene(scene::Scene&& model) : impl_(std::make_unique<Impl>()) {
   impl_->has_file = true;
@@ -162,7 +190,7 @@ GeometryId Scene::add_discs(const Discs& discs, const GeometryOptions& options) 
 
 void Scene::update_vertices(GeometryId mesh, const Points& vertices, const Points& normals) {
   scene::move_vertices(impl_->added(mesh), vertices, normals);
-  impl_->changed = true;
+  impl_->touch();
 }
 void Scene::remove(GeometryId geometry) {
   if (impl_->is_file(geometry)) {
@@ -171,11 +199,11 @@ void Scene::remove(GeometryId geometry) {
     static_cast<void>(impl_->added(geometry));
     impl_->geometries[geometry - impl_->first_added()].reset();
   }
-  impl_->changed = true;
+  impl_->reshape();
 }
 void Scene::enable(GeometryId geometry, bool enabled) {
   (impl_->is_file(geometry) ? impl_->file_info.enabled : impl_->added(geometry).enabled) = enabled;
-  impl_->changed = true;
+  impl_->reshape();
 }
 void Scene::set_mask(GeometryId geometry, std::uint32_t mask) {
   (impl_->is_file(geometry) ? impl_->file_info.mask : impl_->added(geometry).mask) = mask;
@@ -196,7 +224,7 @@ GeometryInfo Scene::info(GeometryId geometry) const {
 
 MaterialId Scene::add_material(const Material& material) {
   impl_->materials.push_back(scene::material_of(material));
-  impl_->changed = true;
+  impl_->touch();
   return static_cast<MaterialId>(impl_->materials.size() - 1);
 }
 void Scene::add_light(const Light& light) {
@@ -204,21 +232,21 @@ void Scene::add_light(const Light& light) {
   if (impl_->base.framing.lights) impl_->base.lights.clear();  // those that were made up
   impl_->base.framing.lights = false;
   impl_->base.lights.push_back(made);
-  impl_->changed = true;
+  impl_->touch();
 }
 void Scene::set_camera(const Camera& camera) {
   impl_->base.camera = scene::camera_of(camera);
   impl_->base.cameras = {*impl_->base.camera};
   impl_->base.framing.camera = false;
-  impl_->changed = true;
+  impl_->touch();
 }
 void Scene::set_background(const Color& color) {
   impl_->base.background = scene::color_of(color, "background");
-  impl_->changed = true;
+  impl_->touch();
 }
 void Scene::set_ambient(const Color& color) {
   impl_->base.ambient = scene::color_of(color, "ambient");
-  impl_->changed = true;
+  impl_->touch();
 }
 
 std::uint32_t Scene::primitives() const {
@@ -234,16 +262,54 @@ double Scene::load_seconds() const {
   return impl_->load_seconds;
 }
 
-void Scene::commit(const CommitOptions& options) {
-  api::open_device(options.device, {});  // without a device there is no use in building a tree
-  const auto committed =
-      std::make_shared<api::Committed>(PreparedScene(*this, options.tree), impl_->table(), options.device);
-  if (impl_->assembled) {  // there is no need to hold all arrays twice
-    impl_->assembled.reset();
-    impl_->changed = true;
+// The tree of the last commit, fitted to where vertices are now. Nothing where it can't be, or isn't to be.
+std::optional<PreparedScene> Scene::Impl::refit(const CommitOptions& options, CommitReport& report) {
+  if (!committed || reshaped || !(options.refit_growth > 0)) return std::nullopt;
+  const prepare::Prepared& last = committed->scene().prepared();
+  // The binary form has planes, which don't move; and a limit on memory asks for trees of several kinds.
+  if (!(last.tree_options == options.tree) || options.tree.binary_form || options.tree.memory_bytes > 0)
+    return std::nullopt;
+  if (!touched && growth <= options.refit_growth) {
+    report = {true, growth};
+    return committed->scene();
   }
+  if (!fitting) fitting = std::make_unique<const prepare::Fitting>(last);
+  prepare::Refitted made = prepare::refit(model(), last, *fitting, options.refit_growth);
+  report.growth = made.growth;
+  report.refitted = made.scene.has_value();
+  if (!made.scene) return std::nullopt;
+  return PreparedScene(std::move(*made.scene));
+}
+
+PreparedScene Scene::Impl::build(const CommitOptions& options) {
+  std::optional<LocalSpace> kept;
+  if (committed && !reshaped) kept = committed->scene().prepared().geometry.space;
+  prepare::Prepared made = prepare::prepare(model(), options.tree, kept);
+  made.seconds.load = load_seconds;
+  return PreparedScene(std::move(made));
+}
+
+// Ends a commit. All arrays are held twice only where vertices go on moving.
+void Scene::Impl::settle(const CommitReport& report) {
+  if (assembled && !fitting) {
+    assembled.reset();
+    changed = true;
+  }
+  touched = reshaped = false;
+  growth = report.refitted ? report.growth : 1;
+  if (!report.refitted) fitting.reset();
+}
+
+CommitReport Scene::commit(const CommitOptions& options) {
+  api::open_device(options.device, {});  // without a device there is no use in building a tree
+  CommitReport report;
+  std::optional<PreparedScene> ready = impl_->refit(options, report);
+  if (!ready) ready = impl_->build(options);
+  const auto committed = std::make_shared<api::Committed>(*ready, impl_->table(), options.device);
+  impl_->settle(report);
   const std::lock_guard lock(impl_->mutex);
   impl_->committed = committed;
+  return report;
 }
 PreparedScene Scene::prepared() const {
   return impl_->asked()->scene();

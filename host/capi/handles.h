@@ -6,6 +6,7 @@
 
 struct kdray_scene {
   kdray::Scene scene;
+  kdray::CommitReport report;  // of the last commit
 };
 struct kdray_cancel {
   kdray::Cancel cancel;

@@ -149,8 +149,15 @@ typedef struct kdray_commit_options {
   size_t size;
   int32_t quality;    /* 0 balanced, 1 fast, 2 best */
   const char* device; /* as --device; NULL: the best there is */
+  /* Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has
+   * grown by more than this since it was built; 0: 1.5; below 0: it is always built. */
+  double refit_growth;
 } kdray_commit_options;
 KDRAY_API kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* options);
+
+/* What the last commit did: whether the tree was kept and refitted, and by what a ray's expected cost has
+ * grown since it was built (or had, where it was built anew for that). Either may be NULL. */
+KDRAY_API kdray_status kdray_last_commit(const kdray_scene* scene, int* refitted, double* growth);
 
 /* Writes what the device's compiler has made into kdray's cache folder, so that later processes need not
  * wait for it: takes a second or so, best when there is time. A folder that can't be written is no error. */

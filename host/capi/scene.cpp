@@ -83,7 +83,7 @@ kdray_status kdray_scene_new(kdray_scene** scene) {
 kdray_status kdray_scene_load(const char* file, kdray_scene** scene) {
   return guarded([&] {
     needed(scene, "scene");
-    *scene = new kdray_scene{Scene::load(needed(file, "file"))};
+    *scene = new kdray_scene{Scene::load(needed(file, "file")), {}};
   });
 }
 void kdray_scene_free(kdray_scene* scene) {
@@ -177,7 +177,16 @@ kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* given)
     options.tree.quality = kQualities[o.quality];
     if (o.device != nullptr) options.device.device = o.device;
     options.device.programs = default_program_folder();
-    needed(scene, "scene")->scene.commit(options);
+    if (o.refit_growth != 0) options.refit_growth = o.refit_growth;
+    kdray_scene* const s = needed(scene, "scene");
+    s->report = s->scene.commit(options);
+  });
+}
+kdray_status kdray_last_commit(const kdray_scene* scene, int* refitted, double* growth) {
+  return guarded([&] {
+    const CommitReport& last = needed(scene, "scene")->report;
+    if (refitted != nullptr) *refitted = last.refitted ? 1 : 0;
+    if (growth != nullptr) *growth = last.growth;
   });
 }
 kdray_status kdray_keep_programs(void) {

@@ -220,15 +220,7 @@ StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>&
                     : cut                   ? &cuts[child & ~CollapsedPart::kCut]
                                             : &needs[child];
     }
-    for (std::size_t octant = 0; octant < 8; ++octant) {
-      needs[i][octant] = static_cast<std::uint16_t>(node.n);
-      // Each is popped with those behind it left.
-      layout::u32 order = node.order[octant] >> (3 * (kWidth - node.n));
-      for (std::uint32_t behind = 0; behind < node.n; ++behind, order >>= 3) {
-        const auto need = static_cast<std::uint16_t>(behind + (*below[order & 7u])[octant]);
-        needs[i][octant] = std::max(needs[i][octant], need);
-      }
-    }
+    needs[i] = needs_of_node(node.order, node.n, below);
   }
   return needs.front();
 }

@@ -6,6 +6,7 @@
 // Source  Dammertz, Hanika, Keller, EGSR 2008; Wald, Benthin, Boulos, RT 2008.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -49,6 +50,23 @@ CollapsedPart collapse(const kdtree::Tree& tree, const Openings& openings, const
 // For a walk that pushes all children of a node, then pops the nearest; `cuts` are those of the parts cut
 // off.
 StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>& cuts);
+
+// The same for one node: `order` as in layout::WideNode, `below` what each of its n children needs.
+template <class Order>
+StackNeeds needs_of_node(const Order& order, std::uint32_t n,
+                         const std::array<const StackNeeds*, kWidth>& below) {
+  StackNeeds needs;
+  for (std::size_t octant = 0; octant < 8; ++octant) {
+    needs[octant] = static_cast<std::uint16_t>(n);
+    // Each is popped with those behind it left.
+    layout::u32 far_to_near = order[octant] >> (3 * (kWidth - n));
+    for (std::uint32_t behind = 0; behind < n; ++behind, far_to_near >>= 3) {
+      const auto need = static_cast<std::uint16_t>(behind + (*below[far_to_near & 7u])[octant]);
+      needs[octant] = std::max(needs[octant], need);
+    }
+  }
+  return needs;
+}
 
 // A leaf's references of one kind. Within a leaf references ascend, so kinds follow each other.
 kdtree::RefRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind);

@@ -84,22 +84,6 @@ void pack_stitches(const scene::Scene& scene, const scene::Geometry& geometry,
   }
 }
 
-Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene::Geometry& geometry) {
-  Array<layout::VertexNormals> normals(geometry.n_smooth);
-  if (normals.empty()) return normals;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, geometry.triangles.size(), kGrain),
-                    [&](const auto& range) {
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        const layout::u32 place = geometry.triangles[i].normals & KDRAY_NORMALS_MASK;
-                        const scene::Triangle& source = scene.triangles[geometry.sources[i]];
-                        if (place != KDRAY_NO_NORMALS && source.normal[0] != scene::kNone)
-                          normals[place] = pack_normals(scene, source);
-                      }
-                    });
-  pack_stitches(scene, geometry, normals);
-  return normals;
-}
-
 layout::Material pack(const scene::Material& m, const vec3& ambient_light) {
   layout::Material out{};
   set(out.unshadowed, m.emission + m.ambient * ambient_light);
@@ -194,6 +178,22 @@ FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, co
   flat.materials = pack_materials(scene);
   flat.lights = pack_lights(scene, geometry.space);
   return flat;
+}
+
+Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene::Geometry& geometry) {
+  Array<layout::VertexNormals> normals(geometry.n_smooth);
+  if (normals.empty()) return normals;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, geometry.triangles.size(), kGrain),
+                    [&](const auto& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        const layout::u32 place = geometry.triangles[i].normals & KDRAY_NORMALS_MASK;
+                        const scene::Triangle& source = scene.triangles[geometry.sources[i]];
+                        if (place != KDRAY_NO_NORMALS && source.normal[0] != scene::kNone)
+                          normals[place] = pack_normals(scene, source);
+                      }
+                    });
+  pack_stitches(scene, geometry, normals);
+  return normals;
 }
 
 Array<layout::Material> pack_materials(const scene::Scene& scene) {

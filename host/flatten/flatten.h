@@ -44,6 +44,9 @@ void for_each_flat_array(Flat& flat, const Visit& visit) {
 FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree,
                   bool binary_form = true);
 
+// Of the triangles that have some, in their order; a stitch has those of its neighbour.
+Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene::Geometry& geometry);
+
 // What of it can change without the geometry.
 Array<layout::Material> pack_materials(const scene::Scene& scene);
 Array<layout::Light> pack_lights(const scene::Scene& scene, const LocalSpace& space);

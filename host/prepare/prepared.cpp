@@ -85,9 +85,10 @@ std::size_t Prepared::largest_array() const {
   return largest;
 }
 
-Prepared prepare(const scene::Scene& scene, const TreeOptions& options) {
+Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
+                 const std::optional<LocalSpace>& kept) {
   const Timer timer;
-  const scene::Geometry geometry = scene::make_geometry(scene);
+  const scene::Geometry geometry = scene::make_geometry(scene, kept);
   const kdtree::BuildConfig config = config_of(options, geometry.size());
   const double seconds = timer.seconds();
   Prepared made = options.memory_bytes > 0
@@ -98,10 +99,23 @@ Prepared prepare(const scene::Scene& scene, const TreeOptions& options) {
   return made;
 }
 
+void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& geometry) {
+  made.settings = settings_of(scene);
+  made.geometry.space = geometry.space;
+  made.geometry.dropped_degenerate = geometry.dropped_degenerate;
+  if (const std::string warning = scene::range_warning(geometry); !warning.empty())
+    made.settings.warnings.push_back(warning);
+  made.counts.primitives = scene.primitive_count();
+  primitives::for_each_kind(
+      [&](auto kind) { decltype(kind)::of(made.counts) = decltype(kind)::of(geometry).size(); });
+  made.counts.stitches = geometry.stitches.size();
+}
+
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
                  const kdtree::BuildConfig& config, bool binary_form) {
   Prepared made;
-  made.settings = settings_of(scene);
+  describe(made, scene, geometry);
+  made.features = flatten::features_of(scene, geometry);
 
   Timer step;
   const kdtree::Tree tree = kdtree::build(geometry, config);
@@ -112,16 +126,7 @@ Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
   made.wide = flatten::make_wide(tree, made.flat, flatten::choose_block(tree));
   made.seconds.flatten = step.seconds();
 
-  made.geometry.space = geometry.space;
   made.geometry.bounds = tree.bounds;
-  made.geometry.dropped_degenerate = geometry.dropped_degenerate;
-  if (const std::string warning = scene::range_warning(geometry); !warning.empty())
-    made.settings.warnings.push_back(warning);
-  made.counts.primitives = scene.primitive_count();
-  primitives::for_each_kind(
-      [&](auto kind) { decltype(kind)::of(made.counts) = decltype(kind)::of(geometry).size(); });
-  made.counts.stitches = geometry.stitches.size();
-  made.features = flatten::features_of(scene, geometry);
   made.tree_depth = tree.max_depth;
   made.tree_nodes = tree.nodes.size();
   made.tree = kdtree::measure(tree, geometry, config);

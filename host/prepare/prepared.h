@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "flatten/flatten.h"
 #include "flatten/wide.h"
@@ -52,10 +53,16 @@ struct Prepared {
 // What the tree of a scene of n primitives is built with.
 kdtree::BuildConfig config_of(const TreeOptions& options, std::size_t n_primitives);
 
-Prepared prepare(const scene::Scene& scene, const TreeOptions& options);
+// `kept`: the space of what the scene was before it moved (scene::make_geometry).
+Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
+                 const std::optional<LocalSpace>& kept = {});
 
 // The same with a tree of any kind, for the scene's `geometry`. Its tree_options are left at their defaults.
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
                  const kdtree::BuildConfig& config, bool binary_form = true);
+
+// Writes what has nothing to do with the tree: settings, counts, warnings, and of the geometry all but its
+// bounds.
+void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& geometry);
 
 }  // namespace kdray::prepare

@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <numeric>
+#include <utility>
 
 #include "base/error.h"
 #include "scene/added_geometry.h"
@@ -17,16 +18,22 @@ struct Offsets {
   std::uint32_t number, material;
 };
 
-void put_mesh(Scene& scene, const AddedGeometry& geometry, const Offsets& at) {
+template <class From, class To, class Changed>
+void copy(const From& from, To& to, std::size_t first, const Changed& changed) {
   constexpr std::size_t kGrain = std::size_t{1} << 15;
-  const auto copy = [](const auto& from, auto& to, std::size_t first, const auto& changed) {
-    tbb::parallel_for(std::size_t{0}, (from.size() + kGrain - 1) / kGrain, [&](std::size_t grain) {
-      for (std::size_t i = grain * kGrain; i < std::min(from.size(), (grain + 1) * kGrain); ++i)
-        to[first + i] = changed(from[i], i);
-    });
-  };
+  tbb::parallel_for(std::size_t{0}, (from.size() + kGrain - 1) / kGrain, [&](std::size_t grain) {
+    for (std::size_t i = grain * kGrain; i < std::min(from.size(), (grain + 1) * kGrain); ++i)
+      to[first + i] = changed(from[i], i);
+  });
+}
+
+void put_vertices(Scene& scene, const AddedGeometry& geometry, const Offsets& at) {
   copy(geometry.vertices, scene.vertices, at.vertices, [](const dvec3& v, std::size_t) { return v; });
   copy(geometry.normals, scene.normals, at.normals, [](const vec3& n, std::size_t) { return n; });
+}
+
+void put_mesh(Scene& scene, const AddedGeometry& geometry, const Offsets& at) {
+  put_vertices(scene, geometry, at);
   copy(geometry.triangles, scene.triangles, at.triangles, [&](Triangle t, std::size_t i) {
     for (std::uint32_t& v : t.vertex) v += static_cast<std::uint32_t>(at.vertices);
     for (std::uint32_t& n : t.normal)
@@ -70,6 +77,12 @@ void check_capacity(const Scene& scene, std::span<const AddedGeometry* const> ge
                                               n_vertices, n_primitives));
 }
 
+void add_materials(Scene& scene, std::span<const AddedGeometry* const> geometries,
+                   std::span<const Material> materials) {
+  scene.materials.insert(scene.materials.end(), materials.begin(), materials.end());
+  if (materials.empty() && !geometries.empty()) scene.materials.push_back(material_of({}));
+}
+
 }  // namespace
 
 void assemble(Scene& scene, std::span<const AddedGeometry* const> geometries,
@@ -77,8 +90,7 @@ void assemble(Scene& scene, std::span<const AddedGeometry* const> geometries,
   check_capacity(scene, geometries);
   Offsets at{scene.vertices.size(), scene.normals.size(), scene.triangles.size(), scene.primitive_count(),
              static_cast<std::uint32_t>(scene.materials.size())};
-  scene.materials.insert(scene.materials.end(), materials.begin(), materials.end());
-  if (materials.empty() && !geometries.empty()) scene.materials.push_back(material_of({}));
+  add_materials(scene, geometries, materials);
   Offsets end = at;
   for (const AddedGeometry* const geometry : geometries) end = after(end, *geometry);
   scene.vertices.resize(end.vertices);
@@ -86,6 +98,25 @@ void assemble(Scene& scene, std::span<const AddedGeometry* const> geometries,
   scene.triangles.resize(end.triangles);
   for (const AddedGeometry* const geometry : geometries) {
     put(scene, *geometry, at);
+    at = after(at, *geometry);
+  }
+}
+
+void assemble_moved(Scene& scene, Scene&& before, std::span<const AddedGeometry* const> geometries,
+                    std::span<const Material> materials) {
+  add_materials(scene, geometries, materials);
+  scene.vertices = std::move(before.vertices);
+  scene.normals = std::move(before.normals);
+  scene.triangles = std::move(before.triangles);
+  primitives::for_each_shape(
+      [&](auto kind) { decltype(kind)::of(scene) = std::move(decltype(kind)::of(before)); });
+  Offsets at{scene.vertices.size(), scene.normals.size(), 0, 0, 0};  // the geometries' are the last ones
+  for (const AddedGeometry* const geometry : geometries) {
+    at.vertices -= geometry->vertices.size();
+    at.normals -= geometry->normals.size();
+  }
+  for (const AddedGeometry* const geometry : geometries) {
+    put_vertices(scene, *geometry, at);
     at = after(at, *geometry);
   }
 }

@@ -69,9 +69,9 @@ void for_each_grain(std::size_t n, const Work& work) {
 
 class Maker {
  public:
-  explicit Maker(const Scene& scene) : scene_(scene) {
+  Maker(const Scene& scene, const std::optional<LocalSpace>& kept) : scene_(scene) {
     const DBox bounds = scene.bounds();
-    out_.space = space_of(bounds);
+    out_.space = kept && keeps_space(*kept, bounds) ? *kept : space_of(bounds);
     if (!bounds.empty() && !is_finite(bounds.extent()))
       throw input_error(scene_.name, 0, "coordinates beyond the range of double precision (1.8e308)",
                         "scale the scene down");
@@ -222,8 +222,15 @@ class Maker {
 
 }  // namespace
 
-Geometry make_geometry(const Scene& scene) {
-  return Maker(scene).make();
+Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept) {
+  return Maker(scene, kept).make();
+}
+
+bool keeps_space(const LocalSpace& space, const DBox& bounds) {
+  if (bounds.empty()) return false;
+  const double reach =
+      std::max(largest_component(space.local(bounds.lo)), largest_component(space.local(bounds.hi)));
+  return reach >= 0.5 * kLocalReach && reach < 4 * kLocalReach;
 }
 
 std::string range_warning(const Geometry& geometry) {

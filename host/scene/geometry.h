@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,13 @@ struct Geometry {
   }
 };
 
-Geometry make_geometry(const Scene& scene);
+// In `kept`, where the scene keeps_space(), or else in a space of its own.
+Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept = {});
+
+// Whether a scene that has moved may keep its space: its largest coordinate there is from half of kLocalReach
+// to four times that, so that it loses one bit at most. What keeps its space keeps the floats of all that has
+// not moved.
+bool keeps_space(const LocalSpace& space, const DBox& bounds);
 
 // What the user should know of a scene that ranges too wide for floats, in one line; empty: nothing.
 std::string range_warning(const Geometry& geometry);

@@ -171,6 +171,24 @@ static void check_cancel_and_picture(const kdray_scene* scene) {
   kdray_cancel_free(cancel);
 }
 
+static void check_refit(kdray_scene* scene, uint32_t box) {
+  float moved[24];
+  double growth = 0;
+  int i, refitted = 9;
+  kdray_in none = {0};
+  kdray_commit_options options = {0};
+  for (i = 0; i < 24; ++i) moved[i] = 1.25f * corners[i];
+  expect(kdray_last_commit(scene, &refitted, &growth) == KDRAY_OK && refitted == 0 && growth == 1, "built");
+  expect(kdray_update_vertices(scene, box, floats(moved, 8), none) == KDRAY_OK, "moved vertices");
+  expect(kdray_commit(scene, NULL) == KDRAY_OK, "a second commit");
+  expect(kdray_last_commit(scene, &refitted, &growth) == KDRAY_OK && refitted == 1 && growth < 1.5,
+         "refitted");
+  options.size = sizeof options, options.refit_growth = -1;
+  expect(kdray_commit(scene, &options) == KDRAY_OK, "a third commit");
+  expect(kdray_last_commit(scene, &refitted, NULL) == KDRAY_OK && refitted == 0,
+         "built because it is asked for");
+}
+
 int main(void) {
   kdray_scene* scene = NULL;
   kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
@@ -187,6 +205,7 @@ int main(void) {
   check_answers(scene, box);
   check_cancel_and_picture(scene);
   check_looks();
+  check_refit(scene, box);
   expect(kdray_keep_programs() == KDRAY_OK, "programs are kept");
   kdray_scene_free(scene);
   puts(failures == 0 ? "c_interface: all right" : "c_interface: wrong answers");

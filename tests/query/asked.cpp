@@ -4,6 +4,7 @@
 
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "device/context.h"
 
@@ -25,17 +26,25 @@ std::shared_ptr<wavefront::Programs> programs_of(const prepare::Prepared& p) {
 }
 
 prepare::Prepared prepared_in(const scene::Scene& scene, Space space, Blocks blocks) {
-  const std::size_t as_many = blocks == Blocks::of_eight ? 1000000 : scene.primitive_count();
-  const kdtree::BuildConfig config = prepare::config_of(TreeOptions{}, as_many);
-  prepare::Prepared p = prepare::prepare(scene, scene::make_geometry(scene), config, false);
+  prepare::Prepared p = prepared_of(scene, blocks);
   if (space == Space::own) p.geometry.space = {};
   return p;
 }
 
 }  // namespace
 
+prepare::Prepared prepared_of(const scene::Scene& scene, Blocks blocks,
+                              const std::optional<LocalSpace>& kept) {
+  const std::size_t as_many = blocks == Blocks::of_eight ? 1000000 : scene.primitive_count();
+  const kdtree::BuildConfig config = prepare::config_of(TreeOptions{}, as_many);
+  return prepare::prepare(scene, scene::make_geometry(scene, kept), config, false);
+}
+
 Asked::Asked(const scene::Scene& scene, Space space, Blocks blocks)
-    : prepared_(prepared_in(scene, space, blocks)),
+    : Asked(prepared_in(scene, space, blocks)) {}
+
+Asked::Asked(prepare::Prepared&& prepared)
+    : prepared_(std::move(prepared)),
       buffers_(context(), prepared_.flat, prepared_.wide),
       programs_(programs_of(prepared_)) {}
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,9 +20,14 @@ namespace kdray::test {
 enum class Space { own, worlds };
 enum class Blocks { suited, of_eight };  // of_eight: as a scene of a million primitives has them
 
+// A scene as Asked prepares it; `kept` is the space that it may keep.
+prepare::Prepared prepared_of(const scene::Scene& scene, Blocks blocks,
+                              const std::optional<LocalSpace>& kept = {});
+
 class Asked {
  public:
   explicit Asked(const scene::Scene& scene, Space space = Space::own, Blocks blocks = Blocks::suited);
+  explicit Asked(prepare::Prepared&& prepared);
 
   query::Target target();
   std::span<const layout::Triangle> triangles() const { return prepared_.flat.triangles; }

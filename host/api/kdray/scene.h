@@ -35,6 +35,14 @@ struct Picture;
 struct CommitOptions {
   TreeOptions tree = {.binary_form = false};
   DeviceOptions device = {.remember_programs = true};  // the first device answers queries
+  // Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has
+  // grown by more than this since it was built. 0: it is always built anew (docs/embed.md).
+  double refit_growth = 1.5;
+};
+
+struct CommitReport {
+  bool refitted = false;  // the tree was kept, fitted to where vertices are now; false: it was built
+  double growth = 1;      // of what a ray is expected to cost, since the tree was built; above the limit: why
 };
 
 struct GeometryInfo {
@@ -94,8 +102,8 @@ class Scene {
 
   // ---- What can be asked of it.
 
-  // Builds the tree and opens the device. ErrorCode::no_device, out_of_memory.
-  void commit(const CommitOptions& options = {});
+  // Builds the tree, or refits it, and opens the device. ErrorCode::no_device, out_of_memory.
+  CommitReport commit(const CommitOptions& options = {});
   // What was committed, for a Renderer. ErrorCode::usage before the first commit().
   PreparedScene prepared() const;
 

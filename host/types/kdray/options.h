@@ -34,6 +34,7 @@ struct TreeOptions {
   // The most that the scene may take when it is traced; the tree gets coarser; 0: no limit.
   std::uint64_t memory_bytes = 0;
   bool binary_form = true;  // is made too; few options take it (takes_binary_form)
+  bool operator==(const TreeOptions&) const = default;
 };
 
 // Prepared scenes kept in a folder between runs (docs/design/cache.md). Several processes and threads may use
