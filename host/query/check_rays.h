@@ -24,6 +24,8 @@ struct RaysSeen {
   float farthest;           // the largest coordinate of an origin
 };
 RaysSeen look_at(std::span<const Ray> rays);
+// The same by this thread alone, for a few.
+RaysSeen look_at_few(std::span<const Ray> rays);
 
 // Throws unless `seen` has no fault. `first`: the number of the first of these rays.
 void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen, std::size_t first = 0);

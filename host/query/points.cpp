@@ -74,9 +74,19 @@ std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const d
       rays[i] = {{at.x, at.y, at.z}, 0, {0.1803f, 0.2741f, 1}, outside ? -end : end};
     }
   });
-  Target unmasked = asked.target;
-  unmasked.masks = cl::Buffer();
-  return count_hits(unmasked, rays);
+  std::vector<std::uint32_t> counts(points.size());
+  AllSessions& all = asked.sessions;
+  const bool masked = asked.target.masks() != nullptr;
+  count_hits(*(masked ? all.of_all : all.crossings).borrow(), rays, {}, counts);
+  return counts;
+}
+
+std::vector<ClosestPoint> closest_of(const Asked& asked, std::span<const dvec3> points, double radius) {
+  check_points(points, radius);
+  std::vector<ClosestPoint> found(points.size(), kNoClosestPoint);
+  if (!asked.scene().geometry.bounds.empty())
+    closest_points(*asked.sessions.points.borrow(), points, radius, found);
+  return found;
 }
 
 template <class Take>
@@ -102,12 +112,12 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
         constexpr ClosestPoint kNothing{std::numeric_limits<double>::infinity(),
                                         dvec3(std::numeric_limits<double>::infinity()), -1, 0, 0};
-        const ClosestPoints found = query::closest_points(asked.target, some, options.radius);
+        const std::vector<ClosestPoint> found = closest_of(asked, some, options.radius);
         const auto fill = [&](const auto& column, const auto& value_of) {
           if (column.empty()) return;
           column.fill(first, some.size(), [&](std::size_t i) {
-            const bool nothing = found.points[i - first].primitive < 0 || chunks.is_invalid(i - first);
-            const ClosestPoint& p = nothing ? kNothing : found.points[i - first];
+            const bool nothing = found[i - first].primitive < 0 || chunks.is_invalid(i - first);
+            const ClosestPoint& p = nothing ? kNothing : found[i - first];
             return value_of(p);
           });
         };
@@ -143,12 +153,12 @@ QueryReport signed_distance(const Asked& asked, const Points& points, const Valu
   check_out(out.size(), points.size(), "distance");
   return for_each_chunk(
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        const ClosestPoints found = query::closest_points(asked.target, some, options.radius);
+        const std::vector<ClosestPoint> found = closest_of(asked, some, options.radius);
         const std::vector<std::uint32_t> counts = crossings_above(asked, some);
         if (out.empty()) return;
         out.fill(first, some.size(), [&](std::size_t i) {
           const double distance = chunks.is_invalid(i - first) ? std::numeric_limits<double>::infinity()
-                                                               : found.points[i - first].distance;
+                                                               : found[i - first].distance;
           return std::array{counts[i - first] % 2 == 1 ? -distance : distance};
         });
       });
