@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "query/grains.h"
-#include "query/surface.h"
+#include "query/write_hits.h"
 
 namespace kdray::query {
 
@@ -113,75 +113,6 @@ QueryReport trace_chunks(const Asked& asked, const RayArrays& rays, bool any_hit
                          const QueryOptions& options, const Take& take) {
   return ChunkTracer<Take>(asked, rays, any_hit, as_refs, take).run(options);
 }
-
-// Writes answers where the caller wants them.
-class HitWriter {
- public:
-  HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& out)
-      : asked_(&asked), rays_(&rays), out_(out) {
-    const std::size_t n = rays.size();
-    check_out(out.t.size(), n, "t");
-    check_out(out.geometry.size(), n, "geometry");
-    check_out(out.primitive.size(), n, "primitive");
-    check_out(out.u.size(), n, "u");
-    check_out(out.v.size(), n, "v");
-    check_out(out.normal.size(), n, "normal");
-    check_out(out.point.size(), n, "point");
-  }
-
-  bool wants_refs() const { return !out_.normal.empty(); }
-
-  // Of rays first + begin to first + end, of which hits[begin] is the first's: so many at a time that the
-  // hits stay in the nearest cache for all columns.
-  void write(std::size_t first, std::size_t begin, std::size_t end, std::span<const layout::QueryHit> hits,
-             const LocalRays& local) const {
-    constexpr std::size_t kRows = 512;
-    for (; begin < end; begin += kRows) write_rows(first, begin, std::min(end, begin + kRows), hits, local);
-  }
-
- private:
-  void write_rows(std::size_t first, std::size_t begin, std::size_t end,
-                  std::span<const layout::QueryHit> hits, const LocalRays& local) const {
-    const auto fill = [&](const auto& column, const auto& value_of) {
-      if (column.empty()) return;
-      column.fill(first + begin, end - begin,
-                  [&](std::size_t ray) { return value_of(ray, hits[ray - first]); });
-    };
-    // The t of a miss is infinite, and stays so.
-    const auto t_of = [&](std::size_t ray, const layout::QueryHit& hit) {
-      return local.world_t(ray - first, hit.t);
-    };
-    fill(out_.t, [&](std::size_t ray, const auto& hit) { return std::array{t_of(ray, hit)}; });
-    fill(out_.geometry, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).geometry}; });
-    fill(out_.primitive, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).primitive}; });
-    fill(out_.u, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
-    fill(out_.v, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
-    fill(out_.normal, [&](std::size_t ray, const auto& hit) { return normal_of(ray, hit, t_of(ray, hit)); });
-    fill(out_.point, [&](std::size_t ray, const auto& hit) { return array(point_of(ray, t_of(ray, hit))); });
-  }
-  static bool missed(const layout::QueryHit& hit) { return hit.primitive == -1; }
-  static std::array<double, 3> array(const dvec3& v) { return {v.x, v.y, v.z}; }
-
-  GeometryTable::Place place_of(const layout::QueryHit& hit) const {
-    if (missed(hit)) return {kNoGeometry, kNoPrimitive};
-    const auto word = static_cast<std::uint32_t>(hit.primitive);
-    return asked_->table.of(wants_refs() ? number_of(asked_->scene().flat, word) : word);
-  }
-
-  dvec3 point_of(std::size_t ray, double t) const {
-    return std::isinf(t) ? dvec3(HUGE_VAL) : rays_->origin(ray) + t * rays_->direction(ray);
-  }
-
-  std::array<double, 3> normal_of(std::size_t ray, const layout::QueryHit& hit, double t) const {
-    if (missed(hit)) return {0, 0, 0};
-    return array(normal_at(asked_->scene().flat, static_cast<std::uint32_t>(hit.primitive),
-                           asked_->frame.space().local(point_of(ray, t))));
-  }
-
-  const Asked* asked_;
-  const RayArrays* rays_;
-  HitsOut out_;
-};
 
 }  // namespace
 

@@ -15,13 +15,6 @@
 
 namespace kdray::query {
 
-namespace {
-
-// Of a direction's largest component, where the kernels leave it as long as it is.
-constexpr float kShortest = 0x1p-8f, kLongest = 0x1p8f;
-
-}  // namespace
-
 const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max) {
   if (!is_finite(origin)) return "its origin is not finite";
   if (!is_finite(direction)) return "its direction is not finite";
@@ -72,8 +65,8 @@ class Looked {
     return any >> 31 == 0 && shortest_ > 0;
   }
   bool all_are_ordinary() const {
-    return shortest_ >= std::bit_cast<std::uint32_t>(kShortest) &&
-           longest_ < std::bit_cast<std::uint32_t>(kLongest);
+    return shortest_ >= std::bit_cast<std::uint32_t>(kShortestOrdinary) &&
+           longest_ < std::bit_cast<std::uint32_t>(kLongestOrdinary);
   }
   float farthest() const {
     return std::bit_cast<float>(
@@ -108,13 +101,9 @@ RaysSeen told(std::span<const Ray> rays, const Looked& seen) {
 
 }  // namespace
 
-RaysSeen look_at_few(std::span<const Ray> rays) {
-  return told(rays, look(rays.data(), rays.data() + rays.size()));
-}
-
 RaysSeen look_at(std::span<const Ray> rays) {
   constexpr std::size_t kGrain = 1 << 14;
-  if (rays.size() <= kGrain) return look_at_few(rays);
+  if (rays.size() <= kGrain) return told(rays, look(rays.data(), rays.data() + rays.size()));
   const Looked seen = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, rays.size(), kGrain), Looked(),
       [&](const tbb::blocked_range<std::size_t>& range, const Looked& looked) {
@@ -148,7 +137,7 @@ std::vector<Ray> without_faulty(std::span<const Ray> rays) {
 bool is_ordinary(const Ray& ray) {
   const auto& d = ray.direction;
   const float most = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-  return most >= kShortest && most < kLongest;
+  return most >= kShortestOrdinary && most < kLongestOrdinary;
 }
 
 }  // namespace kdray::query

@@ -16,6 +16,10 @@ namespace kdray::query {
 const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max);
 const char* fault_of(const Ray& ray);
 
+// Of a direction's largest component, where the kernels leave it as long as it is (length_exponent() of
+// query.clh): from the one to below the other.
+inline constexpr float kShortestOrdinary = 0x1p-8f, kLongestOrdinary = 0x1p8f;
+
 // What one look at rays tells.
 struct RaysSeen {
   std::size_t n_rays;
@@ -24,8 +28,6 @@ struct RaysSeen {
   float farthest;           // the largest coordinate of an origin
 };
 RaysSeen look_at(std::span<const Ray> rays);
-// The same by this thread alone, for a few.
-RaysSeen look_at_few(std::span<const Ray> rays);
 
 // Throws unless `seen` has no fault. `first`: the number of the first of these rays.
 void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen, std::size_t first = 0);

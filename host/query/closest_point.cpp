@@ -34,7 +34,8 @@ void closest_points(PointSession& session, std::span<const dvec3> points, double
                     std::span<ClosestPoint> answers) {
   for (std::size_t first = 0; first < points.size(); first += kPointsPerChunk) {
     const std::size_t n = std::min(kPointsPerChunk, points.size() - first);
-    session.ask(points.subspan(first, n), radius, answers.subspan(first, n));
+    session.start(points.subspan(first, n), radius);
+    session.wait(answers.subspan(first, n));
   }
 }
 

@@ -5,6 +5,9 @@
 // Errors  ErrorCode::out_of_memory; device errors as everywhere.
 #pragma once
 
+#include <algorithm>
+#include <span>
+
 #include "base/array.h"
 #include "device/context.h"
 #include "device/host_memory.h"
@@ -23,6 +26,7 @@ class DeviceArray {
   }
 
   std::size_t size() const { return host_.size(); }
+  bool is_in_place() const { return in_place_; }
   T* data() { return host_.data(); }
   std::span<const T> first(std::size_t n) const { return {host_.data(), n}; }
   const cl::Buffer& buffer() const { return buffer_; }

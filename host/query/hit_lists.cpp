@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "base/error.h"
-#include "base/memory.h"
 #include "device/opencl_error.h"
 #include "layout/features.h"
 #include "layout/traversal.h"
 #include "query/scene_arguments.h"
+#include "query/surface.h"
 
 namespace kdray::query {
 
@@ -17,16 +18,10 @@ using layout::QuerySpan;
 
 namespace {
 
-// Memory of this size on the host is kept when it is freed, and need not be touched anew by the next call
-// (base/memory.h). What isn't used isn't touched.
-constexpr std::size_t kKept = std::size_t{32} << 20;
-
-std::size_t kept(std::size_t bytes) {
-  return bytes < kLargePages ? bytes : std::max(bytes, kKept);
-}
-
 // An array of fewer elements is copied: that takes less than a buffer of its own.
 constexpr std::size_t kFewElements = 4096;
+// So few hits the host packs itself, where it has them: that takes less than a launch.
+constexpr std::size_t kFewHits = 2048;
 
 layout::Features features_of(const Target& target, const HitLists::Walk& walk) {
   return target.scene.features | (walk.masked ? KDRAY_FEATURE_MASKS : 0);
@@ -41,7 +36,8 @@ HitLists::HitLists(const Target& target, const Walk& walk, const LocalSpace& spa
       pack_(target.programs.kernel<kernels::PackHits>(features_of(target, walk), walk.traversal)),
       masked_(walk.masked),
       spare_(target.context),
-      queue_(spare_.get()) {
+      queue_(spare_.get()),
+      scale_(static_cast<float>(space.scale)) {
   using C = kernels::CollectHits;
   using P = kernels::PackHits;
   device::checked("finding hits", [&] {
@@ -55,18 +51,16 @@ HitLists::HitLists(const Target& target, const Walk& walk, const LocalSpace& spa
 void HitLists::reserve(std::size_t rays, std::size_t hits) {
   using C = kernels::CollectHits;
   using P = kernels::PackHits;
-  if (rays <= spans_.size() && hits <= room_for_hits_) return;
+  if (rays <= spans_.size() && hits <= hits_.size()) return;
   device::checked("finding hits", [&] {
     if (rays > spans_.size())
       spans_ = {target_.context, CL_MEM_READ_WRITE, std::bit_ceil(rays), "the rays' counts"};
-    if (hits > room_for_hits_) {
-      room_for_hits_ = std::bit_ceil(std::max(hits, kFewElements));
-      hits_ = target_.context.buffer(CL_MEM_READ_WRITE, kept(room_for_hits_ * sizeof(QueryHit)),
-                                     "the rays' hits");
-    }
+    if (hits > hits_.size())
+      hits_ = {target_.context, CL_MEM_READ_WRITE, std::bit_ceil(std::max(hits, kFewElements)),
+               "the rays' hits"};
     collect_.set(C::primitive_masks, target_.masks() != nullptr ? target_.masks : spans_.buffer());
-    collect_.set(C::spans, spans_.buffer()).set(C::hits, hits_);
-    pack_.set(P::spans, spans_.buffer()).set(P::hits, hits_);
+    collect_.set(C::spans, spans_.buffer()).set(C::hits, hits_.buffer());
+    pack_.set(P::spans, spans_.buffer()).set(P::hits, hits_.buffer());
   });
 }
 
@@ -85,7 +79,9 @@ const cl::Buffer& HitLists::Given<T>::take(const Target& target, cl::CommandQueu
 std::span<const QuerySpan> HitLists::find(const RaysGiven& given, bool any_length,
                                           std::span<const QuerySpan> after, std::uint32_t capacity) {
   using K = kernels::CollectHits;
-  const auto& [rays, masks] = given;
+  const std::span<const Ray> rays = given.rays;
+  const std::span<const std::uint32_t> masks = given.masks;
+  given_ = rays;
   n_rays_ = rays.size();
   capacity_ = capacity;
   any_length_ = any_length;
@@ -141,9 +137,45 @@ void HitLists::Taken<T>::take(cl::CommandQueue& queue, T* to, std::size_t n) {
   }
 }
 
+namespace {
+
+// As the kernels do it (query.clh).
+float power_of_two(int exponent) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(exponent + 127) << 23);
+}
+float scale_t(float t, int exponent) {
+  const int half_of_it = exponent >> 1;
+  return t * power_of_two(half_of_it) * power_of_two(exponent - half_of_it);
+}
+int length_exponent(const Ray& ray) {
+  const auto& d = ray.direction;
+  const float largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+  const int e = static_cast<int>(std::clamp(std::bit_cast<std::uint32_t>(largest) >> 23, 1u, 253u)) - 127;
+  return e >= -8 && e < 8 ? 0 : e;
+}
+
+}  // namespace
+
+// What pack_hits does, on the host.
+void HitLists::pack_here(std::span<const std::uint32_t> places, const HitArrays& to) {
+  const int space = static_cast<int>(std::bit_cast<std::uint32_t>(scale_) >> 23) - 127;
+  for (std::size_t i = 0; i < n_rays_; ++i) {
+    const int exponent = -(any_length_ ? length_exponent(given_[i]) : 0) - space;
+    const QueryHit* const hits = hits_.data() + i * capacity_;
+    const std::uint32_t n = spans_.data()[i].n_hits, first = places[i];
+    for (std::uint32_t k = 0; k < n; ++k) {
+      to.t[first + k] = scale_t(hits[k].t, exponent);
+      to.primitive[first + k] = number_of(target_.scene.flat, static_cast<std::uint32_t>(hits[k].primitive));
+      to.u[first + k] = hits[k].u;
+      to.v[first + k] = hits[k].v;
+    }
+  }
+}
+
 void HitLists::pack(std::span<const std::uint32_t> places, std::size_t n, const HitArrays& to) {
   using P = kernels::PackHits;
   const device::Context& context = target_.context;
+  if (n <= kFewHits && n_rays_ <= kFewHits && hits_.is_in_place()) return pack_here(places, to);
   device::checked("packing hits", [&] {
     pack_.set(P::n_rays, static_cast<cl_uint>(n_rays_)).set(P::capacity, capacity_);
     pack_.set(P::any_length, cl_uint{any_length_});

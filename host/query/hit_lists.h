@@ -66,6 +66,8 @@ class HitLists {
     const cl::Buffer& take(const Target& target, cl::CommandQueue& queue, std::span<const T> values,
                            const char* what);
   };
+  void pack_here(std::span<const std::uint32_t> places, const HitArrays& to);
+
   // Packed hits on their way to the caller's memory: the same.
   template <class T>
   struct Taken {
@@ -83,15 +85,16 @@ class HitLists {
   bool masked_;
   device::SpareQueue spare_;
   cl::CommandQueue queue_;
+  float scale_;                          // of the space that rays are given in
   std::vector<std::uint32_t> all_bits_;  // for rays that have no masks, among primitives that do
   Given<Ray> rays_;
   Given<std::uint32_t> masks_, places_;
   Given<layout::QuerySpan> after_;
   DeviceArray<layout::QuerySpan> spans_;
-  cl::Buffer hits_;
-  std::size_t room_for_hits_ = 0;
+  DeviceArray<layout::QueryHit> hits_;
   Taken<float> t_, u_, v_;
   Taken<std::uint32_t> primitive_;
+  std::span<const Ray> given_;
   std::size_t n_rays_ = 0;
   std::uint32_t capacity_ = 0;
   bool any_length_ = false;

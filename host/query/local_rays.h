@@ -101,6 +101,8 @@ class LocalRays {
     return moved_[i].ahead + std::ldexp(double{t}, moved_[i].exponent);
   }
 
+  bool has_moved() const { return !moved_.empty(); }  // rays of that chunk need a t of their own each
+
   std::uint64_t n_invalid() const { return n_invalid_; }
   std::optional<std::string> first_invalid() const { return first_invalid_; }
 

@@ -85,27 +85,61 @@ class PlainRays {
 
   // Fills out[0, n) with rays [first, first + n), and says whether all are such.
   bool fill(std::size_t first, std::size_t n, layout::QueryRay* out) const {
-    const bool with_last = first + n == n_;
     if (n == 0) return true;
+    Looked looked;
+    const bool with_last = first + n == n_;
     for (std::size_t i = 0; i < n - with_last; ++i)
-      put(first + i,
+      looked.at(put(
+          first + i,
           origins_.has_four() ? four_at(origins_.row(first + i)) : three_at(origins_.row(first + i)),
           directions_.has_four() ? four_at(directions_.row(first + i)) : three_at(directions_.row(first + i)),
-          out[i]);
-    if (with_last) put(n_ - 1, three_at(origins_.row(n_ - 1)), three_at(directions_.row(n_ - 1)), out[n - 1]);
-    static_assert(sizeof(Ray) == sizeof(layout::QueryRay));
-    const RaysSeen seen = look_at_few({reinterpret_cast<const Ray*>(out), n});
-    return seen.first_fault == n && seen.ordinary && seen.farthest < kNearEnough;
+          out[i]));
+    if (with_last)
+      looked.at(put(n_ - 1, three_at(origins_.row(n_ - 1)), three_at(directions_.row(n_ - 1)), out[n - 1]));
+    return looked.all_are_plain();
   }
 
  private:
-  void put(std::size_t i, const Lanes& origin, const Lanes& direction, layout::QueryRay& out) const {
+  // A ray as it is in memory.
+  struct Halves {
+    Lanes origin, direction;  // and t_min, t_max
+  };
+  Halves put(std::size_t i, const Lanes& origin, const Lanes& direction, layout::QueryRay& out) const {
     constexpr Select kRow = {-1, -1, -1, 0};
-    const Lanes from = kRow ? (origin - center_) * scale_ : all_lanes(t_min_.value(i) * scale_);
-    const Lanes along = kRow ? direction : all_lanes(t_max_.value(i) * scale_);
-    std::memcpy(&out, &from, sizeof from);
-    std::memcpy(reinterpret_cast<std::byte*>(&out) + sizeof from, &along, sizeof along);
+    const Halves ray{kRow ? (origin - center_) * scale_ : all_lanes(t_min_.value(i) * scale_),
+                     kRow ? direction : all_lanes(t_max_.value(i) * scale_)};
+    static_assert(sizeof ray == sizeof out);
+    std::memcpy(&out, &ray, sizeof ray);
+    return ray;
   }
+
+  // What some rays come to.
+  class Looked {
+   public:
+    void at(const Halves& ray) {
+      const Select origin = (Select)ray.origin & 0x7fffffff, along = (Select)ray.direction & 0x7fffffff;
+      // Sets the sign's bit where a float is infinite or no number; of t_max, no number alone.
+      constexpr Select kFinite = {0x00800000, 0x00800000, 0x00800000, 0x007fffff};
+      beyond_ |= (origin + 0x00800000) | (along + kFinite);
+      farthest_ = greater(farthest_, (Lanes)origin);
+      const Lanes size = (Lanes)along;
+      const Lanes largest = greater(size, greater(__builtin_shufflevector(size, size, 1, 2, 0, 3),
+                                                  __builtin_shufflevector(size, size, 2, 0, 1, 3)));
+      longest_ = greater(longest_, largest);
+      shortest_ = largest < shortest_ ? largest : shortest_;
+    }
+    bool all_are_plain() const {
+      const bool finite = (beyond_[0] | beyond_[1] | beyond_[2] | beyond_[3]) >= 0;
+      return finite && farthest_[0] < kNearEnough && farthest_[1] < kNearEnough &&
+             farthest_[2] < kNearEnough && shortest_[0] >= kShortestOrdinary &&
+             longest_[0] < kLongestOrdinary;
+    }
+
+   private:
+    static Lanes greater(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+    Select beyond_ = {};
+    Lanes farthest_ = {}, longest_ = {}, shortest_ = all_lanes(std::numeric_limits<float>::infinity());
+  };
 
   std::size_t n_;
   Column origins_, directions_, t_min_, t_max_;
@@ -122,10 +156,7 @@ bool fill_plain_floats(const RayArrays& rays, const LocalFrame& frame, std::size
   if (!plain.usable()) return false;
   std::atomic<bool> all{true};
   for_each_grain(n, [&](std::size_t begin, std::size_t end) {
-    constexpr std::size_t kFew = 256;  // that stay in the nearest cache until they have been looked at
-    for (; begin < end && all.load(std::memory_order_relaxed); begin += kFew)
-      if (!plain.fill(first + begin, std::min(kFew, end - begin), out + begin))
-        all.store(false, std::memory_order_relaxed);
+    if (!plain.fill(first + begin, end - begin, out + begin)) all.store(false, std::memory_order_relaxed);
   });
   return all.load();
 }

@@ -71,6 +71,8 @@ PointSession::PointSession(const Target& target)
     const device::AtWork compiling(target.context.builds());
     stage_.set(K::n_points, cl_uint{0}).set(K::reach, 0.0f);
     launch(1);
+    queue_.get().finish();
+    stage_.forget_launches();
   });
 }
 
@@ -82,24 +84,33 @@ void PointSession::reserve(std::size_t n) {
   stage_.set(K::points, queries_.buffer()).set(K::closest, hits_.buffer());
 }
 
-void PointSession::ask(std::span<const dvec3> points, double radius, std::span<ClosestPoint> answers) {
-  const std::size_t n = points.size();
-  std::span<const std::uint32_t> order;
+void PointSession::start(std::span<const dvec3> points, double radius) {
+  points_ = points;
+  radius_ = radius;
   device::checked("finding closest points", [&] {
-    reserve(n);
-    order = put_in_order(points);
-    queries_.send(queue_.get(), n);
-    stage_.set(K::n_points, static_cast<cl_uint>(n)).set(K::reach, reach_of(places_.space, radius));
-    launch(n);
-    hits_.fetch(queue_.get(), n);
+    reserve(points.size());
+    points_order_ = put_in_order(points);
+    queries_.send(queue_.get(), points.size());
+    stage_.set(K::n_points, static_cast<cl_uint>(points.size()));
+    stage_.set(K::reach, reach_of(places_.space, radius));
+    launch(points.size());
+    queue_.get().flush();
+  });
+}
+
+void PointSession::wait(std::span<ClosestPoint> answers) {
+  device::checked("finding closest points", [&] {
+    queue_.get().finish();
+    stage_.forget_launches();
+    hits_.fetch(queue_.get(), points_.size());
   });
   const ClosestHit* const hits = hits_.data();
   std::atomic<bool> failed{false};
-  for_each_grain(n, [&](std::size_t begin, std::size_t end) {
+  for_each_grain(points_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (hits[i].number == KDRAY_CLOSEST_INVALID) failed = true;
-      const std::size_t at = order.empty() ? i : order[i];
-      answers[at] = answer_of(places_, points[at], hits[i], radius);
+      const std::size_t at = points_order_.empty() ? i : points_order_[i];
+      answers[at] = answer_of(places_, points_[at], hits[i], radius_);
     }
   });
   if (failed)
@@ -128,8 +139,6 @@ std::span<const std::uint32_t> PointSession::put_in_order(std::span<const dvec3>
 
 void PointSession::launch(std::size_t n) {
   stage_.launch(queue_.get(), n, target_.work_group);
-  queue_.get().finish();
-  stage_.forget_launches();
 }
 
 }  // namespace kdray::query

@@ -52,8 +52,11 @@ class PointSession {
   explicit PointSession(const Target& target);
   bool settle() noexcept { return clFinish(queue_.get()()) == CL_SUCCESS; }
 
-  // The points are finite, and the radius is 0 or more; no more than 2^31 points at a time.
-  void ask(std::span<const dvec3> points, double radius, std::span<ClosestPoint> answers);
+  // Starts to find what is closest to these points, which have to stay. They are finite, and the radius is 0
+  // or more; no more than 2^31 points at a time.
+  void start(std::span<const dvec3> points, double radius);
+  // The answers to what was started.
+  void wait(std::span<ClosestPoint> answers);
 
  private:
   using K = kernels::ClosestPoints;
@@ -70,6 +73,10 @@ class PointSession {
   std::vector<std::uint32_t> cells_;
   DeviceArray<layout::QueryPoint> queries_;
   DeviceArray<layout::ClosestHit> hits_;
+  // What was started.
+  std::span<const dvec3> points_;
+  std::span<const std::uint32_t> points_order_;  // of which points the queries are; empty: in their own order
+  double radius_ = 0;
 };
 
 }  // namespace kdray::query

@@ -81,13 +81,27 @@ std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const d
   return counts;
 }
 
-std::vector<ClosestPoint> closest_of(const Asked& asked, std::span<const dvec3> points, double radius) {
-  check_points(points, radius);
-  std::vector<ClosestPoint> found(points.size(), kNoClosestPoint);
-  if (!asked.scene().geometry.bounds.empty())
-    closest_points(*asked.sessions.points.borrow(), points, radius, found);
-  return found;
-}
+// What lies nearest to points: asked for when it is made, so that the device works at it meanwhile.
+class Nearest {
+ public:
+  Nearest(const Asked& asked, std::span<const dvec3> points, double radius)
+      : found_(points.size(), kNoClosestPoint) {
+    check_points(points, radius);
+    if (points.empty() || asked.scene().geometry.bounds.empty()) return;
+    session_ = asked.sessions.points.borrow();
+    session_->start(points, radius);
+  }
+
+  const std::vector<ClosestPoint>& wait() {
+    if (session_) session_->wait(found_);
+    session_.reset();
+    return found_;
+  }
+
+ private:
+  std::vector<ClosestPoint> found_;
+  Sessions<PointSession>::Borrowed session_;
+};
 
 template <class Take>
 QueryReport for_each_chunk(const Points& points, const PointOptions& options, const Take& take) {
@@ -112,7 +126,8 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
         constexpr ClosestPoint kNothing{std::numeric_limits<double>::infinity(),
                                         dvec3(std::numeric_limits<double>::infinity()), -1, 0, 0};
-        const std::vector<ClosestPoint> found = closest_of(asked, some, options.radius);
+        Nearest nearest(asked, some, options.radius);
+        const std::vector<ClosestPoint>& found = nearest.wait();
         const auto fill = [&](const auto& column, const auto& value_of) {
           if (column.empty()) return;
           column.fill(first, some.size(), [&](std::size_t i) {
@@ -153,8 +168,9 @@ QueryReport signed_distance(const Asked& asked, const Points& points, const Valu
   check_out(out.size(), points.size(), "distance");
   return for_each_chunk(
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        const std::vector<ClosestPoint> found = closest_of(asked, some, options.radius);
+        Nearest nearest(asked, some, options.radius);
         const std::vector<std::uint32_t> counts = crossings_above(asked, some);
+        const std::vector<ClosestPoint>& found = nearest.wait();
         if (out.empty()) return;
         out.fill(first, some.size(), [&](std::size_t i) {
           const double distance = chunks.is_invalid(i - first) ? std::numeric_limits<double>::infinity()
