@@ -42,10 +42,12 @@ void trace_through(const ArrayScene& scene, bool coherent, const QuerySet& set, 
       [](auto&, unsigned, std::size_t) {});
 }
 
+// Packets are never flagged as coherent: their walk (of 3.13.5) calls the filter several times for a hit,
+// where there are several hits, and counts would be wrong.
 void trace_through(const ArrayScene& scene, const RayForm& form, const QuerySet& set, std::size_t first,
                    std::size_t end, void* user) {
   form.lanes == 1 ? trace_through<1>(scene, form.coherent, set, first, end, user)
-                  : trace_through<16>(scene, form.coherent, set, first, end, user);
+                  : trace_through<16>(scene, false, set, first, end, user);
 }
 
 // The crossings of a grain to where they belong, from place `at` on.
