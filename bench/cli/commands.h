@@ -8,6 +8,7 @@ namespace kdray::cli {
 Command add_bench(CLI::App& kdray);
 
 Command add_bench_rays(CLI::App& bench);
+Command add_bench_queries(CLI::App& bench);
 Command add_bench_frames(CLI::App& bench);
 Command add_bench_build(CLI::App& bench);
 Command add_bench_depth(CLI::App& bench);

@@ -1,5 +1,6 @@
 #include "bench/embree/build.h"
 #include "bench/embree/embree.h"
+#include "bench/queries/embree_sides.h"
 
 namespace kdray::bench {
 
@@ -19,6 +20,14 @@ std::vector<Contestant> embree_contestants(const std::shared_ptr<EmbreeScenes>&,
 
 TimedBuild embree_build(const scene::Scene&, const scene::Geometry&) {
   return {};
+}
+
+std::vector<Side> embree_sides(const MeshArrays&, int) {
+  return {};
+}
+
+bool embree_answers(Question) {
+  return false;
 }
 
 Traced trace_embree16(const std::shared_ptr<EmbreeScenes>&, const RayClass&, int) {

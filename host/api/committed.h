@@ -39,7 +39,7 @@ class Committed {
   query::LocalFrame frame_;
   DeviceSet devices_;
   query::Target target_;
-  query::Sessions sessions_;
+  query::AllSessions sessions_;
   DeviceOptions device_options_;
   std::mutex rendering_;
   std::optional<Renderer> renderer_;  // once a picture was asked for

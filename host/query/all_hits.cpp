@@ -121,19 +121,24 @@ class Collection {
 
 }  // namespace
 
-void all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options,
-              LocalHits& all) {
+void all_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions& options, LocalHits& all) {
   all.splits.resize(rays.size() + 1);
   all.splits[0] = 0;
   all.more.resize(rays.size());
   all.t.clear(), all.primitive.clear(), all.u.clear(), all.v.clear();
   if (rays.empty()) return;
-  Passes passes(target, rays.size(), options);
+  passes.begin(rays.size(), options);
   Collection collection(all, passes, options.max_hits);
   for (std::size_t first = 0, n = 0; first < rays.size(); first += n) {
     n = passes.next_chunk(rays.size() - first);
     collection.add(rays.subspan(first, n), masks_of(options, first, n));
   }
+}
+
+void all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options,
+              LocalHits& all) {
+  Passes passes(target, options.traversal);
+  all_hits(passes, rays, options, all);
 }
 
 LocalHits all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options) {
@@ -142,11 +147,10 @@ LocalHits all_hits(const Target& target, std::span<const Ray> rays, const Collec
   return all;
 }
 
-std::vector<std::uint32_t> count_hits(const Target& target, std::span<const Ray> rays,
-                                      const CollectOptions& options) {
-  std::vector<std::uint32_t> counts(rays.size());
-  if (rays.empty()) return counts;
-  Passes passes(target, rays.size(), options);
+void count_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions& options,
+                std::span<std::uint32_t> counts) {
+  if (rays.empty()) return;
+  passes.begin(rays.size(), options);
   for (std::size_t first = 0, n = 0; first < rays.size(); first += n) {
     n = passes.next_chunk(rays.size() - first);
     const std::span<const QuerySpan> spans =
@@ -155,6 +159,13 @@ std::vector<std::uint32_t> count_hits(const Target& target, std::span<const Ray>
     passes.others(spans, false,
                   [&](std::uint32_t i, const Hits&, std::uint32_t more, bool) { counts[first + i] += more; });
   }
+}
+
+std::vector<std::uint32_t> count_hits(const Target& target, std::span<const Ray> rays,
+                                      const CollectOptions& options) {
+  std::vector<std::uint32_t> counts(rays.size());
+  Passes passes(target, options.traversal);
+  count_hits(passes, rays, options, counts);
   return counts;
 }
 

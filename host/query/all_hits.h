@@ -36,12 +36,18 @@ struct LocalHits {
   RawVector<float> u, v;               // as Hit's
   RawVector<std::uint8_t> more;        // of each ray, 1: it has more than max_hits
 };
+
+// Kernels and buffers for it (passes.h).
+class Passes;
+// In place of what `all` held, whose memory serves again. The passes' traversal counts.
+void all_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions& options, LocalHits& all);
 LocalHits all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options = {});
 
-// The same in place of what `all` held, whose memory serves again.
 void all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options, LocalHits& all);
 
 // Of each ray; max_hits where there are more.
+void count_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions& options,
+                std::span<std::uint32_t> counts);
 std::vector<std::uint32_t> count_hits(const Target& target, std::span<const Ray> rays,
                                       const CollectOptions& options = {});
 

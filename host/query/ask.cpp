@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "query/grains.h"
-#include "query/surface.h"
+#include "query/write_hits.h"
 
 namespace kdray::query {
 
@@ -29,86 +31,88 @@ void check_out(std::size_t size, std::size_t n, const char* name) {
 
 namespace {
 
-// Calls take(first, hits, local rays) for each chunk of hits, in turn.
-template <class Take>
-QueryReport trace_chunks(const Asked& asked, const RayArrays& rays, bool any_hit, bool as_refs,
-                         const QueryOptions& options, const Take& take) {
-  const bool masked = asked.target.masks() != nullptr;
-  const Sessions::Borrowed session = asked.sessions.borrow();
-  LocalRays local(rays, asked.frame);
-  for (std::size_t first = 0; first < rays.size(); first += session->chunk()) {
-    throw_if_cancelled(options);
-    const std::size_t n = std::min(session->chunk(), rays.size() - first);
-    local.fill(first, n, session->rays());
-    check_invalid(local, options);
-    if (masked)
-      for (std::size_t i = 0; i < n; ++i) session->ray_masks()[i] = rays.mask(first + i);
-    take(first, session->trace(n, any_hit, as_refs), local);
-  }
-  return {local.n_invalid()};
+// A chunk that is being traced.
+struct Chunk {
+  explicit Chunk(const Asked& asked, const RayArrays& rays)
+      : session(asked.sessions.rays.borrow()), local(rays, asked.frame) {}
+
+  Sessions<Session>::Borrowed session;
+  LocalRays local;
+  std::size_t first = 0, n = 0;  // 0: none
+};
+
+// Rays of a chunk: so many that the device has chunks to work at while the host works at others.
+std::size_t chunk_for(std::size_t n, std::size_t most) {
+  constexpr std::size_t kLeast = std::size_t{1} << 14, kChunks = 8;
+  return std::min(most, std::max(kLeast, n / kChunks));
 }
 
-// Writes answers where the caller wants them.
-class HitWriter {
+// Calls take(chunk, hits, begin, end) for grains of the hits of each chunk, in turn. While two chunks are
+// traced the next one's rays are made ready.
+template <class Take>
+class ChunkTracer {
  public:
-  HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& out)
-      : asked_(&asked), rays_(&rays), out_(out) {
-    const std::size_t n = rays.size();
-    check_out(out.t.size(), n, "t");
-    check_out(out.geometry.size(), n, "geometry");
-    check_out(out.primitive.size(), n, "primitive");
-    check_out(out.u.size(), n, "u");
-    check_out(out.v.size(), n, "v");
-    check_out(out.normal.size(), n, "normal");
-    check_out(out.point.size(), n, "point");
-  }
+  ChunkTracer(const Asked& asked, const RayArrays& rays, bool any_hit, bool as_refs, const Take& take)
+      : asked_(asked), rays_(rays), any_hit_(any_hit), as_refs_(as_refs), take_(take) {}
 
-  bool wants_refs() const { return !out_.normal.empty(); }
-
-  // Column by column: of rays first + begin to first + end, of which hits[begin] is the first's.
-  void write(std::size_t first, std::size_t begin, std::size_t end, std::span<const layout::QueryHit> hits,
-             const LocalRays& local) const {
-    const auto fill = [&](const auto& column, const auto& value_of) {
-      if (column.empty()) return;
-      column.fill(first + begin, end - begin,
-                  [&](std::size_t ray) { return value_of(ray, hits[ray - first]); });
-    };
-    const auto t_of = [&](std::size_t ray, const layout::QueryHit& hit) {
-      return missed(hit) ? HUGE_VAL : local.world_t(ray - first, hit.t);
-    };
-    fill(out_.t, [&](std::size_t ray, const auto& hit) { return std::array{t_of(ray, hit)}; });
-    fill(out_.geometry, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).geometry}; });
-    fill(out_.primitive, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).primitive}; });
-    fill(out_.u, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
-    fill(out_.v, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
-    fill(out_.normal, [&](std::size_t ray, const auto& hit) { return normal_of(ray, hit, t_of(ray, hit)); });
-    fill(out_.point, [&](std::size_t ray, const auto& hit) { return array(point_of(ray, t_of(ray, hit))); });
+  QueryReport run(const QueryOptions& options) {
+    if (rays_.size() == 0) return {};
+    chunks_[0].emplace(asked_, rays_);
+    const std::size_t at_once = chunk_for(rays_.size(), chunks_[0]->session->chunk());
+    for (std::size_t first = 0, turn = 0; first < rays_.size(); first += at_once, turn ^= 1) {
+      throw_if_cancelled(options);
+      if (!chunks_[turn]) chunks_[turn].emplace(asked_, rays_);
+      finish(*chunks_[turn]);
+      start(*chunks_[turn], first, std::min(at_once, rays_.size() - first), options);
+      last_ = turn;
+    }
+    QueryReport report;
+    for (const std::size_t turn : {last_ ^ 1, last_}) {
+      if (!chunks_[turn]) continue;
+      finish(*chunks_[turn]);
+      report.invalid += chunks_[turn]->local.n_invalid();
+    }
+    return report;
   }
 
  private:
-  static bool missed(const layout::QueryHit& hit) { return hit.primitive == -1; }
-  static std::array<double, 3> array(const dvec3& v) { return {v.x, v.y, v.z}; }
-
-  GeometryTable::Place place_of(const layout::QueryHit& hit) const {
-    if (missed(hit)) return {kNoGeometry, kNoPrimitive};
-    const auto word = static_cast<std::uint32_t>(hit.primitive);
-    return asked_->table.of(wants_refs() ? number_of(asked_->scene().flat, word) : word);
+  void start(Chunk& chunk, std::size_t first, std::size_t n, const QueryOptions& options) {
+    chunk.local.fill(first, n, chunk.session->rays());
+    check_invalid(chunk.local, options);
+    if (asked_.target.masks() != nullptr)
+      for (std::size_t i = 0; i < n; ++i) chunk.session->ray_masks()[i] = rays_.mask(first + i);
+    chunk.session->start(n, any_hit_, as_refs_);
+    chunk.first = first;
+    chunk.n = n;
   }
 
-  dvec3 point_of(std::size_t ray, double t) const {
-    return std::isinf(t) ? dvec3(HUGE_VAL) : rays_->origin(ray) + t * rays_->direction(ray);
+  void finish(Chunk& chunk) {
+    if (chunk.n == 0) return;
+    const std::span<const layout::QueryHit> hits = chunk.session->wait();
+    std::atomic<bool> failed{false};
+    for_each_grain(hits.size(), [&](std::size_t begin, std::size_t end) {
+      bool all_sound = true;
+      for (std::size_t i = begin; i < end; ++i) all_sound &= hits[i].primitive != kFailedWalk;
+      if (!all_sound) failed.store(true, std::memory_order_relaxed);
+      take_(chunk, hits, begin, end);
+    });
+    chunk.n = 0;
+    if (failed) throw_failed_walk();
   }
 
-  std::array<double, 3> normal_of(std::size_t ray, const layout::QueryHit& hit, double t) const {
-    if (missed(hit)) return {0, 0, 0};
-    return array(normal_at(asked_->scene().flat, static_cast<std::uint32_t>(hit.primitive),
-                           asked_->frame.space().local(point_of(ray, t))));
-  }
-
-  const Asked* asked_;
-  const RayArrays* rays_;
-  HitsOut out_;
+  const Asked& asked_;
+  const RayArrays& rays_;
+  bool any_hit_, as_refs_;
+  const Take& take_;
+  std::optional<Chunk> chunks_[2];
+  std::size_t last_ = 0;
 };
+
+template <class Take>
+QueryReport trace_chunks(const Asked& asked, const RayArrays& rays, bool any_hit, bool as_refs,
+                         const QueryOptions& options, const Take& take) {
+  return ChunkTracer<Take>(asked, rays, any_hit, as_refs, take).run(options);
+}
 
 }  // namespace
 
@@ -116,25 +120,21 @@ QueryReport closest(const Asked& asked, const Rays& rays, const HitsOut& out, co
   const RayArrays arrays(rays);
   const HitWriter writer(asked, arrays, out);
   return trace_chunks(asked, arrays, false, writer.wants_refs(), options,
-                      [&](std::size_t first, std::span<const layout::QueryHit> hits, const LocalRays& local) {
-                        for_each_grain(hits.size(), [&](std::size_t begin, std::size_t end) {
-                          writer.write(first, begin, end, hits, local);
-                        });
-                      });
+                      [&](const Chunk& chunk, std::span<const layout::QueryHit> hits, std::size_t begin,
+                          std::size_t end) { writer.write(chunk.first, begin, end, hits, chunk.local); });
 }
 
 QueryReport any(const Asked& asked, const Rays& rays, const BytesOut& out, const QueryOptions& options) {
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "hit");
-  return trace_chunks(asked, arrays, true, false, options,
-                      [&](std::size_t first, std::span<const layout::QueryHit> hits, const LocalRays&) {
-                        if (out.empty()) return;
-                        for_each_grain(hits.size(), [&](std::size_t begin, std::size_t end) {
-                          out.fill(first + begin, end - begin, [&](std::size_t ray) {
-                            return std::array{static_cast<std::uint8_t>(hits[ray - first].t == 0)};
-                          });
-                        });
-                      });
+  return trace_chunks(
+      asked, arrays, true, false, options,
+      [&](const Chunk& chunk, std::span<const layout::QueryHit> hits, std::size_t begin, std::size_t end) {
+        if (out.empty()) return;
+        out.fill(chunk.first + begin, end - begin, [&](std::size_t ray) {
+          return std::array{static_cast<std::uint8_t>(hits[ray - chunk.first].t == 0)};
+        });
+      });
 }
 
 }  // namespace kdray::query

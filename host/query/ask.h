@@ -7,9 +7,9 @@
 
 #include "kdray/query.h"
 #include "prepare/prepared.h"
+#include "query/all_sessions.h"
 #include "query/geometry_table.h"
 #include "query/local_rays.h"
-#include "query/session.h"
 
 namespace kdray::query {
 
@@ -18,7 +18,7 @@ struct Asked {
   const Target& target;  // of rays in the scene's own space
   const GeometryTable& table;
   const LocalFrame& frame;
-  Sessions& sessions;
+  AllSessions& sessions;
 
   const prepare::Prepared& scene() const { return target.scene; }
 };

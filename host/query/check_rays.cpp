@@ -65,8 +65,8 @@ class Looked {
     return any >> 31 == 0 && shortest_ > 0;
   }
   bool all_are_ordinary() const {
-    return shortest_ >= std::bit_cast<std::uint32_t>(kShortest) &&
-           longest_ < std::bit_cast<std::uint32_t>(kLongest);
+    return shortest_ >= std::bit_cast<std::uint32_t>(kShortestOrdinary) &&
+           longest_ < std::bit_cast<std::uint32_t>(kLongestOrdinary);
   }
   float farthest() const {
     return std::bit_cast<float>(
@@ -83,23 +83,37 @@ static_assert(sizeof(Ray) == 32 && offsetof(Ray, direction) == 16 && offsetof(Ra
 
 }  // namespace
 
-RaysSeen look_at(std::span<const Ray> rays) {
-  const Looked seen = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, rays.size(), 1 << 14), Looked(),
-      [&](const tbb::blocked_range<std::size_t>& range, Looked looked) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) looked.at(rays[i]);
-        return looked;
-      },
-      [](Looked a, const Looked& b) {
-        a.add(b);
-        return a;
-      });
+namespace {
+
+Looked look(const Ray* first, const Ray* last, Looked looked = {}) {
+  for (; first != last; ++first) looked.at(*first);
+  return looked;
+}
+
+RaysSeen told(std::span<const Ray> rays, const Looked& seen) {
   std::size_t fault = rays.size();
   if (!seen.all_are_rays())
     fault = static_cast<std::size_t>(
         std::find_if(rays.begin(), rays.end(), [](const Ray& r) { return fault_of(r); }) - rays.begin());
   const float farthest = seen.farthest();
   return {rays.size(), fault, seen.all_are_ordinary(), std::isnan(farthest) ? HUGE_VALF : farthest};
+}
+
+}  // namespace
+
+RaysSeen look_at(std::span<const Ray> rays) {
+  constexpr std::size_t kGrain = 1 << 14;
+  if (rays.size() <= kGrain) return told(rays, look(rays.data(), rays.data() + rays.size()));
+  const Looked seen = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, rays.size(), kGrain), Looked(),
+      [&](const tbb::blocked_range<std::size_t>& range, const Looked& looked) {
+        return look(rays.data() + range.begin(), rays.data() + range.end(), looked);
+      },
+      [](Looked a, const Looked& b) {
+        a.add(b);
+        return a;
+      });
+  return told(rays, seen);
 }
 
 void refuse_faulty(std::span<const Ray> rays, const RaysSeen& seen, std::size_t first) {

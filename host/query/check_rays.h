@@ -16,6 +16,15 @@ namespace kdray::query {
 const char* fault_of(const dvec3& origin, const dvec3& direction, double t_min, double t_max);
 const char* fault_of(const Ray& ray);
 
+// A direction whose largest component lies from the one to below the other is traced as long as it is: others
+// are scaled to about unit length (length_exponent() of query.clh). Where that is so of all rays of a launch,
+// the kernels need not look.
+inline constexpr float kShortestOrdinary = 0x1p-8f, kLongestOrdinary = 0x1p8f;
+template <class Real>
+constexpr bool is_ordinary_length(Real largest) {
+  return largest >= Real{kShortestOrdinary} && largest < Real{kLongestOrdinary};
+}
+
 // What one look at rays tells.
 struct RaysSeen {
   std::size_t n_rays;
@@ -33,14 +42,6 @@ void check_rays(std::span<const Ray> rays);
 // The same rays, but for those that are none: these meet nothing.
 std::vector<Ray> without_faulty(std::span<const Ray> rays);
 
-// Whether a direction whose largest component this is is traced as long as it is: others are scaled to about
-// unit length (length_exponent() of query.clh). Where that is so of all rays of a launch, the kernels need not
-// look.
-inline constexpr float kShortest = 0x1p-8f, kLongest = 0x1p8f;
-template <class Real>
-constexpr bool is_ordinary_length(Real largest) {
-  return largest >= Real{kShortest} && largest < Real{kLongest};
-}
 bool is_ordinary(const Ray& ray);
 
 }  // namespace kdray::query

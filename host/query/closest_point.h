@@ -41,6 +41,15 @@ struct ClosestPoints {
 // The first of them that is not finite, or points.size().
 std::size_t first_not_finite(std::span<const dvec3> points);
 
+// ErrorCode::input for a point that is not finite, with its index, and for a radius that is no number or
+// below 0.
+void check_points(std::span<const dvec3> points, double radius);
+
+// Kernel and buffers for it (point_session.h), of a scene that isn't empty. The points have been checked.
+class PointSession;
+void closest_points(PointSession& session, std::span<const dvec3> points, double radius,
+                    std::span<ClosestPoint> answers);
+
 ClosestPoints closest_points(const Target& target, std::span<const dvec3> points, double radius);
 
 }  // namespace kdray::query

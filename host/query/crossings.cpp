@@ -68,9 +68,12 @@ QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, con
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "counts");
   CollectedRays collected(asked, arrays);
+  const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
+  std::vector<std::uint32_t> counts;
   for (std::size_t first = 0; first < arrays.size(); first += kCollected) {
     const std::span<const Ray> taken = collected.take(first, options);
-    const std::vector<std::uint32_t> counts = count_hits(asked.target, taken, {.masks = collected.masks()});
+    counts.resize(taken.size());
+    count_hits(*passes, taken, {.masks = collected.masks()}, counts);
     if (!out.empty())
       out.fill(first, counts.size(), [&](std::size_t ray) { return std::array{counts[ray - first]}; });
   }
@@ -83,10 +86,11 @@ AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options)
   AllHits hits;
   hits.splits.reserve(arrays.size() + 1);
   hits.splits.push_back(0);
+  const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
+  LocalHits found;
   for (std::size_t first = 0; first < arrays.size(); first += kCollected) {
     const std::span<const Ray> taken = collected.take(first, options);
-    const LocalHits found =
-        all_hits(asked.target, taken, {.max_hits = options.max_hits, .masks = collected.masks()});
+    all_hits(*passes, taken, {.max_hits = options.max_hits, .masks = collected.masks()}, found);
     add(asked, collected.local(), found, taken.size(), hits);
   }
   hits.report.invalid = collected.local().n_invalid();

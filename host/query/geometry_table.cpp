@@ -18,6 +18,10 @@ GeometryTable::Place GeometryTable::of(std::uint32_t number) const {
   return {g.id, number - g.first};
 }
 
+std::optional<GeometryId> GeometryTable::only() const {
+  return geometries_.size() == 1 ? std::optional(geometries_.front().id) : std::nullopt;
+}
+
 std::vector<std::uint32_t> GeometryTable::masks() const {
   if (std::all_of(geometries_.begin(), geometries_.end(),
                   [](const Geometry& g) { return g.mask == 0xffffffffu; }))

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "kdray/model.h"
@@ -21,6 +22,8 @@ class GeometryTable {
   void add(GeometryId id, std::uint32_t n, std::uint32_t mask);
 
   Place of(std::uint32_t number) const;
+  // The geometry that all numbers are of; none: there are several, or none at all.
+  std::optional<GeometryId> only() const;
   std::uint32_t size() const { return next_; }  // numbers in all
 
   // Of each number; empty where every geometry has every bit.

@@ -11,6 +11,7 @@
 #include "kdray/options.h"
 #include "kdray/ray.h"
 #include "layout/rays.layout.h"
+#include "query/device_array.h"
 #include "query/near_rays.h"
 #include "query/target.h"
 #include "wavefront/stage.h"
@@ -35,14 +36,16 @@ class HitLists {
     std::span<const std::uint32_t> masks;  // of each; none: all bits
   };
 
-  // Room for so many rays at a time, and for so many hits of all of them.
-  HitLists(const Target& target, const Walk& walk, const LocalSpace& space, std::size_t rays,
-           std::size_t hits);
-  ~HitLists() { unmap(); }
+  // `space`: that rays are given in.
+  HitLists(const Target& target, const Walk& walk, const LocalSpace& space);
   HitLists(const HitLists&) = delete;
   HitLists& operator=(const HitLists&) = delete;
 
-  std::size_t most_hits() const { return most_hits_; }
+  // Makes room for so many rays at a time, and for so many hits of all of them. It never gets less.
+  void reserve(std::size_t rays, std::size_t hits);
+
+  // Waits for what may still be running; whether it can be used again.
+  bool settle() noexcept { return clFinish(queue_()) == CL_SUCCESS; }
 
   // The first `capacity` hits of each ray; behind `after`, the ray's span of before, where that isn't empty.
   // `any_length`: directions may be of a length that is_ordinary() doesn't allow. What is returned is valid
@@ -54,22 +57,47 @@ class HitLists {
   void pack(std::span<const std::uint32_t> places, std::size_t n, const HitArrays& to);
 
  private:
-  void unmap() noexcept;
+  // An array of the caller's, for kernels to read: a small one is copied to memory that is kept, a large one
+  // taken as it lies.
+  template <class T>
+  struct Given {
+    DeviceArray<T> kept;
+    cl::Buffer large;
+    const cl::Buffer& take(const Target& target, cl::CommandQueue& queue, std::span<const T> values,
+                           const char* what);
+  };
+  void pack_here(std::span<const std::uint32_t> places, const HitArrays& to);
+
+  // Packed hits on their way to the caller's memory: the same.
+  template <class T>
+  struct Taken {
+    DeviceArray<T> kept;
+    cl::Buffer large;
+    bool lent = false;
+    const cl::Buffer& place(const device::Context& context, T* to, std::size_t n);
+    void take(cl::CommandQueue& queue, T* to, std::size_t n);
+  };
 
   const Target& target_;
-  std::size_t most_hits_;
   bool chunked_;
   wavefront::Stage<kernels::CollectHits> collect_;
   wavefront::Stage<kernels::PackHits> pack_;
   bool masked_;
   device::SpareQueue spare_;
   cl::CommandQueue queue_;
+  float scale_;                          // of the space that rays are given in
   std::vector<std::uint32_t> all_bits_;  // for rays that have no masks, among primitives that do
-  cl::Buffer rays_, masks_, after_, spans_, hits_;
+  Given<Ray> rays_;
+  Given<std::uint32_t> masks_, places_;
+  Given<layout::QuerySpan> after_;
+  DeviceArray<layout::QuerySpan> spans_;
+  DeviceArray<layout::QueryHit> hits_;
+  Taken<float> t_, u_, v_;
+  Taken<std::uint32_t> primitive_;
+  std::span<const Ray> given_;
   std::size_t n_rays_ = 0;
   std::uint32_t capacity_ = 0;
   bool any_length_ = false;
-  void* found_ = nullptr;  // spans_, mapped
 };
 
 }  // namespace kdray::query

@@ -10,6 +10,7 @@
 #include "query/check_rays.h"
 #include "query/grains.h"
 #include "query/near_rays.h"
+#include "query/plain_floats.h"
 
 namespace kdray::query {
 
@@ -49,27 +50,12 @@ RayArrays::RayArrays(const Rays& rays)
   check_size(rays.masks.size(), n_, "masks");
 }
 
-const Ray* RayArrays::structs() const {
-  const float* const first = rays_.origins.first_of<const float>();
-  if (first == nullptr || rays_.origins.size() != n_ || rays_.directions.size() != n_ ||
-      rays_.t_min.size() != n_ || rays_.t_max.size() != n_)
-    return nullptr;
-  for (const std::size_t stride :
-       {rays_.origins.stride(), rays_.directions.stride(), rays_.t_min.stride(), rays_.t_max.stride()})
-    if (stride != sizeof(Ray)) return nullptr;
-  if (reinterpret_cast<std::uintptr_t>(first) % alignof(Ray) != 0) return nullptr;
-  const Ray* const rays = reinterpret_cast<const Ray*>(first);
-  const bool in_place = rays_.t_min.first_of<const float>() == &rays->t_min &&
-                        rays_.directions.first_of<const float>() == rays->direction &&
-                        rays_.t_max.first_of<const float>() == &rays->t_max;
-  return in_place ? rays : nullptr;
-}
-
 LocalFrame::LocalFrame(const scene::Geometry& geometry)
     : space_(geometry.space),
       lo_(0),
       hi_(0),
       exponent_(-std::ilogb(geometry.space.scale)),
+      unit_(std::ldexp(1.0, exponent_)),
       near_(2 * kLocalReach) {
   if (geometry.bounds.empty()) return;
   // By more than a ray may be off for being rounded to float.
@@ -129,43 +115,10 @@ LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_directi
 
 void LocalRays::fill(std::size_t first, std::size_t n, layout::QueryRay* out) {
   moved_.clear();
-  const Ray* const structs = rays_->structs();
-  if (structs == nullptr || !fill_structs(n, structs + first, out)) fill_any(first, n, out);
+  if (!fill_plain_floats(*rays_, *frame_, first, n, out)) fill_any(first, n, out);
   if (rays_->rays().masks.empty()) return;
   for (std::size_t i = 0; i < n; ++i)
     if (rays_->mask(first + i) == 0) out[i] = kNoRay;
-}
-
-// Rays of floats as nearly all are: finite, of ordinary length, not from too far off. False where one isn't.
-bool LocalRays::fill_structs(std::size_t n, const Ray* rays, layout::QueryRay* out) const {
-  const LocalSpace& space = frame_->space();
-  const double scale = space.scale, limit = kFar / scale;
-  const auto t_scale = static_cast<float>(scale);
-  if (!std::isfinite(limit) || !(t_scale >= std::numeric_limits<float>::min()) || std::isinf(t_scale))
-    return false;
-  std::atomic<bool> all{true};
-  for_each_grain(n, [&](std::size_t begin, std::size_t end) {
-    bool plain = true;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Ray& ray = rays[i];
-      const float largest =
-          std::max({std::abs(ray.direction[0]), std::abs(ray.direction[1]), std::abs(ray.direction[2])});
-      const float sum = (ray.direction[0] - ray.direction[0]) + (ray.direction[1] - ray.direction[1]) +
-                        (ray.direction[2] - ray.direction[2]) + (ray.t_min - ray.t_min);
-      plain &= sum == 0 && is_ordinary_length(largest) && ray.t_max == ray.t_max;
-      for (int k = 0; k < 3; ++k) {
-        const double from = ray.origin[k] - space.center[k];
-        plain &= std::abs(from) <= limit;
-        out[i].origin[k] = static_cast<float>(from * scale);
-        out[i].direction[k] = ray.direction[k];
-      }
-      out[i].t_min = ray.t_min * t_scale;
-      plain &= std::isfinite(out[i].t_min);
-      out[i].t_max = ray.t_max * t_scale;
-    }
-    if (!plain) all.store(false, std::memory_order_relaxed);
-  });
-  return all.load();
 }
 
 void LocalRays::fill_any(std::size_t first, std::size_t n, layout::QueryRay* out) {

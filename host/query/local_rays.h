@@ -43,8 +43,6 @@ class RayArrays {
     return rays_.masks.empty() ? 0xffffffffu : rays_.masks[rays_.masks.size() == 1 ? 0 : i][0];
   }
   bool in_double() const { return in_double_; }  // whether one of the arrays is
-  // The array of structs that they are, where they are that, and each ray has its own.
-  const Ray* structs() const;
 
  private:
   static dvec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
@@ -72,6 +70,7 @@ class LocalFrame {
                  bool in_double) const;
   // The exponent of rays that need no more: those of ordinary length that are not moved.
   int exponent() const { return exponent_; }
+  double unit() const { return unit_; }  // 2^exponent()
   const LocalSpace& space() const { return space_; }
   // Whether a point, in the scene's own space, lies outside of its bounds for certain.
   bool is_outside(const dvec3& local) const {
@@ -84,6 +83,7 @@ class LocalFrame {
   LocalSpace space_;
   dvec3 lo_, hi_;  // the bounds, a little wider
   int exponent_;
+  double unit_;
   double near_;  // origins of doubles within this, along each axis, stay
 };
 
@@ -97,10 +97,11 @@ class LocalRays {
 
   // Of ray i of the chunk that was filled last.
   double world_t(std::size_t i, float t) const {
-    const double scaled = moved_.empty() ? std::ldexp(double{t}, frame_->exponent())
-                                         : std::ldexp(double{t}, moved_[i].exponent);
-    return moved_.empty() ? scaled : moved_[i].ahead + scaled;
+    if (moved_.empty()) return t * frame_->unit();
+    return moved_[i].ahead + std::ldexp(double{t}, moved_[i].exponent);
   }
+
+  bool has_moved() const { return !moved_.empty(); }  // rays of that chunk need a t of their own each
 
   std::uint64_t n_invalid() const { return n_invalid_; }
   std::optional<std::string> first_invalid() const { return first_invalid_; }
@@ -110,7 +111,6 @@ class LocalRays {
     double ahead;
     int exponent;
   };
-  bool fill_structs(std::size_t n, const Ray* rays, layout::QueryRay* out) const;
   void fill_any(std::size_t first, std::size_t n, layout::QueryRay* out);
   void note_invalid(std::size_t first, std::size_t n);
 

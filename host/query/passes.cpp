@@ -45,20 +45,31 @@ void Hits::copy(std::size_t first, std::size_t n, const HitArrays& to, std::size
   std::copy_n(v.begin() + from, n, to.v + at);
 }
 
-Passes::Passes(const Target& target, std::size_t n_rays, const CollectOptions& options)
+Passes::Passes(const Target& target, Traversal traversal)
     : target_(target),
-      faulty_miss_(options.faulty_miss),
-      max_hits_(options.max_hits),
-      capacity_(std::clamp(options.max_hits, 1u, kLeastFirst)),
-      traversal_(walk_for(target, options.traversal)),
+      traversal_(walk_for(target, traversal)),
       masked_(target.masks() != nullptr),
       near_rays_(target.space_of_rays()),
-      first_(target, {traversal_, masked_}, near_rays_.kernel_space(),
-             std::min(n_rays, launch_hits(target) / capacity_),
-             std::min(n_rays * capacity_, launch_hits(target))) {}
+      first_(target, {traversal_, masked_}, near_rays_.kernel_space()) {}
+
+bool Passes::settle() noexcept {
+  // What was kept of the last call's rays is not.
+  rays_ = {};
+  masks_ = {};
+  const bool first = first_.settle(), later = !later_ || later_->settle();
+  return first && later;
+}
+
+void Passes::begin(std::size_t n_rays, const CollectOptions& options) {
+  faulty_miss_ = options.faulty_miss;
+  max_hits_ = options.max_hits;
+  capacity_ = std::clamp(options.max_hits, 1u, kLeastFirst);
+  room_ = std::min(n_rays * capacity_, launch_hits(target_));
+  n_taken_ = 0;
+}
 
 std::size_t Passes::next_chunk(std::size_t left) const {
-  return std::min(left, first_.most_hits() / capacity_);
+  return std::min(left, room_ / capacity_);
 }
 
 std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
@@ -74,7 +85,7 @@ std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<co
   const std::span<const QuerySpan> spans = first_.find({rays_, masks_}, !seen_.ordinary, {}, capacity_);
   const auto n_more =
       std::count_if(spans.begin(), spans.end(), [](const QuerySpan& s) { return s.more != 0; });
-  const auto room = static_cast<std::uint32_t>(first_.most_hits());
+  const auto room = static_cast<std::uint32_t>(room_);
   if (static_cast<std::size_t>(n_more) > spans.size() / 16)
     capacity_ = std::max(capacity_, std::min({2 * capacity_, kMostFirst, max_hits_, room}));
   return spans;
@@ -96,8 +107,8 @@ void Passes::others(std::span<const QuerySpan> spans, bool want_hits, const Foun
 void Passes::pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still) {
   const std::size_t room = launch_hits(target_);
   if (!later_)
-    later_ = std::make_unique<HitLists>(target_, HitLists::Walk{traversal_, masked_},
-                                        near_rays_.kernel_space(), room / kLeastLater, room);
+    later_ =
+        std::make_unique<HitLists>(target_, HitLists::Walk{traversal_, masked_}, near_rays_.kernel_space());
   const auto capacity =
       static_cast<std::uint32_t>(std::clamp<std::size_t>(room / rest.size(), kLeastLater, kMostLater));
   std::vector<Ray> rays;

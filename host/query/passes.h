@@ -1,6 +1,7 @@
 // What    The passes in which all hits of rays are found, chunk by chunk: a first one with short lists, which
 //         are enough for nearly all rays, and further ones for the rays that have more.
-// Shape   For each chunk first(), then others(), and pack() of first_lists() for the hits of the first pass.
+// Shape   begin() a call; for each chunk first(), then others(), and pack() of first_lists() for the hits of
+//         the first pass. Kernels and buffers serve the next call too (sessions.h).
 #pragma once
 
 #include <cstdint>
@@ -35,7 +36,11 @@ struct Hits {
 
 class Passes {
  public:
-  Passes(const Target& target, std::size_t n_rays, const CollectOptions& options);
+  explicit Passes(const Target& target, Traversal traversal = Traversal::automatic);
+  bool settle() noexcept;
+
+  // A call about so many rays. (Its traversal has been chosen.)
+  void begin(std::size_t n_rays, const CollectOptions& options);
 
   // How many of the rays that are left the next chunk has.
   std::size_t next_chunk(std::size_t left) const;
@@ -62,13 +67,15 @@ class Passes {
   Hits packed(std::span<const layout::QuerySpan> spans);
 
   const Target& target_;
-  bool faulty_miss_;
-  std::uint32_t max_hits_, capacity_;
   Traversal traversal_;
   bool masked_;
   NearRays near_rays_;
   HitLists first_;
   std::unique_ptr<HitLists> later_;
+  // Of the call.
+  bool faulty_miss_ = false;
+  std::uint32_t max_hits_ = 0, capacity_ = 0;
+  std::size_t room_ = 0;     // for hits in a launch
   std::size_t n_taken_ = 0;  // rays of the chunks so far
   // Of the chunk in work: its rays, and what holds them where some are none.
   RaysSeen seen_{};

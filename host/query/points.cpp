@@ -70,10 +70,34 @@ std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const d
     const float end = std::numeric_limits<float>::infinity();
     rays[i] = {{at.x, at.y, at.z}, 0, {0.1803f, 0.2741f, 1}, outside ? -end : end};
   });
-  Target unmasked = asked.target;
-  unmasked.masks = cl::Buffer();
-  return count_hits(unmasked, rays);
+  std::vector<std::uint32_t> counts(points.size());
+  AllSessions& all = asked.sessions;
+  const bool masked = asked.target.masks() != nullptr;
+  count_hits(*(masked ? all.of_all : all.crossings).borrow(), rays, {}, counts);
+  return counts;
 }
+
+// What lies nearest to points: asked for when it is made, so that the device works at it meanwhile.
+class Nearest {
+ public:
+  Nearest(const Asked& asked, std::span<const dvec3> points, double radius)
+      : found_(points.size(), kNoClosestPoint) {
+    check_points(points, radius);
+    if (points.empty() || asked.scene().geometry.bounds.empty()) return;
+    session_ = asked.sessions.points.borrow();
+    session_->start(points, radius);
+  }
+
+  const std::vector<ClosestPoint>& wait() {
+    if (session_) session_->wait(found_);
+    session_.reset();
+    return found_;
+  }
+
+ private:
+  std::vector<ClosestPoint> found_;
+  Sessions<PointSession>::Borrowed session_;
+};
 
 template <class Take>
 QueryReport for_each_chunk(const Points& points, const PointOptions& options, const Take& take) {
@@ -96,11 +120,12 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
   check_out(out.v.size(), n, "v");
   return for_each_chunk(
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        const ClosestPoints found = query::closest_points(asked.target, some, options.radius);
+        Nearest nearest(asked, some, options.radius);
+        const std::vector<ClosestPoint>& found = nearest.wait();
         const auto fill = [&](const auto& column, const auto& value_of) {
           if (column.empty()) return;
           column.fill(first, some.size(), [&](std::size_t i) {
-            return value_of(chunks.is_invalid(i - first) ? kNoClosestPoint : found.points[i - first]);
+            return value_of(chunks.is_invalid(i - first) ? kNoClosestPoint : found[i - first]);
           });
         };
         const auto place_of = [&](const ClosestPoint& p) {
@@ -135,12 +160,13 @@ QueryReport signed_distance(const Asked& asked, const Points& points, const Valu
   check_out(out.size(), points.size(), "distance");
   return for_each_chunk(
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        const ClosestPoints found = query::closest_points(asked.target, some, options.radius);
+        Nearest nearest(asked, some, options.radius);
         const std::vector<std::uint32_t> counts = crossings_above(asked, some);
+        const std::vector<ClosestPoint>& found = nearest.wait();
         if (out.empty()) return;
         out.fill(first, some.size(), [&](std::size_t i) {
           const double distance = chunks.is_invalid(i - first) ? std::numeric_limits<double>::infinity()
-                                                               : found.points[i - first].distance;
+                                                               : found[i - first].distance;
           return std::array{counts[i - first] % 2 == 1 ? -distance : distance};
         });
       });

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "device/host_memory.h"
 #include "device/opencl_error.h"
 #include "layout/features.h"
 #include "layout/traversal.h"
@@ -13,7 +12,7 @@ namespace kdray::query {
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 17, kGlobalChunk = std::size_t{1} << 20;
+constexpr std::size_t kChunk = std::size_t{1} << 16, kGlobalChunk = std::size_t{1} << 20;
 
 Traversal traversal_of(const Target& target) {
   return target.global ? Traversal::wide : Traversal::automatic;
@@ -25,37 +24,39 @@ layout::Features features_to_trace(const Target& target) {
 
 }  // namespace
 
-template <class T>
-cl::Buffer Session::buffer_of(Array<T>& array, cl_mem_flags flags, const char* what) {
-  if (!in_place_) return context_->buffer(flags, array.bytes(), what);
-  return device::buffer_over(context_->get(), flags, array.data(), array.bytes(), array.owner());
+void throw_failed_walk() {
+  throw Error(ErrorCode::internal,
+              "a ray met a primitive of a kind that its kernel lacks; please report it with the scene");
 }
 
 Session::Session(const Target& target)
-    : context_(&target.context),
-      masked_(target.masks() != nullptr),
+    : masked_(target.masks() != nullptr),
       queue_(target.context),
       stage_(target.programs.kernel<kernels::TraceQuery>(features_to_trace(target), traversal_of(target))),
       work_group_(target.work_group),
-      chunked_(!target.global),
-      in_place_(target.context.works_in_host_memory()),
-      rays_(target.global ? kGlobalChunk : kChunk),
-      hits_(rays_.size()),
-      masks_(masked_ ? rays_.size() : 1) {
+      chunked_(!target.global) {
   using K = kernels::TraceQuery;
   device::checked("getting ready to trace rays", [&] {
-    ray_buffer_ = buffer_of(rays_, CL_MEM_READ_ONLY, "the rays");
-    hit_buffer_ = buffer_of(hits_, CL_MEM_WRITE_ONLY, "the hits");
-    mask_buffer_ = buffer_of(masks_, CL_MEM_READ_ONLY, "the rays' masks");
+    const std::size_t chunk = target.global ? kGlobalChunk : kChunk;
+    rays_ = {target.context, CL_MEM_READ_ONLY, chunk, "the rays"};
+    hits_ = {target.context, CL_MEM_WRITE_ONLY, chunk, "the hits"};
+    masks_ = {target.context, CL_MEM_READ_ONLY, masked_ ? chunk : 1, "the rays' masks"};
     set_scene_arguments(stage_, target);
     stage_.set(K::space, float4(vec3(0), 1)).set(K::any_length, cl_uint{0});
-    stage_.set(K::rays, ray_buffer_).set(K::hits, hit_buffer_);
-    stage_.set(K::primitive_masks, masked_ ? target.masks : mask_buffer_).set(K::ray_masks, mask_buffer_);
+    stage_.set(K::rays, rays_.buffer()).set(K::hits, hits_.buffer());
+    stage_.set(K::primitive_masks, masked_ ? target.masks : masks_.buffer());
+    stage_.set(K::ray_masks, masks_.buffer());
     // PoCL compiles a kernel for good at its first launch.
-    const device::AtWork compiling(context_->builds());
+    const device::AtWork compiling(target.context.builds());
     stage_.set(K::any_hit, cl_uint{0}).set(K::as_refs, cl_uint{0});
     launch(0);
+    queue_.get().finish();
+    stage_.forget_launches();
   });
+}
+
+bool Session::settle() noexcept {
+  return !started_ || clFinish(queue_.get()()) == CL_SUCCESS;
 }
 
 void Session::launch(std::size_t n) {
@@ -64,50 +65,29 @@ void Session::launch(std::size_t n) {
   const std::size_t items = std::max<std::size_t>(n, 1);
   chunked_ ? stage_.launch(queue_.get(), (items + KDRAY_CHUNK - 1) / KDRAY_CHUNK, 1)
            : stage_.launch(queue_.get(), items, work_group_);
-  queue_.get().finish();
-  stage_.forget_launches();
 }
 
-std::span<const layout::QueryHit> Session::trace(std::size_t n, bool any_hit, bool as_refs) {
+void Session::start(std::size_t n, bool any_hit, bool as_refs) {
   using K = kernels::TraceQuery;
-  sound_ = false;
+  started_ = true;
+  n_started_ = n;
   device::checked("tracing rays", [&] {
     stage_.set(K::any_hit, cl_uint{any_hit}).set(K::as_refs, cl_uint{as_refs});
-    if (!in_place_) {
-      queue_.get().enqueueWriteBuffer(ray_buffer_, CL_TRUE, 0, n * sizeof rays_[0], rays_.data());
-      if (masked_)
-        queue_.get().enqueueWriteBuffer(mask_buffer_, CL_TRUE, 0, n * sizeof masks_[0], masks_.data());
-    }
+    rays_.send(queue_.get(), n);
+    if (masked_) masks_.send(queue_.get(), n);
     launch(n);
-    if (!in_place_)
-      queue_.get().enqueueReadBuffer(hit_buffer_, CL_TRUE, 0, n * sizeof hits_[0], hits_.data());
+    queue_.get().flush();
   });
-  sound_ = true;
-  const std::span<const layout::QueryHit> hits(hits_.data(), n);
-  if (std::any_of(hits.begin(), hits.end(),
-                  [](const layout::QueryHit& h) { return h.primitive == kFailedWalk; }))
-    throw Error(ErrorCode::internal,
-                "a ray met a primitive of a kind that its kernel lacks; please report it with the scene");
-  return hits;
 }
 
-Sessions::Borrowed Sessions::borrow() {
-  std::unique_ptr<Session> session;
-  if (const std::lock_guard lock(mutex_); !free_.empty()) {
-    session = std::move(free_.back());
-    free_.pop_back();
-  }
-  if (!session) session = std::make_unique<Session>(target_);  // which may compile: others go on
-  return {session.release(), Give(this)};
-}
-
-void Sessions::take_back(std::unique_ptr<Session> session) {
-  if (!session->is_sound()) return;  // something may still be running on it
-  const std::lock_guard lock(mutex_);
-  try {
-    free_.push_back(std::move(session));
-  } catch (const std::bad_alloc&) {  // the next one is made anew
-  }
+std::span<const layout::QueryHit> Session::wait() {
+  device::checked("tracing rays", [&] {
+    queue_.get().finish();
+    hits_.fetch(queue_.get(), n_started_);
+    stage_.forget_launches();
+  });
+  started_ = false;
+  return hits_.first(n_started_);
 }
 
 }  // namespace kdray::query

@@ -54,8 +54,8 @@ vec3 color_of(const Color& c, const char* name);
 void assemble(Scene& scene, std::span<const AddedGeometry* const> geometries,
               std::span<const Material> materials);
 
-// The same where, since `before` was assembled of them, only vertices and normals of the geometries have changed:
-// `scene` has no primitives, and takes over those of `before`.
+// The same where, since `before` was assembled of them, only vertices and normals of the geometries have
+// changed: `scene` has no primitives, and takes over those of `before`.
 void assemble_moved(Scene& scene, Scene&& before, std::span<const AddedGeometry* const> geometries,
                     std::span<const Material> materials);
 

@@ -96,7 +96,7 @@ TEST(BenchRays, RunsOnOneCoreAndOnAll) {
 }
 
 TEST(Bench, RefusesWhatItDoesNotKnow) {
-  EXPECT_TRUE(fails_with(kdray({"bench"}), 2, "rays, frames"));
+  EXPECT_TRUE(fails_with(kdray({"bench"}), 2, "rays, queries, frames"));
   EXPECT_TRUE(fails_with(kdray({"bench", "modesty"}), 2, "modesty"));
   EXPECT_TRUE(fails_with(kdray({"bench", "rays", "--classes", "primary,none"}), 2, "--classes"));
   EXPECT_TRUE(fails_with(kdray({"bench", "rays", "--traversals", "all"}), 2, "--traversals"));

@@ -1,0 +1,56 @@
+// What    Someone who answers questions about a mesh: kdray, or Embree in one of its forms. From arrays to
+//         arrays: what handing rays over and taking answers back costs is theirs.
+// Shape   ask() answers rays or points [first, first + n) of a set, in the same places of Answers; the
+//         crossings of `all` in place of those of the call before.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/queries/arrays.h"
+
+namespace kdray::bench {
+
+enum class Question { closest, any, count, all, points, distance, inside };
+
+// closest, any, count, all, points, distance, inside.
+std::span<const std::string_view> question_names();
+Question question_of(std::string_view name);
+
+struct Answers {
+  // Of `closest`; of `points` the distance is `t`.
+  std::vector<float> t, u, v;
+  std::vector<std::uint32_t> geometry, primitive;
+  std::vector<float> point;       // of `points`
+  std::vector<std::uint8_t> hit;  // of `any`, `inside`
+  std::vector<std::uint32_t> count;
+  AllHits all;
+
+  // Room for what a question about n rays or points is answered by.
+  Answers(Question question, std::size_t n);
+};
+
+class Asker {
+ public:
+  virtual ~Asker() = default;
+  virtual void ask(Question question, const QuerySet& set, std::size_t first, std::size_t n,
+                   Answers& answers) = 0;
+};
+
+// A side of the race, with the forms that it has; the best of them counts.
+struct Side {
+  std::string name;  // "kdray", "fast", "robust"
+  struct Form {
+    std::string name;  // "1 coherent"
+    std::shared_ptr<Asker> asker;
+  };
+  std::vector<Form> forms;
+  // Makes all of it anew from the arrays, asks one ray, and forgets it.
+  std::function<void(const QuerySet& set)> first_answer;
+};
+
+}  // namespace kdray::bench

@@ -1,0 +1,14 @@
+// What    Embree as sides of `bench queries`: a fast scene and a robust one. Without Embree there are none.
+#pragma once
+
+#include "bench/queries/asker.h"
+
+namespace kdray::bench {
+
+// The mesh has to outlive them.
+std::vector<Side> embree_sides(const MeshArrays& mesh, int threads);
+
+// Whether Embree has a way to answer it.
+bool embree_answers(Question question);
+
+}  // namespace kdray::bench

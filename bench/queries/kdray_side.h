@@ -1,0 +1,19 @@
+// What    kdray as a side of `bench queries`: by way of its public interface.
+// Errors  As kdray/scene.h says.
+#pragma once
+
+#include <memory>
+
+#include "bench/queries/asker.h"
+#include "kdray/kdray.h"
+
+namespace kdray::bench {
+
+// The mesh as a scene that has been committed.
+Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device);
+
+// The mesh has to outlive it.
+Side kdray_side(const std::shared_ptr<const Scene>& scene, const MeshArrays& mesh,
+                const DeviceOptions& device);
+
+}  // namespace kdray::bench

@@ -1,0 +1,170 @@
+#include "bench/queries/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/embree/embree.h"
+#include "bench/measure/short_name.h"
+
+namespace kdray::bench {
+
+namespace {
+
+const SideResult* find(const std::vector<SideResult>& sides, std::string_view name) {
+  const auto found =
+      std::find_if(sides.begin(), sides.end(), [&](const SideResult& s) { return s.side == name; });
+  return found == sides.end() ? nullptr : &*found;
+}
+
+// How many times as long the other takes as kdray; 0: there is no other.
+struct Ratio {
+  double wall = 0, cpu = 0;
+  Ratio(const std::vector<SideResult>& sides, std::string_view other) {
+    const SideResult *const kdray = find(sides, "kdray"), *const o = find(sides, other);
+    if (kdray == nullptr || o == nullptr) return;
+    wall = o->wall.median / kdray->wall.median;
+    cpu = o->cpu.median / kdray->cpu.median;
+  }
+};
+
+std::string number(double value, int width, int digits) {
+  return value > 0 ? fmt::format("{:>{}.{}f}", value, width, digits) : fmt::format("{:>{}}", "-", width);
+}
+
+std::string side_cells(const SideResult* side) {
+  if (side == nullptr) return fmt::format("{:>12}{:>15}{:>8}", "-", "", "");
+  return fmt::format("{:>12.1f}{:>15}{:>8}", 1e6 * side->wall.median, side->form, side->n_differing);
+}
+
+std::string ratio_cells(const std::vector<SideResult>& sides) {
+  const Ratio fast(sides, "fast"), robust(sides, "robust");
+  return number(fast.wall, 8, 2) + number(robust.wall, 8, 2) + number(fast.cpu, 9, 2) +
+         number(robust.cpu, 9, 2);
+}
+
+std::string line_of(const CellResult& cell) {
+  const SideResult* const kdray = find(cell.sides, "kdray");
+  return fmt::format("  {:<9}{:<9}{:>8}{:>12.1f}{}{}{}{}\n", cell.question, cell.set, cell.batch,
+                     1e6 * kdray->wall.median, side_cells(find(cell.sides, "fast")),
+                     side_cells(find(cell.sides, "robust")), ratio_cells(cell.sides),
+                     cell.on_device ? number(1e6 * cell.on_device->median, 12, 1) : "");
+}
+
+Json json_of(const SideResult& s) {
+  return {{"side", s.side},
+          {"form", s.form},
+          {"seconds", json_of(s.wall)},
+          {"cpu_seconds", json_of(s.cpu)},
+          {"differing", s.n_differing}};
+}
+
+Json ratios_of(const std::vector<SideResult>& sides) {
+  Json json = Json::object();
+  for (const char* const other : {"fast", "robust"}) {
+    const Ratio ratio(sides, other);
+    json[other] = ratio.wall > 0 ? Json(ratio.wall) : Json();
+    json[std::string(other) + "_cpu"] = ratio.cpu > 0 ? Json(ratio.cpu) : Json();
+  }
+  return json;
+}
+
+Json json_of(const CellResult& c) {
+  Json json = {{"question", c.question},
+               {"set", c.set},
+               {"batch", c.batch},
+               {"calls", c.calls},
+               {"sides", Json::array()},
+               {"ratios", ratios_of(c.sides)},
+               {"on_device", c.on_device ? json_of(*c.on_device) : Json()}};
+  for (const SideResult& s : c.sides) json["sides"].push_back(json_of(s));
+  return json;
+}
+
+Json json_of(const QueriesRun& run) {
+  Json json = {{"scene", run.scene},
+               {"triangles", run.n_triangles},
+               {"cores", run.cores},
+               {"device", run.device},
+               {"vectors", run.vectors},
+               {"first_in_process", run.first_in_process},
+               {"first_answers", Json::array()},
+               {"first_answer_ratios", ratios_of(run.first_answers)},
+               {"cells", Json::array()}};
+  for (const SideResult& s : run.first_answers) json["first_answers"].push_back(json_of(s));
+  for (const CellResult& c : run.cells) json["cells"].push_back(json_of(c));
+  return json;
+}
+
+bool has_embree(std::span<const QueriesRun> runs) {
+  return std::any_of(runs.begin(), runs.end(),
+                     [](const QueriesRun& run) { return find(run.first_answers, "robust") != nullptr; });
+}
+
+double plotted(const CellResult& cell, bool as_ratio) {
+  if (as_ratio) return Ratio(cell.sides, "robust").wall;
+  return static_cast<double>(cell.batch) / find(cell.sides, "kdray")->wall.median * 1e-6;
+}
+
+// A question about a scene: a line for each set.
+XyPanel panel_of(const QueriesRun& run, const std::string& question, const XyPlot& plot, bool as_ratio) {
+  XyPanel panel{short_name(run.scene) + ": " + question,
+                {"rays in a call", true},
+                {as_ratio ? "times as fast" : "M/s", true},
+                {}};
+  for (const Series& series : plot.series) {
+    auto& points = panel.points.emplace_back();
+    for (const CellResult& c : run.cells)
+      if (c.question == question && c.set == series.name)
+        points.push_back({static_cast<double>(c.batch), plotted(c, as_ratio)});
+  }
+  return panel;
+}
+
+}  // namespace
+
+std::string table_of(const QueriesRun& run) {
+  std::string out = fmt::format("{}: {} triangles, {} core{} of {}\n", short_name(run.scene), run.n_triangles,
+                                run.cores, run.cores == 1 ? "" : "s", run.device);
+  out += fmt::format("  from arrays to the first answer, s:");
+  for (const SideResult& s : run.first_answers) out += fmt::format(" {} {:.3f}", s.side, s.wall.median);
+  out += fmt::format("; the first in this process {:.3f}\n", run.first_in_process);
+  out += fmt::format("  {:<26}{:>12}{:>12}{:>15}{:>8}{:>12}{:>15}{:>8}{:>8}{:>8}{:>9}{:>9}{:>12}\n",
+                     "microseconds for a call", "kdray", "fast", "", "other", "robust", "", "other", "k/fast",
+                     "k/rob", "cpu/fast", "cpu/rob", "on device");
+  for (const CellResult& cell : run.cells) out += line_of(cell);
+  return out;
+}
+
+Json json_of(std::span<const QueriesRun> runs, const QueriesOptions& options) {
+  Json json = {{"command", "bench queries"},
+               {"embree", has_embree(runs) ? Json(embree_version()) : Json()},
+               {"rays", options.rays},
+               {"repeat", options.repeat},
+               {"runs", Json::array()}};
+  for (const QueriesRun& run : runs) json["runs"].push_back(json_of(run));
+  return json;
+}
+
+XyPlot plot_of(std::span<const QueriesRun> runs, const QueriesOptions& options) {
+  const bool as_ratio = has_embree(runs);
+  XyPlot plot;
+  plot.title = as_ratio
+                   ? "Queries from arrays: kdray's speed over that of Embree " + embree_version() + ", robust"
+                   : "Queries from arrays: rays or points in a second";
+  plot.subtitle = fmt::format("{}; median of {} interleaved rounds", runs.empty() ? "" : runs.front().device,
+                              options.repeat);
+  plot.series = {{"coherent", "#4e9bd4"}, {"diffuse", "#5fb37a"}, {"random", "#c4504f"}};
+  for (const QueriesRun& run : runs)
+    for (const std::string_view question : question_names()) {
+      XyPanel panel = panel_of(run, std::string(question), plot, as_ratio);
+      const auto is_shown = [](const Point& p) { return p.y > 0; };
+      if (std::any_of(panel.points.begin(), panel.points.end(), [&](const auto& points) {
+            return std::any_of(points.begin(), points.end(), is_shown);
+          }))
+        plot.panels.push_back(std::move(panel));
+    }
+  return plot;
+}
+
+}  // namespace kdray::bench
