@@ -252,6 +252,14 @@ void Scene::set_ambient(const Color& color) {
 std::uint32_t Scene::primitives() const {
   return impl_->table().size();
 }
+std::optional<Extent> Scene::extent() const {
+  const auto committed = impl_->asked();
+  const auto& geometry = committed->scene().prepared().geometry;
+  if (geometry.bounds.empty()) return std::nullopt;
+  const dvec3 lo = geometry.space.world(dvec3(geometry.bounds.lo)),
+              hi = geometry.space.world(dvec3(geometry.bounds.hi));
+  return Extent{{lo.x, lo.y, lo.z}, {hi.x, hi.y, hi.z}};
+}
 const std::vector<std::string>& Scene::warnings() const {
   return impl_->base.warnings;
 }

@@ -17,10 +17,11 @@ dvec3 corner(const layout::Triangle& t, int i) {
   return {t.v[i][0], t.v[i][1], t.v[i][2]};
 }
 
-// In double, which floats' differences and products leave with next to no rounding.
+// In double, which floats' differences and products leave with next to no rounding, and whose range their
+// squares don't leave.
 dvec3 normal_of(const layout::Triangle& t) {
   const dvec3 a = corner(t, 0), n = glm::cross(corner(t, 1) - a, corner(t, 2) - a);
-  return n == dvec3(0) ? n : safe_normalize(n);
+  return n == dvec3(0) ? n : glm::normalize(n);
 }
 
 }  // namespace

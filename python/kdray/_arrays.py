@@ -152,6 +152,13 @@ class RayArrays:
         """The arguments that every query of rays begins with."""
         return self.origins, self.directions, self.t_min, self.t_max, self.masks
 
+    def points_at(self, t: Array) -> Floats:
+        """The points origin + t*direction of all rays, in double and then of the rays' own type."""
+        rows = t.reshape(-1, 1).astype(np.float64)
+        with np.errstate(invalid="ignore"):
+            points = np.where(rows < np.inf, self.origins + rows * self.directions, np.inf)
+        return points.astype(self.dtype).reshape(*self.shape, 3)
+
     def part(self, first: int, end: int) -> RayArrays:
         """The rays first to end."""
         part = object.__new__(RayArrays)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -43,10 +44,11 @@ def _column(name: str, what: str) -> Any:
 class Hits(_Columns):
     """Of each ray what it hits first. All arrays have the shape of the rays, without the coordinates."""
 
-    __slots__ = ("_geometry", "_normal", "_point", "_primitive", "_t", "_u", "_v")
+    __slots__ = ("_geometry", "_normal", "_point", "_point_given", "_point_later", "_primitive", "_t", "_u", "_v")
     _names = ("t", "geometry", "primitive", "u", "v", "normal", "point")
     _t: Array | None
     _geometry: Array | None
+    _point: Array | None
 
     t = _column("t", "float32 or float64, as the rays: multiples of the direction; infinity for a miss.")
     geometry = _column("geometry", "int32: the geometry's id; -1 for a miss.")
@@ -54,11 +56,30 @@ class Hits(_Columns):
     u = _column("u", "float32: the weight of a triangle's second corner; of cones, the share of the axis.")
     v = _column("v", "float32: the weight of a triangle's third corner.")
     normal = _column("normal", "(..., 3) of unit length, of the surface itself; 0 for a miss.")
-    point = _column("point", "(..., 3) origin + t*direction; infinite for a miss.")
 
-    def __init__(self, columns: dict[str, Array]) -> None:
+    def __init__(self, columns: dict[str, Array], point_later: Callable[[Array], Array] | None = None) -> None:
         for name in self._names:
             setattr(self, "_" + name, columns.get(name))
+        self._point_given = self._point is not None
+        self._point_later = point_later
+
+    @property
+    def point(self) -> Array:
+        """(..., 3) origin + t*direction; infinite for a miss.
+
+        Unless it is named in ``fields=``, it is computed when it is first read, from the rays as they are then.
+        """
+        if self._point is None and self._point_later is not None and self._t is not None:
+            self._point = self._point_later(self._t)
+        if self._point is None:
+            raise AttributeError("point was not asked for: name it in fields=")
+        return self._point
+
+    def _now_of(self, point_later: Callable[[Array], Array]) -> None:
+        """Other rays' answers have been written into the arrays."""
+        if not self._point_given:
+            self._point = None
+        self._point_later = point_later
 
     @property
     def hit(self) -> npt.NDArray[np.bool_]:
@@ -70,7 +91,8 @@ class Hits(_Columns):
     @property
     def fields(self) -> tuple[str, ...]:
         """The names of the arrays that are there."""
-        return tuple(name for name in self._names if getattr(self, "_" + name) is not None)
+        there = (name for name in self._names if getattr(self, "_" + name) is not None)
+        return tuple(name for name in there if name != "point" or self._point_given)
 
 
 class AllHits:

@@ -21,6 +21,7 @@ from .picture import Picture
 from .progress import Progress, teller
 
 _FLOATS = (np.float32, np.float64)
+_USUAL = ("t", "geometry", "primitive", "u", "v", "normal")
 _AT_ONCE = 1 << 20  # rays between two words of progress
 
 
@@ -200,6 +201,12 @@ class Scene:
         return int(self._core.primitives())
 
     @property
+    def bounds(self) -> npt.NDArray[np.float64] | None:
+        """The least and the greatest coordinates, (2, 3); None where there is nothing. Commits changes."""
+        ends = self._ready().bounds()
+        return None if ends is None else np.array(ends)
+
+    @property
     def warnings(self) -> list[str]:
         """What the reader of its file left out or changed, a line each."""
         return list(self._core.warnings())
@@ -208,15 +215,19 @@ class Scene:
 
     def add_material(self, material: Material) -> int:
         """Adds a material, for `add_mesh(..., material=)`."""
-        m = material
-        ambient = m.ambient if m.ambient is not None else [0.1 * c for c in m.diffuse]
         with self._lock:
-            number = self._core.add_material(
-                m.emission, ambient, m.diffuse, m.specular, m.reflect, m.transmit, m.shine, m.index
-            )
-            self._materials.append(m)
+            if not self._materials:  # number 0 is of what is added without one
+                self._add_to_core(Material())
+            number = self._add_to_core(material)
+            self._materials.append(material)
             self._changed = True
-            return int(number)
+            return number
+
+    def _add_to_core(self, m: Material) -> int:
+        ambient = m.ambient if m.ambient is not None else [0.1 * c for c in m.diffuse]
+        return int(
+            self._core.add_material(m.emission, ambient, m.diffuse, m.specular, m.reflect, m.transmit, m.shine, m.index)
+        )
 
     def add_light(self, light: Light) -> None:
         """Adds a light. (Without any, a picture gets two.)"""
@@ -288,15 +299,16 @@ class Scene:
         mask: ArrayLike | None = None,
         out: Hits | None = None,
         *,
-        fields: Iterable[str] = Hits._names,
+        fields: Iterable[str] = _USUAL,
         strict: bool = False,
         progress: Progress = False,
     ) -> Hits:
         """What each ray hits first.
 
-        float64 rays are met in the scene's own frame, to double's precision in t; results are float32 for float32
-        rays. `fields` names the arrays of `Hits` that are wanted: fewer are faster. `out` is a Hits to write into.
-        Rays that mean nothing (NaN, no direction) are misses, or with `strict` an InputError that names the first.
+        float64 rays are met in the scene's own frame, begun and answered in double (shapes are floats about the
+        scene's centre); results are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted:
+        fewer are faster; `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or
+        with `strict` an InputError that names the first.
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         columns = _hit_columns(rays, out, tuple(fields))
@@ -308,7 +320,10 @@ class Scene:
             core.closest(*part.given(), strict, *(cut.get(name) for name in Hits._names))
 
         _in_parts(rays, ask, progress, "closest_hit")
-        return out if out is not None else Hits(columns)
+        if out is None:
+            return Hits(columns, rays.points_at)
+        out._now_of(rays.points_at)
+        return out
 
     def any_hit(
         self,

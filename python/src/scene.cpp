@@ -2,6 +2,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -70,6 +71,10 @@ void add_geometries(SceneClass& scene) {
     return nb::make_tuple(info.name, info.mask, info.primitives, info.enabled);
   });
   scene.def("primitives", &Scene::primitives);
+  scene.def("bounds", [](const Scene& s) {
+    const std::optional<Extent> extent = s.extent();
+    return extent ? std::optional(std::pair(extent->least, extent->greatest)) : std::nullopt;
+  });
   scene.def("warnings", &Scene::warnings);
 }
 

@@ -46,6 +46,17 @@ def test_colors_are_those_of_the_material():
     np.testing.assert_allclose(picture[1, 1], [0.25, 0.5, 1], atol=1e-6)
 
 
+def test_a_material_is_only_of_those_it_was_given_to():
+    camera = kdray.Camera((0, 0, 5))
+    scene = kdray.Scene()
+    scene.add_spheres([0, 0, 0], 1)
+    grey = scene.render(camera, (3, 3))[1, 1]
+    glow = scene.add_material(kdray.Material(emission=(1, 0, 0)))
+    np.testing.assert_array_equal(scene.render(camera, (3, 3))[1, 1], grey)
+    scene.add_spheres([0, 0, 0], 1.5, material=glow)
+    assert scene.render(camera, (3, 3))[1, 1, 0] >= 1
+
+
 def test_saving(lit, tmp_path):
     picture = lit.render(size=(20, 10), channels=["depth"])
     files = picture.save(tmp_path / "a.png")

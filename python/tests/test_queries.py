@@ -47,7 +47,10 @@ def test_a_hit_has_all_its_fields(ball, ball_mesh, rng):
     d = -o + 0.3 * rng.normal(size=o.shape)
     hits = ball.closest_hit(o, d)
     hit = hits.hit
-    assert hits.fields == ("t", "geometry", "primitive", "u", "v", "normal", "point")
+    assert hits.fields == ("t", "geometry", "primitive", "u", "v", "normal")
+    at_once = ball.closest_hit(o, d, fields=("point",))
+    assert at_once.fields == ("point",)
+    np.testing.assert_array_equal(at_once.point, hits.point)
     assert (hits.geometry[hit] == 0).all() and (hits.geometry[~hit] == -1).all()
     assert (hits.primitive[~hit] == -1).all() and hits.primitive.dtype == np.int32
     a, b, c = (vertices[triangles[hits.primitive[hit], k]] for k in range(3))
@@ -64,7 +67,7 @@ def test_a_hit_has_all_its_fields(ball, ball_mesh, rng):
 def test_results_have_the_shape_of_the_rays(ball, shape):
     o = np.zeros((*shape, 3)) + [0, 0, 5]
     hits = ball.closest_hit(o, [0, 0, -1])
-    for name in hits.fields:
+    for name in (*hits.fields, "point"):
         wide = (*shape, 3) if name in ("normal", "point") else shape
         assert getattr(hits, name).shape == wide, name
     assert ball.any_hit(o, [0, 0, -1]).shape == shape
@@ -184,10 +187,13 @@ def test_out_is_written_in_place(ball, rng):
     with pytest.raises(kdray.InputError, match=r"out\.t"):
         ball.closest_hit(o, d, out=again)
     t = hits.t
-    expected = t.copy()
+    expected, point = t.copy(), hits.point
+    other = ball.closest_hit(-o, -d, out=hits)
+    assert not np.array_equal(other.point, point)
     t[:] = 0
     assert ball.closest_hit(o, d, out=hits) is hits
     np.testing.assert_array_equal(t, expected)
+    np.testing.assert_array_equal(hits.point, point)
     found = np.zeros(50, bool)
     assert ball.any_hit(o, d, out=found) is found
     np.testing.assert_array_equal(found, hits.hit)

@@ -224,3 +224,11 @@ def test_ctrl_c_ends_a_long_call(question):
     program.send_signal(signal.SIGINT)
     _, errors = program.communicate(timeout=60)
     assert "KeyboardInterrupt" in errors and program.returncode != 0
+
+
+def test_bounds_are_of_what_is_there(ball_mesh):
+    vertices, triangles = ball_mesh
+    scene = kdray.Scene()
+    assert scene.bounds is None
+    scene.add_mesh(vertices + [5e5, 0, 0], triangles)
+    np.testing.assert_allclose(scene.bounds, [[5e5 - 1, -1, -1], [5e5 + 1, 1, 1]], atol=3e-7)

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ struct CommitOptions {
 struct CommitReport {
   bool refitted = false;  // the tree was kept, fitted to where vertices are now; false: it was built
   double growth = 1;      // of what a ray is expected to cost, since the tree was built; above the limit: why
+};
+
+struct Extent {
+  Vec3 least, greatest;
 };
 
 struct GeometryInfo {
@@ -95,6 +100,9 @@ class Scene {
   void set_ambient(const Color& color);
 
   std::uint32_t primitives() const;
+  // The least and the greatest coordinates of what was committed; none where that is nothing. They contain all
+  // of it, and are wider by no more than floats' rounding.
+  std::optional<Extent> extent() const;
   const std::vector<std::string>& warnings() const;  // what the loader left out or changed, one line each
   // All of it together. It is put together by the first call after a change: not for several threads at once.
   const scene::Scene& model() const;
