@@ -12,7 +12,7 @@ bool far_apart(double a, double b, double width) {
   return std::isfinite(a) && std::abs(a - b) > 1e-4 * std::max(std::abs(a), std::abs(b)) + 1e-6 * width;
 }
 
-// Of ray i of the call.
+// Those of the call's ray i.
 bool crossings_differ(const AllHits& a, const AllHits& b, std::size_t i, double width) {
   const std::size_t n = a.splits[i + 1] - a.splits[i];
   if (n != b.splits[i + 1] - b.splits[i]) return true;

@@ -1,5 +1,5 @@
 // What    kdray as a side of `bench queries`: by way of its public interface.
-// Errors  As kdray/scene.h says.
+// Errors  Those of kdray/scene.h.
 #pragma once
 
 #include <memory>

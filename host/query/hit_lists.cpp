@@ -139,7 +139,7 @@ void HitLists::Taken<T>::take(cl::CommandQueue& queue, T* to, std::size_t n) {
 
 namespace {
 
-// As the kernels do it (query.clh).
+// The kernels do the same (query.clh).
 float power_of_two(int exponent) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(exponent + 127) << 23);
 }

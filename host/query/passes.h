@@ -72,7 +72,7 @@ class Passes {
   NearRays near_rays_;
   HitLists first_;
   std::unique_ptr<HitLists> later_;
-  // Of the call.
+  // What the call asks for.
   bool faulty_miss_ = false;
   std::uint32_t max_hits_ = 0, capacity_ = 0;
   std::size_t room_ = 0;     // for hits in a launch

@@ -86,16 +86,21 @@ class PlainRays {
   // Fills out[0, n) with rays [first, first + n), and says whether all are such.
   bool fill(std::size_t first, std::size_t n, layout::QueryRay* out) const {
     if (n == 0) return true;
+    const PlainRays rays = *this;  // what is written might be this, for all that compilers know
     Looked looked;
     const bool with_last = first + n == n_;
-    for (std::size_t i = 0; i < n - with_last; ++i)
-      looked.at(put(
-          first + i,
-          origins_.has_four() ? four_at(origins_.row(first + i)) : three_at(origins_.row(first + i)),
-          directions_.has_four() ? four_at(directions_.row(first + i)) : three_at(directions_.row(first + i)),
-          out[i]));
+    const std::size_t n_fours = n - with_last;
+    if (rays.origins_.has_four() && rays.directions_.has_four())
+      for (std::size_t i = 0; i < n_fours; ++i)
+        looked.at(rays.put(first + i, four_at(rays.origins_.row(first + i)),
+                           four_at(rays.directions_.row(first + i)), out[i]));
+    else
+      for (std::size_t i = 0; i < n_fours; ++i)
+        looked.at(rays.put(first + i, three_at(rays.origins_.row(first + i)),
+                           three_at(rays.directions_.row(first + i)), out[i]));
     if (with_last)
-      looked.at(put(n_ - 1, three_at(origins_.row(n_ - 1)), three_at(directions_.row(n_ - 1)), out[n - 1]));
+      looked.at(rays.put(n_ - 1, three_at(rays.origins_.row(n_ - 1)), three_at(rays.directions_.row(n_ - 1)),
+                         out[n - 1]));
     return looked.all_are_plain();
   }
 

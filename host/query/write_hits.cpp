@@ -28,6 +28,13 @@ bool is_dense(const View& view) {
 using Lanes = float __attribute__((vector_size(16)));
 using Words = int __attribute__((vector_size(16)));
 
+Lanes four_of(const QueryHit& hit) {
+  static_assert(sizeof(QueryHit) == sizeof(Lanes));
+  Lanes lanes;
+  std::memcpy(&lanes, &hit, sizeof lanes);
+  return lanes;
+}
+
 template <class T, class V>
 void put_four(T* to, std::size_t at, const V& four) {
   if (to != nullptr) std::memcpy(to + at, &four, sizeof four);
@@ -48,13 +55,11 @@ struct DenseColumns {
 
   // Four hits to the rows from `at` on; t in multiples of `unit`, hits all of one geometry.
   void put(std::size_t at, const QueryHit* hits, float unit, GeometryId id) const {
-    static_assert(sizeof(QueryHit) == sizeof(Lanes));
-    Lanes row[4];
-    std::memcpy(row, hits, sizeof row);
-    const Lanes tp01 = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5),
-                tp23 = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5);
-    const Lanes uv01 = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7),
-                uv23 = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+    const Lanes a = four_of(hits[0]), b = four_of(hits[1]), c = four_of(hits[2]), d = four_of(hits[3]);
+    const Lanes tp01 = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+                tp23 = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const Lanes uv01 = __builtin_shufflevector(a, b, 2, 6, 3, 7),
+                uv23 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
     const Words numbers = (Words)__builtin_shufflevector(tp01, tp23, 2, 3, 6, 7);
     put_four(t, at, __builtin_shufflevector(tp01, tp23, 0, 1, 4, 5) * unit);
     put_four(primitive, at, numbers);  // of a miss -1: kNoPrimitive

@@ -26,7 +26,7 @@ struct Rays {
   Values t_min = {}, t_max = {};  // empty: 0 and infinity
   Words masks = {};               // empty: every bit
 
-  // Rays as they lie in an array of the struct: traced where they are, on a device that can.
+  // Rays as they lie in an array of the struct.
   static Rays of(std::span<const Ray> rays) {
     if (rays.empty()) return {};
     constexpr std::size_t kStride = sizeof(Ray);
