@@ -12,6 +12,13 @@ target_compile_options(kdray_numerics INTERFACE
   -ffp-contract=off
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-fno-tree-slp-vectorize>)
 add_library(kdray_sanitizers INTERFACE)
+if(KDRAY_SANITIZE AND KDRAY_SANITIZE_THREADS)
+  message(FATAL_ERROR "KDRAY_SANITIZE and KDRAY_SANITIZE_THREADS exclude each other: the sanitizers do")
+endif()
+if(KDRAY_SANITIZE_THREADS)
+  target_compile_options(kdray_sanitizers INTERFACE -fsanitize=thread -fno-omit-frame-pointer)
+  target_link_options(kdray_sanitizers INTERFACE -fsanitize=thread)
+endif()
 if(KDRAY_SANITIZE)
   target_compile_options(kdray_sanitizers INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
                                                     -fno-omit-frame-pointer)

@@ -1,5 +1,5 @@
-// What    kdray bench queries: the same questions to kdray and to Embree, from arrays to arrays, in batches of
-//         several sizes.
+// What    kdray bench queries: the same questions to kdray and to Embree, from arrays to arrays, in batches
+//         of several sizes.
 // Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
 //         DIR/queries.json and a plot beside it.
 #include <memory>

@@ -1,8 +1,8 @@
 // What    Embree as an asker of `bench queries`, in one form: rays one by one or in packets of 16, flagged as
 //         coherent or not, on a fast scene or a robust one; points one by one, as rtcPointQuery has them.
-// Shape   All hits and counts by a filter of occlusion rays that notes every hit and accepts none: no order is
-//         asked of the walk, and hits are sorted afterwards, as kdray's are. These have a scene of their own,
-//         since a filter slows other rays down.
+// Shape   All hits and counts by a filter of occlusion rays that notes every hit and accepts none: no order
+//         is asked of the walk, and hits are sorted afterwards, as kdray's are. These have a scene of their
+//         own, since a filter slows other rays down.
 #pragma once
 
 #include <memory>

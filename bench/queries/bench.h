@@ -1,8 +1,8 @@
 // What    `kdray bench queries`: the same questions to kdray's public interface and to Embree, from arrays in
 //         memory to arrays in memory, in batches from one ray to a million; and how long it takes from the
 //         arrays of a mesh to the first answer.
-// Shape   Interleaved: a round asks each side the same batches, one after the other. Before that every form of
-//         a side is asked twice (once, where there is to be one round), for its best to be chosen; there
+// Shape   Interleaved: a round asks each side the same batches, one after the other. Before that every form
+//         of a side is asked twice (once, where there is to be one round), for its best to be chosen; there
 //         answers are compared.
 // Errors  Those of scene::load and kdray/scene.h; ErrorCode::input for a scene without triangles.
 #pragma once

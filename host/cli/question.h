@@ -40,8 +40,8 @@ Asked asked_by(const QuestionArgs& args);
 // By the ending of the file's name; to stdout ("-") an .npy where it holds the answers.
 rays::TableFormat format_of(const std::string& output, Question question);
 
-// Whether a Renderer traces the rays, which have been on the device before the time counts: the closest or any
-// hits of float rays. Throws where it is not, and options ask for what a Renderer alone has.
+// Whether a Renderer traces the rays, which have been on the device before the time counts: the closest or
+// any hits of float rays. Throws where it is not, and options ask for what a Renderer alone has.
 bool is_for_renderer(const Asked& asked, bool in_double, Traversal traversal, Precision precision);
 
 }  // namespace kdray::cli

@@ -1,5 +1,5 @@
-// What    The fast way for rays as nearly all are: floats, finite, with directions of ordinary length, not from
-//         too far off.
+// What    The fast way for rays as nearly all are: floats, finite, with directions of ordinary length, not
+//         from too far off.
 // Shape   Same floats as LocalFrame::begin() gives.
 #pragma once
 

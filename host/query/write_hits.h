@@ -1,6 +1,6 @@
 // What    Hits to the arrays of a program that asked for them.
-// Shape   Column by column; where the columns are of floats and words without gaps, as most are, four hits at a
-//         time and all columns at once.
+// Shape   Column by column; where the columns are of floats and words without gaps, as most are, four hits at
+//         a time and all columns at once.
 // Errors  ErrorCode::input for an array of answers of another size than there are rays.
 #pragma once
 

@@ -9,10 +9,10 @@
 
 // Of a function in several forms (target_clones) one is chosen while the program is being loaded, before a
 // sanitizer is ready for any code: with sanitizers there is one form.
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define KDRAY_SANITIZED
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define KDRAY_SANITIZED
 #endif
 #endif

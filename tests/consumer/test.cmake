@@ -1,6 +1,6 @@
 # The CTest consumer/installed_package: installs the build below a folder of its own, then configures, builds and runs
 # the project beside this file against it. Sanitized libraries would force their sanitizers on the consumer.
-if(TARGET kdray_c AND NOT KDRAY_SANITIZE)
+if(TARGET kdray_c AND NOT KDRAY_SANITIZE AND NOT KDRAY_SANITIZE_THREADS)
   add_test(NAME consumer/installed_package
            COMMAND ${CMAKE_COMMAND}
                    -DBUILD=${PROJECT_BINARY_DIR}

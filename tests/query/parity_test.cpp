@@ -193,6 +193,23 @@ TEST_F(Parity, IsEvenThroughClosedMeshes) {
   }
 }
 
+// Two triangles on either side of an edge that passes the ray so closely that its edge function is the limit
+// below which signs are settled exactly, to the last bit, or half or twice that: one of them is crossed.
+TEST_F(Parity, IsRightAtTheLimitOfDoubt) {
+  for (const double h : {0x1p-72, 0x1p-71, 0x1p-70})
+    for (const double side : {1.0, -1.0}) {
+      SCOPED_TRACE(testing::Message() << "the edge passes at " << side * h);
+      Asked mesh(mesh_of({{1024, side * h, 0}, {-1024, side * h, 0}, {0, -1024, 0}, {0, 1024, 0}},
+                         {{0, 1, 2}, {0, 1, 3}}));
+      for (const std::size_t n : {1, 64}) {  // alone, and as packets
+        const std::vector<Ray> rays(n, ray_from({0, 0, -8}, {0, 0, 1}));
+        const query::LocalHits all = mesh.all(rays);
+        EXPECT_EQ(all.primitive, RawVector<std::uint32_t>(n, side > 0 ? 0 : 1));
+        EXPECT_EQ(mesh.count(rays), std::vector<std::uint32_t>(n, 1));
+      }
+    }
+}
+
 TEST_F(Parity, IsEvenAtAnyScaleAndPlace) {
   for (const double scale : {1e-6, 1.0, 1e6})
     for (const double move : {0.0, 1e3, 1e6})

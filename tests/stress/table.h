@@ -1,7 +1,7 @@
 // What    The stress suite's results: how many rays each family may spend, and the table of what came out,
 //         printed when the program ends and written as JSON.
 // Shape   KDRAY_STRESS: unset, the quick part; "full" or a number, about that many traced rays for the leaks
-//         and as many for the re-hits. KDRAY_STRESS_JSON: a file for the table.
+//         and as many for the re-hits, and shares of it for queries. KDRAY_STRESS_JSON: a file for the table.
 #pragma once
 
 #include <cstdint>

@@ -100,8 +100,8 @@ class Scene {
   void set_ambient(const Color& color);
 
   std::uint32_t primitives() const;
-  // The least and the greatest coordinates of what was committed; none where that is nothing. They contain all
-  // of it, and are wider by no more than floats' rounding.
+  // The least and the greatest coordinates of what was committed; none where that is nothing. They contain
+  // all of it, and are wider by no more than floats' rounding.
   std::optional<Extent> extent() const;
   const std::vector<std::string>& warnings() const;  // what the loader left out or changed, one line each
   // All of it together. It is put together by the first call after a change: not for several threads at once.

@@ -1,5 +1,5 @@
-// What    Both sides of `kdray bench queries` answer the same questions alike: Embree's filters count and list
-//         every crossing, and its nearest points are the nearest. Skipped without Embree.
+// What    Both sides of `kdray bench queries` answer the same questions alike: Embree's filters count and
+//         list every crossing, and its nearest points are the nearest. Skipped without Embree.
 #include <gtest/gtest.h>
 
 #include <random>
