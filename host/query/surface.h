@@ -8,15 +8,42 @@
 
 #include "flatten/flatten.h"
 #include "math/vec.h"
+#include "primitives/shapes.h"
 
 namespace kdray::query {
 
 // The primitive's place in file order.
-std::uint32_t number_of(const flatten::FlatScene& scene, std::uint32_t ref);
+inline std::uint32_t number_of(const flatten::FlatScene& scene, std::uint32_t ref) {
+  return primitives::with_kind(ref >> KDRAY_REF_KIND_SHIFT, [&](auto kind) {
+    return decltype(kind)::of(scene)[ref & KDRAY_REF_INDEX_MASK].number;
+  });
+}
 
-// Of unit length, at a point on the primitive: of a triangle to the side from which its corners run
-// counterclockwise, of a sphere outward, of a cone away from its axis, of a disc as it was given. 0 for a
-// triangle without area.
-dvec3 normal_at(const flatten::FlatScene& scene, std::uint32_t ref, const dvec3& point);
+struct Surface {
+  std::uint32_t number;  // the primitive's place in file order
+  // Of unit length: of a triangle to the side from which its corners run counterclockwise, of a sphere
+  // outward, of a cone away from its axis, of a disc as it was given. 0 for a triangle without area.
+  dvec3 normal;
+};
+
+// In double, which floats' differences and products leave with next to no rounding, and whose range their
+// squares don't leave.
+inline dvec3 normal_of(const layout::Triangle& t) {
+  const auto corner = [&](int i) { return dvec3(t.v[i][0], t.v[i][1], t.v[i][2]); };
+  const dvec3 a = corner(0), n = glm::cross(corner(1) - a, corner(2) - a);
+  return n == dvec3(0) ? n : glm::normalize(n);
+}
+
+// `point_of()`, a point on the primitive, is asked for only where the normal depends on it.
+template <class PointOf>
+Surface surface_at(const flatten::FlatScene& scene, std::uint32_t ref, const PointOf& point_of) {
+  return primitives::with_kind(ref >> KDRAY_REF_KIND_SHIFT, [&](auto kind) {
+    const auto& primitive = decltype(kind)::of(scene)[ref & KDRAY_REF_INDEX_MASK];
+    if constexpr (requires { normal_of(primitive); })
+      return Surface{primitive.number, normal_of(primitive)};
+    else
+      return Surface{primitive.number, primitives::normal_at(primitive, point_of())};
+  });
+}
 
 }  // namespace kdray::query

@@ -86,55 +86,85 @@ HitWriter::HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& o
   const double unit = asked.frame.unit();
   dense_ = is_dense<float>(out.t) && is_dense<std::uint32_t>(out.geometry) &&
            is_dense<std::uint32_t>(out.primitive) && is_dense<float>(out.u) && is_dense<float>(out.v) &&
-           out.normal.empty() && out.point.empty() && asked.table.only() &&
-           unit >= std::numeric_limits<float>::min() && unit <= std::numeric_limits<float>::max();
+           asked.table.only() && unit >= std::numeric_limits<float>::min() &&
+           unit <= std::numeric_limits<float>::max();
 }
 
 void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, std::span<const QueryHit> hits,
                       const LocalRays& local) const {
-  if (dense_ && !local.has_moved()) {
-    const DenseColumns columns(out_);
-    const auto unit = static_cast<float>(asked_->frame.unit());
-    for (const GeometryId id = *asked_->table.only(); begin + 4 <= end; begin += 4)
-      columns.put(first + begin, &hits[begin], unit, id);
+  Numbered numbered;
+  for (; begin < end; begin += kRows) {
+    Some some{first + begin, begin, hits.subspan(begin, std::min(kRows, end - begin)), local};
+    if (wants_refs()) {
+      write_normals(some, numbered);
+      some.hits = std::span(numbered).first(some.hits.size());
+    }
+    write_columns(some, write_dense(some));
   }
-  // The hits stay in the nearest cache for all columns.
-  constexpr std::size_t kRows = 512;
-  for (; begin < end; begin += kRows) write_columns(first, begin, std::min(end, begin + kRows), hits, local);
 }
 
-void HitWriter::write_columns(std::size_t first, std::size_t begin, std::size_t end,
-                              std::span<const QueryHit> hits, const LocalRays& local) const {
-  const auto fill = [&](const auto& column, const auto& value_of) {
-    if (column.empty()) return;
-    column.fill(first + begin, end - begin,
-                [&](std::size_t ray) { return value_of(ray, hits[ray - first]); });
-  };
+// The normals of hits that are named by references; `numbered`: the same hits named by numbers.
+void HitWriter::write_normals(const Some& some, Numbered& numbered) const {
+  fill(out_.normal, some, 0, [&](std::size_t i, QueryHit hit) {
+    dvec3 normal(0);
+    if (!missed(hit)) {
+      const auto point = [&] {
+        return asked_->frame.space().local(point_of(some.ray + i, some.local.world_t(some.at + i, hit.t)));
+      };
+      const Surface surface =
+          surface_at(asked_->scene().flat, static_cast<std::uint32_t>(hit.primitive), point);
+      normal = surface.normal;
+      hit.primitive = static_cast<std::int32_t>(surface.number);
+    }
+    numbered[i] = hit;
+    return array(normal);
+  });
+}
+
+// How many of them were written.
+std::size_t HitWriter::write_dense(const Some& some) const {
+  if (!dense_ || some.local.has_moved()) return 0;
+  const DenseColumns columns(out_);
+  const auto unit = static_cast<float>(asked_->frame.unit());
+  const GeometryId id = *asked_->table.only();
+  std::size_t i = 0;
+  for (; i + 4 <= some.hits.size(); i += 4) columns.put(some.ray + i, &some.hits[i], unit, id);
+  return i;
+}
+
+template <class Column, class ValueOf>
+void HitWriter::fill(const Column& column, const Some& some, std::size_t from,
+                     const ValueOf& value_of) const {
+  if (column.empty()) return;
+  column.fill(some.ray + from, some.hits.size() - from, [&](std::size_t ray) {
+    const std::size_t i = ray - some.ray;
+    return value_of(i, some.hits[i]);
+  });
+}
+
+// Those from `from` on.
+void HitWriter::write_columns(const Some& some, std::size_t from) const {
   // The t of a miss is infinite, and stays so.
-  const auto t_of = [&](std::size_t ray, const QueryHit& hit) { return local.world_t(ray - first, hit.t); };
-  fill(out_.t, [&](std::size_t ray, const auto& hit) { return std::array{t_of(ray, hit)}; });
-  fill(out_.geometry, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).geometry}; });
-  fill(out_.primitive, [&](std::size_t, const auto& hit) { return std::array{place_of(hit).primitive}; });
-  fill(out_.u, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
-  fill(out_.v, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
-  fill(out_.normal, [&](std::size_t ray, const auto& hit) { return normal_of(ray, hit, t_of(ray, hit)); });
-  fill(out_.point, [&](std::size_t ray, const auto& hit) { return array(point_of(ray, t_of(ray, hit))); });
-}
-
-GeometryTable::Place HitWriter::place_of(const QueryHit& hit) const {
-  if (missed(hit)) return {kNoGeometry, kNoPrimitive};
-  const auto word = static_cast<std::uint32_t>(hit.primitive);
-  return asked_->table.of(wants_refs() ? number_of(asked_->scene().flat, word) : word);
+  const auto t_of = [&](std::size_t i, const QueryHit& hit) {
+    return some.local.world_t(some.at + i, hit.t);
+  };
+  const auto place_of = [&](const QueryHit& hit) {
+    return missed(hit) ? GeometryTable::Place{kNoGeometry, kNoPrimitive}
+                       : asked_->table.of(static_cast<std::uint32_t>(hit.primitive));
+  };
+  fill(out_.t, some, from, [&](std::size_t i, const auto& hit) { return std::array{t_of(i, hit)}; });
+  fill(out_.geometry, some, from,
+       [&](std::size_t, const auto& hit) { return std::array{place_of(hit).geometry}; });
+  fill(out_.primitive, some, from,
+       [&](std::size_t, const auto& hit) { return std::array{place_of(hit).primitive}; });
+  fill(out_.u, some, from, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
+  fill(out_.v, some, from, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
+  fill(out_.point, some, 0,
+       [&](std::size_t i, const auto& hit) { return array(point_of(some.ray + i, t_of(i, hit))); });
 }
 
 dvec3 HitWriter::point_of(std::size_t ray, double t) const {
   return std::isinf(t) ? dvec3(HUGE_VAL) : rays_->origin(ray) + t * rays_->direction(ray);
-}
-
-std::array<double, 3> HitWriter::normal_of(std::size_t ray, const QueryHit& hit, double t) const {
-  if (missed(hit)) return {0, 0, 0};
-  return array(normal_at(asked_->scene().flat, static_cast<std::uint32_t>(hit.primitive),
-                         asked_->frame.space().local(point_of(ray, t))));
 }
 
 }  // namespace kdray::query

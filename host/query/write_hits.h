@@ -4,6 +4,7 @@
 // Errors  ErrorCode::input for an array of answers of another size than there are rays.
 #pragma once
 
+#include <array>
 #include "query/ask.h"
 
 namespace kdray::query {
@@ -19,16 +20,26 @@ class HitWriter {
              const LocalRays& local) const;
 
  private:
-  void write_columns(std::size_t first, std::size_t begin, std::size_t end,
-                     std::span<const layout::QueryHit> hits, const LocalRays& local) const;
-  GeometryTable::Place place_of(const layout::QueryHit& hit) const;
+  // Some hits, whose rays' numbers begin at `ray`, and in the chunk at `at`.
+  struct Some {
+    std::size_t ray, at;
+    std::span<const layout::QueryHit> hits;
+    const LocalRays& local;
+  };
+  static constexpr std::size_t kRows = 512;  // these stay in the nearest cache for all columns
+  using Numbered = std::array<layout::QueryHit, kRows>;
+
+  void write_normals(const Some& some, Numbered& numbered) const;
+  std::size_t write_dense(const Some& some) const;
+  void write_columns(const Some& some, std::size_t from) const;
+  template <class Column, class ValueOf>
+  void fill(const Column& column, const Some& some, std::size_t from, const ValueOf& value_of) const;
   dvec3 point_of(std::size_t ray, double t) const;
-  std::array<double, 3> normal_of(std::size_t ray, const layout::QueryHit& hit, double t) const;
 
   const Asked* asked_;
   const RayArrays* rays_;
   HitsOut out_;
-  bool dense_;  // columns of plain_hits.h, or none
+  bool dense_;  // columns without gaps, of one geometry
 };
 
 }  // namespace kdray::query

@@ -12,6 +12,8 @@ pictures. `kdray.trimesh` makes kdray the ray engine of trimesh, `kdray.Raycasti
 
 from importlib.metadata import PackageNotFoundError as _NotFound
 from importlib.metadata import version as _version
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 
 from .devices import Device, devices
 from .errors import (
@@ -28,6 +30,9 @@ from .looks import Camera, Light, Material
 from .picture import Picture
 from .rays import lidar_rays, pinhole_rays
 from .scene import Geometry, Scene, load
+
+if _TYPE_CHECKING:
+    from .open3d import RaycastingScene
 
 try:
     __version__ = _version("kdray")
@@ -50,6 +55,7 @@ __all__ = [
     "NoDeviceError",
     "OutOfMemoryError",
     "Picture",
+    "RaycastingScene",
     "Scene",
     "UsageError",
     "devices",
@@ -57,3 +63,11 @@ __all__ = [
     "load",
     "pinhole_rays",
 ]
+
+
+def __getattr__(name: str) -> _Any:
+    if name == "RaycastingScene":
+        from .open3d import RaycastingScene
+
+        return RaycastingScene
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -6,6 +6,7 @@ indices). What is like that already is not copied, whatever lies between two row
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -129,7 +130,7 @@ class RayArrays:
         self.origins, o_shape = vectors(origins, "origins")
         self.directions, d_shape = vectors(directions, "directions")
         shapes = [("origins", o_shape), ("directions", d_shape)]
-        self.dtype = np.result_type(self.origins, self.directions)
+        self.dtype = max(self.origins.dtype, self.directions.dtype)  # float32 or float64
         self.t_min: Floats | None = None
         self.t_max: Floats | None = None
         self.masks: Array | None = None
@@ -143,7 +144,7 @@ class RayArrays:
             self.masks, shape = masks(mask)
             shapes.append(("mask", shape))
         self.shape = _common(shapes)
-        self.n = int(np.prod(self.shape, dtype=np.int64))
+        self.n = math.prod(self.shape)
         if self.n == 0:  # an empty array can't stand for "the same for all"
             self.origins = self.directions = np.empty((0, 3), self.dtype)
             self.t_min = self.t_max = self.masks = None

@@ -56,12 +56,11 @@ class RaycastingScene:
         if not isinstance(device, str):
             device = "auto" if str(device).upper().startswith("CPU") else "gpu"
         self._scene = Scene(device=device)
-        self._corners: list[tuple[Array, Array]] = []  # vertices and triangles, by geometry
-        self._normals: Array | None = None
+        self._normals: dict[int, tuple[Array, Array]] = {}  # by geometry: vertices, and its triangles' normals
 
     @property
     def scene(self) -> Scene:
-        """The `kdray.Scene` within, with the same ids, for what Open3D's class can't be asked."""
+        """The `kdray.Scene` within, with the same ids, for what Open3D's class can't do: move vertices, hide meshes."""
         return self._scene
 
     # ---- Meshes
@@ -76,7 +75,7 @@ class RaycastingScene:
         Either `vertex_positions` (n, 3) and `triangle_indices` (m, 3), or `mesh`: one of Open3D's, old or new, or
         anything with `vertices` and `triangles` or `faces`, such as trimesh's. Arrays are copied.
         """
-        given = dict(zip(("vertex_positions", "triangle_indices"), args)) | kwargs
+        given = dict(zip(("vertex_positions", "triangle_indices"), args, strict=False)) | kwargs
         if len(args) == 1 and not kwargs:
             given = {"mesh": args[0]}
         if len(args) <= 2 and set(given) == {"mesh"}:
@@ -85,12 +84,7 @@ class RaycastingScene:
             positions, indices = given["vertex_positions"], given["triangle_indices"]
         else:
             raise UsageError("add_triangles takes vertex_positions and triangle_indices, or a mesh")
-        vertices = vectors(_own(positions, "vertex_positions"), "vertex_positions")[0]
-        triangles = _own(indices, "triangle_indices")
-        geometry = self._scene.add_mesh(vertices, triangles)
-        self._corners.append((vertices.copy(), np.array(triangles, np.int64).reshape(-1, 3)))
-        self._normals = None
-        return geometry
+        return self._scene.add_mesh(_own(positions, "vertex_positions"), _own(indices, "triangle_indices"))
 
     # ---- Rays
 
@@ -190,19 +184,26 @@ class RaycastingScene:
         return {name: _like(query_points, found[name]) for name in wanted}
 
     def _normals_of(self, geometries: Array, primitives: Array, dtype: Any) -> Array:
-        if self._normals is None:
-            each = [np.zeros((0, 3))]
-            for vertices, triangles in self._corners:
-                a, b, c = (vertices[triangles[:, k]].astype(np.float64) for k in range(3))
-                normal = np.cross(b - a, c - a)
-                length = np.linalg.norm(normal, axis=1, keepdims=True)
-                each.append(np.divide(normal, length, out=np.zeros_like(normal), where=length > 0))
-            each.append(np.zeros((1, 3)))  # of what isn't there
-            self._normals = np.concatenate(each)
-        starts = np.cumsum([0] + [len(triangles) for _, triangles in self._corners])
-        there = geometries != self.INVALID_ID
-        number = np.where(there, starts[np.where(there, geometries, 0)] + primitives, -1)
-        return self._normals[number].astype(dtype)
+        result = np.zeros((*geometries.shape, 3), dtype)
+        for geometry in np.unique(geometries):
+            if geometry != self.INVALID_ID:
+                own = geometries == geometry
+                result[own] = self._normals_in(int(geometry))[primitives[own]]
+        return result
+
+    def _normals_in(self, geometry: int) -> Array:
+        """Of each of a mesh's triangles the normal; made when there is need, and again when vertices have moved."""
+        vertices, triangles = self._scene._added[geometry].arrays[:2]
+        assert vertices is not None and triangles is not None
+        known = self._normals.get(geometry)
+        if known is not None and known[0] is vertices:
+            return known[1]
+        a, b, c = (vertices[triangles[:, k]].astype(np.float64) for k in range(3))
+        normals = np.cross(b - a, c - a)
+        length = np.linalg.norm(normals, axis=1, keepdims=True)
+        np.divide(normals, length, out=normals, where=length > 0)
+        self._normals[geometry] = vertices, normals
+        return normals
 
     def compute_distance(self, query_points: ArrayLike, nthreads: int = 0) -> Any:
         """The distance of each point (..., 3) to the nearest triangle: (...) float32."""
@@ -248,7 +249,7 @@ class RaycastingScene:
         by_matrices = ("intrinsic_matrix", "extrinsic_matrix", "width_px", "height_px")
         by_view = ("fov_deg", "center", "eye", "up", "width_px", "height_px")
         for names in (by_matrices, by_view):
-            given = dict(zip(names, args)) | kwargs
+            given = dict(zip(names, args, strict=False)) | kwargs
             if len(args) + len(kwargs) == len(names) and set(given) == set(names):
                 break
         else:
@@ -264,11 +265,12 @@ class RaycastingScene:
         x, y = np.arange(width) + 0.5, np.arange(height) + 0.5
         rays = np.empty((height, width, 6), np.float32)
         rays[..., :3] = eye
-        rays[..., 3:] = y[:, None, None] * to_world[:, 1] + to_world[:, 2] + x[:, None] * to_world[:, 0]
+        by_row = y[:, None, None] * to_world[:, 1] + to_world[:, 2]
+        np.add(by_row, x[:, None] * to_world[:, 0], out=rays[..., 3:], casting="same_kind")
         return _like(next((a for a in given.values() if _is_tensor(a)), None), rays)
 
     def __repr__(self) -> str:
-        return f"<kdray.RaycastingScene of {len(self._corners)} meshes, {self._scene.primitives} triangles>"
+        return f"<kdray.RaycastingScene of {len(self._scene.geometries)} meshes, {self._scene.primitives} triangles>"
 
 
 # ---- Arrays and tensors
@@ -290,7 +292,7 @@ def _like(given: Any, values: Array) -> Any:
     if not _is_tensor(given):
         return values
     tensor: Any = sys.modules["open3d"].core.Tensor
-    return tensor.from_numpy(np.require(values, requirements="CW")).to(given.device)
+    return tensor.from_numpy(np.require(values, requirements=("C", "W"))).to(given.device)
 
 
 def _floats(values: ArrayLike, name: str, wide: int) -> tuple[Array, tuple[int, ...]]:

@@ -20,6 +20,7 @@ from .looks import Camera, Color, Light, Material
 from .picture import Picture
 from .progress import Progress, teller
 
+Rows = dict[str, Array]  # results as kdray._core writes them
 _FLOATS = (np.float32, np.float64)
 _USUAL = ("t", "geometry", "primitive", "u", "v", "normal")
 _AT_ONCE = 1 << 20  # rays between two words of progress
@@ -315,11 +316,10 @@ class Scene:
         rows = {name: _as_rows(column, _width(name)) for name, column in columns.items()}
         core = self._ready()
 
-        def ask(part: RayArrays, first: int, end: int) -> None:
-            cut = {name: column[first:end] for name, column in rows.items()}
+        def ask(part: RayArrays, cut: Rows) -> None:
             core.closest(*part.given(), strict, *(cut.get(name) for name in Hits._names))
 
-        _in_parts(rays, ask, progress, "closest_hit")
+        _in_parts(rays, rows, ask, progress, "closest_hit")
         if out is None:
             return Hits(columns, rays.points_at)
         out._now_of(rays.points_at)
@@ -343,10 +343,10 @@ class Scene:
         rows = _as_rows(result).view(np.uint8)
         core = self._ready()
 
-        def ask(part: RayArrays, first: int, end: int) -> None:
-            core.any(*part.given(), strict, rows[first:end])
+        def ask(part: RayArrays, cut: Rows) -> None:
+            core.any(*part.given(), strict, cut["out"])
 
-        _in_parts(rays, ask, progress, "any_hit")
+        _in_parts(rays, {"out": rows}, ask, progress, "any_hit")
         return result
 
     def count_hits(
@@ -370,10 +370,10 @@ class Scene:
         rows = _as_rows(result)
         core = self._ready()
 
-        def ask(part: RayArrays, first: int, end: int) -> None:
-            core.count(*part.given(), strict, rows[first:end])
+        def ask(part: RayArrays, cut: Rows) -> None:
+            core.count(*part.given(), strict, cut["out"])
 
-        _in_parts(rays, ask, progress, "count_hits")
+        _in_parts(rays, {"out": rows}, ask, progress, "count_hits")
         return result
 
     def all_hits(
@@ -611,15 +611,17 @@ def _result(out: Array | None, shape: tuple[int, ...], *types_and_name: Any) -> 
     return _arrays.for_writing(out, shape, tuple(types), name)
 
 
-def _in_parts(rays: RayArrays, ask: Callable[[RayArrays, int, int], None], progress: Progress, what: str) -> None:
+def _in_parts(
+    rays: RayArrays, rows: Rows, ask: Callable[[RayArrays, Rows], None], progress: Progress, what: str
+) -> None:
     """Asks for all rays at once, or so many at a time that there is something to tell."""
     tell = teller(progress, what)
     if tell is None or rays.n <= _AT_ONCE:
-        ask(rays, 0, rays.n)
+        ask(rays, rows)
         return
     for first in range(0, rays.n, _AT_ONCE):
         end = min(first + _AT_ONCE, rays.n)
-        ask(rays.part(first, end), first, end)
+        ask(rays.part(first, end), {name: column[first:end] for name, column in rows.items()})
         tell(end / rays.n)
 
 

@@ -14,6 +14,7 @@ alone: ``mesh.ray = kdray.trimesh.RayMeshIntersector(mesh)``.
 from __future__ import annotations
 
 import sys
+import threading
 import types
 from typing import Any
 
@@ -64,9 +65,10 @@ class RayMeshIntersector:
     def _forget(self) -> None:
         self._scene = Scene()
         self._hash: int | None = None  # of the mesh that the scene is of
-        self._faces: Ints | None = None
-        self._id: int | None = None
+        self._faces: Ints = np.empty((0, 3), np.int64)
+        self._n_vertices = 0
         self._planes: tuple[Floats, Floats] | None = None
+        self._lock = threading.Lock()
 
     # ---- The mesh
 
@@ -75,21 +77,24 @@ class RayMeshIntersector:
         """The scene of the mesh as it is now: primitives have the numbers of its faces."""
         now = hash(self.mesh)
         if now != self._hash:
-            self._follow(np.asarray(self.mesh.vertices, np.float64), np.asarray(self.mesh.faces, np.int64))
-            self._hash = now
+            with self._lock:
+                if now != self._hash:
+                    self._follow(np.asarray(self.mesh.vertices, np.float64), np.asarray(self.mesh.faces, np.int64))
+                    self._hash = now
         return self._scene
 
     def _follow(self, vertices: Floats, faces: Ints) -> None:
         self._planes = None
-        moved = self._faces is not None and np.array_equal(self._faces, faces) and self._n_vertices == len(vertices)
-        if moved and self._id is not None:
-            self._scene.update_vertices(self._id, vertices)
+        if len(faces) and self._n_vertices == len(vertices) and np.array_equal(self._faces, faces):
+            self._scene.update_vertices(0, vertices)
+            self._scene.commit()
             return
         scene = Scene()
-        self._id = scene.add_mesh(vertices, faces) if len(faces) else None
+        scene.add_mesh(vertices, faces)
+        scene.commit()
         self._scene, self._faces, self._n_vertices = scene, faces.copy(), len(vertices)
 
-    def _planes_of(self, scene: Scene) -> tuple[Floats, Floats]:
+    def _planes_of_faces(self) -> tuple[Floats, Floats]:
         """A point and the normal, of no certain length, of each face."""
         planes = self._planes
         if planes is None:
@@ -131,11 +136,13 @@ class RayMeshIntersector:
             t = first.t[index_ray] if return_locations else np.empty(0)
         if not return_locations:
             return index_tri, index_ray
-        return index_tri, index_ray, self._places(scene, origins[index_ray], directions[index_ray], index_tri, t)
+        return index_tri, index_ray, self._places(origins[index_ray], directions[index_ray], index_tri, t)
 
-    def _places(self, scene: Scene, origins: Floats, directions: Floats, faces: Ints, t: Floats) -> Floats:
+    def _places(self, origins: Floats, directions: Floats, faces: Ints, t: Floats) -> Floats:
         """Where the rays meet the planes of the faces, which the scene knows with float vertices only."""
-        points, normals = self._planes_of(scene)
+        if len(faces) == 0:
+            return np.empty((0, 3))
+        points, normals = self._planes_of_faces()
         normal = normals[faces]
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             exact: Floats = np.einsum("ij,ij->i", points[faces] - origins, normal)
@@ -206,8 +213,8 @@ def install() -> None:
     global _before
     if _before is not None:
         return
-    ray = trimesh.ray
-    embree = ray.ray_pyembree if ray.has_embree else None
+    ray: Any = trimesh.ray
+    embree: Any = ray.ray_pyembree if ray.has_embree else None
     _before = (
         ray.ray_pyembree,
         ray.has_embree,
@@ -225,7 +232,7 @@ def uninstall() -> None:
     global _before
     if _before is None:
         return
-    ray = trimesh.ray
+    ray: Any = trimesh.ray
     ray.ray_pyembree, ray.has_embree, ray.ray_triangle.RayMeshIntersector, own = _before
     if own is not None:
         ray.ray_pyembree.RayMeshIntersector = own
