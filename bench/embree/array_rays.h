@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "bench/embree/api.h"
-#include "bench/queries/arrays.h"
+#include "bench/workload/arrays.h"
 
 namespace kdray::bench {
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "bench/embree/api.h"
-#include "bench/queries/arrays.h"
+#include "bench/workload/arrays.h"
 
 namespace kdray::bench {
 

@@ -1,7 +1,7 @@
 #include "bench/embree/asker.h"
 
 #include "base/error.h"
-#include "bench/queries/embree_sides.h"
+#include "bench/embree/sides.h"
 
 namespace kdray::bench {
 

@@ -10,7 +10,7 @@
 #include "bench/embree/array_rays.h"
 #include "bench/embree/array_scene.h"
 #include "bench/embree/workers.h"
-#include "bench/queries/asker.h"
+#include "bench/race/asker.h"
 
 namespace kdray::bench {
 

@@ -1,6 +1,6 @@
 #include "bench/embree/build.h"
 #include "bench/embree/embree.h"
-#include "bench/queries/embree_sides.h"
+#include "bench/embree/sides.h"
 
 namespace kdray::bench {
 

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "api/statistics_json.h"
+#include "bench/embree/sides.h"
 #include "bench/measure/cores.h"
 #include "bench/queries/compare.h"
-#include "bench/queries/embree_sides.h"
 #include "bench/queries/kdray_side.h"
 #include "bench/race/build_race.h"
 #include "generate/built_in.h"

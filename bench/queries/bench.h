@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/measure/spread.h"
-#include "bench/queries/asker.h"
+#include "bench/race/asker.h"
 
 namespace kdray::bench {
 

@@ -1,7 +1,7 @@
 // What    How many answers of one asker's are others than another's, for the same rays or points.
 #pragma once
 
-#include "bench/queries/asker.h"
+#include "bench/race/asker.h"
 
 namespace kdray::bench {
 

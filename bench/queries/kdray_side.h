@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "bench/queries/asker.h"
+#include "bench/race/asker.h"
 #include "kdray/kdray.h"
 
 namespace kdray::bench {

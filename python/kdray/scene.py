@@ -61,7 +61,8 @@ class Scene:
 
     Shapes: rays are two arrays of shape (..., 3) of float32 or float64, in any layout; results have the shape (...).
     What has a single row (one origin, one t_min) is the same for all rays. Hits lie where ``t_min < t < t_max``, and t
-    counts in multiples of the direction.
+    counts in multiples of the direction. (Of hits in the start point itself, t = 0, `count_hits` and `all_hits` know
+    where t_min is 0.)
 
     A scene can be copied and pickled; it then holds its arrays, or the name of the file that it was read from.
     """
@@ -283,9 +284,9 @@ class Scene:
         self._committed = True
 
     def _ready(self) -> Any:
-        if self._changed:
+        if self._changed or not self._committed:
             with self._lock:
-                if self._changed:
+                if self._changed or not self._committed:
                     self._commit()
         return self._core
 

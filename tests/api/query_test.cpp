@@ -214,7 +214,7 @@ TEST_P(Query, ThreadsAskWhileTheSceneIsCommittedAnew) {
     }
   };
   std::thread first(ask), second(ask);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 20 || asked == 0; ++i) {
     scene.update_vertices(box, cube.at(0, 0, static_cast<float>(i % 10)));
     scene.commit(options());
   }
@@ -222,7 +222,6 @@ TEST_P(Query, ThreadsAskWhileTheSceneIsCommittedAnew) {
   first.join();
   second.join();
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(asked, 0);
 }
 
 TEST_P(Query, CanBeCancelledFromAnotherThread) {

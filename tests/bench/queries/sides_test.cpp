@@ -6,7 +6,7 @@
 
 #include "bench/embree/embree.h"
 #include "bench/queries/compare.h"
-#include "bench/queries/embree_sides.h"
+#include "bench/embree/sides.h"
 #include "bench/queries/kdray_side.h"
 #include "cli/program.h"
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/queries/arrays.h"
+#include "bench/workload/arrays.h"
 
 namespace kdray::bench {
 

@@ -1,4 +1,4 @@
-#include "bench/queries/asker.h"
+#include "bench/race/asker.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // What    Embree as sides of `bench queries`: a fast scene and a robust one. Without Embree there are none.
 #pragma once
 
-#include "bench/queries/asker.h"
+#include "bench/race/asker.h"
 
 namespace kdray::bench {
 

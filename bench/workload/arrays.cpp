@@ -1,4 +1,4 @@
-#include "bench/queries/arrays.h"
+#include "bench/workload/arrays.h"
 
 #include <algorithm>
 #include <array>
