@@ -13,7 +13,6 @@ pictures. `kdray.trimesh` makes kdray the ray engine of trimesh, `kdray.Raycasti
 from importlib.metadata import PackageNotFoundError as _NotFound
 from importlib.metadata import version as _version
 from typing import TYPE_CHECKING as _TYPE_CHECKING
-from typing import Any as _Any
 
 from .devices import Device, devices
 from .errors import (
@@ -27,6 +26,7 @@ from .errors import (
 )
 from .hits import AllHits, ClosestPoints, Hits
 from .looks import Camera, Light, Material
+from .open3d import RaycastingScene
 from .picture import Picture
 from .rays import lidar_rays, pinhole_rays
 from .scene import Geometry, Scene, load
@@ -63,11 +63,3 @@ __all__ = [
     "load",
     "pinhole_rays",
 ]
-
-
-def __getattr__(name: str) -> _Any:
-    if name == "RaycastingScene":
-        from .open3d import RaycastingScene
-
-        return RaycastingScene
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -387,7 +387,8 @@ def _by_matrices(given: dict[str, Any]) -> tuple[Doubles, Doubles, Doubles]:
     extrinsic = _numbers(given, "extrinsic_matrix", (4, 4))
     axes = extrinsic[:3, :3]
     try:
-        return axes, -axes.T @ extrinsic[:3, 3], np.linalg.inv(intrinsic)
+        inverse: Doubles = np.linalg.inv(intrinsic).astype(np.float64)
+        return axes, -axes.T @ extrinsic[:3, 3], inverse
     except np.linalg.LinAlgError as why:
         raise InputError("intrinsic_matrix: it has no inverse") from why
 

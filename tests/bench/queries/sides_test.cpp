@@ -5,8 +5,8 @@
 #include <random>
 
 #include "bench/embree/embree.h"
-#include "bench/queries/compare.h"
 #include "bench/embree/sides.h"
+#include "bench/queries/compare.h"
 #include "bench/queries/kdray_side.h"
 #include "cli/program.h"
 
