@@ -12,7 +12,6 @@ pictures. `kdray.trimesh` makes kdray the ray engine of trimesh, `kdray.Raycasti
 
 from importlib.metadata import PackageNotFoundError as _NotFound
 from importlib.metadata import version as _version
-from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from .devices import Device, devices
 from .errors import (
@@ -30,9 +29,6 @@ from .open3d import RaycastingScene
 from .picture import Picture
 from .rays import lidar_rays, pinhole_rays
 from .scene import Geometry, Scene, load
-
-if _TYPE_CHECKING:
-    from .open3d import RaycastingScene
 
 try:
     __version__ = _version("kdray")
