@@ -2,10 +2,12 @@
 // call is answered from one state, before or after. (The thread sanitizer runs this too: CONTRIBUTING.md.)
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
-#include <functional>
 #include <thread>
+#include <vector>
 
 #include "kdray/kdray.h"
 #include "support/device.h"

@@ -4,9 +4,13 @@
 // Source: tutorials/verify of Embree 3.13 (WatertightTest, TriangleHitTest, IntersectionFilterTest, NaNTest).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "query/meshes.h"
 #include "stress/exact.h"
@@ -199,7 +203,7 @@ struct ExactHit {
   double t, u, v;
 };
 
-// By Cramer's rule.
+// Cramer's rule tells it.
 ExactHit exact_hit(const Line& line, const dvec3& a, const dvec3& b, const dvec3& c, const ExactHit& from) {
   const Exact3 e = less(exactly(b), exactly(a)), f = less(exactly(c), exactly(a)),
                d = exactly(line.direction);

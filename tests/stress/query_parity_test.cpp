@@ -42,7 +42,7 @@ Rays rays_of(const std::vector<AnyLine>& lines) {
           {&lines.data()->direction.x, lines.size(), stride}};
 }
 
-// By the shape's place among the ten.
+// The parameter is the shape's place among the ten.
 class ParityOf : public testing::TestWithParam<std::size_t> {
  protected:
   void SetUp() override {

@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "prepare/prepared.h"
 #include "stress/lines.h"
