@@ -6,7 +6,7 @@ import copy
 import math
 import os
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,15 +15,13 @@ import numpy.typing as npt
 
 from . import _arrays, _core, _drivers, errors
 from ._arrays import Array, ArrayLike, RayArrays
+from ._results import FLOATS, Rows, as_rows, hit_columns, in_parts, known, result_of, type_of, width_of
 from .hits import AllHits, ClosestPoints, Hits
 from .looks import Camera, Color, Light, Material
 from .picture import Picture
 from .progress import Progress, teller
 
-Rows = dict[str, Array]  # results as kdray._core writes them
-_FLOATS = (np.float32, np.float64)
 _USUAL = ("t", "geometry", "primitive", "u", "v", "normal")
-_AT_ONCE = 1 << 20  # rays between two words of progress
 
 
 @dataclass(frozen=True)
@@ -313,14 +311,14 @@ class Scene:
         with `strict` an InputError that names the first.
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
-        columns = _hit_columns(rays, out, tuple(fields))
-        rows = {name: _as_rows(column, _width(name)) for name, column in columns.items()}
+        columns = hit_columns(rays, out, tuple(fields))
+        rows = {name: as_rows(column, width_of(name)) for name, column in columns.items()}
         core = self._ready()
 
         def ask(part: RayArrays, cut: Rows) -> None:
             core.closest(*part.given(), strict, *(cut.get(name) for name in Hits._names))
 
-        _in_parts(rays, rows, ask, progress, "closest_hit")
+        in_parts(rays, rows, ask, progress, "closest_hit")
         if out is None:
             return Hits(columns, rays.points_at)
         out._now_of(rays.points_at)
@@ -340,15 +338,7 @@ class Scene:
     ) -> npt.NDArray[np.bool_]:
         """Whether each ray hits anything between t_min and t_max; for shadows and lines of sight."""
         rays = RayArrays(origins, directions, t_min, t_max, mask)
-        result = _result(out, rays.shape, np.bool_, "out")
-        rows = _as_rows(result).view(np.uint8)
-        core = self._ready()
-
-        def ask(part: RayArrays, cut: Rows) -> None:
-            core.any(*part.given(), strict, cut["out"])
-
-        _in_parts(rays, {"out": rows}, ask, progress, "any_hit")
-        return result
+        return self._ask_each(self._ready().any, rays, np.bool_, out, strict, progress, "any_hit")
 
     def count_hits(
         self,
@@ -367,15 +357,7 @@ class Scene:
         A ray from outside of a closed mesh to its outside has an even count, always.
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
-        result = _result(out, rays.shape, np.uint32, "out")
-        rows = _as_rows(result)
-        core = self._ready()
-
-        def ask(part: RayArrays, cut: Rows) -> None:
-            core.count(*part.given(), strict, cut["out"])
-
-        _in_parts(rays, {"out": rows}, ask, progress, "count_hits")
-        return result
+        return self._ask_each(self._ready().count, rays, np.uint32, out, strict, progress, "count_hits")
 
     def all_hits(
         self,
@@ -395,6 +377,19 @@ class Scene:
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         return AllHits(*self._ready().all(*rays.given(), strict, most))
 
+    def _ask_each(
+        self, question: Any, rays: RayArrays, dtype: Any, out: Array | None, strict: bool, progress: Progress, what: str
+    ) -> Array:
+        """One number for each ray."""
+        result = result_of(out, rays.shape, dtype, "out")
+        rows = as_rows(result).view(np.uint8) if dtype is np.bool_ else as_rows(result)
+
+        def ask(part: RayArrays, cut: Rows) -> None:
+            question(*part.given(), strict, cut["out"])
+
+        in_parts(rays, {"out": rows}, ask, progress, what)
+        return result
+
     # ---- Points
 
     def closest_point(
@@ -407,11 +402,11 @@ class Scene:
     ) -> ClosestPoints:
         """Of each point (..., 3) the nearest point of any surface within `radius`."""
         rows, shape = _arrays.vectors(points, "points")
-        wanted = _known(fields, ClosestPoints._names)
+        wanted = known(fields, ClosestPoints._names)
         columns: dict[str, Array] = {}
         for name in wanted:
-            columns[name] = np.empty((*shape, 3) if name == "point" else shape, _type_of(name, rows.dtype))
-        cut = {name: _as_rows(column, _width(name)) for name, column in columns.items()}
+            columns[name] = np.empty((*shape, 3) if name == "point" else shape, type_of(name, rows.dtype))
+        cut = {name: as_rows(column, width_of(name)) for name, column in columns.items()}
         self._ready().closest_points(rows, radius, strict, *(cut.get(name) for name in ClosestPoints._names))
         return ClosestPoints(columns)
 
@@ -425,8 +420,8 @@ class Scene:
     ) -> npt.NDArray[Any]:
         """The distance to the nearest surface, negative inside of closed ones; of the points' type."""
         rows, shape = _arrays.vectors(points, "points")
-        result = _result(out, shape, *(_FLOATS if out is not None else (rows.dtype.type,)), "out")
-        self._ready().signed_distance(rows, radius, strict, _as_rows(result))
+        result = result_of(out, shape, *(FLOATS if out is not None else (rows.dtype.type,)), "out")
+        self._ready().signed_distance(rows, radius, strict, as_rows(result))
         return result
 
     def contains(
@@ -434,8 +429,8 @@ class Scene:
     ) -> npt.NDArray[np.bool_]:
         """Whether each point lies inside: of an odd number of closed surfaces. Exact, without a vote."""
         rows, shape = _arrays.vectors(points, "points")
-        result = _result(out, shape, np.bool_, "out")
-        self._ready().inside(rows, strict, _as_rows(result).view(np.uint8))
+        result = result_of(out, shape, np.bool_, "out")
+        self._ready().inside(rows, strict, as_rows(result).view(np.uint8))
         return result
 
     # ---- Pictures
@@ -561,69 +556,6 @@ def _points(values: ArrayLike, name: str) -> Array:
 
 def _scalars(values: ArrayLike, name: str) -> Array:
     return _arrays.scalars(values, name)[0]
-
-
-def _known(fields: Iterable[str], names: tuple[str, ...]) -> list[str]:
-    wanted = list(fields)
-    for name in wanted:
-        if name not in names:
-            raise errors.UsageError(f"there is no field {name!r}; there are {', '.join(names)}")
-    return wanted
-
-
-def _width(name: str) -> int:
-    """How many values of a field there are for each ray or point."""
-    return 3 if name in ("normal", "point") else 1
-
-
-def _type_of(name: str, of_rays: Any) -> Any:
-    if name in ("geometry", "primitive"):
-        return np.int32
-    return np.float32 if name in ("u", "v") else of_rays
-
-
-def _hit_columns(rays: RayArrays, out: Hits | None, fields: tuple[str, ...]) -> dict[str, Array]:
-    columns: dict[str, Array] = {}
-    if out is None:
-        for name in _known(fields, Hits._names):
-            shape = (*rays.shape, 3) if _width(name) == 3 else rays.shape
-            columns[name] = np.empty(shape, _type_of(name, rays.dtype))
-        return columns
-    if not isinstance(out, Hits):
-        raise errors.InputError(f"out: a kdray.Hits is wanted, not {type(out).__name__}")
-    for name in out.fields:
-        shape = (*rays.shape, 3) if _width(name) == 3 else rays.shape
-        types = (np.int32,) if name in ("geometry", "primitive") else _FLOATS
-        columns[name] = _arrays.for_writing(getattr(out, name), shape, types, f"out.{name}")
-    return columns
-
-
-def _as_rows(column: Array, values: int = 1) -> Array:
-    """The memory of a result as rows of so many values, for `kdray._core`; a view, never a copy."""
-    if column.dtype == np.int32:
-        column = column.view(np.uint32)
-    return column.reshape(-1) if values == 1 else column.reshape(-1, values)
-
-
-def _result(out: Array | None, shape: tuple[int, ...], *types_and_name: Any) -> Array:
-    *types, name = types_and_name
-    if out is None:
-        return np.empty(shape, types[0])
-    return _arrays.for_writing(out, shape, tuple(types), name)
-
-
-def _in_parts(
-    rays: RayArrays, rows: Rows, ask: Callable[[RayArrays, Rows], None], progress: Progress, what: str
-) -> None:
-    """Asks for all rays at once, or so many at a time that there is something to tell."""
-    tell = teller(progress, what)
-    if tell is None or rays.n <= _AT_ONCE:
-        ask(rays, rows)
-        return
-    for first in range(0, rays.n, _AT_ONCE):
-        end = min(first + _AT_ONCE, rays.n)
-        ask(rays.part(first, end), {name: column[first:end] for name, column in rows.items()})
-        tell(end / rays.n)
 
 
 def _planes(planes: dict[str, Array], height: int, width: int) -> dict[str, npt.NDArray[np.float32]]:
