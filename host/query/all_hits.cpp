@@ -1,7 +1,9 @@
 #include "query/all_hits.h"
 
 #include <algorithm>
+#include <limits>
 
+#include "base/error.h"
 #include "query/passes.h"
 
 namespace kdray::query {
@@ -14,13 +16,6 @@ std::span<const std::uint32_t> masks_of(const CollectOptions& options, std::size
   return options.masks.empty() ? options.masks : options.masks.subspan(first, n);
 }
 
-// Hits of a ray that a later pass found.
-struct Later {
-  std::uint32_t ray;
-  Hits hits;
-  bool more;
-};
-
 // Adds chunk by chunk to the answer.
 class Collection {
  public:
@@ -30,42 +25,43 @@ class Collection {
   void add(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
     const std::span<const QuerySpan> spans = passes_.first(rays, masks);
     later_.clear();
-    passes_.others(spans, true, [&](std::uint32_t i, Hits&& hits, std::uint32_t, bool more) {
-      later_.push_back({i, std::move(hits), more});
-    });
+    passes_.others(spans, true, [&](const Passes::More& more) { later_.push_back(more); });
     // A ray's passes stay in their order.
-    std::stable_sort(later_.begin(), later_.end(),
-                     [](const Later& a, const Later& b) { return a.ray < b.ray; });
-    const std::size_t n_first = place(spans);
-    later_.empty() ? fill(n_first) : fill_between(n_first);
+    const auto by_ray = [](const Passes::More& a, const Passes::More& b) { return a.ray < b.ray; };
+    if (!std::is_sorted(later_.begin(), later_.end(), by_ray))
+      std::stable_sort(later_.begin(), later_.end(), by_ray);
+    const std::size_t n = place(spans);
+    if (n > 0) passes_.first_lists().pack(places_, n, chunk_);
+    fill_in_later(spans);
     give_back();
     n_rays_ += rays.size();
   }
 
  private:
-  // Makes room for the chunk's hits, and says where each ray's of the first pass lie among themselves: how
-  // many these are.
+  // Makes room for the chunk's hits, and says where each ray's begin: how many there are.
   std::size_t place(std::span<const QuerySpan> spans) {
     const std::size_t first = to_.t.size();
     places_.resize(spans.size());
-    std::uint32_t n_first = 0;
-    std::size_t n = first;
+    std::size_t n = 0;
     auto later = later_.begin();
     for (std::uint32_t i = 0; i < spans.size(); ++i) {
-      places_[i] = n_first;
+      places_[i] = static_cast<std::uint32_t>(n);
       const std::uint32_t n_here = std::min(spans[i].n_hits, max_hits_);
-      n_first += n_here;
       n += n_here;
       bool more = spans[i].more != 0 || n_here < spans[i].n_hits;
       for (; later != later_.end() && later->ray == i; ++later) {
-        n += later->hits.size();
-        more = later->more;
+        n += later->n;
+        more = later->others;
       }
-      to_.splits[n_rays_ + i + 1] = n;
+      if (n > std::numeric_limits<std::uint32_t>::max())
+        throw Error(
+            ErrorCode::out_of_memory,
+            "some tens of thousands of rays have more than 2^32 hits; ask for fewer of each (max_hits)");
+      to_.splits[n_rays_ + i + 1] = first + n;
       to_.more[n_rays_ + i] = more;
     }
-    make_room(first, n, spans.size());
-    return n_first;
+    make_room(first, first + n, spans.size());
+    return n;
   }
 
   // For all hits that there will be, if the other chunks have as many.
@@ -80,24 +76,16 @@ class Collection {
     chunk_ = {grow(to_.t), grow(to_.primitive), grow(to_.u), grow(to_.v)};
   }
 
-  void fill(std::size_t n) {
-    if (n > 0) passes_.first_lists().pack(places_, n, chunk_);
-  }
-
-  // The hits of the first pass spread out, those of later ones between them.
-  void fill_between(std::size_t n) {
-    Hits first(n);
-    if (n > 0) passes_.first_lists().pack(places_, n, first.arrays());
+  // Behind the hits of the first pass, which have left room for them.
+  void fill_in_later(std::span<const QuerySpan> spans) {
+    std::uint32_t ray = 0;
     std::size_t at = 0;
-    auto later = later_.begin();
-    for (std::uint32_t i = 0; i < places_.size(); ++i) {
-      const std::size_t end = i + 1 < places_.size() ? places_[i + 1] : n;
-      first.copy(places_[i], end - places_[i], chunk_, at);
-      at += end - places_[i];
-      for (; later != later_.end() && later->ray == i; ++later) {
-        later->hits.copy(0, later->hits.size(), chunk_, at);
-        at += later->hits.size();
-      }
+    for (std::size_t k = 0; k < later_.size(); ++k) {
+      const Passes::More& more = later_[k];
+      if (k == 0 || more.ray != ray) at = places_[more.ray] + spans[more.ray].n_hits;
+      ray = more.ray;
+      more.hits->copy(more.first, more.n, chunk_, at);
+      at += more.n;
     }
   }
 
@@ -116,7 +104,7 @@ class Collection {
   std::size_t n_rays_ = 0;             // before the chunk
   HitArrays chunk_{};                  // the chunk's in the answer
   std::vector<std::uint32_t> places_;  // of the chunk's rays
-  std::vector<Later> later_;
+  std::vector<Passes::More> later_;
 };
 
 }  // namespace
@@ -156,8 +144,7 @@ void count_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions&
     const std::span<const QuerySpan> spans =
         passes.first(rays.subspan(first, n), masks_of(options, first, n));
     for (std::size_t i = 0; i < n; ++i) counts[first + i] = std::min(spans[i].n_hits, options.max_hits);
-    passes.others(spans, false,
-                  [&](std::uint32_t i, const Hits&, std::uint32_t more, bool) { counts[first + i] += more; });
+    passes.others(spans, false, [&](const Passes::More& more) { counts[first + more.ray] += more.n; });
   }
 }
 

@@ -1,8 +1,10 @@
 #include "query/crossings.h"
 
+#include <tbb/task_group.h>
+
 #include <algorithm>
 
-#include "base/error.h"
+#include "base/memory.h"
 #include "query/all_hits.h"
 #include "query/grains.h"
 
@@ -11,7 +13,7 @@ namespace kdray::query {
 namespace {
 
 // Rays whose hits are held at a time, beside the answer.
-constexpr std::size_t kCollected = std::size_t{1} << 18;
+constexpr std::size_t kCollected = std::size_t{1} << 16;
 
 // The rays of a chunk in the scene's own space, and their masks where primitives have some.
 class CollectedRays {
@@ -42,25 +44,57 @@ class CollectedRays {
   std::vector<std::uint32_t> masks_;
 };
 
-// Adds a chunk's hits to the answer.
-void add(const Asked& asked, const LocalRays& local, const LocalHits& hits, std::size_t n_rays, AllHits& to) {
-  const std::size_t before = to.t.size(), n = hits.t.size();
-  for (std::size_t i = 1; i <= n_rays; ++i) to.splits.push_back(before + hits.splits[i]);
-  to.more.insert(to.more.end(), hits.more.begin(), hits.more.end());
-  to.u.insert(to.u.end(), hits.u.begin(), hits.u.end());
-  to.v.insert(to.v.end(), hits.v.begin(), hits.v.end());
-  to.t.resize(before + n);
-  to.geometry.resize(before + n);
-  to.primitive.resize(before + n);
-  for_each_index(n_rays, [&](std::size_t i) {
-    for (std::size_t k = hits.splits[i]; k < hits.splits[i + 1]; ++k) {
-      const GeometryTable::Place place = asked.table.of(hits.primitive[k]);
-      to.t[before + k] = local.world_t(i, hits.t[k]);
-      to.geometry[before + k] = place.geometry;
-      to.primitive[before + k] = place.primitive;
-    }
-  });
-}
+// The answer, to which chunks' hits are added in turn.
+class Answer {
+ public:
+  Answer(const Asked& asked, std::size_t n_rays) : asked_(&asked), n_all_(n_rays) {
+    hits_.splits.reserve(n_rays + 1);
+    hits_.splits.push_back(0);
+    hits_.more.reserve(n_rays);
+  }
+
+  void add(const LocalRays& local, const LocalHits& found) {
+    const std::size_t n_rays = found.more.size(), n = found.t.size(), before = hits_.t.size();
+    n_rays_ += n_rays;
+    for (std::size_t i = 1; i <= n_rays; ++i) hits_.splits.push_back(before + found.splits[i]);
+    hits_.more.insert(hits_.more.end(), found.more.begin(), found.more.end());
+    make_room(before + n);
+    for_each_index(n_rays, [&](std::size_t i) {
+      for (std::size_t k = found.splits[i]; k < found.splits[i + 1]; ++k) {
+        const GeometryTable::Place place = asked_->table.of(found.primitive[k]);
+        hits_.t[before + k] = local.world_t(i, found.t[k]);
+        hits_.geometry[before + k] = place.geometry;
+        hits_.primitive[before + k] = place.primitive;
+        hits_.u[before + k] = found.u[k];
+        hits_.v[before + k] = found.v[k];
+      }
+    });
+  }
+
+  AllHits take(std::uint64_t n_invalid) {
+    hits_.report.invalid = n_invalid;
+    return std::move(hits_);
+  }
+
+ private:
+  // For n hits; and at once for all that there will be, if the other rays have as many.
+  void make_room(std::size_t n) {
+    const double all =
+        1.05 * static_cast<double>(n) * static_cast<double>(n_all_) / static_cast<double>(n_rays_);
+    const auto grow = [&](auto& array) {
+      if (array.capacity() < n) {
+        array.reserve(std::max(n, static_cast<std::size_t>(all)));
+        prefer_large_pages(array.data(), array.capacity() * sizeof(array[0]));
+      }
+      array.resize(n);
+    };
+    grow(hits_.t), grow(hits_.geometry), grow(hits_.primitive), grow(hits_.u), grow(hits_.v);
+  }
+
+  const Asked* asked_;
+  std::size_t n_all_, n_rays_ = 0;  // rays there are, and that were added
+  AllHits hits_;
+};
 
 }  // namespace
 
@@ -80,21 +114,33 @@ QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, con
   return {collected.local().n_invalid()};
 }
 
+// While a chunk is traced, the hits of the one before it are added to the answer.
 AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options) {
   const RayArrays arrays(rays);
-  CollectedRays collected(asked, arrays);
-  AllHits hits;
-  hits.splits.reserve(arrays.size() + 1);
-  hits.splits.push_back(0);
+  struct Chunk {
+    Chunk(const Asked& asked, const RayArrays& rays) : rays(asked, rays) {}
+    CollectedRays rays;
+    LocalHits found;
+  };
+  Chunk chunks[2] = {{asked, arrays}, {asked, arrays}};
+  Answer answer(asked, arrays.size());
   const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
-  LocalHits found;
-  for (std::size_t first = 0; first < arrays.size(); first += kCollected) {
-    const std::span<const Ray> taken = collected.take(first, options);
-    all_hits(*passes, taken, {.max_hits = options.max_hits, .masks = collected.masks()}, found);
-    add(asked, collected.local(), found, taken.size(), hits);
+  tbb::task_group adding;
+  try {
+    for (std::size_t first = 0, turn = 0; first < arrays.size(); first += kCollected, turn ^= 1) {
+      Chunk& chunk = chunks[turn];
+      const std::span<const Ray> taken = chunk.rays.take(first, options);
+      all_hits(*passes, taken, {.max_hits = options.max_hits, .masks = chunk.rays.masks()}, chunk.found);
+      adding.wait();
+      const auto add = [&answer, &chunk] { answer.add(chunk.rays.local(), chunk.found); };
+      first + taken.size() < arrays.size() ? adding.run(add) : add();
+    }
+  } catch (...) {
+    adding.cancel();
+    adding.wait();
+    throw;
   }
-  hits.report.invalid = collected.local().n_invalid();
-  return hits;
+  return answer.take(chunks[0].rays.local().n_invalid() + chunks[1].rays.local().n_invalid());
 }
 
 }  // namespace kdray::query

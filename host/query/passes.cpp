@@ -31,12 +31,6 @@ Traversal walk_for(const Target& target, Traversal asked) {
 
 }  // namespace
 
-Hits Hits::some(std::size_t first, std::size_t n) const {
-  Hits part(n);
-  copy(first, n, part.arrays(), 0);
-  return part;
-}
-
 void Hits::copy(std::size_t first, std::size_t n, const HitArrays& to, std::size_t at) const {
   const auto from = static_cast<std::ptrdiff_t>(first);
   std::copy_n(t.begin() + from, n, to.t + at);
@@ -92,6 +86,7 @@ std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<co
 }
 
 void Passes::others(std::span<const QuerySpan> spans, bool want_hits, const Found& found) {
+  later_hits_.clear();
   std::vector<Rest> rest;
   for (std::uint32_t i = 0; i < spans.size(); ++i)
     if (spans[i].more != 0 && spans[i].n_hits < max_hits_) rest.push_back({i, spans[i].n_hits, spans[i]});
@@ -120,26 +115,25 @@ void Passes::pass(std::span<const Rest> rest, bool want_hits, const Found& found
     after.push_back(r.span);
   }
   const std::span<const QuerySpan> spans = later_->find({rays, masks}, !seen_.ordinary, after, capacity);
-  const Hits hits = want_hits ? packed(spans) : Hits();
+  const Hits* const hits = want_hits ? packed(spans) : nullptr;
   for (std::size_t k = 0, at = 0; k < rest.size(); at += spans[k++].n_hits) {
     const std::uint32_t n = std::min(spans[k].n_hits, max_hits_ - rest[k].n_hits);
-    const bool more = spans[k].more != 0 || n < spans[k].n_hits;
-    found(rest[k].ray, want_hits ? hits.some(at, n) : Hits(), n, more);
+    found({rest[k].ray, hits, at, n, spans[k].more != 0 || n < spans[k].n_hits});
     if (spans[k].more != 0 && rest[k].n_hits + n < max_hits_)
       still.push_back({rest[k].ray, rest[k].n_hits + n, spans[k]});
   }
 }
 
-Hits Passes::packed(std::span<const QuerySpan> spans) {
+const Hits* Passes::packed(std::span<const QuerySpan> spans) {
   std::vector<std::uint32_t> places;
   std::uint32_t n = 0;
   for (const QuerySpan& s : spans) {
     places.push_back(n);
     n += s.n_hits;
   }
-  Hits hits(n);
+  Hits& hits = *later_hits_.emplace_back(std::make_unique<Hits>(n));
   if (n > 0) later_->pack(places, n, hits.arrays());
-  return hits;
+  return &hits;
 }
 
 }  // namespace kdray::query

@@ -29,7 +29,6 @@ struct Hits {
   std::size_t size() const { return t.size(); }
   HitArrays arrays() { return {t.data(), primitive.data(), u.data(), v.data()}; }
 
-  Hits some(std::size_t first, std::size_t n) const;
   // The hits [first, first + n) to place `at` and behind.
   void copy(std::size_t first, std::size_t n, const HitArrays& to, std::size_t at) const;
 };
@@ -51,11 +50,18 @@ class Passes {
   // rays come from memory once.)
   std::span<const layout::QuerySpan> first(std::span<const Ray> rays, std::span<const std::uint32_t> masks);
 
-  // Told n more hits of ray i of the chunk, in their order, and whether it has others.
-  using Found = std::function<void(std::uint32_t i, Hits&& hits, std::uint32_t n, bool more)>;
+  // More hits of ray `ray` of the chunk, in their order, and whether it has others.
+  struct More {
+    std::uint32_t ray;
+    const Hits* hits;  // [first, first + n) of these, unless null: they aren't wanted
+    std::size_t first;
+    std::uint32_t n;
+    bool others;
+  };
+  using Found = std::function<void(const More&)>;
 
   // Finds all that the chunk's rays have beyond the first pass, but no more than max_hits of a ray. `spans`
-  // is what first() returned; `hits` are empty unless they are wanted.
+  // is what first() returned. Hits are valid until the next call.
   void others(std::span<const layout::QuerySpan> spans, bool want_hits, const Found& found);
 
  private:
@@ -64,7 +70,7 @@ class Passes {
     layout::QuerySpan span;
   };
   void pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still);
-  Hits packed(std::span<const layout::QuerySpan> spans);
+  const Hits* packed(std::span<const layout::QuerySpan> spans);
 
   const Target& target_;
   Traversal traversal_;
@@ -72,6 +78,7 @@ class Passes {
   NearRays near_rays_;
   HitLists first_;
   std::unique_ptr<HitLists> later_;
+  std::vector<std::unique_ptr<Hits>> later_hits_;  // of the chunk, a pass each
   // What the call asks for.
   bool faulty_miss_ = false;
   std::uint32_t max_hits_ = 0, capacity_ = 0;
