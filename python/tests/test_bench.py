@@ -6,12 +6,14 @@ import pytest
 
 import kdray
 from kdray import bench
+from kdray.bench import command
+from kdray.bench.machine import module
 
 TINY = ["--rays", "400", "--points", "60", "--rounds", "2", "--batches", "1,100"]
 
 
 def installed() -> list[str]:
-    return [name for name in bench.ENGINES if all(bench._module(m) is not None for m in bench.NEEDS[name])]
+    return [name for name in bench.ENGINES if all(module(m) is not None for m in bench.NEEDS[name])]
 
 
 @pytest.fixture(params=["sphere", "room"])
@@ -88,7 +90,7 @@ def test_each_engine_answers_as_kdray_does(small: bench.Mesh, name: str) -> None
 
 
 def test_the_table_and_the_files(tmp_path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(bench, "BUILT_IN", {"sphere": lambda: bench.sphere(24)})
+    monkeypatch.setattr(command, "BUILT_IN", {"sphere": lambda: bench.sphere(24)})
     figures, picture = tmp_path / "bench.json", tmp_path / "bench.svg"
     assert bench.main([*TINY, "--threads", "1", "--json", str(figures), "--plot", str(picture)]) == 0
 
@@ -119,8 +121,8 @@ def test_the_table_and_the_files(tmp_path, monkeypatch: pytest.MonkeyPatch, caps
 def test_engines_that_are_missing_are_left_out(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(bench, "_module", lambda name: None)
-    monkeypatch.setattr(bench, "BUILT_IN", {"sphere": lambda: bench.sphere(12)})
+    monkeypatch.setattr(command, "module", lambda name: None)
+    monkeypatch.setattr(command, "BUILT_IN", {"sphere": lambda: bench.sphere(12)})
     assert bench.main([*TINY, "--tasks", "closest", "--classes", "random"]) == 0
     table = capsys.readouterr().out
     assert "left out: open3d: open3d can't be imported" in table

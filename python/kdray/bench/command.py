@@ -1,0 +1,110 @@
+"""The command line of `python -m kdray.bench`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import pathlib
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+
+from ..devices import devices
+from ..errors import Error, InputError, NoDeviceError
+from .engines import ENGINES, NEEDS, TASKS
+from .machine import cores, module, processor, versions
+from .measure import Row, run
+from .report import plot, tell, titles
+from .workload import BUILT_IN, CLASSES, read
+
+
+def _some_of(all_: Sequence[str]) -> Callable[[str], list[str]]:
+    def read_them(text: str) -> list[str]:
+        names = text.split(",")
+        for name in names:
+            if name not in all_:
+                raise argparse.ArgumentTypeError(f"there is no {name!r}; there are {', '.join(all_)}")
+        return names
+
+    return read_them
+
+
+def _numbers(text: str) -> list[int]:
+    return [_count(part) for part in text.split(",")]
+
+
+def _count(text: str) -> int:
+    try:
+        number = int(float(text))  # 1e6, too
+    except (ValueError, OverflowError) as why:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number") from why
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text} is less than 1")
+    return number
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m kdray.bench", description=(__doc__ or "").replace("`", ""))
+    parser.add_argument("scenes", nargs="*", help="sphere, room (the default: both), or mesh files")
+    parser.add_argument("--rays", type=_count, default=1_000_000, metavar="N", help="of each class (1000000)")
+    parser.add_argument("--points", type=_count, default=100_000, metavar="N", help="of the others (100000)")
+    parser.add_argument(
+        "--batches", type=_numbers, default=[1, 1000], metavar="N,N", help="beside all at once (1,1000)"
+    )
+    parser.add_argument("--rounds", type=_count, default=5, metavar="N", help="the median is reported (5)")
+    parser.add_argument("--threads", type=_count, default=cores(), metavar="N", help="of kdray and Open3D (all cores)")
+    parser.add_argument(
+        "--classes", type=_some_of(CLASSES), default=list(CLASSES), metavar="NAMES", help=", ".join(CLASSES)
+    )
+    parser.add_argument("--tasks", type=_some_of(TASKS), default=list(TASKS), metavar="NAMES", help=", ".join(TASKS))
+    parser.add_argument("--engines", type=_some_of(ENGINES), metavar="NAMES", help="all that are installed")
+    parser.add_argument("--json", metavar="FILE", help="write all figures")
+    parser.add_argument("--plot", metavar="FILE.svg", help="write bars of the largest batch")
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Measures and writes a table to stdout; the status: 0, 2 for bad input, 3 without a device, else 1."""
+    options = _parser().parse_args(argv)
+    try:
+        _bench(options)
+    except (Error, OSError) as error:
+        print(f"kdray bench: {error}", file=sys.stderr)
+        return 2 if isinstance(error, InputError) else 3 if isinstance(error, NoDeviceError) else 1
+    return 0
+
+
+def _bench(options: argparse.Namespace) -> None:
+    options.threads = min(options.threads, cores())
+    for path in filter(None, (options.json, options.plot)):
+        if not pathlib.Path(path).absolute().parent.is_dir():
+            raise InputError(f"{path}: there is no such folder")
+    names, left_out = [], {}
+    for name in options.engines or ENGINES:
+        missing = [needed for needed in NEEDS[name] if module(needed) is None]
+        if missing:
+            left_out[name] = f"{', '.join(missing)} can't be imported"
+        else:
+            names.append(name)
+    device = next((device.name for device in devices() if device.usable), "")
+    about = {
+        "processor": processor(),
+        "cores": cores(),
+        "device": device,
+        "versions": versions(),
+        "left_out": left_out,
+        **{name: getattr(options, name) for name in ("threads", "rays", "points", "rounds")},
+    }
+    lines = titles(about)
+    print("\n".join(lines))
+    rows: list[Row] = []
+    for scene in options.scenes or BUILT_IN:
+        mesh = BUILT_IN[scene]() if scene in BUILT_IN else read(scene)
+        for measured in run(mesh, names, options.tasks, options.classes, options):
+            tell(measured, rows[-1] if rows else None)
+            rows += measured
+    if options.json:
+        figures = [asdict(row) | {"median": row.median, "per_second": row.per_second} for row in rows]
+        pathlib.Path(options.json).write_text(json.dumps({**about, "rows": figures}, indent=1) + "\n")
+    if options.plot:
+        pathlib.Path(options.plot).write_text(plot(rows, lines[:2]))
