@@ -154,12 +154,12 @@ TEST(Groups, LargeHeapsComeApart) {
 // alone.
 TEST(Groups, HugeCellsAreForThoseWhoWait) {
   Random random(64);
-  const auto refs = random_refs(random, 1100, 0.5f);
+  const auto refs = random_refs(random, 2100, 0.5f);
   BuildConfig c = grouped(4, 0.5);
   EXPECT_GT(groups_of(refs, c).nodes.size(), 500u);
   c.quality = kdtree::Quality::balanced;
   EXPECT_EQ(groups_of(refs, c).nodes.size(), 1u);
-  EXPECT_GT(groups_of({refs.begin(), refs.begin() + 1000}, c).nodes.size(), 500u);
+  EXPECT_GT(groups_of({refs.begin(), refs.begin() + 2000}, c).nodes.size(), 500u);
 }
 
 TEST(Groups, WhatCannotBePartedStaysWhole) {

@@ -1,0 +1,343 @@
+// What    Groups of a cell of up to kSwept references: at every node all places to part it are tried, along
+//         three axes.
+// Why     References are sorted by their centres once for the cell, and parting keeps the order. The hulls of
+//         the first i and of the others then come from one pass in each direction, and lanes are places: n
+//         steps a node instead of n for each place.
+// Shape   Costs are floats without contraction; the place is packed into the lowest bits of its cost, so that
+//         the cheapest one is a minimum of integers, whatever the vectors' width, and ties go to the smaller
+//         axis and place. Equal centres keep the references' order.
+// Source  Wald, "On fast construction of SAH-based bounding volume hierarchies", RT 2007.
+#if defined(KDRAY_BINNED_SWEEP_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef KDRAY_BINNED_SWEEP_INL_H
+#undef KDRAY_BINNED_SWEEP_INL_H
+#else
+#define KDRAY_BINNED_SWEEP_INL_H
+#endif
+
+#include <bit>
+#include <cstdlib>
+
+#include "kdtree/binned/cost-inl.h"
+#include "kdtree/binned/leaf-inl.h"
+#include "kdtree/binned/sweep_room.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace kdray::kdtree::binned::HWY_NAMESPACE {
+
+inline constexpr int kMostGroupLevels = 64;
+inline constexpr std::size_t kFewPlaces = 17;  // up to here vectors of four do
+
+// A place to part a group: behind the first n along an axis.
+struct Part {
+  std::size_t axis = 0, n = 0;
+};
+
+class Sweep {
+ public:
+  Sweep(const BuildConfig& config, int depth, SweepRoom& room, Fragment& out)
+      : config_(config),
+        depth_(depth),
+        traverse_(static_cast<float>(config.group_traverse)),
+        tests_(config.block, 1 - static_cast<float>(config.group_each),
+               std::max(1e-3f, static_cast<float>(config.group_each))),
+        room_(room),
+        out_(out) {}
+
+  // Appends 1 to kSwept references, with their hull.
+  HWY_ATTR void append(std::span<const BoundedRef> refs, const Bounds& hull, int level) {
+    refs_ = refs.data();
+    first_node_ = static_cast<std::uint32_t>(out_.nodes.size());
+    first_ref_ = static_cast<std::uint32_t>(out_.refs.size());
+    room_.n_nodes = room_.n_refs = 0;
+    load(refs, hull);
+    fill_tests(refs.size());
+    build(0, refs.size(), 0, level);
+    out_.nodes.insert(out_.nodes.end(), room_.nodes.begin(), room_.nodes.begin() + at(room_.n_nodes));
+    out_.contents.insert(out_.contents.end(), room_.contents.begin(),
+                         room_.contents.begin() + at(room_.n_nodes));
+    out_.refs.insert(out_.refs.end(), room_.refs.begin(), room_.refs.begin() + at(room_.n_refs));
+    out_.max_depth = std::max(out_.max_depth, depth_);
+  }
+
+ private:
+  using Axes = hn::Full128<float>;
+  using P = hn::Vec<Axes>;
+  static constexpr float kSteps = 16000;     // of twice a centre
+  static constexpr int kCoarse = 64;
+  static constexpr float kOfLength = 1e-6f;  // a hull without surface is measured by its length
+  static constexpr int kPlaceBits = 12, kAxisShift = 10;  // of a cost's bits: two for the axis
+  static_assert(kSwept < std::size_t{1} << kAxisShift);
+
+  static std::ptrdiff_t at(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
+
+  // ---- Before the first node
+
+  HWY_ATTR void load(std::span<const BoundedRef> refs, const Bounds& hull) {
+    const Scale scale(hull);
+    for (std::size_t i = 0; i < refs.size(); ++i) put(i, scale);
+    for (std::size_t k = 0; k < 3; ++k) sort(refs.size(), k);
+  }
+
+  // Numbers are relative to a hull's longest edge.
+  struct Scale {
+    std::array<float, 4> from;
+    float of;
+
+    explicit Scale(const Bounds& hull)
+        : from{hull.lo[0], hull.lo[1], hull.lo[2], 0},
+          of(1 / std::max({hull.hi[0] - hull.lo[0], hull.hi[1] - hull.lo[1], hull.hi[2] - hull.lo[2]})) {}
+    bool usable() const { return of > 0 && of < std::numeric_limits<float>::max(); }
+  };
+
+  HWY_ATTR void put(std::size_t i, const Scale& scale) {
+    const Axes d;
+    const hn::RebindToSigned<Axes> di;
+    const auto xyz = hn::FirstN(d, 3);  // the fourth lanes are a number and nothing
+    const P from = hn::LoadU(d, scale.from.data()), of = hn::Set(d, scale.of);
+    const P lo = hn::Mul(hn::IfThenElseZero(xyz, hn::Sub(hn::Load(d, refs_[i].lo.data()), from)), of);
+    const P hi = hn::Mul(hn::IfThenElseZero(xyz, hn::Sub(hn::Load(d, refs_[i].hi.data()), from)), of);
+    hn::Store(lo, d, room_.lo[i].data());
+    hn::Store(hi, d, room_.hi[i].data());
+    alignas(16) std::array<std::int32_t, 4> center;
+    hn::Store(hn::ConvertTo(di, hn::Mul(hn::Add(lo, hi), hn::Set(d, kSteps))), di, center.data());
+    for (std::size_t k = 0; k < 3; ++k) room_.center[k][i] = static_cast<std::int16_t>(center[k]);
+  }
+
+  // Each goes to the place of its rank. What has the same centre has the same rank, and comes in turn.
+  HWY_ATTR void sort(std::size_t n, std::size_t axis) {
+    rank(n, room_.center[axis].data());
+    std::fill_n(room_.ties.begin(), n, std::uint16_t{0});
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto rank = static_cast<std::size_t>(room_.ranks[i]);
+      room_.order[axis][rank + room_.ties[rank]++] = static_cast<std::uint16_t>(i);
+    }
+  }
+
+  // How many centres are below each. A difference's sign is what is counted: numbers have 15 bits.
+  HWY_ATTR void rank(std::size_t n, const std::int16_t* centers) {
+    const hn::CappedTag<std::int16_t, 2 * kMostLanes> d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t p = 0; p < n; p += lanes) {
+      const auto here = hn::Load(d, centers + p);
+      auto minus = hn::Zero(d);
+      for (std::size_t i = 0; i < n; ++i)
+        minus = hn::Add(minus, hn::ShiftRight<15>(hn::Sub(hn::Set(d, centers[i]), here)));
+      hn::Store(hn::Neg(minus), d, room_.ranks.data() + p);
+    }
+  }
+
+  // Whether a group is so small a part of the cell that its numbers say little.
+  bool is_coarse(std::size_t begin, std::size_t end) const {
+    int apart = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& order = room_.order[k];
+      apart = std::max(apart, room_.center[k][order[end - 1]] - room_.center[k][order[begin]]);
+    }
+    return apart < kCoarse;
+  }
+
+  // Gives a group, whose order is known along all axes, numbers of its own.
+  HWY_ATTR void load_anew(std::size_t begin, std::size_t end) {
+    Bounds hull = no_bounds();
+    for (std::size_t i = begin; i < end; ++i)
+      hull = kdtree::hull(hull, refs_[room_.order[0][i]].bounds());
+    const Scale scale(hull);
+    if (!scale.usable()) return;
+    for (std::size_t i = begin; i < end; ++i) put(room_.order[0][i], scale);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& center = room_.center[k];
+      std::stable_sort(room_.order[k].begin() + at(begin), room_.order[k].begin() + at(end),
+                       [&](std::uint16_t a, std::uint16_t b) { return center[a] < center[b]; });
+    }
+  }
+
+  HWY_ATTR void fill_tests(std::size_t n) {
+    const Floats d;
+    for (std::size_t i = 0; i <= n; i += hn::Lanes(d)) {
+      const V first = hn::Iota(d, static_cast<float>(i));
+      hn::StoreU(tests_(first), d, room_.tests.data() + i);
+      const V second = hn::Max(hn::Sub(hn::Set(d, static_cast<float>(n)), first), hn::Zero(d));
+      hn::StoreU(tests_(second), d, room_.tests_backward.data() + (kSwept - n) + i);
+    }
+  }
+
+  // ---- Nodes
+
+  // Of the references at [begin, end) along that axis, along all axes where they are more than two. Returns
+  // their hull.
+  HWY_ATTR Box build(std::size_t begin, std::size_t end, std::size_t axis, int level) {
+    const std::size_t n = end - begin;
+    if (n <= most_whole() || level == kMostGroupLevels) return append_leaf(begin, n, axis);
+    if (n > most_unsorted() && is_coarse(begin, end)) load_anew(begin, end);
+    const Part part = best_part(begin, n, axis);
+    if (part.n == 0) return append_leaf(begin, n, axis);
+    if (n - part.n > most_unsorted() || part.n > most_unsorted()) keep_order(begin, end, part);
+    const std::size_t node = room_.n_nodes++, middle = begin + part.n;
+    Box hull = build(begin, middle, part.axis, level + 1);
+    const std::uint32_t second = first_node_ + static_cast<std::uint32_t>(room_.n_nodes);
+    hull.grow(build(middle, end, part.axis, level + 1));
+    room_.nodes[node] = {Node::kGroups + static_cast<std::uint32_t>(part.axis), 0,
+                         first_node_ + static_cast<std::uint32_t>(node) + 1, second};
+    room_.contents[node] = hull;
+    return hull;
+  }
+
+  // Where tests are counted by blocks, less than one isn't worth a look.
+  std::size_t most_whole() const {
+    return config_.group_each > 0 ? 1 : static_cast<std::size_t>(config_.block);
+  }
+  std::size_t most_unsorted() const { return std::max<std::size_t>(most_whole(), 2); }
+
+  HWY_ATTR Box append_leaf(std::size_t begin, std::size_t n, std::size_t axis) {
+    const std::uint16_t* const order = room_.order[axis].data() + begin;
+    const std::size_t node = room_.n_nodes++, ref = room_.n_refs;
+    room_.n_refs += n;
+    const Axes d;
+    P lo = hn::Inf(d), hi = hn::Neg(lo);
+    alignas(64) std::array<Ref, kSwept> values;
+    for (std::size_t i = 0; i < n; ++i) {
+      const BoundedRef& r = refs_[order[i]];
+      lo = hn::Min(lo, hn::Load(d, r.lo.data()));
+      hi = hn::Max(hi, hn::Load(d, r.hi.data()));
+      values[i] = r.ref;
+    }
+    Ref* const refs = room_.refs.data() + ref;
+    if (n <= kMostRanked) {
+      write_ascending(values.data(), n, refs);
+    } else {
+      std::copy_n(values.data(), n, refs);
+      std::sort(refs, refs + n);
+    }
+    room_.nodes[node] = {Node::kLeaf, 0, first_ref_ + static_cast<std::uint32_t>(ref),
+                         static_cast<std::uint32_t>(n)};
+    alignas(16) std::array<float, 4> l, h;
+    hn::Store(lo, d, l.data());
+    hn::Store(hi, d, h.data());
+    return room_.contents[node] = {{l[0], l[1], l[2]}, {h[0], h[1], h[2]}};
+  }
+
+  // The two others' orders, with what goes first in front; along the part's own axis it is there.
+  HWY_ATTR void keep_order(std::size_t begin, std::size_t end, const Part& part) {
+    const std::uint16_t* const parted = room_.order[part.axis].data();
+    const std::size_t middle = begin + part.n;
+    for (std::size_t i = begin; i < middle; ++i) room_.is_second[parted[i]] = 0;
+    for (std::size_t i = middle; i < end; ++i) room_.is_second[parted[i]] = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k == part.axis) continue;
+      std::uint16_t* const order = room_.order[k].data();
+      std::size_t first = begin, second = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::uint16_t r = order[i];
+        const std::size_t is_second = room_.is_second[r];
+        order[first] = r;
+        room_.others[second] = r;
+        first += 1 - is_second;
+        second += is_second;
+      }
+      std::copy_n(room_.others.begin(), second, order + middle);
+    }
+  }
+
+  // ---- Places
+
+  // The best place, where it is cheaper than a leaf; else nothing goes first.
+  HWY_ATTR Part best_part(std::size_t begin, std::size_t n, std::size_t axis) {
+    if (n == 2) return part_of_two(begin, axis);
+    return n <= kFewPlaces ? best_part_of(Axes(), begin, n) : best_part_of(Floats(), begin, n);
+  }
+
+  // Whatever the axis, it is the same part: so that along which they are farthest apart, for their order.
+  HWY_ATTR Part part_of_two(std::size_t begin, std::size_t axis) {
+    const std::uint16_t a = room_.order[axis][begin], b = room_.order[axis][begin + 1];
+    std::size_t farthest = 0;
+    int most = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int apart = std::abs(room_.center[k][a] - room_.center[k][b]);
+      farthest = apart > most ? k : farthest;
+      most = std::max(most, apart);
+    }
+    const bool in_order = room_.center[farthest][a] <= room_.center[farthest][b];
+    room_.order[farthest][begin] = in_order ? a : b;
+    room_.order[farthest][begin + 1] = in_order ? b : a;
+    measure_hulls(room_.order[farthest].data() + begin, 2);
+    const Axes d;
+    const float whole = hn::GetLane(size_of(d, room_.first, 2));
+    const float both = hn::GetLane(hn::Add(size_of(d, room_.first, 1), size_of(d, room_.second, 1)));
+    return is_cheaper(both * room_.tests[1], whole, 2) ? Part{farthest, 1} : Part();
+  }
+
+  template <class D>
+  HWY_ATTR Part best_part_of(D d, std::size_t begin, std::size_t n) {
+    const hn::RebindToSigned<D> di;
+    const auto end = hn::Set(di, static_cast<std::int32_t>(n));
+    const auto cost_bits = hn::Set(di, -(1 << kPlaceBits));
+    auto best = hn::Set(di, std::numeric_limits<std::int32_t>::max());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::uint16_t* const order = room_.order[axis].data() + begin;
+      const auto& center = room_.center[axis];
+      if (center[order[0]] == center[order[n - 1]]) continue;  // nothing is before anything
+      measure_hulls(order, n);
+      const auto axis_bits = hn::Set(di, static_cast<std::int32_t>(axis << kAxisShift));
+      for (std::size_t p = 1; p < n; p += hn::Lanes(d)) {
+        const auto first = hn::Mul(size_of(d, room_.first, p), hn::LoadU(d, &room_.tests[p]));
+        const auto second =
+            hn::Mul(size_of(d, room_.second, p), hn::LoadU(d, &room_.tests_backward[kSwept - n + p]));
+        const auto cost = hn::And(hn::BitCast(di, hn::Add(first, second)), cost_bits);
+        const auto place = hn::Iota(di, static_cast<std::int32_t>(p));
+        const auto packed = hn::Or(cost, hn::Or(place, axis_bits));
+        best = hn::IfThenElse(hn::Lt(place, end), hn::Min(best, packed), best);
+      }
+    }
+    const auto least = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(di, best)));
+    if (least == static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max())) return {};
+    const float cost = std::bit_cast<float>(least & ~((1u << kPlaceBits) - 1));
+    if (!is_cheaper(cost, hn::GetLane(size_of(d, room_.first, n)), n)) return {};
+    return {least >> kAxisShift & 3u, least & ((1u << kAxisShift) - 1)};
+  }
+
+  bool is_cheaper(float tests, float whole, std::size_t n) const {
+    return traverse_ * whole + tests < room_.tests[n] * whole;
+  }
+
+  // What the hulls of n references, in that order, measure along the axes: of the first i in `first`, of the
+  // others in `second`.
+  HWY_ATTR void measure_hulls(const std::uint16_t* order, std::size_t n) {
+    const Axes d;
+    const P inf = hn::Inf(d);
+    P first_lo = inf, second_lo = inf, first_hi = hn::Neg(inf), second_hi = first_hi;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t f = order[i], s = order[n - 1 - i];
+      first_lo = hn::Min(first_lo, hn::Load(d, room_.lo[f].data()));
+      first_hi = hn::Max(first_hi, hn::Load(d, room_.hi[f].data()));
+      hn::Store(hn::Sub(first_hi, first_lo), d, room_.first[i + 1].data());
+      second_lo = hn::Min(second_lo, hn::Load(d, room_.lo[s].data()));
+      second_hi = hn::Max(second_hi, hn::Load(d, room_.hi[s].data()));
+      hn::Store(hn::Sub(second_hi, second_lo), d, room_.second[n - 1 - i].data());
+    }
+  }
+
+  // Half the surfaces of the hulls at [i, i + lanes).
+  template <class D>
+  HWY_ATTR static hn::Vec<D> size_of(D d, const std::array<SweepRoom::Corner, SweepRoom::kPadded>& edges,
+                                     std::size_t i) {
+    hn::Vec<D> x, y, z, nothing;
+    hn::LoadInterleaved4(d, edges[i].data(), x, y, z, nothing);
+    const auto c = hn::Set(d, kOfLength);
+    const auto xy = hn::Mul(x, hn::Add(y, c)), yz = hn::Mul(y, hn::Add(z, c)), zx = hn::Mul(z, hn::Add(x, c));
+    return hn::Add(hn::Add(xy, yz), zx);
+  }
+
+  const BuildConfig& config_;
+  const int depth_;
+  const float traverse_;
+  const TestCost tests_;
+  SweepRoom& room_;
+  Fragment& out_;
+  const BoundedRef* refs_ = nullptr;
+  std::uint32_t first_node_ = 0, first_ref_ = 0;  // of the cell in the fragment
+};
+
+}  // namespace kdray::kdtree::binned::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
