@@ -29,6 +29,7 @@ class Solver {
     Costs below, above;
     // Most nodes are just above leaves, and need no sums.
     if (is_free(split.left)) return of_free_and(node, solve(split.right, end));
+    if (is_free(split.right)) return of_and_free(node, solve(split.left, split.right));
     if (end - node < kTask) {
       below = solve(split.left, split.right);
       above = solve(split.right, end);
@@ -61,6 +62,20 @@ class Solver {
     std::copy_n(above.begin(), kWidth - 1, opened.begin() + 1);
     std::array<std::uint32_t, kWidth> share;
     share.fill(1);
+    return closed_or(node, opened, share);
+  }
+
+  // The same where the upper side is a leaf: more slots than do any good are left to it.
+  Costs of_and_free(std::uint32_t node, const Costs& below) {
+    std::array<float, kWidth> opened;
+    std::array<std::uint32_t, kWidth> share;
+    opened[0] = kInfinity;
+    share[0] = 1;
+    for (std::uint32_t k = 1; k < kWidth; ++k) {
+      const bool more = below[k - 1] < opened[k - 1];
+      opened[k] = more ? below[k - 1] : opened[k - 1];
+      share[k] = more ? k : share[k - 1];
+    }
     return closed_or(node, opened, share);
   }
 

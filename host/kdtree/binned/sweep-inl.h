@@ -26,6 +26,7 @@ namespace kdray::kdtree::binned::HWY_NAMESPACE {
 
 inline constexpr int kMostGroupLevels = 64;
 inline constexpr std::size_t kFewPlaces = 17;  // up to here vectors of four do
+inline constexpr std::size_t kPairs = 3;       // and up to here all parts are tried, in no order
 
 // A place to part a group: behind the first n along an axis.
 struct Part {
@@ -186,7 +187,7 @@ class Sweep {
   std::size_t most_whole() const {
     return config_.group_each > 0 ? 1 : static_cast<std::size_t>(config_.block);
   }
-  std::size_t most_unsorted() const { return std::max<std::size_t>(most_whole(), 2); }
+  std::size_t most_unsorted() const { return std::max(most_whole(), kPairs); }
 
   HWY_ATTR Box append_leaf(std::size_t begin, std::size_t n, std::size_t axis) {
     const std::uint16_t* const order = room_.order[axis].data() + begin;
@@ -219,22 +220,21 @@ class Sweep {
   // The two others' orders, with what goes first in front; along the part's own axis it is there.
   HWY_ATTR void keep_order(std::size_t begin, std::size_t end, const Part& part) {
     const std::uint16_t* const parted = room_.order[part.axis].data();
-    const std::size_t middle = begin + part.n;
-    for (std::size_t i = begin; i < middle; ++i) room_.is_second[parted[i]] = 0;
-    for (std::size_t i = middle; i < end; ++i) room_.is_second[parted[i]] = 1;
+    std::uint8_t* const sides = room_.is_second.data();
+    std::uint16_t* const others = room_.others.data();
+    for (std::size_t i = begin; i < end; ++i) sides[parted[i]] = i < begin + part.n ? 0 : 1;
     for (std::size_t k = 0; k < 3; ++k) {
       if (k == part.axis) continue;
-      std::uint16_t* const order = room_.order[k].data();
-      std::size_t first = begin, second = 0;
+      std::uint16_t *const order = room_.order[k].data(), *first = order + begin, *second = others;
       for (std::size_t i = begin; i < end; ++i) {
         const std::uint16_t r = order[i];
-        const std::size_t is_second = room_.is_second[r];
-        order[first] = r;
-        room_.others[second] = r;
+        const std::ptrdiff_t is_second = sides[r];
+        *first = r;
+        *second = r;
         first += 1 - is_second;
         second += is_second;
       }
-      std::copy_n(room_.others.begin(), second, order + middle);
+      std::copy(others, second, first);
     }
   }
 
@@ -242,28 +242,64 @@ class Sweep {
 
   // The best place, where it is cheaper than a leaf; else nothing goes first.
   HWY_ATTR Part best_part(std::size_t begin, std::size_t n, std::size_t axis) {
-    if (n == 2) return part_of_two(begin, axis);
+    if (n <= kPairs) return part_of_few(begin, n, axis);
     return n <= kFewPlaces ? best_part_of(Axes(), begin, n) : best_part_of(Floats(), begin, n);
   }
 
-  // Whatever the axis, it is the same part: so that along which they are farthest apart, for their order.
-  HWY_ATTR Part part_of_two(std::size_t begin, std::size_t axis) {
-    const std::uint16_t a = room_.order[axis][begin], b = room_.order[axis][begin + 1];
-    std::size_t farthest = 0;
-    int most = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int apart = std::abs(room_.center[k][a] - room_.center[k][b]);
-      farthest = apart > most ? k : farthest;
-      most = std::max(most, apart);
-    }
-    const bool in_order = room_.center[farthest][a] <= room_.center[farthest][b];
-    room_.order[farthest][begin] = in_order ? a : b;
-    room_.order[farthest][begin + 1] = in_order ? b : a;
-    measure_hulls(room_.order[farthest].data() + begin, 2);
+  struct Hull {
+    P lo, hi;
+    HWY_ATTR Hull with(const Hull& other) const { return {hn::Min(lo, other.lo), hn::Max(hi, other.hi)}; }
+  };
+  HWY_ATTR Hull hull_of(std::size_t i) const {
     const Axes d;
-    const float whole = hn::GetLane(size_of(d, room_.first, 2));
-    const float both = hn::GetLane(hn::Add(size_of(d, room_.first, 1), size_of(d, room_.second, 1)));
-    return is_cheaper(both * room_.tests[1], whole, 2) ? Part{farthest, 1} : Part();
+    return {hn::Load(d, room_.lo[i].data()), hn::Load(d, room_.hi[i].data())};
+  }
+  HWY_ATTR static float size_of(const Hull& hull) {
+    const Axes d;
+    alignas(16) std::array<float, 4> e;
+    hn::Store(hn::Sub(hull.hi, hull.lo), d, e.data());
+    return e[0] * (e[1] + kOfLength) + e[1] * (e[2] + kOfLength) + e[2] * (e[0] + kOfLength);
+  }
+
+  // Of two or three each may be alone, whatever the axis; so that is the one along which they are farthest
+  // apart, for their order.
+  HWY_ATTR Part part_of_few(std::size_t begin, std::size_t n, std::size_t axis) {
+    std::array<std::uint16_t, 3> refs;  // the one that is alone first
+    std::copy_n(room_.order[axis].data() + begin, n, refs.begin());
+    const Hull a = hull_of(refs[0]), b = hull_of(refs[1]);
+    Hull one = a, others = b;
+    float cost = (size_of(a) + (n == 2 ? size_of(b) : 0)) * room_.tests[1];
+    if (n == 3) {
+      const Hull c = hull_of(refs[2]);
+      others = b.with(c);
+      const Hull ac = a.with(c), ab = a.with(b);
+      const float tests = room_.tests[1], pair = room_.tests[2];
+      cost += size_of(others) * pair;
+      const float cost_b = size_of(b) * tests + size_of(ac) * pair;
+      const float cost_c = size_of(c) * tests + size_of(ab) * pair;
+      if (cost_b < cost && !(cost_c < cost_b)) {
+        one = b, others = ac, cost = cost_b;
+        std::swap(refs[0], refs[1]);
+      } else if (cost_c < cost) {
+        one = c, others = ab, cost = cost_c;
+        std::swap(refs[0], refs[2]);
+      }
+    }
+    if (!is_cheaper(cost, size_of(one.with(others)), n)) return {};
+    return put_apart(begin, n, refs, one, others);
+  }
+
+  HWY_ATTR Part put_apart(std::size_t begin, std::size_t n, std::array<std::uint16_t, 3> refs,
+                          const Hull& one, const Hull& others) {
+    const Axes d;
+    alignas(16) std::array<float, 4> apart;  // twice the centres
+    hn::Store(hn::Sub(hn::Add(others.lo, others.hi), hn::Add(one.lo, one.hi)), d, apart.data());
+    std::size_t axis = std::abs(apart[1]) > std::abs(apart[0]) ? 1 : 0;
+    if (std::abs(apart[2]) > std::abs(apart[axis])) axis = 2;
+    const bool one_first = apart[axis] >= 0;
+    if (!one_first) std::rotate(refs.begin(), refs.begin() + 1, refs.begin() + at(n));
+    std::copy_n(refs.begin(), n, room_.order[axis].data() + begin);
+    return {axis, one_first ? 1 : n - 1};
   }
 
   template <class D>
@@ -305,14 +341,16 @@ class Sweep {
     const Axes d;
     const P inf = hn::Inf(d);
     P first_lo = inf, second_lo = inf, first_hi = hn::Neg(inf), second_hi = first_hi;
+    const SweepRoom::Corner *const lo = room_.lo.data(), *const hi = room_.hi.data();
+    SweepRoom::Corner *const first = room_.first.data() + 1, *const second = room_.second.data();
     for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t f = order[i], s = order[n - 1 - i];
-      first_lo = hn::Min(first_lo, hn::Load(d, room_.lo[f].data()));
-      first_hi = hn::Max(first_hi, hn::Load(d, room_.hi[f].data()));
-      hn::Store(hn::Sub(first_hi, first_lo), d, room_.first[i + 1].data());
-      second_lo = hn::Min(second_lo, hn::Load(d, room_.lo[s].data()));
-      second_hi = hn::Max(second_hi, hn::Load(d, room_.hi[s].data()));
-      hn::Store(hn::Sub(second_hi, second_lo), d, room_.second[n - 1 - i].data());
+      const std::size_t j = n - 1 - i, f = order[i], s = order[j];
+      first_lo = hn::Min(first_lo, hn::Load(d, lo[f].data()));
+      first_hi = hn::Max(first_hi, hn::Load(d, hi[f].data()));
+      hn::Store(hn::Sub(first_hi, first_lo), d, first[i].data());
+      second_lo = hn::Min(second_lo, hn::Load(d, lo[s].data()));
+      second_hi = hn::Max(second_hi, hn::Load(d, hi[s].data()));
+      hn::Store(hn::Sub(second_hi, second_lo), d, second[j].data());
     }
   }
 
