@@ -138,7 +138,8 @@ HWY_ATTR inline GroupSplit best_between_steps(std::span<const BoundedRef> refs, 
 // Appends a cell's references to the fragment: as a leaf, or as groups of them.
 class Grouper {
  public:
-  Grouper(const BuildConfig& config, int depth, std::vector<BoundedRef>& room, SweepRoom& sweep, Fragment& out)
+  Grouper(const BuildConfig& config, int depth, std::vector<BoundedRef>& room, SweepRoom& sweep,
+          Fragment& out)
       : config_(config), depth_(depth), room_(room), sweep_(sweep), out_(out) {}
 
   // The references are left in another order. Returns `contents`, their hull.

@@ -63,9 +63,9 @@ class Sweep {
  private:
   using Axes = hn::Full128<float>;
   using P = hn::Vec<Axes>;
-  static constexpr float kSteps = 16000;     // of twice a centre
+  static constexpr float kSteps = 16000;  // of twice a centre
   static constexpr int kCoarse = 64;
-  static constexpr float kOfLength = 1e-6f;  // a hull without surface is measured by its length
+  static constexpr float kOfLength = 1e-6f;               // a hull without surface is measured by its length
   static constexpr int kPlaceBits = 12, kAxisShift = 10;  // of a cost's bits: two for the axis
   static_assert(kSwept < std::size_t{1} << kAxisShift);
 
@@ -129,19 +129,24 @@ class Sweep {
 
   // Whether a group is so small a part of the cell that its numbers say little.
   bool is_coarse(std::size_t begin, std::size_t end) const {
-    int apart = 0;
+    const std::array<int, 3> width = widths(begin, end);
+    return std::max({width[0], width[1], width[2]}) < kCoarse;
+  }
+
+  // How far apart a group's centres are along each axis.
+  std::array<int, 3> widths(std::size_t begin, std::size_t end) const {
+    std::array<int, 3> width;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto& order = room_.order[k];
-      apart = std::max(apart, room_.center[k][order[end - 1]] - room_.center[k][order[begin]]);
+      width[k] = room_.center[k][order[end - 1]] - room_.center[k][order[begin]];
     }
-    return apart < kCoarse;
+    return width;
   }
 
   // Gives a group, whose order is known along all axes, numbers of its own.
   HWY_ATTR void load_anew(std::size_t begin, std::size_t end) {
     Bounds hull = no_bounds();
-    for (std::size_t i = begin; i < end; ++i)
-      hull = kdtree::hull(hull, refs_[room_.order[0][i]].bounds());
+    for (std::size_t i = begin; i < end; ++i) hull = kdtree::hull(hull, refs_[room_.order[0][i]].bounds());
     const Scale scale(hull);
     if (!scale.usable()) return;
     for (std::size_t i = begin; i < end; ++i) put(room_.order[0][i], scale);
@@ -306,13 +311,14 @@ class Sweep {
   HWY_ATTR Part best_part_of(D d, std::size_t begin, std::size_t n) {
     const hn::RebindToSigned<D> di;
     const auto end = hn::Set(di, static_cast<std::int32_t>(n));
+    const std::array<int, 3> width = widths(begin, begin + n);
+    const int widest = std::max({width[0], width[1], width[2]});
     const auto cost_bits = hn::Set(di, -(1 << kPlaceBits));
     auto best = hn::Set(di, std::numeric_limits<std::int32_t>::max());
+    if (widest == 0) return {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::uint16_t* const order = room_.order[axis].data() + begin;
-      const auto& center = room_.center[axis];
-      if (center[order[0]] == center[order[n - 1]]) continue;  // nothing is before anything
-      measure_hulls(order, n);
+      if (2 * width[axis] < widest) continue;  // what is narrow is seldom best parted across
+      measure_hulls(room_.order[axis].data() + begin, n);
       const auto axis_bits = hn::Set(di, static_cast<std::int32_t>(axis << kAxisShift));
       for (std::size_t p = 1; p < n; p += hn::Lanes(d)) {
         const auto first = hn::Mul(size_of(d, room_.first, p), hn::LoadU(d, &room_.tests[p]));
@@ -325,7 +331,6 @@ class Sweep {
       }
     }
     const auto least = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(di, best)));
-    if (least == static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max())) return {};
     const float cost = std::bit_cast<float>(least & ~((1u << kPlaceBits) - 1));
     if (!is_cheaper(cost, hn::GetLane(size_of(d, room_.first, n)), n)) return {};
     return {least >> kAxisShift & 3u, least & ((1u << kAxisShift) - 1)};
@@ -356,8 +361,7 @@ class Sweep {
 
   // Half the surfaces of the hulls at [i, i + lanes).
   template <class D>
-  HWY_ATTR static hn::Vec<D> size_of(D d, const std::array<SweepRoom::Corner, SweepRoom::kPadded>& edges,
-                                     std::size_t i) {
+  HWY_ATTR static hn::Vec<D> size_of(D d, const SweepRoom::Edges& edges, std::size_t i) {
     hn::Vec<D> x, y, z, nothing;
     hn::LoadInterleaved4(d, edges[i].data(), x, y, z, nothing);
     const auto c = hn::Set(d, kOfLength);

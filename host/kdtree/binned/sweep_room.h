@@ -25,7 +25,8 @@ struct SweepRoom {
   alignas(64) std::array<std::array<std::uint16_t, kSwept>, 3> order;
 
   // Edges of the hulls of a group's first i references along an axis, and of the others.
-  alignas(64) std::array<Corner, kPadded> first, second;
+  using Edges = std::array<Corner, kPadded>;
+  alignas(64) Edges first, second;
 
   // What a test of i references costs, and of kSwept - i.
   alignas(64) std::array<float, kPadded> tests, tests_backward;
