@@ -27,6 +27,9 @@ class Solver {
     if (tree_.contents[split.left].empty()) return solve(split.right, end);
     if (tree_.contents[split.right].empty()) return solve(split.left, split.right);
     Costs below, above;
+    // Most nodes are just above leaves, and need no sums.
+    if (is_free(split.left)) return of_free_and(node, solve(split.right, end));
+    if (is_free(split.right)) return of_and_free(node, solve(split.left, split.right));
     if (end - node < kTask) {
       below = solve(split.left, split.right);
       above = solve(split.right, end);
@@ -47,6 +50,35 @@ class Solver {
     return costs;
   }
 
+  // Whether it is a child as it is, in any number of slots, and costs nothing.
+  bool is_free(std::uint32_t node) const {
+    return tree_.nodes[node].is_leaf() && (only_kind_ != kAnyKind || n_kinds(tree_, node) <= 1);
+  }
+
+  // Where the lower side is a leaf, which takes one slot, the other has the rest.
+  Costs of_free_and(std::uint32_t node, const Costs& above) {
+    std::array<float, kWidth> opened;
+    opened[0] = kInfinity;
+    std::copy_n(above.begin(), kWidth - 1, opened.begin() + 1);
+    std::array<std::uint32_t, kWidth> share;
+    share.fill(1);
+    return closed_or(node, opened, share);
+  }
+
+  // The same where the upper side is a leaf: more slots than do any good are left to it.
+  Costs of_and_free(std::uint32_t node, const Costs& below) {
+    std::array<float, kWidth> opened;
+    std::array<std::uint32_t, kWidth> share;
+    opened[0] = kInfinity;
+    share[0] = 1;
+    for (std::uint32_t k = 1; k < kWidth; ++k) {
+      const bool more = below[k - 1] < opened[k - 1];
+      opened[k] = more ? below[k - 1] : opened[k - 1];
+      share[k] = more ? k : share[k - 1];
+    }
+    return closed_or(node, opened, share);
+  }
+
   Costs of_two(std::uint32_t node, const Costs& below, const Costs& above) {
     std::array<float, 2 * kWidth> shifted;  // those of `above`, behind as many that can't be
     shifted.fill(kInfinity);
@@ -61,6 +93,12 @@ class Solver {
         share[k] = cost < opened[k] ? i : share[k];
         opened[k] = std::min(opened[k], cost);
       }
+    return closed_or(node, opened, share);
+  }
+
+  // A node that may fill more than one slot is opened where that costs no more.
+  Costs closed_or(std::uint32_t node, const std::array<float, kWidth>& opened,
+                  const std::array<std::uint32_t, kWidth>& share) {
     const float closed = tree_.contents[node].area() + opened[kWidth - 1];
     Costs costs;
     costs[0] = closed;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <limits>
 
 #include "base/error.h"
 #include "flatten/collapse.h"
@@ -14,7 +16,7 @@ namespace kdray::flatten {
 
 namespace {
 
-using flatten::rows_of, primitives::rows_of;
+using primitives::rows_of;
 
 // References that are read soon: those of the next leaves follow this one's.
 constexpr std::uint32_t kAhead = 16;
@@ -26,7 +28,53 @@ void prefetch(const kdtree::Tree& tree, std::size_t ref, const Array<Primitive>&
   if (index < primitives.size()) __builtin_prefetch(primitives.data() + index);  // it may be of another kind
 }
 
-// Writes a leaf's blocks of one kind, from `words` on.
+using FourLanes = float __attribute__((vector_size(16)));
+
+// Writes the rows of corners of up to `block` triangles, the rest without. What is written as vectors is read
+// as vectors right after, for the limits; a store of each lane would have to be waited for.
+void write_corners(const std::array<const layout::Triangle*, 8>& triangles, std::uint32_t block,
+                   layout::u32* words) {
+  for (std::uint32_t lane = 0; lane < block; lane += 4) {
+    const float* const a = triangles[lane]->v[0];
+    const float* const b = triangles[lane + 1]->v[0];
+    const float* const c = triangles[lane + 2]->v[0];
+    const float* const d = triangles[lane + 3]->v[0];
+    for (std::uint32_t row = 0; row < 9; ++row) {
+      const FourLanes four{a[row], b[row], c[row], d[row]};
+      std::memcpy(words + row * block + lane, &four, sizeof four);
+    }
+  }
+}
+
+constexpr layout::Triangle no_triangle() {
+  layout::Triangle t{};
+  for (auto& corner : t.v)
+    for (float& x : corner) x = std::numeric_limits<float>::quiet_NaN();
+  return t;
+}
+
+void write_blocks(primitives::TriangleKind, const kdtree::Tree& tree, const kdtree::RefRun& run,
+                  const Array<layout::Triangle>& triangles, std::uint32_t block, layout::u32* words) {
+  static constexpr layout::Triangle kNone = no_triangle();
+  for (std::uint32_t done = 0; done < run.n; done += block, words += KDRAY_TRIANGLE_ROWS * block) {
+    const std::uint32_t n = std::min(block, run.n - done);
+    layout::u32* const indices = words + KDRAY_ROW_TRIANGLE_INDEX * block;
+    std::array<const layout::Triangle*, 8> here;
+    here.fill(&kNone);
+    for (std::uint32_t lane = 0; lane < n; ++lane) {
+      const std::uint32_t ref = run.first + done + lane;
+      prefetch(tree, ref + kAhead, triangles);
+      const std::uint32_t index = kdtree::ref_index(tree.refs[ref]);
+      here[lane] = &triangles[index];
+      indices[lane] = index | (done + lane + 1 == run.n ? KDRAY_WIDE_LAST : 0);
+    }
+    std::fill(indices + n, indices + block, KDRAY_WIDE_LAST);
+    write_corners(here, block, words);
+    finish_triangles(triangles, n, block, words);
+  }
+}
+
+// Writes a leaf's blocks of one kind of shapes, from `words` on.
 template <class Kind>
 void write_blocks(Kind, const kdtree::Tree& tree, const kdtree::RefRun& run,
                   const Array<typename Kind::Layout>& primitives, std::uint32_t block, layout::u32* words) {
@@ -42,7 +90,6 @@ void write_blocks(Kind, const kdtree::Tree& tree, const kdtree::RefRun& run,
       words[kRows * block + lane] = index | (done + lane + 1 == run.n ? KDRAY_WIDE_LAST : 0);
     }
     if (n < block) clear_lanes(n, block, kRows, words);
-    if constexpr (!Kind::kIsShape) finish_triangles(primitives, n, block, words);
   }
 }
 

@@ -41,18 +41,22 @@ void check(const BuildConfig& c, const scene::Geometry& geometry) {
 }
 
 // How much more Ct counts where cells are divided into groups: what a plane would save of their tests, groups
-// save mostly. Some kinds (cones) are dear to test, and planes in the end the better fence around them
-// (docs/logbook/kdtree.md): by how much more, their kFenceFactor says.
+// save mostly, and without references to what it cuts. Of meshes, cells of up to kWorthAPlane triangles are
+// not divided by planes at all. Other kinds gain more by planes, and some (cones), which are dear to test,
+// most (docs/logbook/kdtree.md): by how much, their kFenceFactor says.
 double grouped_factor(const scene::Geometry& geometry, const BuildConfig& config) {
-  constexpr double kGrouped = 6;
+  constexpr double kWorthAPlane = 128, kShapes = 6;
   if (!config.groups || config.small_cells) return 1;
   const double n = static_cast<double>(std::max<std::size_t>(geometry.size(), 1));
+  const double triangles = static_cast<double>(geometry.triangles.size()) / n;
   double fences = 1;
   primitives::for_each_shape([&](auto kind) {
     const double share = static_cast<double>(decltype(kind)::of(geometry).size()) / n;
     fences += decltype(kind)::Geometry::kFenceFactor * share;
   });
-  return kGrouped / fences;
+  // A leaf of so many costs Ci*kWorthAPlane/block.
+  const double of_triangles = kWorthAPlane * 2 / config.block;
+  return (of_triangles * triangles + kShapes * (1 - triangles)) / fences;
 }
 
 BuildConfig priced(BuildConfig config, const scene::Geometry& geometry) {

@@ -18,7 +18,7 @@ inline constexpr int kBins = 32;
 
 // Which references of a cell of n are counted: some hundreds say as well where to split as all of them do.
 inline std::size_t sample_stride(std::size_t n) {
-  constexpr std::size_t kEnough = 512, kMost = 8;
+  constexpr std::size_t kEnough = 512, kMost = 32;
   return std::clamp<std::size_t>(std::bit_floor(n / kEnough), 1, kMost);
 }
 

@@ -3,9 +3,8 @@
 // Why     Where primitives lie in each other, a plane cuts most of what it parts, and cells stay large: of
 //         boxes in heaps a ray met three times the leaves and five times the triangles that it has to
 //         (docs/logbook/kdtree.md).
-// Shape   The order is that of the centres along one axis; lanes are places to part it, every lane runs over
-//         the references. Costs are floats without contraction in a fixed order: the same bits at every
-//         vector width.
+// Shape   What is larger than a sweep takes (sweep-inl.h) is parted between fifteen equal steps along each axis
+//         before. Costs are floats without contraction in a fixed order: the same bits at every vector width.
 // Source  Stich, Friedrich, Dietrich, "Spatial splits in bounding volume hierarchies", HPG 2009: both kinds
 //         of splits in one tree.
 #if defined(KDRAY_BINNED_GROUP_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -18,17 +17,15 @@
 #include "kdtree/binned/cost-inl.h"
 #include "kdtree/binned/divide-inl.h"
 #include "kdtree/binned/leaf-inl.h"
+#include "kdtree/binned/sweep-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
 
-inline constexpr std::size_t kSmallGroup = 48;  // up to here all ways to part a group along an axis are tried
 inline constexpr std::size_t kGroupBins = 16;
 // Cells that a budget or a depth has ended stay whole, but for who would rather wait: a million needles take
 // three times as long to build.
-inline constexpr std::size_t kMostGrouped = 1024;
-inline constexpr int kMostGroupLevels = 64;
-inline constexpr float kGroupSteps = 32000;  // of a small group's longest edge: its coordinates have 16 bits
+inline constexpr std::size_t kMostGrouped = 2048;
 
 // Where a group is parted: what has its centre, doubled, at `position` or below it goes first.
 struct GroupSplit {
@@ -53,7 +50,7 @@ class GroupCosts {
         std::max({hull.hi[0] - hull.lo[0], hull.hi[1] - hull.lo[1], hull.hi[2] - hull.lo[2]});
     scale_ = 1 / longest;
     constexpr float kMax = std::numeric_limits<float>::max();
-    usable_ = longest > 0 && longest < kMax && scale_ < kMax / kGroupSteps;
+    usable_ = longest > 0 && longest < kMax && scale_ < kMax;
     if (usable_) inverse_size_ = 1 / size(hull);
   }
 
@@ -92,125 +89,7 @@ class GroupCosts {
   bool usable_;
 };
 
-// A small group's bounds and centres by axis, in steps of the hull's longest edge; what is behind the last
-// has its centre behind all. As with bins, such numbers choose where a group is parted and decide nothing
-// else.
-struct SmallGroup {
-  static constexpr std::size_t kRoom = (kSmallGroup + 4 * kMostLanes - 1) / (2 * kMostLanes) *
-                                       (2 * kMostLanes);  // rows begin where vectors may
-  alignas(64) std::array<std::array<std::int16_t, kRoom>, 3> lo, hi, center;
-  std::size_t n;
-
-  HWY_ATTR SmallGroup(std::span<const BoundedRef> refs, const Bounds& hull, const GroupCosts& costs)
-      : n(refs.size()) {
-    const hn::Full128<float> d;
-    const hn::Full128<std::int32_t> di;
-    const auto from = hn::LoadU(d, std::array{hull.lo[0], hull.lo[1], hull.lo[2], 0.0f}.data());
-    const auto scale = hn::Set(d, kGroupSteps * costs.scale());
-    alignas(16) std::array<std::int32_t, 4> l, h;
-    for (std::size_t i = 0; i < n; ++i) {
-      hn::Store(hn::ConvertTo(di, hn::Mul(hn::Sub(hn::Load(d, refs[i].lo.data()), from), scale)), di,
-                l.data());
-      hn::Store(hn::ConvertTo(di, hn::Mul(hn::Sub(hn::Load(d, refs[i].hi.data()), from), scale)), di,
-                h.data());
-      for (std::size_t k = 0; k < 3; ++k) {
-        lo[k][i] = static_cast<std::int16_t>(l[k]);
-        hi[k][i] = static_cast<std::int16_t>(h[k]);
-        center[k][i] = static_cast<std::int16_t>((l[k] + h[k]) / 2);
-      }
-    }
-    for (auto& c : center)
-      std::fill(c.begin() + static_cast<std::ptrdiff_t>(n), c.end(),
-                std::numeric_limits<std::int16_t>::max());
-  }
-
-  bool is_first(std::size_t i, const GroupSplit& split) const {
-    return static_cast<float>(center[static_cast<std::size_t>(split.axis)][i]) <= split.position;
-  }
-};
-
-// Several hulls, one in each lane.
-template <class D>
-struct Hulls {
-  hn::Vec<D> lo[3], hi[3];
-
-  HWY_ATTR Hulls() {
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = hn::Set(D(), std::numeric_limits<std::int16_t>::max());
-      hi[k] = hn::Zero(D());
-    }
-  }
-  HWY_ATTR void add(hn::Mask<D> lanes, std::size_t k, hn::Vec<D> l, hn::Vec<D> h) {
-    lo[k] = hn::IfThenElse(lanes, hn::Min(lo[k], l), lo[k]);
-    hi[k] = hn::IfThenElse(lanes, hn::Max(hi[k], h), hi[k]);
-  }
-};
-
-// Lanes [at, at + lanes of a vector of floats).
-template <class D>
-HWY_ATTR inline V floats_from(hn::Vec<D> v, std::size_t at) {
-  alignas(64) std::array<std::int16_t, 2 * kMostLanes> words;
-  hn::Store(v, D(), words.data());
-  const Ints di;
-  const hn::Rebind<std::int16_t, Ints> half;
-  return hn::ConvertTo(Floats(), hn::PromoteTo(di, hn::Load(half, words.data() + at)));
-}
-
-template <class D>
-HWY_ATTR inline V size_of(const Hulls<D>& h, const GroupCosts& costs, std::size_t at) {
-  V length[3];
-  for (int k = 0; k < 3; ++k)
-    length[k] = hn::Mul(floats_from<D>(hn::Sub(h.hi[k], h.lo[k]), at), hn::Set(Floats(), 1 / kGroupSteps));
-  return costs.size_of_scaled(length[0], length[1], length[2]);
-}
-
-template <class D>
-HWY_ATTR inline void offer_parts(const SmallGroup& group, const GroupCosts& costs, std::size_t axis,
-                                 GroupSplit& best) {
-  const D d16;
-  const Floats d;
-  const V all = hn::Set(d, static_cast<float>(group.n));
-  const auto one = hn::Set(d16, 1);
-  BestOfAxis best_here;
-  for (std::size_t p = 0; p < group.n; p += hn::Lanes(d16)) {
-    const auto position = hn::Load(d16, &group.center[axis][p]);
-    Hulls<D> first, second;
-    auto n_first = hn::Zero(d16);
-    for (std::size_t i = 0; i < group.n; ++i) {
-      const auto center = hn::Set(d16, group.center[axis][i]);
-      const auto is_second = hn::Gt(center, position), is_first = hn::Not(is_second);
-      n_first = hn::IfThenElse(is_first, hn::Add(n_first, one), n_first);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto lo = hn::Set(d16, group.lo[k][i]), hi = hn::Set(d16, group.hi[k][i]);
-        first.add(is_first, k, lo, hi);
-        second.add(is_second, k, lo, hi);
-      }
-    }
-    for (std::size_t at = 0; at < hn::Lanes(d16) && p + at < group.n; at += hn::Lanes(d)) {
-      const V n = floats_from<D>(n_first, at);
-      const V cost = costs(size_of(first, costs, at), n, size_of(second, costs, at), hn::Sub(all, n));
-      const V infinity = hn::Set(d, std::numeric_limits<float>::infinity());
-      best_here.offer(hn::IfThenElse(hn::Lt(n, all), cost, infinity), floats_from<D>(position, at));
-    }
-  }
-  Best found{best.cost, {best.axis, best.position}};
-  best_here.offer_to(found, static_cast<int>(axis));
-  best = {found.plane.axis, found.plane.position, found.cost};
-}
-
-HWY_ATTR inline GroupSplit best_of_all_parts(const SmallGroup& group, const GroupCosts& costs) {
-  GroupSplit best;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (group.n <= kMostLanes) {
-      offer_parts<hn::CappedTag<std::int16_t, kMostLanes>>(group, costs, axis, best);
-    } else {
-      offer_parts<hn::CappedTag<std::int16_t, 2 * kMostLanes>>(group, costs, axis, best);
-    }
-  }
-  return best;
-}
-
-// The same between equal steps along an axis, for more.
+// Between equal steps along an axis.
 HWY_ATTR inline void offer_steps(std::span<const BoundedRef> refs, const GroupCosts& costs, std::size_t axis,
                                  GroupSplit& best) {
   float lo = std::numeric_limits<float>::infinity(), hi = -lo;
@@ -258,16 +137,20 @@ HWY_ATTR inline GroupSplit best_between_steps(std::span<const BoundedRef> refs, 
 // Appends a cell's references to the fragment: as a leaf, or as groups of them.
 class Grouper {
  public:
-  Grouper(const BuildConfig& config, int depth, std::vector<BoundedRef>& room, Fragment& out)
-      : config_(config), depth_(depth), room_(room), out_(out) {}
+  Grouper(const BuildConfig& config, int depth, std::vector<BoundedRef>& room, SweepRoom& sweep,
+          Fragment& out)
+      : config_(config), depth_(depth), room_(room), sweep_(sweep), out_(out) {}
 
   // The references are left in another order. Returns `contents`, their hull.
   HWY_ATTR Box append(std::span<BoundedRef> refs, const Bounds& contents, int level = 0) {
     const GroupCosts costs(config_, contents);
     if (stays_whole(refs.size()) || !costs.usable() || level == kMostGroupLevels)
       return append_ranked_leaf(refs, contents, depth_, out_);
-    const std::size_t n =
-        refs.size() <= kSmallGroup ? part_small(refs, contents, costs) : part_large(refs, costs);
+    if (refs.size() <= kSwept) {
+      Sweep(config_, depth_, sweep_, out_).append(refs, contents, level);
+      return box_from(contents);
+    }
+    const std::size_t n = part_large(refs, costs);
     if (n == 0) return append_ranked_leaf(refs, contents, depth_, out_);
     const std::size_t node = out_.nodes.size();
     out_.nodes.emplace_back();
@@ -289,13 +172,6 @@ class Grouper {
   }
 
   // Orders the references and returns how many of them go first; 0 where all stay together.
-  HWY_ATTR std::size_t part_small(std::span<BoundedRef> refs, const Bounds& hull, const GroupCosts& costs) {
-    const SmallGroup group(refs, hull, costs);
-    const GroupSplit split = best_of_all_parts(group, costs);
-    if (!(split.cost < costs.leaf(refs.size()))) return 0;
-    axis_ = split.axis;
-    return part(refs, [&](std::size_t i) { return group.is_first(i, split); });
-  }
   HWY_ATTR std::size_t part_large(std::span<BoundedRef> refs, const GroupCosts& costs) {
     const GroupSplit split = best_between_steps(refs, costs);
     if (!(split.cost < costs.leaf(refs.size()))) return 0;
@@ -325,6 +201,7 @@ class Grouper {
   const int depth_;
   int axis_ = 0;  // of the last that was parted
   std::vector<BoundedRef>& room_;
+  SweepRoom& sweep_;
   Fragment& out_;
 };
 

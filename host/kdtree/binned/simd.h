@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kdtree/binned/bin_grid.h"
+#include "kdtree/binned/sweep_room.h"
 #include "kdtree/build.h"
 #include "kdtree/fragment.h"
 #include "kdtree/reference.h"
@@ -34,6 +35,7 @@ struct Plane {
 struct Workspace {
   std::vector<BoundedRef> stack, straddlers, above, others;
   Fragment fragment;
+  SweepRoom sweep;
 };
 
 // How far a piece of a cell's references was divided.

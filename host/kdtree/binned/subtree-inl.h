@@ -36,11 +36,13 @@ HWY_ATTR inline Plane choose_plane(std::span<const BoundedRef> refs, const Bound
   return cheaper_than_leaf(best, refs.size(), config);
 }
 
-// Whether no split of n references can be cheaper than a leaf: both children would be tested, and their
-// chances add up to 1 at least, so a split costs Ct + Ci or more. (The factor is for rounding.)
-inline bool is_leaf_anyway(std::size_t n, const BuildConfig& config) {
-  return n <= 1 || (n <= static_cast<std::size_t>(config.block) &&
-                    config.cost_traverse > 2e-3 * static_cast<double>(n) * config.cost_intersect);
+// Whether no split of n references can be cheaper than a leaf: both children would be tested, one reference
+// at least in each, and their chances add up to 1 at least. (The factor is for rounding.)
+HWY_ATTR inline bool is_leaf_anyway(std::size_t n, const BuildConfig& config) {
+  const TestCost tests(config.block);
+  const auto traverse = static_cast<float>(config.cost_traverse),
+             intersect = static_cast<float>(config.cost_intersect);
+  return n <= 1 || (traverse + intersect * tests.of(1)) * (1 - 0x1p-18f) > intersect * tests.of(n);
 }
 
 class SubtreeBuilder {
@@ -52,6 +54,7 @@ class SubtreeBuilder {
         max_depth_(max_depth),
         stack_(workspace.stack),
         straddlers_(workspace.straddlers),
+        sweep_(workspace.sweep),
         out_(workspace.fragment) {}
 
   // The references are stack[first, first + n), with nothing of use behind them. Returns the hull of what the
@@ -78,7 +81,7 @@ class SubtreeBuilder {
  private:
   HWY_ATTR Box append_leaf(std::span<BoundedRef> refs, const Cell& cell) {
     if (!config_.groups) return append_ranked_leaf(refs, cell.contents, cell.depth, out_);
-    return Grouper(config_, cell.depth, straddlers_, out_).append(refs, cell.contents);
+    return Grouper(config_, cell.depth, straddlers_, sweep_, out_).append(refs, cell.contents);
   }
 
   HWY_ATTR Box build_children(std::size_t first, std::size_t n, const Cell& cell, const Plane& plane,
@@ -114,6 +117,7 @@ class SubtreeBuilder {
   const BuildConfig& config_;
   const int max_depth_;
   std::vector<BoundedRef>&stack_, &straddlers_;
+  SweepRoom& sweep_;
   Fragment& out_;
 };
 
