@@ -16,6 +16,7 @@
 #include "base/free_memory.h"
 #include "base/timer.h"
 #include "cli/command.h"
+#include "cli/ledger_options.h"
 #include "cli/memory.h"
 #include "cli/message.h"
 #include "cli/open_scene.h"
@@ -54,6 +55,7 @@ struct RenderArgs {
   RenderOptions render;
   ViewOptions view;
   film::WriteOptions write;
+  LedgerChoice ledger;
 };
 
 void add_picture_options(CLI::App& app, RenderArgs& o) {
@@ -151,6 +153,7 @@ void add_division_options(CLI::App& app, RenderArgs& o) {
 // Before the scene is read. A name that isn't given depends on the files that the scene names.
 void check_files(const RenderArgs& o, RunFiles& files) {
   check_scene_input(o.scene);
+  o.ledger.check();
   if (o.view.transparent && o.render.adaptive_target > 0)
     throw Error(ErrorCode::usage,
                 "--background transparent needs a number of --samples; adaptive ones don't look at coverage");
@@ -236,6 +239,7 @@ Picture render(Renderer& renderer, const RenderArgs& o) {
   Progress progress(o.quiet);
   RenderOptions options = o.render;
   options.timeline = !o.timeline.empty();
+  options.ledger = o.ledger.options();
   options.progress = [&progress](double share) { progress.update(share); };
   return renderer.render(options);
 }
@@ -290,6 +294,7 @@ Command add_render(CLI::App& kdray) {
   add_view_options(*app, o->view);
   add_picture_options(*app, *o);
   add_division_options(*app, *o);
+  add_ledger_options(*app, o->ledger);
   add_device_options(*app, o->device, o->render.traversal, o->render.precision);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);
