@@ -1,8 +1,10 @@
-// What    The options of render on ledgers: --checkpoint --resume --checkpoint-every.
+// What    The options of render on ledgers and on sequences: --checkpoint --resume --checkpoint-every --share
+//         --lease --restarts, --frames --camera-path.
 // Errors  kdray::Error, ErrorCode::usage: options that don't go together.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -10,13 +12,22 @@
 
 namespace kdray::cli {
 
+struct FrameRange {
+  int first = 0, last = 0;
+};
+
 struct LedgerChoice {
-  std::string checkpoint;  // the folder; empty: no ledger
-  bool resume = false, every_given = false;
-  double every_seconds = LedgerOptions().every_seconds;
+  std::string checkpoint, share;  // the folder; both empty: no ledger
+  bool resume = false;
+  std::optional<double> every_seconds = {}, lease_seconds = {};
+  int restarts = 0;
+  std::optional<FrameRange> frames = {};
+  std::string camera_path;  // empty: none
 
   void check() const;
-  std::optional<LedgerOptions> options() const;
+  const std::string& folder() const { return share.empty() ? checkpoint : share; }
+  // Of a frame whose ledger is in this folder, or in the one that was named.
+  std::optional<LedgerOptions> options(const std::filesystem::path& in = {}) const;
 };
 
 void add_ledger_options(CLI::App& app, LedgerChoice& choice);
