@@ -74,8 +74,8 @@ void Catalogue::read_on(const Take& take) {
     });
 }
 
-void Catalogue::add(const Piece& piece, Sums sums) {
-  note(piece, {piece.places, hash_of_sums(sums), kOwn, 0});
+void Catalogue::add(const Piece& piece, const Hash& content) {
+  note(piece, {piece.places, content, kOwn, 0});
 }
 
 bool Catalogue::load(const Piece& piece, std::span<layout::i64> sums) const {

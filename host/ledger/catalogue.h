@@ -26,7 +26,7 @@ class Catalogue {
   void read_on(const Take& take);
 
   // A piece that this process has made.
-  void add(const Piece& piece, Sums sums);
+  void add(const Piece& piece, const Hash& content);
 
   // The sums of a piece that another process has made; false: there are none of just these places.
   bool load(const Piece& piece, std::span<layout::i64> sums) const;

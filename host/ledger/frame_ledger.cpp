@@ -22,7 +22,7 @@ constexpr std::size_t kMostLots = 128;  // of a round: a lot costs three small f
 constexpr double kLotSeconds = 2;       // of what is claimed at a time
 constexpr std::size_t kPartsLeft = 4;   // no more is claimed than one in so many of what nobody has
 constexpr auto kLook = std::chrono::milliseconds(50);
-constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // of records that are one write
+constexpr std::size_t kMostBytes = std::size_t{1} << 18;  // of records that are one write: what a cache holds
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
@@ -239,6 +239,7 @@ void FrameLedger::keep(std::span<const layout::u32> entries) {
   const double taken = std::chrono::duration<double>(Clock::now() - given_).count();
   const Timed timed(report_.seconds);
   std::string records;
+  records.reserve(2 * kMostBytes);
   std::vector<layout::i64> sums;
   const auto append = [&] {
     report_.bytes_written += records.size();
@@ -254,8 +255,9 @@ void FrameLedger::keep(std::span<const layout::u32> entries) {
     const std::size_t i = index_.at(entry);
     const Piece piece = piece_of(i);
     const Sums of_piece = gather(piece, sums);
-    catalogue_->add(piece, of_piece);
-    append_record(records, frame_, piece, of_piece);
+    const Hash content = hash_of_sums(of_piece);
+    catalogue_->add(piece, content);
+    append_record(records, frame_, piece, of_piece, content);
     if (!present_[i]) ++n_present_;
     present_[i] = true;
     if (records.size() > kMostBytes) append();

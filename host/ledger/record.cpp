@@ -22,13 +22,13 @@ std::uint64_t bytes_of(const Rectangle& places) {
 
 }  // namespace
 
-void append_record(std::string& to, const Hash& frame, const Piece& piece, Sums sums) {
+void append_record(std::string& to, const Hash& frame, const Piece& piece, Sums sums, const Hash& content) {
   RecordHead head{};
   std::copy(std::begin(kRecordMagic), std::end(kRecordMagic), head.magic);
   head.bytes = bytes_of(piece.places);
   head.frame = frame;
   head.piece = piece;
-  head.content = hash_of_sums(sums);
+  head.content = content;
   head.check = check_of(head);
   to.append(reinterpret_cast<const char*>(&head), sizeof head);
   to.append(reinterpret_cast<const char*>(sums.data()), sums.size_bytes());

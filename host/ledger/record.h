@@ -50,7 +50,8 @@ inline Hash hash_of_sums(Sums sums) {
   return hash_of(sums.data(), sums.size_bytes());
 }
 
-void append_record(std::string& to, const Hash& frame, const Piece& piece, Sums sums);
+// `content` is hash_of_sums(sums).
+void append_record(std::string& to, const Hash& frame, const Piece& piece, Sums sums, const Hash& content);
 
 // The head that the bytes begin with, when it is whole and of this frame.
 std::optional<RecordHead> head_of(std::string_view bytes, const Hash& frame);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "adaptive/sampler.h"
+#include "base/raw_vector.h"
 #include "base/timer.h"
 #include "ledger/render_round.h"
 #include "odprt/band.h"
@@ -200,7 +201,7 @@ void FrameRun::render_kept_tiles(std::span<layout::i64> sums) {
 }
 
 void FrameRun::render_kept_uniform() {
-  std::vector<layout::i64> sums(3 * result_.image.pixels.size());
+  RawVector<layout::i64> sums(3 * result_.image.pixels.size());  // each is written
   render_kept_tiles(sums);
   const std::span<const layout::i64> film = sums;
   wavefront::develop({&film, 1}, static_cast<int>(provision_.frame.n_samples), result_.image.pixels);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "adaptive/sampler.h"
+#include "base/raw_vector.h"
 #include "base/timer.h"
 #include "device/opencl_error.h"
 #include "ledger/render_round.h"
@@ -225,7 +226,7 @@ void Frame::render_kept_tiles(std::span<layout::i64> sums) {
 }
 
 void Frame::render_kept_uniform() {
-  std::vector<layout::i64> sums(3 * image_.pixels.size());
+  RawVector<layout::i64> sums(3 * image_.pixels.size());  // each is written
   render_kept_tiles(sums);
   const std::span<const layout::i64> film = sums;
   wavefront::develop({&film, 1}, static_cast<int>(frame_.n_samples), image_.pixels);

@@ -30,7 +30,7 @@ struct RecordTest : testing::Test {
       const Piece piece{i % 3, i, {8 * i, 0, 1 + i % 4, 2}};
       std::vector<layout::i64> sums(piece.places.sums());
       for (layout::i64& sum : sums) sum = static_cast<layout::i64>(random());
-      append_record(bytes, header.frame(), piece, sums);
+      append_record(bytes, header.frame(), piece, sums, hash_of_sums(sums));
       written[i] = sums;
       ends.push_back(bytes.size());
     }
