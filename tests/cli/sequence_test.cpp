@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 
 #include "cli/camera_path.h"
@@ -10,6 +11,8 @@
 #include "cli/running.h"
 #include "cli/scenes.h"
 #include "cli/sequence.h"
+#include "ledger/header.h"
+#include "ledger/record.h"
 #include "support/errors.h"
 #include "support/folder.h"
 
@@ -90,14 +93,25 @@ TEST_F(SequenceTest, ProcessesThatShareAFolderMakeAllFrames) {
   EXPECT_TRUE(fails_with(kdray(shared), 1, "other settings"));
 }
 
-TEST_F(SequenceTest, AProcessThatWasBrokenIsToldOf) {
+// The same records twice are no fault; one whose sums differ is, however right its checksums are.
+TEST_F(SequenceTest, AMachineThatComputesWronglyIsToldOf) {
   KDRAY_NEED_DEVICE();
   const Arguments share{"-o", folder / "a.png", "--share", folder / "ledger"};
   ASSERT_TRUE(succeeds(render(share)));
-  // The same records twice are no fault; one whose sums differ is, however right its checksums are.
   for (const auto& entry : fs::directory_iterator(folder / "ledger"))
     if (entry.path().extension() == ".tiles") fs::copy_file(entry.path(), folder / "ledger/copy.tiles");
   EXPECT_TRUE(succeeds(render(share)));
+  const std::string good = folder.get("ledger/copy.tiles");
+  std::string wrong = good.substr(0, ledger::kHeaderBytes);
+  const Hash frame = ledger::header_of(good)->frame();
+  const auto head = ledger::head_of(std::string_view(good).substr(ledger::kHeaderBytes), frame);
+  ASSERT_TRUE(head);
+  std::vector<layout::i64> sums(head->piece.places.sums());
+  std::memcpy(sums.data(), good.data() + ledger::kHeaderBytes + ledger::kRecordHead, sums.size() * 8);
+  ++sums.back();  // by 2^-36
+  ledger::append_record(wrong, frame, head->piece, sums, ledger::hash_of_sums(sums));
+  folder.put("ledger/wrong.tiles", wrong);
+  EXPECT_TRUE(fails_with(render(share), 1, "was made twice, and the results differ: by "));
 }
 
 TEST_F(SequenceTest, RestartsEndWithTheRunsOwnCode) {
