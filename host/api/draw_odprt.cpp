@@ -51,6 +51,7 @@ odprt::Request request_for(State& state, Job& job) {
   request.timeline = job.timeline;
   request.faults = &state.faults;
   request.progress = o.progress;
+  request.ledger = job.ledger.get();
   return request;
 }
 

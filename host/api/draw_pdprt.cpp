@@ -55,7 +55,8 @@ Drawn draw_pdprt(State& state, const Job& job) {
                                                                .progress = job.options.progress,
                                                                .faults = &state.faults,
                                                                .timeline = job.timeline,
-                                                               .max_film_bytes = max_film_bytes});
+                                                               .max_film_bytes = max_film_bytes,
+                                                               .ledger = job.ledger.get()});
   state.scheduler.remember(job.frame, result.tile_cost);
   state.speeds.take(job.frame).pdprt = mrays_per_s(result.counters.total(), result.render_seconds);
   Drawn drawn;

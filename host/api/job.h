@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "kdray/kdray.h"
 #include "kdray/statistics.h"
 #include "layout/frame.layout.h"
+#include "ledger/frame_ledger.h"
 #include "timeline/timeline.h"
 #include "wavefront/wavefront.h"
 
@@ -21,7 +23,8 @@ struct Job {
   RenderOptions options;  // with what they leave open filled in from the scene
   layout::Frame frame;
   layout::Features features;
-  timeline::Timeline* timeline;  // null: not wanted
+  timeline::Timeline* timeline;                      // null: not wanted
+  std::shared_ptr<ledger::FrameLedger> ledger = {};  // null: there is none
 };
 
 struct Drawn {

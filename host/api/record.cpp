@@ -69,6 +69,19 @@ Statistics::Samples samples_told(const layout::Frame& frame, const std::optional
           std::move(adaptive)};
 }
 
+std::optional<Statistics::Ledger> ledger_told(const Job& job) {
+  if (!job.ledger) return std::nullopt;
+  const ledger::Report r = job.ledger->report();
+  return Statistics::Ledger{job.options.ledger->folder.string(),
+                            r.pieces,
+                            r.found,
+                            r.rendered,
+                            r.damaged,
+                            r.bytes_read,
+                            r.bytes_written,
+                            r.seconds};
+}
+
 void record_preparations(Statistics& statistics, const DeviceSet& devices) {
   statistics.seconds.compile = devices.build_seconds();
   statistics.seconds.upload = devices.upload_seconds();
@@ -135,6 +148,7 @@ void record_frame(Statistics& statistics, const State& state, const Job& job, Dr
   statistics.frame = {job.frame.width, job.frame.height, job.frame.n_samples, job.frame.max_depth,
                       job.frame.spawn_threshold};
   statistics.samples = samples_told(job.frame, drawn.samples);
+  statistics.ledger = ledger_told(job);
   statistics.memory.frame_bytes = drawn.frame_bytes;
   statistics.memory.per_queue = std::move(drawn.memory_of_queues);
   add_devices(drawn.division, state.devices);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <span>
 
@@ -8,6 +9,7 @@
 #include "api/draw_pdprt.h"
 #include "api/hooks.h"
 #include "api/job.h"
+#include "api/ledger.h"
 #include "api/precision.h"
 #include "api/record.h"
 #include "api/state.h"
@@ -75,12 +77,14 @@ void Renderer::Impl::tune(const Tuning& tuning) {
 Picture Renderer::Impl::render(const RenderOptions& options) {
   timeline::Timeline kept;
   api::Job job = api::make_job(state, options, options.timeline ? &kept : nullptr);
+  if (options.ledger) api::open_ledger(state, job);
   const api::ChosenMode chosen = api::choose_mode(state, job);
   const Preparing preparing(state.devices);
   api::Drawn drawn = chosen.mode == Mode::odprt ? api::draw_odprt(state, job) : api::draw_pdprt(state, job);
   timeline = options.timeline ? kept.json() : std::string();
   statistics.seconds.prepare = preparing.beside(drawn.render_seconds + drawn.divide_seconds.value_or(0));
   api::record_frame(statistics, state, job, drawn, chosen.why);
+  if (job.ledger) std::ranges::copy(job.ledger->warnings(), std::back_inserter(drawn.warnings));
   Picture picture = to_picture(drawn.image, api::channels_of(state, job, drawn));
   picture.warnings = std::move(drawn.warnings);
   return picture;

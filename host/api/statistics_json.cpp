@@ -219,6 +219,15 @@ Json statistics_json(const Statistics& s) {
                      {"depth", s.frame->depth},
                      {"spawn_threshold", s.frame->spawn_threshold}};
   if (s.samples) json["samples"] = samples_json(*s.samples);
+  if (s.ledger)
+    json["ledger"] = {{"folder", s.ledger->folder},
+                      {"pieces", s.ledger->pieces},
+                      {"found", s.ledger->found},
+                      {"rendered", s.ledger->rendered},
+                      {"damaged", s.ledger->damaged},
+                      {"bytes_read", s.ledger->bytes_read},
+                      {"bytes_written", s.ledger->bytes_written},
+                      {"seconds", s.ledger->seconds}};
   return json;
 }
 

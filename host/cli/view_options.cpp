@@ -104,6 +104,7 @@ std::vector<float> coverage(const PreparedScene& scene, const DeviceOptions& dev
   options.channels.clear();
   options.progress = {};
   options.timeline = false;
+  options.ledger.reset();
   const Picture picture = Renderer(scene.coverage(), device).render(options);
   std::vector<float> shares(picture.rgb.size() / 3);
   for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = std::clamp(picture.rgb[3 * i], 0.0f, 1.0f);

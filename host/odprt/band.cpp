@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/timer.h"
 #include "device/opencl_error.h"
 
 namespace kdray::odprt {
@@ -52,7 +53,7 @@ void BandRun::run(BandWork& band, const std::function<void(double)>& progress) {
       ended_.notify_one();
     });
   try {
-    wait(band.shares, n_entries, progress);
+    wait(band, n_entries, progress);
   } catch (...) {
     // The caller's progress threw: nobody goes on.
     exchange_.fail(crew_.workers.size(), std::current_exception());
@@ -60,13 +61,15 @@ void BandRun::run(BandWork& band, const std::function<void(double)>& progress) {
   }
 }
 
-void BandRun::wait(const Shares& shares, std::size_t n_entries, const std::function<void(double)>& progress) {
+void BandRun::wait(BandWork& band, std::size_t n_entries, const std::function<void(double)>& progress) {
   using namespace std::chrono_literals;
+  const Timer timer;
   std::unique_lock lock(mutex_);
   const auto ended = [this] { return n_serving_ == 0; };
-  if (!progress) return ended_.wait(lock, ended);
   while (!ended_.wait_for(lock, 20ms, ended)) {
-    auto left = static_cast<double>(shares.left());
+    if (timer.seconds() > band.seconds && band.shares.left() > 0) band.left = band.shares.close();
+    if (!progress) continue;
+    auto left = static_cast<double>(band.shares.left());
     for (const auto& n : tiles_left_) left += n;
     progress(std::clamp(1 - left / static_cast<double>(std::max<std::size_t>(n_entries, 1)), 0.0, 1.0));
   }

@@ -23,6 +23,8 @@ struct BandWork {
   Shares shares;                              // of tiles, or of runs of samples
   std::size_t first_pixel = 0, n_places = 0;  // of the film
   std::span<const layout::u32> samples = {};  // empty: tiles
+  double seconds = 1e9;                       // for which entries are begun; the others are left
+  Shares::Entries left = {};
 };
 
 class BandRun {
@@ -43,7 +45,7 @@ class BandRun {
   void launch(std::size_t queue, const Turn& turn, QueueState& state);
   bool sends_mail(std::size_t queue, const Outbox& outbox) const;
   void hand_over(std::size_t queue, const Turn& turn, const QueueState& state);
-  void wait(const Shares& shares, std::size_t n_entries, const std::function<void(double)>& progress);
+  void wait(BandWork& band, std::size_t n_entries, const std::function<void(double)>& progress);
 
   const Request& request_;
   Crew& crew_;

@@ -7,7 +7,9 @@
 #include <numeric>
 
 #include "adaptive/sampler.h"
+#include "base/raw_vector.h"
 #include "base/timer.h"
+#include "ledger/render_round.h"
 #include "odprt/band.h"
 #include "odprt/queue_failure.h"
 #include "wavefront/curve.h"
@@ -98,10 +100,19 @@ class FrameRun {
       : request_(request), provision_(provision), division_(division), crew_(crew), result_(result) {}
 
   void render_uniform();
+  void render_kept_uniform();
   void render_adaptive();
 
  private:
   void render_bands(const std::function<void(const wavefront::Band&, Films)>& take);
+  void render_kept_tiles(std::span<layout::i64> sums);
+  void render_kept_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
+  std::vector<layout::u32> render_tiles(const wavefront::Band& band, std::span<const layout::u32> tiles,
+                                        double seconds, std::span<layout::i64> sums);
+  std::vector<layout::u32> render_runs(std::size_t first, std::span<const layout::u32> runs, double seconds,
+                                       std::span<const layout::u32> samples, std::span<layout::i64> sums);
+  void tell(double share_of_round) const;
+  double share_present() const;
   void render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
   void render(BandWork& work, double from, double to, const std::function<void(Films)>& take);
 
@@ -110,15 +121,14 @@ class FrameRun {
   const Division& division_;
   Crew& crew_;
   Result& result_;
-  double from_ = 0, to_ = 1;  // of the share done, that the round in work is
+  double from_ = 0, to_ = 1;    // of the share done, that the round in work is
+  std::uint32_t n_rounds_ = 1;  // that were begun, of a frame with a ledger
 };
 
 // `from`, `to`: of the round.
 void FrameRun::render(BandWork& work, double from, double to, const std::function<void(Films)>& take) {
   BandRun run(request_, crew_);
-  const auto progress = [&](double share) {
-    request_.progress(from_ + (to_ - from_) * (from + (to - from) * share));
-  };
+  const auto progress = [&](double share) { tell(from + (to - from) * share); };
   run.run(work, request_.progress ? progress : std::function<void(double)>());
   check(run.exchange());
   take_films(crew_, take);
@@ -147,6 +157,90 @@ void FrameRun::render_uniform() {
   });
 }
 
+void FrameRun::tell(double share_of_round) const {
+  if (request_.progress) request_.progress(from_ + (to_ - from_) * share_of_round);
+}
+
+double FrameRun::share_present() const {
+  const auto n = static_cast<double>(std::max<std::size_t>(request_.ledger->n_entries(), 1));
+  return static_cast<double>(request_.ledger->n_present()) / n;
+}
+
+// Tiles of a band, whose film is cleared and read as a whole. Returns those that were not begun.
+std::vector<layout::u32> FrameRun::render_tiles(const wavefront::Band& band,
+                                                std::span<const layout::u32> tiles, double seconds,
+                                                std::span<layout::i64> sums) {
+  BandWork work{
+      share_by_part(tiles, crew_.workers.size(), provision_.frame, division_.directory, crew_.owner),
+      band.first_pixel, band.n_pixels};
+  work.seconds = seconds;
+  const double share = share_present();
+  std::vector<layout::i64> of_band(3 * band.n_pixels);
+  render(work, share, share, [&](Films films) { wavefront::add_up(films, of_band); });
+  std::vector<layout::u32> left = work.left;
+  std::ranges::sort(left);
+  std::vector<layout::u32> done;
+  std::ranges::copy_if(tiles, std::back_inserter(done),
+                       [&](layout::u32 tile) { return !std::ranges::binary_search(left, tile); });
+  wavefront::copy_tiles(of_band, band.first_pixel, provision_.frame, done, sums);
+  return left;
+}
+
+// The sums of all tiles, from the ledger or rendered, to where the picture's are.
+void FrameRun::render_kept_tiles(std::span<layout::i64> sums) {
+  const layout::Frame& frame = provision_.frame;
+  const std::uint32_t of_band = provision_.bands.front().n_rows;
+  ledger::render_round(
+      *request_.ledger,
+      ledger::round_of_tiles(
+          frame, wavefront::tile_curve(frame.n_tiles_x, 0, frame.n_tiles / frame.n_tiles_x), sums),
+      {.number_of = [of_band](layout::u32 tile) { return std::size_t{KDRAY_TILE_ROW(tile) / of_band}; },
+       .render = [&](std::size_t band, const std::vector<layout::u32>& tiles,
+                     double seconds) { return render_tiles(provision_.bands[band], tiles, seconds, sums); },
+       .idle = [this] { tell(share_present()); }});
+}
+
+void FrameRun::render_kept_uniform() {
+  RawVector<layout::i64> sums(3 * result_.image.pixels.size());  // each is written
+  render_kept_tiles(sums);
+  const std::span<const layout::i64> film = sums;
+  wavefront::develop({&film, 1}, static_cast<int>(provision_.frame.n_samples), result_.image.pixels);
+}
+
+// Runs of one stretch of the list, which begins with run `first`. Returns those that were not begun.
+std::vector<layout::u32> FrameRun::render_runs(std::size_t first, std::span<const layout::u32> runs,
+                                               double seconds, std::span<const layout::u32> samples,
+                                               std::span<layout::i64> sums) {
+  constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN, kSums = 3 * KDRAY_SAMPLE_RUN;
+  const auto begin = static_cast<layout::u32>(first);
+  const std::size_t most = provision_.room.samples / KDRAY_SAMPLE_RUN;
+  const std::size_t n = std::min(most, samples.size() / kWords - first);
+  std::vector<layout::u32> in_stretch;
+  for (const layout::u32 run : runs) in_stretch.push_back(run - begin);
+  BandWork work{share_evenly(in_stretch, crew_.workers.size()), 0, n * KDRAY_SAMPLE_RUN,
+                samples.subspan(first * kWords, n * kWords)};
+  work.seconds = seconds;
+  const double share = share_present();
+  std::vector<layout::i64> of_stretch(n * kSums);
+  render(work, share, share, [&](Films films) { wavefront::add_up(films, of_stretch); });
+  for (const layout::u32 run : in_stretch) {
+    const auto from = std::span(of_stretch).subspan(run * kSums, kSums);
+    std::ranges::copy(from, sums.subspan((first + run) * kSums).begin());  // 0 of those that are left
+  }
+  for (layout::u32& run : work.left) run += begin;
+  return work.left;
+}
+
+void FrameRun::render_kept_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
+  const std::size_t most = provision_.room.samples / KDRAY_SAMPLE_RUN;
+  ledger::render_round(
+      *request_.ledger, ledger::round_of_runs(n_rounds_++, samples.size() / (2 * KDRAY_SAMPLE_RUN), sums),
+      {.number_of = [most](layout::u32 run) { return run / most; },
+       .render = [&](std::size_t stretch, const std::vector<layout::u32>& runs,
+                     double seconds) { return render_runs(stretch * most, runs, seconds, samples, sums); },
+       .idle = [this] { tell(share_present()); }});
+}
+
 // Renders as many samples at a time as the queues' films have places for.
 void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
   constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN;
@@ -167,15 +261,18 @@ void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<la
 void FrameRun::render_adaptive() {
   adaptive::Sampler sampler({provision_.frame.width, provision_.frame.height}, request_.adaptive_target);
   to_ = 0.5;
-  render_bands([&](const wavefront::Band& band, Films films) {
-    wavefront::add_up(films, sampler.first_sums().subspan(3 * band.first_pixel, 3 * band.n_pixels));
-  });
+  if (request_.ledger)
+    render_kept_tiles(sampler.first_sums());
+  else
+    render_bands([&](const wavefront::Band& band, Films films) {
+      wavefront::add_up(films, sampler.first_sums().subspan(3 * band.first_pixel, 3 * band.n_pixels));
+    });
   std::vector<layout::i64> sums;
   for (auto samples = sampler.next(); !samples.empty(); samples = sampler.next()) {
     from_ = to_;  // how many rounds there will be is not known
     to_ = (1 + to_) / 2;
     sums.resize(samples.size() / 2 * 3);
-    render_samples(samples, sums);
+    request_.ledger ? render_kept_samples(samples, sums) : render_samples(samples, sums);
     sampler.take(sums);
   }
   result_.image.pixels = sampler.picture();
@@ -202,7 +299,10 @@ Result render_frame(const Request& request, const Provision& provision, const Di
                                  fmt::format("queue {}: {}", report.number, report.device));
   const Timer timer;
   FrameRun run(request, provision, division, crew, result);
-  request.adaptive_target > 0 ? run.render_adaptive() : run.render_uniform();
+  if (request.adaptive_target > 0)
+    run.render_adaptive();
+  else
+    request.ledger ? run.render_kept_uniform() : run.render_uniform();
   result.render_seconds = timer.seconds();
   finish(crew, division, result);
   return result;

@@ -35,6 +35,7 @@ std::vector<SubtreeUse> run_pilot(const Request& request, const Division& whole,
   pilot.timeline = nullptr;
   pilot.faults = nullptr;
   pilot.progress = {};
+  pilot.ledger = nullptr;
   return render_frame(pilot, provide(pilot, 0), whole, cut).visits;
 }
 

@@ -17,6 +17,7 @@
 #include "device/faults.h"
 #include "film/image.h"
 #include "kdray/options.h"
+#include "ledger/frame_ledger.h"
 #include "odprt/division.h"
 #include "odprt/exchange.h"
 #include "timeline/timeline.h"
@@ -47,6 +48,8 @@ struct Request {
   timeline::Timeline* timeline = nullptr;
   device::Faults* faults = nullptr;
   std::function<void(double)> progress;
+  // What is finished already, and where it goes; its tiles are the frame's. Null: there is none.
+  ledger::FrameLedger* ledger = nullptr;
 };
 
 struct QueueReport {

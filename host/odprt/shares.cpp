@@ -110,6 +110,17 @@ Shares::Entries Shares::take(std::size_t queue, std::size_t n) {
   return taken;
 }
 
+Shares::Entries Shares::close() {
+  const std::lock_guard lock(mutex_);
+  Entries left = std::move(anyones_);
+  anyones_.clear();
+  for (Entries& own : own_) {
+    left.insert(left.end(), own.begin(), own.end());
+    own.clear();
+  }
+  return left;
+}
+
 std::size_t Shares::left() const {
   const std::lock_guard lock(mutex_);
   return std::accumulate(own_.begin(), own_.end(), anyones_.size(),

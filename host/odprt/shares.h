@@ -25,6 +25,9 @@ class Shares {
   // Takes at most n entries for a queue. None means that none are left anywhere. Any thread may call it.
   Entries take(std::size_t queue, std::size_t n);
 
+  // What nobody has taken yet, which nobody gets from then on.
+  Entries close();
+
   std::size_t left() const;
   std::size_t n_queues() const { return own_.size(); }
 

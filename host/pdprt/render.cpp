@@ -10,8 +10,10 @@
 #include <utility>
 
 #include "adaptive/sampler.h"
+#include "base/raw_vector.h"
 #include "base/timer.h"
 #include "device/opencl_error.h"
+#include "ledger/render_round.h"
 #include "pdprt/queue.h"
 #include "wavefront/bands.h"
 #include "wavefront/curve.h"
@@ -20,6 +22,8 @@
 namespace kdray::pdprt {
 
 namespace {
+
+constexpr double kForever = 1e9;  // seconds
 
 class Frame {
  public:
@@ -37,10 +41,17 @@ class Frame {
   void render_adaptive();
   void render_bands();
   void render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
-  void render_list(std::vector<layout::u32> list, const Work& work);
+  void render_runs(std::size_t first, std::span<const layout::u32> samples, std::span<layout::i64> sums,
+                   const std::function<void(const Work&)>& render);
+  void render_kept_uniform();
+  void render_kept_tiles(std::span<layout::i64> sums);
+  void render_kept_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
+  std::vector<layout::u32> render_list(std::vector<layout::u32> list, const Work& work,
+                                       double seconds = kForever);
   void run(std::size_t number, Tiles& tiles, const Work& work);
   void leave_out(std::size_t number);
-  void wait(Tiles& tiles);
+  void wait(Tiles& tiles, double seconds);
+  void tell_progress() const;
   std::size_t n_working() const;
   Result collect(double seconds);
 
@@ -53,6 +64,7 @@ class Frame {
   Shared shared_;
   double progress_from_ = 0, progress_to_ = 1;  // of the share done: what the tiles of shared_.tiles_done are
   std::uint64_t n_tiles_ = 0;                   // of them all
+  std::uint32_t n_rounds_ = 1;                  // that were begun, of a frame with a ledger
   std::vector<Place> places_;
   std::exception_ptr last_failure_;  // of a queue
   std::mutex mutex_;                 // of the following
@@ -131,17 +143,26 @@ void Frame::run(std::size_t number, Tiles& tiles, const Work& work) {
   changed_.notify_one();
 }
 
-// Reports progress from the calling thread until every queue's thread has ended.
-void Frame::wait(Tiles& tiles) {
-  using namespace std::chrono_literals;
+void Frame::tell_progress() const {
+  if (!task_.progress) return;
+  const std::uint64_t before = task_.ledger ? task_.ledger->n_present() : 0;
+  const double share = static_cast<double>(before + shared_.tiles_done) / static_cast<double>(n_tiles_);
+  task_.progress(progress_from_ + share * (progress_to_ - progress_from_));
+}
+
+// Reports progress from the calling thread until every queue's thread has ended, and closes the tiles when
+// the time is over.
+void Frame::wait(Tiles& tiles, double seconds) {
+  constexpr double kStep = 0.1;
+  const Timer timer;
   std::unique_lock lock(mutex_);
   while (n_running_ > 0) {
-    changed_.wait_for(lock, 100ms);
-    if (!task_.progress) continue;
+    const double left = std::max(seconds - timer.seconds(), 0.0);
+    changed_.wait_for(lock, std::chrono::duration<double>(left > 0 ? std::min(left, kStep) : kStep));
     lock.unlock();
+    if (left == 0) tiles.close();
     try {
-      const double share = static_cast<double>(shared_.tiles_done) / static_cast<double>(n_tiles_);
-      task_.progress(progress_from_ + share * (progress_to_ - progress_from_));
+      tell_progress();
     } catch (...) {
       tiles.leave();
       throw;
@@ -150,10 +171,11 @@ void Frame::wait(Tiles& tiles) {
   }
 }
 
-void Frame::render_list(std::vector<layout::u32> list, const Work& work) {
+// Returns what nobody had begun when the time was over.
+std::vector<layout::u32> Frame::render_list(std::vector<layout::u32> list, const Work& work, double seconds) {
   // A single queue takes everything at once.
   const Division division = places_.size() == 1 ? Division::contiguous : task_.division;
-  Tiles tiles(std::move(list), division, places_.size());
+  Tiles tiles(std::move(list), division, places_.size(), task_.ledger != nullptr);
   n_running_ = n_working();
   {
     std::vector<std::jthread> threads;
@@ -163,10 +185,11 @@ void Frame::render_list(std::vector<layout::u32> list, const Work& work) {
       else
         tiles.give_back(i);
     }
-    wait(tiles);
+    wait(tiles, seconds);
   }
   if (fault_) std::rethrow_exception(fault_);
   if (n_working() == 0) std::rethrow_exception(last_failure_);
+  return tiles.left_over();
 }
 
 void Frame::render_bands() {
@@ -184,39 +207,93 @@ void Frame::render_uniform() {
   render_bands();
 }
 
-// Runs of samples, as many at a time as the queues have room for. Their sums are set, not added to: a queue
-// may fail when it has delivered some.
-void Frame::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
+// The sums of all tiles, from the ledger or rendered, to where the picture's are.
+void Frame::render_kept_tiles(std::span<layout::i64> sums) {
+  shared_.deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> tiles) {
+    wavefront::copy_tiles(film.sums, film.first, frame_, tiles, sums);
+  };
+  n_tiles_ = frame_.n_tiles;
+  const std::uint32_t n_rows = frame_.n_tiles / frame_.n_tiles_x, of_band = bands_.front().n_rows;
+  ledger::render_round(
+      *task_.ledger, ledger::round_of_tiles(frame_, wavefront::tile_curve(frame_.n_tiles_x, 0, n_rows), sums),
+      {.number_of = [of_band](layout::u32 tile) { return std::size_t{KDRAY_TILE_ROW(tile) / of_band}; },
+       .render =
+           [this](std::size_t band, std::vector<layout::u32> tiles, double seconds) {
+             shared_.tiles_done = 0;
+             return render_list(std::move(tiles), {.first_pixel = bands_[band].first_pixel}, seconds);
+           },
+       .idle = [this] { shared_.tiles_done = 0, tell_progress(); }});
+}
+
+void Frame::render_kept_uniform() {
+  RawVector<layout::i64> sums(3 * image_.pixels.size());  // each is written
+  render_kept_tiles(sums);
+  const std::span<const layout::i64> film = sums;
+  wavefront::develop({&film, 1}, static_cast<int>(frame_.n_samples), image_.pixels);
+}
+
+// Renders runs that lie in one stretch of the list, from run `first` on: `render` gets what the queues need
+// to know of them. Their sums are set, not added to: a queue may fail when it has delivered some.
+void Frame::render_runs(std::size_t first, std::span<const layout::u32> samples, std::span<layout::i64> sums,
+                        const std::function<void(const Work&)>& render) {
   constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN, kSums = 3 * KDRAY_SAMPLE_RUN;
+  shared_.deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> delivered) {
+    for (const layout::u32 run : delivered) {
+      const auto from = film.sums.subspan(run * kSums - 3 * film.first, kSums);
+      std::copy(from.begin(), from.end(), sums.subspan((first + run) * kSums).begin());
+    }
+  };
+  const std::size_t most = room_.samples / KDRAY_SAMPLE_RUN,
+                    n = std::min(most, samples.size() / kWords - first);
+  render({.samples = samples.subspan(first * kWords, n * kWords)});
+}
+
+// Renders as many runs at a time as the queues have room for.
+void Frame::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
   shared_.tiles_done = 0;
-  n_tiles_ = samples.size() / kWords;
-  const std::size_t most = room_.samples / KDRAY_SAMPLE_RUN;
-  for (std::size_t first = 0; first < n_tiles_; first += most) {
-    std::vector<layout::u32> runs(std::min<std::size_t>(most, n_tiles_ - first));
-    std::iota(runs.begin(), runs.end(), 0u);
-    shared_.deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> delivered) {
-      for (const layout::u32 run : delivered) {
-        const auto from = film.sums.subspan(run * kSums - 3 * film.first, kSums);
-        std::copy(from.begin(), from.end(), sums.subspan((first + run) * kSums).begin());
-      }
-    };
-    const std::size_t n = runs.size();
-    render_list(std::move(runs), {.samples = samples.subspan(first * kWords, n * kWords)});
-  }
+  n_tiles_ = samples.size() / (2 * KDRAY_SAMPLE_RUN);
+  for (std::size_t first = 0; first < n_tiles_; first += room_.samples / KDRAY_SAMPLE_RUN)
+    render_runs(first, samples, sums, [&](const Work& work) {
+      std::vector<layout::u32> runs(work.samples.size() / (2 * KDRAY_SAMPLE_RUN));
+      std::iota(runs.begin(), runs.end(), 0u);
+      render_list(std::move(runs), work);
+    });
+}
+
+void Frame::render_kept_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
+  n_tiles_ = samples.size() / (2 * KDRAY_SAMPLE_RUN);
+  const auto most = static_cast<layout::u32>(room_.samples / KDRAY_SAMPLE_RUN);
+  const auto render = [&](std::size_t stretch, std::vector<layout::u32> runs, double seconds) {
+    const auto first = static_cast<layout::u32>(stretch * most);
+    shared_.tiles_done = 0;
+    for (layout::u32& run : runs) run -= first;
+    render_runs(first, samples, sums,
+                [&](const Work& work) { runs = render_list(std::move(runs), work, seconds); });
+    for (layout::u32& run : runs) run += first;
+    return runs;
+  };
+  ledger::render_round(*task_.ledger, ledger::round_of_runs(n_rounds_++, n_tiles_, sums),
+                       {.number_of = [most](layout::u32 run) { return std::size_t{run / most}; },
+                        .render = render,
+                        .idle = [this] { shared_.tiles_done = 0, tell_progress(); }});
 }
 
 void Frame::render_adaptive() {
-  shared_.deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> tiles) {
-    wavefront::copy_tiles(film.sums, film.first, frame_, tiles, sampler_->first_sums());
-  };
   progress_to_ = 0.5;
-  render_bands();
+  if (task_.ledger) {
+    render_kept_tiles(sampler_->first_sums());
+  } else {
+    shared_.deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> tiles) {
+      wavefront::copy_tiles(film.sums, film.first, frame_, tiles, sampler_->first_sums());
+    };
+    render_bands();
+  }
   std::vector<layout::i64> sums;
   for (auto samples = sampler_->next(); !samples.empty(); samples = sampler_->next()) {
     progress_from_ = progress_to_;  // how many rounds there will be is not known
     progress_to_ = (1 + progress_to_) / 2;
     sums.resize(samples.size() / 2 * 3);
-    render_samples(samples, sums);
+    task_.ledger ? render_kept_samples(samples, sums) : render_samples(samples, sums);
     sampler_->take(sums);
   }
   image_.pixels = sampler_->picture();
@@ -257,7 +334,10 @@ Result Frame::collect(double seconds) {
 Result Frame::render() {
   if (n_working() == 0) std::rethrow_exception(last_failure_);
   const Timer timer;
-  sampler_ ? render_adaptive() : render_uniform();
+  if (sampler_)
+    render_adaptive();
+  else
+    task_.ledger ? render_kept_uniform() : render_uniform();
   const double seconds = timer.seconds();
   if (task_.progress) task_.progress(1.0);
   return collect(seconds);

@@ -19,6 +19,7 @@
 #include "adaptive/report.h"
 #include "device/faults.h"
 #include "film/image.h"
+#include "ledger/frame_ledger.h"
 #include "pdprt/tile_size.h"
 #include "timeline/timeline.h"
 #include "wavefront/wavefront.h"
@@ -47,6 +48,8 @@ struct Task {
   device::Faults* faults = nullptr;
   timeline::Timeline* timeline = nullptr;               // also asks for Result::tile_seconds
   std::size_t max_film_bytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
+  // What is finished already, and where it goes; its tiles are those of the schedule. Null: there is none.
+  ledger::FrameLedger* ledger = nullptr;
 };
 
 struct QueueResult {

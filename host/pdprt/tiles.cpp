@@ -26,8 +26,8 @@ void append(std::vector<layout::u32>& to, std::span<const layout::u32> from) {
 
 }  // namespace
 
-Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues)
-    : taken_(n_queues), n_undone_(curve.size()), n_queues_(n_queues) {
+Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues, bool by_the_piece)
+    : taken_(n_queues), by_the_piece_(by_the_piece), n_undone_(curve.size()), n_queues_(n_queues) {
   // Entries that were taken must not move: the device may still be reading them.
   for (auto& tiles : taken_) tiles.reserve(curve.size());
   if (division == Division::bag) {
@@ -42,9 +42,11 @@ std::span<const layout::u32> Tiles::take(std::size_t queue, const Wanted& wanted
   const std::lock_guard lock(mutex_);
   std::vector<layout::u32>& taken = taken_[queue];
   const std::size_t first = taken.size();
-  if (!shares_[queue].empty()) {
-    append(taken, shares_[queue]);
-    shares_[queue].clear();
+  if (std::vector<layout::u32>& share = shares_[queue]; !share.empty()) {
+    const std::size_t wanted_now = wanted.most - std::min(wanted.most, wanted.ahead);
+    const std::size_t n = by_the_piece_ ? std::min(share.size(), wanted_now) : share.size();
+    append(taken, std::span(share).first(n));
+    share.erase(share.begin(), share.begin() + static_cast<std::ptrdiff_t>(n));
   } else {
     const std::size_t rest = bag_.size() - next_;
     const std::size_t part = std::max(rest / (kPartsPerQueue * n_queues_), wanted.least);
@@ -78,6 +80,19 @@ bool Tiles::wait(std::size_t queue) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return left_ || n_undone_ == 0 || has_some(queue); });
   return !left_ && n_undone_ > 0;
+}
+
+void Tiles::close() {
+  const std::lock_guard lock(mutex_);
+  const std::size_t before = left_over_.size();
+  for (std::vector<layout::u32>& share : shares_) {
+    append(left_over_, share);
+    share.clear();
+  }
+  append(left_over_, std::span(bag_).subspan(next_));
+  next_ = bag_.size();
+  n_undone_ -= left_over_.size() - before;
+  changed_.notify_all();
 }
 
 void Tiles::leave() {

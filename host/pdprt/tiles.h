@@ -25,10 +25,12 @@ struct Wanted {
 
 class Tiles {
  public:
-  // `curve`: entries in the order of the curve.
-  Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues);
+  // `curve`: entries in the order of the curve. `by_the_piece`: shares are taken as the bag is, so that
+  // close() finds something left of them.
+  Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues, bool by_the_piece = false);
 
-  // The next entries for the queue: its share as a whole; else from the bag, up to what is wanted. Perhaps
+  // The next entries for the queue: its share, as a whole or up to what is wanted; else from the bag, up to
+  // what is wanted. Perhaps
   // none. The span is valid until the queue's next done() or give_back().
   std::span<const layout::u32> take(std::size_t queue, const Wanted& wanted);
 
@@ -45,6 +47,11 @@ class Tiles {
   // called.
   bool wait(std::size_t queue);
 
+  // What nobody has taken yet is not for this time: queues end when what they have is in the picture.
+  void close();
+  // What close() has found.
+  const std::vector<layout::u32>& left_over() const { return left_over_; }
+
   void leave();
   bool left() const;
 
@@ -54,7 +61,8 @@ class Tiles {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::vector<layout::u32>> shares_, taken_;  // per queue
-  std::vector<layout::u32> bag_;
+  std::vector<layout::u32> bag_, left_over_;
+  bool by_the_piece_;
   std::size_t next_ = 0;  // of the bag
   std::size_t n_undone_, n_queues_;
   bool left_ = false;

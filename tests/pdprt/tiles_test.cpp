@@ -122,6 +122,31 @@ TEST(Tiles, LeavingWakesWhoWaits) {
   EXPECT_TRUE(tiles.left());
 }
 
+// What was taken when the tiles are closed is done, the rest is told, and nothing is both, however often they are
+// closed and whoever fails.
+TEST(Tiles, ClosingLeavesWhatNobodyHasTaken) {
+  constexpr std::size_t kTiles = 1000, kQueues = 4;
+  for (const Division division : kDivisions) {
+    for (const std::size_t before : {0u, 3u, 300u}) {
+      Tiles tiles(numbered(kTiles), division, kQueues, true);
+      std::vector<int> times(kTiles);
+      for (std::size_t i = 0; i < before; ++i) tiles.take(i % kQueues, {.most = 2});
+      tiles.close();
+      tiles.give_back(0);
+      tiles.close();
+      for (std::size_t q = 1; q < kQueues; ++q) {
+        while (!tiles.take(q, {.most = 5}).empty()) continue;
+        for (const layout::u32 tile : tiles.taken(q)) ++times[tile];
+        tiles.done(q);
+      }
+      EXPECT_FALSE(tiles.wait(1));
+      for (const layout::u32 tile : tiles.left_over()) ++times[tile];
+      EXPECT_TRUE(std::all_of(times.begin(), times.end(), [](int n) { return n == 1; }));
+      EXPECT_FALSE(tiles.left_over().empty());
+    }
+  }
+}
+
 // Queues that fail at any time, all but one of them.
 TEST(Tiles, ManyThreadsAndFailures) {
   constexpr std::size_t kTiles = 20000, kQueues = 6;

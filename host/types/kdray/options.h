@@ -122,6 +122,19 @@ constexpr double kDefaultAdaptiveTarget = 0.0075;
 // 12.92, in the dark), since no smaller change shows in a PNG.
 constexpr double kDefaultMinWeight = 0.5 / 255 / 12.92;
 
+// Finished pieces of a picture, with their film's sums, in a folder: what a run that ends before its time
+// leaves for the next one, and what several processes make one picture by (docs/design/ledger.md).
+struct LedgerOptions {
+  std::filesystem::path folder = {};  // made if need be
+  // Goes on from what is there, which may be nothing; false: a ledger that is there is refused.
+  bool resume = false;
+  // Other processes may be at the same picture, on this machine or others that see the folder; implies
+  // resume.
+  bool share = false;
+  double every_seconds = 10;  // what is finished is written so often, and at the end
+  double lease_seconds = 5;   // a process that isn't heard of for so long has lost what it had in work
+};
+
 struct RenderOptions {
   int width = 0, height = 0;  // 0: what the scene asks for, or 1024x1024
   int depth = 0;              // 0: what the scene asks for, or 5; the eye ray is depth 1
@@ -144,6 +157,7 @@ struct RenderOptions {
   std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1
   std::optional<Camera> camera = {};          // in place of the scene's
   std::optional<Cancel> cancel = {};
+  std::optional<LedgerOptions> ledger = {};
 };
 
 }  // namespace kdray

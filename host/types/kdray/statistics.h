@@ -111,6 +111,15 @@ struct Statistics {
     std::optional<Adaptive> adaptive;  // none: all pixels have the same number
   };
 
+  // Of a frame with a ledger: tiles, and runs of samples where sampling is adaptive. The frame's rays, its
+  // times and what is told of queues are of those that were rendered by this process.
+  struct Ledger {
+    std::string folder;
+    std::uint64_t pieces = 0, found = 0, rendered = 0;  // found: when their round began
+    std::uint64_t damaged = 0, bytes_read = 0, bytes_written = 0;
+    double seconds = 0;  // of reading, writing and waiting for other processes
+  };
+
   // What a queue of ODPRT did beside tracing.
   struct Travel {
     std::uint64_t parts = 0, subtrees = 0, part_loads = 0, launches = 0;
@@ -175,6 +184,7 @@ struct Statistics {
   Mode mode;
   std::optional<Frame> frame;
   std::optional<Samples> samples;
+  std::optional<Ledger> ledger;
 };
 
 }  // namespace kdray

@@ -1,0 +1,12 @@
+// What    Opens the ledger of a frame: what tells it from others, and the tiles that it has.
+#pragma once
+
+#include "api/job.h"
+#include "api/state.h"
+
+namespace kdray::api {
+
+// For a job whose options ask for one. Puts the ledger's tiles into the job's options.
+void open_ledger(State& state, Job& job);
+
+}  // namespace kdray::api

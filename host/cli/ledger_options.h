@@ -1,0 +1,35 @@
+// What    The options of render on ledgers and on sequences: --checkpoint --resume --checkpoint-every --share
+//         --lease --restarts, --frames --camera-path.
+// Errors  kdray::Error, ErrorCode::usage: options that don't go together.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "kdray/options.h"
+
+namespace kdray::cli {
+
+struct FrameRange {
+  int first = 0, last = 0;
+};
+
+struct LedgerChoice {
+  std::string checkpoint, share;  // the folder; both empty: no ledger
+  bool resume = false;
+  std::optional<double> every_seconds = {}, lease_seconds = {};
+  int restarts = 0;
+  std::optional<FrameRange> frames = {};
+  std::string camera_path;  // empty: none
+
+  void check() const;
+  const std::string& folder() const { return share.empty() ? checkpoint : share; }
+  // Of a frame whose ledger is in this folder, or in the one that was named.
+  std::optional<LedgerOptions> options(const std::filesystem::path& in = {}) const;
+};
+
+void add_ledger_options(CLI::App& app, LedgerChoice& choice);
+
+}  // namespace kdray::cli

@@ -1,0 +1,35 @@
+// What    A kdray that runs beside the test, which may kill it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace kdray::test {
+
+class Running {
+ public:
+  // Its stderr goes to this file, behind what is there.
+  Running(const std::vector<std::string>& arguments, const std::string& log);
+  ~Running();  // kills it, if need be
+  Running(Running&& other) noexcept;
+  Running& operator=(Running&&) = delete;
+
+  void kill(int signal) const;
+  bool has_ended();
+  // False: it hadn't ended by then.
+  bool wait(double seconds);
+
+  int code() const { return code_; }      // -1: none
+  int signal() const { return signal_; }  // 0: none
+  pid_t process() const { return process_; }
+  std::vector<pid_t> children() const;
+
+ private:
+  pid_t process_;
+  bool ended_ = false;
+  int code_ = -1, signal_ = 0;
+};
+
+}  // namespace kdray::test
