@@ -136,7 +136,7 @@ void Frame::wait(Tiles& tiles) {
   using namespace std::chrono_literals;
   std::unique_lock lock(mutex_);
   while (n_running_ > 0) {
-    changed_.wait_for(lock, 100ms);
+    changed_.wait_for(lock, 10ms);
     if (!task_.progress) continue;
     lock.unlock();
     try {
