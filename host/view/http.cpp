@@ -20,7 +20,8 @@ std::string_view type_of(std::string_view path) {
 // to 'self', so they are named; Host has been checked.
 std::string policy(const Request& request, const Door& door) {
   return fmt::format(
-      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' "
+      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
+      "'self' "
       "ws://{0} wss://{0}; base-uri 'none'; form-action 'none'; frame-ancestors {1}",
       request.host, door.framed ? "*" : "'none'");
 }
@@ -41,9 +42,13 @@ Response file(const Request& request, const Door& door) {
 Response session(const Request& request, const Door& door) {
   if (!request.origin.empty() && !door.names.allow_origin(request.origin, request.host))
     return refuse(403, "this is for the page itself\n");
-  if (!door.token.is(request.body)) return refuse(403, "wrong token: open the address that kdray view has printed\n");
-  return {204, {}, {}, {{"Set-Cookie", fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", door.cookie,
-                                                   door.token.text())}}};
+  if (!door.token.is(request.body))
+    return refuse(403, "wrong token: open the address that kdray view has printed\n");
+  return {204,
+          {},
+          {},
+          {{"Set-Cookie",
+            fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", door.cookie, door.token.text())}}};
 }
 
 }  // namespace
