@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "prepare/prepared.h"
 #include "scene/scene.h"
 
 namespace kdray::view {

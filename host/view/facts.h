@@ -25,7 +25,7 @@ struct FrameFacts {
   const char* kind = "moving";  // "moving", "rough", "full" (as the PNG that is to follow), "final" (the PNG)
   const char* type = "image/jpeg";
   double encode_seconds = 0, wall_seconds = 0;
-  std::string command;  // of the final picture
+  std::string command = {};  // of the final picture
   const Statistics* statistics = nullptr;
 };
 std::string tell_frame(const FrameFacts& facts);

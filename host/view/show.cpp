@@ -36,6 +36,7 @@ Show::Show(std::vector<Source> sources, Settings settings, Opened first)
   // Compilers may nest; the page hears of the first and of the last.
   settings_.device.building = [this](bool begins) {
     const int before = compilers_.fetch_add(begins ? 1 : -1);
+    if (!begins) compiled_ = true;
     if (before != (begins ? 0 : 1)) return;
     const std::lock_guard lock(mutex_);
     tell_all(tell_busy(begins ? "compiling for what this scene needs" : ""));
@@ -313,6 +314,7 @@ void Show::pack(const Task& task, std::shared_ptr<const Picture> picture) {
     } catch (...) {
       fail(task, words_of(std::current_exception()));
     }
+    if (compiled_.exchange(false)) keep_programs(settings_.device);
   });
 }
 

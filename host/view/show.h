@@ -86,6 +86,7 @@ class Show : public Reception {
   const std::vector<Source> sources_;
   Settings settings_;
   std::atomic<int> compilers_{0};
+  std::atomic<bool> compiled_{false};  // something that is not kept yet
 
   std::mutex mutex_;  // of all below
   std::condition_variable changed_;

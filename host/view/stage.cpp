@@ -2,13 +2,14 @@
 
 #include <numbers>
 
+#include "prepare/prepared.h"
 #include "scene/scene.h"
 
 namespace kdray::view {
 
 namespace {
 
-Vec3 values_of(const dvec3& v) {
+Vec3 triple_of(const dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
@@ -26,9 +27,9 @@ std::vector<std::filesystem::path> Stage::files() const {
 Camera Stage::camera(int width, int height) const {
   const PreparedScene seen = scene().seen(settings_.view, width, height);
   const scene::Camera camera = seen.settings().camera.value_or(scene::Camera{});
-  return {.from = values_of(camera.from),
-          .at = values_of(camera.at),
-          .up = values_of(camera.up),
+  return {.from = triple_of(camera.from),
+          .at = triple_of(camera.at),
+          .up = triple_of(camera.up),
           .fov = camera.vertical_fov * 180 / std::numbers::pi,
           .ortho_width = camera.ortho_width};
 }
