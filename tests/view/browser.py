@@ -29,7 +29,7 @@ class Browser:
         self.inp, from_browser = os.pipe()
         arguments = [
             self.find(), "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--mute-audio",
-            "--disable-dev-shm-usage", "--disable-extensions", "--disable-background-networking",
+            "--disable-dev-shm-usage", "--disable-renderer-backgrounding", "--disable-backgrounding-occluded-windows", "--disable-extensions", "--disable-background-networking",
             "--hide-scrollbars", f"--window-size={width},{height}", f"--user-data-dir={self.folder}",
             "--remote-debugging-pipe", "about:blank",
         ]  # fmt: skip
@@ -164,7 +164,7 @@ class Browser:
 
     def key(self, code, text, hold=0.0):
         for kind in ("keyDown", "keyUp"):
-            self.call("Input.dispatchKeyEvent", type=kind, code=code, key=text, text=text if kind == "keyDown" else "")
+            self.call("Input.dispatchKeyEvent", type=kind, code=code, key=text, text=text if kind == "keyDown" and len(text) == 1 else "")
             if kind == "keyDown" and hold:
                 time.sleep(hold)
 

@@ -55,7 +55,7 @@ class Viewer:
         self.process.communicate()
 
 
-def rest(browser, limit=90):
+def rest(browser, limit=20):
     """Waits for the final picture; the command that renders it."""
     time.sleep(0.1)
     browser.wait("kdray.state.final && !kdray.state.changed && !kdray.state.moving", limit)
@@ -290,6 +290,7 @@ def main():
                     assert not b.faults(), b.faults()
                 except BaseException:
                     b.screenshot(os.environ.get("KDRAY_SHOT", os.devnull))
+                    print(b.ask("(({scene, png, ...s}) => JSON.stringify(s))(kdray.state)"), "link", b.ask("kdray.view.link?.open"))
                     print(b.faults(), b.ask("document.getElementById('problem').textContent"))
                     raise
         finally:

@@ -111,8 +111,11 @@ function askScene(number) {
 }
 
 async function takeFrame(frame, picture) {
-  await screen.show(frame, picture);
-  link.send({type: 'shown', frame: frame.frame});
+  try {
+    await screen.show(frame, picture);
+  } finally {
+    link.send({type: 'shown', frame: frame.frame});
+  }
   state.frames += 1;
   const hand = state.sent.get(frame.look);
   let latency = 0;
