@@ -41,6 +41,10 @@ bool Client::send(std::string_view bytes) {
   return true;
 }
 
+bool Client::upgrade(const Head& head) {
+  return send(test::upgrade(head)) && read_until("\r\n\r\n").starts_with("HTTP/1.1 101");
+}
+
 bool Client::wait(double seconds) const {
   pollfd polled{socket_, POLLIN, 0};
   return ::poll(&polled, 1, static_cast<int>(seconds * 1000)) > 0;

@@ -22,6 +22,8 @@ class Client {
   // Until `text` has come, too; what came.
   std::string read_until(std::string_view text, double seconds = 5);
   bool is_closed(double seconds);  // within that time
+  // Asks for a WebSocket, and waits for the answer.
+  bool upgrade(const struct Head& head);
 
  private:
   bool wait(double seconds) const;

@@ -108,7 +108,8 @@ TEST_F(Hostile, FuzzedWebSockets) {
   const std::string hello = ws_frame(R"({"type":"hello","token":")" + token() + "\"}");
   for (int i = 0; i < n_messages() / 2;) {
     Client client(port());
-    client.send(upgrade(page()) + (mangler.below(4) == 0 ? mangler.mangled(hello) : hello));
+    client.upgrade(page());
+    client.send((mangler.below(4) == 0 ? mangler.mangled(hello) : hello));
     // Until it is thrown out.
     for (bool there = true; there && i < n_messages() / 2; ++i) {
       const std::string text = mangler.mangled(kLook);
@@ -206,7 +207,8 @@ TEST_F(Hostile, PagesHaveALimit) {
   std::vector<std::unique_ptr<Client>> pages;
   for (std::size_t i = 0; i < limits().pages; ++i) pages.push_back(enter());
   Client more(port());
-  more.send(upgrade(page()) + ws_frame(R"({"type":"hello","token":")" + token() + "\"}"));
+  more.upgrade(page());
+  more.send(ws_frame(R"({"type":"hello","token":")" + token() + "\"}"));
   EXPECT_TRUE(more.is_closed(3));
   EXPECT_EQ(counter.n_there(), limits().pages);
   pages.pop_back();

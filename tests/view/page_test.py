@@ -154,7 +154,8 @@ def picks(b):
     assert math.isclose(along, float(told["distance"]), rel_tol=1e-3), "it lies in the middle"
     assert "material" in told and "geometry" in told, told
     print(f"ok  pick: {b.ask('document.querySelector(`#picked h2`).textContent')}, {told}")
-    x, y = WIDTH * 0.5, HEIGHT * 0.62
+    b.key("Escape", "Escape")
+    x, y = WIDTH * 0.5, HEIGHT * 0.4
     b.click(x, y, times=2)
     b.wait(f"kdray.state.camera.at.some((v, k) => v !== {c['at']}[k])")
     rest(b)

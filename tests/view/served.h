@@ -67,7 +67,8 @@ struct Served : testing::Test {
   // A page that is in.
   std::unique_ptr<Client> enter() {
     auto client = std::make_unique<Client>(port());
-    client->send(upgrade(page()) + ws_frame(R"({"type":"hello","token":")" + token() + "\"}"));
+    client->upgrade(page());
+    client->send(ws_frame(R"({"type":"hello","token":")" + token() + "\"}"));
     EXPECT_NE(client->read_until("welcome").find("welcome"), std::string::npos);
     return client;
   }

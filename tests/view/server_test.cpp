@@ -63,7 +63,8 @@ TEST_F(Served, TheTokenIsExchangedForACookie) {
   Head head = page();
   head.cookie = answer.substr(begin, answer.find(';', begin) - begin);
   Client with_cookie(port());
-  with_cookie.send(upgrade(head) + ws_frame(R"({"type":"hello","token":""})"));
+  with_cookie.upgrade(head);
+  with_cookie.send(ws_frame(R"({"type":"hello","token":""})"));
   EXPECT_NE(with_cookie.read_until("welcome").find("welcome"), std::string::npos);
 }
 
@@ -73,7 +74,8 @@ TEST_F(Served, WithoutTheTokenNobodyIsHeard) {
         std::string(R"({"type":"hello","token":"0123456789abcdef0123456789abcdef"})"), kLook,
         std::string("x"), std::string()}) {
     Client client(port());
-    client.send(upgrade(page()) + ws_frame(first) + ws_frame(kLook));
+    client.upgrade(page());
+    client.send(ws_frame(first) + ws_frame(kLook));
     EXPECT_TRUE(client.is_closed(3)) << first;
   }
   EXPECT_EQ(counter.entered, 0);
