@@ -28,7 +28,7 @@ struct Hostile : Served {
   static view::Limits limits() {
     view::Limits limits;
     limits.request = 1s;
-    limits.silence = 2s;
+    limits.silence = 6s;
     return limits;
   }
   Hostile() : Served(limits()) {}
@@ -220,7 +220,7 @@ TEST_F(Hostile, PagesHaveALimit) {
 TEST_F(Hostile, APageThatDoesntAnswerPingsIsLeft) {
   const auto silent = enter();
   EXPECT_EQ(counter.n_there(), 1u);
-  for (int i = 0; i < 500 && counter.n_there() > 0; ++i) std::this_thread::sleep_for(10ms);
+  for (int i = 0; i < 1000 && counter.n_there() > 0; ++i) std::this_thread::sleep_for(10ms);
   EXPECT_EQ(counter.n_there(), 0u);
 }
 

@@ -179,7 +179,7 @@ def channels(b, folder):
         choose(b, name, value)
         check_picture(b, folder, f"{name} {value}")
     for name, value in (("mode", "auto"), ("queues", "0"), ("traversal", "auto"), ("headlight", "0"),
-                        ("samples", "adaptive")):  # fmt: skip
+                        ("depth", "5"), ("samples", "adaptive")):  # fmt: skip
         choose(b, name, value)
     rest(b)
     choose(b, "cells", "8")

@@ -73,8 +73,8 @@ struct Served : testing::Test {
     return client;
   }
 
-  Counter counter;
   view::Server server;
+  Counter counter;  // goes first: it holds visitors
   std::thread thread;
 };
 

@@ -76,7 +76,7 @@ TEST_F(Served, WithoutTheTokenNobodyIsHeard) {
     Client client(port());
     client.upgrade(page());
     client.send(ws_frame(first) + ws_frame(kLook));
-    EXPECT_TRUE(client.is_closed(3)) << first;
+    EXPECT_TRUE(client.is_closed(12)) << first;  // it waits for a farewell
   }
   EXPECT_EQ(counter.entered, 0);
   EXPECT_EQ(counter.heard, 0);
