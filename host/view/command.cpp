@@ -12,7 +12,7 @@ namespace kdray::view {
 
 namespace {
 
-// As a shell takes it.
+// A shell takes it as it is.
 std::string quoted(const std::string& text) {
   const auto is_plain = [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string("/._-+,:@%=").find(char(c)) < 99;

@@ -36,7 +36,7 @@ struct Settings {
 };
 
 View view_of(const Sight& sight, const Settings& settings);
-// Of the finished picture.
+// What the finished picture is made with.
 RenderOptions render_of(const Sight& sight, const Settings& settings);
 int queues_of(const Sight& sight, const Settings& settings);
 

@@ -114,7 +114,7 @@ void Socket::hello(std::string_view text) {
   house_.reception->enter(shared_from_this());
 }
 
-// From any thread.
+// May be called from any thread.
 void Socket::post(Sent sent) {
   asio::post(socket_.get_executor(), [weak = weak_from_this(), sent = std::move(sent)]() mutable {
     if (const auto self = weak.lock()) self->queue(std::move(sent));

@@ -110,7 +110,7 @@ TEST_F(Hostile, FuzzedWebSockets) {
     Client client(port());
     client.upgrade(page());
     client.send((mangler.below(4) == 0 ? mangler.mangled(hello) : hello));
-    // Until it is thrown out.
+    // It goes on until it is thrown out.
     for (bool there = true; there && i < n_messages() / 2; ++i) {
       const std::string text = mangler.mangled(kLook);
       switch (mangler.below(5)) {
