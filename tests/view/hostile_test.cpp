@@ -1,6 +1,7 @@
 // What    Clients that mean harm, or are broken: whatever they do, a page that behaves goes on being heard, and memory
 //         stays bounded.
-// Shape   The random tests print their seed; KDRAY_FUZZ says how many messages there are to be (100000 were run).
+// Shape   The random tests print their seed; KDRAY_FUZZ says how many messages there are to be: 100000 were
+//         run.
 #include <fstream>
 #include <random>
 
@@ -154,7 +155,7 @@ TEST_F(Hostile, WhatIsTooLargeIsNotTaken) {
   EXPECT_TRUE(text->is_closed(3));
   // Of 2^63 bytes, as it says.
   const auto huge = enter();
-  huge->send(std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xff", 10));
+  huge->send(std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xffmask", 14));
   EXPECT_TRUE(huge->is_closed(3));
   // Never the last of its fragments.
   const auto pieces = enter();

@@ -1,4 +1,5 @@
-// What    A server of the page with nobody behind it who renders: it counts who comes, what they say, and who goes.
+// What    A server of the page with nobody behind it who renders: it counts who comes, what they say, and who
+//         goes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -79,7 +80,8 @@ struct Served : testing::Test {
 };
 
 inline const std::string kLook =
-    R"({"type":"look","number":1,"moving":true,"sight":{"scene":0,"camera":{"from":[1,2,3],"at":[0,0,0],"up":[0,1,0],)"
+    R"({"type":"look","number":1,"moving":true,"sight":{"scene":0,"camera":{"from":[1,2,3],"at":[0,0,0],)"
+    R"("up":[0,1,0],)"
     R"("fov":40,"ortho":0},"width":64,"height":48,"depth":5,"samples":"adaptive","weight":-1,"headlight":0,)"
     R"("channel":"","mode":"auto","traversal":"auto","queues":0}})";
 
