@@ -20,6 +20,14 @@ find_package(embree 4 QUIET)            # libembree-dev, optional: what `kdray b
 if(NOT embree_FOUND)
   find_package(embree 3 QUIET)
 endif()
+# `kdray view`, optional: libboost-dev (Beast and Asio, headers alone) and libturbojpeg0-dev. The command says what is missing.
+find_package(Boost 1.74 QUIET)
+pkg_check_modules(turbojpeg QUIET IMPORTED_TARGET libturbojpeg)
+if(Boost_FOUND AND turbojpeg_FOUND)
+  set(KDRAY_CAN_VIEW ON)
+else()
+  set(KDRAY_CAN_VIEW OFF)
+endif()
 if(KDRAY_TESTS)
   find_package(GTest REQUIRED)         # libgtest-dev, libgmock-dev
   pkg_check_modules(gmpxx REQUIRED IMPORTED_TARGET gmpxx)  # libgmp-dev: the stress suite's exact arithmetic

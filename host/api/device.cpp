@@ -46,6 +46,10 @@ const wavefront::SceneBuffers& Device::buffers() {
   return *buffers_;
 }
 
+void Device::light_anew() {
+  if (buffers_) buffers_->upload_lights(context, scene_.flat);
+}
+
 void Device::use(const Tuned& settings) {
   tuned = settings;
   programs.use(tuned.settings);

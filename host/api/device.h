@@ -35,6 +35,9 @@ class Device {
   // Uploads the scene at the first call.
   const wavefront::SceneBuffers& buffers();
 
+  // Uploads the lights of the scene, which have changed.
+  void light_anew();
+
   void use(const Tuned& settings);
 
   std::uint32_t units_of_a_queue() const;

@@ -25,7 +25,8 @@ scene::View view_of(const View& view) {
                 .at = vector_of(view.at),
                 .up = vector_of(view.up),
                 .vertical_fov = {},
-                .ortho_width = view.ortho_width};
+                .ortho_width = view.ortho_width,
+                .headlight = view.headlight};
   if (view.fov) v.vertical_fov = glm::radians(*view.fov);
   return v;
 }

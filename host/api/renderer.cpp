@@ -62,6 +62,7 @@ struct Renderer::Impl {
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
                          Precision precision);
   void tune(const Tuning& tuning);
+  void look(const prepare::Prepared& seen);
 
   api::State state;
   Statistics statistics;
@@ -72,6 +73,15 @@ void Renderer::Impl::tune(const Tuning& tuning) {
   state.devices.tune(tuning);
   state.scheduler.forget();
   statistics.tuning = api::tuning_told(state.devices.first().tuned);
+}
+
+// The trees and primitives of `seen` are this scene's own.
+void Renderer::Impl::look(const prepare::Prepared& seen) {
+  state.scene.settings = seen.settings;
+  state.scene.features = seen.features;
+  state.scene.flat.lights = seen.flat.lights;
+  for (api::Device& device : state.devices) device.light_anew();
+  if (state.divided) state.divided->light(seen.flat.lights);
 }
 
 Picture Renderer::Impl::render(const RenderOptions& options) {
@@ -138,6 +148,9 @@ Picture Renderer::render(const RenderOptions& options) {
 std::vector<Hit> Renderer::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal,
                                  Precision precision) {
   return impl_->trace(rays, any_hit, repeat, traversal, precision);
+}
+void Renderer::look(const PreparedScene& seen) {
+  impl_->look(seen.prepared());
 }
 void Renderer::tune(const Tuning& tuning) {
   impl_->tune(tuning);

@@ -24,5 +24,6 @@ Command add_compare(CLI::App& kdray);
 Command add_verify(CLI::App& kdray);
 Command add_tune(CLI::App& kdray);
 Command add_warm_up(CLI::App& kdray);
+Command add_view(CLI::App& kdray);
 
 }  // namespace kdray::cli

@@ -34,8 +34,8 @@ int run_kdray(int argc, char** argv) {
   CLI::App app;
   prepare(app);
   const std::vector<Command> commands = {
-      add_render(app),  add_trace(app),  add_info(app), add_devices(app), add_doctor(app), add_generate(app),
-      add_compare(app), add_verify(app), add_tune(app), add_warm_up(app), add_bench(app)};
+      add_render(app),   add_view(app),    add_trace(app),  add_info(app), add_devices(app), add_doctor(app),
+      add_generate(app), add_compare(app), add_verify(app), add_tune(app), add_warm_up(app), add_bench(app)};
   check_command_name(argc, argv, commands);
   return parse_and_run(app, {argv, argv + argc}, commands);
 }

@@ -22,6 +22,8 @@ struct SceneInput {
 // SCENE, --scene-format and --smooth
 void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help);
 
+void add_smooth(CLI::App& app, LoadOptions& load);
+
 // Before anything else is done with it.
 void check_scene_input(const SceneInput& input);
 

@@ -88,6 +88,10 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
       })
       ->expected(0, 1)
       ->excludes(fov);
+  add("--headlight", "S", "One more light at the camera, of strength S (as in 0.5)",
+      [&view](const std::string& name, const std::string& text) {
+        view.headlight = parse_real(name, text, 0, 1000);
+      });
   add("--background", "COLOR", "R,G,B (linear), #rrggbb, or transparent: the picture gets alpha",
       [&options](const std::string& name, const std::string& text) {
         if (text == "transparent")

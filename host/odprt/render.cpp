@@ -44,6 +44,12 @@ DividedScene::DividedScene(flatten::FlatScene flat, flatten::WideForm wide)
   flat_.refs = {};
 }
 
+void DividedScene::light(const Array<layout::Light>& lights) {
+  flat_.lights = lights;
+  if (!division_) return;
+  for (Part& part : division_->parts) part.flat.lights = lights;
+}
+
 void DividedScene::cut_for(std::uint32_t n_parts) {
   const std::size_t n = subtrees_for(n_parts);
   if (n <= n_asked_) return;

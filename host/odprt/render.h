@@ -90,6 +90,9 @@ class DividedScene {
 
   Result render(const Request& request);
 
+  // From the next frame on.
+  void light(const Array<layout::Light>& lights);
+
   const Cut& cut() const { return cut_; }
   std::size_t geometry_bytes() const { return odprt::geometry_bytes(flat_, wide_); }
 

@@ -153,7 +153,7 @@ void Frame::tell_progress() const {
 // Reports progress from the calling thread until every queue's thread has ended, and closes the tiles when
 // the time is over.
 void Frame::wait(Tiles& tiles, double seconds) {
-  constexpr double kStep = 0.1;
+  constexpr double kStep = 0.01;
   const Timer timer;
   std::unique_lock lock(mutex_);
   while (n_running_ > 0) {

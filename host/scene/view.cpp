@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "math/local_space.h"
 #include "scene/check_scene.h"
 #include "scene/frame.h"
 
@@ -26,6 +27,16 @@ const Camera& numbered_camera(const Scene& scene, int number) {
 double width_of(const DBox& box, const Camera& camera, double aspect) {
   const double width = width_to_show(box, camera, aspect);
   return width > 0 ? width : 1;
+}
+
+// Where rays are parallel, so is its light.
+Light headlight(const Camera& camera, double strength) {
+  Light light;
+  light.kind = camera.ortho_width > 0 ? LightKind::directional : LightKind::point;
+  light.position = camera.from;
+  light.direction = safe_normalize(camera.at - camera.from);
+  light.color = vec3(static_cast<float>(strength));
+  return light;
 }
 
 void check(const Camera& camera) {
@@ -54,9 +65,11 @@ Camera camera_of(const Scene& scene, const View& view, double aspect) {
 
 void set_view(Scene& scene, const View& view, double aspect) {
   scene.camera = camera_of(scene, view, aspect);
-  if (!scene.framing.lights) return;
-  scene.lights.clear();
-  add_lights(scene);
+  if (scene.framing.lights) {
+    scene.lights.clear();
+    add_lights(scene);
+  }
+  if (view.headlight > 0) scene.lights.push_back(headlight(*scene.camera, view.headlight));
 }
 
 }  // namespace kdray::scene

@@ -16,12 +16,13 @@ struct View {
   std::optional<dvec3> from = {}, at = {}, up = {};
   std::optional<double> vertical_fov = {};
   std::optional<double> ortho_width = {};  // parallel eye rays; 0: as wide as the scene needs
+  double headlight = 0;                    // above 0: one more light, of this strength, at the camera
 };
 
 // The camera that it asks for. `aspect`: width by height of the picture that is going to be made.
 Camera camera_of(const Scene& scene, const View& view, double aspect);
 
-// Puts it into the scene, with lights for it where they were made up.
+// Puts it into the scene, with lights for it where they were made up, and the headlight.
 void set_view(Scene& scene, const View& view, double aspect);
 
 }  // namespace kdray::scene

@@ -61,6 +61,10 @@ SceneBuffers::SceneBuffers(const device::Context& context, const flatten::FlatSc
     *buffers[i] = context.upload(pieces[i].data, pieces[i].bytes, pieces[i].owner, kNames[i]);
 }
 
+void SceneBuffers::upload_lights(const device::Context& context, const flatten::FlatScene& flat) {
+  lights = context.upload(flat.lights.data(), flat.lights.bytes(), flat.lights.owner(), kNames[Slot::lights]);
+}
+
 SceneBuffers::SceneBuffers(const device::Context& context, const Sizes& sizes) {
   const auto buffers = all();
   for (std::size_t i = 0; i < Slot::kArrays; ++i)

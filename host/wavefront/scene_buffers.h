@@ -35,6 +35,9 @@ struct SceneBuffers {
   // Copies a scene that there is room for, and waits for it.
   void copy(cl::CommandQueue& queue, const flatten::FlatScene& flat, const flatten::WideForm& wide);
 
+  // The scene's lights in place of others, of which there may have been more or fewer.
+  void upload_lights(const device::Context& context, const flatten::FlatScene& flat);
+
   // Sets those of a kernel's arguments that are arrays of the scene. Kernel: device::Kernel<K>, or a stage of
   // it.
   template <template <class> class Kernel, class K>

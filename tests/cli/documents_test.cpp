@@ -13,7 +13,7 @@ namespace kdray::test {
 namespace {
 
 const std::vector<std::string> kCommands = {
-    "render",      "trace",       "info",        "devices",        "doctor",        "generate",
+    "render",      "view",        "trace",       "info",        "devices",        "doctor",        "generate",
     "compare",     "verify",      "tune",        "warm-up",        "bench rays",    "bench frames",
     "bench build", "bench depth", "bench modes", "bench accuracy", "bench ablation"};
 

@@ -38,6 +38,7 @@ struct View {
   // An orthographic camera: the picture's width in the scene's units; 0: as wide as the scene needs.
   std::optional<double> ortho_width = {};
   std::optional<std::array<float, 3>> background = {};  // linear RGB
+  double headlight = 0;  // above 0: one more light, of this strength, at the camera
 };
 
 // A scene ready to be traced: its tree built, all in the form that a device uses. It keeps nothing of the
@@ -122,6 +123,10 @@ class Renderer {
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit = false, int repeat = 1,
                          Traversal traversal = Traversal::automatic,
                          Precision precision = Precision::float32);
+
+  // The scene as it is seen otherwise, from the next frame on: what seen() made of the scene that this Renderer
+  // was made of. Takes no time, and the tree, the devices and what frames have told of costs are kept.
+  void look(const PreparedScene& seen);
 
   // From the next call on, in place of what was found in DeviceOptions::tunings. Forgets what former frames
   // told of tiles.

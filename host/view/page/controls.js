@@ -1,0 +1,73 @@
+// What    The panel: what is looked at, and how it is rendered; and the card of what was clicked.
+
+const weightOf = (step) => step === 0 ? -1 : 10 ** (-6 + (step - 1) * 6 / 40);
+const small = new Intl.NumberFormat('en', {maximumSignificantDigits: 2, notation: 'standard'});
+const six = (x) => String(Number(x.toPrecision(7)));
+
+export class Controls {
+  constructor(byId, changed) {
+    this.byId = byId;
+    for (const id of ['channel', 'samples', 'mode', 'traversal', 'queues', 'depth', 'weight', 'headlight'])
+      byId(id).addEventListener('input', () => {
+        this.tell();
+        changed(id);
+      });
+    for (const n of [0, 1, 2, 3, 4, 6, 8, 16]) byId('queues').add(new Option(n ? String(n) : 'as given', String(n)));
+  }
+
+  // What the scene, or the command line, has.
+  begin(scene) {
+    this.byId('depth').value = scene.depth;
+    this.byId('samples').value = String(scene.samples);
+    if (this.byId('samples').selectedIndex < 0) this.byId('samples').value = '0';
+    this.byId('headlight').value = Math.round(scene.headlight * 10);
+    this.tell();
+  }
+
+  tell() {
+    const {weight, headlight, depth} = this.values();
+    this.byId('depth-out').value = depth;
+    this.byId('weight-out').value = weight < 0 ? 'as given' : small.format(weight);
+    this.byId('headlight-out').value = headlight > 0 ? String(headlight) : 'off';
+  }
+
+  values() {
+    const text = (id) => this.byId(id).value;
+    return {
+      channel: text('channel'), mode: text('mode'), traversal: text('traversal'),
+      queues: Number(text('queues')), depth: Number(text('depth')),
+      samples: text('samples') === 'adaptive' ? 'adaptive' : Number(text('samples')),
+      weight: weightOf(Number(text('weight'))), headlight: Number(text('headlight')) / 10,
+    };
+  }
+}
+
+const srgb = (v) => Math.round(255 * (v <= 0.0031308 ? 12.92 * Math.max(0, v) : 1.055 * Math.min(1, v) ** (1 / 2.4) - 0.055));
+const color = (c) => `rgb(${c.map(srgb).join(', ')})`;
+const brightest = (c) => Math.max(...c);
+
+export function showPicked(card, picked) {
+  card.hidden = false;
+  card.querySelector('h2').textContent = picked.hit ? `${picked.kind} ${picked.primitive}` : 'nothing';
+  const list = card.querySelector('dl');
+  list.replaceChildren();
+  const row = (name, ...values) => {
+    const dt = document.createElement('dt'), dd = document.createElement('dd');
+    dt.textContent = name;
+    dd.append(...values);
+    list.append(dt, dd);
+  };
+  if (!picked.hit) return;
+  row('geometry', picked.name ? `${picked.geometry}, ${picked.name}` : String(picked.geometry));
+  row('distance', six(picked.distance));
+  row('point', picked.point.map(six).join(', '));
+  row('normal', picked.normal.map((x) => x.toFixed(4)).join(', '));
+  const m = picked.material;
+  if (!m) return;
+  const swatch = document.createElement('span');
+  swatch.className = 'swatch';
+  swatch.style.backgroundColor = color(m.diffuse);
+  row('material', swatch, String(m.number));
+  if (brightest(m.reflect) > 0) row('mirrors', `${small.format(100 * brightest(m.reflect))} %`);
+  if (brightest(m.transmit) > 0) row('lets through', `${small.format(100 * brightest(m.transmit))} %, index ${small.format(m.index)}`);
+}

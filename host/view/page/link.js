@@ -1,0 +1,49 @@
+// What    The connection to kdray: JSON texts both ways, and frames (four bytes with the length of a JSON text, the text,
+//         a picture). It is made again when it is lost.
+
+const FIRST_WAIT = 500, LONGEST_WAIT = 8000;  // milliseconds
+const NO_TOKEN = 4003;
+
+export class Link {
+  // hear(message, picture): what came; state(text): what is wrong, or nothing.
+  constructor(token, hear, state) {
+    this.token = token;
+    this.hear = hear;
+    this.state = state;
+    this.wait = FIRST_WAIT;
+    this.connect();
+  }
+
+  connect() {
+    const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
+    const socket = new WebSocket(`${scheme}//${location.host}/socket`);
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => this.send({type: 'hello', token: this.token});
+    socket.onmessage = (event) => this.take(event.data);
+    socket.onclose = (event) => this.closed(event);
+    this.socket = socket;
+  }
+
+  get open() { return this.socket.readyState === WebSocket.OPEN; }
+
+  send(message) {
+    if (this.open) this.socket.send(JSON.stringify(message));
+  }
+
+  take(data) {
+    this.wait = FIRST_WAIT;
+    this.state('');
+    if (typeof data === 'string') return this.hear(JSON.parse(data), null);
+    const n = new DataView(data).getUint32(0, true);
+    const head = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, n)));
+    this.hear(head, new Blob([new Uint8Array(data, 4 + n)], {type: head.mime}));
+  }
+
+  closed(event) {
+    if (event.code === NO_TOKEN)
+      return this.state('This page needs its token: open the address that kdray view has printed.');
+    this.state(event.reason || 'kdray is not there any more, or the network is not. Trying again …');
+    setTimeout(() => this.connect(), this.wait);
+    this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+  }
+}

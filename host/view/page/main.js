@@ -1,0 +1,250 @@
+// What    The page of kdray view: puts the parts together. A view is a camera and settings; whenever it changes kdray is
+//         told, at most once for each frame of the screen, and again when it has come to rest.
+import * as address from './address.js';
+import {drawCells} from './cells.js';
+import {Controls, showPicked} from './controls.js';
+import {Hands} from './hands.js';
+import {Link} from './link.js';
+import {Screen} from './screen.js';
+import {Strip} from './strip.js';
+
+const REST = 140;  // milliseconds without a change
+const byId = (id) => document.getElementById(id);
+
+const screen = new Screen(byId('picture'), byId('lines'), byId('stage'));
+const strip = new Strip(byId('figures'), byId('details'), byId('more'));
+const state = {
+  scene: null, camera: null, number: 0, pick: 0, wanted: address.scene(), changed: false, moving: false, changedAt: 0, picks: new Map(), boxes: [],
+  command: '', png: null, sent: new Map(), latencies: [], frames: 0, final: null, handAt: 0, error: '',
+};
+
+function show(id, text) {
+  byId(id).textContent = text;
+  byId(id).hidden = !text;
+}
+
+// ---- What is wanted
+
+function sight() {
+  const [width, height] = screen.size();
+  return {scene: state.scene.scene, camera: state.camera, width, height, ...controls.values()};
+}
+
+// `at`: when the hand moved, for the time from there to the eye.
+function change(camera, at = performance.now()) {
+  state.camera = camera;
+  state.changed = state.moving = true;
+  state.changedAt = performance.now();
+  if (!state.handAt) state.handAt = at;
+  byId('mark').hidden = true;
+  drawCells(screen.lines, state.boxes, state.camera, screen.aspect);
+}
+
+function ask(moving) {
+  state.number += 1;
+  if (moving) state.sent.set(state.number, state.handAt);
+  state.handAt = 0;
+  state.changed = false;
+  state.command = '';
+  state.png = state.final = null;
+  byId('copy').disabled = byId('save').disabled = true;
+  link.send({type: 'look', number: state.number, moving, sight: sight()});
+}
+
+// Settings have no way in between: the picture at rest is what is wanted.
+function settle() {
+  if (!state.scene) return;
+  state.moving = false;
+  ask(false);
+}
+
+let last = performance.now();
+function tick(now) {
+  hands.fly(Math.min(0.1, (now - last) / 1000));
+  last = now;
+  if (state.scene && link.open) {
+    if (state.changed) ask(true);
+    else if (state.moving && now - state.changedAt > REST) {
+      settle();
+      address.keep(state.camera, state.scene.scene);
+    }
+  }
+  requestAnimationFrame(tick);
+}
+
+// ---- What comes
+
+function takeScene(scene) {
+  const other = state.scene?.scene !== scene.scene, first = !state.scene;
+  // A connection begins with the first scene.
+  if (scene.scene !== state.wanted && state.wanted < scene.names.length) {
+    state.camera ??= scene.camera;
+    return askScene(state.wanted);
+  }
+  state.scene = scene;
+  state.wanted = scene.scene;
+  state.error = '';
+  show('problem', '');
+  screen.fixed = scene.size;
+  if (other) {
+    state.camera = (first && address.scene() === scene.scene ? address.camera() : null) ?? scene.camera;
+    controls.begin(scene);
+    for (const warning of scene.warnings) console.info('kdray: ' + warning);
+  }
+  document.title = `${scene.names[scene.scene]} – kdray view`;
+  byId('title').textContent = scene.names[scene.scene];
+  byId('scene-row').hidden = scene.names.length < 2;
+  byId('scene').replaceChildren(...scene.names.map((name, i) => new Option(name, String(i))));
+  byId('scene').value = String(scene.scene);
+  screen.look = screen.shown = 0;
+  screen.layout();
+  askCells();
+  settle();
+}
+
+// A look at another scene is answered with what there is to know of that; its camera comes along.
+function askScene(number) {
+  state.wanted = number;
+  const [width, height] = screen.size();
+  const sight = {scene: number, camera: state.camera, width, height, ...controls.values()};
+  link.send({type: 'look', number: ++state.number, moving: false, sight});
+}
+
+async function takeFrame(frame, picture) {
+  try {
+    await screen.show(frame, picture);
+  } finally {
+    link.send({type: 'shown', frame: frame.frame});
+  }
+  state.frames += 1;
+  const hand = state.sent.get(frame.look);
+  let latency = 0;
+  if (frame.kind === 'moving' && hand) {
+    latency = performance.now() - hand;
+    state.latencies.push(latency);
+    if (state.latencies.length > 1000) state.latencies.shift();
+  }
+  for (const number of state.sent.keys()) if (number <= frame.look) state.sent.delete(number);
+  if (frame.figures) strip.show(frame, latency);
+  if (frame.look !== state.number) return;
+  if (state.error === 'look') show('problem', '');
+  if (frame.kind === 'final') {
+    state.final = frame;
+    state.png = picture;
+    state.command = frame.command ?? '';
+    byId('copy').disabled = !state.command;
+    byId('save').disabled = false;
+  }
+}
+
+function takePicked(message) {
+  const then = state.picks.get(message.number);
+  state.picks.delete(message.number);
+  then?.(message);
+}
+
+function hear(message, picture) {
+  const take = {
+    scene: takeScene, frame: (m) => takeFrame(m, picture), picked: takePicked,
+    cells: (m) => {
+      state.boxes = m.boxes;
+      drawCells(screen.lines, state.boxes, state.camera, screen.aspect);
+    },
+    problem: (m) => {
+      state.error = m.about;
+      show('problem', m.text);
+    },
+    busy: (m) => show('busy', m.text && m.text + ' …'),
+  }[message.type];
+  take?.(message);
+}
+
+// ---- What hands and buttons do
+
+function pick(x, y, then) {
+  if (!state.scene || x < 0 || y < 0 || x > 1 || y > 1) return;
+  const number = ++state.pick;
+  state.picks.set(number, then);
+  link.send({type: 'pick', number, x, y, sight: sight()});
+}
+
+function marked(x, y, message) {
+  const box = byId('picture').getBoundingClientRect(), mark = byId('mark');
+  const stage = byId('stage').getBoundingClientRect();
+  mark.style.left = `${box.left - stage.left + x * box.width}px`;
+  mark.style.top = `${box.top - stage.top + y * box.height}px`;
+  mark.hidden = !message.hit;
+  showPicked(byId('picked'), message);
+}
+
+function askCells() {
+  const depth = Number(byId('cells').value);
+  byId('cells-out').value = depth ? `depth ${depth}` : 'none';
+  link.send({type: 'cells', scene: state.scene.scene, depth});
+}
+
+function toggle(id) {
+  byId(id).hidden = !byId(id).hidden;
+}
+
+async function copy() {
+  if (!state.command) return;
+  byId('panel').hidden = false;
+  byId('said').textContent = state.command;
+  try {
+    await navigator.clipboard.writeText(state.command);
+  } catch {
+    getSelection().selectAllChildren(byId('said'));  // no clipboard here: it is there to be copied by hand
+  }
+}
+
+function save() {
+  const url = URL.createObjectURL(state.png), a = document.createElement('a');
+  a.href = url;
+  a.download = state.scene.names[state.scene.scene].replace(/\.(gz|xz)$/, '').replace(/\.[^.]*$/, '') + '.png';
+  a.click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
+const view = {
+  get camera() { return state.camera; },
+  get box() { return state.scene?.box; },
+  get aspect() { return screen.aspect; },
+  get height() { return screen.height; },
+  place: (e) => screen.place(e),
+  change: (camera, at) => state.scene && change(camera, at),
+  reset: () => state.scene && change(state.scene.camera),
+  click: (x, y) => pick(x, y, (message) => marked(x, y, message)),
+  recentre: (x, y) => pick(x, y, (message) => message.hit && change(
+    {...state.camera, from: state.camera.from.map((v, k) => v + message.point[k] - state.camera.at[k]), at: message.point})),
+  help: () => toggle('help'),
+  panel: () => toggle('panel'),
+  copy,
+  escape: () => { byId('help').hidden = byId('picked').hidden = byId('mark').hidden = true; },
+};
+
+const controls = new Controls(byId, () => settle());
+const token = address.token();
+const link = new Link(token, hear, (text) => {
+  if (text || !state.error) show('problem', text);
+});
+const hands = new Hands(byId('picture'), view);
+
+byId('scene').onchange = () => askScene(Number(byId('scene').value));
+byId('cells').oninput = askCells;
+byId('copy').onclick = copy;
+byId('save').onclick = save;
+byId('open-panel').onclick = view.panel;
+byId('open-help').onclick = view.help;
+byId('help').onclick = (e) => { if (e.target === byId('help') || e.target.className === 'close') view.help(); };
+byId('picked').querySelector('.close').onclick = view.escape;
+let resized;
+addEventListener('resize', () => {
+  screen.layout();
+  clearTimeout(resized);
+  resized = setTimeout(settle, REST);
+});
+
+address.exchange(token);
+requestAnimationFrame(tick);
+window.kdray = {state, screen, view};  // for whoever scripts the page, and the tests

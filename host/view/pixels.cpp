@@ -1,0 +1,42 @@
+#include "view/pixels.h"
+
+#include <cstring>
+
+#include "film/channels.h"
+#include "film/png.h"
+#include "film/write.h"
+#include "view/jpeg.h"
+
+namespace kdray::view {
+
+namespace {
+
+film::ChannelPicture channel_of(const Picture& picture) {
+  std::vector<film::Channel> channels;
+  for (const Channel& c : picture.channels) channels.push_back({c.name, c.values});
+  std::vector<film::ChannelPicture> pictures =
+      film::channel_pictures(picture.width, picture.height, channels);
+  if (pictures.empty()) throw Error(ErrorCode::internal, "the channel was not rendered");
+  return std::move(pictures.front());
+}
+
+}  // namespace
+
+std::string as_jpeg(const Picture& picture, const RenderOptions& options, bool at_rest) {
+  const JpegOptions jpeg = at_rest ? JpegOptions{92, true} : JpegOptions{78, false};
+  if (options.channels.empty()) return encode_jpeg(picture, jpeg);
+  return encode_jpeg(channel_of(picture).pixels, jpeg);
+}
+
+std::string as_png(const Picture& picture, const RenderOptions& options) {
+  if (!options.channels.empty()) {
+    const film::ChannelPicture channel = channel_of(picture);
+    return film::encode_png(channel.pixels, channel.meta);
+  }
+  film::Image image{picture.width, picture.height, std::vector<vec3>(picture.rgb.size() / 3)};
+  static_assert(sizeof(vec3) == 3 * sizeof(float));
+  std::memcpy(image.pixels.data(), picture.rgb.data(), image.pixels.size() * sizeof(vec3));
+  return film::encode_picture(film::PictureFormat::png, image, {}, {});
+}
+
+}  // namespace kdray::view

@@ -1,0 +1,302 @@
+#!/usr/bin/env python3
+"""`kdray view`'s page as a user has it: in a headless Chromium, from the printed address.
+
+    page_test.py KDRAY SCENE [OTHER SCENE]
+
+Its pictures at rest are compared, byte for byte, with those that the page's own command renders; hands, picks,
+channels, reload, resizing, and how the program ends, follow. Skips (status 77) where there is no Chromium.
+"""
+
+import base64
+import hashlib
+import math
+import os
+import pathlib
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from browser import Browser  # noqa: E402
+
+WIDTH, HEIGHT = 640, 480
+MIDDLE = (WIDTH / 2, HEIGHT / 2)
+SHIFT = 8
+
+if not Browser.find():
+    print("skipped: there is no chromium here (Debian: chromium)")
+    sys.exit(77)
+kdray = os.path.abspath(sys.argv[1])
+
+
+class Viewer:
+    """`kdray view`, as a process."""
+
+    def __init__(self, *arguments, **more):
+        self.process = subprocess.Popen(
+            [kdray, "view", *map(str, arguments), "--no-open", "--size", f"{WIDTH}x{HEIGHT}"],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more,
+        )  # fmt: skip
+        self.address = self.process.stdout.readline().strip()
+        assert self.address.startswith("http://127.0.0.1:"), self.process.stderr.read()
+
+    def ends(self, within):
+        begun = time.monotonic()
+        self.process.wait(within)
+        return time.monotonic() - begun
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.communicate()
+
+
+def rest(browser, limit=20):
+    """Waits for the final picture; the command that renders it."""
+    time.sleep(0.1)
+    browser.wait("kdray.state.final && !kdray.state.changed && !kdray.state.moving", limit)
+    return browser.ask("kdray.state.command")
+
+
+def png(browser):
+    return base64.b64decode(browser.ask(
+        "kdray.state.png.arrayBuffer().then(b => { let t = ''; for (const c of new Uint8Array(b)) "
+        "t += String.fromCharCode(c); return btoa(t); })"
+    ))  # fmt: skip
+
+
+def camera(browser):
+    return browser.ask("kdray.state.camera")
+
+
+def distance(c):
+    return math.dist(c["from"], c["at"])
+
+
+def check_picture(browser, folder, name):
+    """The page's PNG is the file that its command makes; and compare agrees."""
+    command = shlex.split(rest(browser))
+    assert command[0] == "kdray", command
+    out = folder / "rendered.png"
+    subprocess.run([kdray, *command[1:], "-o", out, "-q"], check=True)
+    if "--aov" in command:
+        out = folder / f"rendered.{command[command.index('--aov') + 1]}.png"
+    shown = folder / "shown.png"
+    shown.write_bytes(png(browser))
+    told = subprocess.run([kdray, "compare", shown, out], check=True, capture_output=True, text=True).stdout
+    assert shown.read_bytes() == out.read_bytes(), f"{name}: the PNGs differ: {told}"
+    print(f"ok  {name}: {len(shown.read_bytes())} bytes are those of: {shlex.join(command[:3])} ...")
+    return hashlib.sha256(shown.read_bytes()).hexdigest()
+
+
+def hands(b, folder):
+    seen = {check_picture(b, folder, "as it opens")}
+    start = camera(b)
+
+    b.drag(MIDDLE, (MIDDLE[0] + 90, MIDDLE[1] + 25))
+    now = camera(b)
+    assert now["at"] == start["at"] and now["from"] != start["from"], "a drag orbits"
+    assert math.isclose(distance(now), distance(start), rel_tol=1e-9)
+    seen.add(check_picture(b, folder, "orbit"))
+
+    before = camera(b)
+    b.drag(MIDDLE, (MIDDLE[0] - 60, MIDDLE[1] + 40), modifiers=SHIFT)
+    now = camera(b)
+    moves = [[q - p for p, q in zip(before[k], now[k])] for k in ("from", "at")]
+    assert math.dist(*moves) < 1e-9 and math.hypot(*moves[0]) > 0, "shift-drag pans"
+    seen.add(check_picture(b, folder, "pan"))
+
+    before = camera(b)
+    b.wheel(WIDTH * 0.3, HEIGHT * 0.4, -240)
+    b.wait("kdray.state.moving || kdray.state.final")
+    seen.add(check_picture(b, folder, "zoom"))
+    assert distance(camera(b)) < 0.9 * distance(before), "the wheel zooms"
+
+    before = camera(b)
+    b.key("KeyS", "s", hold=0.4)
+    seen.add(check_picture(b, folder, "fly"))
+    assert math.dist(camera(b)["from"], before["from"]) > 0.02 * distance(before), "S flies back"
+
+    for code, text, what in (("Digit1", "1", "front"), ("Digit3", "3", "side"), ("Digit7", "7", "top"),
+                             ("KeyU", "u", "up"), ("KeyO", "o", "parallel rays")):  # fmt: skip
+        b.key(code, text)
+        seen.add(check_picture(b, folder, what))
+    assert camera(b)["ortho"] > 0 and camera(b)["up"] != start["up"]
+    b.key("KeyR", "r")
+    b.key("KeyF", "f")
+    seen.add(check_picture(b, folder, "all of it"))
+    b.key("KeyR", "r")
+    rest(b)
+    assert camera(b) == start, "R goes back"
+    assert len(seen) == 11, f"some of these are the same picture: {len(seen)}"
+    b.key("KeyH", "h")
+    assert b.ask("!document.getElementById('help').hidden")
+    b.key("Escape", "Escape")
+    assert b.ask("document.getElementById('help').hidden")
+
+
+def picks(b):
+    b.click(*MIDDLE)
+    b.wait("!document.getElementById('picked').hidden")
+    told = dict(b.ask(
+        "[...document.querySelectorAll('#picked dt')].map(dt => [dt.textContent, dt.nextSibling.textContent])"
+    ))  # fmt: skip
+    c = camera(b)
+    point = [float(x) for x in told["point"].split(", ")]
+    assert math.isclose(math.dist(point, c["from"]), float(told["distance"]), rel_tol=1e-4), told
+    # The middle of the picture looks along the view.
+    ahead = [(p - q) / distance(c) for p, q in zip(c["at"], c["from"])]
+    along = sum(a * (p - q) for a, p, q in zip(ahead, point, c["from"]))
+    assert math.isclose(along, float(told["distance"]), rel_tol=1e-3), "it lies in the middle"
+    assert "material" in told and "geometry" in told, told
+    print(f"ok  pick: {b.ask('document.querySelector(`#picked h2`).textContent')}, {told}")
+    b.key("Escape", "Escape")
+    x, y = WIDTH * 0.5, HEIGHT * 0.4
+    b.click(x, y, times=2)
+    b.wait(f"kdray.state.camera.at.some((v, k) => v !== {c['at']}[k])")
+    rest(b)
+    print("ok  double click: turns about", camera(b)["at"])
+
+
+def choose(b, name, value):
+    b.ask(f"(e => {{ e.value = {value!r}; e.dispatchEvent(new Event('input')); }})(document.getElementById('{name}'))")
+
+
+def channels(b, folder):
+    seen = set()
+    for channel in ("depth", "normal", "primitive", "cost", "samples"):
+        choose(b, "channel", channel)
+        seen.add(check_picture(b, folder, channel))
+    assert len(seen) == 5
+    choose(b, "channel", "")
+    check_picture(b, folder, "the picture again")
+    for name, value in (("mode", "odprt"), ("queues", "2"), ("traversal", "packet"), ("headlight", "8"),
+                        ("depth", "2"), ("samples", "4")):  # fmt: skip
+        choose(b, name, value)
+        check_picture(b, folder, f"{name} {value}")
+    for name, value in (("mode", "auto"), ("queues", "0"), ("traversal", "auto"), ("headlight", "0"),
+                        ("depth", "5"), ("samples", "adaptive")):  # fmt: skip
+        choose(b, name, value)
+    rest(b)
+    choose(b, "cells", "8")
+    b.wait("kdray.state.boxes.length > 10")
+    n = b.ask("[...document.getElementById('lines').getContext('2d').getImageData(0, 0, 640, 480).data].filter(x => x).length")
+    assert n > 1000, "the cells are drawn"
+    choose(b, "cells", "0")
+    assert "Mrays/s" in b.ask("document.getElementById('figures').textContent")
+    b.click(*b.ask("(r => [r.x + 5, r.y + 5])(document.getElementById('more').getBoundingClientRect())"))
+    assert "shadow" in b.ask("document.getElementById('details').textContent")
+    print("ok  cells and figures")
+
+
+def address(b, viewer, folder):
+    assert "token" not in b.ask("location.hash"), "the token leaves the address"
+    b.drag(MIDDLE, (MIDDLE[0] + 50, MIDDLE[1]))
+    before = check_picture(b, folder, "before reloading the page"), camera(b)
+    b.wait("location.hash.includes('camera=')")
+    b.reload()
+    b.wait("window.kdray && kdray.state.scene")
+    assert (check_picture(b, folder, "after it"), camera(b)) == before, "the view is in the address"
+    b.resize(500, 400)
+    rest(b)
+    assert b.ask("kdray.screen.picture.getBoundingClientRect().width") <= 500
+    b.resize(WIDTH, HEIGHT + 30)
+    b.key("KeyC", "c")
+    b.wait("document.getElementById('said').textContent.startsWith('kdray render ')")
+    assert b.ask("document.getElementById('said').textContent") == b.ask("kdray.state.command")
+    print("ok  resize, copied command")
+
+
+def reload(b, scene, folder):
+    """The file changes: its picture does, the camera doesn't. A broken one leaves the picture."""
+    text = scene.read_text()
+    before, where = hashlib.sha256(png(b)).hexdigest(), camera(b)
+    scene.write_text("this is no scene\n")
+    b.wait("!document.getElementById('problem').hidden")
+    told = b.ask("document.getElementById('problem').textContent")
+    assert scene.name + ":1" in told, told
+    assert hashlib.sha256(png(b)).hexdigest() == before, "the last good picture stays"
+    scene.write_text(text.replace("b ", "b 0.3 0.0 0.1\n# ", 1))
+    b.wait("document.getElementById('problem').hidden")
+    b.wait("kdray.state.final === null || true")
+    time.sleep(0.3)
+    assert check_picture(b, folder, "the changed file") != before
+    assert camera(b) == where
+    scene.write_text(text)
+    print("ok  reload; a broken file:", told)
+
+
+def several(b, folder, other):
+    b.ask("(e => { e.value = '1'; e.onchange(); })(document.getElementById('scene'))")
+    b.wait("kdray.state.scene.scene === 1")
+    check_picture(b, folder, f"another scene, {other}")
+    b.ask("(e => { e.value = '0'; e.onchange(); })(document.getElementById('scene'))")
+    b.wait("kdray.state.scene.scene === 0")
+    check_picture(b, folder, "and the first again")
+
+
+def endings(scene):
+    viewer = Viewer(scene)
+    viewer.process.send_signal(signal.SIGINT)
+    seconds = viewer.ends(1)
+    assert viewer.process.returncode == -signal.SIGINT
+    viewer.close()
+    print(f"ok  Ctrl-C ends it within {seconds:.2f} s")
+    viewer = Viewer(scene)
+    viewer.process.stdin.close()  # the terminal, or ssh, is gone
+    viewer.ends(5)
+    assert viewer.process.returncode == 0
+    viewer.process.stdin = None
+    viewer.close()
+    viewer = Viewer(scene, "--linger", "0.5")
+    with Browser(WIDTH, HEIGHT + 30) as b:
+        b.open(viewer.address)
+        b.wait("window.kdray?.state.scene")
+    viewer.ends(5)
+    assert viewer.process.returncode == 0
+    viewer.close()
+    # The page goes without a farewell, as with a network that is gone, while a picture is being rendered.
+    viewer = Viewer(scene, "--linger", "0.5", "--samples", "1024")
+    with Browser(WIDTH, HEIGHT + 30) as b:
+        b.open(viewer.address)
+        b.wait("window.kdray?.state.scene")
+    viewer.ends(8)
+    viewer.close()
+    print("ok  closing the terminal or the page ends it")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        scene = folder / "scene.nff"
+        shutil.copy(sys.argv[2], scene)
+        others = sys.argv[3:]
+        viewer = Viewer(scene, *others)
+        try:
+            with Browser(WIDTH, HEIGHT + 30) as b:
+                b.open(viewer.address)
+                b.wait("window.kdray?.state.scene")
+                try:
+                    hands(b, folder)
+                    picks(b)
+                    channels(b, folder)
+                    address(b, viewer, folder)
+                    reload(b, scene, folder)
+                    if others:
+                        several(b, folder, others[0])
+                    assert not b.faults(), b.faults()
+                except BaseException:
+                    b.screenshot(os.environ.get("KDRAY_SHOT", os.devnull))
+                    print(b.ask("(({scene, png, ...s}) => JSON.stringify(s))(kdray.state)"), "link", b.ask("kdray.view.link?.open"))
+                    print(b.faults(), b.ask("document.getElementById('problem').textContent"))
+                    raise
+        finally:
+            viewer.close()
+        endings(scene)
+
+
+main()
