@@ -1,5 +1,5 @@
-// What    Opens the page in the user's browser, and tells when nobody is there any more who could see or end the
-//         server.
+// What    Opens the page in the user's browser, and tells when nobody is there any more who could see or end
+//         the server.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
 // What    The command line that renders what a page shows.
-// Shape   Numbers as short as they can be and still be read back as the same bits. What can't change a bit (device,
-//         tree, cache) is left out; mode, walk and queues are there where the page has chosen some, for timing.
+// Shape   Numbers as short as they can be and still be read back as the same bits. What can't change a bit
+//         (device, tree, cache) is left out; mode, walk and queues are there where the page has chosen some,
+//         for timing.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What    A picture on its way to a page, in one message: four bytes with the length of a JSON text (little endian),
-//         the text, the picture's file.
+// What    A picture on its way to a page, in one message: four bytes with the length of a JSON text (little
+//         endian), the text, the picture's file.
 #pragma once
 
 #include <memory>

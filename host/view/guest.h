@@ -1,7 +1,7 @@
-// What    What a page is owed: the newest sight that it asked for, how far the picture of it is, and how many frames
-//         are on the way.
-// Shape   While the camera moves, a frame for the newest sight, as soon as one can be sent; at rest one step after
-//         the other until the picture is final. At most kMostOnTheWay frames are not acknowledged.
+// What    What a page is owed: the newest sight that it asked for, how far the picture of it is, and how many
+//         frames are on the way.
+// Shape   While the camera moves, a frame for the newest sight, as soon as one can be sent; at rest one step
+//         after the other until the picture is final. At most kMostOnTheWay frames are not acknowledged.
 // Threads One at a time.
 #pragma once
 

@@ -1,4 +1,5 @@
-// What    What all connections of a server share: its limits, who it lets in, and the list of those that are there.
+// What    What all connections of a server share: its limits, who it lets in, and the list of those that are
+//         there.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

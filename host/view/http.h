@@ -1,5 +1,5 @@
-// What    The answers to plain requests: the page's files, and a cookie for the token. All of it is a function of
-//         the request; connection.h brings and takes the bytes.
+// What    The answers to plain requests: the page's files, and a cookie for the token. All of it is a
+//         function of the request; connection.h brings and takes the bytes.
 // Shape   GET and HEAD of a file; POST /session with the token. Nothing is ever looked for by a path that was
 //         asked for: it is compared with the names of the embedded files.
 // Errors  403 foreign Host or Origin, or a wrong token; 404, 405, 400.

@@ -1,5 +1,5 @@
-// What    Pictures as JPEG, for the way to a page: quick and small while something moves, nearly without loss at
-//         rest.
+// What    Pictures as JPEG, for the way to a page: quick and small while something moves, nearly without loss
+//         at rest.
 // Errors  kdray::Error, ErrorCode::internal.
 #pragma once
 

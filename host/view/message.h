@@ -1,6 +1,6 @@
 // What    What the page says, checked: every field of its type and in its range, nothing that isn't known.
-// Shape   JSON texts of at most kMostText bytes. The page's own numbers (of looks, frames, picks) come back in
-//         what answers them.
+// Shape   JSON texts of at most kMostText bytes. The page's own numbers (of looks, frames, picks) come back
+//         in what answers them.
 // Errors  kdray::Error, ErrorCode::input: for whoever sent it, and the end of its connection.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What    The files of the page that the server shows, as they lie in host/view/page: embedded, so that nothing
-//         is read, and nobody asked, at run time.
+// What    The files of the page that the server shows, as they lie in host/view/page: embedded, so that
+//         nothing is read, and nobody asked, at run time.
 #pragma once
 
 #include <span>

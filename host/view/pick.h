@@ -1,4 +1,5 @@
-// What    What lies at a point of a picture: the primitive, its geometry and its material, where, and how far.
+// What    What lies at a point of a picture: the primitive, its geometry and its material, where, and how
+//         far.
 // Errors  kdray::Error, as queries have them.
 #pragma once
 

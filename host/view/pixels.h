@@ -1,5 +1,5 @@
-// What    What a page is shown of a picture: the colours, or the channel that was asked for, as the files have it that
-//         `kdray render` writes.
+// What    What a page is shown of a picture: the colours, or the channel that was asked for, as the files
+//         have it that `kdray render` writes.
 #pragma once
 
 #include <string>

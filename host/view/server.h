@@ -1,8 +1,8 @@
 // What    The server of the page: HTTP and WebSockets on one address, by a single thread.
-// Shape   A connection asks for files, one after the other, or becomes a WebSocket, whose page is a Visitor once
-//         it has shown that it knows the token. Everything a client can make grow has a limit.
-// Errors  ErrorCode::input for an address that can't be listened on. Clients can't cause any: what they do wrong
-//         ends their connection.
+// Shape   A connection asks for files, one after the other, or becomes a WebSocket, whose page is a Visitor
+//         once it has shown that it knows the token. Everything a client can make grow has a limit.
+// Errors  ErrorCode::input for an address that can't be listened on. Clients can't cause any: what they do
+//         wrong ends their connection.
 #pragma once
 
 #include <chrono>

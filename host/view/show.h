@@ -1,8 +1,8 @@
 // What    Renders what pages want to see: the newest sight of each, page after page, and finer pictures where
 //         nothing moves; opens the scenes, opens them anew when their files change, and answers picks.
-// Shape   A thread renders, another one reads scenes, packs PNGs and picks. A look that comes while a picture at
-//         rest is being rendered for that page ends it; a frame that moves is always finished, or a page whose
-//         camera moves on would never see one.
+// Shape   A thread renders, another one reads scenes, packs PNGs and picks. A look that comes while a picture
+//         at rest is being rendered for that page ends it; a frame that moves is always finished, or a page
+//         whose camera moves on would never see one.
 // Errors  What can't be done is told to the page.
 #pragma once
 

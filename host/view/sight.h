@@ -1,5 +1,5 @@
-// What    What a page wants to see: a scene, from where, how large, and how it is to be rendered; and what that
-//         is for kdray.
+// What    What a page wants to see: a scene, from where, how large, and how it is to be rendered; and what
+//         that is for kdray.
 // Units   The scene's own, degrees, pixels.
 // Shape   0, an empty name or a negative weight: as the command line or the scene has it.
 #pragma once

@@ -1,5 +1,5 @@
-// What    A scene that pages look at: where it comes from, and, once it is open, its renderer and what answers
-//         picks.
+// What    A scene that pages look at: where it comes from, and, once it is open, its renderer and what
+//         answers picks.
 // Threads One renders (render), one picks; scene() is for all.
 #pragma once
 

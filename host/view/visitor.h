@@ -1,5 +1,5 @@
-// What    The two sides of a WebSocket whose page knows the token: the page as it is talked to, and who listens to
-//         all of them.
+// What    The two sides of a WebSocket whose page knows the token: the page as it is talked to, and who
+//         listens to all of them.
 // Threads A Visitor may be talked to from any; a Reception is called by the server's thread alone,
 //         and lets go of its visitors before the server goes.
 #pragma once

@@ -122,8 +122,8 @@ TEST(Tiles, LeavingWakesWhoWaits) {
   EXPECT_TRUE(tiles.left());
 }
 
-// What was taken when the tiles are closed is done, the rest is told, and nothing is both, however often they are
-// closed and whoever fails.
+// What was taken when the tiles are closed is done, the rest is told, and nothing is both, however often they
+//      are closed and whoever fails.
 TEST(Tiles, ClosingLeavesWhatNobodyHasTaken) {
   constexpr std::size_t kTiles = 1000, kQueues = 4;
   for (const Division division : kDivisions) {

@@ -1,5 +1,6 @@
-// What    A client of the page's server that does just what a test says, well or ill: bytes out, bytes in, over a plain
-//         socket, with the few lines of HTTP and WebSocket (RFC 6455) that it takes. Nothing of it is the server's.
+// What    A client of the page's server that does just what a test says, well or ill: bytes out, bytes in,
+//         over a plain socket, with the few lines of HTTP and WebSocket (RFC 6455) that it takes. Nothing of
+//         it is the server's.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// What    Clients that mean harm, or are broken: whatever they do, a page that behaves goes on being heard, and memory
-//         stays bounded.
+// What    Clients that mean harm, or are broken: whatever they do, a page that behaves goes on being heard,
+//         and memory stays bounded.
 // Shape   The random tests print their seed; KDRAY_FUZZ says how many messages there are to be: 100000 were
 //         run.
 #include <fstream>

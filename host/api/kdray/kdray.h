@@ -124,8 +124,9 @@ class Renderer {
                          Traversal traversal = Traversal::automatic,
                          Precision precision = Precision::float32);
 
-  // The scene as it is seen otherwise, from the next frame on: what seen() made of the scene that this Renderer
-  // was made of. Takes no time, and the tree, the devices and what frames have told of costs are kept.
+  // The scene as it is seen otherwise, from the next frame on: what seen() made of the scene that this
+  // Renderer was made of. Takes no time, and the tree, the devices and what frames have told of costs are
+  // kept.
   void look(const PreparedScene& seen);
 
   // From the next call on, in place of what was found in DeviceOptions::tunings. Forgets what former frames

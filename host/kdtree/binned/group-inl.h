@@ -3,8 +3,9 @@
 // Why     Where primitives lie in each other, a plane cuts most of what it parts, and cells stay large: of
 //         boxes in heaps a ray met three times the leaves and five times the triangles that it has to
 //         (docs/logbook/kdtree.md).
-// Shape   What is larger than a sweep takes (sweep-inl.h) is parted between fifteen equal steps along each axis
-//         before. Costs are floats without contraction in a fixed order: the same bits at every vector width.
+// Shape   What is larger than a sweep takes (sweep-inl.h) is parted between fifteen equal steps along each
+//         axis before. Costs are floats without contraction in a fixed order: the same bits at every vector
+//         width.
 // Source  Stich, Friedrich, Dietrich, "Spatial splits in bounding volume hierarchies", HPG 2009: both kinds
 //         of splits in one tree.
 #if defined(KDRAY_BINNED_GROUP_INL_H) == defined(HWY_TARGET_TOGGLE)

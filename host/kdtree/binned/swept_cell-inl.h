@@ -1,7 +1,8 @@
-// What    The references of a cell that is swept (sweep-inl.h), in the order of their centres along each axis.
-// Shape   They are sorted once, by rank, and parting keeps the order. Numbers are relative to the longest edge of
-//         the cell, and taken anew for a group that is hardly wider than their steps: they choose where a group is
-//         parted and decide nothing else. Equal centres keep the references' order.
+// What    The references of a cell that is swept (sweep-inl.h), in the order of their centres along each
+//         axis.
+// Shape   They are sorted once, by rank, and parting keeps the order. Numbers are relative to the longest
+//         edge of the cell, and taken anew for a group that is hardly wider than their steps: they choose
+//         where a group is parted and decide nothing else. Equal centres keep the references' order.
 #if defined(KDRAY_BINNED_SWEPT_CELL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_SWEPT_CELL_INL_H
 #undef KDRAY_BINNED_SWEPT_CELL_INL_H

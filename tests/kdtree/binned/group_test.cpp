@@ -52,8 +52,8 @@ Real width_of(const std::vector<BoundedRef>& refs, std::size_t k) {
   return center_of(*most, k) - center_of(*least, k);
 }
 
-// The least cost of all divisions by the order of centres along an axis that is not narrow: half as wide as the
-// widest. The builder's numbers may make one wide that is just below.
+// The least cost of all divisions by the order of centres along an axis that is not narrow: half as wide as
+// the widest. The builder's numbers may make one wide that is just below.
 Real least_cost(std::vector<BoundedRef> refs, const Bounds& hull, const BuildConfig& c) {
   Real least = std::numeric_limits<Real>::infinity();
   const Real widest = std::max({width_of(refs, 0), width_of(refs, 1), width_of(refs, 2)});
