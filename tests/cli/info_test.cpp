@@ -77,7 +77,7 @@ TEST(InfoCommand, MemoryIsThatOfItsArrays) {
 TEST(InfoCommand, TreeOptionsChangeTheTree) {
   const Folder folder;
   const fs::path scene = folder / "b.nff";
-  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "2", "-o", scene})));
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "3", "-o", scene})));
   const auto depth = [&](const std::vector<std::string>& more) -> int {
     std::vector<std::string> arguments = {"info", scene, "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());

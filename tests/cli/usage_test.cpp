@@ -4,8 +4,8 @@
 namespace kdray::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"render", "trace",  "tune",     "info",   "devices",
-                                            "bench",  "doctor", "generate", "compare"};
+const std::vector<std::string> kCommands = {"render", "trace",  "tune",     "info",    "devices",
+                                            "bench",  "doctor", "generate", "compare", "view"};
 
 TEST(Usage, HelpNamesEveryCommand) {
   const Outcome run = kdray({"--help"});
@@ -32,12 +32,12 @@ TEST(Usage, VersionIsTheProjects) {
 }
 
 TEST(Usage, UnknownCommandIsToldWhatThereIs) {
-  for (const char* const command : {"view", "rendr", ""}) {
+  for (const char* const command : {"look", "rendr", ""}) {
     const Outcome run = kdray({command, "x"});
     EXPECT_TRUE(fails_with(run, 2, "'" + std::string(command) + "'"));
     for (const std::string& known : kCommands) EXPECT_NE(run.err.find(known), std::string::npos) << run.err;
   }
-  EXPECT_TRUE(fails_with(kdray({}), 2, "render, trace"));
+  EXPECT_TRUE(fails_with(kdray({}), 2, "render, view, trace"));
 }
 
 TEST(Usage, WhatIsNearlyANameIsToldTheName) {
