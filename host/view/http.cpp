@@ -18,24 +18,23 @@ std::string_view type_of(std::string_view path) {
 
 // The page runs its own files alone, and talks to this server alone. Some browsers don't count WebSockets
 // to 'self', so they are named; Host has been checked.
-std::string policy(const Request& request, const Door& door) {
+std::string policy(const Request& request) {
   return fmt::format(
       "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
       "'self' "
-      "ws://{0} wss://{0}; base-uri 'none'; form-action 'none'; frame-ancestors {1}",
-      request.host, door.framed ? "*" : "'none'");
+      "ws://{0} wss://{0}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+      request.host);
 }
 
 Response refuse(int status, std::string_view why) {
   return {status, kText, why, {{"Connection", "close"}}};
 }
 
-Response file(const Request& request, const Door& door) {
+Response file(const Request& request) {
   std::string_view path = request.target.substr(0, request.target.find('?'));
   if (path == "/") path = "/index.html";
   for (const PageFile& f : page_files())
-    if (f.path == path)
-      return {200, type_of(path), f.text, {{"Content-Security-Policy", policy(request, door)}}};
+    if (f.path == path) return {200, type_of(path), f.text, {{"Content-Security-Policy", policy(request)}}};
   return refuse(404, "there is no such file\n");
 }
 
@@ -57,7 +56,7 @@ Response answer(const Request& request, const Door& door) {
   if (!door.names.allow_host(request.host)) return refuse(403, "kdray view is not known by this name\n");
   if (request.method == "POST" && request.target == "/session") return session(request, door);
   if (request.method != "GET" && request.method != "HEAD") return refuse(405, "GET or HEAD\n");
-  return file(request, door);
+  return file(request);
 }
 
 bool may_connect(const Request& request, const Door& door) {

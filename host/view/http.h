@@ -30,8 +30,7 @@ struct Response {
 struct Door {
   Names names;
   Token token;
-  std::string cookie;   // the name of this server's own: cookies don't know ports
-  bool framed = false;  // the page may be shown in a frame of another page (a notebook)
+  std::string cookie;  // the name of this server's own: cookies don't know ports
 };
 
 Response answer(const Request& request, const Door& door);

@@ -17,7 +17,6 @@ namespace kdray::view {
 struct ServerOptions {
   std::string bind = "127.0.0.1";  // an address in numbers
   int port = 0;                    // 0: kUsualPort, or the next one that is free
-  bool framed = false;             // pages of others may show this one in a frame
   // It ends so long after the last page was closed; none: it stays.
   std::chrono::milliseconds linger{0};
   // Asked twice a second: true ends it.
