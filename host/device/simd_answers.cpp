@@ -39,7 +39,7 @@ void fill(u32 (&out)[N], Lane&& lane) {
 
 // The lanes of `v` that the mask has, packed; 0 behind them.
 template <std::size_t N>
-void compress(u32 (&out)[N], u32 mask, const u32* v) {
+void pack(u32 (&out)[N], u32 mask, const u32* v) {
   fill(out, [](u32) { return 0u; });
   for (u32 i = 0, n = 0; i < N; ++i)
     if (mask >> i & 1u) out[n++] = v[i];
@@ -69,13 +69,12 @@ void expect_vectors(const SimdCase& c, SimdAnswers& out) {
   fill(out.select16, [&](u32 i) { return c.mask >> i & 1u ? c.a[i] : c.b[i]; });
   fill(out.gather16, [&](u32 i) { return c.b[c.index[i] & 15u]; });
   fill(out.permute8, [&](u32 i) { return c.a[c.index[i] & 7u]; });
-  compress(out.compress16, c.mask, c.a);
-  compress(out.compress8, c.mask, c.a);
+  pack(out.pack16, c.mask, c.a);
+  pack(out.pack8, c.mask, c.a);
   std::ranges::copy(out.select16, out.selectu16);
   std::ranges::copy(out.gather16, out.gatheru16);
   std::ranges::copy(out.permute8, out.permuteu8);
-  std::ranges::copy(out.compress16, out.compressu16);
-  std::ranges::copy(out.compress8, out.compressu8);
+  std::ranges::copy(out.pack8, out.packu8);
   for (u32 i = 0; i < 16; ++i) {
     const float v = as_float(c.a[i]);
     out.nearest_long16[i] = std::abs(v) < 0x1p62f ? static_cast<layout::i64>(std::nearbyint(v)) : 0;
@@ -92,12 +91,11 @@ struct Field {
 #name, offsetof(SimdAnswers, name), sizeof(std::declval <SimdAnswers>().name) \
   }
 constexpr std::array kFields = {
-    FIELD(lanes_below),   FIELD(count_lanes), FIELD(first_lane),  FIELD(less16),      FIELD(less_equal16),
-    FIELD(equal16),       FIELD(equalu16),    FIELD(negative16),  FIELD(less8),       FIELD(less_equal8),
-    FIELD(equal8),        FIELD(less4),       FIELD(less_equal4), FIELD(smallest16),  FIELD(largest16),
-    FIELD(select16),      FIELD(selectu16),   FIELD(compress16),  FIELD(compressu16), FIELD(gather16),
-    FIELD(gatheru16),     FIELD(compress8),   FIELD(compressu8),  FIELD(permute8),    FIELD(permuteu8),
-    FIELD(nearest_long16)};
+    FIELD(lanes_below), FIELD(count_lanes), FIELD(first_lane),  FIELD(less16),     FIELD(less_equal16),
+    FIELD(equal16),     FIELD(equalu16),    FIELD(negative16),  FIELD(less8),      FIELD(less_equal8),
+    FIELD(equal8),      FIELD(less4),       FIELD(less_equal4), FIELD(smallest16), FIELD(largest16),
+    FIELD(select16),    FIELD(selectu16),   FIELD(pack16),      FIELD(gather16),   FIELD(gatheru16),
+    FIELD(pack8),       FIELD(packu8),      FIELD(permute8),    FIELD(permuteu8),  FIELD(nearest_long16)};
 #undef FIELD
 
 const void* at(const SimdAnswers& answers, const Field& field) {

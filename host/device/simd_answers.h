@@ -15,7 +15,7 @@ layout::SimdAnswers expected_answers(const layout::SimdCase& given);
 // and every mask of 8 lanes.
 std::vector<layout::SimdCase> known_cases();
 
-// The first operation whose answer differs by a bit ("compress16 of case 3"); empty when none does.
+// The first operation whose answer differs by a bit ("pack16 of case 3"); empty when none does.
 std::string first_difference(const std::vector<layout::SimdCase>& cases,
                              const std::vector<layout::SimdAnswers>& answers);
 

@@ -43,9 +43,8 @@ inline void answer16(__global const SimdCase* in, __global SimdAnswers* out) {
   vstore16(as_uint16(select16(mask, a, b)), 0, out->select16);
   vstore16(selectu16(mask, ua, ub), 0, out->selectu16);
   // What lies behind the packed lanes is anything.
-  const mask16 packed = lanes_below(count_lanes(mask));
-  vstore16(as_uint16(select16(packed, compress16(mask, a), zero)), 0, out->compress16);
-  vstore16(selectu16(packed, compressu16(mask, ua), (uint16)(0)), 0, out->compressu16);
+  pack16(mask, a, (__global float*)out->pack16);
+  for (u32 i = count_lanes(mask); i < 16; ++i) out->pack16[i] = 0;
   prefetch_line(in->b);
   vstore16(as_uint16(gather16((__global const float*)in->b, index)), 0, out->gather16);
   vstore16(gatheru16(in->b, index), 0, out->gatheru16);
@@ -64,9 +63,13 @@ inline void answer8(__global const SimdCase* in, __global SimdAnswers* out) {
   out->equal8 = equal8(a, b);
   out->less4 = less4(a.lo, b.lo);
   out->less_equal4 = less_equal4(a.lo, b.lo);
-  const int8 packed = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < (int8)((int)count_lanes(mask));
-  vstore8(packed ? as_uint8(compress8(mask, a)) : (uint8)(0), 0, out->compress8);
-  vstore8(packed ? compressu8(mask, ua) : (uint8)(0), 0, out->compressu8);
+  float packed[8];
+  u32 packedu[8];
+  pack8(mask, a, packed);
+  packu8(mask, ua, packedu);
+  const int8 stays = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < (int8)((int)count_lanes(mask));
+  vstore8(stays ? as_uint8(vload8(0, packed)) : (uint8)(0), 0, out->pack8);
+  vstore8(stays ? vload8(0, packedu) : (uint8)(0), 0, out->packu8);
   vstore8(as_uint8(permute8(a, index)), 0, out->permute8);
   vstore8(permuteu8(ua, index), 0, out->permuteu8);
 }

@@ -23,13 +23,13 @@ typedef struct SimdAnswers {
   u32 less8, less_equal8, equal8, less4, less_equal4;
   u32 smallest16, largest16;  // of a with 0 for NaN, and + 0 for -0
   u32 pad;
-  u32 select16[16], selectu16[16];      // a where mask is set, else b
-  u32 compress16[16], compressu16[16];  // of a
-  u32 gather16[16], gatheru16[16];      // from b
-  u32 compress8[8], compressu8[8];      // of a's lower half
-  u32 permute8[8], permuteu8[8];        // of a's lower half
-  i64 nearest_long16[16];               // of a with 0 for what is not below 2^62
+  u32 select16[16], selectu16[16];  // a where mask is set, else b
+  u32 pack16[16];                   // of a
+  u32 gather16[16], gatheru16[16];  // from b
+  u32 pack8[8], packu8[8];          // of a's lower half
+  u32 permute8[8], permuteu8[8];    // of a's lower half
+  i64 nearest_long16[16];           // of a with 0 for what is not below 2^62
 } SimdAnswers;
-KDRAY_ASSERT_SIZE(SimdAnswers, 704)
+KDRAY_ASSERT_SIZE(SimdAnswers, 640)
 KDRAY_LAYOUT_END
 #endif
