@@ -1,7 +1,12 @@
 #include "scene/scene.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
 
 namespace kdray::scene {
 
@@ -9,24 +14,32 @@ namespace {
 
 constexpr std::size_t kBoundsGrain = std::size_t{1} << 14;
 
-// Only vertices that a triangle uses count: files often carry some that no face names.
+// Only vertices that a triangle uses count: files often carry some that no face names. They are marked, since
+// a mesh has six times as many corners as vertices.
+std::vector<std::uint8_t> used_vertices(const Scene& scene) {
+  std::vector<std::uint8_t> used(scene.vertices.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), kBoundsGrain),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i)
+                        for (const std::uint32_t v : scene.triangles[i].vertex)
+                          std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
+                    });
+  return used;
+}
+
 DBox triangle_bounds(const Scene& scene) {
+  const std::vector<std::uint8_t> used = used_vertices(scene);
   const auto grow = [&](const tbb::blocked_range<std::size_t>& range, DBox box) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const auto& v = scene.triangles[i].vertex;
-      DBox triangle{scene.vertices[v[0]], scene.vertices[v[0]]};
-      triangle.grow(scene.vertices[v[1]]);
-      triangle.grow(scene.vertices[v[2]]);
-      box.grow(triangle);
-    }
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      if (used[i] != 0) box.grow(scene.vertices[i]);
     return box;
   };
   const auto join = [](DBox a, const DBox& b) {
     a.grow(b);
     return a;
   };
-  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), kBoundsGrain),
-                              DBox(), grow, join);
+  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, scene.vertices.size(), kBoundsGrain), DBox(),
+                              grow, join);
 }
 
 }  // namespace
