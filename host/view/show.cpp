@@ -277,13 +277,14 @@ void Show::deliver(const Task& task, const Picture& picture, double seconds) {
   Seat* const seat = seat_of(*task.visitor);
   if (seat == nullptr) return;
   const bool moving = task.work.look.moving;
-  if (moving) seat->ladder.took(static_cast<double>(picture.width) * picture.height, seconds + encoded);
+  const Statistics& statistics = task.stage->statistics();
+  // At rest a frame of one sample tells as much, but for what was compiled for it.
+  if (moving || (task.options.samples == 1 && task.options.adaptive_target == 0))
+    seat->ladder.took(static_cast<double>(picture.width) * picture.height,
+                      (moving ? seconds : statistics.seconds.render) + encoded);
   if (!moving && !seat->guest.wants(task.work)) return;
   send(*seat, task,
-       {.kind = task.kind,
-        .encode_seconds = encoded,
-        .wall_seconds = seconds,
-        .statistics = &task.stage->statistics()},
+       {.kind = task.kind, .encode_seconds = encoded, .wall_seconds = seconds, .statistics = &statistics},
        bytes);
   seat->guest.done(task.work, task.last);
 }

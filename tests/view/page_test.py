@@ -7,21 +7,19 @@ Its pictures at rest are compared, byte for byte, with those that the page's own
 channels, reload, resizing, and how the program ends, follow. Skips (status 77) where there is no Chromium.
 """
 
-import base64
 import hashlib
 import math
 import os
 import pathlib
-import shlex
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from browser import Browser  # noqa: E402
+from viewer import Viewer, camera, compare, png, rest  # noqa: E402
 
 WIDTH, HEIGHT = 640, 480
 MIDDLE = (WIDTH / 2, HEIGHT / 2)
@@ -33,64 +31,12 @@ if not Browser.find():
 kdray = os.path.abspath(sys.argv[1])
 
 
-class Viewer:
-    """`kdray view`, as a process."""
-
-    def __init__(self, *arguments, **more):
-        self.process = subprocess.Popen(
-            [kdray, "view", *map(str, arguments), "--no-open", "--size", f"{WIDTH}x{HEIGHT}"],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more,
-        )  # fmt: skip
-        self.address = self.process.stdout.readline().strip()
-        assert self.address.startswith("http://127.0.0.1:"), self.process.stderr.read()
-
-    def ends(self, within):
-        begun = time.monotonic()
-        self.process.wait(within)
-        return time.monotonic() - begun
-
-    def close(self):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.communicate()
-
-
-def rest(browser, limit=20):
-    """Waits for the final picture; the command that renders it."""
-    time.sleep(0.1)
-    browser.wait("kdray.state.final && !kdray.state.changed && !kdray.state.moving", limit)
-    return browser.ask("kdray.state.command")
-
-
-def png(browser):
-    return base64.b64decode(browser.ask(
-        "kdray.state.png.arrayBuffer().then(b => { let t = ''; for (const c of new Uint8Array(b)) "
-        "t += String.fromCharCode(c); return btoa(t); })"
-    ))  # fmt: skip
-
-
-def camera(browser):
-    return browser.ask("kdray.state.camera")
-
-
 def distance(c):
     return math.dist(c["from"], c["at"])
 
 
 def check_picture(browser, folder, name):
-    """The page's PNG is the file that its command makes; and compare agrees."""
-    command = shlex.split(rest(browser))
-    assert command[0] == "kdray", command
-    out = folder / "rendered.png"
-    subprocess.run([kdray, *command[1:], "-o", out, "-q"], check=True)
-    if "--aov" in command:
-        out = folder / f"rendered.{command[command.index('--aov') + 1]}.png"
-    shown = folder / "shown.png"
-    shown.write_bytes(png(browser))
-    told = subprocess.run([kdray, "compare", shown, out], check=True, capture_output=True, text=True).stdout
-    assert shown.read_bytes() == out.read_bytes(), f"{name}: the PNGs differ: {told}"
-    print(f"ok  {name}: {len(shown.read_bytes())} bytes are those of: {shlex.join(command[:3])} ...")
-    return hashlib.sha256(shown.read_bytes()).hexdigest()
+    return hashlib.sha256(compare(kdray, browser, folder, name)).hexdigest()
 
 
 def hands(b, folder):
@@ -240,19 +186,19 @@ def several(b, folder, other):
 
 
 def endings(scene):
-    viewer = Viewer(scene)
+    viewer = Viewer(kdray, scene)
     viewer.process.send_signal(signal.SIGINT)
     seconds = viewer.ends(1)
     assert viewer.process.returncode == -signal.SIGINT
     viewer.close()
     print(f"ok  Ctrl-C ends it within {seconds:.2f} s")
-    viewer = Viewer(scene)
+    viewer = Viewer(kdray, scene)
     viewer.process.stdin.close()  # the terminal, or ssh, is gone
     viewer.ends(5)
     assert viewer.process.returncode == 0
     viewer.process.stdin = None
     viewer.close()
-    viewer = Viewer(scene, "--linger", "0.5")
+    viewer = Viewer(kdray, scene, "--linger", "0.5")
     with Browser(WIDTH, HEIGHT + 30) as b:
         b.open(viewer.address)
         b.wait("window.kdray?.state.scene")
@@ -260,7 +206,7 @@ def endings(scene):
     assert viewer.process.returncode == 0
     viewer.close()
     # The page goes without a farewell, as with a network that is gone, while a picture is being rendered.
-    viewer = Viewer(scene, "--linger", "0.5", "--samples", "1024")
+    viewer = Viewer(kdray, scene, "--linger", "0.5", "--samples", "1024")
     with Browser(WIDTH, HEIGHT + 30) as b:
         b.open(viewer.address)
         b.wait("window.kdray?.state.scene")
@@ -275,7 +221,7 @@ def main():
         scene = folder / "scene.nff"
         shutil.copy(sys.argv[2], scene)
         others = sys.argv[3:]
-        viewer = Viewer(scene, *others)
+        viewer = Viewer(kdray, scene, *others)
         try:
             with Browser(WIDTH, HEIGHT + 30) as b:
                 b.open(viewer.address)
