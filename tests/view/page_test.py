@@ -112,12 +112,31 @@ def choose(b, name, value):
     b.ask(f"(e => {{ e.value = {value!r}; e.dispatchEvent(new Event('input')); }})(document.getElementById('{name}'))")
 
 
+def owners(b, folder):
+    """Who traced it: in ODPRT the subtrees' queues, the same each time; in PDPRT whoever took the tile."""
+    for name, value in (("channel", "queue"), ("queues", "2"), ("mode", "odprt")):
+        choose(b, name, value)
+    check_picture(b, folder, "who traced it, odprt")
+    told = b.ask("document.getElementById('owners').innerText")
+    assert "queue 1" in told and "subtrees" in told and "left" in told and "travelled" in told, told
+    b.screenshot(os.environ.get("KDRAY_SHOT_OWNERS", os.devnull))
+    choose(b, "mode", "pdprt")
+    rest(b)
+    told = b.ask("document.getElementById('owners').innerText")
+    assert "tiles" in told and "travelled" not in told, told
+    print("ok  who traced it:", told.replace("\n", " | "))
+    for name, value in (("mode", "auto"), ("queues", "0")):
+        choose(b, name, value)
+    rest(b)
+
+
 def channels(b, folder):
     seen = set()
     for channel in ("depth", "normal", "primitive", "cost", "samples"):
         choose(b, "channel", channel)
         seen.add(check_picture(b, folder, channel))
     assert len(seen) == 5
+    owners(b, folder)
     choose(b, "channel", "")
     check_picture(b, folder, "the picture again")
     for name, value in (("mode", "odprt"), ("queues", "2"), ("traversal", "packet"), ("headlight", "8"),
