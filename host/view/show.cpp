@@ -137,6 +137,11 @@ void Show::tell_all(const std::string& text, std::optional<std::size_t> scene) {
 
 // ---- Scenes
 
+void Show::open_again(std::size_t scene) {
+  const std::lock_guard lock(mutex_);
+  if (acts_.contains(scene)) open(scene);
+}
+
 void Show::open(std::size_t scene) {
   if (opening_[scene]) return;
   opening_[scene] = worker_.add([this, scene] {

@@ -35,6 +35,9 @@ class Show : public Reception {
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
 
+  // What pages see of a scene is opened once more; for one that has no files that would tell of a change.
+  void open_again(std::size_t scene);
+
   void enter(const std::shared_ptr<Visitor>& visitor) override;
   void hear(const Visitor& visitor, const Message& message) override;
   void leave(const Visitor& visitor) override;
