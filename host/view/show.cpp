@@ -139,26 +139,42 @@ void Show::tell_all(const std::string& text, std::optional<std::size_t> scene) {
 
 void Show::open_again(std::size_t scene) {
   const std::lock_guard lock(mutex_);
-  if (acts_.contains(scene)) open(scene);
+  if (acts_.contains(scene)) open_anew(scene);
+}
+
+void Show::open_anew(std::size_t scene) {
+  if (opening_[scene] == Opening::no)
+    open(scene);
+  else
+    opening_[scene] = Opening::outdated;
 }
 
 void Show::open(std::size_t scene) {
-  if (opening_[scene]) return;
-  opening_[scene] = worker_.add([this, scene] {
+  if (opening_[scene] != Opening::no) return;
+  const bool begins = worker_.add([this, scene] {
     try {
       opened(scene, sources_[scene].open());
     } catch (...) {
       not_opened(scene, words_of(std::current_exception()));
     }
   });
-  if (opening_[scene]) tell_all(tell_busy("opening " + sources_[scene].name), scene);
+  if (!begins) return tell_all(tell_problem("scene", "too much is waiting to be done; ask again"), scene);
+  opening_[scene] = Opening::now;
+  tell_all(tell_busy("opening " + sources_[scene].name), scene);
+}
+
+// Whether what has been opened is to be opened once more.
+bool Show::is_outdated(std::size_t scene) {
+  const bool outdated = std::exchange(opening_[scene], Opening::no) == Opening::outdated;
+  if (outdated) open(scene);
+  return outdated;
 }
 
 void Show::opened(std::size_t scene, Opened scene_opened) {
   auto stage = std::make_shared<Stage>(std::move(scene_opened), settings_);
   Watch watch(stage->files());
   const std::lock_guard lock(mutex_);
-  opening_[scene] = false;
+  if (is_outdated(scene)) return;
   const bool again = acts_.contains(scene);
   acts_[scene] = {std::move(stage), std::move(watch)};
   tell_all(tell_busy(""), scene);
@@ -177,7 +193,7 @@ void Show::opened(std::size_t scene, Opened scene_opened) {
 
 void Show::not_opened(std::size_t scene, const std::string& why) {
   const std::lock_guard lock(mutex_);
-  opening_[scene] = false;
+  if (is_outdated(scene)) return;
   tell_all(tell_busy(""), scene);
   tell_all(tell_problem("scene", why), scene);
 }
@@ -187,7 +203,7 @@ void Show::look_at_files() {
   if (now - looked_at_files_ < kLookEvery) return;
   looked_at_files_ = now;
   for (auto& [scene, act] : acts_)
-    if (act.watch.changed()) open(scene);
+    if (act.watch.changed()) open_anew(scene);
 }
 
 // ---- Pictures

@@ -108,6 +108,37 @@ def picks(b):
     print("ok  double click: turns about", camera(b)["at"])
 
 
+def touches(b):
+    """One finger orbits, two pan and zoom, a tap picks."""
+    b.key("Escape", "Escape")
+    b.key("KeyR", "r")
+    rest(b)
+    x, y = MIDDLE
+    before = camera(b)
+    b.touch([(x + 8 * i, y + 2 * i) for i in range(10)])
+    rest(b)
+    now = camera(b)
+    assert now["at"] == before["at"] and now["from"] != before["from"], "one finger orbits"
+    assert math.isclose(distance(now), distance(before), rel_tol=1e-9)
+    before = now
+    b.touch([(x - 40 - 6 * i, y) for i in range(10)], [(x + 40 + 6 * i, y) for i in range(10)])
+    rest(b)
+    assert distance(camera(b)) < 0.6 * distance(before), "two fingers that part zoom in"
+    before = camera(b)
+    b.touch([(x - 40 + 6 * i, y + 3 * i) for i in range(10)], [(x + 40 + 6 * i, y + 3 * i) for i in range(10)])
+    rest(b)
+    now = camera(b)
+    moves = [[q - p for p, q in zip(before[k], now[k])] for k in ("from", "at")]
+    assert math.dist(*moves) < 1e-6 * distance(now) and math.hypot(*moves[0]) > 0, "two fingers side by side pan"
+    assert b.ask("document.getElementById('picked').hidden")
+    b.key("KeyR", "r")
+    rest(b)
+    b.touch([MIDDLE])
+    b.wait("!document.getElementById('picked').hidden")
+    b.key("Escape", "Escape")
+    print("ok  touch: orbit, zoom, pan, tap")
+
+
 def choose(b, name, value):
     b.ask(f"(e => {{ e.value = {value!r}; e.dispatchEvent(new Event('input')); }})(document.getElementById('{name}'))")
 
@@ -248,6 +279,7 @@ def main():
                 try:
                     hands(b, folder)
                     picks(b)
+                    touches(b)
                     channels(b, folder)
                     address(b, viewer, folder)
                     reload(b, scene, folder)
