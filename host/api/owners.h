@@ -1,5 +1,5 @@
-// What    Channel "queue": for each pixel who traced it. Of PDPRT that is the queue that rendered its tile; of
-//         ODPRT the one whose subtree the eye ray through its centre ends in.
+// What    Channel "queue": for each pixel who traced it. Of PDPRT that is the queue that rendered its tile,
+//         of ODPRT the one whose subtree the eye ray through its centre ends in.
 // Shape   The number of a queue, film::kNoQueue or film::kEveryQueue.
 #pragma once
 

@@ -1,6 +1,7 @@
 // What    Tells which subtree of a cut a point lies in.
-// Shape   Cells are disjoint, so that a point of a surface lies in one subtree's bounds, or, where rounding has
-//         moved it out, nearest to them; on a plane between two, which hold what lies in it both, in either.
+// Shape   Cells are disjoint, so that a point of a surface lies in one subtree's bounds, or, where rounding
+//         has moved it out, nearest to them; on a plane between two, which hold what lies in it both, in
+//         either.
 #pragma once
 
 #include <cstdint>

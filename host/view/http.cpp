@@ -17,8 +17,8 @@ std::string_view type_of(std::string_view path) {
 }
 
 // The page runs its own files alone, and talks to this server alone. Some browsers don't count WebSockets
-// to 'self', so they are named; Host has been checked. In a frame of another page it does no more for that page
-// than to be seen: which has no token unless somebody gave it one.
+// to 'self', so they are named; Host has been checked. A page that has this one in a frame learns nothing of
+// it, and has no token unless somebody gave it one.
 std::string policy(const Request& request, bool framed) {
   return fmt::format(
       "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "

@@ -1,8 +1,8 @@
 // What    How large a picture is while the camera moves, so that it answers in time; and in which steps the
 //         picture is made when it rests.
-// Why     A frame takes what the scene, the view and the machine make it take: only the last ones tell. Part of
-//         that time is the same for every size (launches, rays too far apart to be traced well), so a frame
-//         of a fourth of the pixels takes more than a fourth of the time; two sizes tell how much more.
+// Why     A frame takes what the scene, the view and the machine make it take: only the last ones tell. Part
+//         of that time is the same for every size (launches, rays too far apart to be traced well), so a
+//         frame of a fourth of the pixels takes more than a fourth of the time; two sizes tell how much more.
 #pragma once
 
 #include <vector>
