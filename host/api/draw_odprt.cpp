@@ -81,6 +81,7 @@ Drawn draw_odprt(State& state, Job& job) {
     drawn.memory_of_queues.push_back({queue.geometry_bytes, queue.work_bytes});
   drawn.divide_seconds = result.divide_seconds;
   drawn.warnings = warnings_of(result);
+  drawn.owners.of_subtrees = std::move(result.subtree_queues);
   drawn.image = std::move(result.image);
   drawn.samples = std::move(result.samples);
   drawn.counters = result.counters;

@@ -63,6 +63,7 @@ Drawn draw_pdprt(State& state, const Job& job) {
   drawn.division = division_of(result, job, state.devices.first().global);
   add_memory(drawn, result, state.scene_bytes);
   drawn.warnings = warnings_of(result);
+  drawn.owners = {result.tile_width, result.tile_height, std::move(result.tile_queues)};
   drawn.image = std::move(result.image);
   drawn.samples = std::move(result.samples);
   drawn.counters = result.counters;

@@ -27,6 +27,12 @@ struct Job {
   std::shared_ptr<ledger::FrameLedger> ledger = {};  // null: there is none
 };
 
+// Who traced what: of PDPRT the queue of each tile (by row and column), of ODPRT that of each subtree.
+struct Owners {
+  std::uint32_t tile_width = 0, tile_height = 0;
+  std::vector<std::uint32_t> of_tiles = {}, of_subtrees = {};
+};
+
 struct Drawn {
   film::Image image;
   std::optional<adaptive::Report> samples;
@@ -35,6 +41,7 @@ struct Drawn {
   std::map<std::string, double> stage_seconds;  // device time, added over the queues
   double render_seconds = 0;
   std::optional<double> divide_seconds;  // of ODPRT
+  Owners owners;
   // For the statistics: how the frame was divided, and what it took of memory.
   Statistics::Division division;
   std::optional<std::uint64_t> frame_bytes;  // of PDPRT

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "film/heat.h"
+#include "film/queue_colors.h"
 #include "film/transfer.h"
 
 namespace kdray::film {
@@ -98,6 +99,29 @@ ChannelPicture heat_picture(int width, int height, const Channel& channel) {
   return picture;
 }
 
+// How bright a colour is, from a quarter to 1, so that what is black still tells whose it is.
+double brightness(const vec3& color) {
+  const double luma = 0.2126 * static_cast<double>(color.x) + 0.7152 * static_cast<double>(color.y) +
+                      0.0722 * static_cast<double>(color.z);
+  return 0.25 + 0.75 * encode(Transfer{}, luma > 0 ? std::min(luma, 1.0) : 0.0);
+}
+
+// Nobody's pixels are black, and everybody's grey.
+ChannelPicture queue_picture(int width, int height, const std::vector<float>& queues,
+                             std::span<const vec3> image) {
+  ChannelPicture picture{"queue", blank(width, height, 3, 8), {}};
+  picture.meta.comment = "queue: a colour per queue, grey is every queue, black is none";
+  for (std::size_t i = 0; i < queues.size(); ++i) {
+    if (!(queues[i] >= 0 || queues[i] == kEveryQueue)) continue;
+    constexpr std::array<std::uint8_t, 3> kGrey = {200, 200, 200};
+    const auto color = queues[i] >= 0 ? queue_color(static_cast<std::size_t>(queues[i])) : kGrey;
+    const double shade = image.empty() ? 1 : brightness(image[i]);
+    for (std::size_t c = 0; c < 3; ++c)
+      picture.pixels.samples[3 * i + c] = static_cast<std::uint16_t>(std::lround(shade * color[c]));
+  }
+  return picture;
+}
+
 const Channel* find(std::span<const Channel> channels, const std::string& name) {
   const auto found =
       std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == name; });
@@ -106,13 +130,16 @@ const Channel* find(std::span<const Channel> channels, const std::string& name) 
 
 }  // namespace
 
-std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<const Channel> channels) {
+std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<const Channel> channels,
+                                             std::span<const vec3> image) {
   std::vector<ChannelPicture> pictures;
   for (const Channel& channel : channels) {
     if (channel.name == "depth") {
       pictures.push_back(depth_picture(width, height, channel.values));
     } else if (channel.name == "primitive") {
       pictures.push_back(primitive_picture(width, height, channel.values));
+    } else if (channel.name == "queue") {
+      pictures.push_back(queue_picture(width, height, channel.values, image));
     } else if (channel.name == "normal.x") {
       const Channel *y = find(channels, "normal.y"), *z = find(channels, "normal.z");
       if (!y || !z) throw Error(ErrorCode::internal, "a normal needs its x, y and z channels");

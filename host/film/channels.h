@@ -1,5 +1,5 @@
 // What    Pictures of extra channels, for beside a PNG: how a depth, a normal, a primitive's number or a cost
-//         looks.
+//         looks, and who traced what.
 #pragma once
 
 #include <span>
@@ -12,12 +12,14 @@
 namespace kdray::film {
 
 struct ChannelPicture {
-  std::string name;  // "depth", "normal", "primitive", "cost": the part between NAME. and .png
+  std::string name;  // "depth", "normal", "primitive", "cost", "queue": the part between NAME. and .png
   PngPixels pixels;
   PngMeta meta;
 };
 
-// One picture per channel; the three of a normal make one.
-std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<const Channel> channels);
+// One picture per channel; the three of a normal make one. `image`: the picture beside them, which lends the
+// colours of queues its brightness; empty: they are flat.
+std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<const Channel> channels,
+                                             std::span<const vec3> image = {});
 
 }  // namespace kdray::film

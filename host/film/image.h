@@ -18,7 +18,7 @@ struct Image {
 
 // One float channel beside the colour, as wide and high as the picture: "depth" (multiples of the unit-length
 // ray direction, inf where nothing is hit), "normal.x" ".y" ".z" (unit, 0 where nothing is hit), "primitive"
-// (number, -1 where nothing is hit), "cost" (nodes visited + primitives tested).
+// (number, -1 where nothing is hit), "cost" (nodes visited + primitives tested), "queue" (queue_colors.h).
 struct Channel {
   std::string name;
   std::vector<float> values;

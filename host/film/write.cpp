@@ -49,7 +49,7 @@ std::string encode_color(const Image& image, const WriteOptions& options) {
 
 void write_channels(const fs::path& file, const Image& image, std::span<const Channel> channels,
                     Written& written) {
-  for (const ChannelPicture& picture : channel_pictures(image.width, image.height, channels)) {
+  for (const ChannelPicture& picture : channel_pictures(image.width, image.height, channels, image.pixels)) {
     const fs::path path = beside(file, picture.name);
     write_file(path, encode_png(picture.pixels, picture.meta));
     written.files.push_back(path);

@@ -12,6 +12,7 @@
 #include "ledger/render_round.h"
 #include "odprt/band.h"
 #include "odprt/queue_failure.h"
+#include "odprt/replicate.h"
 #include "wavefront/curve.h"
 #include "wavefront/develop.h"
 
@@ -88,6 +89,9 @@ void finish(Crew& crew, const Division& division, Result& result) {
       report.n_subtrees += static_cast<std::uint32_t>(division.subtrees_of(part).size());
     }
   }
+  for (const std::uint32_t part : division.part_of)
+    result.subtree_queues.push_back(
+        part == kEveryPart ? kEveryPart : static_cast<std::uint32_t>(crew.reports[crew.owner[part]].number));
   result.queues = crew.reports;
   share_out_seconds(crew, result);
 }

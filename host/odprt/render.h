@@ -76,7 +76,8 @@ struct Result {
   double render_seconds = 0, divide_seconds = 0;
   std::vector<QueueReport> queues;
   ExchangeCounts exchange{0};
-  std::vector<SubtreeUse> visits;  // of each subtree, where counted
+  std::vector<SubtreeUse> visits;             // of each subtree, where counted
+  std::vector<std::uint32_t> subtree_queues;  // the number of the queue that holds it, or kEveryPart
   std::vector<Quarantined> quarantined;
   std::uint32_t n_bands = 0, n_parts = 0, n_cells = 0;
 };

@@ -123,7 +123,12 @@ void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared
   // Last: what it adds to the counters counts.
   wavefront_.finish(extent.first, extent.n,
                     [&](const wavefront::FilmSums& film) { shared.deliver(film, tiles); });
-  if (work.samples.empty()) n_tiles_ += tiles.size();
+  if (work.samples.empty()) {
+    n_tiles_ += tiles.size();
+    for (const layout::u32 tile : tiles)
+      shared.tile_queues[KDRAY_TILE_ROW(tile) * frame_.n_tiles_x + KDRAY_TILE_COLUMN(tile)] =
+          static_cast<std::uint32_t>(number_);
+  }
   shared.tiles_done += tiles.size() - n_told_;
   n_told_ = 0;
 }

@@ -30,7 +30,8 @@ struct Shared {
   // them.
   std::function<void(const wavefront::FilmSums&, std::span<const layout::u32> tiles)> deliver;
   std::atomic<std::uint64_t> tiles_done{0};
-  std::vector<double> tile_seconds;  // by row and column of tiles; empty: not wanted
+  std::vector<double> tile_seconds;        // by row and column of tiles; empty: not wanted
+  std::vector<std::uint32_t> tile_queues;  // likewise: the queue whose tile is in the picture
 };
 
 class Queue {

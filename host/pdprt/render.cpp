@@ -82,6 +82,7 @@ Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), f
     sampler_.emplace(size, task.adaptive_target);
   else
     image_.pixels.resize(size.pixels());
+  shared_.tile_queues.assign(frame_.n_tiles, kNobody);
   if (task.timeline) shared_.tile_seconds.resize(frame_.n_tiles);
   room_.tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
   room_.pixels = bands_.front().n_pixels;
@@ -308,6 +309,7 @@ Result Frame::collect(double seconds) {
   result.tile_height = frame_.tile_height;
   result.n_tiles = frame_.n_tiles;
   result.n_bands = static_cast<std::uint32_t>(bands_.size());
+  result.tile_queues = std::move(shared_.tile_queues);
   result.tile_cost.tile_pixels = std::uint64_t{frame_.tile_width} * frame_.tile_height;
   for (Place& place : places_) {
     if (place.queue) {

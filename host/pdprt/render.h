@@ -34,6 +34,9 @@ struct Device {
   wavefront::Schedule schedule;
 };
 
+// Stands for a tile that no queue of this process has rendered: it was found in a ledger.
+inline constexpr std::uint32_t kNobody = 0xffffffffu;
+
 // Samples of one round of adaptive sampling that a queue's film has room for at least, so that small pictures
 // don't take many lists for one.
 inline constexpr std::size_t kLeastSamples = std::size_t{1} << 18;
@@ -69,8 +72,9 @@ struct Result {
   double render_seconds = 0;                    // wall time from the first launch to the finished film
   std::vector<QueueResult> queues;
   std::uint32_t tile_width = 0, tile_height = 0, n_tiles = 0, n_bands = 0;
-  TileCost tile_cost;                // no total: it was not measured
-  std::vector<double> tile_seconds;  // of a compute unit, in the order of the curve, band after band
+  TileCost tile_cost;                      // no total: it was not measured
+  std::vector<double> tile_seconds;        // of a compute unit, in the order of the curve, band after band
+  std::vector<std::uint32_t> tile_queues;  // by row and column of tiles: who rendered it, or kNobody
 };
 
 Result render(std::span<const Device> devices, const Task& task);

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "film/queue_colors.h"
 #include "prepare/prepared.h"
 #include "scene/scene.h"
 
@@ -60,7 +61,11 @@ Json rays_of(const Statistics::Rays& rays) {
 Json queues_of(const Statistics::Division& division) {
   Json queues = Json::array();
   for (const Statistics::Queue& q : division.per_queue) {
-    Json queue = {{"busy", q.busy_seconds * 1e3}, {"idle", q.idle_share}, {"rays", q.rays}};
+    Json queue = {{"number", q.number},
+                  {"color", film::queue_color(q.number)},
+                  {"busy", q.busy_seconds * 1e3},
+                  {"idle", q.idle_share},
+                  {"rays", q.rays}};
     if (q.tiles) queue["tiles"] = *q.tiles;
     if (q.travel)
       queue.update(

@@ -30,7 +30,8 @@ struct Response {
 struct Door {
   Names names;
   Token token;
-  std::string cookie;  // the name of this server's own: cookies don't know ports
+  std::string cookie;   // the name of this server's own: cookies don't know ports
+  bool framed = false;  // whether pages at the loopback may have this one in a frame
 };
 
 Response answer(const Request& request, const Door& door);

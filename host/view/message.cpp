@@ -97,8 +97,8 @@ void take_samples(const Json& value, Fields& fields, Sight& sight) {
 }
 
 Sight sight_of(const Json& value) {
-  static constexpr std::array<std::string_view, 6> kChannels = {"",          "depth", "normal",
-                                                                "primitive", "cost",  "samples"};
+  static constexpr std::array<std::string_view, 7> kChannels = {"",     "depth",   "normal", "primitive",
+                                                                "cost", "samples", "queue"};
   static constexpr std::array<std::string_view, 3> kModes = {"auto", "pdprt", "odprt"};
   static constexpr std::array<std::string_view, 5> kWalks = {"auto", "binary", "wide", "packet", "batch"};
   Fields fields(value);

@@ -11,13 +11,20 @@ namespace kdray::view {
 
 namespace {
 
+std::vector<vec3> pixels_of(const Picture& picture) {
+  std::vector<vec3> pixels(picture.rgb.size() / 3);
+  static_assert(sizeof(vec3) == 3 * sizeof(float));
+  std::memcpy(pixels.data(), picture.rgb.data(), pixels.size() * sizeof(vec3));
+  return pixels;
+}
+
 film::ChannelPicture channel_of(const Picture& picture) {
   std::vector<film::Channel> channels;
   for (const Channel& c : picture.channels) channels.push_back({c.name, c.values});
-  std::vector<film::ChannelPicture> pictures =
-      film::channel_pictures(picture.width, picture.height, channels);
+  const std::vector<film::ChannelPicture> pictures =
+      film::channel_pictures(picture.width, picture.height, channels, pixels_of(picture));
   if (pictures.empty()) throw Error(ErrorCode::internal, "the channel was not rendered");
-  return std::move(pictures.front());
+  return pictures.front();
 }
 
 }  // namespace
@@ -33,9 +40,7 @@ std::string as_png(const Picture& picture, const RenderOptions& options) {
     const film::ChannelPicture channel = channel_of(picture);
     return film::encode_png(channel.pixels, channel.meta);
   }
-  film::Image image{picture.width, picture.height, std::vector<vec3>(picture.rgb.size() / 3)};
-  static_assert(sizeof(vec3) == 3 * sizeof(float));
-  std::memcpy(image.pixels.data(), picture.rgb.data(), image.pixels.size() * sizeof(vec3));
+  const film::Image image{picture.width, picture.height, pixels_of(picture)};
   return film::encode_picture(film::PictureFormat::png, image, {}, {});
 }
 

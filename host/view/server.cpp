@@ -49,7 +49,7 @@ struct Server::Impl {
 };
 
 Server::Impl::Impl(const ServerOptions& o, const Limits& limits)
-    : options(o), house{{Names(o.bind), Token(), {}}, limits, nullptr, {}, 0, {}} {
+    : options(o), house{{Names(o.bind), Token(), {}, o.framed}, limits, nullptr, {}, 0, {}} {
   house.door.cookie = "kdray-" + Token().text().substr(0, kCookieLetters);
   house.pages_changed = [this] { pages_changed(); };
   const asio::ip::address address = address_of(o.bind);

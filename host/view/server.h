@@ -17,6 +17,8 @@ namespace kdray::view {
 struct ServerOptions {
   std::string bind = "127.0.0.1";  // an address in numbers
   int port = 0;                    // 0: kUsualPort, or the next one that is free
+  // Pages of this machine's other servers may have the page in a frame: for notebooks. None may otherwise.
+  bool framed = false;
   // It ends so long after the last page was closed; none: it stays.
   std::chrono::milliseconds linger{0};
   // Asked twice a second: true ends it.

@@ -137,23 +137,44 @@ void Show::tell_all(const std::string& text, std::optional<std::size_t> scene) {
 
 // ---- Scenes
 
+void Show::open_again(std::size_t scene) {
+  const std::lock_guard lock(mutex_);
+  if (acts_.contains(scene)) open_anew(scene);
+}
+
+void Show::open_anew(std::size_t scene) {
+  if (opening_[scene] == Opening::no)
+    open(scene);
+  else
+    opening_[scene] = Opening::outdated;
+}
+
 void Show::open(std::size_t scene) {
-  if (opening_[scene]) return;
-  opening_[scene] = worker_.add([this, scene] {
+  if (opening_[scene] != Opening::no) return;
+  const bool begins = worker_.add([this, scene] {
     try {
       opened(scene, sources_[scene].open());
     } catch (...) {
       not_opened(scene, words_of(std::current_exception()));
     }
   });
-  if (opening_[scene]) tell_all(tell_busy("opening " + sources_[scene].name), scene);
+  if (!begins) return tell_all(tell_problem("scene", "too much is waiting to be done; ask again"), scene);
+  opening_[scene] = Opening::now;
+  tell_all(tell_busy("opening " + sources_[scene].name), scene);
+}
+
+// Whether what has been opened is to be opened once more.
+bool Show::is_outdated(std::size_t scene) {
+  const bool outdated = std::exchange(opening_[scene], Opening::no) == Opening::outdated;
+  if (outdated) open(scene);
+  return outdated;
 }
 
 void Show::opened(std::size_t scene, Opened scene_opened) {
   auto stage = std::make_shared<Stage>(std::move(scene_opened), settings_);
   Watch watch(stage->files());
   const std::lock_guard lock(mutex_);
-  opening_[scene] = false;
+  if (is_outdated(scene)) return;
   const bool again = acts_.contains(scene);
   acts_[scene] = {std::move(stage), std::move(watch)};
   tell_all(tell_busy(""), scene);
@@ -172,7 +193,7 @@ void Show::opened(std::size_t scene, Opened scene_opened) {
 
 void Show::not_opened(std::size_t scene, const std::string& why) {
   const std::lock_guard lock(mutex_);
-  opening_[scene] = false;
+  if (is_outdated(scene)) return;
   tell_all(tell_busy(""), scene);
   tell_all(tell_problem("scene", why), scene);
 }
@@ -182,7 +203,7 @@ void Show::look_at_files() {
   if (now - looked_at_files_ < kLookEvery) return;
   looked_at_files_ = now;
   for (auto& [scene, act] : acts_)
-    if (act.watch.changed()) open(scene);
+    if (act.watch.changed()) open_anew(scene);
 }
 
 // ---- Pictures
@@ -277,13 +298,14 @@ void Show::deliver(const Task& task, const Picture& picture, double seconds) {
   Seat* const seat = seat_of(*task.visitor);
   if (seat == nullptr) return;
   const bool moving = task.work.look.moving;
-  if (moving) seat->ladder.took(static_cast<double>(picture.width) * picture.height, seconds + encoded);
+  const Statistics& statistics = task.stage->statistics();
+  // At rest a frame of one sample tells as much, but for what was compiled for it.
+  if (moving || (task.options.samples == 1 && task.options.adaptive_target == 0))
+    seat->ladder.took(static_cast<double>(picture.width) * picture.height,
+                      (moving ? seconds : statistics.seconds.render) + encoded);
   if (!moving && !seat->guest.wants(task.work)) return;
   send(*seat, task,
-       {.kind = task.kind,
-        .encode_seconds = encoded,
-        .wall_seconds = seconds,
-        .statistics = &task.stage->statistics()},
+       {.kind = task.kind, .encode_seconds = encoded, .wall_seconds = seconds, .statistics = &statistics},
        bytes);
   seat->guest.done(task.work, task.last);
 }

@@ -35,6 +35,9 @@ class Show : public Reception {
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
 
+  // What pages see of a scene is opened once more; for one that has no files that would tell of a change.
+  void open_again(std::size_t scene);
+
   void enter(const std::shared_ptr<Visitor>& visitor) override;
   void hear(const Visitor& visitor, const Message& message) override;
   void leave(const Visitor& visitor) override;
@@ -51,6 +54,7 @@ class Show : public Reception {
     std::shared_ptr<Stage> stage;
     Watch watch;
   };
+  enum class Opening : char { no, now, outdated };  // outdated: now, and it has changed meanwhile
   struct Task {
     std::shared_ptr<Visitor> visitor;
     std::shared_ptr<Stage> stage;
@@ -70,6 +74,8 @@ class Show : public Reception {
 
   // Of scenes; both end in the worker.
   void open(std::size_t scene);
+  void open_anew(std::size_t scene);
+  bool is_outdated(std::size_t scene);
   void opened(std::size_t scene, Opened scene_opened);
   void not_opened(std::size_t scene, const std::string& why);
   void look_at_files();
@@ -92,7 +98,7 @@ class Show : public Reception {
   std::condition_variable changed_;
   std::list<Seat> seats_;  // the one whose turn it is first
   std::map<std::size_t, Act> acts_;
-  std::vector<bool> opening_;
+  std::vector<Opening> opening_;  // by scene
   std::chrono::steady_clock::time_point looked_at_files_;
   std::optional<Cancel> cancel_;           // of what is being rendered,
   const Visitor* rendered_for_ = nullptr;  // for whom,

@@ -11,11 +11,11 @@ void take_samples(const Sight& sight, RenderOptions& options) {
 }
 
 // A channel is of one ray through each pixel's centre, whatever the picture beside it is made of; all but the
-// counts of samples.
+// counts of samples and the queues, which are about the picture's own rays.
 void take_channel(const Sight& sight, RenderOptions& options) {
   if (sight.channel.empty()) return;
   options.channels = {sight.channel};
-  if (sight.channel == "samples") return;
+  if (sight.channel == "samples" || sight.channel == "queue") return;
   options.depth = 1;
   options.samples = 1;
   options.adaptive_target = 0;

@@ -1,5 +1,6 @@
 #include "view/stage.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "prepare/prepared.h"
@@ -8,6 +9,12 @@
 namespace kdray::view {
 
 namespace {
+
+// A picture is cancelled between launches, two of which are under way. With the usual 64 waves each of them
+// takes up to a quarter of a second on two cores, which the first move after a rest would have to wait for;
+// with so many a tenth of that, and pictures take as long as before (docs/logbook/view.md). Several queues
+// have short ones anyway.
+constexpr int kWavesOfLaunch = 8;
 
 Vec3 triple_of(const dvec3& v) {
   return {v.x, v.y, v.z};
@@ -40,6 +47,11 @@ void Stage::make_ready(const Sight& sight) {
   DeviceOptions device = settings_.device;
   device.queues = queues;
   renderer_.emplace(scene(), device);
+  if (queues == 1) {
+    Tuning tuning = renderer_->statistics().tuning.settings;
+    tuning.waves = tuning.waves > 0 ? std::min(tuning.waves, kWavesOfLaunch) : kWavesOfLaunch;
+    renderer_->tune(tuning);
+  }
   queues_ = queues;
 }
 

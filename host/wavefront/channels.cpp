@@ -36,7 +36,7 @@ std::vector<Plane> wanted_planes(std::span<const std::string> names) {
     if (planes.size() == before)
       throw Error(
           ErrorCode::usage,
-          fmt::format("there is no channel '{}'; there are depth, normal, primitive, cost and samples",
+          fmt::format("there is no channel '{}'; there are depth, normal, primitive, cost, queue and samples",
                       name));
   }
   return planes;

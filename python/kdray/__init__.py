@@ -29,6 +29,7 @@ from .open3d import RaycastingScene
 from .picture import Picture
 from .rays import lidar_rays, pinhole_rays
 from .scene import Geometry, Scene, load
+from .view import View
 
 try:
     __version__ = _version("kdray")
@@ -54,6 +55,7 @@ __all__ = [
     "RaycastingScene",
     "Scene",
     "UsageError",
+    "View",
     "devices",
     "lidar_rays",
     "load",

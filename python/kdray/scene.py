@@ -20,6 +20,7 @@ from .hits import AllHits, ClosestPoints, Hits
 from .looks import Camera, Color, Light, Material
 from .picture import Picture
 from .progress import Progress, teller
+from .view import View, page_of
 
 _USUAL = ("t", "geometry", "primitive", "u", "v", "normal")
 
@@ -452,14 +453,13 @@ class Scene:
         """A Whitted picture, `size` = (width, height), by `camera` or one that sees all of the scene.
 
         `samples` per pixel, or `adaptive`: as many as each pixel needs (a float: the error in linear RGB that is
-        aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth", "normal", "primitive", "cost".
+        aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth", "normal", "primitive", "cost",
+        "samples", "queue".
         `min_weight`: rays that change a pixel by less are left out; 0 traces all.
         """
         named = list(channels)
-        binary = bool(named) or precision == "double"
-        if binary and not self._binary_form:
-            with self._lock:
-                self._binary_form = self._changed = True
+        if named or precision == "double":
+            self._with_binary_form()
         width, height = size
         for name, value in (("the width", width), ("the height", height), ("samples", samples), ("depth", depth)):
             if value < 1:
@@ -478,6 +478,30 @@ class Scene:
             teller(progress, "render"),
         )
         return Picture(rgb.reshape(h, w, 3), _planes(planes, h, w), list(warnings))
+
+    def view(self, camera: Camera | None = None, size: tuple[int, int] = (960, 600), *, port: int = 0) -> View:
+        """A page to look around in the scene, as it is now: in a notebook a frame of `size`, elsewhere an address.
+
+        `camera`: where it begins; without one, where all of the scene is seen. `port`: 0 is 7878, or the next one that
+        is free. The page is served to this machine alone, until `View.close` or the end of the program; `View.update`
+        shows what has been changed since.
+        """
+        width, height = size
+        if width < 1 or height < 1:
+            raise errors.UsageError(f"the size is at least 1 x 1, not {width} x {height}")
+        if not 0 <= port <= 65535:
+            raise errors.UsageError(f"a port is 1 to 65535, or 0, not {port}")
+        self._with_binary_form()
+        name = os.path.basename(self._file[0]) if self._file else "scene"
+        numbers = camera.numbers() if camera is not None else None
+        core = page_of(self._ready(), name, numbers, self._device, self._compute_units, port)
+        return View(self, core, (width, height))
+
+    def _with_binary_form(self) -> None:
+        """The channels of a picture, double precision and the cells of the tree are of it."""
+        if not self._binary_form:
+            with self._lock:
+                self._binary_form = self._changed = True
 
     # ---- Copies
 

@@ -12,4 +12,5 @@ NB_MODULE(_core, module) {
   add_queries(scene);
   add_pictures(module, scene);
   add_devices(module);
+  add_page(module);
 }

@@ -13,5 +13,6 @@ SceneClass add_scene(nanobind::module_& module);
 void add_queries(SceneClass scene);
 void add_pictures(nanobind::module_& module, SceneClass scene);
 void add_devices(nanobind::module_& module);
+void add_page(nanobind::module_& module);
 
 }  // namespace kdray::python

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "film/queue_colors.h"
 #include "support/errors.h"
 
 namespace kdray::film {
@@ -53,6 +55,29 @@ TEST(ChannelPictures, PrimitivesHaveColoursOfTheirOwn) {
     colors.insert({samples[i], samples[i + 1], samples[i + 2]});
   }
   EXPECT_GE(colors.size(), 997u);
+}
+
+TEST(ChannelPictures, QueuesHaveColoursAsBrightAsThePicture) {
+  Channel queue{"queue", {0, 1, kNoQueue, kEveryQueue, 0}};
+  const auto color = [](const Samples& s, std::size_t i) {
+    return Samples(s.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                   s.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
+  };
+  const Samples flat = channel_pictures(5, 1, {&queue, 1})[0].pixels.samples;
+  EXPECT_EQ(color(flat, 0), (Samples{230, 159, 0}));
+  EXPECT_EQ(color(flat, 2), (Samples{0, 0, 0}));
+  EXPECT_EQ(color(flat, 3), (Samples{200, 200, 200}));
+  const std::vector<vec3> image = {vec3(1), vec3(1), vec3(1), vec3(1), vec3(0)};
+  const Samples shaded = channel_pictures(5, 1, {&queue, 1}, image)[0].pixels.samples;
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(color(shaded, i), color(flat, i)) << "white changes nothing";
+  EXPECT_EQ(color(shaded, 4), (Samples{58, 40, 0})) << "a quarter, so that black can be told";
+  std::set<std::array<std::uint8_t, 3>> colors;
+  for (std::size_t q = 0; q < 64; ++q) {
+    const std::array<std::uint8_t, 3> color = queue_color(q);
+    colors.insert(color);
+    EXPECT_GE(std::ranges::max(color), 150);
+  }
+  EXPECT_EQ(colors.size(), 64u);
 }
 
 TEST(ChannelPictures, CostRunsFromBlackToTheHottest) {

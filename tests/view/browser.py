@@ -159,6 +159,16 @@ class Browser:
             self.mouse("mousePressed", x, y, "left", 1, i)
             self.mouse("mouseReleased", x, y, "left", 0, i)
 
+    def touch(self, *fingers):
+        """Fingers go along lists of points at the same time; they touch first and leave last."""
+        for i, points in enumerate(zip(*fingers)):
+            self.call(
+                "Input.dispatchTouchEvent", type="touchMove" if i else "touchStart",
+                touchPoints=[{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)],
+            )  # fmt: skip
+            time.sleep(0.02)
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
     def wheel(self, x, y, by):
         self.mouse("mouseWheel", x, y, deltaX=0, deltaY=by)
 

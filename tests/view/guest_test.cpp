@@ -72,6 +72,53 @@ TEST(Ladder, AFrameThatMovesKeepsToItsTime) {
   }
 }
 
+// A frame of a fourth of the pixels takes more than a fourth of the time: the picture at rest tells how much.
+TEST(Ladder, APictureAtRestTellsWhatALargerFrameTakes) {
+  constexpr double kPixels = 1024 * 768;
+  struct Case {
+    double fixed, full;  // seconds
+    int by;
+  };
+  for (const Case& c :
+       {Case{0.007, 0.09, 2}, Case{0.005, 0.035, 1}, Case{0.010, 0.4, 4}, Case{0.03, 0.9, 8}}) {
+    const auto seconds = [&](double pixels) { return c.fixed + (c.full - c.fixed) * pixels / kPixels; };
+    Ladder ladder;
+    ladder.took(kPixels, seconds(kPixels));
+    for (int i = 0; i < 6; ++i) {
+      const int by = ladder.divide_by(kPixels);
+      ladder.took(kPixels / (by * by), seconds(kPixels / (by * by)));
+    }
+    EXPECT_EQ(ladder.divide_by(kPixels), c.by) << c.full;
+  }
+}
+
+TEST(Ladder, RecoversFromAFrameThatWasInterrupted) {
+  constexpr double kPixels = 1024 * 768;
+  const auto seconds = [](double pixels) { return 0.007 + 0.08 * pixels / kPixels; };
+  Ladder ladder;
+  ladder.took(kPixels, 3.0);
+  int frames = 0;
+  for (; frames < 30 && ladder.divide_by(kPixels) != 2; ++frames) {
+    const int by = ladder.divide_by(kPixels);
+    ladder.took(kPixels / (by * by), seconds(kPixels / (by * by)));
+  }
+  EXPECT_LT(frames, 15);
+}
+
+// A larger frame that turned out to be too slow is tried again, but seldom.
+TEST(Ladder, LargerFramesAreTriedSeldom) {
+  constexpr double kPixels = 1024 * 768;
+  const auto seconds = [](int by) { return by >= 4 ? 0.012 : 0.09; };
+  Ladder ladder;
+  int too_slow = 0;
+  for (int i = 0; i < 400; ++i) {
+    const int by = ladder.divide_by(kPixels);
+    too_slow += by < 4;
+    ladder.took(kPixels / (by * by), seconds(by));
+  }
+  EXPECT_LT(too_slow, 14);
+}
+
 TEST(Steps, EndWithThePictureThatIsWanted) {
   RenderOptions wanted;
   wanted.samples = 1;

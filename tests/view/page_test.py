@@ -7,21 +7,19 @@ Its pictures at rest are compared, byte for byte, with those that the page's own
 channels, reload, resizing, and how the program ends, follow. Skips (status 77) where there is no Chromium.
 """
 
-import base64
 import hashlib
 import math
 import os
 import pathlib
-import shlex
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from browser import Browser  # noqa: E402
+from viewer import Viewer, camera, compare, png, rest  # noqa: E402
 
 WIDTH, HEIGHT = 640, 480
 MIDDLE = (WIDTH / 2, HEIGHT / 2)
@@ -33,64 +31,12 @@ if not Browser.find():
 kdray = os.path.abspath(sys.argv[1])
 
 
-class Viewer:
-    """`kdray view`, as a process."""
-
-    def __init__(self, *arguments, **more):
-        self.process = subprocess.Popen(
-            [kdray, "view", *map(str, arguments), "--no-open", "--size", f"{WIDTH}x{HEIGHT}"],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more,
-        )  # fmt: skip
-        self.address = self.process.stdout.readline().strip()
-        assert self.address.startswith("http://127.0.0.1:"), self.process.stderr.read()
-
-    def ends(self, within):
-        begun = time.monotonic()
-        self.process.wait(within)
-        return time.monotonic() - begun
-
-    def close(self):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.communicate()
-
-
-def rest(browser, limit=20):
-    """Waits for the final picture; the command that renders it."""
-    time.sleep(0.1)
-    browser.wait("kdray.state.final && !kdray.state.changed && !kdray.state.moving", limit)
-    return browser.ask("kdray.state.command")
-
-
-def png(browser):
-    return base64.b64decode(browser.ask(
-        "kdray.state.png.arrayBuffer().then(b => { let t = ''; for (const c of new Uint8Array(b)) "
-        "t += String.fromCharCode(c); return btoa(t); })"
-    ))  # fmt: skip
-
-
-def camera(browser):
-    return browser.ask("kdray.state.camera")
-
-
 def distance(c):
     return math.dist(c["from"], c["at"])
 
 
 def check_picture(browser, folder, name):
-    """The page's PNG is the file that its command makes; and compare agrees."""
-    command = shlex.split(rest(browser))
-    assert command[0] == "kdray", command
-    out = folder / "rendered.png"
-    subprocess.run([kdray, *command[1:], "-o", out, "-q"], check=True)
-    if "--aov" in command:
-        out = folder / f"rendered.{command[command.index('--aov') + 1]}.png"
-    shown = folder / "shown.png"
-    shown.write_bytes(png(browser))
-    told = subprocess.run([kdray, "compare", shown, out], check=True, capture_output=True, text=True).stdout
-    assert shown.read_bytes() == out.read_bytes(), f"{name}: the PNGs differ: {told}"
-    print(f"ok  {name}: {len(shown.read_bytes())} bytes are those of: {shlex.join(command[:3])} ...")
-    return hashlib.sha256(shown.read_bytes()).hexdigest()
+    return hashlib.sha256(compare(kdray, browser, folder, name)).hexdigest()
 
 
 def hands(b, folder):
@@ -162,8 +108,57 @@ def picks(b):
     print("ok  double click: turns about", camera(b)["at"])
 
 
+def touches(b):
+    """One finger orbits, two pan and zoom, a tap picks."""
+    b.key("Escape", "Escape")
+    b.key("KeyR", "r")
+    rest(b)
+    x, y = MIDDLE
+    before = camera(b)
+    b.touch([(x + 8 * i, y + 2 * i) for i in range(10)])
+    rest(b)
+    now = camera(b)
+    assert now["at"] == before["at"] and now["from"] != before["from"], "one finger orbits"
+    assert math.isclose(distance(now), distance(before), rel_tol=1e-9)
+    before = now
+    b.touch([(x - 40 - 6 * i, y) for i in range(10)], [(x + 40 + 6 * i, y) for i in range(10)])
+    rest(b)
+    assert distance(camera(b)) < 0.6 * distance(before), "two fingers that part zoom in"
+    before = camera(b)
+    b.touch([(x - 40 + 6 * i, y + 3 * i) for i in range(10)], [(x + 40 + 6 * i, y + 3 * i) for i in range(10)])
+    rest(b)
+    now = camera(b)
+    moves = [[q - p for p, q in zip(before[k], now[k])] for k in ("from", "at")]
+    assert math.dist(*moves) < 1e-6 * distance(now) and math.hypot(*moves[0]) > 0, "two fingers side by side pan"
+    assert b.ask("document.getElementById('picked').hidden")
+    b.key("KeyR", "r")
+    rest(b)
+    b.touch([MIDDLE])
+    b.wait("!document.getElementById('picked').hidden")
+    b.key("Escape", "Escape")
+    print("ok  touch: orbit, zoom, pan, tap")
+
+
 def choose(b, name, value):
     b.ask(f"(e => {{ e.value = {value!r}; e.dispatchEvent(new Event('input')); }})(document.getElementById('{name}'))")
+
+
+def owners(b, folder):
+    """Who traced it: in ODPRT the subtrees' queues, the same each time; in PDPRT whoever took the tile."""
+    for name, value in (("channel", "queue"), ("queues", "2"), ("mode", "odprt")):
+        choose(b, name, value)
+    check_picture(b, folder, "who traced it, odprt")
+    told = b.ask("document.getElementById('owners').innerText")
+    assert "queue 1" in told and "subtrees" in told and "left" in told and "travelled" in told, told
+    b.screenshot(os.environ.get("KDRAY_SHOT_OWNERS", os.devnull))
+    choose(b, "mode", "pdprt")
+    rest(b)
+    told = b.ask("document.getElementById('owners').innerText")
+    assert "tiles" in told and "travelled" not in told, told
+    print("ok  who traced it:", told.replace("\n", " | "))
+    for name, value in (("mode", "auto"), ("queues", "0")):
+        choose(b, name, value)
+    rest(b)
 
 
 def channels(b, folder):
@@ -172,6 +167,7 @@ def channels(b, folder):
         choose(b, "channel", channel)
         seen.add(check_picture(b, folder, channel))
     assert len(seen) == 5
+    owners(b, folder)
     choose(b, "channel", "")
     check_picture(b, folder, "the picture again")
     for name, value in (("mode", "odprt"), ("queues", "2"), ("traversal", "packet"), ("headlight", "8"),
@@ -240,19 +236,19 @@ def several(b, folder, other):
 
 
 def endings(scene):
-    viewer = Viewer(scene)
+    viewer = Viewer(kdray, scene)
     viewer.process.send_signal(signal.SIGINT)
     seconds = viewer.ends(1)
     assert viewer.process.returncode == -signal.SIGINT
     viewer.close()
     print(f"ok  Ctrl-C ends it within {seconds:.2f} s")
-    viewer = Viewer(scene)
+    viewer = Viewer(kdray, scene)
     viewer.process.stdin.close()  # the terminal, or ssh, is gone
     viewer.ends(5)
     assert viewer.process.returncode == 0
     viewer.process.stdin = None
     viewer.close()
-    viewer = Viewer(scene, "--linger", "0.5")
+    viewer = Viewer(kdray, scene, "--linger", "0.5")
     with Browser(WIDTH, HEIGHT + 30) as b:
         b.open(viewer.address)
         b.wait("window.kdray?.state.scene")
@@ -260,7 +256,7 @@ def endings(scene):
     assert viewer.process.returncode == 0
     viewer.close()
     # The page goes without a farewell, as with a network that is gone, while a picture is being rendered.
-    viewer = Viewer(scene, "--linger", "0.5", "--samples", "1024")
+    viewer = Viewer(kdray, scene, "--linger", "0.5", "--samples", "1024")
     with Browser(WIDTH, HEIGHT + 30) as b:
         b.open(viewer.address)
         b.wait("window.kdray?.state.scene")
@@ -275,7 +271,7 @@ def main():
         scene = folder / "scene.nff"
         shutil.copy(sys.argv[2], scene)
         others = sys.argv[3:]
-        viewer = Viewer(scene, *others)
+        viewer = Viewer(kdray, scene, *others)
         try:
             with Browser(WIDTH, HEIGHT + 30) as b:
                 b.open(viewer.address)
@@ -283,6 +279,7 @@ def main():
                 try:
                     hands(b, folder)
                     picks(b)
+                    touches(b)
                     channels(b, folder)
                     address(b, viewer, folder)
                     reload(b, scene, folder)

@@ -29,6 +29,25 @@ TEST_F(Served, WithAStrictPolicy) {
   EXPECT_EQ(page.find("//"), std::string::npos) << "nothing from elsewhere";
 }
 
+TEST(Server, IsFramedByThisMachinesPagesWhereThatIsAskedFor) {
+  for (const bool framed : {false, true}) {
+    Counter counter;
+    view::Server server({.framed = framed});
+    std::thread thread([&] { server.run(counter); });
+    Client client(server.port());
+    client.send(request("GET", "/", {"127.0.0.1", "", "", "Connection: close\r\n"}));
+    const std::string head = client.read_until("\r\n\r\n");
+    const std::size_t begin = head.find("frame-ancestors ");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string ancestors = head.substr(begin, head.find("\r\n", begin) - begin);
+    EXPECT_EQ(ancestors, framed ? "frame-ancestors http://localhost:* http://127.0.0.1:* https://localhost:* "
+                                  "https://127.0.0.1:*"
+                                : "frame-ancestors 'none'");
+    server.stop();
+    thread.join();
+  }
+}
+
 // DNS rebinding: a page of evil.example whose name now leads here is told nothing.
 TEST_F(Served, ForeignHostsAreRefused) {
   const std::string evil = "evil.example:" + std::to_string(port());

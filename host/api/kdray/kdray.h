@@ -87,7 +87,8 @@ class SceneCache {
 };
 
 struct Channel {
-  std::string name;           // "depth", "normal.x" "normal.y" "normal.z", "primitive", "cost", "samples"
+  // "depth", "normal.x" "normal.y" "normal.z", "primitive", "cost", "queue", "samples"
+  std::string name;
   std::vector<float> values;  // width * height
 };
 

@@ -153,7 +153,7 @@ struct RenderOptions {
   // ODPRT: the most that a device may hold; subtrees come and go; 0: no limit.
   std::uint64_t device_memory = 0;
   bool timeline = false;                      // keep what Renderer::timeline() tells
-  std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost", "samples"
+  std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost", "queue", "samples"
   std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1
   std::optional<Camera> camera = {};          // in place of the scene's
   std::optional<Cancel> cancel = {};

@@ -6,7 +6,7 @@ import {Controls, showPicked} from './controls.js';
 import {Hands} from './hands.js';
 import {Link} from './link.js';
 import {Screen} from './screen.js';
-import {Strip} from './strip.js';
+import {showOwners, Strip} from './strip.js';
 
 const REST = 140;  // milliseconds without a change
 const byId = (id) => document.getElementById(id);
@@ -126,6 +126,8 @@ async function takeFrame(frame, picture) {
   }
   for (const number of state.sent.keys()) if (number <= frame.look) state.sent.delete(number);
   if (frame.figures) strip.show(frame, latency);
+  byId('owners').hidden = controls.values().channel !== 'queue';
+  if (frame.figures && !byId('owners').hidden) showOwners(byId('owners'), frame.figures);
   if (frame.look !== state.number) return;
   if (state.error === 'look') show('problem', '');
   if (frame.kind === 'final') {

@@ -31,6 +31,29 @@ function line(frame, f, latency) {
   return parts;
 }
 
+// Of a queue: what it had of the frame, and, of ODPRT, how many rays came and went.
+function share(q) {
+  return [
+    `${count(q.rays)} rays`, q.tiles !== undefined ? `${q.tiles} tiles` : '',
+    q.subtrees !== undefined ? `${q.subtrees} subtrees` : '',
+    q.out !== undefined ? `${count(q.in)} rays came, ${count(q.out)} left` : '', ms(q.busy)].filter(Boolean).join(', ');
+}
+
+// What the colours of channel "queue" stand for.
+export function showOwners(card, f) {
+  card.replaceChildren();
+  for (const q of f.queues ?? []) {
+    const row = element('div', '', card), swatch = element('span', '', row);
+    swatch.className = 'swatch';
+    swatch.style.backgroundColor = `rgb(${q.color.join(', ')})`;
+    element('b', `queue ${q.number}`, row);
+    element('span', share(q), row);
+  }
+  const {travelled} = f;
+  if (travelled) element('p', `${count(travelled.rays)} rays travelled, ${count(travelled.bytes)} bytes; grey: every queue holds it`, card);
+  if (f.queues?.length === 1) element('p', 'one queue traced all of it: take more (Settings, Queues)', card);
+}
+
 export class Strip {
   constructor(figures, details, more) {
     Object.assign(this, {figures, details, frame: null, latency: 0});
@@ -64,9 +87,7 @@ export class Strip {
     times.push(['encode', ms(frame.encode)]);
     const {skipped = {}, total, ...kinds} = f.rays;
     const sent = f.travelled ? [['rays', count(f.travelled.rays)], ['bytes', count(f.travelled.bytes)]] : [];
-    const queues = (f.queues ?? []).map((q, i) => [`queue ${i}`, [
-      ms(q.busy), q.tiles !== undefined ? `${q.tiles} tiles` : '', q.subtrees !== undefined ? `${q.subtrees} subtrees` : '',
-      q.out !== undefined ? `${count(q.out)} rays sent on` : ''].filter(Boolean).join(', ')]);
+    const queues = (f.queues ?? []).map((q) => [`queue ${q.number}`, share(q)]);
     return [
       ...section('Stages (device time, over all queues)', times),
       ...section('Rays', [...Object.entries(kinds), ['total', total]].map(([name, n]) => [name, count(n)])),

@@ -1,0 +1,117 @@
+// The page of a scene (host/view), served by this process until it is closed.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "parts.h"
+#include "view/server.h"
+#include "view/show.h"
+
+namespace kdray::python {
+
+namespace {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using Released = nb::call_guard<nb::gil_scoped_release>;
+using CameraNumbers = std::array<double, 12>;  // from, at, up, fov, ortho_width, hither
+
+// As it was committed last, with the ids and names of its geometries.
+view::Opened opened(const Scene& scene) {
+  view::Opened opened{scene.prepared(), {}};
+  for (const GeometryId id : scene.geometries()) {
+    const GeometryInfo info = scene.info(id);
+    if (info.enabled) opened.geometries.push_back({info.name, id, info.primitives});
+  }
+  return opened;
+}
+
+View view_of(const std::optional<CameraNumbers>& camera) {
+  View view;
+  if (!camera) return view;
+  const CameraNumbers& n = *camera;
+  view.from = {n[0], n[1], n[2]};
+  view.at = {n[3], n[4], n[5]};
+  view.up = {n[6], n[7], n[8]};
+  if (n[10] > 0)
+    view.ortho_width = n[10];
+  else
+    view.fov = n[9];
+  return view;
+}
+
+// Its threads are kdray's own and never call Python.
+class Page {
+ public:
+  Page(const Scene& scene, const std::string& name, const std::optional<CameraNumbers>& camera,
+       const std::string& device, int compute_units, int port, bool framed)
+      : scene_(opened(scene)) {
+    server_.emplace(view::ServerOptions{.port = port, .framed = framed});
+    address_ = server_->address();
+    view::Settings settings;
+    settings.view = view_of(camera);
+    settings.device.device = device;
+    settings.device.compute_units = compute_units;
+    settings.device.programs = default_program_folder();
+    settings.device.remember_programs = true;
+    show_.emplace(std::vector<view::Source>{{name, "", [this] { return scene_now(); }}}, settings, scene_);
+    thread_ = std::thread([this] { server_->run(*show_); });
+  }
+  ~Page() { close(); }
+  Page(const Page&) = delete;
+  Page& operator=(const Page&) = delete;
+
+  const std::string& address() const { return address_; }
+
+  void update(const Scene& scene) {
+    view::Opened now = opened(scene);
+    {
+      const std::lock_guard lock(mutex_);
+      scene_ = std::move(now);
+    }
+    const std::lock_guard lock(closing_);
+    if (show_) show_->open_again(0);
+  }
+
+  void close() {
+    const std::lock_guard lock(closing_);
+    if (!server_) return;
+    server_->stop();
+    thread_.join();
+    show_.reset();  // before the server: it holds visitors
+    server_.reset();
+  }
+
+ private:
+  view::Opened scene_now() {
+    const std::lock_guard lock(mutex_);
+    return scene_;
+  }
+
+  std::mutex mutex_, closing_;
+  view::Opened scene_;  // by `mutex_`
+  std::string address_;
+  std::optional<view::Server> server_;  // none: closed
+  std::optional<view::Show> show_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+void add_page(nb::module_& module) {
+  nb::class_<Page>(module, "Page")
+      .def(nb::init<const Scene&, const std::string&, const std::optional<CameraNumbers>&, const std::string&,
+                    int, int, bool>(),
+           Released(), "scene"_a, "name"_a, "camera"_a.none(), "device"_a, "compute_units"_a, "port"_a,
+           "framed"_a)
+      .def("address", &Page::address)
+      .def("update", &Page::update, Released(), "scene"_a)
+      .def("close", &Page::close, Released());
+}
+
+}  // namespace kdray::python

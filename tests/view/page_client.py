@@ -1,0 +1,85 @@
+"""What a page says to `kdray view`, over a plain socket: the few lines of HTTP and WebSocket (RFC 6455) that it takes."""
+
+import json
+import os
+import select
+import socket
+import struct
+import time
+import urllib.parse
+
+SIGHT = {
+    "scene": 0, "camera": {"from": [2.1, 1.3, 1.7], "at": [0, 0, 0], "up": [0, 0, 1], "fov": 45, "ortho": 0},
+    "width": 640, "height": 480, "depth": 5, "samples": "adaptive", "weight": -1, "headlight": 0, "channel": "",
+    "mode": "auto", "traversal": "auto", "queues": 0,
+}  # fmt: skip
+
+
+class PageClient:
+    """A page that is in: it has said hello, and looks."""
+
+    def __init__(self, address):
+        url = urllib.parse.urlsplit(address)
+        self.socket = socket.create_connection((url.hostname, url.port), 10)
+        host = url.netloc
+        self.socket.sendall(
+            f"GET /socket HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: Upgrade\r\n"
+            "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n".encode()
+        )
+        self.buffer = b""
+        while b"\r\n\r\n" not in self.buffer:
+            self._fill(10)
+        head, self.buffer = self.buffer.split(b"\r\n\r\n", 1)
+        assert head.startswith(b"HTTP/1.1 101"), head
+        self.number = 0
+        self.send({"type": "hello", "token": url.fragment.split("=")[1]})
+
+    def send(self, message):
+        text = json.dumps(message).encode()
+        mask = os.urandom(4)
+        head = bytes([0x81]) + (bytes([0x80 | len(text)]) if len(text) < 126 else struct.pack(">BH", 0xFE, len(text)))
+        self.socket.sendall(head + mask + bytes(c ^ mask[i % 4] for i, c in enumerate(text)))
+
+    def look(self, moving, **changes):
+        self.number += 1
+        self.send({"type": "look", "number": self.number, "moving": moving, "sight": {**SIGHT, **changes}})
+
+    def _fill(self, limit):
+        if not select.select([self.socket], [], [], limit)[0]:
+            raise TimeoutError("kdray says nothing")
+        data = self.socket.recv(1 << 20)
+        if not data:
+            raise ConnectionError("kdray has closed the connection")
+        self.buffer += data
+
+    def hear(self, limit=30):
+        """The next message, of a frame its head; frames are acknowledged."""
+        end = time.monotonic() + limit
+        while True:
+            n, begin = (self.buffer[1] & 127, 2) if len(self.buffer) > 1 else (1 << 60, 2)
+            if n == 126 and len(self.buffer) >= 4:
+                n, begin = struct.unpack_from(">H", self.buffer, 2)[0], 4
+            elif n == 127 and len(self.buffer) >= 10:
+                n, begin = struct.unpack_from(">Q", self.buffer, 2)[0], 10
+            if len(self.buffer) >= begin + n and begin + n < 1 << 59:
+                opcode, data = self.buffer[0] & 15, self.buffer[begin : begin + n]
+                self.buffer = self.buffer[begin + n :]
+                if opcode == 1:
+                    return json.loads(data)
+                if opcode == 2:
+                    head = json.loads(data[4 : 4 + struct.unpack_from("<I", data)[0]])
+                    self.send({"type": "shown", "frame": head["frame"]})
+                    return head
+                continue
+            self._fill(max(0.0, end - time.monotonic()))
+
+    def hear_until(self, kind, limit=60):
+        """A message of this type, or a frame of this kind."""
+        end = time.monotonic() + limit
+        while True:
+            message = self.hear(max(0.0, end - time.monotonic()))
+            if kind in (message["type"], message.get("kind")):
+                return message
+
+    def close(self):
+        self.socket.close()
