@@ -96,23 +96,38 @@ class Mpi final : public Transport {
     }
   }
 
-  std::optional<Message> take() override {
-    forget_sent();
+  void begin_to_receive() {
     int from = 0, tag = 0;
     std::size_t n = 0;
-    if (check(mpi_.probe(&from, &tag, &n), "looking for messages") == 0) return std::nullopt;
-    if (tag < 0 || tag > kMostTag || n > kMostBytes)
-      throw Error(ErrorCode::internal,
-                  fmt::format("rank {} got {} bytes with tag {} from rank {}", rank(), n, tag, from));
-    Message message{from, static_cast<Tag>(tag), Bytes(n, '\0')};
-    check(mpi_.receive(message.bytes.data()), "receiving");
+    while (check(mpi_.probe(&from, &tag, &n), "looking for messages") == 1) {
+      if (tag < 0 || tag > kMostTag || n > kMostBytes)
+        throw Error(ErrorCode::internal,
+                    fmt::format("rank {} got {} bytes with tag {} from rank {}", rank(), n, tag, from));
+      const std::uint64_t ticket = next_ticket_++;
+      Message& message =
+          coming_.emplace(ticket, Message{from, static_cast<Tag>(tag), Bytes(n, '\0')}).first->second;
+      check(mpi_.receive(message.bytes.data(), ticket), "receiving");
+    }
+  }
+
+  std::optional<Message> take() override {
+    forget_sent();
+    begin_to_receive();
+    std::uint64_t ticket = 0;
+    if (coming_.empty() || check(mpi_.received(&ticket), "receiving") == 0) return std::nullopt;
+    const auto found = coming_.find(ticket);
+    if (found == coming_.end())
+      throw Error(ErrorCode::internal, "MPI has received what kdray hasn't asked for");
+    Message message = std::move(found->second);
+    coming_.erase(found);
     return message;
   }
 
   const Functions& mpi_;
   Timer clock_;
   std::uint64_t next_ticket_ = 0;
-  std::unordered_map<std::uint64_t, Bytes> sending_;  // its elements don't move
+  std::unordered_map<std::uint64_t, Bytes> sending_;  // elements don't move, in both
+  std::unordered_map<std::uint64_t, Message> coming_;
   std::size_t bytes_waiting_ = 0;
 };
 

@@ -20,7 +20,7 @@ struct Ended {
 Ended run(int ranks, const std::vector<std::string>& arguments, const std::string& more = {}) {
   std::string command = "env " + more;
   for (const auto& [name, value] : mpirun_environment()) command += " " + name + "=" + value;
-  command += " timeout 60 " + mpirun().string();
+  command += " timeout 120 " + mpirun().string();
   for (const std::string& argument : mpirun_arguments(ranks, KDRAY_MPI_RANK, arguments))
     command += " " + argument;
   std::FILE* const pipe = ::popen((command + " 2>&1").c_str(), "r");

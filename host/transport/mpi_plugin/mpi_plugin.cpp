@@ -16,7 +16,8 @@
 
 namespace {
 
-struct Sending {
+// A message on its way out or in.
+struct Moving {
   MPI_Request request;
   std::uint64_t ticket;
 };
@@ -25,7 +26,7 @@ struct {
   MPI_Comm world = MPI_COMM_NULL;
   MPI_Message coming = MPI_MESSAGE_NULL;
   int coming_bytes = 0;
-  std::vector<Sending> sending;
+  std::vector<Moving> sending, receiving;
   std::string error, library;
   bool is_open = false;
 } state;
@@ -96,17 +97,26 @@ int send_bytes(int to, int tag, const void* bytes, std::size_t n, std::uint64_t 
   return 0;
 }
 
-int next_sent(std::uint64_t* ticket) {
-  for (Sending& sending : state.sending) {
+// One that has ended is taken from the list.
+int next_ended(std::vector<Moving>& list, std::uint64_t* ticket) {
+  for (Moving& moving : list) {
     int done = 0;
-    if (!went_well(MPI_Test(&sending.request, &done, MPI_STATUS_IGNORE), "MPI_Test")) return -1;
+    if (!went_well(MPI_Test(&moving.request, &done, MPI_STATUS_IGNORE), "MPI_Test")) return -1;
     if (done == 0) continue;
-    *ticket = sending.ticket;
-    sending = state.sending.back();
-    state.sending.pop_back();
+    *ticket = moving.ticket;
+    moving = list.back();
+    list.pop_back();
     return 1;
   }
   return 0;
+}
+
+int next_sent(std::uint64_t* ticket) {
+  return next_ended(state.sending, ticket);
+}
+
+int next_received(std::uint64_t* ticket) {
+  return next_ended(state.receiving, ticket);
 }
 
 int next_coming(int* from, int* tag, std::size_t* n) {
@@ -125,18 +135,20 @@ int next_coming(int* from, int* tag, std::size_t* n) {
   return 1;
 }
 
-int receive_bytes(void* to) {
+int receive_bytes(void* to, std::uint64_t ticket) {
   if (state.coming == MPI_MESSAGE_NULL) return refuse("no message was found");
-  if (!went_well(MPI_Mrecv(to, state.coming_bytes, MPI_BYTE, &state.coming, MPI_STATUS_IGNORE), "MPI_Mrecv"))
+  MPI_Request request = MPI_REQUEST_NULL;
+  if (!went_well(MPI_Imrecv(to, state.coming_bytes, MPI_BYTE, &state.coming, &request), "MPI_Imrecv"))
     return -1;
   state.coming = MPI_MESSAGE_NULL;
+  state.receiving.push_back({request, ticket});
   return 0;
 }
 
 int close_mpi() {
   if (!state.is_open) return 0;
   state.is_open = false;
-  for (Sending& sending : state.sending)
+  for (Moving& sending : state.sending)
     if (!went_well(MPI_Wait(&sending.request, MPI_STATUS_IGNORE), "MPI_Wait")) return -1;
   state.sending.clear();
   if (!went_well(MPI_Comm_free(&state.world), "MPI_Comm_free")) return -1;
@@ -147,13 +159,20 @@ void abort_mpi(int exit_code) {
   MPI_Abort(MPI_COMM_WORLD, exit_code);
 }
 
-constexpr kdray_mpi_functions kFunctions = {KDRAY_MPI_VERSION, sizeof(kdray_mpi_functions),
-                                            open_mpi,          rank_of_this,
-                                            number_of_ranks,   library_in_words,
-                                            last_error,        send_bytes,
-                                            next_sent,         next_coming,
-                                            receive_bytes,     close_mpi,
-                                            abort_mpi};
+constexpr kdray_mpi_functions kFunctions = {.version = KDRAY_MPI_VERSION,
+                                            .bytes = sizeof(kdray_mpi_functions),
+                                            .open = open_mpi,
+                                            .rank = rank_of_this,
+                                            .ranks = number_of_ranks,
+                                            .library = library_in_words,
+                                            .error = last_error,
+                                            .send = send_bytes,
+                                            .sent = next_sent,
+                                            .probe = next_coming,
+                                            .receive = receive_bytes,
+                                            .received = next_received,
+                                            .close = close_mpi,
+                                            .abort = abort_mpi};
 
 }  // namespace
 

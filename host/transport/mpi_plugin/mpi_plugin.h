@@ -27,9 +27,12 @@ struct kdray_mpi_functions {
   int (*send)(int to, int tag, const void* bytes, size_t n, uint64_t ticket);
   /* 1: a message whose bytes may go; 0: none. */
   int (*sent)(uint64_t* ticket);
-  /* 1: a message has come, which receive() has to take before the next is asked for; 0: none. */
+  /* 1: a message is coming, which receive() has to take before the next is asked for; 0: none. */
   int (*probe)(int* from, int* tag, size_t* n);
-  int (*receive)(void* to);
+  /* Begins to write it there; it has come when received() has returned `ticket`. */
+  int (*receive)(void* to, uint64_t ticket);
+  /* 1: a message that has come; 0: none. */
+  int (*received)(uint64_t* ticket);
 
   int (*close)(void); /* all ranks have to */
   void (*abort)(int exit_code);
