@@ -22,7 +22,8 @@ struct Tags {
   Tag first, last;
   bool hold(Tag tag) const { return first <= tag && tag <= last; }
 };
-inline constexpr Tags kTagsOfRanks{0, 15}, kTagsOfRuns{16, 31}, kTagsOfFrames{32, 47}, kTagsOfTiles{48, 63};
+inline constexpr Tags kTagsOfRanks{0, 15}, kTagsOfCores{16, 17}, kTagsOfScenes{24, 24}, kTagsOfFrames{32, 47},
+    kTagsOfTiles{48, 63};
 
 // Not an error of this rank's; its code is the one to exit with.
 struct Ended {
