@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <new>
 #include <string_view>
@@ -74,6 +75,10 @@ int run_in_ranks(const std::vector<std::string>& arguments, const std::function<
   try {
     this_run() = std::make_shared<transport::Ranks>(transport::open_mpi(launched.ranks));
   } catch (const Error&) {
+    // Processes that share a folder need no MPI, though srun may have started them.
+    const bool shares =
+        std::ranges::any_of(arguments, [](const std::string& a) { return a.starts_with("--share"); });
+    if (shares && choice_in(arguments) == "auto") return run();
     if (launched.rank == 0) throw;
     return static_cast<int>(ErrorCode::usage);  // rank 0 finds the same, and says so
   }

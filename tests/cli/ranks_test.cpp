@@ -86,7 +86,7 @@ TEST_F(MpirunTest, PicturesAreTheSameForAnyNumberOfRanks) {
     const auto rays = told()["rays"]["total"];
     const auto& [n, queues] = ways[i];
     SCOPED_TRACE(scenes[i] + ": " + std::to_string(n) + " ranks of " + queues);
-    EXPECT_EQ(together(n, scene, {"--size", "180x140", "--queues", queues}), whole);
+    EXPECT_EQ(together(n, scene, {"--size", "180x140", "--queues", queues, "--mpi", "on"}), whole);
     EXPECT_EQ(told()["rays"]["total"], rays);
     EXPECT_EQ(told()["mode"]["per_queue"].size(), static_cast<std::size_t>(n) * std::stoul(queues));
     EXPECT_EQ(told()["mode"]["ranks"]["number"], n);
@@ -99,8 +99,9 @@ TEST_F(MpirunTest, AdaptiveSamplingSequencesAndCaches) {
   EXPECT_EQ(
       together(3, scene, {"--size", "200x150", "--samples", "adaptive:0.01", "--cache", folder / "cache"}),
       whole);
-  folder.put("path.json", R"({"cameras": [{"frame": 0, "from": [0, -4, 3], "at": [0, 0, 0]},
-                                          {"frame": 2, "from": [3, -4, 3], "at": [0, 0, 0]}]})");
+  folder.put("path.json", R"({"kdray_camera_path": 1, "interpolation": "linear", "keys": [
+    {"frame": 0, "from": [0, -6, 3], "at": [0, 0, 1], "up": [0, 0, 1], "fov": 40},
+    {"frame": 2, "from": [2, -6, 5], "at": [0, 0, 0], "up": [0, 0, 1], "fov": 30}]})");
   const auto frames = [&](const std::string& to) {
     return Arguments{"render", scene,      "-o",   folder / to,     "--size",
                      "100x80", "--frames", "0..2", "--camera-path", folder / "path.json"};
@@ -144,8 +145,7 @@ TEST_F(MpirunTest, ARankThatFailsEndsTheJobInOneLine) {
     EXPECT_EQ(lines.size(), 1u) << run.err;
     return lines.empty() ? std::string() : lines.front();
   };
-  const Arguments failing =
-      render(scene, {"--size", "600x400", "--samples", "16", "--inject-fault", "1/0@2:input"});
+  const Arguments failing = render(scene, {"--size", "90x60", "--inject-fault", "1/self-test@0"});
   EXPECT_NE(line_of(3, failing).find("kdray: rank 1: "), std::string::npos);
   EXPECT_FALSE(fs::exists(picture));
   EXPECT_NE(line_of(3, render(folder / "none.nff", {})).find("none.nff"), std::string::npos);
