@@ -71,7 +71,7 @@ void Crew::run(std::size_t number, Tiles& tiles, const Work& work) {
   changed_.notify_one();
 }
 
-// Until every queue's thread has ended.
+// Waits until every queue's thread has ended.
 void Crew::wait(Tiles& tiles, double step, const std::function<void()>& beside) {
   std::unique_lock lock(mutex_);
   while (n_running_ > 0) {

@@ -38,7 +38,7 @@ std::vector<layout::u32> Frame::render_runs(std::size_t first, std::vector<layou
                      seconds);
 }
 
-// As many runs at a time as the queues have room for.
+// Renders as many runs at a time as the queues have room for.
 void Frame::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
   crew_->shared().tiles_done = n_of_others_ = 0;
   n_tiles_ = samples.size() / kWordsOfRun;

@@ -3,12 +3,19 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
+#include <sstream>
+#include <thread>
 
 #include "cli/program.h"
 #include "cli/rank_cores.h"
 #include "cli/ranks.h"
+#include "cli/running.h"
 #include "cli/scenes.h"
 #include "support/folder.h"
 #include "support/mpirun.h"
@@ -155,6 +162,39 @@ TEST_F(MpirunTest, ARankThatFailsEndsTheJobInOneLine) {
   EXPECT_NE(line_of(2, render(scene, {"--trace", folder / "t.json"})).find("--trace"), std::string::npos);
   EXPECT_NE(line_of(2, render(scene, {"--checkpoint", folder / "l", "--restarts", "2"})).find("--restarts"),
             std::string::npos);
+}
+
+// KDRAY_KILL_SEEDS: how many times.
+TEST_F(MpirunTest, WhateverRankIsKilledTheNextRunGoesOn) {
+  const std::string scene = folder / "balls.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "2", "-o", scene})));
+  const Arguments size{"--size", "400x300", "--samples", "16", "--cache", folder / "cache"};
+  const std::string whole = alone(scene, size);
+  const char* const asked = std::getenv("KDRAY_KILL_SEEDS");
+  const unsigned seeds = asked != nullptr ? static_cast<unsigned>(std::atoi(asked)) : 3;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const auto pick = [&](int lo, int hi) { return std::uniform_int_distribution(lo, hi)(random); };
+    fs::remove_all(folder / "ledger");
+    Arguments kept = size;
+    kept.insert(kept.end(), {"--checkpoint", folder / "ledger", "--resume", "--checkpoint-every", "0.1"});
+    {
+      auto environment = mpirun_environment();
+      environment["KDRAY_MPI_PLUGIN"] = KDRAY_MPI_PLUGIN;
+      Running run(mpirun_arguments(3, KDRAY_PROGRAM, render(scene, kept)), folder / "log", mpirun(),
+                  environment);
+      std::this_thread::sleep_for(std::chrono::milliseconds(pick(300, 1800)));
+      const std::vector<pid_t> ranks = run.children();
+      const int victim = pick(0, 3);
+      if (victim == 3 || ranks.size() < 3)
+        run.kill(SIGKILL);
+      else
+        ::kill(ranks[static_cast<std::size_t>(victim)], SIGKILL);
+      EXPECT_TRUE(run.wait(10)) << "it hangs";
+    }
+    EXPECT_EQ(together(pick(1, 4), scene, kept), whole);
+  }
 }
 
 TEST_F(MpirunTest, WithoutMpiEachWorksByItself) {
