@@ -23,6 +23,9 @@ foreach(program kdray_cli kdray_bench_program)
   endif()
 endforeach()
 
+if(TARGET kdray_mpi)
+  install(TARGETS kdray_mpi LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/kdray)
+endif()
 if(TARGET kdray_c)
   install(TARGETS kdray_c EXPORT kdray LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

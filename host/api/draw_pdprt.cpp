@@ -30,8 +30,9 @@ std::vector<std::string> warnings_of(const pdprt::Result& result) {
   for (std::size_t i = 0; i < result.queues.size(); ++i)
     if (const pdprt::QueueResult& queue = result.queues[i]; !queue.failure.empty())
       warnings.push_back(
-          fmt::format("queue {} ({}) failed: {}; the other queues rendered the {} tiles it had taken", i,
-                      queue.device, queue.failure, queue.tiles_lost));
+          fmt::format("queue {} ({}){} failed: {}; the other queues rendered the {} tiles it had taken", i,
+                      queue.device, queue.rank > 0 ? fmt::format(", which is rank {}'s,", queue.rank) : "",
+                      queue.failure, queue.tiles_lost));
   return warnings;
 }
 
@@ -44,10 +45,17 @@ void add_memory(Drawn& drawn, const pdprt::Result& result, std::uint64_t scene_b
   }
 }
 
+void tell_of_ranks(Statistics::Division& division, const pdprt::Result& result,
+                   const transport::Ranks& ranks) {
+  const transport::Counters& c = ranks.counters();
+  division.ranks = Statistics::Ranks{ranks.size(), c.sent, c.received, c.bytes_sent, c.bytes_received};
+  for (std::size_t i = 0; i < result.queues.size(); ++i) division.per_queue[i].rank = result.queues[i].rank;
+}
+
 }  // namespace
 
 Drawn draw_pdprt(State& state, const Job& job) {
-  const std::size_t max_film_bytes = film_bytes(state, job);
+  const std::size_t max_film_bytes = state.ranks ? job.film_of_ranks : film_bytes(state, job);
   pdprt::Result result = pdprt::render(places_on(state, job), {.frame = job.frame,
                                                                .features = job.features,
                                                                .adaptive_target = job.options.adaptive_target,
@@ -56,11 +64,14 @@ Drawn draw_pdprt(State& state, const Job& job) {
                                                                .faults = &state.faults,
                                                                .timeline = job.timeline,
                                                                .max_film_bytes = max_film_bytes,
-                                                               .ledger = job.ledger.get()});
+                                                               .ledger = job.ledger.get(),
+                                                               .ranks = state.ranks.get(),
+                                                               .shared_frame = job.shared_frame});
   state.scheduler.remember(job.frame, result.tile_cost);
   state.speeds.take(job.frame).pdprt = mrays_per_s(result.counters.total(), result.render_seconds);
   Drawn drawn;
   drawn.division = division_of(result, job, state.devices.first().global);
+  if (state.ranks) tell_of_ranks(drawn.division, result, *state.ranks);
   add_memory(drawn, result, state.scene_bytes);
   drawn.warnings = warnings_of(result);
   drawn.owners = {result.tile_width, result.tile_height, std::move(result.tile_queues)};

@@ -3,9 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "kdray/kdray.h"
+
+namespace kdray::transport {
+class Ranks;
+}
 
 namespace kdray::api {
 
@@ -18,6 +23,9 @@ struct Hooks {
   // Bits of kernels/layout/features.h and rules.h: what is compiled and done though the scene doesn't need
   // it.
   std::uint64_t keep = 0;
+  // Other processes that render the same frames, one after the other: of rank 0 the pictures are whole, those
+  // of the others are empty. Null: there are none.
+  std::shared_ptr<transport::Ranks> ranks = {};
 };
 
 Renderer make_renderer(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks);

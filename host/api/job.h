@@ -25,6 +25,9 @@ struct Job {
   layout::Features features;
   timeline::Timeline* timeline;                      // null: not wanted
   std::shared_ptr<ledger::FrameLedger> ledger = {};  // null: there is none
+  // With ranks: the frame's mark, and what a queue's film takes at most (agree.h).
+  Hash shared_frame = {};
+  std::size_t film_of_ranks = 0;
 };
 
 // Who traced what: of PDPRT the queue of each tile (by row and column), of ODPRT that of each subtree.

@@ -86,15 +86,18 @@ ledger::Cut cut_of(const Job& job) {
 
 }  // namespace
 
+ledger::Identity identity_of(const State& state, const Job& job) {
+  return {.scene = scene_hash(state.scene.flat),
+          .settings = hash_of(settings_in_full(job)),
+          .build = hash_of(build_in_full(state)),
+          .settings_text = settings_in_words(job),
+          .build_text = build_in_words(state)};
+}
+
 void open_ledger(State& state, Job& job) {
   RenderOptions& o = job.options;
-  const ledger::Identity identity{.scene = scene_hash(state.scene.flat),
-                                  .settings = hash_of(settings_in_full(job)),
-                                  .build = hash_of(build_in_full(state)),
-                                  .settings_text = settings_in_words(job),
-                                  .build_text = build_in_words(state)};
-  job.ledger = std::make_shared<ledger::FrameLedger>(*o.ledger, identity, cut_of(job), o.tile_width > 0,
-                                                     makers(state));
+  job.ledger = std::make_shared<ledger::FrameLedger>(*o.ledger, identity_of(state, job), cut_of(job),
+                                                     o.tile_width > 0, makers(state));
   o.tile_width = static_cast<int>(job.ledger->cut().tile_width);
   o.tile_height = static_cast<int>(job.ledger->cut().tile_height);
 }

@@ -152,11 +152,12 @@ void record_frame(Statistics& statistics, const State& state, const Job& job, Dr
   statistics.memory.frame_bytes = drawn.frame_bytes;
   statistics.memory.per_queue = std::move(drawn.memory_of_queues);
   add_devices(drawn.division, state.devices);
+  const std::size_t n_queues = state.ranks ? drawn.division.per_queue.size() : state.devices.n_queues();
   drawn.division.why = why;
   const Traversal traversal =
       traversal_in(job.options.precision, job.options.traversal, first.context.info());
   statistics.mode = {.name = drawn.division.odprt ? "odprt" : "pdprt",
-                     .queues = state.devices.n_queues(),
+                     .queues = n_queues,
                      .work_group = first.work_group,
                      .traversal = name_of(traversal),
                      .precision = name_of(job.options.precision),

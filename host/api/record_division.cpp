@@ -38,7 +38,8 @@ Statistics::Queue queue_told(const odprt::Result& r, std::size_t q) {
                                        .rays_in = moved(r.exchange, q, false, 1, 1),
                                        .rays_out = moved(r.exchange, q, true, 1, 1),
                                        .bytes_in = moved(r.exchange, q, false, kRayBytes, kShadowBytes),
-                                       .bytes_out = moved(r.exchange, q, true, kRayBytes, kShadowBytes)}};
+                                       .bytes_out = moved(r.exchange, q, true, kRayBytes, kShadowBytes)},
+          .rank = {}};
 }
 
 Statistics::Queue queue_told(const pdprt::Result& r, std::size_t q) {
@@ -51,7 +52,8 @@ Statistics::Queue queue_told(const pdprt::Result& r, std::size_t q) {
           .idle_share = idle,
           .rays = queue.rays,
           .tiles = queue.tiles,
-          .travel = {}};
+          .travel = {},
+          .rank = {}};
 }
 
 void add_exchange(Statistics::Odprt& told, const odprt::ExchangeCounts& exchange) {

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <span>
 
+#include "api/agree.h"
 #include "api/channels.h"
 #include "api/choose_mode.h"
 #include "api/draw_odprt.h"
@@ -87,14 +88,22 @@ void Renderer::Impl::look(const prepare::Prepared& seen) {
 Picture Renderer::Impl::render(const RenderOptions& options) {
   timeline::Timeline kept;
   api::Job job = api::make_job(state, options, options.timeline ? &kept : nullptr);
-  if (options.ledger) api::open_ledger(state, job);
+  const bool leads = !state.ranks || state.ranks->leads();
+  if (options.ledger && leads) api::open_ledger(state, job);
   const api::ChosenMode chosen = api::choose_mode(state, job);
+  if (state.ranks) {
+    if (chosen.mode == Mode::odprt)
+      throw Error(ErrorCode::usage,
+                  "ranks divide the pixels, for which each needs the whole scene: " + chosen.why);
+    api::agree(state, job);
+  }
   const Preparing preparing(state.devices);
   api::Drawn drawn = chosen.mode == Mode::odprt ? api::draw_odprt(state, job) : api::draw_pdprt(state, job);
   timeline = options.timeline ? kept.json() : std::string();
   statistics.seconds.prepare = preparing.beside(drawn.render_seconds + drawn.divide_seconds.value_or(0));
   api::record_frame(statistics, state, job, drawn, chosen.why);
   if (job.ledger) std::ranges::copy(job.ledger->warnings(), std::back_inserter(drawn.warnings));
+  if (!leads) return {};
   Picture picture = to_picture(drawn.image, api::channels_of(state, job, drawn));
   picture.warnings = std::move(drawn.warnings);
   return picture;

@@ -15,7 +15,8 @@ std::uint32_t Scheduler::tile_side(const layout::Frame& frame) const {
   std::optional<pdprt::TileCost> measured;
   if (last_.width == frame.width && last_.height == frame.height && last_.cost.total > 0)
     measured = last_.cost;
-  const std::uint32_t units = std::max(devices_.n_units(), static_cast<std::uint32_t>(devices_.n_queues()));
+  const std::uint32_t units =
+      n_ranks_ * std::max(devices_.n_units(), static_cast<std::uint32_t>(devices_.n_queues()));
   const int tuned = devices_.first().tuned.settings.tile;  // tiles are the frame's, whatever the device
   const std::uint32_t largest = tuned > 0 ? static_cast<std::uint32_t>(tuned) : pdprt::kLargestTile;
   return pdprt::choose_tile_side(frame.width, frame.height, units, measured, largest);
@@ -35,7 +36,7 @@ void Scheduler::choose_tiles(wavefront::Schedule& schedule, const Job& job) cons
 }
 
 void Scheduler::choose_slices(wavefront::Schedule& schedule, const Device& device) const {
-  const bool one_queue = devices_.n_queues() == 1;
+  const bool one_queue = devices_.n_queues() * n_ranks_ == 1;
   // There are enough slices that the last ones to end leave no core idle for long; each has a pool and
   // streams of its own.
   const std::uint32_t units = device.units_of_a_queue();

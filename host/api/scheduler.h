@@ -16,8 +16,8 @@ namespace kdray::api {
 
 class Scheduler {
  public:
-  // `devices` have to outlive the scheduler.
-  explicit Scheduler(const DeviceSet& devices) : devices_(devices) {}
+  // `devices` have to outlive the scheduler. `n_ranks` processes share the frames.
+  Scheduler(const DeviceSet& devices, std::uint32_t n_ranks) : devices_(devices), n_ranks_(n_ranks) {}
 
   wavefront::Schedule schedule_for(const Device& device, const Job& job) const;
 
@@ -31,6 +31,7 @@ class Scheduler {
   void choose_slices(wavefront::Schedule& schedule, const Device& device) const;
 
   const DeviceSet& devices_;
+  std::uint32_t n_ranks_;
   struct {
     std::uint32_t width = 0, height = 0;
     pdprt::TileCost cost;

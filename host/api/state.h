@@ -12,6 +12,7 @@
 #include "flatten/core.h"
 #include "odprt/render.h"
 #include "prepare/prepared.h"
+#include "transport/ranks.h"
 
 namespace kdray::api {
 
@@ -34,9 +35,10 @@ struct State {
       : scene(prepared),
         scene_bytes(scene.bytes()),
         devices(options, hooks, scene),
-        scheduler(devices),
+        scheduler(devices, hooks.ranks ? static_cast<std::uint32_t>(hooks.ranks->size()) : 1),
         faults(hooks.faults),
-        keep(hooks.keep) {}
+        keep(hooks.keep),
+        ranks(hooks.ranks) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -47,8 +49,9 @@ struct State {
   device::Faults faults;
   std::unique_ptr<odprt::DividedScene> divided;  // once a frame was rendered in ODPRT
   Speeds speeds;
-  std::uint64_t keep;                 // Hooks::keep
-  std::optional<flatten::Core> core;  // looked for with the first frame that could make use of it
+  std::uint64_t keep;                       // Hooks::keep
+  std::shared_ptr<transport::Ranks> ranks;  // Hooks::ranks
+  std::optional<flatten::Core> core;        // looked for with the first frame that could make use of it
 };
 
 }  // namespace kdray::api

@@ -120,6 +120,7 @@ Json queue_json(const Statistics::Queue& q) {
                 {"idle_share", q.idle_share},
                 {"rays", q.rays}};
   put(queue, "tiles", q.tiles);
+  put(queue, "rank", q.rank);
   if (!q.travel) return queue;
   const Statistics::Travel& t = *q.travel;
   queue.update({{"parts", t.parts},
@@ -154,6 +155,12 @@ Json division_json(const Statistics::Division& d) {
     division["schedule"] = d.pdprt->schedule;
     if (!d.pdprt->tile_seconds.empty()) division["tile_seconds"] = d.pdprt->tile_seconds;
   }
+  if (d.ranks)
+    division["ranks"] = {{"number", d.ranks->ranks},
+                         {"messages_out", d.ranks->messages_out},
+                         {"messages_in", d.ranks->messages_in},
+                         {"bytes_out", d.ranks->bytes_out},
+                         {"bytes_in", d.ranks->bytes_in}};
   if (d.odprt) {
     division["balance"] = d.odprt->balance;
     division["parts"] = d.odprt->parts;

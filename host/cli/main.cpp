@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/command_line.h"
+#include "cli/ranks.h"
 #include "cli/start_bench.h"
 #include "cli/suggest.h"
 #include "cli/try.h"
@@ -46,5 +47,7 @@ int run_kdray(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   kdray::cli::try_if_asked(argc, argv);
-  return kdray::cli::run_program([&] { return kdray::cli::run_kdray(argc, argv); });
+  return kdray::cli::run_program([&] {
+    return kdray::cli::run_in_ranks({argv, argv + argc}, [&] { return kdray::cli::run_kdray(argc, argv); });
+  });
 }

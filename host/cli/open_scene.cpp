@@ -55,11 +55,10 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
       for (const std::string& warning : settings.warnings) say(warning);
     wait_for(device_opened);
   };
-  // A scene from standard input is no file that could be found again.
-  const bool has_cache = !options_of(choice).folder.empty() && !input.is_stdin();
+  const bool is_cached = has_cache(input, choice);
   const Timer look_up;
-  if (has_cache) scene_ = cache_.find(input.file, tree, input.load);
-  if (has_cache) {
+  if (is_cached) scene_ = cache_.find(input.file, tree, input.load);
+  if (is_cached) {
     outcome_ = scene_ ? kHit : kMiss;
     seconds_.cache = look_up.seconds();
   }
@@ -83,6 +82,11 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
     const std::vector<std::string>& warnings = scene_->settings().warnings;
     for (std::size_t i = read.model().warnings.size(); i < warnings.size(); ++i) say(warnings[i]);
   }
+}
+
+// A scene from standard input is no file that could be found again.
+bool OpenedScene::has_cache(const SceneInput& input, const CacheChoice& choice) {
+  return !options_of(choice).folder.empty() && !input.is_stdin();
 }
 
 void OpenedScene::keep() {
@@ -110,7 +114,8 @@ void OpenedScene::add_to(Statistics::Seconds& seconds) const {
 }
 
 void OpenedScene::keep_scene() {
-  if (outcome_ != kMiss) return;
+  if (outcome_ != kMiss || is_kept_) return;
+  is_kept_ = true;
   const Timer timer;
   try {
     cache_.keep(*scene_);

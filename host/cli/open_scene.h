@@ -30,9 +30,14 @@ class OpenedScene {
   // What the Renderer is to be made with.
   const DeviceOptions& device() const { return device_; }
 
+  // Puts a scene that was not found into the cache; once.
+  void keep_scene();
   // Puts a scene and programs that were not found into the cache; after the picture is out, which it would
   // only delay.
   void keep();
+
+  // Whether a scene from this file is looked for in a cache at all.
+  static bool has_cache(const SceneInput& input, const CacheChoice& cache);
 
   const std::string& cache() const { return outcome_; }  // "hit", "miss" or "off"
 
@@ -41,7 +46,6 @@ class OpenedScene {
   void add_to(Statistics::Seconds& seconds) const;
 
  private:
-  void keep_scene();
   void wait_for(std::future<OpenSeconds>& device);
 
   CacheChoice choice_;
@@ -51,6 +55,7 @@ class OpenedScene {
   std::set<std::string> left_out_;  // devices, as they were told of
   DeviceOptions device_;
   std::string outcome_ = "off";
+  bool is_kept_ = false;
   Statistics::Seconds seconds_;
   std::optional<PreparedScene> scene_;
 };

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/parse.h"
+#include "cli/ranks.h"
 #include "cli/render_frame.h"
 #include "cli/render_options.h"
 #include "cli/restarts.h"
@@ -50,6 +51,12 @@ void add_trace_options(CLI::App& app, RenderArgs& o) {
 
 int run(RenderArgs& o) {
   check_ledger(o);
+  check_ranks(o);
+  if (ranks_of_this_run()) {
+    o.hooks.ranks = ranks_of_this_run();
+    o.hooks.faults = faults_of_rank(o.hooks.faults, o.hooks.ranks->rank());
+    o.quiet = o.quiet || !leads();
+  }
   if (o.ledger.restarts > 0) return run_again(o.ledger);
   if (o.ledger.frames) return render_sequence(o);
   o.render.ledger = o.ledger.options();
@@ -69,6 +76,7 @@ Command add_render(CLI::App& kdray) {
   add_view_options(*app, o->view);
   add_picture_options(*app, o->render);
   add_division_options(*app, o->render);
+  add_ranks_option(*app);
   add_trace_options(*app, *o);
   add_ledger_options(*app, o->ledger);
   add_device_options(*app, o->device, o->render.traversal, o->render.precision);

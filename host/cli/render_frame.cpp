@@ -13,6 +13,7 @@
 #include "cli/message.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/ranks.h"
 #include "cli/stats.h"
 #include "cli/summary.h"
 #include "scene/scene.h"
@@ -107,20 +108,34 @@ film::Written write(Picture&& picture, std::vector<float>&& alpha, const RenderA
   return put_picture(o.output, image, channels, o.write);
 }
 
+// Rank 0 puts the scene into the cache first, where the others find it, if they see the same folder.
+void wait_for_scene() {
+  if (!leads()) ranks_of_this_run()->wait(transport::kTagsOfScenes);
+}
+
+void tell_of_scene(OpenedScene& scene) {
+  if (!ranks_of_this_run() || !leads()) return;
+  scene.keep_scene();
+  ranks_of_this_run()->send_to_others(transport::kTagsOfScenes.first, {});
+}
+
 }  // namespace
 
 FrameMaker::FrameMaker(RenderArgs& o) {
-  check_files(o, files_);
+  if (leads()) check_files(o, files_);
   tell_of_options_without_effect(o);
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
+  const bool is_cached = OpenedScene::has_cache(o.scene, o.cache);
+  if (is_cached) wait_for_scene();
   scene_.emplace(
       o.scene, o.tree, o.device, o.cache, o.quiet,
       [&](const scene::Scene& asked) {
         check_view_of(o, asked);
-        check_files(o, files_, asked);
+        if (leads()) check_files(o, files_, asked);
         check_memory(o, asked.settings);
       },
       o.hooks);
+  if (is_cached) tell_of_scene(*scene_);
   seen_ = o.view.any ? scene_->scene().seen(o.view.view, o.render.width, o.render.height) : scene_->scene();
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }
@@ -134,11 +149,12 @@ Picture FrameMaker::render(const RenderArgs& o) {
 }
 
 void FrameMaker::make(RenderArgs& o) {
-  if (!is_first_) {
+  if (!is_first_ && leads()) {
     check_files(o, files_);
     check_files(o, files_, seen_->settings());
   }
   Picture picture = render(o);
+  if (!leads()) return;
   std::vector<float> alpha = make_transparent(picture, *seen_, scene_->device(), o);
   if (!o.quiet)
     for (const std::string& warning : picture.warnings) say(warning);

@@ -1,6 +1,7 @@
 // What    What render was asked for, and the way from there to a picture in its file: of one frame, or of
 //         several that have a scene in common.
-// Shape   Everything that can be refused is refused before the scene is read; the picture is written whole or
+// Shape   With ranks, all of them make a frame, and rank 0 writes its files.
+//         Everything that can be refused is refused before the scene is read; the picture is written whole or
 //         not at all, the statistics after it.
 #pragma once
 

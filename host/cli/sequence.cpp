@@ -14,6 +14,7 @@
 #include "cli/camera_path.h"
 #include "cli/message.h"
 #include "cli/output.h"
+#include "cli/sequence_settings.h"
 #include "ledger/create_once.h"
 #include "ledger/leases.h"
 
@@ -116,6 +117,7 @@ void Sequence::render_shared() {
   const LedgerOptions options = *o_.ledger.options();
   std::error_code error;
   fs::create_directories(options.folder, error);
+  check_sequence_settings(o_, options.folder);
   ledger::Heartbeat heartbeat(options.folder, ledger::new_owner(), options.lease_seconds);
   const auto first = static_cast<std::size_t>(range_.first),
              n = static_cast<std::size_t>(range_.last) - first + 1;

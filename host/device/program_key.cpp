@@ -29,12 +29,14 @@ const std::string& processor() {
   return text;
 }
 
-// PoCL's variables, but for those that only say where things are kept.
+// PoCL's variables, but for those that only say where things are kept, or how many threads it has.
 std::string pocl_environment() {
   std::vector<std::string> set;
   for (char** variable = environ; *variable; ++variable) {
     const std::string_view text = *variable;
-    if (text.starts_with("POCL_") && !text.starts_with("POCL_CACHE_DIR=")) set.emplace_back(text);
+    const bool is_of_no_program =
+        text.starts_with("POCL_CACHE_DIR=") || text.starts_with("POCL_MAX_PTHREAD_COUNT=");
+    if (text.starts_with("POCL_") && !is_of_no_program) set.emplace_back(text);
   }
   std::sort(set.begin(), set.end());
   return fmt::format("{}", fmt::join(set, "\n"));

@@ -78,10 +78,11 @@ Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& q
 }
 
 std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wavefront::Progress& progress,
-                                                        Shared& shared) {
+                                                        const Work& work, Shared& shared) {
   if (tiles.left()) return std::nullopt;
   shared.tiles_done += progress.taken - n_told_;
   n_told_ = progress.taken;
+  if (since_begin_.seconds() > work.seconds) return std::span<const layout::u32>();
   const std::size_t ahead = tiles.taken(number_).size() - progress.front;
   const bool measured = progress.taken > 0;
   if (measured) waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
@@ -108,8 +109,11 @@ void Queue::serve(Tiles& tiles, const Work& work, Shared& shared) {
   while (tiles.wait(number_)) {
     n_told_ = 0;
     busy_before_ = wavefront_.busy_seconds();
+    since_begin_.restart();
     work.samples.empty() ? wavefront_.begin(work.first_pixel) : wavefront_.begin_samples(work.samples);
-    const auto feed = [&](const wavefront::Progress& progress) { return more(tiles, progress, shared); };
+    const auto feed = [&](const wavefront::Progress& progress) {
+      return more(tiles, progress, work, shared);
+    };
     if (!wavefront_.render(feed)) return;
     deliver(tiles.taken(number_), work, shared);
     tiles.done(number_);

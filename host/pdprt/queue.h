@@ -7,10 +7,12 @@
 
 #include <atomic>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "base/timer.h"
 #include "device/clock.h"
 #include "pdprt/render.h"
 #include "pdprt/tiles.h"
@@ -22,6 +24,8 @@ namespace kdray::pdprt {
 struct Work {
   std::size_t first_pixel = 0;
   std::span<const layout::u32> samples = {};  // empty: tiles
+  // A queue delivers what it has when a list has taken so long, and begins another.
+  double seconds = std::numeric_limits<double>::infinity();
 };
 
 // What the queues of a frame share.
@@ -52,7 +56,7 @@ class Queue {
 
  private:
   std::optional<std::span<const layout::u32>> more(Tiles& tiles, const wavefront::Progress& progress,
-                                                   Shared& shared);
+                                                   const Work& work, Shared& shared);
   std::size_t tiles_of_launch() const;
   std::size_t shortest_launch(const wavefront::Progress& progress) const;
   void deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared);
@@ -68,6 +72,7 @@ class Queue {
   // These are about the present list.
   std::uint64_t n_told_ = 0;  // of tiles_done
   double busy_before_ = 0;
+  Timer since_begin_;
   std::uint64_t n_tiles_ = 0;
   TileCost tile_cost_;
 };

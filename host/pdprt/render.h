@@ -3,6 +3,7 @@
 // Shape   The tiles of a band (the whole frame, unless its film is too large for a queue) along a curve; a
 //         thread for each queue takes tiles (tiles.h), keeps its queue's list filled, and puts the queue's
 //         tiles into the picture. Each queue has a film of its own; the one that took a tile last owns it.
+//         With ranks, rank 0 has the bag (lender.h), and the others borrow from it (borrower.h).
 // Errors  A queue whose device fails, or has too little memory, is left alone from then on: the others render
 //         the tiles that it has not delivered. The error of the last queue, when all fail. Any other error
 //         ends the frame (device/opencl_error.h).
@@ -22,6 +23,7 @@
 #include "ledger/frame_ledger.h"
 #include "pdprt/tile_size.h"
 #include "timeline/timeline.h"
+#include "transport/ranks.h"
 #include "wavefront/wavefront.h"
 
 namespace kdray::pdprt {
@@ -53,6 +55,10 @@ struct Task {
   std::size_t max_film_bytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
   // What is finished already, and where it goes; its tiles are those of the schedule. Null: there is none.
   ledger::FrameLedger* ledger = nullptr;
+  // Others that render the same frame; rank 0 has the picture then, and the others' result has none. Null:
+  // there are none.
+  transport::Ranks* ranks = nullptr;
+  Hash shared_frame = {};  // the same for all of them, and for no other frame (ledger::Header::frame())
 };
 
 struct QueueResult {
@@ -62,6 +68,7 @@ struct QueueResult {
   std::size_t device_bytes = 0;       // without the scene
   std::string failure;                // empty: none
   std::uint64_t tiles_lost = 0;       // that it had taken when it failed
+  int rank = 0;                       // that it is of
 };
 
 struct Result {

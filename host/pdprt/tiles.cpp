@@ -1,6 +1,7 @@
 #include "pdprt/tiles.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace kdray::pdprt {
 
@@ -27,7 +28,11 @@ void append(std::vector<layout::u32>& to, std::span<const layout::u32> from) {
 }  // namespace
 
 Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues, bool by_the_piece)
-    : taken_(n_queues), by_the_piece_(by_the_piece), n_undone_(curve.size()), n_queues_(n_queues) {
+    : taken_(n_queues),
+      by_the_piece_(by_the_piece),
+      n_undone_(curve.size()),
+      n_queues_(n_queues),
+      usual_(n_queues) {
   // Entries that were taken must not move: the device may still be reading them.
   for (auto& tiles : taken_) tiles.reserve(curve.size());
   if (division == Division::bag) {
@@ -36,6 +41,42 @@ Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_qu
   } else {
     shares_ = deal(curve, division, n_queues);
   }
+}
+
+Tiles::Tiles(std::size_t n_queues, std::size_t capacity) : Tiles({}, Division::bag, n_queues) {
+  bag_.reserve(capacity);
+  for (auto& tiles : taken_) tiles.reserve(capacity);
+  ended_ = false;
+}
+
+void Tiles::add(std::span<const layout::u32> entries, std::size_t elsewhere) {
+  const std::lock_guard lock(mutex_);
+  append(bag_, entries);
+  n_undone_ += entries.size();
+  elsewhere_ = elsewhere;
+  changed_.notify_all();
+}
+
+void Tiles::end() {
+  const std::lock_guard lock(mutex_);
+  ended_ = true;
+  elsewhere_ = 0;
+  changed_.notify_all();
+}
+
+std::size_t Tiles::stock() const {
+  const std::lock_guard lock(mutex_);
+  return bag_.size() - next_;
+}
+
+bool Tiles::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return all_done();
+}
+
+std::size_t Tiles::usual() const {
+  const std::lock_guard lock(mutex_);
+  return std::accumulate(usual_.begin(), usual_.end(), std::size_t{0});
 }
 
 std::span<const layout::u32> Tiles::take(std::size_t queue, const Wanted& wanted) {
@@ -49,12 +90,13 @@ std::span<const layout::u32> Tiles::take(std::size_t queue, const Wanted& wanted
     share.erase(share.begin(), share.begin() + static_cast<std::ptrdiff_t>(n));
   } else {
     const std::size_t rest = bag_.size() - next_;
-    const std::size_t part = std::max(rest / (kPartsPerQueue * n_queues_), wanted.least);
+    const std::size_t part = std::max((rest + elsewhere_) / (kPartsPerQueue * n_queues_), wanted.least);
     const std::size_t in_all = std::min(part, wanted.most);
     const std::size_t n = std::min(rest, in_all - std::min(in_all, wanted.ahead));
     append(taken, std::span(bag_).subspan(next_, n));
     next_ += n;
   }
+  if (taken.size() > first) usual_[queue] = taken.size() - first;
   return std::span(taken).subspan(first);
 }
 
@@ -62,7 +104,7 @@ void Tiles::done(std::size_t queue) {
   const std::lock_guard lock(mutex_);
   n_undone_ -= taken_[queue].size();
   taken_[queue].clear();
-  if (n_undone_ == 0) changed_.notify_all();
+  if (all_done()) changed_.notify_all();
 }
 
 std::size_t Tiles::give_back(std::size_t queue) {
@@ -78,8 +120,8 @@ std::size_t Tiles::give_back(std::size_t queue) {
 
 bool Tiles::wait(std::size_t queue) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return left_ || n_undone_ == 0 || has_some(queue); });
-  return !left_ && n_undone_ > 0;
+  changed_.wait(lock, [&] { return left_ || all_done() || has_some(queue); });
+  return !left_ && !all_done();
 }
 
 void Tiles::close() {

@@ -2,7 +2,7 @@
 //         who has taken what, so that the tiles of a queue that fails are rendered by the others.
 // Shape   A tile is first in a queue's share or in the bag, then with the queue that took it, then done. What
 //         a queue that failed had goes into the bag, from which all take when their own share has come to an
-//         end.
+//         end. The bag may be filled bit by bit from elsewhere (ranks): it is open until end().
 // Threads Any number; a queue's calls come from one thread at a time.
 #pragma once
 
@@ -28,6 +28,16 @@ class Tiles {
   // `curve`: entries in the order of the curve. `by_the_piece`: shares are taken as the bag is, so that
   // close() finds something left of them.
   Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_queues, bool by_the_piece = false);
+
+  // An open bag, into which `capacity` entries are put at most.
+  static Tiles open(std::size_t n_queues, std::size_t capacity) { return {n_queues, capacity}; }
+
+  // Puts some into an open bag. `elsewhere`: how many more may still come.
+  void add(std::span<const layout::u32> entries, std::size_t elsewhere);
+  void end();                 // nothing more comes
+  std::size_t stock() const;  // what nobody has taken yet
+  bool is_over() const;       // everything that came is done
+  std::size_t usual() const;  // what the queues take at a time, all together
 
   // The next entries for the queue: its share, as a whole or up to what is wanted; else from the bag, up to
   // what is wanted. Perhaps
@@ -56,6 +66,8 @@ class Tiles {
   bool left() const;
 
  private:
+  Tiles(std::size_t n_queues, std::size_t capacity);
+  bool all_done() const { return ended_ && n_undone_ == 0; }
   bool has_some(std::size_t queue) const { return !shares_[queue].empty() || next_ < bag_.size(); }
 
   mutable std::mutex mutex_;
@@ -65,7 +77,9 @@ class Tiles {
   bool by_the_piece_;
   std::size_t next_ = 0;  // of the bag
   std::size_t n_undone_, n_queues_;
-  bool left_ = false;
+  std::size_t elsewhere_ = 0;
+  std::vector<std::size_t> usual_;  // per queue: how many it took last
+  bool ended_ = true, left_ = false;
 };
 
 }  // namespace kdray::pdprt

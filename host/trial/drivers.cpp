@@ -39,7 +39,7 @@ constexpr std::string_view kSwitches[] = {
     "NEO",   "IGC_",     "CL_CONFIG_", "OCLGRIND_", "LD_LIBRARY_PATH=", "LD_PRELOAD="};
 
 bool is_switch(std::string_view variable) {
-  return !variable.starts_with("POCL_CACHE_DIR=") &&
+  return !variable.starts_with("POCL_CACHE_DIR=") && !variable.starts_with("POCL_MAX_PTHREAD_COUNT=") &&
          std::ranges::any_of(kSwitches, [&](std::string_view s) { return variable.starts_with(s); });
 }
 

@@ -14,17 +14,20 @@
 
 namespace kdray::test {
 
-Running::Running(const std::vector<std::string>& arguments, const std::string& log) : process_(::fork()) {
+Running::Running(const std::vector<std::string>& arguments, const std::string& log,
+                 const std::string& program, const std::map<std::string, std::string>& environment)
+    : process_(::fork()) {
   if (process_ < 0) throw std::runtime_error("fork failed");
   if (process_ > 0) return;
   ::setenv("KDRAY_CACHE_DIR", "", 1);  // no test uses the cache of the user who runs it
+  for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
   const int in = ::open("/dev/null", O_RDONLY),
             err = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666);
   ::dup2(in, 0), ::dup2(err, 1), ::dup2(err, 2);
   std::vector<char*> argv{const_cast<char*>("kdray")};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
-  ::execv(KDRAY_PROGRAM, argv.data());
+  ::execv(program.empty() ? KDRAY_PROGRAM : program.c_str(), argv.data());
   ::_exit(127);
 }
 

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,10 @@ namespace kdray::test {
 
 class Running {
  public:
-  // Its stderr goes to this file, behind what is there.
-  Running(const std::vector<std::string>& arguments, const std::string& log);
+  // Its stderr goes to this file, behind what is there. Another program than kdray may be named, and
+  // variables set.
+  Running(const std::vector<std::string>& arguments, const std::string& log, const std::string& program = {},
+          const std::map<std::string, std::string>& environment = {});
   ~Running();  // kills it, if need be
   Running(Running&& other) noexcept;
   Running& operator=(Running&&) = delete;

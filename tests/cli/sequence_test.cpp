@@ -1,7 +1,9 @@
 // Sequences and shared pictures: each frame has the bytes of the picture that the same camera or scene gives
 // by itself, whoever made it.
 #include <fmt/format.h>
+
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <cstring>
 #include <filesystem>
@@ -91,6 +93,11 @@ TEST_F(SequenceTest, ProcessesThatShareAFolderMakeAllFrames) {
     EXPECT_EQ(folder.get(fmt::format("b{}.png", i)), folder.get(fmt::format("a{}.png", i))) << i;
   shared.insert(shared.end(), {"--samples", "2"});
   EXPECT_TRUE(fails_with(kdray(shared), 1, "other settings"));
+  // Frames that are done would be left as they are, and others made otherwise.
+  shared.back() = "3";
+  std::ranges::replace(shared, "1..5", "1..6");
+  EXPECT_TRUE(fails_with(kdray(shared), 1, "--samples 0; here --samples 3"));
+  EXPECT_FALSE(fs::exists(folder / "b6.png"));
 }
 
 // The same records twice are no fault; one whose sums differ is, however right its checksums are.

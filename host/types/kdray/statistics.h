@@ -132,6 +132,7 @@ struct Statistics {
     std::uint64_t rays = 0;
     std::optional<std::uint64_t> tiles;  // of PDPRT
     std::optional<Travel> travel;        // of ODPRT
+    std::optional<int> rank;             // that it is of, where there are several
   };
   struct Quarantined {
     std::size_t queue = 0;
@@ -151,6 +152,11 @@ struct Statistics {
     std::vector<std::vector<std::uint64_t>> rays, bytes;
     std::uint64_t rays_total = 0, bytes_total = 0;
   };
+  // What rank 0 has sent and received of a run so far.
+  struct Ranks {
+    int ranks = 1;
+    std::uint64_t messages_out = 0, messages_in = 0, bytes_out = 0, bytes_in = 0;
+  };
   // How a frame was divided and run, in whichever mode.
   struct Division {
     std::string why;
@@ -162,6 +168,7 @@ struct Statistics {
     std::vector<Quarantined> quarantined;
     std::optional<Pdprt> pdprt;
     std::optional<Odprt> odprt;
+    std::optional<Ranks> ranks;
   };
   struct Mode {
     std::string name;  // "pdprt", "odprt", "query"; empty: nothing was done yet

@@ -1,0 +1,71 @@
+#include "api/agree.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "api/film_memory.h"
+#include "api/ledger.h"
+
+namespace kdray::api {
+
+namespace {
+
+constexpr transport::Tag kFrame = transport::kTagsOfFrames.first;
+
+ledger::Cut cut_of_schedule(State& state, const Job& job) {
+  const wavefront::Schedule schedule = state.scheduler.schedule_for(state.devices.first(), job);
+  return {job.frame.width, job.frame.height, schedule.tile_width, schedule.tile_height};
+}
+
+void lead(State& state, Job& job) {
+  const ledger::Header header{.identity = identity_of(state, job),
+                              .cut = job.ledger ? job.ledger->cut() : cut_of_schedule(state, job),
+                              .maker = "rank 0"};
+  job.film_of_ranks = film_bytes(state, job);
+  job.shared_frame = header.frame();
+  job.options.tile_width = static_cast<int>(header.cut.tile_width);
+  job.options.tile_height = static_cast<int>(header.cut.tile_height);
+  transport::Bytes bytes = ledger::to_bytes(header);
+  const std::uint64_t film = job.film_of_ranks;
+  bytes.append(reinterpret_cast<const char*>(&film), sizeof film);
+  state.ranks->send_to_others(kFrame, bytes);
+}
+
+void check_same(const ledger::Identity& own, const ledger::Identity& first) {
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorCode::input,
+                fmt::format("this rank has {} than rank 0; all of them need the same", what));
+  };
+  if (own.build != first.build)
+    refuse(fmt::format("another kdray or driver ({}; there: {})", own.build_text, first.build_text));
+  if (own.scene != first.scene) refuse("another scene");
+  if (own.settings != first.settings) refuse(fmt::format("other settings ({})", own.settings_text));
+}
+
+void follow(State& state, Job& job) {
+  const transport::Message message = state.ranks->wait(transport::kTagsOfFrames);
+  const auto header = ledger::header_of(message.bytes);
+  std::uint64_t film = 0;
+  if (message.from != 0 || !header || message.bytes.size() != ledger::kHeaderBytes + sizeof film)
+    throw Error(ErrorCode::input, "rank 0 is of another version of kdray than this rank");
+  std::memcpy(&film, message.bytes.data() + ledger::kHeaderBytes, sizeof film);
+  check_same(identity_of(state, job), header->identity);
+  job.options.tile_width = static_cast<int>(header->cut.tile_width);
+  job.options.tile_height = static_cast<int>(header->cut.tile_height);
+  job.shared_frame = header->frame();
+  if (const std::size_t own = film_bytes(state, job); own < film)
+    throw Error(ErrorCode::out_of_memory,
+                fmt::format("this rank's devices have room for {} MiB of a film, rank 0's for {}", own >> 20,
+                            film >> 20));
+  job.film_of_ranks = film;
+}
+
+}  // namespace
+
+void agree(State& state, Job& job) {
+  state.ranks->leads() ? lead(state, job) : follow(state, job);
+}
+
+}  // namespace kdray::api

@@ -1,0 +1,82 @@
+// What    What ranks say to each other while they render a frame's lists of tiles, as bytes and back.
+// Shape   Rank 0 begins a list, is asked for tiles (want), grants some, and gets their sums (pieces) as
+//         records of a ledger; when all lists are done it finishes the frame, and gets a report from each.
+//         Every message names its list, by a number that goes up over all frames of a run.
+// Errors  ErrorCode::internal: bytes that are no such message. Values are checked by whoever knows the list.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "layout/frame.layout.h"
+#include "ledger/header.h"
+#include "transport/ranks.h"
+
+namespace kdray::pdprt {
+
+inline constexpr transport::Tag kBegin = transport::kTagsOfTiles.first, kWant = kBegin + 1,
+                                kGrant = kBegin + 2, kPieces = kBegin + 3, kFinish = kBegin + 4,
+                                kReport = kBegin + 5;
+
+struct Begin {
+  std::uint32_t list = 0, of_runs = 0;
+  std::uint64_t first_pixel = 0, n_entries = 0;  // the film's first, of tiles; of the list
+};
+
+struct Want {
+  std::uint32_t list = 0, least = 0, n_rendered = 0, unused = 0;
+};
+
+struct Grant {
+  std::uint32_t list = 0;
+  std::uint32_t is_over = 0;  // nothing more comes
+  std::uint64_t n_left = 0;   // that nobody has
+};
+
+struct Pieces {
+  std::uint32_t list = 0, unused = 0;
+};
+
+struct Finish {
+  std::uint32_t list = 0;  // the last
+};
+
+// What all ranks have to agree on about a frame.
+struct SharedFrame {
+  Hash frame;  // ledger::Header::frame()
+  std::uint32_t width = 0, height = 0, tile_width = 0, tile_height = 0;
+
+  // Nowhere (no width): there is no such entry.
+  ledger::Rectangle places_of(bool of_runs, layout::u32 entry) const;
+};
+
+// A head and the words that lie behind it.
+template <class Head>
+transport::Bytes to_bytes(const Head& head, std::span<const layout::u32> words = {}) {
+  static_assert(std::is_trivially_copyable_v<Head> && sizeof(Head) % sizeof(layout::u32) == 0);
+  transport::Bytes bytes(reinterpret_cast<const char*>(&head), sizeof head);
+  return bytes.append(reinterpret_cast<const char*>(words.data()), words.size_bytes());
+}
+
+[[noreturn]] void refuse(const transport::Message& message);
+
+template <class Head>
+Head head_of(const transport::Message& message) {
+  Head head;
+  if (message.bytes.size() < sizeof head) refuse(message);
+  std::copy_n(message.bytes.data(), sizeof head, reinterpret_cast<char*>(&head));
+  return head;
+}
+
+template <class Head>
+std::vector<layout::u32> words_behind(const transport::Message& message) {
+  const std::size_t n = message.bytes.size() - sizeof(Head);
+  if (n % sizeof(layout::u32) != 0) refuse(message);
+  std::vector<layout::u32> words(n / sizeof(layout::u32));
+  std::copy_n(message.bytes.data() + sizeof(Head), n, reinterpret_cast<char*>(words.data()));
+  return words;
+}
+
+}  // namespace kdray::pdprt
