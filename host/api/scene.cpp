@@ -116,6 +116,7 @@ const scene::Scene& Scene::Impl::model() {
     scene::Scene before = std::move(*assembled);
     assembled.reset();
     if (with_file) all.materials = base.materials;
+    if (with_file) all.paint = base.paint;
     scene::assemble_moved(all, std::move(before), enabled, materials);
   } else {
     scene::assemble(all, enabled, materials);

@@ -143,9 +143,9 @@ void get(const Json& from, prepare::Counts& c) {
 }  // namespace
 
 std::string to_bytes(const prepare::Prepared& p) {
-  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
-               camera, cameras, framing, background, ambient, settings, warnings, files, load_options] =
-      p.settings;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
+               unlit, camera, cameras, framing, background, ambient, settings, warnings, files,
+               load_options] = p.settings;
   const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, tree_options,
                seconds] = p;
   const Json facts = {{"name", name},

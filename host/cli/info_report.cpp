@@ -23,13 +23,25 @@ void add_kinds(const Holder& holder, Json& arrays) {
 
 // The structs are taken apart into all their arrays, so that one that is added can't be forgotten.
 
+Json paint_arrays(const scene::Paint& paint) {
+  const auto& [colors, texcoords, coats, textures, pictures] = paint;
+  std::uint64_t texels = 0;
+  for (const auto& picture : pictures) texels += bytes_of(picture->texels);
+  return {{"corner_colors", bytes_of(colors)},
+          {"texcoords", bytes_of(texcoords[0]) + bytes_of(texcoords[1])},
+          {"coats", bytes_of(coats)},
+          {"textures", bytes_of(textures)},
+          {"pictures", texels}};
+}
+
 Json scene_arrays(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
-               camera, cameras, framing, background, ambient, settings, warnings, files, load_options] =
-      scene;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
+               unlit, camera, cameras, framing, background, ambient, settings, warnings, files,
+               load_options] = scene;
   Json arrays = {{"vertices", bytes_of(vertices)}, {"normals", bytes_of(normals)}};
   add_kinds(scene, arrays);
   arrays.update({{"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
+  if (!paint.coats.empty()) arrays.update(paint_arrays(paint));
   return arrays;
 }
 
@@ -49,11 +61,18 @@ Json tree_arrays(const kdtree::Tree& tree) {
 }
 
 Json flat_arrays(const flatten::FlatScene& flat) {
-  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights] = flat;
+  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures,
+               texels, texcoords, corner_colors, lights] = flat;
   Json arrays = {{"nodes", bytes_of(nodes)}, {"references", bytes_of(refs)}};
   add_kinds(flat, arrays);
   arrays.update(
       {{"normals", bytes_of(normals)}, {"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
+  if (!coats.empty())
+    arrays.update({{"coats", bytes_of(coats)},
+                   {"textures", bytes_of(textures)},
+                   {"texels", bytes_of(texels)},
+                   {"texcoords", bytes_of(texcoords)},
+                   {"corner_colors", bytes_of(corner_colors)}});
   return arrays;
 }
 

@@ -16,6 +16,10 @@ constexpr Feature kFeatures[] = {
         {KDRAY_FEATURE_SMOOTH, "smooth normals"},
     {KDRAY_FEATURE_STITCHES, "stitches"},
     {KDRAY_FEATURE_NUMBERS, "primitive numbers"},
+    {KDRAY_FEATURE_COATS, "coats"},
+    {KDRAY_FEATURE_CORNER_COLORS, "corner colours"},
+    {KDRAY_FEATURE_TEXTURES, "textures"},
+    {KDRAY_FEATURE_CUTOUTS, "cut-outs"},
     {KDRAY_FEATURE_REFLECT, "reflection"},
     {KDRAY_FEATURE_TRANSMIT, "refraction"},
     {KDRAY_FEATURE_SPECULAR, "highlights"},
@@ -68,6 +72,15 @@ Features geometry_features(const scene::Scene& scene, const scene::Geometry& geo
   return mask;
 }
 
+Features coat_features(const scene::Coat& c) {
+  return KDRAY_FEATURE_COATS | when(c.colored != 0, KDRAY_FEATURE_CORNER_COLORS) |
+         when(c.base != scene::kNone, KDRAY_FEATURE_TEXTURES) |
+         when(c.mode == scene::Alpha::mask, KDRAY_FEATURE_CUTOUTS) |
+         when(any(c.reflect), KDRAY_FEATURE_REFLECT) |
+         when(any(c.transmit) || c.mode == scene::Alpha::blend, KDRAY_FEATURE_TRANSMIT) |
+         when(any(c.specular), KDRAY_FEATURE_SPECULAR) | when(any(c.diffuse), KDRAY_FEATURE_DIFFUSE);
+}
+
 // A material counts only when a primitive wears it.
 Features material_features(const scene::Scene& scene, const scene::Geometry& geometry) {
   std::vector<bool> used(scene.materials.size(), false);
@@ -82,6 +95,7 @@ Features material_features(const scene::Scene& scene, const scene::Geometry& geo
     const scene::Material& m = scene.materials[i];
     mask |= when(any(m.reflect), KDRAY_FEATURE_REFLECT) | when(any(m.transmit), KDRAY_FEATURE_TRANSMIT) |
             when(any(m.specular), KDRAY_FEATURE_SPECULAR) | when(any(m.diffuse), KDRAY_FEATURE_DIFFUSE);
+    if (m.coat != scene::kNone) mask |= coat_features(scene.paint.coats[m.coat]);
   }
   return mask;
 }

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "flatten/paint.h"
 #include "primitives/pack.h"
 #include "primitives/shapes.h"
 
@@ -93,6 +94,7 @@ layout::Material pack(const scene::Material& m, const vec3& ambient_light) {
   set(out.transmit, m.transmit);
   out.shine = m.shine;
   out.index = m.index;
+  out.coat = m.coat;
   return out;
 }
 
@@ -176,6 +178,7 @@ FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, co
     });
   });
   flat.materials = pack_materials(scene);
+  pack_paint(scene, geometry, flat);
   flat.lights = pack_lights(scene, geometry.space);
   return flat;
 }

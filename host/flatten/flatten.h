@@ -9,6 +9,7 @@
 #include "base/array.h"
 #include "kdtree/tree.h"
 #include "layout/kinds.h"
+#include "layout/paint.layout.h"
 #include "layout/primitives.layout.h"
 #include "layout/shading.layout.h"
 #include "layout/tree.layout.h"
@@ -26,6 +27,11 @@ struct FlatScene {
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
   Array<layout::Material> materials;
+  Array<layout::Coat> coats;
+  Array<layout::Texture> textures;
+  Array<layout::u32> texels;
+  Array<layout::TexCoords> texcoords;
+  Array<layout::CornerColors> corner_colors;
   Array<layout::Light> lights;
 
   std::size_t bytes() const;
@@ -35,9 +41,11 @@ struct FlatScene {
 // added can't be forgotten.
 template <class Flat, class Visit>
 void for_each_flat_array(Flat& flat, const Visit& visit) {
-  auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights] = flat;
+  auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures, texels,
+         texcoords, corner_colors, lights] = flat;
   const auto visit_all = [&visit](auto&... arrays) { (visit(arrays), ...); };
-  visit_all(nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights);
+  visit_all(nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures,
+            texels, texcoords, corner_colors, lights);
 }
 
 // The binary form, `nodes` and `refs`, is for the binary walk alone: without it these are empty.
@@ -49,6 +57,7 @@ Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene
 
 // What of it can change without the geometry.
 Array<layout::Material> pack_materials(const scene::Scene& scene);
+Array<layout::Coat> pack_coats(const scene::Scene& scene);
 Array<layout::Light> pack_lights(const scene::Scene& scene, const LocalSpace& space);
 
 }  // namespace kdray::flatten

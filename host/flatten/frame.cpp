@@ -72,10 +72,14 @@ double radiance_bound(const scene::Scene& scene, int depth) {
   for (const scene::Light& light : scene.lights) incident += brightest(light);
   double shown = largest(scene.background), passed = 0;
   for (const scene::Material& m : scene.materials) {
-    const double lit = largest(m.diffuse) + largest(m.specular);
-    shown = std::max(shown, largest(m.emission) + largest(m.ambient) * largest(scene.ambient) +
+    // Base colours are 1 at most; what a veil takes of a term it passes on.
+    const scene::Coat coat = m.coat == scene::kNone ? scene::Coat{} : scene.paint.coats[m.coat];
+    const double lit = largest(m.diffuse + coat.diffuse) + largest(m.specular + coat.specular);
+    shown = std::max(shown, largest(m.emission + coat.emission) +
+                                largest(m.ambient + coat.ambient) * largest(scene.ambient) +
                                 (lit > 0 ? incident * lit : 0));
-    passed = std::max(passed, largest(m.reflect) + largest(m.transmit));
+    const double sent = largest(m.reflect + coat.reflect) + largest(m.transmit + coat.transmit);
+    passed = std::max(passed, coat.mode == scene::Alpha::blend ? std::max(sent, 1.0) : sent);
   }
   double sum = 0, share = 1;
   for (int d = 0; d < depth; ++d, share *= passed) sum += share;

@@ -245,12 +245,28 @@ Array<T> select(const Array<T>& all, const std::vector<std::uint32_t>& members) 
   return some;
 }
 
+// Of an array that has none, or as many for each of n primitives.
+template <class T>
+Array<T> select_rows(const Array<T>& all, const std::vector<std::uint32_t>& members, std::size_t n) {
+  const std::size_t each = n == 0 ? 0 : all.size() / n;
+  Array<T> some(members.size() * each);
+  for (std::size_t i = 0; i < members.size(); ++i)
+    for (std::size_t k = 0; k < each; ++k) some[i * each + k] = all[members[i] * each + k];
+  return some;
+}
+
 flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numbering& n) {
   flatten::FlatScene flat;
   primitives::for_each_kind([&](auto kind) {
     decltype(kind)::of(flat) = select(decltype(kind)::of(scene), n.members[kind.kNumber]);
   });
   flat.materials = scene.materials;
+  flat.coats = scene.coats;
+  flat.textures = scene.textures;
+  flat.texels = scene.texels;
+  const auto& triangles = n.members[KDRAY_KIND_TRIANGLE];
+  flat.corner_colors = select_rows(scene.corner_colors, triangles, scene.triangles.size());
+  flat.texcoords = select_rows(scene.texcoords, triangles, scene.triangles.size());
   flat.lights = scene.lights;
   std::vector<std::uint32_t> normals;
   for (layout::Triangle& t : flat.triangles) {
@@ -379,7 +395,8 @@ class Directory {
 }  // namespace
 
 std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideForm& wide) {
-  std::size_t bytes = flat.normals.bytes() + wide.bytes();
+  std::size_t bytes =
+      flat.normals.bytes() + flat.texcoords.bytes() + flat.corner_colors.bytes() + wide.bytes();
   primitives::for_each_kind([&](auto kind) { bytes += decltype(kind)::of(flat).bytes(); });
   return bytes;
 }

@@ -31,12 +31,13 @@ class Loads {
  public:
   Loads(const flatten::FlatScene& scene, const flatten::WideForm& form)
       : form_(form), nodes_(form.nodes.size()) {
-    // A smooth triangle has its normals beside it.
-    const std::uint64_t normals =
-        scene.triangles.empty() ? 0 : scene.normals.bytes() / scene.triangles.size();
+    // A smooth triangle has its normals beside it, a painted one what is at its corners.
+    const std::uint64_t beside =
+        scene.normals.bytes() + scene.texcoords.bytes() + scene.corner_colors.bytes();
+    const std::uint64_t each = scene.triangles.empty() ? 0 : beside / scene.triangles.size();
     primitives::for_each_kind(
         [this](auto kind) { primitive_bytes_[kind.kNumber] = sizeof(typename decltype(kind)::Layout); });
-    primitive_bytes_[KDRAY_KIND_TRIANGLE] += normals;
+    primitive_bytes_[KDRAY_KIND_TRIANGLE] += each;
     tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t i) { nodes_[i] = own(form_.nodes[i]); });
     // Children come behind their parents.
     for (std::size_t i = nodes_.size(); i-- > 0;)

@@ -38,14 +38,15 @@ namespace {
 // The scene is taken apart into all its members, so that one that is added can't be forgotten.
 #define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
 scene::Scene settings_of(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, lights, unlit,
-               camera, cameras, framing, background, ambient, settings, warnings, files, load_options] =
-      scene;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
+               unlit, camera, cameras, framing, background, ambient, settings, warnings, files,
+               load_options] = scene;
   return {.name = name,
           .vertices = {},
           .normals = {},
           .triangles = {},
           KDRAY_SHAPES(KDRAY_NO_SHAPES).materials = materials,
+          .paint = {.coats = paint.coats},
           .lights = lights,
           .unlit = unlit,
           .camera = camera,

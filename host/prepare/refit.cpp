@@ -56,6 +56,7 @@ Refitted refit(const scene::Scene& scene, const Prepared& last, const Fitting& f
   out.flat.triangles = geometry.triangles;
   out.flat.normals = flatten::pack_normals(scene, geometry);
   out.flat.materials = flatten::pack_materials(scene);
+  out.flat.coats = flatten::pack_coats(scene);
   out.flat.lights = flatten::pack_lights(scene, geometry.space);
   out.wide = std::move(fit.form);
   out.seconds = {.load = last.seconds.load, .build = 0, .flatten = timer.seconds()};

@@ -13,6 +13,16 @@ void light_anew(Prepared& scene) {
   scene.features = flatten::features_in_light(scene.features, scene.settings);
 }
 
+// What is cut out covers nothing. Of other coats nothing is left.
+void keep_holes(Prepared& white) {
+  for (scene::Coat& c : white.settings.paint.coats)
+    c = {.alpha = c.alpha,
+         .cutoff = c.cutoff,
+         .base = c.base,
+         .colored = c.colored,
+         .mode = c.mode == scene::Alpha::mask ? c.mode : scene::Alpha::opaque};
+}
+
 }  // namespace
 
 Prepared seen(const Prepared& prepared, const scene::View& view, const std::optional<vec3>& background,
@@ -28,10 +38,12 @@ Prepared coverage_of(const Prepared& prepared) {
   constexpr flatten::Features kOfMaterials =
       KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE;
   Prepared white = prepared;
-  for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1)};
+  for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1), .coat = m.coat};
   white.settings.background = vec3(0);
   white.settings.lights.clear();
+  keep_holes(white);
   white.flat.materials = flatten::pack_materials(white.settings);
+  white.flat.coats = flatten::pack_coats(white.settings);
   white.features &= ~kOfMaterials;
   light_anew(white);
   return white;

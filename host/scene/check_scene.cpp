@@ -26,6 +26,7 @@ class Checker {
     check_values();
     check_triangles();
     primitives::for_each_shape([this](auto kind) { check_shapes(kind); });
+    check_paint();
   }
 
  private:
@@ -87,6 +88,36 @@ class Checker {
       if (const char* const fault = fault_of(shape))
         require(false, "primitive " + std::to_string(shape.number) + ": " + fault);
     }
+  }
+
+  // Kernels follow these without a further look.
+  void check_paint() const {
+    const Paint& paint = scene_.paint;
+    for (const Material& m : scene_.materials)
+      require_internal(m.coat == kNone || m.coat < paint.coats.size(), "a material without its coat");
+    for (const Coat& c : paint.coats) check_coat(c);
+    for (const Texture& t : paint.textures) {
+      bool good = t.picture < paint.pictures.size() && t.set < 2;
+      for (const float f : t.across) good = good && std::isfinite(f);
+      for (const float f : t.down) good = good && std::isfinite(f);
+      require_internal(good, "a texture without its picture");
+    }
+    for (const auto& p : paint.pictures)
+      require_internal(
+          p && p->width > 0 && p->height > 0 && p->texels.size() == std::size_t{4} * p->width * p->height,
+          "a picture without its texels");
+    const std::size_t n = scene_.triangles.size();
+    require_internal(
+        paint.colors.size() <= n && paint.texcoords[0].size() <= n && paint.texcoords[1].size() <= n,
+        "colours or texture coordinates of more triangles than there are");
+  }
+
+  void check_coat(const Coat& c) const {
+    require_internal(c.base == kNone || c.base < scene_.paint.textures.size(), "a coat without its texture");
+    bool good = c.alpha >= 0 && c.alpha <= 1 && std::isfinite(c.cutoff);
+    for (const vec3* term : {&c.emission, &c.ambient, &c.diffuse, &c.specular, &c.reflect, &c.transmit})
+      good = good && at_least_zero(*term);
+    require_internal(good, "a coat with a term that is not finite, or below 0");
   }
 
   const Scene& scene_;

@@ -1,6 +1,6 @@
 // What    Which files a scene was made of: all that were read while it was loaded, with a hash of each; those
 //         that were looked for in vain, whose appearing would change the scene; and those that it only names
-//         (textures, which kdray doesn't read). None of them may be overwritten by a run that loads the
+//         (pictures that nothing is made of). None of them may be overwritten by a run that loads the
 //         scene.
 // Shape   While a FilesRead lives, what its thread reads goes into it; they may be nested, and then the
 //         innermost records.

@@ -1,6 +1,7 @@
 #include "scene/gltf_accessor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -114,6 +115,12 @@ struct Vectors {
   static constexpr std::size_t kParts = 3;
   static void set(dvec3& element, std::size_t c, double value) { element[static_cast<int>(c)] = value; }
 };
+template <std::size_t n_parts, std::size_t n_kept>
+struct Floats {
+  using Element = std::array<float, n_kept>;
+  static constexpr std::size_t kParts = n_parts;
+  static void set(Element& element, std::size_t c, double value) { element[c] = static_cast<float>(value); }
+};
 struct Indices {
   using Element = std::uint32_t;
   static constexpr std::size_t kParts = 1;
@@ -174,7 +181,7 @@ RawVector<typename Kind::Element> read_elements(Document& document, const JsonNo
   } else if (count > std::max<std::uint64_t>(kMostZeros, document.file_size())) {
     throw accessor["count"].error("as many zeros as that are not believed", "give the accessor a bufferView");
   } else {
-    out.assign(count, typename Kind::Element(0));
+    out.assign(count, typename Kind::Element{});
   }
   apply_sparse<Kind>(document, accessor, component, normalized, out);
   return out;
@@ -200,6 +207,38 @@ RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!is_finite(out[i])) throw accessor.error("element " + std::to_string(i) + " is not finite");
   }
+  return out;
+}
+
+namespace {
+
+template <class Element>
+void check_finite(const JsonNode& accessor, const RawVector<Element>& elements) {
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    for (const float part : elements[i])
+      if (!std::isfinite(part)) throw accessor.error("element " + std::to_string(i) + " is not finite");
+}
+
+}  // namespace
+
+RawVector<std::array<float, 2>> read_pairs(Document& document, const JsonNode& accessor) {
+  expect_type(accessor, "VEC2");
+  auto out = read_elements<Floats<2, 2>>(document, accessor, component_of(accessor["componentType"]));
+  check_finite(accessor, out);
+  return out;
+}
+
+RawVector<std::array<float, 4>> read_colors(Document& document, const JsonNode& accessor) {
+  const Component component = component_of(accessor["componentType"]);
+  RawVector<std::array<float, 4>> out;
+  if (accessor["type"].string() == "VEC4") {
+    out = read_elements<Floats<4, 4>>(document, accessor, component);
+  } else {
+    expect_type(accessor, "VEC3");
+    out = read_elements<Floats<3, 4>>(document, accessor, component);
+    for (auto& color : out) color[3] = 1;
+  }
+  check_finite(accessor, out);
   return out;
 }
 

@@ -5,6 +5,7 @@
 //         than the file.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "base/raw_vector.h"
@@ -16,6 +17,10 @@ namespace kdray::scene::gltf {
 std::uint64_t accessor_count(const JsonNode& accessor);
 // VEC3 of floats, or of integers, which `normalized` scales to [-1, 1] or [0, 1].
 RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor);
+// VEC2 of the same.
+RawVector<std::array<float, 2>> read_pairs(Document& document, const JsonNode& accessor);
+// VEC3 or VEC4 of the same: red, green, blue and alpha, which is 1 where there is none.
+RawVector<std::array<float, 4>> read_colors(Document& document, const JsonNode& accessor);
 // SCALAR of unsigned integers, each below `end`.
 RawVector<std::uint32_t> read_indices(Document& document, const JsonNode& accessor, std::uint64_t end);
 

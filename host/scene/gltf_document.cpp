@@ -59,7 +59,7 @@ Document::Document(std::string_view text, const std::filesystem::path& path)
   note_files();
 }
 
-// Of all that the file names, in extensions too: pictures are never read, buffers only when they are used.
+// Of all that the file names, in extensions too: pictures and buffers are read only when they are used.
 void Document::note_files() const {
   std::vector<const nlohmann::json*> open = {&json_};
   while (!open.empty()) {
@@ -158,7 +158,7 @@ std::string_view Document::buffer_bytes(const JsonNode& index) {
   std::string_view bytes;
   if (uri) {
     const auto [it, added] = buffers_.try_emplace(whole(index));
-    if (added) it->second = read_buffer(*uri, uri->string());
+    if (added) it->second = read_uri(*uri);
     bytes = it->second;
   } else if (whole(index) == 0 && binary_chunk_) {
     bytes = *binary_chunk_;
@@ -172,7 +172,8 @@ std::string_view Document::buffer_bytes(const JsonNode& index) {
   return bytes.substr(0, length);
 }
 
-std::string Document::read_buffer(const JsonNode& node, const std::string& uri) const {
+std::string Document::read_uri(const JsonNode& node) const {
+  const std::string uri = node.string();
   if (uri.starts_with("data:")) {
     std::optional<std::string> bytes = decode_data_uri(uri);
     if (!bytes) throw node.error("not a data: URI in base64");
@@ -183,6 +184,7 @@ std::string Document::read_buffer(const JsonNode& node, const std::string& uri) 
   const std::filesystem::path buffer = path_.parent_path() / *name;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(buffer, ignored)) {
+    FilesRead::add_missing(buffer);
     throw node.error("there is no file '" + printable(uri) + "' beside the scene", "put it there");
   }
   return read_file(buffer);

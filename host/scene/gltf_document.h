@@ -1,5 +1,5 @@
 // What    A glTF 2.0 file taken apart: its JSON, whose arrays are at hand as nodes, and its buffers, which
-//         are read when they are first asked for (pictures never are).
+//         are read when they are first asked for.
 // Shape   .gltf or .glb, told by the first bytes. Buffers may be in the GLB itself, in data: URIs, or in
 //         files beside the scene or below.
 // Errors  kdray::Error: the JSON's line for what is not JSON, the value's path ("/accessors/3/count")
@@ -35,6 +35,8 @@ class Document {
   const JsonNode& entry(const std::string& array, const JsonNode& index);
   const std::vector<JsonNode>& entries(const std::string& array);
 
+  // The bytes that a "uri" stands for: data, or a file beside the scene or below.
+  std::string read_uri(const JsonNode& uri) const;
   // The bytes of a bufferView, all of which are there.
   std::string_view view_bytes(const JsonNode& view);
 
@@ -44,7 +46,6 @@ class Document {
   void check_extensions();
   void note_files() const;
   std::string_view buffer_bytes(const JsonNode& index);
-  std::string read_buffer(const JsonNode& buffer, const std::string& uri) const;
 
   std::string_view text_;
   std::string_view json_text_;

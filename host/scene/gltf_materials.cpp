@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace kdray::scene::gltf {
 
@@ -12,8 +13,8 @@ constexpr float kAmbient = 0.1f;
 // The strength of a perfectly smooth dielectric's highlight. Physically it is 0.04 times a very large peak; a
 // hard Phong lobe of this height looks about like it.
 constexpr float kHighlight = 0.25f;
-// Where a picture would say how metallic and how rough a surface is, and pictures are not read: a plain,
-// half-rough dielectric. The factors alone (usually 1) would make it a perfect mirror or a black one.
+// Where a picture would say how metallic and how rough a surface is, which is not read: a plain, half-rough
+// dielectric. The factors alone (usually 1) would make it a perfect mirror or a black one.
 constexpr float kUnknownRoughness = 0.5f;
 constexpr float kMostColor = 1e6f;
 
@@ -27,6 +28,8 @@ struct Surface {
   float index = 1.5f;
   bool is_body = false;  // refracts; otherwise a thin sheet
   vec3 emission{0};
+  Alpha mode = Alpha::opaque;
+  float cutoff = 0.5f;
 };
 
 float factor(const JsonNode& object, std::string_view key, double otherwise) {
@@ -107,32 +110,58 @@ void read_transparency(const JsonNode& node, Surface& s) {
   if (s.index < 1) s.index = s.index == 0 ? 100.0f : 1.0f;
   const auto volume = extension(node, "KHR_materials_volume");
   s.is_body = s.transmission > 0 && (ior || (volume && number_or(*volume, "thicknessFactor", 0) > 0));
+}
+
+void read_alpha(const JsonNode& node, Surface& s) {
   const auto mode = node.find("alphaMode");
-  if (!mode || mode->string() != "BLEND") s.alpha = 1;
+  if (mode && mode->string() == "BLEND") s.mode = Alpha::blend;
+  if (mode && mode->string() == "MASK") s.mode = Alpha::mask;
+  s.cutoff = static_cast<float>(std::clamp(number_or(node, "alphaCutoff", 0.5), 0.0, 1e6));
 }
 
 Material unlit(const Surface& s) {
   return {.emission = s.alpha * s.base, .transmit = vec3(1 - s.alpha)};
 }
 
-Material specular_glossiness(const JsonNode& node, const Surface& rest) {
-  Surface s = rest;
-  s.base = color(node, "diffuseFactor", vec3(1));
+void read_glossiness(const JsonNode& node, Surface& s) {
+  s.base = color(node, "diffuseFactor", vec3(1), &s.alpha);
   s.metallic = 0;
   s.roughness =
       node.find("specularGlossinessTexture") ? kUnknownRoughness : 1 - factor(node, "glossinessFactor", 1);
+}
+
+Material specular_glossiness(const JsonNode& node, const Surface& s) {
   Material m = whitted(s);
   m.specular = s.alpha * (1 - s.roughness) * color(node, "specularFactor", vec3(1));
   return m;
 }
 
-bool has_picture(const JsonNode& pbr) {
-  for (const std::string_view key :
-       {"baseColorTexture", "metallicRoughnessTexture", "diffuseTexture", "specularGlossinessTexture"}) {
-    if (pbr.find(key)) return true;
-  }
-  return false;
+// The terms of a surface whose base colour is multiplied by something else at each place: what doesn't depend
+// on it stays the material's, the rest is its coat's.
+Material coated(const Surface& s, const std::function<Material(const Surface&)>& terms, Coat& coat) {
+  Surface opaque = s, black = s;
+  opaque.alpha = black.alpha = 1;
+  black.base = vec3(0);
+  const Material all = terms(opaque);
+  Material plain = terms(black);
+  plain.transmit = glm::min(plain.transmit, all.transmit);
+  plain.reflect = glm::min(plain.reflect, all.reflect);
+  plain.index = all.index;
+  coat.emission = all.emission - plain.emission;
+  coat.ambient = all.ambient - plain.ambient;
+  coat.diffuse = all.diffuse - plain.diffuse;
+  coat.specular = all.specular - plain.specular;
+  coat.reflect = all.reflect - plain.reflect;
+  coat.transmit = all.transmit - plain.transmit;
+  coat.alpha = s.alpha;
+  coat.cutoff = s.cutoff;
+  coat.mode = s.mode;
+  return plain;
 }
+
+// Pictures that are not read.
+constexpr std::string_view kPictures[] = {"normalTexture", "occlusionTexture", "emissiveTexture"};
+constexpr std::string_view kPicturesOfTerms[] = {"metallicRoughnessTexture", "specularGlossinessTexture"};
 
 // Extensions that change how a surface looks and that no term of Whitted's stands for; each does nothing
 // while its factor is 0.
@@ -154,28 +183,57 @@ void Materials::count_left_out(const JsonNode& node) {
   for (const LayerExtension& layer : kLayers)
     if (const auto found = extension(node, layer.name))
       left_out_[std::string(layer.name)] += number_or(*found, layer.factor, layer.otherwise) != 0;
-  if (const auto mode = node.find("alphaMode")) left_out_["alphaMode MASK"] += mode->string() == "MASK";
+  const auto count = [this](const JsonNode& holder, std::string_view key) {
+    if (holder.find(key)) ++left_out_[std::string(key)];
+  };
+  for (const std::string_view key : kPictures) count(node, key);
+  for (const std::string_view key : kPicturesOfTerms) {
+    if (const auto pbr = node.find("pbrMetallicRoughness")) count(*pbr, key);
+    if (const auto glossy = extension(node, "KHR_materials_pbrSpecularGlossiness")) count(*glossy, key);
+  }
 }
 
-Material Materials::read(const JsonNode& node) {
-  count_left_out(node);
-  Surface s;
-  const auto pbr = node.find("pbrMetallicRoughness");
-  if (pbr) read_metallic_roughness(*pbr, s);
-  read_transparency(node, s);
-  s.emission = emission_of(node);
+// Of metallic-roughness, or of specular-glossiness where a material has that.
+std::optional<std::uint32_t> Materials::base_texture(const JsonNode& node) {
   const auto glossy = extension(node, "KHR_materials_pbrSpecularGlossiness");
-  any_picture_ = any_picture_ || (pbr && has_picture(*pbr)) || (glossy && has_picture(*glossy)) ||
-                 node.find("emissiveTexture") || node.find("normalTexture");
-  if (extension(node, "KHR_materials_unlit")) return unlit(s);
-  return glossy ? specular_glossiness(*glossy, s) : whitted(s);
+  const auto holder = glossy ? glossy : node.find("pbrMetallicRoughness");
+  const auto info = holder ? holder->find(glossy ? "diffuseTexture" : "baseColorTexture") : std::nullopt;
+  return info ? textures_.number_of(*info, true) : std::nullopt;
 }
 
-std::uint32_t Materials::number_of(const JsonNode& primitive) {
+Material Materials::read(const JsonNode* node, bool colored) {
+  Surface s;
+  std::function<Material(const Surface&)> terms = whitted;
+  Coat coat{.colored = colored};
+  if (node) {
+    count_left_out(*node);
+    if (const auto pbr = node->find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, s);
+    read_transparency(*node, s);
+    read_alpha(*node, s);
+    s.emission = emission_of(*node);
+    if (const auto glossy = extension(*node, "KHR_materials_pbrSpecularGlossiness")) {
+      read_glossiness(*glossy, s);
+      terms = [glossy = *glossy](const Surface& surface) { return specular_glossiness(glossy, surface); };
+    }
+    if (extension(*node, "KHR_materials_unlit")) terms = unlit;
+    if (const auto base = base_texture(*node)) coat.base = *base;
+  }
+  const bool has_hole = s.mode == Alpha::mask && s.alpha < s.cutoff;
+  if (s.mode != Alpha::blend && coat.base == kNone && !colored && !has_hole) s.alpha = 1;
+  if (coat.base == kNone && !colored && !has_hole) return terms(s);
+  Material m = coated(s, terms, coat);
+  m.coat = scene_.paint.add(coat);
+  return m;
+}
+
+std::uint32_t Materials::number_of(const JsonNode& primitive, bool colored) {
   const auto index = primitive.find("material");
-  const auto [it, added] = numbers_.try_emplace(index ? whole(*index) : kDefault,
+  const auto [it, added] = numbers_.try_emplace({index ? whole(*index) : kDefault, colored},
                                                 static_cast<std::uint32_t>(scene_.materials.size()));
-  if (added) scene_.materials.push_back(index ? read(document_.entry("materials", *index)) : whitted({}));
+  if (added) {
+    const JsonNode* node = index ? &document_.entry("materials", *index) : nullptr;
+    scene_.materials.push_back(read(node, colored));
+  }
   return it->second;
 }
 
@@ -184,9 +242,6 @@ void Materials::warn() {
     if (n > 0)
       scene_.warnings.push_back(document_.file() + ": " + what + " of " + std::to_string(n) +
                                 (n == 1 ? " material" : " materials") + " is left out");
-  if (!any_picture_) return;
-  scene_.warnings.push_back(document_.file() +
-                            ": pictures (textures) are left out: the colours of the factors are used");
 }
 
 }  // namespace kdray::scene::gltf

@@ -9,27 +9,32 @@
 #include <vector>
 
 #include "scene/gltf_document.h"
+#include "scene/gltf_textures.h"
 #include "scene/scene.h"
 
 namespace kdray::scene::gltf {
 
 class Materials {
  public:
-  Materials(Document& document, Scene& scene) : document_(document), scene_(scene) {}
+  Materials(Document& document, Scene& scene)
+      : document_(document), scene_(scene), textures_(document, scene) {}
 
-  // The scene's number of the material that a primitive names, or of glTF's default material.
-  std::uint32_t number_of(const JsonNode& primitive);
+  // The scene's number of the material that a primitive names, or of glTF's default material. `colored`: the
+  // primitive has colours at its corners.
+  std::uint32_t number_of(const JsonNode& primitive, bool colored);
   // Called after the last primitive: warns of what was left out.
   void warn();
 
  private:
-  Material read(const JsonNode& node);
+  Material read(const JsonNode* node, bool colored);
+  std::optional<std::uint32_t> base_texture(const JsonNode& node);
   void count_left_out(const JsonNode& node);
 
   Document& document_;
   Scene& scene_;
-  std::map<std::uint64_t, std::uint32_t> numbers_;  // by the file's index; kDefault for no material
-  bool any_picture_ = false;
+  Textures textures_;
+  // By the file's index, kDefault for no material, and whether it is coloured.
+  std::map<std::pair<std::uint64_t, bool>, std::uint32_t> numbers_;
   std::map<std::string, std::size_t> left_out_;  // number of materials by what they ask for in vain
 };
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <numeric>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "scene/gltf_accessor.h"
 #include "scene/settle_normals.h"
@@ -98,6 +100,57 @@ bool MeshReader::add_normals(const JsonNode& attributes, std::size_t n_vertices,
   return true;
 }
 
+std::optional<JsonNode> MeshReader::colors_of(const JsonNode& attributes, std::size_t n_vertices) {
+  const auto index = attributes.find("COLOR_0");
+  if (!index) return std::nullopt;
+  const JsonNode& accessor = document_.entry("accessors", *index);
+  if (accessor_count(accessor) == n_vertices) return accessor;
+  warn("colours that are not as many as their positions are left out");
+  return std::nullopt;
+}
+
+// The triangles, which are the scene's last ones, are named by their vertices within the primitive.
+void MeshReader::add_colors(const JsonNode& accessor,
+                            std::span<const std::array<std::uint32_t, 3>> triangles) {
+  const auto values = read_colors(document_, accessor);
+  auto& colors = scene_.paint.colors;
+  reserve_more(colors, scene_.triangles.size() - colors.size());
+  colors.resize(scene_.triangles.size() - triangles.size(), kWhiteCorners);
+  for (const auto& corners : triangles) {
+    layout::CornerColors c{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& from = values[corners[i]];
+      set_corner(c, i,
+                 {linear_unit(from[0]), linear_unit(from[1]), linear_unit(from[2]), linear_unit(from[3])});
+    }
+    colors.push_back(c);
+  }
+}
+
+void MeshReader::add_texcoords(const JsonNode& attributes,
+                               std::span<const std::array<std::uint32_t, 3>> triangles,
+                               std::size_t n_vertices) {
+  for (std::size_t set = 0; set < 2; ++set) {
+    const auto index = attributes.find("TEXCOORD_" + std::to_string(set));
+    if (!index) continue;
+    const JsonNode& accessor = document_.entry("accessors", *index);
+    if (accessor_count(accessor) != n_vertices) {
+      warn("texture coordinates that are not as many as their positions are left out");
+      continue;
+    }
+    const auto values = read_pairs(document_, accessor);
+    auto& out = scene_.paint.texcoords[set];
+    reserve_more(out, scene_.triangles.size() - out.size());
+    out.resize(scene_.triangles.size() - triangles.size());
+    for (const auto& corners : triangles) {
+      layout::TexCoords at{};
+      for (std::size_t i = 0; i < 3; ++i)
+        at.uv[i][0] = values[corners[i]][0], at.uv[i][1] = values[corners[i]][1];
+      out.push_back(at);
+    }
+  }
+}
+
 void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world) {
   ++n_primitives_;
   check_size(primitive);
@@ -110,7 +163,6 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
   if (mode > kFan) throw primitive["mode"].expected("a mode from 0 to 6");
   if (mode < kTriangles) return warn("points and lines are left out: they have no surface");
   const JsonNode attributes = primitive["attributes"];
-  if (attributes.find("COLOR_0")) warn("vertex colours are left out: a material holds for a whole primitive");
   const auto position = attributes.find("POSITION");
   if (!position) return warn("primitives without positions are left out");
 
@@ -131,7 +183,10 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
     warn("corners that are left over after the last whole triangle of a primitive are left out");
   }
   const bool mirrored = glm::determinant(dmat3(to_world)) < 0;
-  const std::uint32_t material = materials_.number_of(primitive);
+  const auto colors = colors_of(attributes, n_vertices);
+  const std::uint32_t material = materials_.number_of(primitive, colors.has_value());
+  std::vector<std::array<std::uint32_t, 3>> picks;
+  const bool painted = scene_.materials[material].coat != kNone;
   reserve_more(scene_.triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
   for_each_triangle(mode, corners, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (mirrored) std::swap(b, c);
@@ -140,7 +195,11 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
     t.material = material;
     t.number = static_cast<std::uint32_t>(scene_.triangles.size());
     scene_.triangles.push_back(t);
+    if (painted) picks.push_back({a, b, c});
   });
+  if (!painted) return;
+  add_texcoords(attributes, picks, n_vertices);
+  if (colors) add_colors(*colors, picks);
 }
 
 void MeshReader::finish() {

@@ -1,12 +1,14 @@
 // What    Adds the primitives of a glTF mesh to a scene, moved by a node's transform; a mirroring transform
 //         turns the triangles over, so that their front stays where the normals point.
-// Shape   Strips and fans become triangles. Points and lines, morph targets and vertex colours are left out,
-//         with a warning.
+// Shape   Strips and fans become triangles. Points and lines and morph targets are left out, with a warning.
 // Errors  The errors are those of gltf_accessor.h; one more is that instances multiply a small file beyond
 //         all measure.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 
 #include "math/vec.h"
@@ -30,6 +32,10 @@ class MeshReader {
   void add_primitive(const JsonNode& primitive, const dmat4& to_world);
   void add_vertices(const JsonNode& accessor, const dmat4& to_world);
   bool add_normals(const JsonNode& attributes, std::size_t n_vertices, const dmat4& to_world);
+  void add_texcoords(const JsonNode& attributes, std::span<const std::array<std::uint32_t, 3>> triangles,
+                     std::size_t n_vertices);
+  void add_colors(const JsonNode& accessor, std::span<const std::array<std::uint32_t, 3>> triangles);
+  std::optional<JsonNode> colors_of(const JsonNode& attributes, std::size_t n_vertices);
   void check_size(const JsonNode& primitive) const;
 
   Document& document_;

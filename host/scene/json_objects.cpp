@@ -172,6 +172,7 @@ void JsonObjects::read_mesh(const JsonNode& object) {
   place(object, part);
   if (object.find("material")) {
     part.materials = {material_of(object)};
+    part.paint = {};
     for (Triangle& t : part.triangles) t.material = 0;
     primitives::for_each_shape([&](auto kind) {
       for (auto& shape : decltype(kind)::of(part)) shape.material = 0;
@@ -234,10 +235,16 @@ void JsonObjects::append(const Scene& part, const JsonNode& object) {
       scene_.normals.size() + part.normals.size() >= kNone) {
     throw object.error("2^28 primitives or more in all", "leave some out");
   }
+  const std::vector<std::uint32_t> coats =
+      scene_.paint.append(part.paint, scene_.triangles.size(), part.triangles.size());
   std::vector<std::uint32_t> material(part.materials.size(), kNone);
   const auto take = [&](auto primitive) {  // numbers within the part become numbers within the scene
     std::uint32_t& m = material[primitive.material];
-    if (m == kNone) m = materials_.add(part.materials[primitive.material]);
+    if (m == kNone) {
+      Material added = part.materials[primitive.material];
+      if (added.coat != kNone) added.coat = coats[added.coat];
+      m = materials_.add(added);
+    }
     primitive.material = m;
     primitive.number += number_;
     return primitive;

@@ -42,8 +42,11 @@ class MtlReader {
     if (keyword == "d") m.dissolve = read_dissolve();
     if (keyword == "Tr") m.tr = std::clamp(number(keyword), 0.0f, 1.0f);
     if (keyword == "illum") m.illum = static_cast<int>(std::clamp(number(keyword), 0.0f, 10.0f));
-    if (keyword == "map_Kd") m.has_picture = true;
-    if (names_picture(keyword)) note_picture(in_.rest());
+    if (names_picture(keyword)) {
+      const std::string_view rest = in_.rest();
+      note_picture(rest);
+      if (keyword == "map_Kd") m.map_kd = picture_of(rest, m);
+    }
     if (means_nothing(keyword)) note_left_out(keyword, m);
   }
 
@@ -60,6 +63,62 @@ class MtlReader {
       if (gap == std::string_view::npos) return;
       rest.remove_prefix(std::min(rest.find_first_not_of(" \t", gap), rest.size()));
     }
+  }
+
+  // Takes the next word off the front.
+  static std::string_view take_word(std::string_view& rest) {
+    const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+    const std::string_view word = rest.substr(0, end);
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t", end), rest.size()));
+    return word;
+  }
+
+  // Up to three numbers; those that are not there leave what is in `out`.
+  static void take_numbers(std::string_view& rest, std::array<double, 2>& out) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::string_view after = rest;
+      const std::string_view word = take_word(after);
+      double value = 0;
+      // The name of a file may look like a number.
+      if (after.empty() || !read_number(word.data(), word.data() + word.size(), value)) return;
+      if (i < 2) out[i] = std::clamp(value, -1e6, 1e6);
+      rest = after;
+    }
+  }
+
+  // Options stand before the name, which is all that is left then.
+  MtlPicture picture_of(std::string_view rest, MtlMaterial& m) {
+    MtlPicture picture;
+    while (rest.starts_with('-')) {
+      std::string_view after = rest;
+      const std::string_view option = take_word(after);
+      if (after.empty()) break;
+      if (option == "-s") {
+        take_numbers(after, picture.scale);
+      } else if (option == "-o") {
+        take_numbers(after, picture.offset);
+      } else if (option == "-clamp") {
+        picture.clamp = take_word(after) == "on";
+      } else {
+        skip_option(option, after, m);
+      }
+      rest = after;
+    }
+    picture.file = rest;
+    return picture;
+  }
+
+  // Those whose absence shows are told. -t and -mm have several values.
+  void skip_option(std::string_view option, std::string_view& rest, MtlMaterial& m) {
+    std::array<double, 2> ignored{};
+    if (option == "-t" || option == "-mm") {
+      take_numbers(rest, ignored);
+    } else {
+      take_word(rest);
+    }
+    const bool shows = option == "-t" || option == "-mm" || option == "-imfchan" || option == "-cc";
+    const std::string what = "map_Kd " + std::string(option);
+    if (shows && std::ranges::find(m.left_out, what) == m.left_out.end()) m.left_out.push_back(what);
   }
 
   // What would change how the surface looks: other pictures than map_Kd, and terms of physically based

@@ -5,6 +5,7 @@
 // Source  Alias Wavefront, "MTL material format", Appendix B2 of the Advanced Visualizer manual.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,13 @@
 
 namespace kdray::scene {
 
+// A picture and its options. It is looked at u*scale[0] + offset[0], and v likewise, where v goes upwards.
+struct MtlPicture {
+  std::string file;
+  std::array<double, 2> scale{1, 1}, offset{0, 0};
+  bool clamp = false;
+};
+
 struct MtlMaterial {
   std::string name;
   vec3 kd{0.8f}, ks{0}, ke{0};
@@ -22,7 +30,7 @@ struct MtlMaterial {
   std::optional<float> tr;        // 1 - d, as some exporters write it; `d` wins
   float ns = 0, ni = 1;
   std::optional<int> illum;
-  bool has_picture = false;           // map_Kd
+  std::optional<MtlPicture> map_kd;
   std::vector<std::string> left_out;  // statements that nothing is made of
 };
 

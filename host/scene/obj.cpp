@@ -1,11 +1,14 @@
-// What    Wavefront OBJ: vertices, normals, polygons, and the materials of its MTL files. Groups and texture
-//         coordinates mean nothing to a Whitted ray tracer and are skipped; vertex colours, points, lines and
+// What    Wavefront OBJ: vertices with colours, normals, texture coordinates, polygons, and the materials of
+//         its MTL files. Groups mean nothing to a Whitted ray tracer and are skipped; points, lines and
 //         free-form surfaces are left out with a warning.
-// Shape   Materials are looked up after the last line, so `mtllib` may stand anywhere.
+// Shape   Materials are looked up after the last line, so `mtllib` may stand anywhere. Texture coordinates
+//         are read where the file has MTL files, and kept where one of those names a picture.
 // Errors  File and line of the word at fault. A normal that doesn't exist makes its face flat (a warning); a
 //         vertex that doesn't exist refuses the file.
 // Source  Alias Wavefront, "Object files", Appendix B1 of the Advanced Visualizer manual. Numbers are read
 //         exactly rounded, which the usual OBJ libraries don't do.
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <string>
 #include <string_view>
@@ -37,7 +40,9 @@ struct LeftOut {
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::filesystem::path& file)
-      : in_(text, file.string()), materials_(file, scene_) {}
+      : in_(text, file.string()),
+        materials_(file, scene_),
+        reads_texcoords_(text.find("mtllib") != std::string_view::npos) {}
 
   Scene read() {
     while (in_.next_line()) {
@@ -49,7 +54,9 @@ class ObjReader {
     if (n_statements_ > 0 && unknown_.count == n_statements_) {
       throw input_error(in_.file(), unknown_.line, "not an OBJ file: no line of it is an OBJ statement");
     }
-    materials_.finish();
+    paint_corners();
+    materials_.finish(!scene_.paint.colors.empty());
+    if (scene_.paint.textures.empty()) scene_.paint.texcoords[0] = {};
     settle_normals(scene_, in_.file());
     warn_of_what_is_left_out();
     return std::move(scene_);
@@ -59,6 +66,7 @@ class ObjReader {
   void read_statement(std::string_view keyword) {
     if (keyword == "v") return read_vertex();
     if (keyword == "vn") return read_normal();
+    if (keyword == "vt") return reads_texcoords_ ? read_texcoords() : void();
     if (keyword == "f" || keyword == "fo") return read_face();
     if (keyword == "usemtl") return materials_.use(in_.rest());
     if (keyword == "mtllib") return materials_.add_library(in_.rest(), in_.line());
@@ -70,10 +78,10 @@ class ObjReader {
 
   static bool means_nothing_here(std::string_view keyword) {
     constexpr std::string_view kSkipped[] = {
-        "vt",        "vp",    "vw",    "g",    "s",      "mg",     "o",      "bevel", "c_interp",
-        "d_interp",  "lod",   "call",  "csh",  "usemap", "maplib", "cstype", "deg",   "bmat",
-        "step",      "parm",  "trim",  "hole", "scrv",   "sp",     "end",    "con",   "t",
-        "trace_obj", "ctech", "stech", "res",  "bzp",    "bsp",    "cdc",    "cdp",   "shadow_obj"};
+        "vp",    "vw",    "g",    "s",      "mg",     "o",      "bevel", "c_interp",  "d_interp",
+        "lod",   "call",  "csh",  "usemap", "maplib", "cstype", "deg",   "bmat",      "step",
+        "parm",  "trim",  "hole", "scrv",   "sp",     "end",    "con",   "t",         "trace_obj",
+        "ctech", "stech", "res",  "bzp",    "bsp",    "cdc",    "cdp",   "shadow_obj"};
     for (const std::string_view skipped : kSkipped) {
       if (keyword == skipped) return true;
     }
@@ -90,7 +98,51 @@ class ObjReader {
   void read_vertex() {
     vertex_reserve_.reserve(scene_.vertices, in_.bytes_left());
     scene_.vertices.push_back(three_numbers("a vertex of three numbers"));
-    if (!in_.word().empty() && !in_.word().empty()) colored_vertices_.add(in_.line());  // more than a weight
+    read_color();
+  }
+
+  // One number more is a weight, three are a colour, four a weight and a colour.
+  void read_color() {
+    std::array<float, 4> numbers{};
+    std::size_t n = 0;
+    for (double value = 0; n < 4; ++n) {
+      const std::string_view word = in_.word();
+      if (word.empty() || !scene::read_number(word.data(), word.data() + word.size(), value)) break;
+      numbers[n] = static_cast<float>(std::clamp(value, 0.0, 255.0));
+    }
+    if (n == 2) odd_colors_.add(in_.line());
+    if (n < 3) return;
+    const std::array<float, 3> color{numbers[n - 3], numbers[n - 2], numbers[n - 1]};
+    colors_.resize(scene_.vertices.size() - 1, {1, 1, 1});  // those of vertices that have none
+    colors_.push_back(color);
+  }
+
+  // Codes of sRGB, from 0 to 1; in files that have larger ones, to 255.
+  void paint_corners() {
+    if (colors_.empty()) return;
+    colors_.resize(scene_.vertices.size(), {1, 1, 1});
+    float most = 1;
+    for (const auto& color : colors_) most = std::max({most, color[0], color[1], color[2]});
+    const double scale = most > 1 ? 1 / 255.0 : 1;
+    RawVector<std::array<std::uint32_t, 4>> linear(colors_.size());
+    for (std::size_t i = 0; i < colors_.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) linear[i][c] = linear_unit_of_srgb(colors_[i][c] * scale);
+      linear[i][3] = 65535;
+    }
+    scene_.paint.colors.resize(scene_.triangles.size());
+    for (std::size_t i = 0; i < scene_.triangles.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        set_corner(scene_.paint.colors[i], k, linear[scene_.triangles[i].vertex[k]]);
+  }
+
+  // v goes upwards in the file, downwards in textures.
+  void read_texcoords() {
+    double u = 0, v = 0;
+    u = in_.number("a texture coordinate");
+    in_.try_number("a texture coordinate", v);
+    const auto narrow = [](double value) { return static_cast<float>(std::clamp(value, -1e6, 1e6)); };
+    texcoord_reserve_.reserve(texcoords_, in_.bytes_left());
+    texcoords_.push_back({narrow(u), narrow(1 - v)});
   }
 
   void read_normal() {
@@ -104,6 +156,7 @@ class ObjReader {
     if (const std::string_view plain = in_.plain_whole(value); !plain.empty()) {
       corners_.push_back(vertex_number(value, plain));
       normals_.push_back(kNone);
+      corner_texcoords_.push_back(kNoTexcoord);
       return true;
     }
     const std::string_view word = in_.word();
@@ -111,6 +164,7 @@ class ObjReader {
     const std::size_t first = word.find('/');
     corners_.push_back(vertex_number(whole_number(word.substr(0, first), word), word));
     std::uint32_t normal = kNone;
+    corner_texcoords_.push_back(reads_texcoords_ ? texcoord_of(word, first) : kNoTexcoord);
     if (first != std::string_view::npos) {
       const std::size_t second = word.find('/', first + 1);
       if (second != std::string_view::npos && second + 1 < word.size()) {
@@ -154,9 +208,25 @@ class ObjReader {
     return kNone;
   }
 
+  // Of v/vt, v/vt/vn or v//vn, whose first slash is at `first`.
+  std::array<float, 2> texcoord_of(std::string_view word, std::size_t first) {
+    if (first == std::string_view::npos || first + 1 >= word.size() || word[first + 1] == '/')
+      return kNoTexcoord;
+    const std::size_t end = std::min(word.find('/', first + 1), word.size());
+    const std::int64_t value = whole_number(word.substr(first + 1, end - first - 1), word);
+    const auto n = static_cast<std::int64_t>(texcoords_.size());
+    const std::int64_t index = value < 0 ? n + value : value - 1;
+    has_texcoords_ = true;
+    if (value != 0 && index >= 0 && index < n) return texcoords_[static_cast<std::size_t>(index)];
+    missing_texcoords_.add(in_.line());
+    return kNoTexcoord;
+  }
+
   void read_face() {
     corners_.clear();
     normals_.clear();
+    corner_texcoords_.clear();
+    has_texcoords_ = false;
     while (read_corner()) {
     }
     if (corners_.size() < 3) return small_faces_.add(in_.line());
@@ -164,7 +234,8 @@ class ObjReader {
     for (const std::uint32_t n : normals_) smooth = smooth && n != kNone;
     if (!smooth) normals_.clear();
     triangle_reserve_.reserve(scene_.triangles, in_.bytes_left());
-    add_polygon(scene_, corners_, normals_, materials_.current());
+    if (!has_texcoords_) corner_texcoords_.clear();
+    add_polygon(scene_, corners_, normals_, materials_.current(), corner_texcoords_);
   }
 
   void warn(const LeftOut& what, const std::string& text) {
@@ -176,7 +247,8 @@ class ObjReader {
     warn(small_faces_, "faces with fewer than 3 corners are left out");
     warn(missing_normals_, "corners name a normal that does not exist: those faces are shaded flat");
     warn(points_and_lines_, "points and lines are left out: they have no surface");
-    warn(colored_vertices_, "vertices have colours, which are left out: a material holds for a whole face");
+    warn(missing_texcoords_, "corners name a texture coordinate that does not exist: it is taken for 0");
+    warn(odd_colors_, "vertices have two numbers after their position, which are left out");
     warn(free_forms_, "free-form curves and surfaces are left out: only polygons are read");
     warn(unknown_, "lines that are no OBJ statements are left out");
     if (scene_.triangles.empty()) scene_.warnings.push_back(in_.file() + ": no faces");
@@ -185,9 +257,17 @@ class ObjReader {
   LineScanner in_;
   Scene scene_;
   ObjMaterials materials_;
-  ReserveAhead vertex_reserve_, normal_reserve_, triangle_reserve_;
+  static constexpr std::array<float, 2> kNoTexcoord{0, 0};
+
+  bool reads_texcoords_;
+  ReserveAhead vertex_reserve_, normal_reserve_, texcoord_reserve_, triangle_reserve_;
   std::vector<std::uint32_t> corners_, normals_;
-  LeftOut small_faces_, missing_normals_, points_and_lines_, free_forms_, unknown_, colored_vertices_;
+  std::vector<std::array<float, 2>> corner_texcoords_;
+  bool has_texcoords_ = false;  // of the face in work
+  RawVector<std::array<float, 2>> texcoords_;
+  std::vector<std::array<float, 3>> colors_;  // of the first vertices, as they stand in the file
+  LeftOut small_faces_, missing_normals_, points_and_lines_, free_forms_, unknown_, missing_texcoords_,
+      odd_colors_;
   std::size_t n_statements_ = 0;
 };
 

@@ -4,8 +4,10 @@
 #include <map>
 #include <system_error>
 
+#include "base/error.h"
 #include "scene/files_read.h"
 #include "scene/mesh_material.h"
+#include "scene/picture.h"
 #include "scene/read_file.h"
 #include "scene/text_scanner.h"
 #include "scene/whitted_from_mtl.h"
@@ -95,18 +97,65 @@ std::uint32_t ObjMaterials::current() {
   return current_;
 }
 
-void ObjMaterials::finish() {
+std::optional<std::uint32_t> ObjMaterials::picture_of(const std::string& name) {
+  const auto [it, added] = pictures_.try_emplace(name);
+  if (!added) return it->second;
+  const std::string given = slashed(name);
+  std::filesystem::path path = find(given);
+  if (path.empty()) path = find_last_part(given);
+  try {
+    if (path.empty())
+      throw input_error(file_.string(), 0, "no picture '" + printable(name) + "'", "put it beside the scene");
+    it->second = scene_.paint.add(decode_picture(read_file(path), path.string(), scene_.warnings));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input) throw;
+    scene_.warnings.push_back(std::string(error.what()) + " (the picture is left out)");
+  }
+  return it->second;
+}
+
+// In MTL, v goes upwards from the picture's lower edge; in textures downwards from the upper one, which
+// 1 - v at corners amounts to.
+std::optional<std::uint32_t> ObjMaterials::texture_of(const MtlPicture& map) {
+  const auto picture = picture_of(map.file);
+  if (!picture) return std::nullopt;
+  const auto f = [](double v) { return static_cast<float>(v); };
+  const Wrap wrap = map.clamp ? Wrap::clamp : Wrap::repeat;
+  return scene_.paint.add(Texture{.picture = *picture,
+                                  .across = {f(map.scale[0]), 0, f(map.offset[0])},
+                                  .down = {0, f(map.scale[1]), f(1 - map.scale[1] - map.offset[1])},
+                                  .wrap_across = wrap,
+                                  .wrap_down = wrap});
+}
+
+Material ObjMaterials::material_of(const MtlMaterial* mtl, bool colored) {
+  std::optional<std::uint32_t> texture;
+  if (mtl && mtl->map_kd) texture = texture_of(*mtl->map_kd);
+  Coat coat;
+  Material m;
+  if (!mtl && colored) {
+    m = colored_mesh_material(coat);
+  } else {
+    m = mtl ? whitted_from_mtl(*mtl, texture.has_value()) : mesh_material();
+    if (!texture && !colored) return m;
+    coat = {.ambient = m.ambient, .diffuse = m.diffuse, .colored = colored};
+    if (texture) coat.base = *texture;
+    m.ambient = m.diffuse = vec3(0);
+  }
+  m.coat = scene_.paint.add(coat);
+  return m;
+}
+
+void ObjMaterials::finish(bool colored) {
   std::unordered_map<std::string_view, const MtlMaterial*> library;  // of several with one name, the first
   for (const MtlMaterial& m : library_) library.try_emplace(m.name, &m);
   std::size_t n_missing = 0;
   std::string first_missing;
-  bool any_picture = false;
   std::map<std::string, std::size_t> left_out;  // materials, by the statement
   for (const std::string& name : names_) {
     const auto found = library.find(name);
     const MtlMaterial* mtl = found == library.end() ? nullptr : found->second;
-    scene_.materials.push_back(mtl ? whitted_from_mtl(*mtl) : mesh_material());
-    any_picture = any_picture || (mtl && mtl->has_picture);
+    scene_.materials.push_back(material_of(mtl, colored));
     if (mtl)
       for (const std::string& what : mtl->left_out) ++left_out[what];
     if (!mtl && !name.empty() && n_missing++ == 0) first_missing = name;
@@ -119,10 +168,6 @@ void ObjMaterials::finish() {
   for (const auto& [what, n] : left_out)
     scene_.warnings.push_back(file_.string() + ": " + what + " of " + std::to_string(n) +
                               (n == 1 ? " material" : " materials") + " is left out");
-  if (any_picture) {
-    scene_.warnings.push_back(file_.string() +
-                              ": pictures (map_Kd) are left out: the colours of Kd are used");
-  }
 }
 
 }  // namespace kdray::scene

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -24,12 +25,16 @@ class ObjMaterials {
   void add_library(std::string_view names, std::uint32_t line);
   void use(std::string_view name);
   std::uint32_t current();  // of the faces that follow
-  void finish();
+  // `colored`: vertices have colours.
+  void finish(bool colored);
 
  private:
   std::filesystem::path find(const std::string& name) const;
   std::filesystem::path find_last_part(const std::string& name) const;
   bool read_library(const std::filesystem::path& path);
+  Material material_of(const MtlMaterial* mtl, bool colored);
+  std::optional<std::uint32_t> texture_of(const MtlPicture& map);
+  std::optional<std::uint32_t> picture_of(const std::string& name);
 
   std::filesystem::path file_;
   Scene& scene_;
@@ -38,6 +43,7 @@ class ObjMaterials {
   std::unordered_map<std::string, std::uint32_t> numbers_;
   std::vector<std::filesystem::path> read_files_;
   std::uint32_t current_ = kNone;
+  std::unordered_map<std::string, std::optional<std::uint32_t>> pictures_;  // by the name in the file
 };
 
 }  // namespace kdray::scene

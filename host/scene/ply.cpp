@@ -1,5 +1,5 @@
 // What    PLY: polygons (element face) and triangle strips (element tristrips) over the element vertex, with
-//         vertex normals; ascii and binary, either byte order. Other elements and properties are skipped.
+//         vertex normals and colours; ascii and binary, either byte order. Other elements and properties are skipped.
 // Errors  ascii: file and line; binary: file, element, row and byte.
 // Source  G. Turk, "The PLY Polygon File Format", 1994. Tristrips as the Stanford scanning repository writes
 //         them.
@@ -85,13 +85,17 @@ class BodyReader {
     auto& vertices = mesh_.vertices();
     auto& normals = mesh_.normals();
     vertices.resize(element.count);
+    auto& colors = mesh_.colors();
     if (columns.has_normals) normals.resize(element.count);
+    if (columns.has_colors) colors.assign(element.count, {0, 0, 0, static_cast<float>(columns.color_unit)});
+    mesh_.set_color_unit(columns.color_unit);
     if constexpr (Source::kBinary) {
-      if (!element.has_lists()) return read_columns(source_, element, columns, vertices, normals);
+      if (!element.has_lists()) return read_columns(source_, element, columns, vertices, normals, colors);
     }
     for (std::uint64_t row = 0; row < element.count; ++row) {
       source_.begin_row(element, row);
-      std::array<double, 6> value{};
+      std::array<double, 10> value{};
+      value[9] = columns.color_unit;
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
         const int column = columns.of_property[i];
         if (column < 0) {
@@ -102,6 +106,8 @@ class BodyReader {
       }
       vertices[row] = {value[0], value[1], value[2]};
       if (columns.has_normals) normals[row] = {value[3], value[4], value[5]};
+      if (columns.has_colors)
+        for (std::size_t c = 0; c < 4; ++c) colors[row][c] = static_cast<float>(value[6 + c]);
     }
   }
 
@@ -121,10 +127,35 @@ class BodyReader {
     const std::size_t n = columns.has_normals ? 6 : 3;
     for (std::size_t i = 0; i < n; ++i)
       columns.of_property[static_cast<std::size_t>(place[i])] = static_cast<int>(i);
-    if (element.find("red") || element.find("diffuse_red")) {
-      mesh_.warn("vertex colours are left out: a material holds for a whole triangle");
-    }
+    find_colors(element, columns);
     return columns;
+  }
+
+  // red, green and blue of one type, and alpha if it has the same; also as diffuse_red and so on.
+  static void find_colors(const Element& element, VertexColumns& columns) {
+    for (const std::string prefix : {"", "diffuse_"}) {
+      std::array<const Property*, 4> found{};
+      constexpr std::array<std::string_view, 4> kParts = {"red", "green", "blue", "alpha"};
+      for (std::size_t c = 0; c < 4; ++c) {
+        found[c] = element.find(prefix + std::string(kParts[c]));
+        if (c == 3 && !found[c]) found[c] = element.find("alpha");
+        if (found[c] && (found[c]->is_list || (found[0] && found[c]->type != found[0]->type)))
+          found[c] = nullptr;
+      }
+      if (!found[0] || !found[1] || !found[2]) continue;
+      columns.has_colors = true;
+      columns.color_unit = largest_color(found[0]->type);
+      for (std::size_t c = 0; c < 4; ++c)
+        if (found[c])
+          columns.of_property[static_cast<std::size_t>(found[c] - element.properties.data())] =
+              static_cast<int>(6 + c);
+      return;
+    }
+  }
+
+  static double largest_color(Type type) {
+    if (!is_integer(type)) return 1;
+    return size_of(type) == 1 ? 255 : size_of(type) == 2 ? 65535 : 4294967295.0;
   }
 
   // Rows of which one list names the corners of a face or a strip.

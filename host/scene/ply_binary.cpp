@@ -47,7 +47,7 @@ void refuse(BinarySource<swap>& source, const Element& element, const VertexColu
 
 template <bool swap>
 void read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
-                  RawVector<dvec3>& vertices, RawVector<vec3>& normals) {
+                  RawVector<dvec3>& vertices, RawVector<vec3>& normals, RawVector<VertexColor>& colors) {
   const std::size_t stride = BinarySource<swap>::least_size(element);
   for (std::uint64_t row = 0; row < element.count; row += kBlock) {
     const std::uint64_t n = std::min(kBlock, element.count - row);
@@ -62,7 +62,8 @@ void read_columns(BinarySource<swap>& source, const Element& element, const Vert
       const bool finite = with_type(type, [&](auto t) {
         using T = decltype(t);
         if (column < 3) return convert<T, swap>(bytes, stride, n, &vertices[row][column], 3);
-        return convert<T, swap>(bytes, stride, n, &normals[row][column - 3], 3);
+        if (column < 6) return convert<T, swap>(bytes, stride, n, &normals[row][column - 3], 3);
+        return convert<T, swap>(bytes, stride, n, &colors[row][static_cast<std::size_t>(column) - 6], 4);
       });
       good = good && finite;
     }
@@ -100,9 +101,9 @@ std::uint64_t read_triangles(BinarySource<swap>& source, const Element& element,
 }
 
 template void read_columns(BinarySource<false>&, const Element&, const VertexColumns&, RawVector<dvec3>&,
-                           RawVector<vec3>&);
+                           RawVector<vec3>&, RawVector<VertexColor>&);
 template void read_columns(BinarySource<true>&, const Element&, const VertexColumns&, RawVector<dvec3>&,
-                           RawVector<vec3>&);
+                           RawVector<vec3>&, RawVector<VertexColor>&);
 template std::uint64_t read_triangles(BinarySource<false>&, const Element&, Mesh&);
 template std::uint64_t read_triangles(BinarySource<true>&, const Element&, Mesh&);
 

@@ -60,6 +60,19 @@ void Mesh::cut_polygons() {
   }
 }
 
+// Colours are codes of sRGB, as scanners and editors write them.
+void Mesh::paint_corners() {
+  RawVector<std::array<std::uint32_t, 4>> linear(colors_.size());
+  for (std::size_t i = 0; i < colors_.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) linear[i][c] = linear_unit_of_srgb(colors_[i][c] / color_unit_);
+    linear[i][3] = linear_unit(colors_[i][3] / color_unit_);
+  }
+  scene_.paint.colors.resize(scene_.triangles.size());
+  for (std::size_t i = 0; i < scene_.triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      set_corner(scene_.paint.colors[i], k, linear[scene_.triangles[i].vertex[k]]);
+}
+
 Scene Mesh::finish(const std::string& file) {
   cut_polygons();
   for (std::string& warning : scene_.warnings) warning = file + ": " + warning;
@@ -69,6 +82,12 @@ Scene Mesh::finish(const std::string& file) {
   }
   if (scene_.triangles.empty()) scene_.warnings.push_back(file + ": no faces");
   scene_.materials = {mesh_material()};
+  if (!colors_.empty()) {
+    Coat coat;
+    scene_.materials = {colored_mesh_material(coat)};
+    scene_.materials[0].coat = scene_.paint.add(coat);
+    paint_corners();
+  }
   if (!scene_.normals.empty()) {
     for (Triangle& t : scene_.triangles) t.normal = t.vertex;
     settle_normals(scene_, file);

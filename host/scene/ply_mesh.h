@@ -6,6 +6,7 @@
 //         place.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -15,13 +16,18 @@
 
 namespace kdray::scene::ply {
 
+// Red, green, blue and alpha, in the file's numbers.
+using VertexColor = std::array<float, 4>;
+
 class Mesh {
  public:
   explicit Mesh(std::uint32_t n_vertices) : n_vertices_(n_vertices) {}
 
-  // The caller fills in all vertices, and a normal for each or none.
+  // The caller fills in all vertices, and a normal for each or none, and a colour.
   RawVector<dvec3>& vertices() { return scene_.vertices; }
   RawVector<vec3>& normals() { return scene_.normals; }
+  RawVector<VertexColor>& colors() { return colors_; }
+  void set_color_unit(double unit) { color_unit_ = unit; }  // what a colour of 1 is in the file
   PageVector<Triangle>& triangles() { return scene_.triangles; }
   std::uint32_t n_vertices() const { return n_vertices_; }
 
@@ -45,8 +51,11 @@ class Mesh {
 
   bool is_vertex(std::int64_t index) const { return index >= 0 && index < n_vertices_; }
   void cut_polygons();
+  void paint_corners();
 
   Scene scene_;
+  RawVector<VertexColor> colors_;
+  double color_unit_ = 1;
   std::uint32_t n_vertices_;
   std::vector<Polygon> polygons_;
   std::vector<std::uint32_t> polygon_corners_;

@@ -20,6 +20,7 @@
 #include "math/vec.h"
 #include "primitives/shapes.h"
 #include "scene/files_read.h"
+#include "scene/paint.h"
 
 namespace kdray::scene {
 
@@ -35,8 +36,9 @@ struct Material {
   vec3 specular{0};
   vec3 reflect{0};
   vec3 transmit{0};
-  float shine = 1;  // exponent of (R.V), >= 0
-  float index = 1;  // index of refraction of the inside against the outside, > 0
+  float shine = 1;             // exponent of (R.V), >= 0
+  float index = 1;             // index of refraction of the inside against the outside, > 0
+  std::uint32_t coat = kNone;  // into Scene::paint.coats, whose terms come to these
   bool operator==(const Material&) const = default;
 };
 
@@ -95,6 +97,7 @@ struct Scene {
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
   std::vector<Material> materials;  // at least one when there is a primitive
+  Paint paint;
   std::vector<Light> lights;
   bool unlit = false;  // the file says that there are no lights; else frame_scene() adds some where none are
   std::optional<Camera> camera;  // loaders leave it empty when the file has none; frame_scene() fills it

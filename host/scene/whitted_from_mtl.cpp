@@ -63,11 +63,12 @@ void share_energy(int illum, Material& m) {
 
 }  // namespace
 
-Material whitted_from_mtl(const MtlMaterial& mtl) {
+Material whitted_from_mtl(const MtlMaterial& mtl, bool has_picture) {
   const int illum = mtl.illum.value_or(2);
   vec3 kd = mtl.kd;
-  // Without its picture, a picture's black base would be a black object.
-  if (mtl.has_picture && kd == vec3(0)) kd = vec3(0.6f);
+  // A picture is multiplied by Kd, but black is how exporters say that it alone counts. Without the picture,
+  // black would be a black object.
+  if (mtl.map_kd && kd == vec3(0)) kd = vec3(has_picture ? 1.0f : 0.6f);
   Material m;
   m.emission = mtl.ke;
   m.transmit = transmit_of(mtl, illum);

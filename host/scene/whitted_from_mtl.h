@@ -6,6 +6,7 @@
 
 namespace kdray::scene {
 
-Material whitted_from_mtl(const MtlMaterial& mtl);
+// `has_picture`: that of map_Kd is there.
+Material whitted_from_mtl(const MtlMaterial& mtl, bool has_picture = false);
 
 }  // namespace kdray::scene

@@ -3,6 +3,7 @@
 //         host compares the distance itself).
 // Cost    reads 24 B of the point and the tree, writes 48 B.
 // Errors  a leaf of an unknown kind gives the number KDRAY_CLOSEST_INVALID; the host checks for it.
+#define KDRAY_WHOLE_TRIANGLES
 #include "closest/walk.clh"
 #include "layout/arguments.h"
 #include "layout/traversal.h"

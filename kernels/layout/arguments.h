@@ -22,8 +22,16 @@
   KDRAY_KINDS_WITH(KDRAY_BLOCKS_OF_KIND, X)
 #define KDRAY_BLOCKS_OF_KIND(X, NAME, name, names, Struct) X(IN, float, name##_blocks)
 #define KDRAY_NORMAL_ARRAYS(X) X(IN, VertexNormals, normals)
+// How surfaces are painted.
+#define KDRAY_PAINT_ARRAYS(X) \
+  X(IN, Material, materials)  \
+  X(IN, Coat, coats)          \
+  X(IN, Texture, textures)    \
+  X(IN, u32, texels)          \
+  X(IN, TexCoords, texcoords) \
+  X(IN, CornerColors, corner_colors)
 #define KDRAY_LOOK_ARRAYS(X) \
-  X(IN, Material, materials) \
+  KDRAY_PAINT_ARRAYS(X)      \
   X(IN, Light, lights)
 
 // What tracing reads, and what finding the surface at a hit reads.
@@ -87,6 +95,7 @@
   F(CONSTANT, Frame, frame)                 \
   X(VALUE, u32, n_slices)                   \
   KDRAY_TRACED_ARRAYS(X)                    \
+  KDRAY_PAINT_ARRAYS(X)                     \
   X(IN, Slice, slices)                      \
   X(IN, real, batch)                        \
   X(OUT, real, hits)
@@ -108,6 +117,7 @@
   F(CONSTANT, Frame, frame)                \
   X(VALUE, u32, n_slices)                  \
   KDRAY_TRACED_ARRAYS(X)                   \
+  KDRAY_PAINT_ARRAYS(X)                    \
   X(IN, Slice, slices)                     \
   X(IN, real, shadow_rays)                 \
   X(OUT, uchar, occluded)
@@ -126,6 +136,7 @@
   X(VALUE, u32, n_pixels)              \
   KDRAY_TREE_ARRAYS(X)                 \
   KDRAY_SURFACE_ARRAYS(X)              \
+  KDRAY_PAINT_ARRAYS(X)                \
   X(OUT, float, channels)
 
 #define KDRAY_TRACE_QUERY_ARGUMENTS(F, X) \

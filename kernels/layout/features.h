@@ -25,6 +25,12 @@
 // Rays and primitives of queries that meet only where their masks have a bit in common; removes looking at
 // them.
 #define KDRAY_FEATURE_MASKS KDRAY_FEATURE(35)
+// Materials with coats (paint.layout.h); removes all of it from shading, and the next three with it.
+#define KDRAY_FEATURE_COATS KDRAY_FEATURE(36)
+#define KDRAY_FEATURE_CORNER_COLORS KDRAY_FEATURE(37)
+#define KDRAY_FEATURE_TEXTURES KDRAY_FEATURE(38)
+// Coats with holes in them; removes looking for holes from the walks.
+#define KDRAY_FEATURE_CUTOUTS KDRAY_FEATURE(39)
 #define KDRAY_FEATURE_REFLECT KDRAY_FEATURE(40)   // removes reflected rays (and, with TRANSMIT, the pool)
 #define KDRAY_FEATURE_TRANSMIT KDRAY_FEATURE(41)  // removes refracted rays
 #define KDRAY_FEATURE_SPECULAR KDRAY_FEATURE(42)  // removes highlights
@@ -52,6 +58,15 @@
 #define KDRAY_HAS_SMOOTH (KDRAY_HAS_STITCHES || (KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
 #define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
 #define KDRAY_HAS_MASKS ((KDRAY_FEATURES & KDRAY_FEATURE_MASKS) != 0)
+#define KDRAY_HAS_COATS ((KDRAY_FEATURES & KDRAY_FEATURE_COATS) != 0)
+#define KDRAY_HAS_CORNER_COLORS ((KDRAY_FEATURES & KDRAY_FEATURE_CORNER_COLORS) != 0)
+#define KDRAY_HAS_TEXTURES ((KDRAY_FEATURES & KDRAY_FEATURE_TEXTURES) != 0)
+// Queries, which ask for the shape, meet triangles whole.
+#ifdef KDRAY_WHOLE_TRIANGLES
+#define KDRAY_HAS_CUTOUTS 0
+#else
+#define KDRAY_HAS_CUTOUTS ((KDRAY_FEATURES & KDRAY_FEATURE_CUTOUTS) != 0)
+#endif
 #define KDRAY_HAS_REFLECT ((KDRAY_FEATURES & KDRAY_FEATURE_REFLECT) != 0)
 #define KDRAY_HAS_TRANSMIT ((KDRAY_FEATURES & KDRAY_FEATURE_TRANSMIT) != 0)
 #define KDRAY_HAS_SPECULAR ((KDRAY_FEATURES & KDRAY_FEATURE_SPECULAR) != 0)

@@ -3,6 +3,8 @@
 #define KDRAY_LAYOUT_SHADING_H
 #include "layout/base.layout.h"
 
+#define KDRAY_NO_COAT 0xffffffffu
+
 #define KDRAY_LIGHT_POINT 0u
 #define KDRAY_LIGHT_DIRECTIONAL 1u
 #define KDRAY_LIGHT_SPOT 2u
@@ -16,10 +18,12 @@ typedef struct Material {
   float transmit[3];
   float shine;
   float index;
-  u32 pad[3];
+  u32 coat;  // into the coats (paint.layout.h), or KDRAY_NO_COAT
+  u32 pad[2];
 } Material;
 KDRAY_ASSERT_SIZE(Material, 80)
 KDRAY_ASSERT_OFFSET(Material, shine, 60)
+KDRAY_ASSERT_OFFSET(Material, coat, 68)
 
 typedef struct Light {
   float position[3];

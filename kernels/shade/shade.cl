@@ -6,6 +6,7 @@ __kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
   const u32 slice = (u32)get_global_id(0);
   if (slice >= n_slices) return;
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
-  shade_batch(&arrays, in_materials, in_lights, frame, slice, first_light, io_slices + slice, in_batch,
-              in_hits, io_pool, out_shadow_rays, io_film);
+  const PaintArrays paint = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_PAINT_ARRAYS);
+  shade_batch(&arrays, &paint, in_lights, frame, slice, first_light, io_slices + slice, in_batch, in_hits,
+              io_pool, out_shadow_rays, io_film);
 }

@@ -6,6 +6,7 @@
 // Cost    collect_hits reads 32 B of the ray and the tree, writes 16 B and 16 B for each hit.
 // Errors  There is no kernel in double, and none that walks the binary tree. A ray whose walk failed has
 //         n_hits KDRAY_SPAN_INVALID; the host checks for it.
+#define KDRAY_WHOLE_TRIANGLES
 #include "layout/arguments.h"
 #include "layout/traversal.h"
 #include "traverse/collect_batch.clh"

@@ -3,6 +3,7 @@
 // Shape   Binary and wide: one ray to a work-item. Otherwise one work-item to KDRAY_CHUNK rays.
 // Cost    reads 32 B of the ray and the tree, writes 16 B.
 // Errors  a full stack (binary tree) gives primitive KDRAY_QUERY_INVALID; the host checks for it.
+#define KDRAY_WHOLE_TRIANGLES
 #include "layout/arguments.h"
 #include "layout/traversal.h"
 #include "traverse/any.clh"

@@ -7,6 +7,7 @@
 #include "layout/closest.layout.h"
 #include "layout/frame.layout.h"
 #include "layout/kinds.h"
+#include "layout/paint.layout.h"
 #include "layout/primitives.layout.h"
 #include "layout/rays.layout.h"
 #include "layout/shading.layout.h"
@@ -40,6 +41,12 @@ const std::vector<Probe> kProbes = {KDRAY_KINDS(PRIMITIVE) SIZE(KdNode),
                                     SIZE(VertexNormals),
                                     SIZE(Material),
                                     SIZE(Light),
+                                    SIZE(Coat),
+                                    SIZE(Texture),
+                                    SIZE(CornerColors),
+                                    SIZE(TexCoords),
+                                    OFFSET(Coat, how),
+                                    OFFSET(Texture, how),
                                     SIZE(QueryRay),
                                     SIZE(QueryHit),
                                     SIZE(QueryPoint),
@@ -132,7 +139,7 @@ class LayoutTest : public test::EachDevice {};
 TEST_P(LayoutTest, TheDeviceSeesTheSameStructs) {
   std::string source;
   for (const char* header :
-       {"closest", "frame", "primitives", "rays", "shading", "simd_test", "tree", "verify", "wide"})
+       {"closest", "frame", "paint", "primitives", "rays", "shading", "simd_test", "tree", "verify", "wide"})
     source += "#include \"layout/" + std::string(header) + ".layout.h\"\n";
   source += "__kernel void probe(__global uint* out) {\n";
   for (std::size_t i = 0; i < kProbes.size(); ++i)

@@ -139,6 +139,8 @@ TEST_P(Modes, ASequenceOfFramesThatMovesSubtrees) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Modes, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Painted, Modes, testing::Values(NamedScene{"painted", painted}),
+                         [](const auto& info) { return info.param.name; });
 
 scene::Scene nothing() {
   scene::Scene s;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "conformance/all_kinds.h"
 #include "oracle/build_scene.h"
@@ -152,6 +153,75 @@ scene::Scene flat_glass() {
   b.quad({-3, -1, -3}, {6, 0, 0}, {0, 4, 0}, oracle::mirror({0.8f, 0.8f, 0.7f}));
   b.sphere({0.8, -0.4, -1}, 0.6, plastic({0.9f, 0.5f, 0.1f}, 12));
   return b.scene();
+}
+
+namespace {
+
+// Colours and alpha from 0 to 255 without any order.
+std::shared_ptr<const scene::Picture> noise(std::uint32_t width, std::uint32_t height, std::mt19937& random) {
+  scene::Picture p{"noise", width, height, {}};
+  for (std::uint32_t i = 0; i < 4 * width * height; ++i)
+    p.texels.push_back(static_cast<std::uint8_t>(random()));
+  return std::make_shared<const scene::Picture>(std::move(p));
+}
+
+// Takes what the base colour multiplies over into a coat.
+void coat(scene::Scene& s, std::uint32_t material, scene::Coat c) {
+  scene::Material& m = s.materials[material];
+  c.ambient = m.ambient, c.diffuse = m.diffuse, c.reflect = m.reflect;
+  m.ambient = m.diffuse = m.reflect = vec3(0);
+  m.coat = s.paint.add(c);
+}
+
+// Coordinates by where the corners are, two sets of them, and colours by chance.
+void paint_corners(scene::Scene& s, std::mt19937& random) {
+  for (const scene::Triangle& t : s.triangles) {
+    layout::CornerColors colors{};
+    std::array<layout::TexCoords, 2> at{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const vec3 p{s.vertices[t.vertex[k]]};
+      at[0].uv[k][0] = 0.3f * p.x + 0.1f * p.z, at[0].uv[k][1] = 0.2f * p.y - 0.4f * p.z;
+      at[1].uv[k][0] = 0.7f * p.y + 0.2f * p.x, at[1].uv[k][1] = 0.5f * p.x + 0.3f * p.z;
+      for (auto& word : colors.c[k]) word = static_cast<layout::u32>(random());
+    }
+    s.paint.colors.push_back(colors);
+    for (std::size_t set = 0; set < 2; ++set) s.paint.texcoords[set].push_back(at[set]);
+  }
+}
+
+}  // namespace
+
+// A floor by a repeated picture, a screen with holes before it, a veil, a mirror in colours, a ball whose
+// shading is smooth, and one that is no triangle.
+scene::Scene painted() {
+  SceneBuilder b = with_floor();
+  b.quad({-2.5, -0.9, 2}, {2.4, 0, 0.3}, {0.1, 2, 0}, plastic({0.8f, 0.9f, 0.7f}, 9));
+  b.quad({0.2, -0.8, 2.5}, {1.7, 0, -0.3}, {0, 1.8, 0.1}, plastic(vec3(0.7f), 9));
+  b.quad({-3, -1, -3}, {6, 0, 0}, {0, 4, 0}, oracle::mirror({0.8f, 0.8f, 0.7f}));
+  b.sphere({1.9, -0.4, -0.5}, 0.6, plastic({0.9f, 0.5f, 0.1f}, 12));
+  scene::Scene s = b.scene();
+  add_smooth_ball(s, {-0.6, 0, -0.4}, 0.9, 9, plastic(vec3(0.9f), 20, 0.2f));
+  std::mt19937 random(28);
+  const std::uint32_t small = s.paint.add(noise(7, 5, random)), large = s.paint.add(noise(32, 16, random));
+  using scene::Alpha, scene::Texture, scene::Wrap;
+  const std::uint32_t floor = s.paint.add(Texture{.picture = large});
+  const std::uint32_t screen = s.paint.add(Texture{.picture = small,
+                                                   .across = {2, 0.3f, 0.1f},
+                                                   .down = {-0.2f, 2, 0},
+                                                   .wrap_across = Wrap::mirror,
+                                                   .wrap_down = Wrap::clamp,
+                                                   .nearest = true});
+  const std::uint32_t veil = s.paint.add(Texture{.picture = large, .curved = false, .set = 1});
+  for (const std::uint32_t half : {0u, 1u}) {  // a square's triangles have a material each
+    coat(s, half, {.base = floor});
+    coat(s, 2 + half, {.alpha = 0.9f, .cutoff = 0.4f, .base = screen, .mode = Alpha::mask});
+    coat(s, 4 + half, {.alpha = 0.8f, .base = veil, .colored = 1, .mode = Alpha::blend});
+    coat(s, 6 + half, {.colored = 1});
+  }
+  coat(s, 8, {.base = floor, .colored = 1});
+  coat(s, 9, {.cutoff = 0.3f, .base = veil, .colored = 1, .mode = Alpha::mask});
+  paint_corners(s, random);
+  return s;
 }
 
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset) {

@@ -61,7 +61,9 @@ TEST(Mtl, ReadsItsStatements) {
   EXPECT_EQ(m[0].tr, 0.5f);
   EXPECT_EQ(m[0].tf, vec3(0.1f, 0.2f, 1));
   EXPECT_EQ(m[0].illum, 7);
-  EXPECT_TRUE(m[0].has_picture);
+  ASSERT_TRUE(m[0].map_kd.has_value());
+  EXPECT_EQ(m[0].map_kd->file, "a b.png");
+  EXPECT_EQ(m[0].map_kd->offset, (std::array<double, 2>{1, 1}));
   EXPECT_FALSE(m[1].illum.has_value());
 }
 

@@ -49,14 +49,16 @@ TEST(Obj, ReadsNumbersExactly) {
   EXPECT_EQ(s.vertices[2], dvec3(3, 2, 1));
 }
 
-TEST(Obj, SaysThatVertexColoursAreLeftOut) {
+TEST(Obj, SaysWhatIsNoColour) {
   const std::string rest = "v 1 0 0 1\nv 0 1 0\nf 1 2 3\n";  // a weight is no colour
-  EXPECT_TRUE(read("v 0 0 0 1\n" + rest).warnings.empty());
-  for (const char* colored : {"v 0 0 0 1 0.5 0.25\n", "v 0 0 0 1 1 0.5 0.25\n"}) {
-    const Scene s = read(colored + rest);
-    ASSERT_EQ(s.warnings.size(), 1u);
-    EXPECT_SAYS(s.warnings[0], "a.obj:1: 1 vertices have colours, which are left out");
+  for (const char* plain : {"v 0 0 0 1\n", "v 0 0 0\n"}) {
+    const Scene s = read(plain + rest);
+    EXPECT_TRUE(s.warnings.empty());
+    EXPECT_TRUE(s.paint.colors.empty());
   }
+  const Scene s = read("v 0 0 0 1 0.5\n" + rest);
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_SAYS(s.warnings[0], "a.obj:1: 1 vertices have two numbers after their position, which are left out");
 }
 
 TEST(Obj, CutsPolygons) {

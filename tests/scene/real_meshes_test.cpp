@@ -93,7 +93,11 @@ TEST(RealMeshes, TheDamagedHelmetCanBeSeen) {
   KDRAY_NEED_DATA(file);
   const Scene s = load(file);
   ASSERT_EQ(s.materials.size(), 1u);
-  EXPECT_GT(s.materials[0].diffuse.y, 0.5f);
+  ASSERT_LT(s.materials[0].coat, s.paint.coats.size());
+  EXPECT_GT(s.paint.coats[s.materials[0].coat].diffuse.y, 0.5f);
+  ASSERT_EQ(s.paint.pictures.size(), 1u);  // a JPEG in the file itself
+  EXPECT_EQ(s.paint.pictures[0]->width, 2048u);
+  EXPECT_EQ(s.paint.texcoords[0].size(), s.triangles.size());
   EXPECT_EQ(s.materials[0].reflect, vec3(0));
   EXPECT_EQ(s.materials[0].emission, vec3(0));
   EXPECT_NE(s.triangles[0].normal[0], kNone);

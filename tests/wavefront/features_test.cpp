@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "conformance/samples.h"
@@ -35,11 +37,14 @@ constexpr layout::Features kT = KDRAY_FEATURE_KIND(TRIANGLE), kSmooth = KDRAY_FE
                            kDiffuse = KDRAY_FEATURE_DIFFUSE, kLights = KDRAY_FEATURE_LIGHTS,
                            kFallOff = KDRAY_FEATURE_ATTENUATION, kDirectional = KDRAY_FEATURE_DIRECTIONAL,
                            kSpot = KDRAY_FEATURE_SPOT, kBackground = KDRAY_FEATURE_BACKGROUND,
-                           kSamples = KDRAY_FEATURE_SUPERSAMPLE, kStitches = KDRAY_FEATURE_STITCHES;
+                           kSamples = KDRAY_FEATURE_SUPERSAMPLE, kStitches = KDRAY_FEATURE_STITCHES,
+                           kCoats = KDRAY_FEATURE_COATS, kColors = KDRAY_FEATURE_CORNER_COLORS,
+                           kTextures = KDRAY_FEATURE_TEXTURES, kCutouts = KDRAY_FEATURE_CUTOUTS;
 constexpr layout::Features kKinds = (KDRAY_FEATURE_OF_KIND(primitives::kKinds) - 1) & KDRAY_FEATURE_ALL_KINDS;
 constexpr layout::Features kLit = kDiffuse | kLights,
                            kAll = kKinds | kStitches | kSmooth | kNumbers | kReflect | kTransmit | kSpecular |
-                                  kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples;
+                                  kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples | kCoats |
+                                  kColors | kTextures | kCutouts;
 
 constexpr std::uint64_t kSeed = 3;
 
@@ -91,12 +96,34 @@ void add_triangles(scene::Scene& s, layout::Features mask, std::uint32_t first_n
   s.triangles.push_back({.vertex = {0, 6, 1}, .number = first_number + 2});
 }
 
+// A picture of three by two, more than half there, on all triangles.
+void add_coat(scene::Scene& s, layout::Features mask) {
+  scene::Coat coat{.diffuse = std::exchange(s.materials[0].diffuse, vec3(0))};
+  if (has(mask, kTextures)) {
+    auto picture = std::make_shared<scene::Picture>(scene::Picture{"p", 3, 2, {}});
+    for (int i = 0; i < 6; ++i)
+      picture->texels.insert(picture->texels.end(), {static_cast<std::uint8_t>(40 * i), 200, 90,
+                                                     static_cast<std::uint8_t>(i == 2 ? 0 : 255)});
+    s.paint.pictures = {picture};
+    coat.base = s.paint.add(scene::Texture{});
+    s.paint.texcoords[0].assign(s.triangles.size(), {{{0, 0}, {2, 0}, {1, 1.5f}}});
+  }
+  if (has(mask, kColors)) {
+    coat.colored = 1;
+    s.paint.colors.assign(s.triangles.size(),
+                          {{{0xffff8000u, 0xffff4000u}, {0x1234ffffu, 0xffffffffu}, {0, ~0u}}});
+  }
+  if (has(mask, kCutouts)) coat.mode = scene::Alpha::mask;
+  s.materials[0].coat = s.paint.add(coat);
+}
+
 scene::Scene scene_of(layout::Features mask) {
   scene::Scene s;
   s.materials = {material_of(mask)};
   s.lights = lights_of(mask);
   const std::uint32_t first_number = has(mask, kNumbers) ? 3 : 0;
   if (has(mask, kT)) add_triangles(s, mask, first_number);
+  if (has(mask, kCoats)) add_coat(s, mask);
   test::Draw draw(kSeed);
   primitives::for_each_shape([&](auto kind) {
     if (!has(mask, KDRAY_FEATURE_OF_KIND(kind.kNumber))) return;
@@ -217,6 +244,15 @@ std::vector<layout::Features> materials_masks() {
   return masks;
 }
 
+const std::vector<layout::Features> kPaintMasks = {kT | kLit | kCoats,
+                                                   kT | kLit | kCoats | kColors,
+                                                   kT | kLit | kCoats | kTextures,
+                                                   kT | kLit | kCoats | kTextures | kColors,
+                                                   kT | kLit | kCoats | kTextures | kCutouts,
+                                                   kT | kLit | kCoats | kColors | kCutouts,
+                                                   kT | kSmooth | kLit | kCoats | kTextures,
+                                                   kT | kTransmit | kLit | kCoats | kTextures | kCutouts,
+                                                   kKinds | kNumbers | kLit | kCoats | kTextures | kCutouts};
 const std::vector<layout::Features> kLightsMasks = {kT | kLit | kFallOff,
                                                     kT | kLit | kDirectional,
                                                     kT | kLit | kSpot,
@@ -288,6 +324,10 @@ TEST_P(FeaturesTest, Materials) {
   draw(materials_masks());
 }
 
+TEST_P(FeaturesTest, Paint) {
+  draw(kPaintMasks);
+}
+
 TEST_P(FeaturesTest, Lights) {
   draw(kLightsMasks);
 }
@@ -326,7 +366,7 @@ TEST_P(FeaturesTest, EverythingStageByStage) {
 TEST_P(FeaturesTest, EverythingInOneLaunch) {
   Schedule fused = kByStages;
   fused.fused = true;
-  for (const auto& masks : {geometry_masks(), materials_masks(), kLightsMasks, kFilmMasks})
+  for (const auto& masks : {geometry_masks(), materials_masks(), kPaintMasks, kLightsMasks, kFilmMasks})
     expect_the_same_with_everything(masks, fused);
 }
 

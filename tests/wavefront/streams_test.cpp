@@ -72,6 +72,7 @@ class Batch {
                                  {0.5f, 0.4f, 0.3f},
                                  10,
                                  1.5f,
+                                 KDRAY_NO_COAT,
                                  {}};
     std::array<layout::Light, kManyLights> lights{};
     for (cl_uint k = 0; k < kManyLights; ++k) {
@@ -125,6 +126,7 @@ class Batch {
         context_.build(K::kFile, "-cl-std=CL1.2 " + device::build_option(context_.simd())));
 #define KDRAY_SET_NONE(access, type, name) kernel.set(K::name, none);
     KDRAY_SURFACE_ARRAYS(KDRAY_SET_NONE)
+    KDRAY_PAINT_ARRAYS(KDRAY_SET_NONE)
 #undef KDRAY_SET_NONE
     kernel.set(K::triangles, floors).set(K::materials, glasses).set(K::lights, lamps).set(K::frame, frame);
     kernel.set(K::n_slices, cl_uint{1}).set(K::first_light, cl_uint{0}).set(K::slices, slice);
