@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <new>
 #include <string_view>
 
 #include "cli/message.h"
 #include "cli/parse.h"
 #include "cli/rank_cores.h"
+#include "transport/delayed.h"
 #include "transport/launcher.h"
 #include "transport/mpi.h"
 
@@ -37,6 +39,14 @@ bool wants_ranks(const std::vector<std::string>& arguments, const transport::Lau
   if (arguments.size() < 2 || arguments[1] != "render") return false;
   const std::string choice = choice_in(arguments);
   return choice == "on" || (choice == "auto" && launched.ranks > 1);
+}
+
+// KDRAY_MPI_DELAY: milliseconds that every message is to take longer, for measurements.
+std::unique_ptr<transport::Transport> with_delay(std::unique_ptr<transport::Transport> mpi) {
+  const char* const asked = std::getenv("KDRAY_MPI_DELAY");
+  if (asked == nullptr || *asked == '\0') return mpi;
+  return transport::delayed(std::move(mpi),
+                            {.latency = 1e-3 * parse_real("KDRAY_MPI_DELAY", asked, 0, 1000)});
 }
 
 // How a run ends that `error` has come out of.
@@ -73,7 +83,7 @@ int run_in_ranks(const std::vector<std::string>& arguments, const std::function<
   const transport::Launched launched = transport::launched();
   if (!wants_ranks(arguments, launched)) return run();
   try {
-    this_run() = std::make_shared<transport::Ranks>(transport::open_mpi(launched.ranks));
+    this_run() = std::make_shared<transport::Ranks>(with_delay(transport::open_mpi(launched.ranks)));
   } catch (const Error&) {
     // Processes that share a folder need no MPI, though srun may have started them.
     const bool shares =

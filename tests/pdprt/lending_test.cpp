@@ -296,6 +296,31 @@ TEST(Lending, WhatMakesNoSenseIsRefused) {
   EXPECT_TRUE(refused(kPieces, to_bytes(Pieces{1, 0}).append("x")));
 }
 
+TEST(Lending, WhatMakesNoSenseIsRefusedByOthersToo) {
+  const auto refused = [](transport::Tag tag, const transport::Bytes& bytes) {
+    transport::Network network(2, {.latency = 0}, 1);
+    transport::Ranks second(std::make_unique<RankOf>(network.rank(1)));
+    Borrower borrower(second, frame_of("a frame"));
+    const Begin head{.list = 5, .n_entries = 3};
+    network.rank(0).send(1, kBegin, to_bytes(head));
+    network.advance(1);
+    EXPECT_EQ(borrower.next_list()->head.n_entries, 3u);
+    Tiles tiles = Tiles::open(1, 3);
+    network.rank(0).send(1, tag, bytes);
+    network.advance(2);
+    return test::fails([&] { borrower.step(tiles, 0); }, "rank 0 sent", ErrorCode::internal);
+  };
+  using Entries = std::vector<layout::u32>;
+  EXPECT_TRUE(refused(kGrant, "x"));
+  EXPECT_TRUE(refused(kGrant, to_bytes(Grant{6, 0, 0})));  // of a list that isn't yet
+  EXPECT_TRUE(refused(kGrant, to_bytes(Grant{5, 0, 0}, Entries{KDRAY_TILE(19, 0)})));  // right of the picture
+  EXPECT_TRUE(refused(kGrant, to_bytes(Grant{5, 0, 0}, Entries{0, 1, 2, 3})));         // more than there are
+  EXPECT_TRUE(refused(kGrant, to_bytes(Grant{5, 0, 0}) + "xyz"));
+  EXPECT_TRUE(refused(kWant, to_bytes(Want{5, 1, 0, 0})));
+  EXPECT_FALSE(refused(kGrant, to_bytes(Grant{4, 0, 0}, Entries{0})));  // of a list that is over
+  EXPECT_FALSE(refused(kGrant, to_bytes(Grant{5, 0, 0}, Entries{0, 1, 2})));
+}
+
 // A record that the rank was asked for, changed on its way.
 TEST(Lending, DamagedPiecesAreRefused) {
   const auto result_of = [](const std::function<void(std::string&)>& change) {

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <thread>
 #include <tuple>
 
 #include "kdray/error.h"
+#include "transport/delayed.h"
 #include "transport/exercise.h"
 #include "transport/in_process.h"
 #include "transport/simulated.h"
@@ -36,6 +38,35 @@ TEST(InProcessTest, WhatCantBeSentIsRefused) {
   const auto all = in_process(2);
   for (const auto& [to, tag] : {std::pair{2, 0}, {-1, 0}, {0, kMostTag + 1}})
     EXPECT_THROW(all[0]->send(to, static_cast<Tag>(tag), "x"), Error) << to << " " << tag;
+}
+
+TEST(DelayedTest, MessagesComeLater) {
+  Network network(2, {.latency = 0.5}, 1);
+  // The other rank's transport is the network's own.
+  class Of final : public Transport {
+   public:
+    explicit Of(Transport& from) : Transport(from.rank(), from.ranks()), from_(from) {}
+    std::size_t bytes_waiting() const override { return 0; }
+    double now() const override { return from_.now(); }
+    [[noreturn]] void abort(int) override { throw std::runtime_error("aborted"); }
+
+   private:
+    void post(int to, Tag tag, Bytes bytes) override { from_.send(to, tag, std::move(bytes)); }
+    std::optional<Message> take() override { return from_.poll(); }
+    Transport& from_;
+  };
+  const auto late = delayed(std::make_unique<Of>(network.rank(1)), {.latency = 1, .bandwidth = 10});
+  network.rank(0).send(1, 1, Bytes(10, 'a'));
+  network.rank(0).send(1, 2, Bytes(20, 'b'));
+  network.advance(0.5);
+  EXPECT_FALSE(late->poll());
+  network.advance(2.4);
+  EXPECT_FALSE(late->poll());
+  network.advance(2.6);
+  EXPECT_EQ(late->poll()->tag, 1);
+  EXPECT_FALSE(late->poll());
+  network.advance(4.6);
+  EXPECT_EQ(late->poll()->bytes, Bytes(20, 'b'));
 }
 
 TEST(SimulatedTest, EveryMessageComesOnceAndWhole) {
