@@ -1,7 +1,7 @@
 // What    Clients that mean harm, or are broken: whatever they do, a page that behaves goes on being heard,
 //         and memory stays bounded.
 // Shape   The random tests print their seed; KDRAY_FUZZ says how many messages there are to be: 100000 were
-//         run, also under the address sanitizer (ASAN_OPTIONS=quarantine_size_mb=8, or what was freed counts).
+//         run, also under the address sanitizer (ASAN_OPTIONS=quarantine_size_mb=8: what was freed counts).
 #include <fstream>
 #include <random>
 
