@@ -18,9 +18,9 @@ constexpr Hash kKey{0x123456789abcdef0, 0x0fedcba987654321};
 constexpr std::size_t kPage = 4096;
 
 // The header's checksum lies behind the bytes that it is of; entry.cpp.
-// The facts, materials and lights, six arrays of the flat form, the wide form's nodes; each shape's own
+// The facts, materials, coats and lights, eleven arrays of the flat form, the wide form's nodes; each shape's own
 // array, and each kind's blocks.
-constexpr std::size_t kSections = 1 + 2 + 6 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
+constexpr std::size_t kSections = 1 + 3 + 11 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
 constexpr std::size_t kHeaderBytes = 8 + 8 + 8 + 16 + kSections * 40;
 constexpr std::size_t kFirstSection = 8 + 8 + 8 + 16;
 
@@ -64,6 +64,22 @@ TEST_F(EntryTest, GivesBackWhatWasWritten) {
   EXPECT_GT(made.flat.cones.size(), 0u);
   EXPECT_GT(made.flat.spheres.size(), 0u);
   EXPECT_GT(made.flat.triangles.size(), 0u);
+}
+
+TEST_F(EntryTest, GivesBackWhatIsPainted) {
+  const prepare::Prepared painted = test::prepared_from(folder.put(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list "
+      "uchar int vertex_indices\nend_header\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n"));
+  ASSERT_EQ(painted.flat.corner_colors.size(), 1u);
+  write_entry(file, kKey, painted);
+  const std::optional<prepare::Prepared> found = read_entry(file, kKey);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(test::everything(*found), test::everything(painted));
+  ASSERT_EQ(found->flat.corner_colors.size(), 1u);
+  EXPECT_EQ(found->settings.paint.coats, painted.settings.paint.coats);
+  EXPECT_EQ(found->features, painted.features);
 }
 
 TEST_F(EntryTest, ArraysStartAtPagesOfTheMapping) {
@@ -139,10 +155,10 @@ TEST_F(EntryTest, CutAndGrownFilesAreSeen) {
 }
 
 TEST_F(EntryTest, AHeaderOfAnotherFormIsRefusedUnderARightChecksum) {
-  ASSERT_TRUE(read(forged(8, std::uint32_t{2})));  // as it is: the forger knows the form
+  ASSERT_TRUE(read(forged(8, std::uint32_t{3})));  // as it is: the forger knows the form
   EXPECT_FALSE(read(forged(0, 'x'))) << "magic";
-  EXPECT_FALSE(read(forged(8, std::uint32_t{1}))) << "an old version";
-  EXPECT_FALSE(read(forged(8, std::uint32_t{3}))) << "a new version";
+  EXPECT_FALSE(read(forged(8, std::uint32_t{2}))) << "an old version";
+  EXPECT_FALSE(read(forged(8, std::uint32_t{4}))) << "a new version";
   EXPECT_FALSE(read(forged(12, std::uint32_t{kSections - 1}))) << "fewer sections";
   EXPECT_FALSE(read(forged(16, whole.size() - 1))) << "another size";
   EXPECT_FALSE(read(forged(24, std::uint64_t{7}))) << "another key";

@@ -2,15 +2,19 @@
 //         keeps all promises, or is refused in one line. Most telling under the sanitizers.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 #include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
 #include "scene/importers.h"
+#include "scene/mtl.h"
+#include "scene/pictures.h"
 
 namespace kdray::scene {
 namespace {
@@ -110,6 +114,48 @@ TEST(Mutations, OfGltf) {
   sample.json["nodes"][0]["scale"] = {1, 2, 3};
   mutate(read_gltf, sample.text(), kRounds);
   mutate(read_gltf, sample.glb(test::bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})), kRounds);
+}
+
+TEST(Mutations, OfPaintedGltf) {
+  test::GltfSample sample = test::square();
+  auto& j = sample.json;
+  j["images"] = {{{"uri", "data:image/png;base64," + test::base64(test::four_colors())}}};
+  j["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+  j["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  nlohmann::json info = {{"index", 0}, {"texCoord", 0}};
+  info["extensions"]["KHR_texture_transform"] = {{"offset", {0.5, 1}}, {"scale", {2, 3}}, {"rotation", 1}};
+  j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}, {"alphaMode", "MASK"}}};
+  sample.primitive()["material"] = 0;
+  const int pairs = sample.view(test::bytes_of<float>({0, 0, 1, 0, 1, 1, 0, 1}));
+  sample.primitive()["attributes"]["TEXCOORD_0"] = sample.accessor(pairs, 5126, "VEC2", 4);
+  sample.primitive()["attributes"]["COLOR_0"] = 0;
+  mutate(read_gltf, sample.text(), kRounds);
+}
+
+TEST(Mutations, OfPaintedObj) {
+  mutate(read_obj, "mtllib a\nv 0 0 0 1 0.5 0\nv 1 0 0 1\nv 1 1 0 0 0 1\nvt 0 0.5\nvt 1\nf 1/1 2/2 3/-1\n",
+         kRounds);
+}
+
+TEST(Mutations, OfMtlPictures) {
+  const std::string good =
+      "newmtl a\nmap_Kd -s 1 2 3 -o 0.5 -clamp on -mm 0 1 -bm 2 -t 1 b c.png\nmap_Kd d\n";
+  std::mt19937 random(28);
+  for (int round = 0; round < kRounds; ++round) {
+    std::string bad = good;
+    for (int i = 0; i < 3; ++i) bad[random() % bad.size()] = " -somapKd0123.e\n\t"[random() % 17];
+    std::vector<MtlMaterial> materials;
+    std::vector<std::string> warnings;
+    try {
+      read_mtl(bad, "a", materials, warnings);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::input) << e.what();
+    }
+    for (const MtlMaterial& m : materials)
+      if (m.map_kd) {
+        EXPECT_TRUE(std::isfinite(m.map_kd->scale[0] + m.map_kd->offset[1])) << bad;
+      }
+  }
 }
 
 }  // namespace
