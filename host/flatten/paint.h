@@ -1,7 +1,7 @@
 // What    A scene's paint -> the arrays of kernels/layout/paint.layout.h.
-// Shape   Each picture that a texture shows lies in the texels once, behind sRGB's curve. Corners' colours and
-//         coordinates come in the order of the geometry's triangles; of two sets of coordinates those of one
-//         triangle follow each other.
+// Shape   Each picture that a texture shows lies in the texels once, behind sRGB's curve. Corners' colours
+//         and coordinates come in the order of the geometry's triangles; of two sets of coordinates those
+//         of one triangle follow each other.
 // Errors  ErrorCode::input when the pictures have more texels than words can number.
 #pragma once
 

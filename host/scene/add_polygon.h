@@ -1,8 +1,8 @@
 // What    Adds a polygon's triangles to a scene, numbered in file order; a concave one is cut by
 //         triangulate().
 // Shape   `corners` index scene.vertices, which must be there already when there are more than three;
-//         `normals` (into scene.normals) is empty or as long as `corners`, and so are `texcoords`. A polygon that can't be cut up
-//         well is told in scene.warnings.
+//         `normals` (into scene.normals) is empty or as long as `corners`, and so are `texcoords`. A
+//         polygon that can't be cut up well is told in scene.warnings.
 #pragma once
 
 #include <array>

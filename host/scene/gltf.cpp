@@ -1,5 +1,5 @@
-// What    glTF 2.0, .gltf and .glb: the default scene's meshes, lights and cameras, placed by their
-//         nodes; the first camera is the one that is looked through. Animations and skins are left out, with a
+// What    glTF 2.0, .gltf and .glb: the default scene's meshes, lights and cameras, placed by their nodes;
+//         the first camera is the one that is looked through. Animations and skins are left out, with a
 //         warning.
 // Errors  A node that has two parents, or is its own ancestor, refuses the file; so does all that the parts'
 //         headers name.

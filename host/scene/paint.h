@@ -3,8 +3,8 @@
 //         says what the base colour multiplies.
 // Shape   colors and texcoords have an entry for each of the scene's first triangles, or none at all: a
 //         triangle behind their end is white, with coordinates 0. Pictures are shared, and never changed.
-// Units   Colours at corners are linear, in 65535ths; coats' terms and factors are linear as well. A picture's
-//         bytes are as its file has them.
+// Units   Colours at corners are linear, in 65535ths; coats' terms and factors are linear as well. A
+//         picture's bytes are as its file has them.
 #pragma once
 
 #include <array>

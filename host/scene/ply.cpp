@@ -1,5 +1,6 @@
-// What    PLY: polygons (element face) and triangle strips (element tristrips) over the element vertex, with
-//         vertex normals and colours; ascii and binary, either byte order. Other elements and properties are skipped.
+// What    PLY: polygons (element face) and triangle strips (element tristrips) over the element vertex,
+//         with vertex normals and colours; ascii and binary, either byte order. Other elements and
+//         properties are skipped.
 // Errors  ascii: file and line; binary: file, element, row and byte.
 // Source  G. Turk, "The PLY Polygon File Format", 1994. Tristrips as the Stanford scanning repository writes
 //         them.

@@ -288,7 +288,8 @@ TEST(Paint, OfPartsComesTogether) {
   const auto file = folder.write(
       "s.json",
       R"({"objects": [{"type": "triangles", "vertices": [[0,0,0],[1,0,0],[0,1,0]], "faces": [[0,1,2]]},
-        {"type": "mesh", "file": "a.obj"}, {"type": "mesh", "file": "b.ply"}, {"type": "mesh", "file": "a.obj"},
+        {"type": "mesh", "file": "a.obj"}, {"type": "mesh", "file": "b.ply"},
+        {"type": "mesh", "file": "a.obj"},
         {"type": "mesh", "file": "b.ply", "material": {"kd": 0.5}}]})");
   const Scene s = checked(import_scene(file));
   ASSERT_EQ(s.triangles.size(), 5u);
