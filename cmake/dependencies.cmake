@@ -20,7 +20,8 @@ find_package(embree 4 QUIET)            # libembree-dev, optional: what `kdray b
 if(NOT embree_FOUND)
   find_package(embree 3 QUIET)
 endif()
-# `kdray view`, optional: libboost-dev (Beast and Asio, headers alone) and libturbojpeg0-dev. The command says what is missing.
+# Optional: libboost-dev (Beast and Asio, headers alone) with libturbojpeg0-dev for `kdray view`, which says what is missing;
+# libturbojpeg0-dev alone for JPEG pictures on surfaces.
 find_package(Boost 1.74 QUIET)
 pkg_check_modules(turbojpeg QUIET IMPORTED_TARGET libturbojpeg)
 if(Boost_FOUND AND turbojpeg_FOUND)
