@@ -42,7 +42,7 @@ ChosenMode choose_mode(const State& state, const Job& job) {
   if (const std::string why = why_it_does_not_fit(state, job, scene_takes); !why.empty())
     return {Mode::odprt, why};
   const Speeds& s = state.speeds;
-  if (s.are_of(job.frame) && s.odprt > s.pdprt && s.pdprt > 0)
+  if (!state.ranks && s.are_of(job.frame) && s.odprt > s.pdprt && s.pdprt > 0)
     return {Mode::odprt, fmt::format("measured {:.3g} Mrays/s, pdprt {:.3g}", s.odprt, s.pdprt)};
   return {Mode::pdprt, fmt::format("{} and fits every device whole", scene_takes)};
 }

@@ -39,6 +39,11 @@ class RayPile {
     words_.resize(first);
   }
 
+  // The last n, ray by ray; drop() takes them away, put_all() adds such.
+  std::span<const float> last(std::size_t n) const { return std::span(words_).last(n * kFields); }
+  void drop(std::size_t n) { words_.resize(words_.size() - n * kFields); }
+  void put_all(std::span<const float> rays) { words_.insert(words_.end(), rays.begin(), rays.end()); }
+
   void take_all(RayPile& other) {
     if (words_.empty()) {
       words_.swap(other.words_);

@@ -49,7 +49,8 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
                           : std::clamp(kOutboxPlaces / n_parts, kLeastOutboxes, kMostOutboxes);
   p.plan = make_plan(p.frame, {.features = request.features,
                                .n_parts = n_parts,
-                               .n_queues = static_cast<std::uint32_t>(request.queues.size()),
+                               .n_queues = static_cast<std::uint32_t>(request.table.n_queues()),
+                               .n_ranks = request.table.place().ranks,
                                // Where memory is short, there are no more slices than compute units, about.
                                .n_slices = streamed ? (request.n_slices + 15) / 16 : request.n_slices,
                                .ray_buffer = request.ray_buffer,
@@ -103,7 +104,7 @@ Provision provide_streamed(const Request& request, std::size_t geometry_bytes, s
 }  // namespace
 
 Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts) {
-  const auto n_queues = static_cast<std::uint32_t>(request.queues.size());
+  const auto n_queues = static_cast<std::uint32_t>(request.table.n_queues());
   Provision all = provide_for(request, n_queues, false, kMaxFilmBytes);
   if (request.device_memory == 0) return all;
   const std::size_t of_queue = request.device_memory / queues_on_a_device(request);
