@@ -166,12 +166,26 @@ void apply_sparse(Document& document, const JsonNode& accessor, Component compon
   }
 }
 
+// Those that were unpacked for it.
+template <class Kind>
+RawVector<typename Kind::Element> copy_unpacked(const Unpacked& from, bool normalized) {
+  const auto component = static_cast<Component>(from.component);
+  RawVector<typename Kind::Element> out;
+  out.resize(from.count);
+  if (from.bytes.size() / (Kind::kParts * size_of(component)) < from.count)
+    throw Error(ErrorCode::internal, "a packed accessor has fewer components than its type");
+  copy_elements<Kind>({from.bytes, Kind::kParts * size_of(component), component, normalized}, out);
+  return out;
+}
+
 template <class Kind>
 RawVector<typename Kind::Element> read_elements(Document& document, const JsonNode& accessor,
                                                 Component component) {
   const std::uint64_t count = accessor_count(accessor);
   const auto flag = accessor.find("normalized");
   const bool normalized = flag && component != Component::f32 && flag->boolean();
+  if (const Unpacked* const unpacked = document.unpacked(accessor))
+    return copy_unpacked<Kind>(*unpacked, normalized);
   RawVector<typename Kind::Element> out;
   if (accessor.find("bufferView")) {
     Elements elements = find_elements(document, accessor, accessor, count, Kind::kParts, component);

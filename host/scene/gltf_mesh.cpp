@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/gltf_accessor.h"
+#include "scene/gltf_draco.h"
 #include "scene/settle_normals.h"
 
 namespace kdray::scene::gltf {
@@ -57,10 +58,7 @@ dmat3 normal_matrix(const dmat3& m) {
 }  // namespace
 
 MeshReader::MeshReader(Document& document, Scene& scene)
-    : document_(document),
-      scene_(scene),
-      materials_(document, scene),
-      most_(std::max(kMostOfSmallFile, kMostPerByte * document.file_size())) {}
+    : document_(document), scene_(scene), materials_(document, scene) {}
 
 void MeshReader::add(const JsonNode& mesh, const dmat4& to_world) {
   if (mesh.find("weights")) warn("morph targets are left out");
@@ -68,10 +66,11 @@ void MeshReader::add(const JsonNode& mesh, const dmat4& to_world) {
 }
 
 void MeshReader::check_size(const JsonNode& primitive) const {
-  if (scene_.vertices.size() <= most_ && scene_.triangles.size() <= most_ && n_primitives_ <= most_ / 16)
-    return;
+  // Buffers beside the file count as soon as they are read.
+  const std::size_t most = std::max(kMostOfSmallFile, kMostPerByte * document_.bytes_read());
+  if (scene_.vertices.size() <= most && scene_.triangles.size() <= most && n_primitives_ <= most / 16) return;
   throw primitive.error(
-      "the instances of this file make more than " + std::to_string(most_) + " triangles of it",
+      "the instances of this file make more than " + std::to_string(most) + " triangles of it",
       "split the scene");
 }
 
@@ -154,17 +153,16 @@ void MeshReader::add_texcoords(const JsonNode& attributes,
 void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world) {
   ++n_primitives_;
   check_size(primitive);
-  if (extension(primitive, "KHR_draco_mesh_compression")) {
-    throw primitive.error("is packed with KHR_draco_mesh_compression, which is not read",
-                          "export it without mesh compression");
-  }
   if (primitive.find("targets")) warn("morph targets are left out");
-  const std::uint64_t mode = whole_or(primitive, "mode", kTriangles);
+  std::uint64_t mode = whole_or(primitive, "mode", kTriangles);
   if (mode > kFan) throw primitive["mode"].expected("a mode from 0 to 6");
   if (mode < kTriangles) return warn("points and lines are left out: they have no surface");
   const JsonNode attributes = primitive["attributes"];
   const auto position = attributes.find("POSITION");
   if (!position) return warn("primitives without positions are left out");
+
+  const DracoMesh packed(document_, primitive);
+  if (packed.is_there()) mode = kTriangles;
 
   const auto first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
   const auto first_normal = static_cast<std::uint32_t>(scene_.normals.size());

@@ -41,7 +41,6 @@ class MeshReader {
   Document& document_;
   Scene& scene_;
   Materials materials_;
-  std::size_t most_;  // vertices or triangles
   std::size_t n_primitives_ = 0;
   std::set<std::string> left_out_;
 };
