@@ -35,6 +35,7 @@ class Document {
   Document& operator=(const Document&) = delete;
 
   JsonNode root() const { return {json_, file_}; }
+  const nlohmann::json& json() const { return json_; }
   const std::string& file() const { return file_; }
   std::size_t file_size() const { return text_.size(); }
   // What was read so far: the file, buffers beside it, and what came of packed ones.

@@ -256,5 +256,19 @@ TEST(Ply, DoesNotBelieveCounts) {
       read(kAscii + "element nothing 18446744073709551615\n" + kVertex + kEnd + kSquare).vertices.size(), 4u);
 }
 
+TEST(Ply, TellsOfWhatItLeavesOut) {
+  const Scene s = read_ply(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float confidence\nproperty uchar quality\nelement edge 2\nproperty int from\nelement face 1\n"
+      "property list uchar int vertex_indices\nproperty int flags\nend_header\n"
+      "0 0 0 1 1\n1 0 0 1 1\n0 1 0 1 1\n0\n1\n3 0 1 2 7\n",
+      "a.ply");
+  EXPECT_EQ(s.triangles.size(), 1u);
+  EXPECT_EQ(s.warnings,
+            (std::vector<std::string>{"a.ply: 2 properties of 'vertex' are left out: confidence, quality",
+                                      "a.ply: 2 rows of element 'edge' are left out",
+                                      "a.ply: 1 property of 'face' is left out: flags"}));
+}
+
 }  // namespace
 }  // namespace kdray::scene
