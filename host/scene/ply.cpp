@@ -39,10 +39,10 @@ class BodyReader {
       read_element(element);
     }
     const bool at_end = source_.at_end();
-    for (const std::string& what : left_out_of(header_)) mesh_.warn(file_ + ": " + what);
+    for (const std::string& what : left_out_of(header_)) mesh_.warn(what);
     if (source_.has_extra_values())
-      mesh_.warn(file_ + ": values at the end of a line that the header doesn't know are left out");
-    if (!at_end) mesh_.warn(file_ + ": more data after the last element of the header are left out");
+      mesh_.warn("values at the end of a line that the header doesn't know are left out");
+    if (!at_end) mesh_.warn("more data after the last element of the header are left out");
     return mesh_.finish(file_);
   }
 

@@ -120,7 +120,7 @@ TEST(Gltf, ReadsAllModes) {
   primitive["mode"] = 1;
   s = read(sample);
   EXPECT_EQ(s.triangles.size(), 0u);
-  EXPECT_SAYS(s.warnings.at(1), "primitives of points or lines are left out: they have no surface");
+  EXPECT_SAYS(s.warnings.at(0), "1 primitives of points or lines are left out: they have no surface");
   primitive["mode"] = 7;
   EXPECT_SAYS(refused(sample), "/meshes/0/primitives/0/mode: expected a mode from 0 to 6");
 }

@@ -121,7 +121,8 @@ TEST(WebpPicture, SidesAreHeldAgainstTheBytes) {
   const std::size_t at = bytes.find("VP8L") + 9;
   bytes[at] = static_cast<char>(0xff), bytes[at + 1] = static_cast<char>(0xff),
   bytes[at + 2] = static_cast<char>(0xff);
-  EXPECT_SAYS(refused(bytes), "a picture of 16384x");
+  bytes[at + 3] = static_cast<char>(bytes[at + 3] | 0x0f);
+  EXPECT_SAYS(refused(bytes), "a picture of 16384x16384");
   bytes[at] = static_cast<char>(0xff), bytes[at + 1] = 0x1f, bytes[at + 2] = 0x7c,
   bytes[at + 3] = 0x07;  // 8192x7665
   EXPECT_SAYS(refused(bytes), "its header promises more pixels than it holds");
