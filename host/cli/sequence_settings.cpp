@@ -48,6 +48,12 @@ std::string settings_of(const RenderArgs& o) {
   add("--grid", fmt::format("{}", static_cast<int>(r.grid)));
   add("--precision", fmt::format("{}", static_cast<int>(r.precision)));
   add("--camera-path", hash_of_file(o.ledger.camera_path));
+  const LoadOptions& load = o.scene.load;
+  if (o.ledger.fps || load.time) {
+    add("--fps", in_text(o.ledger.fps));
+    add("--time", in_text(load.time));
+    add("--animation", load.animation);
+  }
   add("--camera", in_text(v.camera));
   add("--from", in_text(v.from));
   add("--at", in_text(v.at));

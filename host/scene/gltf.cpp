@@ -1,17 +1,18 @@
 // What    glTF 2.0, .gltf and .glb: the default scene's meshes, lights and cameras, placed by their nodes;
-//         the first camera is the one that is looked through. Animations and skins are left out, with a
-//         warning.
+//         the first camera is the one that is looked through. All of it at rest, or at a second of an
+//         animation.
 // Errors  A node that has two parents, or is its own ancestor, refuses the file; so does all that the parts'
 //         headers name.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021; KHR_lights_punctual.
-#include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "scene/gltf_document.h"
+#include "scene/gltf_left_out.h"
 #include "scene/gltf_lights.h"
 #include "scene/gltf_mesh.h"
+#include "scene/gltf_pose.h"
 #include "scene/importers.h"
 
 namespace kdray::scene {
@@ -19,44 +20,19 @@ namespace kdray::scene {
 namespace gltf {
 namespace {
 
-// `key`'s N numbers, or nothing when the object has no such key.
-template <std::size_t N>
-std::optional<std::array<double, N>> numbers(const JsonNode& object, std::string_view key) {
-  const auto node = object.find(key);
-  if (!node) return std::nullopt;
-  const std::vector<JsonNode> parts = node->elements();
-  if (parts.size() != N) throw node->expected(std::to_string(N) + " numbers");
-  std::array<double, N> out;
-  for (std::size_t i = 0; i < N; ++i) out[i] = parts[i].number();
-  return out;
-}
-
-dmat4 local_transform(const JsonNode& node) {
-  dmat4 m(1);
-  if (const auto matrix = numbers<16>(node, "matrix")) {
-    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = (*matrix)[static_cast<std::size_t>(i)];
-    return m;
-  }
-  if (const auto rotation = numbers<4>(node, "rotation")) {
-    const glm::dquat q((*rotation)[3], (*rotation)[0], (*rotation)[1], (*rotation)[2]);
-    if (glm::length(q) > 0) m = glm::mat4_cast(glm::normalize(q));
-  }
-  if (const auto scale = numbers<3>(node, "scale")) {
-    for (int i = 0; i < 3; ++i) m[i] *= (*scale)[static_cast<std::size_t>(i)];
-  }
-  if (const auto move = numbers<3>(node, "translation")) m[3] = {(*move)[0], (*move)[1], (*move)[2], 1};
-  return m;
-}
-
 class Reader {
  public:
-  Reader(std::string_view text, const std::filesystem::path& path)
-      : document_(text, path), meshes_(document_, scene_) {}
+  Reader(std::string_view text, const std::filesystem::path& path, const LoadOptions& options)
+      : document_(text, path),
+        meshes_(document_, scene_),
+        pose_(document_, options),
+        at_rest_(!options.time) {}
 
   Scene read() {
     visited_.assign(document_.entries("nodes").size(), false);
     read_nodes();
-    if (!document_.entries("animations").empty()) meshes_.warn("animations are left out");
+    for (const std::string& what : pose_.warnings()) meshes_.warn(what);
+    for (const std::string& what : left_out_of(document_, at_rest_)) meshes_.warn(what);
     if (n_hidden_ > 0)
       meshes_.warn(std::to_string(n_hidden_) + " hidden nodes (KHR_node_visibility) are left out");
     if (scene_.triangles.empty()) meshes_.warn("no triangles");
@@ -83,7 +59,7 @@ class Reader {
         ++n_hidden_;
         continue;
       }
-      const dmat4 to_world = visit.to_parent * local_transform(visit.node);
+      const dmat4 to_world = visit.to_parent * pose_.local(visit.node);
       read_node(visit.node, to_world);
       if (const auto children = visit.node.find("children")) push(children->elements(), to_world, open);
     }
@@ -133,11 +109,13 @@ class Reader {
   }
 
   void read_node(const JsonNode& node, const dmat4& to_world) {
-    if (node.find("skin")) meshes_.warn("skins are left out: the mesh is shown in its rest pose");
     if (extension(node, "EXT_mesh_gpu_instancing")) {
       meshes_.warn("EXT_mesh_gpu_instancing is left out: the mesh is shown once");
     }
-    if (const auto mesh = node.find("mesh")) meshes_.add(document_.entry("meshes", *mesh), to_world);
+    if (const auto index = node.find("mesh")) {
+      const JsonNode& mesh = document_.entry("meshes", *index);
+      meshes_.add(mesh, to_world, deformations_.of(node, mesh));
+    }
     if (const auto camera = node.find("camera")) {
       const auto read = read_camera(document_.entry("cameras", *camera), to_world, scene_.warnings);
       if (read) scene_.cameras.push_back(*read);
@@ -159,6 +137,9 @@ class Reader {
   Document document_;
   Scene scene_;
   MeshReader meshes_;
+  Pose pose_;
+  Deformations deformations_{document_, pose_};
+  bool at_rest_;
   std::vector<bool> visited_;
   std::size_t n_hidden_ = 0;
   nlohmann::json root_numbers_ = nlohmann::json::array();  // of a file without scenes
@@ -168,8 +149,11 @@ class Reader {
 }  // namespace
 }  // namespace gltf
 
+Scene read_gltf(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
+  return gltf::Reader(text, file, options).read();
+}
 Scene read_gltf(std::string_view text, const std::filesystem::path& file) {
-  return gltf::Reader(text, file).read();
+  return read_gltf(text, file, {});
 }
 
 }  // namespace kdray::scene

@@ -75,8 +75,11 @@ std::uint32_t Textures::decode(const JsonNode& image, std::uint64_t number) {
 
 // Said once for each picture, however many textures show it.
 std::optional<std::uint32_t> Textures::picture_of(const JsonNode& texture) {
-  const auto source = texture.find("source");
-  if (!source) throw texture.error("names no PNG or JPEG");
+  const auto webp = extension(texture, "EXT_texture_webp");
+  const auto source = texture.find("source") ? texture.find("source")
+                      : webp                 ? webp->find("source")
+                                             : std::nullopt;
+  if (!source) throw texture.error("names no PNG, JPEG or WebP");
   const std::uint64_t number = whole(*source);
   const JsonNode& image = document_.entry("images", *source);
   const auto [it, added] = pictures_.try_emplace(number);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "base/error.h"
@@ -47,7 +48,9 @@ std::string known_endings() {
   return "known are " + known + ", each also with .gz or .xz after it";
 }
 
-Scene read_by_ending(std::string_view text, const std::filesystem::path& file, const std::string& ending) {
+Scene read_by_ending(std::string_view text, const std::filesystem::path& file, const std::string& ending,
+                     const LoadOptions& options) {
+  if (ending == ".gltf" || ending == ".glb") return read_gltf(text, file, options);
   const auto format = std::ranges::find(kFormats, ending, &Format::ending);
   if (format != kFormats.end()) return format->read(text, file);
   return read_assimp(text, file);
@@ -72,8 +75,8 @@ void check_ending(const std::filesystem::path& file, const std::string& ending) 
 
 namespace {
 
-Scene import_text(std::string_view text, const std::filesystem::path& file) {
-  Scene scene = read_by_ending(text, file, format_of(file));
+Scene import_text(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
+  Scene scene = read_by_ending(text, file, format_of(file), options);
   scene.name = file.string();
   if (scene.cameras.empty() && scene.camera) scene.cameras = {*scene.camera};
   check_scene(scene);
@@ -84,19 +87,25 @@ Scene import_text(std::string_view text, const std::filesystem::path& file) {
 
 Scene import_scene(const std::filesystem::path& file) {
   check_ending(file, format_of(file));
-  return import_text(read_file(file), file);
+  return import_text(read_file(file), file, {});
 }
 
 namespace {
 
 void check(const LoadOptions& options) {
+  if (options.time && !std::isfinite(*options.time))
+    throw Error(ErrorCode::usage, "the time of an animation is not finite");
+  if (!options.time && !options.animation.empty())
+    throw Error(ErrorCode::usage, "an animation is seen at a time; say which");
   if (!options.smooth_degrees) return;
   const double degrees = *options.smooth_degrees;
   if (!(degrees >= 0 && degrees <= 180))
     throw Error(ErrorCode::usage, "the smoothing angle may be 0 to 180 degrees");
 }
 
-Scene finished(Scene&& scene, const LoadOptions& options) {
+Scene finished(Scene&& scene, const std::filesystem::path& file, const LoadOptions& options) {
+  if (const std::string format = format_of(file); options.time && format != ".gltf" && format != ".glb")
+    scene.warnings.push_back(file.string() + ": at any time it is the same; only glTF files have animations");
   scene.load_options = options;
   if (options.smooth_degrees) smooth_normals(scene, *options.smooth_degrees);
   frame_scene(scene);
@@ -108,7 +117,8 @@ Scene finished(Scene&& scene, const LoadOptions& options) {
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   check(options);
   FilesRead files;
-  Scene scene = finished(import_scene(file), options);
+  check_ending(file, format_of(file));
+  Scene scene = finished(import_text(read_file(file), file, options), file, options);
   scene.files = files.take();
   return scene;
 }
@@ -117,7 +127,7 @@ Scene load_from_memory(std::string bytes, const std::filesystem::path& name, con
   check(options);
   FilesRead files;
   check_ending(name, format_of(name));
-  Scene scene = finished(import_text(unpacked(std::move(bytes), name), name), options);
+  Scene scene = finished(import_text(unpacked(std::move(bytes), name), name, options), name, options);
   scene.files = files.take();
   return scene;
 }

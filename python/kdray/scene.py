@@ -76,7 +76,7 @@ class Scene:
     def _start(self, core: Any, device: str, compute_units: int) -> None:
         self._core = core
         self._device, self._compute_units = device, compute_units
-        self._file: tuple[str, float | None] | None = None
+        self._file: tuple[str, float | None, float | None, str] | None = None
         self._added: dict[int, _Added] = {}  # by id
         self._materials: list[Material] = []
         self._lights: list[Light] = []
@@ -558,14 +558,23 @@ class Scene:
         return f"<kdray.Scene of {len(self._core.geometries())} geometries, {self.primitives} primitives>"
 
 
-def load(path: str | os.PathLike[str], *, smooth: float | None = None, device: str = "auto") -> Scene:
+def load(
+    path: str | os.PathLike[str],
+    *,
+    smooth: float | None = None,
+    time: float | None = None,
+    animation: str | int = "",
+    device: str = "auto",
+) -> Scene:
     """A scene from a file: .obj, .ply, .stl, .gltf, .glb, .nff, kdray's .json, also .gz and .xz of these.
 
     What is in it is geometry 0. `smooth`: triangles without normals get some where the surface turns by no more
-    than so many degrees. Raises InputError with file, line, what is wrong and what to do.
+    than so many degrees. `time`: the second of a glTF file's animation that is seen, of the first or of the
+    `animation` with this name or number, or "all"; without it nodes are at rest. Raises InputError with file,
+    line, what is wrong and what to do.
     """
     scene = Scene.__new__(Scene)
-    file = (os.path.abspath(os.fspath(path)), smooth)
+    file = (os.path.abspath(os.fspath(path)), smooth, time, str(animation))
     scene._start(_core.Scene.load(*file), device, 0)
     scene._file = file
     return scene

@@ -111,10 +111,12 @@ SceneClass add_scene(nb::module_& module) {
   scene.def(nb::init<>());
   scene.def_static(
       "load",
-      [](const std::string& file, std::optional<double> smooth_degrees) {
-        return Scene::load(file, {smooth_degrees});
+      [](const std::string& file, std::optional<double> smooth_degrees, std::optional<double> time,
+         const std::string& animation) {
+        return Scene::load(file, {smooth_degrees, time, animation});
       },
-      Released(), "file"_a, "smooth_degrees"_a.none());
+      Released(), "file"_a, "smooth_degrees"_a.none(), "time"_a.none() = nb::none(),
+      "animation"_a = "");
   add_geometries(scene);
   add_looks(scene);
   scene.def(

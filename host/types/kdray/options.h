@@ -23,6 +23,10 @@ struct LoadOptions {
   // Triangles without normals get them from the faces around each corner, where the surface turns by no more
   // than this: 0 to 180 degrees. Empty: they stay flat.
   std::optional<double> smooth_degrees = {};
+  // Of a glTF file: the second of its animation that is seen. Empty: nodes are as the file has them, at rest.
+  std::optional<double> time = {};
+  // Of several animations the number or the name of one, or "all" of them; empty: the first.
+  std::string animation = {};
   bool operator==(const LoadOptions&) const = default;
 };
 
