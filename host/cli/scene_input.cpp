@@ -45,12 +45,19 @@ void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help) 
       app, "--scene-format", "NAME", "Format of a SCENE from standard input: nff, obj, ply, ...",
       [&input](const std::string& text) { input.format = text.starts_with('.') ? text.substr(1) : text; });
   add_smooth(app, input.load);
+  add_texture_limit(app, input.load);
 }
 
 void add_smooth(CLI::App& app, LoadOptions& load) {
   add_text(app, "--smooth", "DEG",
            "Smooth shading for triangles without normals, where faces turn by no more than DEG (as in 40)",
            [&load](const std::string& text) { load.smooth_degrees = parse_real("--smooth", text, 0, 180); });
+}
+
+void add_texture_limit(CLI::App& app, LoadOptions& load) {
+  add_text(app, "--texture-memory", "BYTES",
+           "The most that pictures on surfaces may take, as in 500M: larger ones are made smaller",
+           [&load](const std::string& text) { load.texture_bytes = parse_bytes("--texture-memory", text); });
 }
 
 void check_scene_input(const SceneInput& input) {

@@ -23,6 +23,7 @@ struct SceneInput {
 void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help);
 
 void add_smooth(CLI::App& app, LoadOptions& load);
+void add_texture_limit(CLI::App& app, LoadOptions& load);
 
 // Before anything else is done with it.
 void check_scene_input(const SceneInput& input);

@@ -34,7 +34,8 @@ BandRun::BandRun(const Request& request, Crew& crew)
       crew_(crew),
       exchange_(crew.plan, crew.owner, crew.direct, crew.outboxes),
       tiles_left_(crew.workers.size()),
-      sent_(crew.workers.size(), std::vector<Mail>(crew.owner.size(), Mail(crew.plan.n_slices))) {}
+      sent_(crew.workers.size(),
+            std::vector<Mail>(crew.owner.size(), Mail(crew.plan.n_slices, crew.plan.outbox.ray_fields))) {}
 
 void BandRun::run(BandWork& band, const std::function<void(double)>& progress) {
   n_serving_ = crew_.workers.size();

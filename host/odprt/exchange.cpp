@@ -11,7 +11,7 @@ Exchange::Exchange(const Plan& plan, std::vector<std::size_t> owner, std::vector
       outboxes_(outboxes),
       ledger_(plan.n_slices, plan.capacity, plan.least, outboxes.size()),
       letters_(owner_.size()),
-      mail_(owner_.size(), Mail(plan.n_slices)),
+      mail_(owner_.size(), Mail(plan.n_slices, plan.outbox.ray_fields)),
       has_tiles_(outboxes.size(), 1),
       running_(outboxes.size(), 0),
       seen_version_(outboxes.size(), ~std::uint64_t{0}),

@@ -23,6 +23,9 @@ struct LoadOptions {
   // Triangles without normals get them from the faces around each corner, where the surface turns by no more
   // than this: 0 to 180 degrees. Empty: they stay flat.
   std::optional<double> smooth_degrees = {};
+  // The most that the texels of pictures may take; larger pictures are made smaller until they fit; 0: no
+  // limit.
+  std::uint64_t texture_bytes = 0;
   bool operator==(const LoadOptions&) const = default;
 };
 
