@@ -13,6 +13,7 @@
 #include "query/crossings.h"
 #include "query/points.h"
 #include "scene/added_geometry.h"
+#include "scene/added_paint.h"
 #include "scene/check_scene.h"
 #include "scene/frame.h"
 #include "scene/load.h"
@@ -27,6 +28,7 @@ struct Scene::Impl {
   double load_seconds = 0;
   std::vector<std::optional<scene::AddedGeometry>> geometries;  // by id, after the file's; none: removed
   std::vector<scene::Material> materials;
+  scene::Paint paint;     // of these materials
   bool changed = false;   // since `assembled` was made
   bool touched = false;   // since the last commit(), but for masks
   bool reshaped = false;  // since then: other geometries, not only other vertices or another look
@@ -121,6 +123,7 @@ const scene::Scene& Scene::Impl::model() {
   } else {
     scene::assemble(all, enabled, materials);
   }
+  scene::assemble_paint(all, enabled, paint, materials.size());
   // It is the file's no more, and is not to be kept as the file's (host/cache). What was made up for the file
   // alone is made up anew.
   all.files.clear();
@@ -224,9 +227,17 @@ GeometryInfo Scene::info(GeometryId geometry) const {
 }
 
 MaterialId Scene::add_material(const Material& material) {
-  impl_->materials.push_back(scene::material_of(material));
+  impl_->materials.push_back(scene::painted_material(material, impl_->paint));
   impl_->touch();
   return static_cast<MaterialId>(impl_->materials.size() - 1);
+}
+PictureId Scene::add_picture(const std::filesystem::path& file) {
+  impl_->paint.pictures.push_back(scene::picture_of(file, impl_->base.warnings));
+  return static_cast<PictureId>(impl_->paint.pictures.size() - 1);
+}
+PictureId Scene::add_picture(const Pixels& pixels) {
+  impl_->paint.pictures.push_back(scene::picture_of(pixels));
+  return static_cast<PictureId>(impl_->paint.pictures.size() - 1);
 }
 void Scene::add_light(const Light& light) {
   const scene::Light made = scene::light_of(light);

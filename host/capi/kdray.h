@@ -82,6 +82,8 @@ typedef struct kdray_geometry_options {
   const char* name;  /* NULL: none */
   uint32_t mask;     /* 0: every bit. A ray meets the geometry where both masks have a bit in common. */
   uint32_t material; /* of kdray_add_material */
+  /* Of meshes: rows of two, one for each vertex; (0, 0) is a picture's upper left corner. count = 0: none */
+  kdray_in texcoords;
 } kdray_geometry_options;
 
 /* `triangles`: rows of three indices (32 or 64 bits); `normals`: count = 0, or one for each vertex.
@@ -110,7 +112,24 @@ typedef struct kdray_material {
   float emission[3], ambient[3], diffuse[3], specular[3], reflect[3], transmit[3];
   float shine;
   float index; /* of refraction; 0: 1 */
+  /* Of kdray_add_picture; 0: none. They are multiplied by the ambient and diffuse terms and what goes through;
+   * by the emission, or by white where that is black. */
+  uint32_t picture, normal_picture, emission_picture;
+  int32_t alpha; /* kdray_alpha, of `picture` */
 } kdray_material;
+/* What a picture's alpha means: nothing; below a half nothing is there; the share that isn't let through. */
+typedef enum kdray_alpha { KDRAY_ALPHA_OPAQUE = 0, KDRAY_ALPHA_MASK = 1, KDRAY_ALPHA_BLEND = 2 } kdray_alpha;
+/* Rows from the top; 1 to 4 channels: grey, grey with alpha, red green blue, or these with alpha; codes of
+ * sRGB, as files have them. */
+typedef struct kdray_pixels {
+  size_t size;
+  const uint8_t* data;
+  uint32_t width, height, channels;
+  size_t row_bytes; /* 0: none between rows */
+} kdray_pixels;
+/* Pictures are numbered from 1. The second reads a PNG or a JPEG. */
+KDRAY_API kdray_status kdray_add_picture(kdray_scene* scene, const kdray_pixels* pixels, uint32_t* id);
+KDRAY_API kdray_status kdray_add_picture_file(kdray_scene* scene, const char* file, uint32_t* id);
 KDRAY_API kdray_status kdray_add_material(kdray_scene* scene, const kdray_material* material, uint32_t* id);
 
 typedef struct kdray_camera {

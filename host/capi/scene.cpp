@@ -47,6 +47,18 @@ Light light_of(const kdray_light& l) {
           .outer_degrees = l.outer_degrees == 0 ? usual.outer_degrees : l.outer_degrees};
 }
 
+// They are numbered from 1 here, since what is left 0 is none.
+PictureId picture_of(std::uint32_t number) {
+  return number == 0 ? kNoPicture : number - 1;
+}
+
+AlphaMode alpha_of(std::int32_t mode) {
+  constexpr AlphaMode kModes[] = {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend};
+  if (mode < KDRAY_ALPHA_OPAQUE || mode > KDRAY_ALPHA_BLEND)
+    refuse("material: there is no such mode of alpha");
+  return kModes[mode];
+}
+
 Color color_at(const float* rgb, const char* name) {
   needed(rgb, name);
   return {rgb[0], rgb[1], rgb[2]};
@@ -94,7 +106,8 @@ kdray_status kdray_add_mesh(kdray_scene* scene, kdray_in vertices, kdray_in tria
                             const kdray_geometry_options* options, uint32_t* id) {
   return guarded([&] {
     const Mesh mesh{view_of<Points>(vertices, "vertices"), view_of<Triples>(triangles, "triangles"),
-                    view_of<Points>(normals, "normals")};
+                    view_of<Points>(normals, "normals"),
+                    view_of<Pairs>(grown(options, "options").texcoords, "texcoords")};
     put(id, needed(scene, "scene")->scene.add_mesh(mesh, options_of(options)));
   });
 }
@@ -150,7 +163,28 @@ kdray_status kdray_add_material(kdray_scene* scene, const kdray_material* materi
                                       .reflect = color(m.reflect),
                                       .transmit = color(m.transmit),
                                       .shine = m.shine,
-                                      .index = m.index == 0 ? 1.0f : m.index}));
+                                      .index = m.index == 0 ? 1.0f : m.index,
+                                      .picture = picture_of(m.picture),
+                                      .normal_picture = picture_of(m.normal_picture),
+                                      .emission_picture = picture_of(m.emission_picture),
+                                      .alpha = alpha_of(m.alpha)}));
+  });
+}
+
+kdray_status kdray_add_picture(kdray_scene* scene, const kdray_pixels* pixels, uint32_t* id) {
+  return guarded([&] {
+    const kdray_pixels p = grown(needed(pixels, "pixels"), "pixels");
+    put(id, 1 + needed(scene, "scene")
+                    ->scene.add_picture(Pixels{.data = p.data,
+                                               .width = p.width,
+                                               .height = p.height,
+                                               .channels = p.channels,
+                                               .row_bytes = p.row_bytes}));
+  });
+}
+kdray_status kdray_add_picture_file(kdray_scene* scene, const char* file, uint32_t* id) {
+  return guarded([&] {
+    put(id, 1 + needed(scene, "scene")->scene.add_picture(std::filesystem::path(needed(file, "file"))));
   });
 }
 

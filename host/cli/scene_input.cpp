@@ -60,6 +60,9 @@ void add_load_options(CLI::App& app, LoadOptions& load) {
              if (text.empty()) throw usage_error("--animation", text, "a name, a number or all");
              load.animation = text;
            });
+  add_text(app, "--texture-memory", "BYTES",
+           "The most that pictures on surfaces may take, as in 500M: larger ones are made smaller",
+           [&load](const std::string& text) { load.texture_bytes = parse_bytes("--texture-memory", text); });
 }
 
 void check_load_options(const LoadOptions& load) {

@@ -20,6 +20,10 @@ constexpr Feature kFeatures[] = {
     {KDRAY_FEATURE_CORNER_COLORS, "corner colours"},
     {KDRAY_FEATURE_TEXTURES, "textures"},
     {KDRAY_FEATURE_CUTOUTS, "cut-outs"},
+    {KDRAY_FEATURE_FOOTPRINTS, "footprints"},
+    {KDRAY_FEATURE_METAL_MAPS, "metal maps"},
+    {KDRAY_FEATURE_NORMAL_MAPS, "normal maps"},
+    {KDRAY_FEATURE_LIGHT_MAPS, "light maps"},
     {KDRAY_FEATURE_REFLECT, "reflection"},
     {KDRAY_FEATURE_TRANSMIT, "refraction"},
     {KDRAY_FEATURE_SPECULAR, "highlights"},
@@ -72,9 +76,25 @@ Features geometry_features(const scene::Scene& scene, const scene::Geometry& geo
   return mask;
 }
 
-Features coat_features(const scene::Coat& c) {
-  return KDRAY_FEATURE_COATS | when(c.colored != 0, KDRAY_FEATURE_CORNER_COLORS) |
-         when(c.base != scene::kNone, KDRAY_FEATURE_TEXTURES) |
+bool in_footprints(const scene::Paint& paint, const scene::Coat& c) {
+  const auto maps = {c.base, c.normal_map, c.emission_map, c.occlusion_map, c.highlight_map, c.metal_map};
+  return some(maps, [&](std::uint32_t number) {
+    if (number == scene::kNone) return false;
+    const scene::Texture& texture = paint.textures[number];
+    return scene::needs_footprints(texture, *paint.pictures[texture.picture]);
+  });
+}
+
+Features coat_features(const scene::Paint& paint, const scene::Coat& coat) {
+  const scene::Coat c = scene::largest_terms(coat);
+  const bool lit =
+      c.emission_map != scene::kNone || c.occlusion_map != scene::kNone || c.highlight_map != scene::kNone;
+  const Features maps = when(c.metal_map != scene::kNone, KDRAY_FEATURE_METAL_MAPS) |
+                        when(c.normal_map != scene::kNone, KDRAY_FEATURE_NORMAL_MAPS) |
+                        when(lit, KDRAY_FEATURE_LIGHT_MAPS);
+  return KDRAY_FEATURE_COATS | maps | when(c.colored != 0, KDRAY_FEATURE_CORNER_COLORS) |
+         when(maps != 0 || c.base != scene::kNone, KDRAY_FEATURE_TEXTURES) |
+         when(in_footprints(paint, c), KDRAY_FEATURE_FOOTPRINTS) |
          when(c.mode == scene::Alpha::mask, KDRAY_FEATURE_CUTOUTS) |
          when(any(c.reflect), KDRAY_FEATURE_REFLECT) |
          when(any(c.transmit) || c.mode == scene::Alpha::blend, KDRAY_FEATURE_TRANSMIT) |
@@ -95,7 +115,7 @@ Features material_features(const scene::Scene& scene, const scene::Geometry& geo
     const scene::Material& m = scene.materials[i];
     mask |= when(any(m.reflect), KDRAY_FEATURE_REFLECT) | when(any(m.transmit), KDRAY_FEATURE_TRANSMIT) |
             when(any(m.specular), KDRAY_FEATURE_SPECULAR) | when(any(m.diffuse), KDRAY_FEATURE_DIFFUSE);
-    if (m.coat != scene::kNone) mask |= coat_features(scene.paint.coats[m.coat]);
+    if (m.coat != scene::kNone) mask |= coat_features(scene.paint, scene.paint.coats[m.coat]);
   }
   return mask;
 }

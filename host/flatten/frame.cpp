@@ -73,7 +73,8 @@ double radiance_bound(const scene::Scene& scene, int depth) {
   double shown = largest(scene.background), passed = 0;
   for (const scene::Material& m : scene.materials) {
     // Base colours are 1 at most; what a veil takes of a term it passes on.
-    const scene::Coat coat = m.coat == scene::kNone ? scene::Coat{} : scene.paint.coats[m.coat];
+    const scene::Coat coat =
+        m.coat == scene::kNone ? scene::Coat{} : scene::largest_terms(scene.paint.coats[m.coat]);
     const double lit = largest(m.diffuse + coat.diffuse) + largest(m.specular + coat.specular);
     shown = std::max(shown, largest(m.emission + coat.emission) +
                                 largest(m.ambient + coat.ambient) * largest(scene.ambient) +
@@ -131,6 +132,9 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
   f.n_lights = static_cast<layout::u32>(scene.lights.size());
   f.corner_grid = corners ? 1 : 0;
   f.parallel = parallel ? 1 : 0;
+  // The samples of a pixel share it.
+  f.pencil = static_cast<float>(
+      std::sqrt(std::abs(double{f.x_scale} * double{f.y_scale}) / static_cast<double>(o.samples)));
   return f;
 }
 

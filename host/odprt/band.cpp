@@ -35,12 +35,14 @@ BandRun::BandRun(const Request& request, Crew& crew, BandWork& band)
       band_(band),
       exchange_(crew.plan, request.table, crew.owner, crew.direct, crew.outboxes, band.shares),
       tiles_left_(crew.workers.size()),
-      sent_(crew.workers.size(), std::vector<Mail>(crew.owner.size(), Mail(crew.plan.n_slices))) {
+      sent_(crew.workers.size(),
+            std::vector<Mail>(crew.owner.size(), Mail(crew.plan.n_slices, crew.plan.outbox.ray_fields))) {
   if (request.table.ranks == nullptr) return;
   const RaysKnown known{.first_part = static_cast<std::uint32_t>(request.table.own_first()),
                         .n_parts = static_cast<std::uint32_t>(crew.workers.size()),
                         .n_all_parts = static_cast<std::uint32_t>(crew.owner.size()),
                         .n_slices = crew.plan.n_slices,
+                        .ray_fields = crew.plan.outbox.ray_fields,
                         .max_depth = request.frame.max_depth,
                         .first_pixel = band.first_pixel,
                         .n_pixels = band.n_places};

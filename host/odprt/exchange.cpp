@@ -14,7 +14,7 @@ Exchange::Exchange(const Plan& plan, const RankTable& table, std::vector<std::si
       shares_(shares),
       ledger_(plan.n_slices, plan.capacity, plan.least, outboxes.size(), table.place()),
       letters_(owner_.size()),
-      mail_(owner_.size(), Mail(plan.n_slices)),
+      mail_(owner_.size(), Mail(plan.n_slices, plan.outbox.ray_fields)),
       has_tiles_(outboxes.size(), 1),
       running_(outboxes.size(), 0),
       waiting_(outboxes.size(), 0),

@@ -53,12 +53,12 @@ Post::Post(const RankTable& table, std::uint32_t list, const RaysKnown& known, c
       exchange_(exchange),
       shares_(shares),
       is_entry_(std::move(is_entry)),
-      in_(known.n_parts, Mail(known.n_slices)),
+      in_(known.n_parts, Mail(known.n_slices, known.ray_fields)),
       waiting_since_(static_cast<std::size_t>(n_ranks()), -1),
       debts_(static_cast<std::size_t>(n_ranks()), known.n_slices, kept(plan, table.n_own())),
       ending_(static_cast<std::size_t>(n_ranks())) {
   for (std::size_t r = 0; r < waiting_since_.size(); ++r)
-    out_.emplace_back(table_.first[r + 1] - table_.first[r], Mail(known.n_slices));
+    out_.emplace_back(table_.first[r + 1] - table_.first[r], Mail(known.n_slices, known.ray_fields));
 }
 
 void Post::step() {
@@ -133,7 +133,7 @@ void Post::send_rays() {
     const std::uint64_t n = exchange_.n_mail(first, out_[r].size());
     if (n == 0) continue;
     if (waiting_since_[r] < 0) waiting_since_[r] = now;
-    if (!at_once && n * KDRAY_TRAVEL_RAY_FIELDS * sizeof(float) < kBatchBytes &&
+    if (!at_once && n * known_.ray_fields * sizeof(float) < kBatchBytes &&
         now - waiting_since_[r] < kPatience)
       continue;
     for (std::size_t p = 0; p < out_[r].size(); ++p)

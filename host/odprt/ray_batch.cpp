@@ -16,9 +16,8 @@ std::uint32_t word(std::span<const float> ray, std::uint32_t field) {
   return std::bit_cast<std::uint32_t>(ray[field]);
 }
 
-template <std::uint32_t kFields>
-std::uint32_t move_rays(RayPile<kFields>& pile, std::size_t most_bytes, transport::Bytes& to) {
-  const std::size_t n = std::min(pile.size(), most_bytes / (kFields * sizeof(float)) + 1);
+std::uint32_t copy_rays(const RayPile& pile, std::size_t most_bytes, transport::Bytes& to) {
+  const std::size_t n = std::min(pile.size(), most_bytes / (pile.n_fields() * sizeof(float)) + 1);
   const std::span<const float> words = pile.last(n);
   to.append(reinterpret_cast<const char*>(words.data()), words.size_bytes());
   return static_cast<std::uint32_t>(n);
@@ -83,13 +82,13 @@ transport::Bytes pack_rays(std::uint32_t list, std::uint32_t first_part, std::sp
       PileHead pile{first_part + p, s, 0, 0};
       const std::size_t at = bytes.size(), most = most_bytes - used();
       bytes.append(sizeof pile, '\0');
-      pile.n_rays = move_rays(rays, most, bytes);
+      pile.n_rays = copy_rays(rays, most, bytes);
       const std::span<const float> sent = rays.last(pile.n_rays);
       for (std::size_t i = 0; i < pile.n_rays; ++i)
         ++counts[s * n_levels +
-                 KDRAY_FINDER_DEPTH(word(sent.subspan(i * KDRAY_TRAVEL_RAY_FIELDS), KDRAY_RAY_FINDER))];
+                 KDRAY_FINDER_DEPTH(word(sent.subspan(i * rays.n_fields()), KDRAY_RAY_FINDER))];
       rays.drop(pile.n_rays);
-      if (pile.n_rays == 0 || used() < most_bytes) pile.n_shadow_rays = move_rays(shadow_rays, most, bytes);
+      if (pile.n_rays == 0 || used() < most_bytes) pile.n_shadow_rays = copy_rays(shadow_rays, most, bytes);
       shadow_rays.drop(pile.n_shadow_rays);
       counts[s * n_levels] += pile.n_shadow_rays;
       mail[p].n -= pile.n_rays + pile.n_shadow_rays;
@@ -109,9 +108,9 @@ void unpack_rays(const transport::Message& message, const RaysKnown& known, std:
     if (pile.part - known.first_part >= known.n_parts || pile.slice >= known.n_slices)
       transport::refuse(message);
     Mail& to = mail[pile.part - known.first_part];
-    const auto rays = reader.words(std::size_t{pile.n_rays} * KDRAY_TRAVEL_RAY_FIELDS);
+    const auto rays = reader.words(std::size_t{pile.n_rays} * known.ray_fields);
     for (std::size_t r = 0; r < pile.n_rays; ++r) {
-      const auto ray = rays.subspan(r * KDRAY_TRAVEL_RAY_FIELDS, KDRAY_TRAVEL_RAY_FIELDS);
+      const auto ray = rays.subspan(r * known.ray_fields, known.ray_fields);
       if (!is_ray(ray, known)) transport::refuse(message);
       const std::uint32_t depth = KDRAY_FINDER_DEPTH(word(ray, KDRAY_RAY_FINDER));
       ++counts[pile.slice * n_levels + depth];

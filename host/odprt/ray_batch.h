@@ -21,7 +21,7 @@ struct RaysHead {
 // What a rank knows about the rays that may come to it.
 struct RaysKnown {
   std::uint32_t first_part = 0, n_parts = 0;  // its own
-  std::uint32_t n_all_parts = 0, n_slices = 0, max_depth = 0;
+  std::uint32_t n_all_parts = 0, n_slices = 0, ray_fields = 0, max_depth = 0;
   std::size_t first_pixel = 0, n_pixels = 0;  // of the film
 
   std::size_t n_counts() const { return std::size_t{n_slices} * (max_depth + 1); }

@@ -70,6 +70,28 @@ RawVector<vec3> unit_normals(const Points& normals, std::size_t n_vertices) {
   return copy;
 }
 
+// Vertices' coordinates, brought to their triangles.
+PageVector<layout::TexCoords> texcoords_of(const Mesh& mesh, const PageVector<Triangle>& triangles) {
+  const std::size_t n = mesh.texcoords.size();
+  if (n == 0) return {};
+  if (n != mesh.vertices.size())
+    refuse(fmt::format("texcoords: {} of them for {} vertices; give one for each, or none", n,
+                       mesh.vertices.size()));
+  RawVector<std::array<float, 2>> narrow(n);
+  const std::size_t bad = first_fault(n, [&](std::size_t i) {
+    const auto row = mesh.texcoords[i];
+    narrow[i] = {static_cast<float>(row[0]), static_cast<float>(row[1])};
+    return std::isfinite(narrow[i][0]) && std::isfinite(narrow[i][1]);
+  });
+  if (bad < n) refuse(fmt::format("texcoords[{}]: not finite, or beyond 3.4e38", bad));
+  PageVector<layout::TexCoords> out(triangles.size());
+  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) {
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t c = 0; c < 2; ++c) out[i].uv[k][c] = narrow[triangles[i].vertex[k]][c];
+  });
+  return out;
+}
+
 // Indices as the caller wrote them: those beyond 2^63 are negative ones.
 std::string in_words(const Triples& triples, std::size_t i) {
   const auto row = triples[i];
@@ -132,6 +154,7 @@ AddedGeometry make_added(const Mesh& mesh) {
   if (bad < n)
     refuse(fmt::format("triangles[{}]: an index of {} is out of range; there are {} vertices", bad,
                        in_words(mesh.triangles, bad), n_vertices));
+  geometry.texcoords = texcoords_of(mesh, geometry.triangles);
   return geometry;
 }
 

@@ -25,6 +25,7 @@ struct AddedGeometry {
   RawVector<dvec3> vertices;
   RawVector<vec3> normals;
   PageVector<Triangle> triangles;
+  PageVector<layout::TexCoords> texcoords;  // of the triangles; or none
 #define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct> names;
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY

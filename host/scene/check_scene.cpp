@@ -97,7 +97,7 @@ class Checker {
       require_internal(m.coat == kNone || m.coat < paint.coats.size(), "a material without its coat");
     for (const Coat& c : paint.coats) check_coat(c);
     for (const Texture& t : paint.textures) {
-      bool good = t.picture < paint.pictures.size() && t.set < 2;
+      bool good = t.picture < paint.pictures.size() && t.set < 2 && t.minify <= Minify::linear_mipmap_linear;
       for (const float f : t.across) good = good && std::isfinite(f);
       for (const float f : t.down) good = good && std::isfinite(f);
       require_internal(good, "a texture without its picture");
@@ -113,9 +113,15 @@ class Checker {
   }
 
   void check_coat(const Coat& c) const {
-    require_internal(c.base == kNone || c.base < scene_.paint.textures.size(), "a coat without its texture");
-    bool good = c.alpha >= 0 && c.alpha <= 1 && std::isfinite(c.cutoff);
-    for (const vec3* term : {&c.emission, &c.ambient, &c.diffuse, &c.specular, &c.reflect, &c.transmit})
+    for (const std::uint32_t map :
+         {c.base, c.normal_map, c.emission_map, c.occlusion_map, c.highlight_map, c.metal_map})
+      require_internal(map == kNone || map < scene_.paint.textures.size(), "a coat without its texture");
+    bool good = c.alpha >= 0 && c.alpha <= 1 && std::isfinite(c.cutoff) && std::isfinite(c.normal_scale);
+    for (const float share :
+         {c.occlusion, c.metal.metallic, c.metal.roughness, c.metal.transmission, c.metal.mirrored})
+      good = good && share >= 0 && share <= 1;
+    for (const vec3* term : {&c.emission, &c.ambient, &c.diffuse, &c.specular, &c.reflect, &c.transmit,
+                             &c.emissive, &c.metal.base})
       good = good && at_least_zero(*term);
     require_internal(good, "a coat with a term that is not finite, or below 0");
   }

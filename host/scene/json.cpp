@@ -119,10 +119,11 @@ Scene read_json(std::string_view text, const std::filesystem::path& file) {
     scene.unlit = scene.lights.empty();
   }
   NamedMaterials named;
+  JsonMaterials reader(scene, file.parent_path());
   if (const auto materials = root.find("materials")) {
-    for (const auto& [key, material] : materials->members()) named.emplace(key, read_material(material));
+    for (const auto& [key, material] : materials->members()) named.emplace(key, reader.read(material));
   }
-  JsonObjects objects(scene, named, file.parent_path());
+  JsonObjects objects(scene, named, reader, file.parent_path());
   if (const auto list = root.find("objects")) {
     for (const JsonNode& object : list->elements()) objects.read(object);
   }

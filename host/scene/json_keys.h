@@ -24,8 +24,10 @@ inline constexpr std::string_view scene[] = {"$schema", "kdray",     "camera", "
                                              "render",  "materials", "lights", "objects"};
 inline constexpr std::string_view camera[] = {"from", "at", "up", "fov", "ortho", "hither"};
 inline constexpr std::string_view render[] = {"size", "depth", "samples", "min_weight"};
-inline constexpr std::string_view material[] = {"color",   "ka",       "kd",    "ks",      "shine",
-                                                "reflect", "transmit", "index", "emission"};
+inline constexpr std::string_view material[] = {
+    "color",    "ka",    "kd",       "ks",      "shine",          "reflect",
+    "transmit", "index", "emission", "picture", "normal_picture", "emission_picture",
+    "alpha"};
 inline constexpr std::string_view point_light[] = {"type", "position", "color", "attenuation", "range"};
 inline constexpr std::string_view directional_light[] = {"type", "direction", "color"};
 inline constexpr std::string_view spot_light[] = {"type",  "position", "direction",   "inner",
@@ -33,7 +35,7 @@ inline constexpr std::string_view spot_light[] = {"type",  "position", "directio
 inline constexpr std::string_view mesh[] = {"type",   "file",  "material", "translate",
                                             "rotate", "scale", "matrix",   "smooth"};
 inline constexpr std::string_view triangles[] = {"type",      "vertices", "faces", "normals", "material",
-                                                 "translate", "rotate",   "scale", "matrix"};
+                                                 "translate", "rotate",   "scale", "matrix",  "uv"};
 // Of a shape: its fields', between those that all have.
 template <class Shape>
 inline constexpr auto shape = std::apply(

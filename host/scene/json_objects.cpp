@@ -1,5 +1,6 @@
 #include "scene/json_objects.h"
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <tuple>
@@ -16,11 +17,6 @@
 namespace kdray::scene {
 
 namespace {
-
-vec3 color_or(const JsonNode& object, std::string_view key, const vec3& otherwise) {
-  const auto node = object.find(key);
-  return node ? node->color() : otherwise;
-}
 
 // [x, y, z] degrees about the axes, x first; or {"axis": [x, y, z], "angle": degrees}.
 dmat4 read_rotation(const JsonNode& node) {
@@ -98,32 +94,31 @@ void read_field(const JsonNode& object, const primitives::Field<Shape, double>& 
   value = field.meaning == Meaning::above_zero ? node.number_above(0) : node.number_from(0);
 }
 
-float narrow(const JsonNode& node, double value) {
-  const auto f = static_cast<float>(value);
-  if (!std::isfinite(f)) throw node.error("a value beyond 3.4e38");
-  return f;
+// v goes downwards, as u goes to the right.
+std::vector<std::array<float, 2>> read_texcoords(const JsonNode& node, std::size_t n_vertices) {
+  std::vector<std::array<float, 2>> out;
+  for (const JsonNode& pair : node.elements()) {
+    const auto parts = pair.elements();
+    if (parts.size() != 2) throw pair.expected("[u, v]");
+    out.emplace_back();
+    for (std::size_t c = 0; c < 2; ++c) {
+      out.back()[c] = static_cast<float>(parts[c].number());
+      if (!std::isfinite(out.back()[c])) throw parts[c].error("a value beyond 3.4e38");
+    }
+  }
+  if (out.size() != n_vertices) throw node.error("not one pair for each vertex");
+  return out;
 }
 
 }  // namespace
 
-Material read_material(const JsonNode& node) {
-  node.expect_keys(json_keys::kMaterial);
-  const vec3 color = color_or(node, "color", vec3(1));
-  Material m;
-  m.ambient = color_or(node, "ka", vec3(0.1f)) * color;
-  m.diffuse = color_or(node, "kd", vec3(0.9f)) * color;
-  m.specular = color_or(node, "ks", vec3(0));
-  m.reflect = color_or(node, "reflect", vec3(0));
-  m.transmit = color_or(node, "transmit", vec3(0)) * color;
-  m.emission = color_or(node, "emission", vec3(0));
-  if (const auto shine = node.find("shine")) m.shine = narrow(*shine, shine->number_from(0));
-  if (const auto index = node.find("index")) m.index = narrow(*index, index->number_above(0));
-  if (const char* fault = fault_of(m)) throw node.error(fault);
-  return m;
-}
-
-JsonObjects::JsonObjects(Scene& scene, const NamedMaterials& named, std::filesystem::path folder)
-    : scene_(scene), named_(named), folder_(std::move(folder)), materials_(scene.materials) {}
+JsonObjects::JsonObjects(Scene& scene, const NamedMaterials& named, JsonMaterials& unnamed,
+                         std::filesystem::path folder)
+    : scene_(scene),
+      named_(named),
+      unnamed_(unnamed),
+      folder_(std::move(folder)),
+      materials_(scene.materials) {}
 
 void JsonObjects::read(const JsonNode& object) {
   const JsonNode type = object["type"];
@@ -142,10 +137,19 @@ void JsonObjects::read(const JsonNode& object) {
   if (!found) throw type.expected("one of " + known);
 }
 
+// A part's materials have their coats in the part's own paint.
+void JsonObjects::wear(Scene& part, const Material& material) const {
+  part.materials = {material};
+  if (material.coat == kNone) return;
+  part.paint.coats = scene_.paint.coats;
+  part.paint.textures = scene_.paint.textures;
+  part.paint.pictures = scene_.paint.pictures;
+}
+
 Material JsonObjects::material_of(const JsonNode& object) const {
   const auto node = object.find("material");
   if (!node) return Material{.ambient = vec3(0.08f), .diffuse = vec3(0.72f)};
-  if (!node->is_string()) return read_material(*node);
+  if (!node->is_string()) return unnamed_.read(*node);
   const std::string name = node->string();
   const auto it = named_.find(name);
   if (it != named_.end()) return it->second;
@@ -171,8 +175,12 @@ void JsonObjects::read_mesh(const JsonNode& object) {
   if (const auto smooth = object.find("smooth")) smooth_normals(part, smooth->number_between(0, 180));
   place(object, part);
   if (object.find("material")) {
-    part.materials = {material_of(object)};
-    part.paint = {};
+    part.paint = {.texcoords = std::move(part.paint.texcoords)};
+    wear(part, material_of(object));
+    if (part.materials[0].coat == kNone) part.paint = {};
+    if (part.materials[0].coat != kNone && part.paint.texcoords[0].empty())
+      scene_.warnings.push_back(
+          object["file"].error("has no texture coordinates, so pictures show one place").what());
     for (Triangle& t : part.triangles) t.material = 0;
     primitives::for_each_shape([&](auto kind) {
       for (auto& shape : decltype(kind)::of(part)) shape.material = 0;
@@ -184,7 +192,7 @@ void JsonObjects::read_mesh(const JsonNode& object) {
 void JsonObjects::read_triangles(const JsonNode& object) {
   object.expect_keys(json_keys::kTriangles);
   Scene part;
-  part.materials = {material_of(object)};
+  wear(part, material_of(object));
   part.vertices = object["vertices"].vectors();
   const auto normals = object.find("normals");
   if (normals) {
@@ -196,6 +204,8 @@ void JsonObjects::read_triangles(const JsonNode& object) {
       part.normals.emplace_back(n / length);
     }
   }
+  std::vector<std::array<float, 2>> texcoords;
+  if (const auto uv = object.find("uv")) texcoords = read_texcoords(*uv, part.vertices.size());
   std::vector<dvec3> corners;
   for (const auto& face : object["faces"].faces(part.vertices.size())) {
     corners.clear();
@@ -209,6 +219,11 @@ void JsonObjects::read_triangles(const JsonNode& object) {
       if (normals) t.normal = t.vertex;
       t.number = static_cast<std::uint32_t>(part.triangles.size());
       part.triangles.push_back(t);
+      if (texcoords.empty()) continue;
+      layout::TexCoords at{};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t c = 0; c < 2; ++c) at.uv[i][c] = texcoords[t.vertex[i]][c];
+      part.paint.texcoords[0].push_back(at);
     }
   }
   place(object, part);
@@ -224,7 +239,7 @@ void JsonObjects::read_shape(Kind, const JsonNode& object) {
              fields_of(static_cast<const Shape*>(nullptr)));
   if (const char* const fault = fault_of(shape)) throw object.error(fault);
   Scene part;
-  part.materials = {material_of(object)};
+  wear(part, material_of(object));
   Kind::of(part) = {shape};
   append(part, object);
 }

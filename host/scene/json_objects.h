@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "scene/json_material.h"
 #include "scene/json_node.h"
 #include "scene/material_table.h"
 #include "scene/scene.h"
@@ -15,12 +16,12 @@ namespace kdray::scene {
 
 using NamedMaterials = std::map<std::string, Material>;
 
-Material read_material(const JsonNode& node);
-
 class JsonObjects {
  public:
   // `folder` is where mesh files are looked for.
-  JsonObjects(Scene& scene, const NamedMaterials& named, std::filesystem::path folder);
+  // `unnamed` reads materials that stand within objects.
+  JsonObjects(Scene& scene, const NamedMaterials& named, JsonMaterials& unnamed,
+              std::filesystem::path folder);
 
   void read(const JsonNode& object);
 
@@ -31,11 +32,13 @@ class JsonObjects {
   void read_shape(Kind, const JsonNode& object);
 
   Material material_of(const JsonNode& object) const;
+  void wear(Scene& part, const Material& material) const;
   const Scene& mesh(const JsonNode& file);
   void append(const Scene& part, const JsonNode& object);
 
   Scene& scene_;
   const NamedMaterials& named_;
+  JsonMaterials& unnamed_;
   std::filesystem::path folder_;
   MaterialTable materials_;
   std::map<std::string, Scene> meshes_;  // a file named by several objects is read once

@@ -1,5 +1,7 @@
 #include "scene/load.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include "scene/frame.h"
 #include "scene/import.h"
 #include "scene/importers.h"
+#include "scene/picture_limit.h"
 #include "scene/read_file.h"
 #include "scene/smooth_normals.h"
 
@@ -103,11 +106,25 @@ void check(const LoadOptions& options) {
     throw Error(ErrorCode::usage, "the smoothing angle may be 0 to 180 degrees");
 }
 
+// Said in one line, since the picture looks coarser for it.
+void fit_pictures(Scene& scene, std::uint64_t most_bytes) {
+  const LimitedPictures limited = limit_pictures(scene.paint, most_bytes);
+  if (limited.n_halved == 0) return;
+  const auto megabytes = [](std::uint64_t bytes) {
+    return fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
+  };
+  scene.warnings.push_back(
+      fmt::format("{}: {} of {} pictures are made smaller, from {} to {} in all; the limit of textures is {}",
+                  scene.name, limited.n_halved, scene.paint.pictures.size(), megabytes(limited.bytes_before),
+                  megabytes(limited.bytes), megabytes(most_bytes)));
+}
+
 Scene finished(Scene&& scene, const std::filesystem::path& file, const LoadOptions& options) {
   if (const std::string format = format_of(file); options.time && format != ".gltf" && format != ".glb")
     scene.warnings.push_back(file.string() + ": at any time it is the same; only glTF files have animations");
   scene.load_options = options;
   if (options.smooth_degrees) smooth_normals(scene, *options.smooth_degrees);
+  if (options.texture_bytes > 0) fit_pictures(scene, options.texture_bytes);
   frame_scene(scene);
   return std::move(scene);
 }

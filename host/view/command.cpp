@@ -76,6 +76,8 @@ std::string command_for(const Sight& sight, const Settings& settings, const std:
   if (settings.load.smooth_degrees) text += fmt::format(" --smooth {}", *settings.load.smooth_degrees);
   if (settings.load.time) text += fmt::format(" --time {}", *settings.load.time);
   if (!settings.load.animation.empty()) text += " --animation " + quoted(settings.load.animation);
+  if (settings.load.texture_bytes > 0)
+    text += fmt::format(" --texture-memory {}", settings.load.texture_bytes);
   return text + view_options(view_of(sight, settings)) + picture_options(options) +
          division_options(options, queues_of(sight, settings));
 }

@@ -20,25 +20,29 @@ std::uint32_t spawned_per_ray(layout::Features features) {
   return features & KDRAY_FEATURE_REFLECT ? 1 : 0;
 }
 
+std::uint32_t pencil_fields(layout::Features features) {
+  return features & KDRAY_FEATURE_FOOTPRINTS ? 1 : 0;
+}
+
 std::uint32_t capacity_for(std::uint32_t n) {
   return (n + 2 * KDRAY_LANES - 1) / KDRAY_LANES * KDRAY_LANES;
 }
 
-StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word) {
+StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, layout::Features features) {
   StreamForm form;
   form.word = word;
   form.pools = frame.pool_size > 0 ? frame.max_depth - 1 : 0;
-  form.pool_fields = KDRAY_POOL_FIELDS;
-  form.ray_fields = KDRAY_RAY_FIELDS;
+  form.pool_fields = KDRAY_POOL_FIELDS + pencil_fields(features);
+  form.ray_fields = KDRAY_RAY_FIELDS + pencil_fields(features);
   form.shadow_fields = KDRAY_SHADOW_FIELDS;
   return form;
 }
 
 // Eye rays travel as well, so they have a pool; and of each depth's many rays few are there at a time.
-StreamForm StreamForm::of_odprt(const layout::Frame& frame) {
+StreamForm StreamForm::of_odprt(const layout::Frame& frame, layout::Features features) {
   StreamForm form;
   form.pools = frame.max_depth;
-  form.pool_fields = form.ray_fields = KDRAY_TRAVEL_RAY_FIELDS;
+  form.pool_fields = form.ray_fields = KDRAY_TRAVEL_RAY_FIELDS + pencil_fields(features);
   form.shadow_fields = KDRAY_TRAVEL_SHADOW_FIELDS;
   form.sparse_pools = true;
   form.film_cleared = true;

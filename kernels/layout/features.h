@@ -45,7 +45,14 @@
 #define KDRAY_FEATURE_BACKGROUND KDRAY_FEATURE(56)   // a background other than black
 #define KDRAY_FEATURE_SUPERSAMPLE KDRAY_FEATURE(57)  // more than one sample per pixel
 #define KDRAY_FEATURE_ADAPTIVE KDRAY_FEATURE(58)     // rounds of single samples beside whole tiles
-#define KDRAY_FEATURE_COST KDRAY_FEATURE(63)         // counts nodes and tests per ray, for the cost channel
+// More of surfaces. Textures that are shown smaller otherwise than larger; removes rays' pencils, and mipmaps.
+#define KDRAY_FEATURE_FOOTPRINTS KDRAY_FEATURE(59)
+// Pictures of how metallic and rough surfaces are, of normals, and of emission, occlusion and highlights;
+// each removes looking for them.
+#define KDRAY_FEATURE_METAL_MAPS KDRAY_FEATURE(60)
+#define KDRAY_FEATURE_NORMAL_MAPS KDRAY_FEATURE(61)
+#define KDRAY_FEATURE_LIGHT_MAPS KDRAY_FEATURE(62)
+#define KDRAY_FEATURE_COST KDRAY_FEATURE(63)  // counts nodes and tests per ray, for the cost channel
 
 #ifdef __OPENCL_C_VERSION__
 #ifndef KDRAY_FEATURES
@@ -61,6 +68,10 @@
 #define KDRAY_HAS_COATS ((KDRAY_FEATURES & KDRAY_FEATURE_COATS) != 0)
 #define KDRAY_HAS_CORNER_COLORS ((KDRAY_FEATURES & KDRAY_FEATURE_CORNER_COLORS) != 0)
 #define KDRAY_HAS_TEXTURES ((KDRAY_FEATURES & KDRAY_FEATURE_TEXTURES) != 0)
+#define KDRAY_HAS_FOOTPRINTS ((KDRAY_FEATURES & KDRAY_FEATURE_FOOTPRINTS) != 0)
+#define KDRAY_HAS_METAL_MAPS ((KDRAY_FEATURES & KDRAY_FEATURE_METAL_MAPS) != 0)
+#define KDRAY_HAS_NORMAL_MAPS ((KDRAY_FEATURES & KDRAY_FEATURE_NORMAL_MAPS) != 0)
+#define KDRAY_HAS_LIGHT_MAPS ((KDRAY_FEATURES & KDRAY_FEATURE_LIGHT_MAPS) != 0)
 // Queries, which ask for the shape, meet triangles whole.
 #ifdef KDRAY_WHOLE_TRIANGLES
 #define KDRAY_HAS_CUTOUTS 0

@@ -55,8 +55,11 @@ typedef struct Frame {
   float core_lo[3], core_hi[3];
   float face_lo[3], face_hi[3];
   u32 parallel;  // 1: an orthographic camera
+  // The side of the square that a sample stands for: at the distance 1 along `forward`, or of a parallel
+  // camera anywhere.
+  float pencil;
 } Frame;
-KDRAY_ASSERT_SIZE(Frame, 244)
+KDRAY_ASSERT_SIZE(Frame, 248)
 KDRAY_ASSERT_OFFSET(Frame, core_lo, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 

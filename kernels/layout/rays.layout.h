@@ -8,12 +8,21 @@
 #ifndef KDRAY_LAYOUT_RAYS_H
 #define KDRAY_LAYOUT_RAYS_H
 #include "layout/base.layout.h"
+#include "layout/features.h"
 
 #define KDRAY_LANES 16u  // rays to a vector
 
 // This is 1 in the kernels of ODPRT, whose rays carry what another queue needs to go on with them.
 #ifndef KDRAY_ODPRT
 #define KDRAY_ODPRT 0
+#endif
+
+// In scenes with footprints rays have a last field, u32: their pencil (paint/pencil.clh). The host counts it by
+// itself (host/wavefront/slice_buffers.h).
+#ifdef __OPENCL_C_VERSION__
+#define KDRAY_PENCIL_FIELDS (KDRAY_HAS_FOOTPRINTS ? 1u : 0u)
+#else
+#define KDRAY_PENCIL_FIELDS 0u
 #endif
 
 // The traced fields: the ray origin + t*direction with t_min < t < t_max.
@@ -27,17 +36,19 @@
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
 // In ODPRT a ray brings the best hit so far, whose t is the float below t_max.
-#define KDRAY_RAY_NUMBER 12u   // u32: of its primitive, in file order
-#define KDRAY_RAY_FINDER 13u   // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
-#define KDRAY_RAY_VISITED 14u  // two u32: a bit for each part that was asked
-#define KDRAY_TRAVEL_RAY_FIELDS 16u
+#define KDRAY_RAY_NUMBER 12u         // u32: of its primitive, in file order
+#define KDRAY_RAY_FINDER 13u         // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
+#define KDRAY_RAY_VISITED 14u        // two u32: a bit for each part that was asked
+#define KDRAY_TRAVEL_RAY_FIELDS 16u  // and its pencil
 #if KDRAY_ODPRT
 #define KDRAY_RAY_SKIP 0u  // none: a part may not know another's triangle
-#define KDRAY_RAY_FIELDS KDRAY_TRAVEL_RAY_FIELDS
+#define KDRAY_RAY_PENCIL 16u
+#define KDRAY_RAY_FIELDS (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_PENCIL_FIELDS)
 #else
 // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
 #define KDRAY_RAY_SKIP 12u
-#define KDRAY_RAY_FIELDS 13u
+#define KDRAY_RAY_PENCIL 13u
+#define KDRAY_RAY_FIELDS (13u + KDRAY_PENCIL_FIELDS)
 #endif
 
 // The word of KDRAY_RAY_FINDER: the part that holds the best hit, a byte; on the ray's way its depth in the
@@ -76,7 +87,12 @@
 #define KDRAY_POOL_WEIGHT 6u
 #define KDRAY_POOL_PIXEL 9u
 #define KDRAY_POOL_SKIP 10u
-#define KDRAY_POOL_FIELDS 11u
+#define KDRAY_POOL_FIELDS (11u + KDRAY_PENCIL_FIELDS)
+#endif
+#if KDRAY_ODPRT
+#define KDRAY_POOL_PENCIL KDRAY_RAY_PENCIL
+#else
+#define KDRAY_POOL_PENCIL 11u
 #endif
 
 // Hits of a batch, with the batch's capacity.

@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Identical,
                          testing::Values(NamedScene{"spheres_and_glass", glass_and_mirror_balls},
                                          NamedScene{"smooth_meshes", smooth_meshes},
                                          NamedScene{"cones", cones_and_cylinders},
-                                         NamedScene{"painted", painted}),
+                                         NamedScene{"painted", painted}, NamedScene{"mapped", mapped}),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -224,6 +224,41 @@ scene::Scene painted() {
   return s;
 }
 
+// The same with mipmaps, and with more pictures: a floor of metal and glass here and there, bent normals on
+// what is flat and what is smooth, a screen that shines, and a mirror whose reflection a picture scales.
+scene::Scene mapped() {
+  scene::Scene s = painted();
+  std::mt19937 random(59);
+  const std::uint32_t picture = s.paint.add(noise(64, 64, random));
+  using scene::Minify, scene::Texture;
+  for (Texture& t : s.paint.textures)
+    t.minify = t.nearest ? Minify::nearest_mipmap_nearest : Minify::linear_mipmap_linear;
+  const auto plain = [&](std::array<float, 3> across, std::array<float, 3> down, Minify minify) {
+    return s.paint.add(
+        Texture{.picture = picture, .across = across, .down = down, .minify = minify, .curved = false});
+  };
+  const std::uint32_t fine = plain({3, 1, 0}, {0, 4, 0}, Minify::linear_mipmap_linear);
+  const std::uint32_t coarse = plain({0.5f, 0, 0.2f}, {0.1f, 0.7f, 0}, Minify::linear_mipmap_nearest);
+  const std::uint32_t sharp = plain({9, 0, 0}, {0, 9, 0}, Minify::nearest_mipmap_linear);
+  const auto of = [&](std::uint32_t material) -> scene::Coat& {
+    return s.paint.coats[s.materials[material].coat];
+  };
+  for (const std::uint32_t half : {0u, 1u}) {
+    of(half).metal_map = fine;
+    of(half).metal = {.base = vec3(0.9f, 0.7f, 0.6f), .transmission = 0.4f, .mirrored = 0.1f};
+    of(half).normal_map = coarse;
+    of(half).normal_scale = 0.3f;
+    of(2 + half).emission_map = sharp;
+    of(2 + half).emissive = {0.2f, 0.4f, 0.1f};
+    of(4 + half).occlusion_map = fine;
+    of(4 + half).occlusion = 0.8f;
+    of(6 + half).highlight_map = coarse;
+  }
+  of(9).normal_map = fine;
+  of(9).normal_scale = 0.5f;
+  return s;
+}
+
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset) {
   const auto place = [&](dvec3& p) { p = p * scale + offset; };
   scale_and_move(model, scale, offset);

@@ -23,6 +23,7 @@ scene::Scene every_light();             // point with attenuation, range, direct
 scene::Scene flat_glass();              // a slab, a prism with total reflection, index 1, a box of mirrors
 
 scene::Scene painted();  // pictures, colours at corners, holes, veils
+scene::Scene mapped();   // mipmaps, and pictures of metal, normals, emission, occlusion and highlights
 
 // `model` moved by `offset` and scaled by `scale` about the origin, camera and lights with it.
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset);

@@ -19,6 +19,7 @@ const RaysKnown kKnown{.first_part = 2,
                        .n_parts = 2,
                        .n_all_parts = 5,
                        .n_slices = kSlices,
+                       .ray_fields = KDRAY_TRAVEL_RAY_FIELDS,
                        .max_depth = kDepth,
                        .first_pixel = 100,
                        .n_pixels = 50};

@@ -183,7 +183,7 @@ TEST(Paint, OfGltfTexture) {
   EXPECT_EQ(coat.mode, Alpha::opaque);
   EXPECT_EQ(s.materials[0].diffuse, vec3(0));
   const Texture& t = s.paint.textures.at(coat.base);
-  EXPECT_EQ(t, (Texture{.picture = 0}));
+  EXPECT_EQ(t, (Texture{.picture = 0, .minify = Minify::linear_mipmap_linear}));
   EXPECT_EQ(s.paint.pictures[0]->texels,
             (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}));
   ASSERT_EQ(s.paint.texcoords[0].size(), 2u);

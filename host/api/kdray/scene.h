@@ -94,6 +94,9 @@ class Scene {
   // Materials are numbered from 0; without any, geometries are matt and light grey. (A file's own materials
   // are not among them.)
   MaterialId add_material(const Material& material);
+  // Pictures for materials, numbered from 0: PNG or JPEG files, or pixels, which are copied.
+  PictureId add_picture(const std::filesystem::path& file);
+  PictureId add_picture(const Pixels& pixels);
   void add_light(const Light& light);
   void set_camera(const Camera& camera);
   void set_background(const Color& color);

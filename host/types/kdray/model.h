@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -22,14 +23,31 @@ inline constexpr GeometryId kNoGeometry = 0xffffffffu;
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
 using MaterialId = std::uint32_t;
+using PictureId = std::uint32_t;
+inline constexpr PictureId kNoPicture = 0xffffffffu;
 
 // Triangles, three indices into `vertices` each. `normals`: one for each vertex, of any length but 0, or
-// none.
+// none. `texcoords`: where in its material's pictures each vertex lies, or none: (0, 0) is a picture's upper
+// left corner, (1, 1) its lower right one, and beyond them it is repeated.
 struct Mesh {
   Points vertices;
   Triples triangles;
   Points normals = {};
+  Pairs texcoords = {};
 };
+
+// A picture in memory, row by row from the top: grey, grey with alpha, red green blue, or these with alpha;
+// codes of sRGB, as files have them.
+struct Pixels {
+  const std::uint8_t* data = nullptr;
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t channels = 3;  // 1 to 4
+  std::size_t row_bytes = 0;   // from one row to the next; 0: none between them
+};
+
+// What a picture's alpha means: nothing; below a half nothing is there; or the share of light that isn't let
+// through.
+enum class AlphaMode { opaque, mask, blend };
 
 struct Spheres {
   Points centers;
@@ -61,6 +79,10 @@ struct Material {
   Color reflect{0, 0, 0}, transmit{0, 0, 0};
   float shine = 1;  // exponent of the highlight, at least 0
   float index = 1;  // of refraction, above 0
+  // Pictures on meshes with texture coordinates. The first is multiplied by the ambient and diffuse terms and
+  // by what goes through, the last by the emission, or by white where that is black.
+  PictureId picture = kNoPicture, normal_picture = kNoPicture, emission_picture = kNoPicture;
+  AlphaMode alpha = AlphaMode::opaque;  // of `picture`
 };
 
 struct Light {

@@ -27,6 +27,9 @@ struct LoadOptions {
   std::optional<double> time = {};
   // Of several animations the number or the name of one, or "all" of them; empty: the first.
   std::string animation = {};
+  // The most that the texels of pictures may take; larger pictures are made smaller until they fit; 0: no
+  // limit.
+  std::uint64_t texture_bytes = 0;
   bool operator==(const LoadOptions&) const = default;
 };
 
