@@ -1,5 +1,5 @@
-// What    The numbers of glTF accessors: positions, normals, keyframes, matrices and indices, of any component
-//         type, interleaved, normalised and sparse.
+// What    The numbers of glTF accessors: positions, normals, keyframes, matrices and indices, of any
+//         component type, interleaved, normalised and sparse.
 // Errors  kdray::Error with the accessor's path for everything that doesn't fit its buffer view, and for
 //         values that are not finite. An accessor without a buffer view (all zeros) may not be much larger
 //         than the file.

@@ -112,7 +112,7 @@ glm::dquat unit(const glm::dquat& q) {
 glm::dquat slerp(const glm::dquat& from, const glm::dquat& to, double t) {
   const double dot = glm::dot(from, to), sign = dot < 0 ? -1 : 1;
   const double angle = std::acos(std::min(std::abs(dot), 1.0));
-  // Of a small angle the arc and the chord are the same.
+  // The arc and the chord of a small angle are the same.
   if (angle < 1e-6) return unit(from * (1 - t) + to * (sign * t));
   return unit(from * std::sin(angle * (1 - t)) + to * (sign * std::sin(angle * t)));
 }

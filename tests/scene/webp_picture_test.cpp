@@ -1,5 +1,5 @@
-// What    WebP pictures against the pixels that were packed: without loss they are the same, with loss nearly;
-//         by glTF's EXT_texture_webp; damaged, cut short and with hostile headers.
+// What    WebP pictures against the pixels that were packed: without loss they are the same, with loss
+//         nearly; by glTF's EXT_texture_webp; damaged, cut short and with hostile headers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
