@@ -131,7 +131,7 @@ Provision DividedScene::divide_for(const Request& request) {
     if (!provision.streamed) measure_costs(request);
     divide_by(options_for(provision, request));
     if (fits(provision, *division_, request)) return provision;
-    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, KDRAY_MAX_PARTS);
+    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, most_parts(request));
   }
 }
 
@@ -147,9 +147,9 @@ Result DividedScene::render_once(const Request& request) {
 
 Result DividedScene::render(const Request& asked) {
   Request request = asked;
-  if (request.queues.size() > KDRAY_MAX_PARTS)
+  if (request.queues.size() > most_parts(request))
     throw Error(ErrorCode::usage,
-                fmt::format("odprt takes {} queues at most; take fewer (--queues)", KDRAY_MAX_PARTS));
+                fmt::format("odprt takes {} queues at most; take fewer (--queues)", most_parts(request)));
   if (request.balance == Balance::dynamic) request.census_every = kCensusEvery;
   std::vector<Quarantined> quarantined;
   for (;;) {
