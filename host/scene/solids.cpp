@@ -10,8 +10,9 @@ namespace kdray::scene {
 
 namespace {
 
-constexpr double kSeal = 0x1p-20;  // of the scene's largest extent
-constexpr double kFar = 100;       // how far planes reach, in sizes of all that has one
+constexpr double kSeal = 0x1p-20;   // of the scene's largest extent
+constexpr double kPoint = 0x1p-10;  // of the height
+constexpr double kFar = 100;        // how far planes reach, in sizes of all that has one
 
 std::uint32_t next_number(const Scene& part) {
   return part.primitive_count();
@@ -21,9 +22,13 @@ Disc lid_of(const Closed& c, bool at_apex, double inwards, double beyond) {
   const dvec3 axis = c.apex - c.base;
   const double height = safe_length(axis);
   const dvec3 up = safe_normalize(axis);
-  const double share = std::min(inwards / height, 0.25);  // of a flat one, which can't be parted by more
-  const double s = at_apex ? 1 - share : share;
   const double slope = std::abs(c.apex_radius - c.base_radius) / height;
+  // Rays that pass right by a point may miss the wall, whose quadratic then cancels to less than floats hold:
+  // its lid lies where there is some width again.
+  const bool pointed = (at_apex ? c.apex_radius : c.base_radius) == 0;
+  const double deep = pointed ? std::max(inwards * (1 + 2 / slope), kPoint * height) : inwards;
+  const double share = std::min(deep / height, 0.25);  // of a flat one, which can't be parted by more
+  const double s = at_apex ? 1 - share : share;
   Disc disc{};
   disc.center = c.base + axis * s;
   disc.normal = at_apex ? up : -up;
@@ -78,7 +83,6 @@ void add_closed(Scene& part, const Closed& closed, std::size_t first_disc, Unset
   wall.number = next_number(part);
   part.cones.push_back(wall);
   for (const bool at_apex : {false, true}) {
-    if ((at_apex ? closed.apex_radius : closed.base_radius) == 0) continue;
     unsettled.lids.push_back({closed, at_apex, first_disc + part.discs.size()});
     Disc lid = lid_of(closed, at_apex, 0, 0);
     lid.number = next_number(part);

@@ -4,9 +4,9 @@
 // Shape   Parts as importers append them. What depends on how large the scene is, is settled when all of it
 //         is there (settle_solids).
 // Errors  Where a wall and its lid meet, rounding could leave a gap. So lids lie inside of the wall's ends by
-//         kSeal of the scene, and reach beyond the wall by as much and more: whichever way a ray enters, it
-//         crosses one of the two. That is less than what the tree's cells are widened by
-//         (kernels/traverse/ray.clh), and far below a pixel.
+//         kSeal of the scene (in a point, where there is some width), and reach beyond the wall by more:
+//         whichever way a ray enters, it crosses one of the two. That is less than what the tree's cells are
+//         widened by (kernels/traverse/ray.clh), and far below a pixel.
 #pragma once
 
 #include <cstddef>
