@@ -70,6 +70,7 @@ scene::Scene only_settings(const scene::Scene& scene) {
   settings.framing = scene.framing;
   settings.cameras = scene.cameras;
   settings.background = scene.background;
+  settings.sky = scene.sky;
   settings.ambient = scene.ambient;
   settings.settings = scene.settings;
   settings.warnings = scene.warnings;
@@ -254,6 +255,15 @@ void Scene::set_camera(const Camera& camera) {
 }
 void Scene::set_background(const Color& color) {
   impl_->base.background = scene::color_of(color, "background");
+  impl_->base.sky = {};
+  impl_->touch();
+}
+void Scene::set_background(const Gradient& gradient) {
+  impl_->base.sky = scene::sky_of(gradient);
+  impl_->touch();
+}
+void Scene::set_background(const Environment& environment) {
+  impl_->base.sky = scene::sky_of(environment, impl_->base.warnings);
   impl_->touch();
 }
 void Scene::set_ambient(const Color& color) {

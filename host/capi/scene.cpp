@@ -31,12 +31,13 @@ void put(std::uint32_t* id, std::uint32_t value) {
   if (id != nullptr) *id = value;
 }
 
-constexpr Light::Kind kLightKinds[] = {Light::Kind::point, Light::Kind::directional, Light::Kind::spot};
+constexpr Light::Kind kLightKinds[] = {Light::Kind::point,     Light::Kind::directional, Light::Kind::spot,
+                                       Light::Kind::rectangle, Light::Kind::sphere,      Light::Kind::disc};
 
 // What is left 0 has C++'s default, where that is another; kdray.h says so beside each.
 Light light_of(const kdray_light& l) {
   const Light usual;
-  if (l.kind < KDRAY_POINT_LIGHT || l.kind > KDRAY_SPOT_LIGHT) refuse("light: there is no such kind");
+  if (l.kind < KDRAY_POINT_LIGHT || l.kind > KDRAY_DISC_LIGHT) refuse("light: there is no such kind");
   return {.kind = kLightKinds[l.kind],
           .position = vector(l.position),
           .direction = vector_or(l.direction, usual.direction),
@@ -44,7 +45,11 @@ Light light_of(const kdray_light& l) {
           .attenuation = vector_or(l.attenuation, usual.attenuation),
           .range = l.range == 0 ? usual.range : l.range,
           .inner_degrees = l.inner_degrees,
-          .outer_degrees = l.outer_degrees == 0 ? usual.outer_degrees : l.outer_degrees};
+          .outer_degrees = l.outer_degrees == 0 ? usual.outer_degrees : l.outer_degrees,
+          .across = vector(l.across),
+          .down = vector(l.down),
+          .normal = vector_or(l.normal, usual.normal),
+          .radius = l.radius};
 }
 
 // They are numbered from 1 here, since what is left 0 is none.
@@ -74,7 +79,9 @@ Camera camera_of(const kdray_camera* given) {
           .up = vector_or(c.up, usual.up),
           .fov = c.fov == 0 ? usual.fov : c.fov,
           .ortho_width = c.ortho_width,
-          .hither = c.hither};
+          .hither = c.hither,
+          .aperture = c.aperture,
+          .focus = c.focus};
 }
 
 }  // namespace kdray::capi
@@ -197,6 +204,24 @@ kdray_status kdray_set_camera(kdray_scene* scene, const kdray_camera* camera) {
 }
 kdray_status kdray_set_background(kdray_scene* scene, const float rgb[3]) {
   return guarded([&] { needed(scene, "scene")->scene.set_background(color_at(rgb, "rgb")); });
+}
+kdray_status kdray_set_gradient(kdray_scene* scene, const double* heights, const float* rgb, size_t count,
+                                const double up[3]) {
+  return guarded([&] {
+    Gradient gradient;
+    for (size_t i = 0; i < count; ++i)
+      gradient.stops.push_back({needed(heights, "heights")[i], color_at(needed(rgb, "rgb") + 3 * i, "rgb")});
+    if (up != nullptr) gradient.up = {up[0], up[1], up[2]};
+    needed(scene, "scene")->scene.set_background(gradient);
+  });
+}
+kdray_status kdray_set_environment(kdray_scene* scene, const char* file, const double up[3],
+                                   double turn_degrees, double strength) {
+  return guarded([&] {
+    Environment environment{.file = needed(file, "file"), .turn_degrees = turn_degrees, .strength = strength};
+    if (up != nullptr) environment.up = {up[0], up[1], up[2]};
+    needed(scene, "scene")->scene.set_background(environment);
+  });
 }
 kdray_status kdray_set_ambient(kdray_scene* scene, const float rgb[3]) {
   return guarded([&] { needed(scene, "scene")->scene.set_ambient(color_at(rgb, "rgb")); });

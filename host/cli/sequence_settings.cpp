@@ -60,6 +60,8 @@ std::string settings_of(const RenderArgs& o) {
   add("--up", in_text(v.up));
   add("--fov", in_text(v.fov));
   add("--ortho", in_text(v.ortho_width));
+  add("--aperture", in_text(v.aperture));
+  add("--focus", in_text(v.focus));
   add("--background", o.view.transparent ? "transparent" : in_text(v.background));
   add("--headlight", fmt::format("{}", v.headlight));
   return text;

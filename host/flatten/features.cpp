@@ -33,6 +33,9 @@ constexpr Feature kFeatures[] = {
     {KDRAY_FEATURE_DIRECTIONAL, "directional"},
     {KDRAY_FEATURE_SPOT, "spot"},
     {KDRAY_FEATURE_FACES, "faces"},
+    {KDRAY_FEATURE_SKY, "sky"},
+    {KDRAY_FEATURE_AREA_LIGHTS, "area lights"},
+    {KDRAY_FEATURE_LENS, "lens"},
     {KDRAY_FEATURE_BACKGROUND, "background"},
     {KDRAY_FEATURE_SUPERSAMPLE, "supersampling"},
     {KDRAY_FEATURE_ADAPTIVE, "adaptive sampling"},
@@ -132,14 +135,18 @@ Features features_of(const scene::Scene& scene, const scene::Geometry& geometry)
 
 Features features_in_light(Features mask, const scene::Scene& scene) {
   constexpr Features kOfLight = KDRAY_FEATURE_BACKGROUND | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
-                                KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT;
-  mask = (mask & ~kOfLight) | when(any(scene.background), KDRAY_FEATURE_BACKGROUND);
+                                KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_SKY |
+                                KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_LENS;
+  const bool sky = scene.sky.kind != scene::SkyKind::none;
+  mask = (mask & ~kOfLight) | when(sky || any(scene.background), KDRAY_FEATURE_BACKGROUND) |
+         when(sky, KDRAY_FEATURE_SKY) | when(scene.camera && scene.camera->aperture > 0, KDRAY_FEATURE_LENS);
   if (!(mask & (KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_SPECULAR)))
     return mask;  // nothing that light could change
   for (const scene::Light& light : scene.lights)
     mask |= KDRAY_FEATURE_LIGHTS | when(attenuated(light), KDRAY_FEATURE_ATTENUATION) |
             when(light.kind == scene::LightKind::directional, KDRAY_FEATURE_DIRECTIONAL) |
-            when(light.kind == scene::LightKind::spot, KDRAY_FEATURE_SPOT);
+            when(light.kind == scene::LightKind::spot, KDRAY_FEATURE_SPOT) |
+            when(scene::has_area(light.kind), KDRAY_FEATURE_AREA_LIGHTS);
   return mask;
 }
 

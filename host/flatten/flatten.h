@@ -12,6 +12,7 @@
 #include "layout/paint.layout.h"
 #include "layout/primitives.layout.h"
 #include "layout/shading.layout.h"
+#include "layout/sky.layout.h"
 #include "layout/tree.layout.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
@@ -33,6 +34,8 @@ struct FlatScene {
   Array<layout::TexCoords> texcoords;
   Array<layout::CornerColors> corner_colors;
   Array<layout::Light> lights;
+  Array<layout::Sky> sky;  // one, or none
+  Array<float> sky_colors;
 
   std::size_t bytes() const;
 };
@@ -42,10 +45,10 @@ struct FlatScene {
 template <class Flat, class Visit>
 void for_each_flat_array(Flat& flat, const Visit& visit) {
   auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures, texels,
-         texcoords, corner_colors, lights] = flat;
+         texcoords, corner_colors, lights, sky, sky_colors] = flat;
   const auto visit_all = [&visit](auto&... arrays) { (visit(arrays), ...); };
   visit_all(nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures,
-            texels, texcoords, corner_colors, lights);
+            texels, texcoords, corner_colors, lights, sky, sky_colors);
 }
 
 // The binary form, `nodes` and `refs`, is for the binary walk alone: without it these are empty.

@@ -339,7 +339,8 @@ void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<la
 }
 
 void FrameRun::render_adaptive() {
-  adaptive::Sampler sampler({provision_.frame.width, provision_.frame.height}, request_.adaptive_target);
+  adaptive::Sampler sampler({provision_.frame.width, provision_.frame.height}, request_.adaptive_target,
+                            (request_.features & KDRAY_FEATURES_NOISY) != 0);
   to_ = 0.5;
   if (request_.ledger)
     render_kept_tiles(sampler.first_sums());

@@ -88,8 +88,8 @@ std::optional<Provision> try_streamed(const Request& request, std::size_t geomet
       p.most_geometry = of_queue - work;
       return p;
     }
-    if (n_parts == KDRAY_MAX_PARTS) return std::nullopt;
-    n_parts = std::min<std::uint32_t>(n_parts + std::max(n_parts / 2, 1u), KDRAY_MAX_PARTS);
+    if (n_parts >= most_parts(request)) return std::nullopt;
+    n_parts = std::min<std::uint32_t>(n_parts + std::max(n_parts / 2, 1u), most_parts(request));
   }
 }
 
@@ -102,6 +102,10 @@ Provision provide_streamed(const Request& request, std::size_t geometry_bytes, s
 }
 
 }  // namespace
+
+std::uint32_t most_parts(const Request& request) {
+  return (request.features & KDRAY_FEATURE_AREA_LIGHTS) != 0 ? KDRAY_MAX_PARTS_TELLING : KDRAY_MAX_PARTS;
+}
 
 Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts) {
   const auto n_queues = static_cast<std::uint32_t>(request.table.n_queues());
@@ -117,7 +121,7 @@ bool fits(const Provision& provision, const Division& division, const Request& r
   if (!provision.streamed) return true;
   const std::size_t largest = room_bytes(division) + division.directory.size() * sizeof(layout::PartCell);
   if (largest <= provision.most_geometry) return true;
-  if (provision.n_parts < KDRAY_MAX_PARTS) return false;
+  if (provision.n_parts < most_parts(request)) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));
 }
 

@@ -132,7 +132,7 @@ Provision DividedScene::divide_for(const Request& request) {
     if (!provision.streamed) measure_costs(request);
     divide_by(options_for(provision, request));
     if (fits(provision, *division_, request)) return provision;
-    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, KDRAY_MAX_PARTS);
+    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, most_parts(request));
   }
 }
 
@@ -179,10 +179,10 @@ Result DividedScene::render_once(const Request& request) {
 
 Result DividedScene::render(const Request& asked) {
   Request request = asked;
-  if (request.table.n_queues() > KDRAY_MAX_PARTS)
+  if (request.table.n_queues() > most_parts(request))
     throw Error(ErrorCode::usage,
                 fmt::format("odprt takes {} queues at most, of all ranks together; take fewer (--queues)",
-                            KDRAY_MAX_PARTS));
+                            most_parts(request)));
   const bool learns = request.balance == Balance::dynamic && request.table.ranks == nullptr;
   if (learns) request.census_every = kCensusEvery;
   std::vector<Quarantined> quarantined;

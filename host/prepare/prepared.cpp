@@ -39,8 +39,10 @@ namespace {
 #define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
 scene::Scene settings_of(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
-               unlit, camera, cameras, framing, background, ambient, settings, warnings, files,
+               unlit, camera, cameras, framing, background, sky, ambient, settings, warnings, files,
                load_options] = scene;
+  scene::Sky without_picture = sky;
+  without_picture.picture.reset();
   return {.name = name,
           .vertices = {},
           .normals = {},
@@ -53,6 +55,7 @@ scene::Scene settings_of(const scene::Scene& scene) {
           .cameras = cameras,
           .framing = framing,
           .background = background,
+          .sky = without_picture,
           .ambient = ambient,
           .settings = settings,
           .warnings = warnings,

@@ -9,8 +9,10 @@
 
 #include "base/error.h"
 #include "math/local_space.h"
+#include "scene/area_light.h"
 #include "scene/check_scene.h"
 #include "scene/settle_normals.h"
+#include "scene/sky_picture.h"
 
 namespace kdray::scene {
 
@@ -225,10 +227,9 @@ Material material_of(const kdray::Material& m) {
 
 Light light_of(const kdray::Light& l) {
   constexpr double kRadians = std::numbers::pi / 180;
-  static_assert(static_cast<int>(kdray::Light::Kind::spot) == static_cast<int>(LightKind::spot));
-  if (l.kind != kdray::Light::Kind::point && l.kind != kdray::Light::Kind::directional &&
-      l.kind != kdray::Light::Kind::spot)
-    refuse("light: there is no such kind");
+  using Kind = kdray::Light::Kind;
+  static_assert(static_cast<int>(Kind::disc) == static_cast<int>(LightKind::disc));
+  if (l.kind < Kind::point || l.kind > Kind::disc) refuse("light: there is no such kind");
   const auto good_angle = [](double degrees) { return degrees >= 0 && degrees <= 180; };
   if (!good_angle(l.inner_degrees) || !good_angle(l.outer_degrees))
     refuse("light: the spot's angles may be 0 to 180 degrees");
@@ -238,12 +239,19 @@ Light light_of(const kdray::Light& l) {
   light.color = color(l.color);
   light.attenuation = vector(l.attenuation);
   light.range = l.range;
-  if (l.kind != kdray::Light::Kind::point) {
+  if (l.kind == Kind::directional || l.kind == Kind::spot) {
     const dvec3 direction = vector(l.direction);
     if (!is_finite(direction) || direction == dvec3(0)) refuse("light: the direction is not finite, or 0");
     light.direction = safe_normalize(direction);
   }
-  if (l.kind == kdray::Light::Kind::spot) {
+  if (l.kind == Kind::rectangle) light.across = vector(l.across), light.down = vector(l.down);
+  if (l.kind == Kind::sphere) light.radius = l.radius;
+  if (l.kind == Kind::disc) {
+    const dvec3 normal = vector(l.normal);
+    if (!is_finite(normal) || normal == dvec3(0)) refuse("light: the normal is not finite, or 0");
+    set_disc(light, safe_normalize(normal), l.radius);
+  }
+  if (l.kind == Kind::spot) {
     light.cos_inner = static_cast<float>(std::cos(l.inner_degrees * kRadians));
     light.cos_outer = static_cast<float>(std::cos(l.outer_degrees * kRadians));
   }
@@ -257,9 +265,30 @@ Camera camera_of(const kdray::Camera& c) {
                       .up = vector(c.up),
                       .vertical_fov = c.fov * (std::numbers::pi / 180),
                       .hither = c.hither,
-                      .ortho_width = c.ortho_width};
+                      .ortho_width = c.ortho_width,
+                      .aperture = c.aperture,
+                      .focus = c.focus};
   if (const char* const fault = fault_of(camera)) refuse(fmt::format("camera: {}", fault));
   return camera;
+}
+
+Sky sky_of(const kdray::Gradient& g) {
+  Sky sky{.kind = SkyKind::gradient, .up = safe_normalize(vector(g.up))};
+  for (const GradientStop& stop : g.stops) sky.stops.push_back({stop.height, color(stop.color)});
+  if (const char* const fault = fault_of(sky)) refuse(fmt::format("background: {}", fault));
+  sky.brightest = brightest_of(sky);
+  return sky;
+}
+
+Sky sky_of(const kdray::Environment& e, std::vector<std::string>& warnings) {
+  Sky sky{.kind = SkyKind::picture,
+          .up = safe_normalize(vector(e.up)),
+          .turn = e.turn_degrees * (std::numbers::pi / 180),
+          .strength = e.strength};
+  if (const char* const fault = fault_of(sky)) refuse(fmt::format("background: {}", fault));
+  sky.picture = read_sky_picture(e.file, warnings);
+  sky.brightest = brightest_of(sky);
+  return sky;
 }
 
 vec3 color_of(const Color& c, const char* name) {

@@ -46,6 +46,8 @@ void move_vertices(AddedGeometry& geometry, const Points& vertices, const Points
 
 Material material_of(const kdray::Material& m);
 Light light_of(const kdray::Light& l);
+Sky sky_of(const kdray::Gradient& gradient);
+Sky sky_of(const kdray::Environment& environment, std::vector<std::string>& warnings);  // reads its file
 Camera camera_of(const kdray::Camera& c);
 vec3 color_of(const Color& c, const char* name);
 

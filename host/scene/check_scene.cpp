@@ -65,6 +65,7 @@ class Checker {
     }
     if (scene_.camera) require_none(fault_of(*scene_.camera), "camera");
     require(at_least_zero(scene_.background), "the background colour is not finite, or below 0");
+    require_none(fault_of(scene_.sky), "background");
     require(at_least_zero(scene_.ambient), "the ambient light is not finite, or below 0");
   }
 
@@ -148,6 +149,10 @@ const char* fault_of(const Camera& c) {
   if (!(c.vertical_fov > 0 && c.vertical_fov < 3.14159265))
     return "the angle of view is not between 0 and 180 degrees";
   if (!std::isfinite(c.hither) || c.hither < 0) return "'hither' is below 0";
+  if (!std::isfinite(c.aperture) || c.aperture < 0) return "the aperture is below 0";
+  if (!std::isfinite(c.focus) || c.focus < 0) return "the focus is below 0";
+  if (!std::isfinite(c.aperture / (c.focus > 0 ? c.focus : safe_length(forward))))
+    return "the aperture is out of all proportion to the focus";
   return nullptr;
 }
 
@@ -160,16 +165,32 @@ const char* fault_of(const Material& m) {
   return nullptr;
 }
 
+namespace {
+
+const char* fault_of_area(const Light& l) {
+  if (l.kind == LightKind::sphere)
+    return std::isfinite(l.radius) && l.radius > 0 ? nullptr : "the light's radius is not above 0";
+  if (!has_area(l.kind)) return nullptr;
+  if (!is_finite(l.across) || !is_finite(l.down)) return "an edge of the light is not finite";
+  if (l.across == dvec3(0) || l.down == dvec3(0))
+    return l.kind == LightKind::disc ? "the light's radius is not above 0"
+                                     : "an edge of the light has no length";
+  return nullptr;
+}
+
+}  // namespace
+
 const char* fault_of(const Light& l) {
   if (!at_least_zero(l.color)) return "the colour is not finite, or below 0";
   if (!is_finite(l.position)) return "the position is not finite";
-  const bool has_direction = l.kind != LightKind::point;
+  const bool has_direction = l.kind == LightKind::directional || l.kind == LightKind::spot;
   if (has_direction && !(std::abs(glm::length(l.direction) - 1) < 1e-6))
     return "the direction has no unit length";
   const dvec3 a = l.attenuation;
   if (!is_finite(a) || glm::any(glm::lessThan(a, dvec3(0))) || !(a.x + a.y + a.z > 0))
     return "the attenuation is not finite, below 0, or all 0";
   if (!(l.range > 0)) return "the range is not above 0";
+  if (const char* const fault = fault_of_area(l)) return fault;
   if (!(l.cos_outer >= -1 && l.cos_outer <= l.cos_inner && l.cos_inner <= 1)) {
     return "the spot's inner angle is wider than its outer one";
   }

@@ -125,7 +125,10 @@ void JsonObjects::read(const JsonNode& object) {
   const std::string name = type.string();
   if (name == "mesh") return read_mesh(object);
   if (name == "triangles") return read_triangles(object);
-  std::string known = "mesh, triangles";
+  if (name == "box") return read_box(object);
+  if (name == "cylinder") return read_cylinder(object);
+  if (name == "plane") return read_plane(object);
+  std::string known = "mesh, triangles, box, cylinder, plane";
   bool found = false;
   primitives::for_each_shape([&](auto kind) {
     using Kind = decltype(kind);
@@ -227,6 +230,39 @@ void JsonObjects::read_triangles(const JsonNode& object) {
     }
   }
   place(object, part);
+  append(part, object);
+}
+
+void JsonObjects::read_box(const JsonNode& object) {
+  object.expect_keys(json_keys::kBox);
+  Scene part;
+  part.materials = {material_of(object)};
+  const dvec3 lo = object["min"].vector(), hi = object["max"].vector();
+  if (lo.x == hi.x || lo.y == hi.y || lo.z == hi.z) throw object.error("a box without a volume");
+  add_box(part, lo, hi);
+  place(object, part);
+  append(part, object);
+}
+
+void JsonObjects::read_cylinder(const JsonNode& object) {
+  object.expect_keys(json_keys::kCylinder);
+  Closed closed{object["base"].vector(), object["apex"].vector(), object["radius"].number_from(0), 0};
+  const auto apex_radius = object.find("apex_radius");
+  closed.apex_radius = apex_radius ? apex_radius->number_from(0) : closed.base_radius;
+  if (const char* const fault = fault_of(closed)) throw object.error(fault);
+  Scene part;
+  part.materials = {material_of(object)};
+  add_closed(part, closed, scene_.discs.size(), unsettled_);
+  append(part, object);
+}
+
+void JsonObjects::read_plane(const JsonNode& object) {
+  object.expect_keys(json_keys::kPlane);
+  Plane plane{object["point"].vector(), object["normal"].direction(), 0};
+  if (const auto extent = object.find("extent")) plane.extent = extent->number_above(0);
+  Scene part;
+  part.materials = {material_of(object)};
+  add_plane(part, plane, scene_.discs.size(), unsettled_);
   append(part, object);
 }
 

@@ -11,6 +11,7 @@
 #include "scene/json_node.h"
 #include "scene/material_table.h"
 #include "scene/scene.h"
+#include "scene/solids.h"
 
 namespace kdray::scene {
 
@@ -24,10 +25,15 @@ class JsonObjects {
               std::filesystem::path folder);
 
   void read(const JsonNode& object);
+  // Once all are read.
+  void finish() { settle_solids(unsettled_, scene_); }
 
  private:
   void read_mesh(const JsonNode& object);
   void read_triangles(const JsonNode& object);
+  void read_box(const JsonNode& object);
+  void read_cylinder(const JsonNode& object);
+  void read_plane(const JsonNode& object);
   template <class Kind>
   void read_shape(Kind, const JsonNode& object);
 
@@ -42,6 +48,7 @@ class JsonObjects {
   std::filesystem::path folder_;
   MaterialTable materials_;
   std::map<std::string, Scene> meshes_;  // a file named by several objects is read once
+  Unsettled unsettled_;
   std::uint32_t number_ = 0;
 };
 

@@ -21,6 +21,7 @@
 #include "primitives/shapes.h"
 #include "scene/files_read.h"
 #include "scene/paint.h"
+#include "scene/sky.h"
 
 namespace kdray::scene {
 
@@ -42,16 +43,24 @@ struct Material {
   bool operator==(const Material&) const = default;
 };
 
-enum class LightKind { point, directional, spot };
+// The last three have an area: a hit is lit from one place of it, which differs from sample to sample
+// (kernels/shade/area_light.clh).
+enum class LightKind { point, directional, spot, rectangle, sphere, disc };
+
+constexpr bool has_area(LightKind kind) {
+  return kind >= LightKind::rectangle;
+}
 
 struct Light {
   LightKind kind = LightKind::point;
-  dvec3 position{0};           // point, spot
+  dvec3 position{0};           // all but directional; the middle of those with an area
   dvec3 direction{0, 0, -1};   // directional, spot: the way the light travels, unit length
   vec3 color{1};               // linear RGB intensity
   dvec3 attenuation{1, 0, 0};  // att(d) = 1 / (a.x + a.y*d + a.z*d^2); sum > 0, all >= 0
   double range = std::numeric_limits<double>::infinity();  // no light beyond this distance
   float cos_inner = 1, cos_outer = -1;                     // spot: full inside inner, none outside outer
+  dvec3 across{0}, down{0};  // rectangle: its edges; disc: two of its radii, at right angles
+  double radius = 0;         // sphere
 };
 
 // A pinhole camera, or an orthographic one. `vertical_fov` spans the full height of the picture, from its
@@ -61,7 +70,9 @@ struct Camera {
   double vertical_fov = 0.7853981633974483;
   double hither = 0;  // distance along the view direction in front of which nothing is seen
   double ortho_width =
-      0;  // > 0: orthographic, parallel rays from the plane through `from`; the picture's width
+      0;                // > 0: orthographic, parallel rays from the plane through `from`; the picture's width
+  double aperture = 0;  // > 0: the diameter of a thin lens; what is not in its focus is blurred
+  double focus = 0;     // distance along the view direction of what is in focus; 0: that of `at`
 };
 
 // What frame_scene() made up where the file has nothing, so that another view can be made up as well
@@ -104,6 +115,7 @@ struct Scene {
   std::vector<Camera> cameras;   // all that the file has; `camera` is the first of them, or made up
   Framing framing;
   vec3 background{0};
+  Sky sky;          // in place of the background's colour
   vec3 ambient{1};  // Camb
   RenderSettings settings;
   std::vector<std::string> warnings;  // one line each: what the loader left out or changed

@@ -34,6 +34,8 @@ std::string view_options(const View& view) {
   if (view.camera) text += fmt::format(" --camera {}", *view.camera);
   if (view.fov) text += fmt::format(" --fov {}", *view.fov);
   if (view.ortho_width) text += fmt::format(" --ortho {}", *view.ortho_width);
+  if (view.aperture) text += fmt::format(" --aperture {}", *view.aperture);
+  if (view.focus) text += fmt::format(" --focus {}", *view.focus);
   if (view.headlight > 0) text += fmt::format(" --headlight {}", view.headlight);
   if (const auto& b = view.background)
     text += fmt::format(" --background {},{},{}", (*b)[0], (*b)[1], (*b)[2]);

@@ -21,13 +21,15 @@ constexpr layout::Features kPaint =
 // What they need in shading alone.
 constexpr layout::Features kLooks = kPaint | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_METAL_MAPS |
                                     KDRAY_FEATURE_NORMAL_MAPS | KDRAY_FEATURE_LIGHT_MAPS;
+// What lights with an area add to rays, and what else a scene has to have for its code to be of use.
+constexpr layout::Features kSamples = KDRAY_FEATURES_NOISY;
 constexpr layout::Features kGeometry =
     KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS | KDRAY_FEATURE_STITCHES | KDRAY_KEEP_TRACING;
 constexpr layout::Features kShading =
     kGeometry | kLooks | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT |
     KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
     KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND | KDRAY_FEATURE_FACES |
-    KDRAY_KEEP_SHADING;
+    KDRAY_FEATURE_SKY | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_KEEP_SHADING;
 
 // A wide form larger than this lies outside of the nearer caches, where fetching ahead is worth its
 // instructions: a tenth is lost at 1 and 3 MB, up to a third gained at 20 MB.
@@ -44,23 +46,26 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 layout::Features bits_read_by(const std::string& file) {
   if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
   if (file == "raygen/admit.cl")
-    return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_FOOTPRINTS;
+    return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_FOOTPRINTS | kSamples;
   if (file == "film/add.cl") return 0;
   if (file == "film/channels.cl") return kGeometry | kPaint | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
   if (file == "shade/shade.cl") return kShading;
   if (file == "wave/wave.cl" || file == "odprt/wave.cl")
-    return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
+    return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | kSamples;
   if (file == "odprt/receive.cl") return KDRAY_FEATURE_FOOTPRINTS;
-  if (file == "traverse/trace_closest.cl") return kGeometry | kPaint | KDRAY_FEATURE_FOOTPRINTS;
+  if (file == "traverse/trace_closest.cl")
+    return kGeometry | kPaint | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS;
   if (file == "traverse/trace_shadow.cl") return kGeometry | kPaint;
   return kGeometry;
 }
 
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
-// rays are counted; not masks, which a scene has to have, nor paint; and not in ODPRT what sizes its plan
+// rays are counted; not masks, which a scene has to have, nor paint, nor a sky, whose arrays would be read,
+// nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
 // (odprt/admit.clh).
 layout::Features spare_bits_of(const std::string& file) {
-  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks);
+  layout::Features bits =
+      bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks | KDRAY_FEATURE_SKY | kSamples);
   if (file == "odprt/wave.cl")
     bits &= ~(KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS);
   return bits;

@@ -32,8 +32,8 @@ StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, l
   StreamForm form;
   form.word = word;
   form.pools = frame.pool_size > 0 ? frame.max_depth - 1 : 0;
-  form.pool_fields = KDRAY_POOL_FIELDS + pencil_fields(features);
-  form.ray_fields = KDRAY_RAY_FIELDS + pencil_fields(features);
+  form.pool_fields = KDRAY_POOL_FIELDS + frame.tells_sample + pencil_fields(features);
+  form.ray_fields = KDRAY_RAY_FIELDS + frame.tells_sample + pencil_fields(features);
   form.shadow_fields = KDRAY_SHADOW_FIELDS;
   return form;
 }

@@ -43,6 +43,7 @@ void Schedule::apply(layout::Frame& frame, layout::Features features) const {
   if (!(features & KDRAY_FEATURE_LIGHTS)) frame.n_lights = 0;
   frame.light_batch = std::min({light_batch, frame.n_lights, std::uint32_t{KDRAY_MAX_LIGHT_BATCH}});
   frame.shadow_capacity = frame.light_batch * frame.batch_capacity;
+  frame.tells_sample = (features & KDRAY_FEATURE_AREA_LIGHTS) != 0 ? 1 : 0;
 }
 
 std::size_t Schedule::stream_bytes(const layout::Frame& frame, layout::Features features) const {

@@ -30,9 +30,14 @@
   X(IN, u32, texels)          \
   X(IN, TexCoords, texcoords) \
   X(IN, CornerColors, corner_colors)
+// What rays that meet nothing see, where that is not one colour.
+#define KDRAY_SKY_ARRAYS(X) \
+  X(IN, Sky, sky)           \
+  X(IN, float, sky_colors)
 #define KDRAY_LOOK_ARRAYS(X) \
   KDRAY_PAINT_ARRAYS(X)      \
-  X(IN, Light, lights)
+  X(IN, Light, lights)       \
+  KDRAY_SKY_ARRAYS(X)
 
 // What tracing reads, and what finding the surface at a hit reads.
 #define KDRAY_TRACED_ARRAYS(X) \

@@ -35,6 +35,13 @@
 #define KDRAY_FEATURE_TRANSMIT KDRAY_FEATURE(41)  // removes refracted rays
 #define KDRAY_FEATURE_SPECULAR KDRAY_FEATURE(42)  // removes highlights
 #define KDRAY_FEATURE_DIFFUSE KDRAY_FEATURE(43)   // removes the diffuse term
+// A background by direction (sky.layout.h) beside that of one colour; removes looking it up.
+#define KDRAY_FEATURE_SKY KDRAY_FEATURE(44)
+// Lights with an area; removes choosing a place on them, and the word by which rays tell their sample.
+#define KDRAY_FEATURE_AREA_LIGHTS KDRAY_FEATURE(45)
+#define KDRAY_FEATURE_LENS KDRAY_FEATURE(46)  // removes choosing a place on the camera's lens
+// What makes samples differ where the picture is even.
+#define KDRAY_FEATURES_NOISY (KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_LENS)
 // Light, bits 48-55, and film, bits 56-63.
 #define KDRAY_FEATURE_LIGHTS KDRAY_FEATURE(48)       // removes shadow rays, their buffers and launches
 #define KDRAY_FEATURE_ATTENUATION KDRAY_FEATURE(49)  // removes fall-off and range
@@ -86,6 +93,9 @@
 #define KDRAY_HAS_ATTENUATION ((KDRAY_FEATURES & KDRAY_FEATURE_ATTENUATION) != 0)
 #define KDRAY_HAS_DIRECTIONAL ((KDRAY_FEATURES & KDRAY_FEATURE_DIRECTIONAL) != 0)
 #define KDRAY_HAS_SPOT ((KDRAY_FEATURES & KDRAY_FEATURE_SPOT) != 0)
+#define KDRAY_HAS_SKY ((KDRAY_FEATURES & KDRAY_FEATURE_SKY) != 0)
+#define KDRAY_HAS_AREA_LIGHTS ((KDRAY_FEATURES & KDRAY_FEATURE_AREA_LIGHTS) != 0)
+#define KDRAY_HAS_LENS ((KDRAY_FEATURES & KDRAY_FEATURE_LENS) != 0)
 #define KDRAY_HAS_FACES ((KDRAY_FEATURES & KDRAY_FEATURE_FACES) != 0)
 #define KDRAY_HAS_BACKGROUND ((KDRAY_FEATURES & KDRAY_FEATURE_BACKGROUND) != 0)
 #define KDRAY_HAS_SUPERSAMPLE ((KDRAY_FEATURES & KDRAY_FEATURE_SUPERSAMPLE) != 0)

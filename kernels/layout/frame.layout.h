@@ -58,8 +58,12 @@ typedef struct Frame {
   // The side of the square that a sample stands for: at the distance 1 along `forward`, or of a parallel
   // camera anywhere.
   float pencil;
+  // A lens: eye rays start so far from `eye` at most, and are turned back by so much for what is in focus to
+  // stay where it is; 0: a pinhole.
+  float lens_radius, lens_slope;
+  u32 tells_sample;  // 1: rays have a word that tells their sample (KDRAY_RAY_SAMPLE)
 } Frame;
-KDRAY_ASSERT_SIZE(Frame, 248)
+KDRAY_ASSERT_SIZE(Frame, 260)
 KDRAY_ASSERT_OFFSET(Frame, core_lo, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 

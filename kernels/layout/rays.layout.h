@@ -41,15 +41,25 @@
 #define KDRAY_RAY_VISITED 14u        // two u32: a bit for each part that was asked
 #define KDRAY_TRAVEL_RAY_FIELDS 16u  // and its pencil
 #if KDRAY_ODPRT
-#define KDRAY_RAY_SKIP 0u  // none: a part may not know another's triangle
+#define KDRAY_RAY_SKIP 0u     // none: a part may not know another's triangle
+#define KDRAY_RAY_SAMPLE 15u  // in place of the second word of VISITED: there are 32 parts at most then
 #define KDRAY_RAY_PENCIL 16u
 #define KDRAY_RAY_FIELDS (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_PENCIL_FIELDS)
 #else
 // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
 #define KDRAY_RAY_SKIP 12u
-#define KDRAY_RAY_PENCIL 13u
-#define KDRAY_RAY_FIELDS (13u + KDRAY_PENCIL_FIELDS)
+#define KDRAY_RAY_SAMPLE 13u
+#define KDRAY_RAY_PENCIL (13u + KDRAY_TELLS_SAMPLE)
+#define KDRAY_RAY_FIELDS (13u + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
 #endif
+// With area lights a ray tells its pixel and sample: u32, 16 bits of the pixel's hash above the sample's
+// number.
+#ifdef __OPENCL_C_VERSION__
+#define KDRAY_TELLS_SAMPLE (KDRAY_HAS_AREA_LIGHTS ? 1u : 0u)
+#else
+#define KDRAY_TELLS_SAMPLE 0u  // by the host: in scenes without
+#endif
+#define KDRAY_VISITED_WORDS (2u - KDRAY_TELLS_SAMPLE)  // of a ray
 
 // The word of KDRAY_RAY_FINDER: the part that holds the best hit, a byte; on the ray's way its depth in the
 // byte above and, from bit 16 on, the part that it goes to. For u32 and vectors of them. A ray that is there
@@ -82,17 +92,19 @@
 #if KDRAY_ODPRT
 #define KDRAY_POOL_WEIGHT KDRAY_RAY_WEIGHT
 #define KDRAY_POOL_PIXEL KDRAY_RAY_PIXEL
+#define KDRAY_POOL_SAMPLE KDRAY_RAY_SAMPLE
 #define KDRAY_POOL_FIELDS KDRAY_RAY_FIELDS
 #else
 #define KDRAY_POOL_WEIGHT 6u
 #define KDRAY_POOL_PIXEL 9u
 #define KDRAY_POOL_SKIP 10u
-#define KDRAY_POOL_FIELDS (11u + KDRAY_PENCIL_FIELDS)
+#define KDRAY_POOL_SAMPLE 11u
+#define KDRAY_POOL_FIELDS (11u + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
 #endif
 #if KDRAY_ODPRT
 #define KDRAY_POOL_PENCIL KDRAY_RAY_PENCIL
 #else
-#define KDRAY_POOL_PENCIL 11u
+#define KDRAY_POOL_PENCIL (11u + KDRAY_TELLS_SAMPLE)
 #endif
 
 // Hits of a batch, with the batch's capacity.

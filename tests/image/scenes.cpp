@@ -259,6 +259,51 @@ scene::Scene mapped() {
   return s;
 }
 
+// Over a floor that is a face, so that rays in the open see lights and background as well.
+scene::Scene soft_light() {
+  SceneBuilder b;
+  b.quad({-20, -1, 20}, {40, 0, 0}, {0, 0, -40}, plastic({0.6f, 0.55f, 0.4f}, 8, 0.1f));
+  b.sphere({-1.3, 0, 0.4}, 1, tinted_glass({1, 0.9f, 0.9f}, 1.5f));
+  b.sphere({1.2, -0.2, 0.2}, 0.8, plastic({0.1f, 0.1f, 0.15f}, 60, 0.7f));
+  b.cone({0, -1, 1.4}, 0.4, {0, 0.2, 1.4}, 0.1, plastic({0.8f, 0.2f, 0.1f}, 20));
+  b.ambient(vec3(0.5f)).camera({0, 2.3, 7.1}, {0.05, 0.1, 0}, 0.62);
+  scene::Light window, lamp, disc;
+  window.kind = scene::LightKind::rectangle;
+  window.position = {4, 6, 4}, window.across = {2, 0, -2}, window.down = {0.5, 2, 0.5};
+  window.color = vec3(0.5f);
+  lamp.kind = scene::LightKind::sphere;
+  lamp.position = {-4, 3, 2}, lamp.radius = 0.8;
+  lamp.color = {0.9f, 0.8f, 0.6f}, lamp.attenuation = {0.2, 0.1, 0.05};
+  disc.kind = scene::LightKind::disc;
+  disc.position = {0, 5, -3}, disc.across = {1, 0, 0}, disc.down = {0, 0, 1.5};
+  disc.color = {0.3f, 0.35f, 0.4f}, disc.range = 9;
+  b.light(window).light({6, 4, -2}, vec3(0.2f)).light(lamp).light(disc);
+  return b
+      .change([](scene::Scene& s) {
+        s.sky = {.kind = scene::SkyKind::gradient,
+                 .up = glm::normalize(dvec3(0.1, 1, 0.2)),
+                 .stops = {{-0.5, {0.1f, 0.1f, 0.05f}}, {0, {0.6f, 0.6f, 0.7f}}, {0.8, {0.1f, 0.2f, 0.6f}}}};
+        s.sky.brightest = scene::brightest_of(s.sky);
+      })
+      .scene();
+}
+
+scene::Scene under_a_sky() {
+  scene::Scene s = glass_and_mirror_balls();
+  scene::SkyPicture picture{"noise", 37, 19, {}};
+  std::mt19937 random(5);
+  for (int i = 0; i < 3 * 37 * 19; ++i) picture.rgb.push_back(static_cast<float>(random() % 1000) / 800.0f);
+  picture.brightest = 1.25f;
+  s.sky = {.kind = scene::SkyKind::picture,
+           .up = glm::normalize(dvec3(-0.2, 1, 0.1)),
+           .turn = 0.7,
+           .picture = std::make_shared<const scene::SkyPicture>(std::move(picture))};
+  s.sky.brightest = scene::brightest_of(s.sky);
+  s.camera->aperture = 0.3;
+  s.camera->focus = 6;
+  return s;
+}
+
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset) {
   const auto place = [&](dvec3& p) { p = p * scale + offset; };
   scale_and_move(model, scale, offset);

@@ -77,7 +77,9 @@ TEST_P(AllRules, ChangeNoBit) {
 INSTANTIATE_TEST_SUITE_P(Skipping, AllRules, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return info.param.name; });
 INSTANTIATE_TEST_SUITE_P(Painted, AllRules,
-                         testing::Values(NamedScene{"painted", painted}, NamedScene{"mapped", mapped}),
+                         testing::Values(NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
+                                         NamedScene{"soft_light", soft_light},
+                                         NamedScene{"under_a_sky", under_a_sky}),
                          [](const auto& info) { return info.param.name; });
 
 // Reflected and refracted rays start beside the flat triangle, whatever its normals are.

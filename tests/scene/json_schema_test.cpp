@@ -52,6 +52,7 @@ json example(const json& root, const json& rule, const std::string& key) {
   if (key == "material") return "m";
   if (key == "materials") return json::object({{"m", example_object(root, definition(root, "material"))}});
   if (key == "at" || key == "apex") return {1, 2, 9};
+  if (key == "max") return {4, 5, 9};
   if (key == "matrix") return {1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1};
   if (rule.contains("$ref")) {
     const std::string ref = rule["$ref"];
@@ -65,7 +66,8 @@ json example(const json& root, const json& rule, const std::string& key) {
     json array = json::array();
     const int n = rule.value("minItems", 1);
     for (int i = 0; i < n; ++i)
-      array.push_back(key == "objects" || key == "lights" ? example(root, rule["items"], "") : json(i + 1));
+      array.push_back(key == "objects" || key == "lights" || key == "stops" ? example(root, rule["items"], "")
+                                                                            : json(i + 1));
     return array;
   }
   const double low = rule.value("minimum", 1.0);
@@ -86,7 +88,10 @@ void expect_equal(const std::vector<Shape>& a, const std::vector<Shape>& b) {
 
 class Schema : public ::testing::Test {
  protected:
-  Schema() { folder_.write("mesh.nff", "f 1 1 1 1 0 1 0 0\ns 0 0 0 1\n"); }
+  Schema() {
+    folder_.write("mesh.nff", "f 1 1 1 1 0 1 0 0\ns 0 0 0 1\n");
+    folder_.write("sky.hdr", "#?RADIANCE\n\n-Y 1 +X 1\nabcd");
+  }
 
   // A scene around one object of the kind `name`.
   json document_with(const std::string& name, json object) const {
@@ -99,6 +104,11 @@ class Schema : public ::testing::Test {
       document["materials"]["m"] = object;
     } else if (name.ends_with("_light")) {
       document["lights"] = json::array({object});
+    } else if (name == "gradient" || name == "sky_picture") {
+      document["background"] = object;
+      if (object.value("file", json()) == "mesh.nff") document["background"]["file"] = "sky.hdr";
+    } else if (name == "stop") {
+      document["background"] = {{"type", "gradient"}, {"stops", json::array({object})}};
     } else if (name == "turn") {
       document["objects"] = json::array({json{{"type", "mesh"}, {"file", "mesh.nff"}, {"rotate", object}}});
     } else {

@@ -100,6 +100,8 @@ class Scene {
   void add_light(const Light& light);
   void set_camera(const Camera& camera);
   void set_background(const Color& color);
+  void set_background(const Gradient& gradient);
+  void set_background(const Environment& environment);  // reads the file: ErrorCode::input
   void set_ambient(const Color& color);
 
   std::uint32_t primitives() const;

@@ -7,8 +7,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "kdray/arrays.h"
 
@@ -86,14 +88,18 @@ struct Material {
 };
 
 struct Light {
-  enum class Kind { point, directional, spot };
+  // The last three have an area, and throw soft shadows: each sample of a pixel sees another place of it.
+  enum class Kind { point, directional, spot, rectangle, sphere, disc };
   Kind kind = Kind::point;
-  Vec3 position{0, 0, 0};    // point, spot
+  Vec3 position{0, 0, 0};    // all but directional; the middle of those with an area
   Vec3 direction{0, 0, -1};  // directional, spot: the way the light travels, of any length but 0
   Color color{1, 1, 1};
   Vec3 attenuation{1, 0, 0};  // 1 / (a[0] + a[1]*d + a[2]*d^2)
   double range = std::numeric_limits<double>::infinity();
   double inner_degrees = 0, outer_degrees = 45;  // spot: half angles, full light inside of the inner one
+  Vec3 across{0, 0, 0}, down{0, 0, 0};           // rectangle: its edges
+  Vec3 normal{0, -1, 0};                         // disc: of any length but 0
+  double radius = 0;                             // sphere, disc
 };
 
 struct Camera {
@@ -101,6 +107,28 @@ struct Camera {
   double fov = 45;         // of the picture's full height
   double ortho_width = 0;  // above 0: orthographic; the picture's width
   double hither = 0;       // nothing is seen nearer than this
+  double aperture = 0;     // above 0: the diameter of a thin lens; what is not in its focus is blurred
+  double focus = 0;        // how far off what is in focus is, along the view; 0: as far as `at`
+};
+
+// What is seen where nothing is: colours by height, which is the sine of the angle above the horizon, from -1
+// to 1. Heights ascend; below the first and above the last their colours go on.
+struct GradientStop {
+  double height = 0;
+  Color color{0, 0, 0};
+};
+struct Gradient {
+  std::vector<GradientStop> stops;
+  Vec3 up{0, 1, 0};  // of any length but 0
+};
+
+// A picture all around (equirectangular), from an EXR, Radiance HDR, PNG or JPEG file. Its top lies at `up`,
+// its middle at -z; turned about `up`, right-handed.
+struct Environment {
+  std::filesystem::path file;
+  Vec3 up{0, 1, 0};
+  double turn_degrees = 0;
+  double strength = 1;  // what it shows is multiplied by this
 };
 
 }  // namespace kdray
