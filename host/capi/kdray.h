@@ -112,8 +112,8 @@ typedef struct kdray_material {
   float emission[3], ambient[3], diffuse[3], specular[3], reflect[3], transmit[3];
   float shine;
   float index; /* of refraction; 0: 1 */
-  /* Of kdray_add_picture; 0: none. They are multiplied by the ambient and diffuse terms and what goes through;
-   * by the emission, or by white where that is black. */
+  /* Of kdray_add_picture; 0: none. The first is multiplied by the ambient and diffuse terms and by what goes
+   * through, the last by the emission, or by white where that is black. */
   uint32_t picture, normal_picture, emission_picture;
   int32_t alpha; /* kdray_alpha, of `picture` */
 } kdray_material;

@@ -63,7 +63,7 @@ Array<layout::u32> pack_texels(const scene::Paint& paint, const TexelPlan& plan)
   tbb::parallel_for(std::size_t{0}, plan.chains.size(), [&](std::size_t i) {
     const Chain& chain = plan.chains[i];
     scene::write_levels(*paint.pictures[chain.picture], chain.curved, 0, chain.n_levels,
-                 std::span(texels.data() + chain.first, chain.n_texels));
+                        std::span(texels.data() + chain.first, chain.n_texels));
   });
   return texels;
 }

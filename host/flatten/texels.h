@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/array.h"
-#include "scene/mipmaps.h"
 #include "layout/paint.layout.h"
+#include "scene/mipmaps.h"
 #include "scene/paint.h"
 
 namespace kdray::flatten {
@@ -18,10 +18,10 @@ namespace kdray::flatten {
 struct Chain {
   std::uint32_t picture = 0;
   bool curved = false, mipmaps = false;
-  std::size_t first = 0;     // texel
-  scene::LevelSize size = {};       // of the first level that is there
-  std::size_t n_levels = 1;  // that are there
-  std::size_t n_texels = 0;  // of all of these
+  std::size_t first = 0;       // texel
+  scene::LevelSize size = {};  // of the first level that is there
+  std::size_t n_levels = 1;    // that are there
+  std::size_t n_texels = 0;    // of all of these
 };
 
 struct TexelPlan {

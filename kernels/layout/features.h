@@ -52,7 +52,7 @@
 #define KDRAY_FEATURE_BACKGROUND KDRAY_FEATURE(56)   // a background other than black
 #define KDRAY_FEATURE_SUPERSAMPLE KDRAY_FEATURE(57)  // more than one sample per pixel
 #define KDRAY_FEATURE_ADAPTIVE KDRAY_FEATURE(58)     // rounds of single samples beside whole tiles
-// More of surfaces. Textures that are shown smaller otherwise than larger; removes rays' pencils, and mipmaps.
+// More of surfaces. Textures that are shown smaller otherwise than larger; removes rays' pencils and mipmaps.
 #define KDRAY_FEATURE_FOOTPRINTS KDRAY_FEATURE(59)
 // Pictures of how metallic and rough surfaces are, of normals, and of emission, occlusion and highlights;
 // each removes looking for them.

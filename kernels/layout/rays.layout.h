@@ -17,8 +17,8 @@
 #define KDRAY_ODPRT 0
 #endif
 
-// In scenes with footprints rays have a last field, u32: their pencil (paint/pencil.clh). The host counts it by
-// itself (host/wavefront/slice_buffers.h).
+// In scenes with footprints rays have a last field, u32: their pencil (paint/pencil.clh). The host counts it
+// by itself (host/wavefront/slice_buffers.h).
 #ifdef __OPENCL_C_VERSION__
 #define KDRAY_PENCIL_FIELDS (KDRAY_HAS_FOOTPRINTS ? 1u : 0u)
 #else
