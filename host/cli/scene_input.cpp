@@ -45,12 +45,32 @@ void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help) 
       app, "--scene-format", "NAME", "Format of a SCENE from standard input: nff, obj, ply, ...",
       [&input](const std::string& text) { input.format = text.starts_with('.') ? text.substr(1) : text; });
   add_smooth(app, input.load);
+  add_instances(app, input.load);
 }
 
 void add_smooth(CLI::App& app, LoadOptions& load) {
   add_text(app, "--smooth", "DEG",
            "Smooth shading for triangles without normals, where faces turn by no more than DEG (as in 40)",
            [&load](const std::string& text) { load.smooth_degrees = parse_real("--smooth", text, 0, 180); });
+}
+
+namespace {
+
+Instances instances_named(const std::string& name) {
+  if (name == "auto") return Instances::automatic;
+  if (name == "flat") return Instances::flat;
+  if (name == "kept") return Instances::kept;
+  throw Error(ErrorCode::usage, "--instances is auto, flat or kept, not '" + name + "'");
+}
+
+}  // namespace
+
+void add_instances(CLI::App& app, LoadOptions& load) {
+  add_text(app, "--instances", "HOW",
+           "What shows many times: auto (held once where copies would be over a million primitives), flat "
+           "(copied) "
+           "or kept (held once)",
+           [&load](const std::string& text) { load.instances = instances_named(text); });
 }
 
 void check_scene_input(const SceneInput& input) {

@@ -19,10 +19,11 @@ struct SceneInput {
   bool is_stdin() const { return file == "-"; }
 };
 
-// SCENE, --scene-format and --smooth
+// SCENE, --scene-format, --smooth and --instances
 void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help);
 
 void add_smooth(CLI::App& app, LoadOptions& load);
+void add_instances(CLI::App& app, LoadOptions& load);
 
 // Before anything else is done with it.
 void check_scene_input(const SceneInput& input);

@@ -30,14 +30,10 @@ std::uint32_t load_u32(std::string_view text, std::size_t at) {
 
 // Extensions that a file may require and that are read, or change nothing but pictures, names and surfaces.
 bool can_do_with(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kKnown = {"KHR_lights_punctual",
-                                                      "KHR_node_visibility",
-                                                      "KHR_mesh_quantization",
-                                                      "EXT_texture_webp",
-                                                      "EXT_texture_avif",
-                                                      "MSFT_texture_dds",
-                                                      "KHR_xmp",
-                                                      "KHR_xmp_json_ld"};
+  constexpr std::array<std::string_view, 9> kKnown = {
+      "KHR_lights_punctual", "KHR_node_visibility", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
+      "EXT_texture_webp",    "EXT_texture_avif",    "MSFT_texture_dds",      "KHR_xmp",
+      "KHR_xmp_json_ld"};
   return name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
          std::ranges::find(kKnown, name) != kKnown.end();
 }

@@ -59,6 +59,7 @@ dmat3 normal_matrix(const dmat3& m) {
 MeshReader::MeshReader(Document& document, Scene& scene)
     : document_(document),
       scene_(scene),
+      into_(&scene),
       materials_(document, scene),
       most_(std::max(kMostOfSmallFile, kMostPerByte * document.file_size())) {}
 
@@ -67,8 +68,32 @@ void MeshReader::add(const JsonNode& mesh, const dmat4& to_world) {
   for (const JsonNode& primitive : mesh["primitives"].elements()) add_primitive(primitive, to_world);
 }
 
+Scene MeshReader::alone(const JsonNode& mesh) {
+  Scene scene;
+  into_ = &scene;
+  add(mesh, dmat4(1));
+  into_ = &scene_;
+  settle_normals(scene, document_.file());
+  scene_.warnings.insert(scene_.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+  scene.warnings.clear();
+  return scene;
+}
+
+std::uint64_t MeshReader::count_triangles(const JsonNode& mesh) {
+  std::uint64_t n = 0;
+  for (const JsonNode& primitive : mesh["primitives"].elements()) {
+    const std::uint64_t mode = whole_or(primitive, "mode", kTriangles);
+    const auto indices = primitive.find("indices");
+    const auto corners = indices ? indices : primitive["attributes"].find("POSITION");
+    if (mode < kTriangles || !corners) continue;
+    const std::uint64_t count = accessor_count(document_.entry("accessors", *corners));
+    n += mode == kTriangles ? count / 3 : count;
+  }
+  return n;
+}
+
 void MeshReader::check_size(const JsonNode& primitive) const {
-  if (scene_.vertices.size() <= most_ && scene_.triangles.size() <= most_ && n_primitives_ <= most_ / 16)
+  if (into_->vertices.size() <= most_ && into_->triangles.size() <= most_ && n_primitives_ <= most_ / 16)
     return;
   throw primitive.error(
       "the instances of this file make more than " + std::to_string(most_) + " triangles of it",
@@ -77,11 +102,11 @@ void MeshReader::check_size(const JsonNode& primitive) const {
 
 void MeshReader::add_vertices(const JsonNode& accessor, const dmat4& to_world) {
   const auto positions = read_vectors(document_, accessor);
-  reserve_more(scene_.vertices, positions.size());
+  reserve_more(into_->vertices, positions.size());
   for (const dvec3& p : positions) {
     const dvec3 moved = dvec3(to_world * glm::dvec4(p, 1));
     if (!is_finite(moved)) throw accessor.error("a node's transform makes a position infinite");
-    scene_.vertices.push_back(moved);
+    into_->vertices.push_back(moved);
   }
 }
 
@@ -95,7 +120,7 @@ bool MeshReader::add_normals(const JsonNode& attributes, std::size_t n_vertices,
   }
   const dmat3 to_normal = normal_matrix(dmat3(to_world));
   for (const dvec3& n : read_vectors(document_, accessor)) {
-    scene_.normals.push_back(direction_of(to_normal * n));
+    into_->normals.push_back(direction_of(to_normal * n));
   }
   return true;
 }
@@ -113,9 +138,9 @@ std::optional<JsonNode> MeshReader::colors_of(const JsonNode& attributes, std::s
 void MeshReader::add_colors(const JsonNode& accessor,
                             std::span<const std::array<std::uint32_t, 3>> triangles) {
   const auto values = read_colors(document_, accessor);
-  auto& colors = scene_.paint.colors;
-  reserve_more(colors, scene_.triangles.size() - colors.size());
-  colors.resize(scene_.triangles.size() - triangles.size(), kWhiteCorners);
+  auto& colors = into_->paint.colors;
+  reserve_more(colors, into_->triangles.size() - colors.size());
+  colors.resize(into_->triangles.size() - triangles.size(), kWhiteCorners);
   for (const auto& corners : triangles) {
     layout::CornerColors c{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -139,9 +164,9 @@ void MeshReader::add_texcoords(const JsonNode& attributes,
       continue;
     }
     const auto values = read_pairs(document_, accessor);
-    auto& out = scene_.paint.texcoords[set];
-    reserve_more(out, scene_.triangles.size() - out.size());
-    out.resize(scene_.triangles.size() - triangles.size());
+    auto& out = into_->paint.texcoords[set];
+    reserve_more(out, into_->triangles.size() - out.size());
+    out.resize(into_->triangles.size() - triangles.size());
     for (const auto& corners : triangles) {
       layout::TexCoords at{};
       for (std::size_t i = 0; i < 3; ++i)
@@ -166,10 +191,10 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
   const auto position = attributes.find("POSITION");
   if (!position) return warn("primitives without positions are left out");
 
-  const auto first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
-  const auto first_normal = static_cast<std::uint32_t>(scene_.normals.size());
+  const auto first_vertex = static_cast<std::uint32_t>(into_->vertices.size());
+  const auto first_normal = static_cast<std::uint32_t>(into_->normals.size());
   add_vertices(document_.entry("accessors", *position), to_world);
-  const std::size_t n_vertices = scene_.vertices.size() - first_vertex;
+  const std::size_t n_vertices = into_->vertices.size() - first_vertex;
   const bool smooth = add_normals(attributes, n_vertices, to_world);
 
   RawVector<std::uint32_t> corners;
@@ -187,14 +212,14 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
   const std::uint32_t material = materials_.number_of(primitive, colors.has_value());
   std::vector<std::array<std::uint32_t, 3>> picks;
   const bool painted = scene_.materials[material].coat != kNone;
-  reserve_more(scene_.triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
+  reserve_more(into_->triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
   for_each_triangle(mode, corners, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (mirrored) std::swap(b, c);
     Triangle t{.vertex = {first_vertex + a, first_vertex + b, first_vertex + c}};
     if (smooth) t.normal = {first_normal + a, first_normal + b, first_normal + c};
     t.material = material;
-    t.number = static_cast<std::uint32_t>(scene_.triangles.size());
-    scene_.triangles.push_back(t);
+    t.number = static_cast<std::uint32_t>(into_->triangles.size());
+    into_->triangles.push_back(t);
     if (painted) picks.push_back({a, b, c});
   });
   if (!painted) return;

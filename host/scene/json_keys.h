@@ -30,8 +30,9 @@ inline constexpr std::string_view point_light[] = {"type", "position", "color", 
 inline constexpr std::string_view directional_light[] = {"type", "direction", "color"};
 inline constexpr std::string_view spot_light[] = {"type",  "position", "direction",   "inner",
                                                   "outer", "color",    "attenuation", "range"};
-inline constexpr std::string_view mesh[] = {"type",   "file",  "material", "translate",
-                                            "rotate", "scale", "matrix",   "smooth"};
+inline constexpr std::string_view mesh[] = {"type",  "file",   "material", "translate", "rotate",
+                                            "scale", "matrix", "smooth",   "instances"};
+inline constexpr std::string_view instance[] = {"translate", "rotate", "scale", "matrix", "material"};
 inline constexpr std::string_view triangles[] = {"type",      "vertices", "faces", "normals", "material",
                                                  "translate", "rotate",   "scale", "matrix"};
 // Of a shape: its fields', between those that all have.
@@ -52,6 +53,7 @@ inline constexpr JsonKeys kPointLight{"point_light", list::point_light};
 inline constexpr JsonKeys kDirectionalLight{"directional_light", list::directional_light};
 inline constexpr JsonKeys kSpotLight{"spot_light", list::spot_light};
 inline constexpr JsonKeys kMesh{"mesh", list::mesh};
+inline constexpr JsonKeys kInstance{"instance", list::instance};
 inline constexpr JsonKeys kTriangles{"triangles", list::triangles};
 inline constexpr JsonKeys kTurn{"turn", list::turn};
 
@@ -61,11 +63,17 @@ constexpr JsonKeys keys_of(Kind) {
 }
 
 #define KDRAY_SHAPE_KEYS(NAME, name, names, Struct) keys_of(primitives::Struct##Kind()),
-inline constexpr std::array kAll = {kScene,      kCamera,
-                                    kRender,     kMaterial,
-                                    kPointLight, kDirectionalLight,
-                                    kSpotLight,  kMesh,
-                                    kTriangles,  KDRAY_SHAPES(KDRAY_SHAPE_KEYS) kTurn};
+inline constexpr std::array kAll = {kScene,
+                                    kCamera,
+                                    kRender,
+                                    kMaterial,
+                                    kPointLight,
+                                    kDirectionalLight,
+                                    kSpotLight,
+                                    kMesh,
+                                    kInstance,
+                                    kTriangles,
+                                    KDRAY_SHAPES(KDRAY_SHAPE_KEYS) kTurn};
 #undef KDRAY_SHAPE_KEYS
 
 }  // namespace json_keys

@@ -33,13 +33,15 @@ class JsonObjects {
   Material material_of(const JsonNode& object) const;
   const Scene& mesh(const JsonNode& file);
   void append(const Scene& part, const JsonNode& object);
+  void append_instances(Scene&& part, const JsonNode& list);
+  Scene adopted(Scene&& part);
 
   Scene& scene_;
   const NamedMaterials& named_;
   std::filesystem::path folder_;
   MaterialTable materials_;
   std::map<std::string, Scene> meshes_;  // a file named by several objects is read once
-  std::uint32_t number_ = 0;
+  std::uint32_t number_ = 0;             // of the next primitive
 };
 
 }  // namespace kdray::scene

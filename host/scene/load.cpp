@@ -9,6 +9,7 @@
 #include "scene/frame.h"
 #include "scene/import.h"
 #include "scene/importers.h"
+#include "scene/instances.h"
 #include "scene/read_file.h"
 #include "scene/smooth_normals.h"
 
@@ -98,7 +99,14 @@ void check(const LoadOptions& options) {
 
 Scene finished(Scene&& scene, const LoadOptions& options) {
   scene.load_options = options;
-  if (options.smooth_degrees) smooth_normals(scene, *options.smooth_degrees);
+  if (options.smooth_degrees) {
+    smooth_normals(scene, *options.smooth_degrees);
+    for (auto& mesh : scene.meshes) {
+      auto smooth = std::make_shared<Scene>(*mesh);
+      smooth_normals(*smooth, *options.smooth_degrees);
+      mesh = std::move(smooth);
+    }
+  }
   frame_scene(scene);
   return std::move(scene);
 }
@@ -108,6 +116,7 @@ Scene finished(Scene&& scene, const LoadOptions& options) {
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   check(options);
   FilesRead files;
+  const Instancing instancing(options.instances);
   Scene scene = finished(import_scene(file), options);
   scene.files = files.take();
   return scene;
@@ -116,6 +125,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
 Scene load_from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options) {
   check(options);
   FilesRead files;
+  const Instancing instancing(options.instances);
   check_ending(name, format_of(name));
   Scene scene = finished(import_text(unpacked(std::move(bytes), name), name), options);
   scene.files = files.take();

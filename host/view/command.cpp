@@ -73,6 +73,8 @@ std::string division_options(const RenderOptions& o, int queues) {
 std::string command_for(const Sight& sight, const Settings& settings, const std::string& scene) {
   const RenderOptions options = render_of(sight, settings);
   std::string text = "kdray render " + quoted(scene);
+  if (settings.load.instances == Instances::flat) text += " --instances flat";
+  if (settings.load.instances == Instances::kept) text += " --instances kept";
   if (settings.load.smooth_degrees) text += fmt::format(" --smooth {}", *settings.load.smooth_degrees);
   return text + view_options(view_of(sight, settings)) + picture_options(options) +
          division_options(options, queues_of(sight, settings));

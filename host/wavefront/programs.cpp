@@ -18,8 +18,8 @@ namespace {
 // What pictures and colours at corners need. Programs that have this though they needn't would be slower.
 constexpr layout::Features kPaint =
     KDRAY_FEATURE_COATS | KDRAY_FEATURE_CORNER_COLORS | KDRAY_FEATURE_TEXTURES | KDRAY_FEATURE_CUTOUTS;
-constexpr layout::Features kGeometry =
-    KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS | KDRAY_FEATURE_STITCHES | KDRAY_KEEP_TRACING;
+constexpr layout::Features kGeometry = KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS |
+                                       KDRAY_FEATURE_STITCHES | KDRAY_FEATURE_INSTANCES | KDRAY_KEEP_TRACING;
 constexpr layout::Features kShading =
     kGeometry | kPaint | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT |
     KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
@@ -40,8 +40,9 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 // The bits a file reads: a scene that differs elsewhere shares the program.
 layout::Features bits_read_by(const std::string& file) {
   if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
-  if (file == "raygen/admit.cl") return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
-  if (file == "film/add.cl") return 0;
+  if (file == "raygen/admit.cl")
+    return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_INSTANCES;
+  if (file == "film/add.cl") return KDRAY_FEATURE_INSTANCES;
   if (file == "film/channels.cl") return kGeometry | kPaint | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
   if (file == "shade/shade.cl") return kShading;
   if (file == "wave/wave.cl" || file == "odprt/wave.cl")
@@ -52,10 +53,12 @@ layout::Features bits_read_by(const std::string& file) {
 }
 
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
-// rays are counted; not masks, which a scene has to have, nor paint; and not in ODPRT what sizes its plan
+// rays are counted; not masks, which a scene has to have, nor paint, nor instances, by which streams
+// have other fields; and not in ODPRT what sizes its plan
 // (odprt/admit.clh).
 layout::Features spare_bits_of(const std::string& file) {
-  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kPaint);
+  layout::Features bits =
+      bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kPaint | KDRAY_FEATURE_INSTANCES);
   if (file == "odprt/wave.cl")
     bits &= ~(KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS);
   return bits;
@@ -105,6 +108,7 @@ Programs::Programs(const device::Context& context, const TreeForm& form, std::st
       wide_stack_size_(std::max(rounded_up(form.stack, kWideStacks), kLeastWideStack)),
       any_order_stack_size_(any_order_stack_size(form.depth)),
       block_(form.block),
+      widen_(form.widen),
       prefetch_(form.bytes > kNear),
       far_(form.bytes > kFar) {
   use({});
@@ -112,7 +116,12 @@ Programs::Programs(const device::Context& context, const TreeForm& form, std::st
 
 Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
                    std::string more_options)
-    : Programs(context, TreeForm{tree_depth, wide.stack_size, wide.block, wide.bytes()},
+    : Programs(context,
+               TreeForm{.depth = tree_depth,
+                        .widen = wide.widen,
+                        .stack = wide.stack_size,
+                        .block = wide.block,
+                        .bytes = wide.bytes()},
                std::move(more_options)) {}
 
 // Large trees are deep ones.
@@ -156,6 +165,7 @@ std::string Programs::options_for(const std::string& file, Traversal traversal, 
                            number_of(traversal), block_, stack) +
                walk_options_;
   }
+  if (widen_ > 1) options += fmt::format(" -DKDRAY_PAD={}*0x1p-19f", widen_);
   if (file == "closest/closest_points.cl")
     options += fmt::format(" -DKDRAY_CLOSEST_STACK={}", any_order_stack_size_);
   if (context_->rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";

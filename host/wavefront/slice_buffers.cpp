@@ -24,13 +24,16 @@ std::uint32_t capacity_for(std::uint32_t n) {
   return (n + 2 * KDRAY_LANES - 1) / KDRAY_LANES * KDRAY_LANES;
 }
 
-StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word) {
+// Rays and hits name an instance where there are some (rays.layout.h).
+StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, layout::Features features) {
+  const std::uint32_t more = features & KDRAY_FEATURE_INSTANCES ? 1 : 0;
   StreamForm form;
   form.word = word;
   form.pools = frame.pool_size > 0 ? frame.max_depth - 1 : 0;
-  form.pool_fields = KDRAY_POOL_FIELDS;
-  form.ray_fields = KDRAY_RAY_FIELDS;
-  form.shadow_fields = KDRAY_SHADOW_FIELDS;
+  form.pool_fields = KDRAY_POOL_FIELDS + more;
+  form.ray_fields = KDRAY_RAY_FIELDS + more;
+  form.shadow_fields = KDRAY_SHADOW_FIELDS + more;
+  form.hit_fields = KDRAY_HIT_FIELDS + more;
   return form;
 }
 
@@ -52,7 +55,7 @@ std::size_t StreamForm::batch_bytes(const layout::Frame& frame) const {
   return word * ray_fields * frame.batch_capacity;
 }
 std::size_t StreamForm::hit_bytes(const layout::Frame& frame) const {
-  return word * KDRAY_HIT_FIELDS * frame.batch_capacity;
+  return word * hit_fields * frame.batch_capacity;
 }
 std::size_t StreamForm::shadow_bytes(const layout::Frame& frame) const {
   return word * shadow_fields * frame.shadow_capacity;

@@ -8,12 +8,20 @@
 #ifndef KDRAY_LAYOUT_RAYS_H
 #define KDRAY_LAYOUT_RAYS_H
 #include "layout/base.layout.h"
+#include "layout/features.h"
 
 #define KDRAY_LANES 16u  // rays to a vector
 
 // This is 1 in the kernels of ODPRT, whose rays carry what another queue needs to go on with them.
 #ifndef KDRAY_ODPRT
 #define KDRAY_ODPRT 0
+#endif
+
+// Where a scene has instances, rays, hits and shadow rays have a field more: what the host adds.
+#if defined(KDRAY_HAS_INSTANCES) && KDRAY_HAS_INSTANCES
+#define KDRAY_INSTANCE_FIELDS 1u
+#else
+#define KDRAY_INSTANCE_FIELDS 0u
 #endif
 
 // The traced fields: the ray origin + t*direction with t_min < t < t_max.
@@ -37,7 +45,8 @@
 #else
 // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
 #define KDRAY_RAY_SKIP 12u
-#define KDRAY_RAY_FIELDS 13u
+#define KDRAY_RAY_SKIP_INSTANCE 13u  // where there are instances: the one that the triangle is in
+#define KDRAY_RAY_FIELDS (13u + KDRAY_INSTANCE_FIELDS)
 #endif
 
 // The word of KDRAY_RAY_FINDER: the part that holds the best hit, a byte; on the ray's way its depth in the
@@ -51,10 +60,11 @@
 
 // Shadow rays: each adds `contribution` to its pixel unless something lies inside of its interval.
 #define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS
-#define KDRAY_SHADOW_CONTRIBUTION 9u  // red green blue
-#define KDRAY_SHADOW_PIXEL 12u        // u32
-#define KDRAY_MADE_SHADOW_FIELDS 13u  // what shading writes
-#define KDRAY_SHADOW_VISITED 13u      // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
+#define KDRAY_SHADOW_CONTRIBUTION 9u                            // red green blue
+#define KDRAY_SHADOW_PIXEL 12u                                  // u32
+#define KDRAY_SHADOW_SKIP_INSTANCE 13u                          // as for rays; not in ODPRT
+#define KDRAY_MADE_SHADOW_FIELDS (13u + KDRAY_INSTANCE_FIELDS)  // what shading writes
+#define KDRAY_SHADOW_VISITED 13u  // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
 #define KDRAY_TRAVEL_SHADOW_FIELDS 15u
 #define KDRAY_SENT_SHADOW_TO 15u  // on its way: the part that it goes to
 #define KDRAY_SENT_SHADOW_FIELDS 16u
@@ -76,7 +86,8 @@
 #define KDRAY_POOL_WEIGHT 6u
 #define KDRAY_POOL_PIXEL 9u
 #define KDRAY_POOL_SKIP 10u
-#define KDRAY_POOL_FIELDS 11u
+#define KDRAY_POOL_SKIP_INSTANCE 11u
+#define KDRAY_POOL_FIELDS (11u + KDRAY_INSTANCE_FIELDS)
 #endif
 
 // Hits of a batch, with the batch's capacity.
@@ -84,7 +95,8 @@
 #define KDRAY_HIT_REF 1u  // u32: kind and index (tree.layout.h), or KDRAY_REF_MISS, KDRAY_REF_INVALID
 #define KDRAY_HIT_U 2u
 #define KDRAY_HIT_V 3u
-#define KDRAY_HIT_FIELDS 4u
+#define KDRAY_HIT_INSTANCE 4u  // u32: 1 + the instance's index, or 0
+#define KDRAY_HIT_FIELDS (4u + KDRAY_INSTANCE_FIELDS)
 
 // What became of a shadow ray: one byte for each.
 #define KDRAY_CLEAR 0u

@@ -24,6 +24,15 @@ scene::Scene flat_glass();              // a slab, a prism with total reflection
 
 scene::Scene painted();  // pictures, colours at corners, holes, veils
 
+// Meshes that are seen many times: smooth and flat ones, with holes, and of shapes; turned, mirrored,
+// stretched, large, small, in glass and mirrors, one within another, and one twice in the same place.
+scene::Scene instanced();
+
+// Moves the primitives of `part` into a new mesh of the scene, with their materials; its number.
+std::uint32_t add_mesh(scene::Scene& scene, const scene::Scene& part);
+void add_instance(scene::Scene& scene, std::uint32_t mesh, const dmat4& to_world,
+                  std::uint32_t material = scene::kNone);
+
 // `model` moved by `offset` and scaled by `scale` about the origin, camera and lights with it.
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset);
 
