@@ -18,6 +18,7 @@
 #include "base/median.h"
 #include "base/timer.h"
 #include "kdray/kdray.h"
+#include "prepare/instanced.h"
 #include "query/trace.h"
 #include "timeline/timeline.h"
 
@@ -106,6 +107,7 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
 
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
                                        Precision precision) {
+  prepare::refuse_instances(state.scene, "queries");
   api::Device& first = state.devices.first();
   Traversal traversal = api::traversal_in(precision, wanted, first.context.info());
   api::check_form(takes_binary_form(traversal, precision), state.scene);

@@ -296,6 +296,7 @@ double Scene::load_seconds() const {
 std::optional<PreparedScene> Scene::Impl::refit(const CommitOptions& options, CommitReport& report) {
   if (!committed || reshaped || !(options.refit_growth > 0)) return std::nullopt;
   const prepare::Prepared& last = committed->scene().prepared();
+  if (!last.flat.instances.empty()) return std::nullopt;
   // The binary form has planes, which don't move; and a limit on memory asks for trees of several kinds.
   if (!(last.tree_options == options.tree) || options.tree.binary_form || options.tree.memory_bytes > 0)
     return std::nullopt;

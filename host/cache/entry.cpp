@@ -25,7 +25,7 @@ constexpr std::size_t kPiece = std::size_t{1} << 20;  // hashed by one thread
 
 // The facts; materials, coats, lights and the arrays of the flat form but for the shapes' own; the wide
 // form's nodes; and for each shape its array, for each kind its blocks.
-constexpr std::size_t kSections = 1 + 3 + 13 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
+constexpr std::size_t kSections = 1 + 3 + 14 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
 
 struct Section {
   std::uint64_t offset, bytes;

@@ -133,6 +133,8 @@ Json of(const prepare::Counts& c) {
   Json counts = {c.primitives};
   primitives::for_each_kind([&](auto kind) { counts.push_back(decltype(kind)::of(c)); });
   counts.push_back(c.stitches);
+  counts.push_back(c.instances);
+  counts.push_back(c.instanced);
   return counts;
 }
 
@@ -140,14 +142,16 @@ void get(const Json& from, prepare::Counts& c) {
   from.at(0).get_to(c.primitives);
   primitives::for_each_kind([&](auto kind) { from.at(1 + kind.kNumber).get_to(decltype(kind)::of(c)); });
   from.at(1 + primitives::kKinds).get_to(c.stitches);
+  from.at(2 + primitives::kKinds).get_to(c.instances);
+  from.at(3 + primitives::kKinds).get_to(c.instanced);
 }
 
 }  // namespace
 
 std::string to_bytes(const prepare::Prepared& p) {
-  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
-               unlit, camera, cameras, framing, background, sky, ambient, settings, warnings, files,
-               load_options] = p.settings;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
+               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
+               warnings, files, load_options] = p.settings;
   const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, tree_options,
                seconds] = p;
   const Json facts = {{"name", name},
@@ -171,6 +175,7 @@ std::string to_bytes(const prepare::Prepared& p) {
                       {"tree_nodes", tree_nodes},
                       {"tree", of(tree)},
                       {"block", wide.block},
+                      {"widen", wide.widen},
                       {"stack_size", wide.stack_size}};
   std::string bytes;
   Json::to_cbor(facts, bytes);
@@ -202,6 +207,7 @@ void from_bytes(std::string_view bytes, prepare::Prepared& p) {
   facts.at("tree_nodes").get_to(p.tree_nodes);
   get(facts.at("tree"), p.tree);
   facts.at("block").get_to(p.wide.block);
+  facts.at("widen").get_to(p.wide.widen);
   facts.at("stack_size").get_to(p.wide.stack_size);
 }
 

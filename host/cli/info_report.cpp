@@ -35,9 +35,9 @@ Json paint_arrays(const scene::Paint& paint) {
 }
 
 Json scene_arrays(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
-               unlit, camera, cameras, framing, background, sky, ambient, settings, warnings, files,
-               load_options] = scene;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
+               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
+               warnings, files, load_options] = scene;
   Json arrays = {{"vertices", bytes_of(vertices)}, {"normals", bytes_of(normals)}};
   add_kinds(scene, arrays);
   arrays.update({{"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
@@ -62,8 +62,8 @@ Json tree_arrays(const kdtree::Tree& tree) {
 }
 
 Json flat_arrays(const flatten::FlatScene& flat) {
-  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures,
-               texels, texcoords, corner_colors, lights, sky, sky_colors] = flat;
+  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, coats,
+               textures, texels, texcoords, corner_colors, lights, sky, sky_colors] = flat;
   Json arrays = {{"nodes", bytes_of(nodes)}, {"references", bytes_of(refs)}};
   add_kinds(flat, arrays);
   arrays.update(

@@ -47,6 +47,17 @@ void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help) 
   add_load_options(app, input.load);
 }
 
+namespace {
+
+Instances instances_named(const std::string& name) {
+  if (name == "auto") return Instances::automatic;
+  if (name == "flat") return Instances::flat;
+  if (name == "kept") return Instances::kept;
+  throw Error(ErrorCode::usage, "--instances is auto, flat or kept, not '" + name + "'");
+}
+
+}  // namespace
+
 void add_load_options(CLI::App& app, LoadOptions& load) {
   add_text(app, "--smooth", "DEG",
            "Smooth shading for triangles without normals, where faces turn by no more than DEG (as in 40)",
@@ -63,6 +74,11 @@ void add_load_options(CLI::App& app, LoadOptions& load) {
   add_text(app, "--texture-memory", "BYTES",
            "The most that pictures on surfaces may take, as in 500M: larger ones are made smaller",
            [&load](const std::string& text) { load.texture_bytes = parse_bytes("--texture-memory", text); });
+  add_text(app, "--instances", "HOW",
+           "What shows many times: auto (held once where copies would be over a million primitives), flat "
+           "(copied) "
+           "or kept (held once)",
+           [&load](const std::string& text) { load.instances = instances_named(text); });
 }
 
 void check_load_options(const LoadOptions& load) {

@@ -73,6 +73,7 @@ struct Sides {
 }  // namespace
 
 Core core_of(const FlatScene& scene) {
+  if (!scene.instances.empty()) return {};  // their meshes are among the primitives, elsewhere than they lie
   const Box all = bounds_of_all(scene.triangles);
   Sides sides =
       sum_of<Sides>(scene.triangles, [&](Sides& sum, const layout::Triangle& t) { sum.add(t, all); });

@@ -36,6 +36,7 @@ constexpr Feature kFeatures[] = {
     {KDRAY_FEATURE_SKY, "sky"},
     {KDRAY_FEATURE_AREA_LIGHTS, "area lights"},
     {KDRAY_FEATURE_LENS, "lens"},
+    {KDRAY_FEATURE_INSTANCES, "instances"},
     {KDRAY_FEATURE_BACKGROUND, "background"},
     {KDRAY_FEATURE_SUPERSAMPLE, "supersampling"},
     {KDRAY_FEATURE_ADAPTIVE, "adaptive sampling"},
@@ -104,14 +105,19 @@ Features coat_features(const scene::Paint& paint, const scene::Coat& coat) {
          when(any(c.specular), KDRAY_FEATURE_SPECULAR) | when(any(c.diffuse), KDRAY_FEATURE_DIFFUSE);
 }
 
-// A material counts only when a primitive wears it.
-Features material_features(const scene::Scene& scene, const scene::Geometry& geometry) {
+// A material counts only when a primitive wears it. `scene` has the materials, `part` the geometry's shapes.
+std::vector<bool> materials_worn(const scene::Scene& scene, const scene::Scene& part,
+                                 const scene::Geometry& geometry) {
   std::vector<bool> used(scene.materials.size(), false);
   for (const auto& t : geometry.triangles) used[t.material] = true;
   primitives::for_each_shape([&](auto kind) {
     for (const auto& s : decltype(kind)::of(geometry))
-      used[decltype(kind)::of(scene)[s.source].material] = true;
+      used[decltype(kind)::of(part)[s.source].material] = true;
   });
+  return used;
+}
+
+Features material_features(const scene::Scene& scene, const std::vector<bool>& used) {
   Features mask = 0;
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
@@ -130,7 +136,25 @@ bool attenuated(const scene::Light& l) {
 }  // namespace
 
 Features features_of(const scene::Scene& scene, const scene::Geometry& geometry) {
-  return features_in_light(geometry_features(scene, geometry) | material_features(scene, geometry), scene);
+  return features_in_light(
+      geometry_features(scene, geometry) | material_features(scene, materials_worn(scene, scene, geometry)),
+      scene);
+}
+
+Features features_of_mesh(const scene::Scene& scene, const scene::Scene& mesh,
+                          const scene::Geometry& geometry) {
+  return features_in_light(
+      geometry_features(mesh, geometry) | material_features(scene, materials_worn(scene, mesh, geometry)),
+      scene);
+}
+
+// Numbers are those within a mesh, and its primitives lie behind others'.
+Features features_of_instances(const scene::Scene& scene) {
+  std::vector<bool> used(scene.materials.size(), false);
+  for (const scene::Instance& instance : scene.instances)
+    if (instance.material != scene::kNone) used[instance.material] = true;
+  return features_in_light(KDRAY_FEATURE_INSTANCES | KDRAY_FEATURE_NUMBERS | material_features(scene, used),
+                           scene);
 }
 
 Features features_in_light(Features mask, const scene::Scene& scene) {

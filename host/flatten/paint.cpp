@@ -139,13 +139,21 @@ void pack_paint(const scene::Scene& scene, const scene::Geometry& geometry, Flat
     const bool two_sets = uses_second_set(paint);
     flat.texels = pack_texels(paint, plan);
     flat.textures = pack_textures(paint, plan, two_sets);
-    std::vector<const PageVector<layout::TexCoords>*> sets{&paint.texcoords[0]};
-    if (two_sets) sets.push_back(&paint.texcoords[1]);
+  }
+  pack_corners_of(paint, scene, geometry, flat);
+}
+
+void pack_corners_of(const scene::Paint& paint, const scene::Scene& mesh, const scene::Geometry& geometry,
+                     FlatScene& flat) {
+  const scene::Paint& own = mesh.paint;
+  if (!paint.textures.empty()) {
+    std::vector<const PageVector<layout::TexCoords>*> sets{&own.texcoords[0]};
+    if (uses_second_set(paint)) sets.push_back(&own.texcoords[1]);
     flat.texcoords = pack_corners(geometry, sets, layout::TexCoords{});
   }
   const bool colored = std::any_of(paint.coats.begin(), paint.coats.end(),
                                    [](const scene::Coat& c) { return c.colored != 0; });
-  if (colored) flat.corner_colors = pack_corners(geometry, {&paint.colors}, scene::kWhiteCorners);
+  if (colored) flat.corner_colors = pack_corners(geometry, {&own.colors}, scene::kWhiteCorners);
 }
 
 }  // namespace kdray::flatten

@@ -19,7 +19,8 @@ bool at_least_zero(const vec3& v) {
 
 class Checker {
  public:
-  explicit Checker(const Scene& scene) : scene_(scene) {}
+  explicit Checker(const Scene& scene) : Checker(scene, scene.materials.size()) {}
+  Checker(const Scene& scene, std::size_t n_materials) : scene_(scene), n_materials_(n_materials) {}
 
   void run() const {
     check_counts();
@@ -27,6 +28,15 @@ class Checker {
     check_triangles();
     primitives::for_each_shape([this](auto kind) { check_shapes(kind); });
     check_paint();
+    check_instances();
+  }
+
+  void run_mesh() const {
+    check_counts();
+    check_values();
+    check_triangles();
+    primitives::for_each_shape([this](auto kind) { check_shapes(kind); });
+    check_corners();
   }
 
  private:
@@ -45,8 +55,7 @@ class Checker {
       if (decltype(kind)::of(scene_).size() >= kMaxPrimitivesPerKind)
         throw input_error(scene_.name, 0, "2^28 primitives of one kind or more", "split the scene");
     });
-    require_internal(scene_.primitive_count() == 0 || !scene_.materials.empty(),
-                     "primitives without a material");
+    require_internal(scene_.primitive_count() == 0 || n_materials_ > 0, "primitives without a material");
   }
 
   void check_values() const {
@@ -73,7 +82,7 @@ class Checker {
     const std::size_t n_vertices = scene_.vertices.size();
     const std::size_t n_normals = scene_.normals.size();
     for (const Triangle& t : scene_.triangles) {
-      bool good = t.material < scene_.materials.size();
+      bool good = t.material < n_materials_;
       for (const std::uint32_t v : t.vertex) good = good && v < n_vertices;
       const bool smooth = t.normal[0] != kNone;
       for (const std::uint32_t n : t.normal) good = good && (smooth ? n < n_normals : n == kNone);
@@ -84,7 +93,7 @@ class Checker {
   template <class Kind>
   void check_shapes(Kind) const {
     for (const auto& shape : Kind::of(scene_)) {
-      if (shape.material >= scene_.materials.size())
+      if (shape.material >= n_materials_)
         require_internal(false, std::string("a ") + Kind::kName + " without a material");
       if (const char* const fault = fault_of(shape))
         require(false, "primitive " + std::to_string(shape.number) + ": " + fault);
@@ -107,10 +116,31 @@ class Checker {
       require_internal(
           p && p->width > 0 && p->height > 0 && p->texels.size() == std::size_t{4} * p->width * p->height,
           "a picture without its texels");
+    check_corners();
+  }
+
+  void check_corners() const {
+    const Paint& paint = scene_.paint;
     const std::size_t n = scene_.triangles.size();
     require_internal(
         paint.colors.size() <= n && paint.texcoords[0].size() <= n && paint.texcoords[1].size() <= n,
         "colours or texture coordinates of more triangles than there are");
+  }
+
+  void check_instances() const {
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+      const Instance& instance = scene_.instances[i];
+      if (instance.mesh >= scene_.meshes.size() ||
+          (instance.material != kNone && instance.material >= scene_.materials.size()))
+        require_internal(false, "an instance without its mesh");
+      if (const char* const fault = fault_of(instance))
+        require(false, "instance " + std::to_string(i) + ": " + fault);
+    }
+    // Meshes are looked at as scenes with this one's materials; what they have is theirs already.
+    for (const auto& mesh : scene_.meshes) {
+      require_internal(mesh->instances.empty(), "instances in a mesh");
+      Checker(*mesh, scene_.materials.size()).run_mesh();
+    }
   }
 
   void check_coat(const Coat& c) const {
@@ -128,6 +158,7 @@ class Checker {
   }
 
   const Scene& scene_;
+  std::size_t n_materials_;
 };
 
 }  // namespace

@@ -36,14 +36,10 @@ constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 28;
 
 // Extensions that a file may require and that are read, or change nothing but pictures, names and surfaces.
 bool can_do_with(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kKnown = {"KHR_lights_punctual",
-                                                      "KHR_node_visibility",
-                                                      "KHR_mesh_quantization",
-                                                      "EXT_texture_webp",
-                                                      "EXT_texture_avif",
-                                                      "MSFT_texture_dds",
-                                                      "KHR_xmp",
-                                                      "KHR_xmp_json_ld"};
+  constexpr std::array<std::string_view, 9> kKnown = {
+      "KHR_lights_punctual", "EXT_mesh_gpu_instancing", "KHR_node_visibility", "KHR_mesh_quantization",
+      "EXT_texture_webp",    "EXT_texture_avif",        "MSFT_texture_dds",    "KHR_xmp",
+      "KHR_xmp_json_ld"};
   if (name == "KHR_draco_mesh_compression") return has_draco();
   if (name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression") return has_meshopt();
   return name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||

@@ -58,17 +58,41 @@ dmat3 normal_matrix(const dmat3& m) {
 }  // namespace
 
 MeshReader::MeshReader(Document& document, Scene& scene)
-    : document_(document), scene_(scene), materials_(document, scene) {}
+    : document_(document), scene_(scene), into_(&scene), materials_(document, scene) {}
 
 void MeshReader::add(const JsonNode& mesh, const dmat4& to_world, const Deformation& deformation) {
   for (const JsonNode& primitive : mesh["primitives"].elements())
     add_primitive(primitive, to_world, deformation);
 }
 
+Scene MeshReader::alone(const JsonNode& mesh) {
+  Scene scene;
+  into_ = &scene;
+  add(mesh, dmat4(1));
+  into_ = &scene_;
+  settle_normals(scene, document_.file());
+  scene_.warnings.insert(scene_.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+  scene.warnings.clear();
+  return scene;
+}
+
+std::uint64_t MeshReader::count_triangles(const JsonNode& mesh) {
+  std::uint64_t n = 0;
+  for (const JsonNode& primitive : mesh["primitives"].elements()) {
+    const std::uint64_t mode = whole_or(primitive, "mode", kTriangles);
+    const auto indices = primitive.find("indices");
+    const auto corners = indices ? indices : primitive["attributes"].find("POSITION");
+    if (mode < kTriangles || !corners) continue;
+    const std::uint64_t count = accessor_count(document_.entry("accessors", *corners));
+    n += mode == kTriangles ? count / 3 : count;
+  }
+  return n;
+}
+
 void MeshReader::check_size(const JsonNode& primitive) const {
   // Buffers beside the file count as soon as they are read.
   const std::size_t most = std::max(kMostOfSmallFile, kMostPerByte * document_.bytes_read());
-  if (scene_.vertices.size() <= most && scene_.triangles.size() <= most && n_primitives_ <= most / 16) return;
+  if (into_->vertices.size() <= most && into_->triangles.size() <= most && n_primitives_ <= most / 16) return;
   throw primitive.error(
       "the instances of this file make more than " + std::to_string(most) + " triangles of it",
       "split the scene");
@@ -79,13 +103,13 @@ void MeshReader::add_vertices(const JsonNode& primitive, const VertexMatrices& m
   const JsonNode& accessor = document_.entry("accessors", primitive["attributes"]["POSITION"]);
   auto positions = read_vectors(document_, accessor);
   morph(document_, primitive, "POSITION", deformation.weights, positions);
-  reserve_more(scene_.vertices, positions.size());
+  reserve_more(into_->vertices, positions.size());
   const dmat4 to_world = matrices.of(0);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const dmat4 m = matrices.are_all_one() ? to_world : matrices.of(i);
     const dvec3 moved = dvec3(m * glm::dvec4(positions[i], 1));
     if (!is_finite(moved)) throw accessor.error("a node's transform makes a position infinite");
-    scene_.vertices.push_back(moved);
+    into_->vertices.push_back(moved);
   }
 }
 
@@ -103,7 +127,7 @@ bool MeshReader::add_normals(const JsonNode& primitive, std::size_t n_vertices,
   const dmat3 to_normal = normal_matrix(dmat3(matrices.of(0)));
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const dmat3 m = matrices.are_all_one() ? to_normal : normal_matrix(dmat3(matrices.of(i)));
-    scene_.normals.push_back(direction_of(m * normals[i]));
+    into_->normals.push_back(direction_of(m * normals[i]));
   }
   return true;
 }
@@ -121,9 +145,9 @@ std::optional<JsonNode> MeshReader::colors_of(const JsonNode& attributes, std::s
 void MeshReader::add_colors(const JsonNode& accessor,
                             std::span<const std::array<std::uint32_t, 3>> triangles) {
   const auto values = read_colors(document_, accessor);
-  auto& colors = scene_.paint.colors;
-  reserve_more(colors, scene_.triangles.size() - colors.size());
-  colors.resize(scene_.triangles.size() - triangles.size(), kWhiteCorners);
+  auto& colors = into_->paint.colors;
+  reserve_more(colors, into_->triangles.size() - colors.size());
+  colors.resize(into_->triangles.size() - triangles.size(), kWhiteCorners);
   for (const auto& corners : triangles) {
     layout::CornerColors c{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -147,9 +171,9 @@ void MeshReader::add_texcoords(const JsonNode& attributes,
       continue;
     }
     const auto values = read_pairs(document_, accessor);
-    auto& out = scene_.paint.texcoords[set];
-    reserve_more(out, scene_.triangles.size() - out.size());
-    out.resize(scene_.triangles.size() - triangles.size());
+    auto& out = into_->paint.texcoords[set];
+    reserve_more(out, into_->triangles.size() - out.size());
+    out.resize(into_->triangles.size() - triangles.size());
     for (const auto& corners : triangles) {
       layout::TexCoords at{};
       for (std::size_t i = 0; i < 3; ++i)
@@ -172,11 +196,11 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world,
   const DracoMesh packed(document_, primitive);
   if (packed.is_there()) mode = kTriangles;
 
-  const auto first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
-  const auto first_normal = static_cast<std::uint32_t>(scene_.normals.size());
+  const auto first_vertex = static_cast<std::uint32_t>(into_->vertices.size());
+  const auto first_normal = static_cast<std::uint32_t>(into_->normals.size());
   const VertexMatrices matrices(document_, primitive, deformation, to_world);
   add_vertices(primitive, matrices, deformation);
-  const std::size_t n_vertices = scene_.vertices.size() - first_vertex;
+  const std::size_t n_vertices = into_->vertices.size() - first_vertex;
   const bool smooth = add_normals(primitive, n_vertices, matrices, deformation);
 
   RawVector<std::uint32_t> corners;
@@ -194,14 +218,14 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world,
   const std::uint32_t material = materials_.number_of(primitive, colors.has_value());
   std::vector<std::array<std::uint32_t, 3>> picks;
   const bool painted = scene_.materials[material].coat != kNone;
-  reserve_more(scene_.triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
+  reserve_more(into_->triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
   for_each_triangle(mode, corners, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (mirrored) std::swap(b, c);
     Triangle t{.vertex = {first_vertex + a, first_vertex + b, first_vertex + c}};
     if (smooth) t.normal = {first_normal + a, first_normal + b, first_normal + c};
     t.material = material;
-    t.number = static_cast<std::uint32_t>(scene_.triangles.size());
-    scene_.triangles.push_back(t);
+    t.number = static_cast<std::uint32_t>(into_->triangles.size());
+    into_->triangles.push_back(t);
     if (painted) picks.push_back({a, b, c});
   });
   if (!painted) return;

@@ -25,6 +25,10 @@ class MeshReader {
   MeshReader(Document& document, Scene& scene);
 
   void add(const JsonNode& mesh, const dmat4& to_world, const Deformation& deformation = {});
+  // The mesh by itself, with the scene's materials.
+  Scene alone(const JsonNode& mesh);
+  // As many triangles as add() would add, or a few more.
+  std::uint64_t count_triangles(const JsonNode& mesh);
   // Called after the last mesh.
   void finish();
   // There is one warning for each kind of thing that is left out, however often it comes.
@@ -45,7 +49,8 @@ class MeshReader {
   void check_size(const JsonNode& primitive) const;
 
   Document& document_;
-  Scene& scene_;
+  Scene& scene_;  // that has the materials
+  Scene* into_;   // that triangles are added to
   Materials materials_;
   std::size_t n_primitives_ = 0;
   std::set<std::string> left_out_;

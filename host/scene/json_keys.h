@@ -42,8 +42,9 @@ inline constexpr std::string_view disc_light[] = {"type",  "position",    "norma
 inline constexpr std::string_view stop[] = {"height", "color"};
 inline constexpr std::string_view gradient[] = {"type", "stops", "up"};
 inline constexpr std::string_view sky_picture[] = {"type", "file", "up", "turn", "strength"};
-inline constexpr std::string_view mesh[] = {"type",   "file",  "material", "translate",
-                                            "rotate", "scale", "matrix",   "smooth"};
+inline constexpr std::string_view mesh[] = {"type",  "file",   "material", "translate", "rotate",
+                                            "scale", "matrix", "smooth",   "instances"};
+inline constexpr std::string_view instance[] = {"translate", "rotate", "scale", "matrix", "material"};
 inline constexpr std::string_view triangles[] = {"type",      "vertices", "faces", "normals", "material",
                                                  "translate", "rotate",   "scale", "matrix",  "uv"};
 inline constexpr std::string_view box[] = {"type",      "min",    "max",   "material",
@@ -74,6 +75,7 @@ inline constexpr JsonKeys kStop{"stop", list::stop};
 inline constexpr JsonKeys kGradient{"gradient", list::gradient};
 inline constexpr JsonKeys kSkyPicture{"sky_picture", list::sky_picture};
 inline constexpr JsonKeys kMesh{"mesh", list::mesh};
+inline constexpr JsonKeys kInstance{"instance", list::instance};
 inline constexpr JsonKeys kTriangles{"triangles", list::triangles};
 inline constexpr JsonKeys kBox{"box", list::box};
 inline constexpr JsonKeys kCylinder{"cylinder", list::cylinder};
@@ -94,6 +96,7 @@ inline constexpr std::array kAll = {kScene,
                                     kDirectionalLight,
                                     kSpotLight,
                                     kMesh,
+                                    kInstance,
                                     kTriangles,
                                     KDRAY_SHAPES(KDRAY_SHAPE_KEYS) kTurn,
                                     kRectangleLight,

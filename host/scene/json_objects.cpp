@@ -9,6 +9,7 @@
 #include "scene/add_polygon.h"
 #include "scene/check_scene.h"
 #include "scene/import.h"
+#include "scene/instances.h"
 #include "scene/read_file.h"
 #include "scene/smooth_normals.h"
 #include "scene/transform.h"
@@ -167,6 +168,7 @@ const Scene& JsonObjects::mesh(const JsonNode& file) {
   if (it != meshes_.end()) return it->second;
   const std::filesystem::path path = folder_ / name;
   if (format_of(path) == ".json") throw file.error("a scene cannot include another .json scene");
+  const Instancing copied(Instances::flat);  // a part has no instances of its own
   Scene& part = meshes_[name] = import_scene(path);
   scene_.warnings.insert(scene_.warnings.end(), part.warnings.begin(), part.warnings.end());
   return part;
@@ -189,7 +191,60 @@ void JsonObjects::read_mesh(const JsonNode& object) {
       for (auto& shape : decltype(kind)::of(part)) shape.material = 0;
     });
   }
+  if (const auto instances = object.find("instances")) return append_instances(std::move(part), *instances);
   append(part, object);
+}
+
+// The part with the scene's materials in place of its own.
+Scene JsonObjects::adopted(Scene&& part) {
+  const std::vector<std::uint32_t> coats = scene_.paint.append(
+      {.coats = part.paint.coats, .textures = part.paint.textures, .pictures = part.paint.pictures},
+      scene_.triangles.size(), 0);
+  std::vector<std::uint32_t> numbers;
+  for (Material material : part.materials) {
+    if (material.coat != kNone) material.coat = coats[material.coat];
+    numbers.push_back(materials_.add(material));
+  }
+  for (Triangle& t : part.triangles) t.material = numbers[t.material];
+  primitives::for_each_shape([&](auto kind) {
+    for (auto& shape : decltype(kind)::of(part)) shape.material = numbers[shape.material];
+  });
+  Scene mesh;
+  mesh.name = part.name;
+  mesh.vertices = std::move(part.vertices);
+  mesh.normals = std::move(part.normals);
+  mesh.triangles = std::move(part.triangles);
+  primitives::for_each_shape(
+      [&](auto kind) { decltype(kind)::of(mesh) = std::move(decltype(kind)::of(part)); });
+  mesh.paint.colors = std::move(part.paint.colors);
+  mesh.paint.texcoords = std::move(part.paint.texcoords);
+  return mesh;
+}
+
+void JsonObjects::append_instances(Scene&& part, const JsonNode& list) {
+  if (!list.is_array()) throw list.expected("a list of placements");
+  const auto mesh = std::make_shared<const Scene>(adopted(std::move(part)));
+  if (mesh->primitive_count() == 0) return;
+  const bool kept = worth_keeping(mesh->primitive_count(), list.size());
+  const auto number = static_cast<std::uint32_t>(scene_.meshes.size());
+  if (kept && list.size() > 0) scene_.meshes.push_back(mesh);
+  for (const JsonNode& placement : list.elements()) {
+    placement.expect_keys(json_keys::kInstance);
+    Instance instance = instance_of(read_transform(placement).value_or(dmat4(1)), number);
+    if (placement.find("material")) instance.material = materials_.add(material_of(placement));
+    if (const char* const fault = fault_of(instance)) throw placement.error(fault);
+    if (kept) {
+      scene_.instances.push_back(instance);
+      continue;
+    }
+    try {
+      add_copy(*mesh, instance, scene_);
+    } catch (const std::domain_error& e) {
+      throw placement.error(e.what());
+    }
+  }
+  if (scene_.instances.size() >= kMaxInstances) throw list.error("2^27 instances or more", "leave some out");
+  number_ = scene_.primitive_count();
 }
 
 void JsonObjects::read_triangles(const JsonNode& object) {

@@ -41,6 +41,8 @@ class JsonObjects {
   void wear(Scene& part, const Material& material) const;
   const Scene& mesh(const JsonNode& file);
   void append(const Scene& part, const JsonNode& object);
+  void append_instances(Scene&& part, const JsonNode& list);
+  Scene adopted(Scene&& part);
 
   Scene& scene_;
   const NamedMaterials& named_;
@@ -49,7 +51,7 @@ class JsonObjects {
   MaterialTable materials_;
   std::map<std::string, Scene> meshes_;  // a file named by several objects is read once
   Unsettled unsettled_;
-  std::uint32_t number_ = 0;
+  std::uint32_t number_ = 0;  // of the next primitive
 };
 
 }  // namespace kdray::scene

@@ -12,6 +12,7 @@
 #include "scene/frame.h"
 #include "scene/import.h"
 #include "scene/importers.h"
+#include "scene/instances.h"
 #include "scene/picture_limit.h"
 #include "scene/read_file.h"
 #include "scene/smooth_normals.h"
@@ -123,7 +124,14 @@ Scene finished(Scene&& scene, const std::filesystem::path& file, const LoadOptio
   if (const std::string format = format_of(file); options.time && format != ".gltf" && format != ".glb")
     scene.warnings.push_back(file.string() + ": at any time it is the same; only glTF files have animations");
   scene.load_options = options;
-  if (options.smooth_degrees) smooth_normals(scene, *options.smooth_degrees);
+  if (options.smooth_degrees) {
+    smooth_normals(scene, *options.smooth_degrees);
+    for (auto& mesh : scene.meshes) {
+      auto smooth = std::make_shared<Scene>(*mesh);
+      smooth_normals(*smooth, *options.smooth_degrees);
+      mesh = std::move(smooth);
+    }
+  }
   if (options.texture_bytes > 0) fit_pictures(scene, options.texture_bytes);
   frame_scene(scene);
   return std::move(scene);
@@ -135,6 +143,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   check(options);
   FilesRead files;
   check_ending(file, format_of(file));
+  const Instancing instancing(options.instances);
   Scene scene = finished(import_text(read_file(file), file, options), file, options);
   scene.files = files.take();
   return scene;
@@ -143,6 +152,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
 Scene load_from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options) {
   check(options);
   FilesRead files;
+  const Instancing instancing(options.instances);
   check_ending(name, format_of(name));
   Scene scene = finished(import_text(unpacked(std::move(bytes), name), name, options), name, options);
   scene.files = files.take();

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "math/vec.h"
 #include "primitives/shapes.h"
 #include "scene/files_read.h"
+#include "scene/instances.h"
 #include "scene/paint.h"
 #include "scene/sky.h"
 
@@ -107,7 +109,9 @@ struct Scene {
 #define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct> names;
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
-  std::vector<Material> materials;  // at least one when there is a primitive
+  std::vector<std::shared_ptr<const Scene>> meshes;  // of primitives alone
+  PageVector<Instance> instances;                    // of these, in file order
+  std::vector<Material> materials;                   // at least one when there is a primitive
   Paint paint;
   std::vector<Light> lights;
   bool unlit = false;  // the file says that there are no lights; else frame_scene() adds some where none are
@@ -122,10 +126,11 @@ struct Scene {
   std::vector<FileRead> files;        // what it was loaded from, by load() only
   LoadOptions load_options;           // that it was loaded with
 
+  // Of the scene's own, without its meshes'.
   std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(primitives::count_primitives(*this));
   }
-  DBox bounds() const;
+  DBox bounds() const;  // with its instances'
 };
 
 }  // namespace kdray::scene

@@ -75,6 +75,8 @@ std::string division_options(const RenderOptions& o, int queues) {
 std::string command_for(const Sight& sight, const Settings& settings, const std::string& scene) {
   const RenderOptions options = render_of(sight, settings);
   std::string text = "kdray render " + quoted(scene);
+  if (settings.load.instances == Instances::flat) text += " --instances flat";
+  if (settings.load.instances == Instances::kept) text += " --instances kept";
   if (settings.load.smooth_degrees) text += fmt::format(" --smooth {}", *settings.load.smooth_degrees);
   if (settings.load.time) text += fmt::format(" --time {}", *settings.load.time);
   if (!settings.load.animation.empty()) text += " --animation " + quoted(settings.load.animation);

@@ -23,8 +23,8 @@ constexpr layout::Features kLooks = kPaint | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FE
                                     KDRAY_FEATURE_NORMAL_MAPS | KDRAY_FEATURE_LIGHT_MAPS;
 // What lights with an area add to rays, and what else a scene has to have for its code to be of use.
 constexpr layout::Features kSamples = KDRAY_FEATURES_NOISY;
-constexpr layout::Features kGeometry =
-    KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS | KDRAY_FEATURE_STITCHES | KDRAY_KEEP_TRACING;
+constexpr layout::Features kGeometry = KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS |
+                                       KDRAY_FEATURE_STITCHES | KDRAY_FEATURE_INSTANCES | KDRAY_KEEP_TRACING;
 constexpr layout::Features kShading =
     kGeometry | kLooks | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT |
     KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
@@ -46,8 +46,9 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 layout::Features bits_read_by(const std::string& file) {
   if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
   if (file == "raygen/admit.cl")
-    return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_FOOTPRINTS | kSamples;
-  if (file == "film/add.cl") return 0;
+    return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_FOOTPRINTS | kSamples |
+           KDRAY_FEATURE_INSTANCES;
+  if (file == "film/add.cl") return KDRAY_FEATURE_INSTANCES;
   if (file == "film/channels.cl") return kGeometry | kPaint | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
   if (file == "shade/shade.cl") return kShading;
   if (file == "wave/wave.cl" || file == "odprt/wave.cl")
@@ -64,8 +65,8 @@ layout::Features bits_read_by(const std::string& file) {
 // nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
 // (odprt/admit.clh).
 layout::Features spare_bits_of(const std::string& file) {
-  layout::Features bits =
-      bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks | KDRAY_FEATURE_SKY | kSamples);
+  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks |
+                                                 KDRAY_FEATURE_SKY | kSamples | KDRAY_FEATURE_INSTANCES);
   if (file == "odprt/wave.cl")
     bits &= ~(KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS);
   return bits;
@@ -115,6 +116,7 @@ Programs::Programs(const device::Context& context, const TreeForm& form, std::st
       wide_stack_size_(std::max(rounded_up(form.stack, kWideStacks), kLeastWideStack)),
       any_order_stack_size_(any_order_stack_size(form.depth)),
       block_(form.block),
+      widen_(form.widen),
       prefetch_(form.bytes > kNear),
       far_(form.bytes > kFar) {
   use({});
@@ -122,7 +124,12 @@ Programs::Programs(const device::Context& context, const TreeForm& form, std::st
 
 Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
                    std::string more_options)
-    : Programs(context, TreeForm{tree_depth, wide.stack_size, wide.block, wide.bytes()},
+    : Programs(context,
+               TreeForm{.depth = tree_depth,
+                        .widen = wide.widen,
+                        .stack = wide.stack_size,
+                        .block = wide.block,
+                        .bytes = wide.bytes()},
                std::move(more_options)) {}
 
 // Large trees are deep ones.
@@ -166,6 +173,7 @@ std::string Programs::options_for(const std::string& file, Traversal traversal, 
                            number_of(traversal), block_, stack) +
                walk_options_;
   }
+  if (widen_ > 1) options += fmt::format(" -DKDRAY_PAD={}*0x1p-19f", widen_);
   if (file == "closest/closest_points.cl")
     options += fmt::format(" -DKDRAY_CLOSEST_STACK={}", any_order_stack_size_);
   if (context_->rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";

@@ -41,12 +41,12 @@ struct SliceRoom {
 struct StreamForm {
   std::size_t word = sizeof(float);  // bytes of a number
   std::uint32_t pools = 0;           // of a slice: depths whose rays may have to wait
-  std::uint32_t pool_fields = 0, ray_fields = 0, shadow_fields = 0;
+  std::uint32_t pool_fields = 0, ray_fields = 0, shadow_fields = 0, hit_fields = KDRAY_HIT_FIELDS;
   bool sparse_pools = false;  // most of them are nearly empty at any time
   bool film_cleared = false;  // as it is made
 
   // The streams of the kernels of a single device, and of ODPRT's.
-  static StreamForm of_device(const layout::Frame& frame, std::size_t word, layout::Features features);
+  static StreamForm of_device(const layout::Frame& frame, std::size_t word, layout::Features features = 0);
   static StreamForm of_odprt(const layout::Frame& frame, layout::Features features);
 
   // Of one slice's streams: all of them, and the largest.

@@ -10,10 +10,13 @@
 //         nowhere is refused at the first launch, by name; one that is set and is not here does not compile.
 #ifndef KDRAY_LAYOUT_ARGUMENTS_H
 #define KDRAY_LAYOUT_ARGUMENTS_H
+#include "layout/instances.layout.h"
 #include "layout/kinds.h"
 
 // The scene's arrays. host/wavefront/scene_buffers.h holds a buffer for each of them, by these names.
-#define KDRAY_PRIMITIVE_ARRAYS(X) KDRAY_KINDS_WITH(KDRAY_ARRAY_OF_KIND, X)
+#define KDRAY_PRIMITIVE_ARRAYS(X)          \
+  KDRAY_KINDS_WITH(KDRAY_ARRAY_OF_KIND, X) \
+  X(IN, Instance, instances)
 #define KDRAY_ARRAY_OF_KIND(X, NAME, name, names, Struct) X(IN, Struct, names)
 #define KDRAY_TREE_ARRAYS(X)  \
   X(IN, KdNode, nodes)        \

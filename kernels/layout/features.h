@@ -49,6 +49,9 @@
 #define KDRAY_FEATURE_SPOT KDRAY_FEATURE(51)
 // A core with faces around it; removes looking whether rays pass it by.
 #define KDRAY_FEATURE_FACES KDRAY_FEATURE(52)
+// Instances of meshes (instances.layout.h); removes walks and surfaces in other spaces, and the instance from
+// rays and hits.
+#define KDRAY_FEATURE_INSTANCES KDRAY_FEATURE(53)
 #define KDRAY_FEATURE_BACKGROUND KDRAY_FEATURE(56)   // a background other than black
 #define KDRAY_FEATURE_SUPERSAMPLE KDRAY_FEATURE(57)  // more than one sample per pixel
 #define KDRAY_FEATURE_ADAPTIVE KDRAY_FEATURE(58)     // rounds of single samples beside whole tiles
@@ -63,7 +66,8 @@
 
 #ifdef __OPENCL_C_VERSION__
 #ifndef KDRAY_FEATURES
-#define KDRAY_FEATURES (~KDRAY_KEEP_ALL)
+// Instances are left out: streams have other fields with them.
+#define KDRAY_FEATURES (~(KDRAY_KEEP_ALL | KDRAY_FEATURE_INSTANCES))
 #endif
 #define KDRAY_HAS_KIND(NAME) ((KDRAY_FEATURES & KDRAY_FEATURE_KIND(NAME)) != 0)
 // Kinds whose test asks for the square of the direction.
@@ -97,6 +101,7 @@
 #define KDRAY_HAS_AREA_LIGHTS ((KDRAY_FEATURES & KDRAY_FEATURE_AREA_LIGHTS) != 0)
 #define KDRAY_HAS_LENS ((KDRAY_FEATURES & KDRAY_FEATURE_LENS) != 0)
 #define KDRAY_HAS_FACES ((KDRAY_FEATURES & KDRAY_FEATURE_FACES) != 0)
+#define KDRAY_HAS_INSTANCES ((KDRAY_FEATURES & KDRAY_FEATURE_INSTANCES) != 0)
 #define KDRAY_HAS_BACKGROUND ((KDRAY_FEATURES & KDRAY_FEATURE_BACKGROUND) != 0)
 #define KDRAY_HAS_SUPERSAMPLE ((KDRAY_FEATURES & KDRAY_FEATURE_SUPERSAMPLE) != 0)
 #define KDRAY_HAS_ADAPTIVE ((KDRAY_FEATURES & KDRAY_FEATURE_ADAPTIVE) != 0)

@@ -24,6 +24,12 @@
 #else
 #define KDRAY_PENCIL_FIELDS 0u
 #endif
+// Where a scene has instances, rays, hits and shadow rays have a field more: what the host adds.
+#if defined(KDRAY_HAS_INSTANCES) && KDRAY_HAS_INSTANCES
+#define KDRAY_INSTANCE_FIELDS 1u
+#else
+#define KDRAY_INSTANCE_FIELDS 0u
+#endif
 
 // The traced fields: the ray origin + t*direction with t_min < t < t_max.
 #define KDRAY_RAY_ORIGIN 0u  // x y z
@@ -48,9 +54,10 @@
 #else
 // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
 #define KDRAY_RAY_SKIP 12u
-#define KDRAY_RAY_SAMPLE 13u
-#define KDRAY_RAY_PENCIL (13u + KDRAY_TELLS_SAMPLE)
-#define KDRAY_RAY_FIELDS (13u + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
+#define KDRAY_RAY_SKIP_INSTANCE 13u  // where there are instances: the one that the triangle is in
+#define KDRAY_RAY_SAMPLE (13u + KDRAY_INSTANCE_FIELDS)
+#define KDRAY_RAY_PENCIL (13u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE)
+#define KDRAY_RAY_FIELDS (13u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
 #endif
 // With area lights a ray tells its pixel and sample: u32, 16 bits of the pixel's hash above the sample's
 // number.
@@ -72,10 +79,11 @@
 
 // Shadow rays: each adds `contribution` to its pixel unless something lies inside of its interval.
 #define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS
-#define KDRAY_SHADOW_CONTRIBUTION 9u  // red green blue
-#define KDRAY_SHADOW_PIXEL 12u        // u32
-#define KDRAY_MADE_SHADOW_FIELDS 13u  // what shading writes
-#define KDRAY_SHADOW_VISITED 13u      // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
+#define KDRAY_SHADOW_CONTRIBUTION 9u                            // red green blue
+#define KDRAY_SHADOW_PIXEL 12u                                  // u32
+#define KDRAY_SHADOW_SKIP_INSTANCE 13u                          // as for rays; not in ODPRT
+#define KDRAY_MADE_SHADOW_FIELDS (13u + KDRAY_INSTANCE_FIELDS)  // what shading writes
+#define KDRAY_SHADOW_VISITED 13u  // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
 #define KDRAY_TRAVEL_SHADOW_FIELDS 15u
 #define KDRAY_SENT_SHADOW_TO 15u  // on its way: the part that it goes to
 #define KDRAY_SENT_SHADOW_FIELDS 16u
@@ -98,13 +106,14 @@
 #define KDRAY_POOL_WEIGHT 6u
 #define KDRAY_POOL_PIXEL 9u
 #define KDRAY_POOL_SKIP 10u
-#define KDRAY_POOL_SAMPLE 11u
-#define KDRAY_POOL_FIELDS (11u + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
+#define KDRAY_POOL_SKIP_INSTANCE 11u
+#define KDRAY_POOL_SAMPLE (11u + KDRAY_INSTANCE_FIELDS)
+#define KDRAY_POOL_FIELDS (11u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
 #endif
 #if KDRAY_ODPRT
 #define KDRAY_POOL_PENCIL KDRAY_RAY_PENCIL
 #else
-#define KDRAY_POOL_PENCIL (11u + KDRAY_TELLS_SAMPLE)
+#define KDRAY_POOL_PENCIL (11u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE)
 #endif
 
 // Hits of a batch, with the batch's capacity.
@@ -112,7 +121,8 @@
 #define KDRAY_HIT_REF 1u  // u32: kind and index (tree.layout.h), or KDRAY_REF_MISS, KDRAY_REF_INVALID
 #define KDRAY_HIT_U 2u
 #define KDRAY_HIT_V 3u
-#define KDRAY_HIT_FIELDS 4u
+#define KDRAY_HIT_INSTANCE 4u  // u32: 1 + the instance's index, or 0
+#define KDRAY_HIT_FIELDS (4u + KDRAY_INSTANCE_FIELDS)
 
 // What became of a shadow ray: one byte for each.
 #define KDRAY_CLEAR 0u

@@ -1,11 +1,13 @@
 #include "image/scenes.h"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 
 #include "conformance/all_kinds.h"
 #include "oracle/build_scene.h"
+#include "scene/transform.h"
 #include "support/scene_fields.h"
 
 namespace kdray::test {
@@ -304,9 +306,81 @@ scene::Scene under_a_sky() {
   return s;
 }
 
+std::uint32_t add_mesh(scene::Scene& scene, const scene::Scene& part) {
+  const auto first = static_cast<std::uint32_t>(scene.materials.size());
+  const std::vector<std::uint32_t> coats = scene.paint.append(
+      {.coats = part.paint.coats, .textures = part.paint.textures, .pictures = part.paint.pictures}, 0, 0);
+  for (scene::Material m : part.materials) {
+    if (m.coat != scene::kNone) m.coat = coats[m.coat];
+    scene.materials.push_back(m);
+  }
+  auto mesh = std::make_shared<scene::Scene>();
+  mesh->vertices = part.vertices;
+  mesh->normals = part.normals;
+  mesh->triangles = part.triangles;
+  primitives::for_each_shape([&](auto kind) { decltype(kind)::of(*mesh) = decltype(kind)::of(part); });
+  mesh->paint.colors = part.paint.colors;
+  mesh->paint.texcoords = part.paint.texcoords;
+  for (auto& t : mesh->triangles) t.material += first;
+  primitives::for_each_shape([&](auto kind) {
+    for (auto& shape : decltype(kind)::of(*mesh)) shape.material += first;
+  });
+  scene.meshes.push_back(mesh);
+  return static_cast<std::uint32_t>(scene.meshes.size() - 1);
+}
+
+void add_instance(scene::Scene& scene, std::uint32_t mesh, const dmat4& to_world, std::uint32_t material) {
+  scene::Instance instance = scene::instance_of(to_world, mesh);
+  instance.material = material;
+  scene.instances.push_back(instance);
+}
+
+scene::Scene instanced() {
+  using scene::rotation, scene::scaling, scene::translation;
+  scene::Scene s = with_floor().scene();
+  scene::Scene ball;
+  add_smooth_ball(ball, {3, 1, 0}, 1.5, 9, plastic({0.8f, 0.3f, 0.2f}, 20, 0.2f));
+  scene::Scene glass_ball;
+  add_smooth_ball(glass_ball, {0, 0, 0}, 1, 8, tinted_glass({0.6f, 0.9f, 0.7f}, 1.4f));
+  SceneBuilder shapes;
+  shapes.sphere({0, 0, 0}, 0.5, plastic({0.2f, 0.4f, 0.9f}, 15, 0.1f));
+  shapes.cone({0, 0.4, 0}, 0.4, {0.2, 1.4, 0}, 0.1, plastic({0.9f, 0.8f, 0.2f}, 10));
+  shapes.quad({-0.7, -0.5, 0.7}, {1.4, 0, 0}, {0, 0, -1.4}, oracle::mirror({0.7f, 0.7f, 0.8f}));
+  scene::Scene picture = painted();  // without the floor, which are its first triangles
+  const auto drop_floor = [](auto& items) {
+    if (items.size() > 2) items.erase(items.begin(), items.begin() + 2);
+  };
+  drop_floor(picture.triangles);
+  drop_floor(picture.paint.colors);
+  for (auto& set : picture.paint.texcoords) drop_floor(set);
+  for (auto& t : picture.triangles) t.number -= 2;
+  const std::uint32_t balls = add_mesh(s, ball), glass = add_mesh(s, glass_ball),
+                      mixed = add_mesh(s, shapes.scene()), painted_part = add_mesh(s, picture);
+  const auto own = static_cast<std::uint32_t>(s.materials.size());
+  s.materials.push_back(plastic({0.3f, 0.7f, 0.3f}, 30, 0.3f));
+  const dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  add_instance(s, balls, translation({-3.4, -0.6, 0}) * scaling(dvec3(0.6)));
+  add_instance(s, balls, translation({1.8, 0.4, -3}) * rotation(z, 0.5) * scaling({-0.7, 0.4, 0.9}), own);
+  add_instance(s, glass, translation({-0.3, -0.2, 1.6}) * rotation(x, 0.3) * scaling({0.8, 0.6, 0.7}));
+  add_instance(s, balls, translation({-0.5, -0.3, 1.6}) * scaling(dvec3(0.1)));
+  add_instance(s, mixed, translation({1.7, -0.3, 1.5}) * rotation(y, 1) * scaling(dvec3(1.2)));
+  add_instance(s, mixed, translation({1.7, -0.3, 1.5}) * rotation(y, 1) * scaling(dvec3(1.2)), own);
+  add_instance(s, mixed, translation({-2.5, 0.8, -1}) * rotation(z, 2) * scaling({0.9, -0.9, 0.9}));
+  add_instance(s, painted_part, translation({0.2, 0.9, -2.5}) * rotation(y, 0.2) * scaling(dvec3(0.6)));
+  for (int i = 0; i < 40; ++i)
+    add_instance(s, i % 2 ? mixed : balls,
+                 translation({-3 + 0.15 * i, -0.85, 2.6 + 0.02 * i}) * rotation(y, i) *
+                     scaling(dvec3(0.004 * (1 + i % 5))));
+  return s;
+}
+
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset) {
   const auto place = [&](dvec3& p) { p = p * scale + offset; };
   scale_and_move(model, scale, offset);
+  for (scene::Instance& i : model.instances) {
+    i.linear *= scale;
+    place(i.move);
+  }
   for (scene::Light& l : model.lights) {
     place(l.position);
     l.range *= scale;

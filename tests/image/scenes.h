@@ -27,6 +27,15 @@ scene::Scene mapped();       // mipmaps, and pictures of metal, normals, emissio
 scene::Scene soft_light();   // lights of each kind that has an area, before a gradient
 scene::Scene under_a_sky();  // a picture all around, seen through a lens
 
+// Meshes that are seen many times: smooth and flat ones, with holes, and of shapes; turned, mirrored,
+// stretched, large, small, in glass and mirrors, one within another, and one twice in the same place.
+scene::Scene instanced();
+
+// Moves the primitives of `part` into a new mesh of the scene, with their materials; its number.
+std::uint32_t add_mesh(scene::Scene& scene, const scene::Scene& part);
+void add_instance(scene::Scene& scene, std::uint32_t mesh, const dmat4& to_world,
+                  std::uint32_t material = scene::kNone);
+
 // `model` moved by `offset` and scaled by `scale` about the origin, camera and lights with it.
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset);
 

@@ -6,6 +6,7 @@
 #include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
 #include "scene/importers.h"
+#include "scene/instances.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {
@@ -311,7 +312,10 @@ TEST(Gltf, BoundsWhatInstancesMake) {
   for (int i = 0; i < 2000; ++i) nodes.push_back({{"mesh", 0}}), roots.push_back(i);
   sample.json["nodes"] = nodes;
   sample.json["scenes"][0]["nodes"] = roots;
+  const Instancing copied(Instances::flat);
   EXPECT_SAYS(refused(sample), "the instances of this file make more than");
+  const Instancing kept(Instances::automatic);
+  EXPECT_EQ(read(sample).instances.size(), 2000u);
 }
 
 TEST(Gltf, ReadsTheFirstPerspectiveCamera) {

@@ -66,8 +66,9 @@ json example(const json& root, const json& rule, const std::string& key) {
     json array = json::array();
     const int n = rule.value("minItems", 1);
     for (int i = 0; i < n; ++i)
-      array.push_back(key == "objects" || key == "lights" || key == "stops" ? example(root, rule["items"], "")
-                                                                            : json(i + 1));
+      array.push_back(key == "objects" || key == "lights" || key == "stops" || key == "instances"
+                          ? example(root, rule["items"], "")
+                          : json(i + 1));
     return array;
   }
   const double low = rule.value("minimum", 1.0);
@@ -111,6 +112,9 @@ class Schema : public ::testing::Test {
       document["background"] = {{"type", "gradient"}, {"stops", json::array({object})}};
     } else if (name == "turn") {
       document["objects"] = json::array({json{{"type", "mesh"}, {"file", "mesh.nff"}, {"rotate", object}}});
+    } else if (name == "instance") {
+      document["objects"] =
+          json::array({json{{"type", "mesh"}, {"file", "mesh.nff"}, {"instances", json::array({object})}}});
     } else {
       document["objects"] = json::array({object});
     }
