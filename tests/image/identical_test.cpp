@@ -118,15 +118,14 @@ TEST_P(Identical, OneRendererTwice) {
   EXPECT_TRUE(same_bits(first.rgb, renderer.render(exact_options(kWidth, kHeight)).rgb));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Identical,
-                         testing::Values(NamedScene{"spheres_and_glass", glass_and_mirror_balls},
-                                         NamedScene{"smooth_meshes", smooth_meshes},
-                                         NamedScene{"cones", cones_and_cylinders},
-                                         NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
-                                         NamedScene{"soft_light", soft_light},
-                                         NamedScene{"under_a_sky", under_a_sky},
-                                         NamedScene{"instanced", instanced}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Identical,
+    testing::Values(NamedScene{"spheres_and_glass", glass_and_mirror_balls},
+                    NamedScene{"smooth_meshes", smooth_meshes}, NamedScene{"cones", cones_and_cylinders},
+                    NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
+                    NamedScene{"soft_light", soft_light}, NamedScene{"under_a_sky", under_a_sky},
+                    NamedScene{"instanced", instanced}, NamedScene{"instanced_maps", instanced_maps}),
+    [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace kdray::test

@@ -64,6 +64,17 @@ TEST(Instances, LookLikeCopies) {
   EXPECT_LT(d.mean, 1e-3);
 }
 
+// Tangents and footprints are found in the scene, mirrored and stretched as the mesh is there.
+TEST(Instances, WithPicturesOfNormalsLookLikeCopies) {
+  const scene::Scene model = instanced_maps();
+  const Picture kept = rendered(model, Traversal::automatic, 2),
+                flat = rendered(with_copies(model), Traversal::automatic, 2);
+  ASSERT_TRUE(all_finite(kept));
+  const Difference d = between(kept, flat);
+  EXPECT_LT(d.pixels, kWidth * kHeight / 200) << "of " << kWidth * kHeight;
+  EXPECT_LT(d.mean, 1e-3);
+}
+
 // Eye rays and their lights alone: nothing that reflects makes one edge many.
 TEST(Instances, LookLikeCopiesToEyeRays) {
   const scene::Scene model = instanced();

@@ -335,7 +335,10 @@ void add_instance(scene::Scene& scene, std::uint32_t mesh, const dmat4& to_world
   scene.instances.push_back(instance);
 }
 
-scene::Scene instanced() {
+namespace {
+
+// `picture` is painted() or mapped().
+scene::Scene instanced_with(scene::Scene picture) {
   using scene::rotation, scene::scaling, scene::translation;
   scene::Scene s = with_floor().scene();
   scene::Scene ball;
@@ -346,7 +349,7 @@ scene::Scene instanced() {
   shapes.sphere({0, 0, 0}, 0.5, plastic({0.2f, 0.4f, 0.9f}, 15, 0.1f));
   shapes.cone({0, 0.4, 0}, 0.4, {0.2, 1.4, 0}, 0.1, plastic({0.9f, 0.8f, 0.2f}, 10));
   shapes.quad({-0.7, -0.5, 0.7}, {1.4, 0, 0}, {0, 0, -1.4}, oracle::mirror({0.7f, 0.7f, 0.8f}));
-  scene::Scene picture = painted();  // without the floor, which are its first triangles
+  // Without the floor, which are its first triangles.
   const auto drop_floor = [](auto& items) {
     if (items.size() > 2) items.erase(items.begin(), items.begin() + 2);
   };
@@ -371,6 +374,21 @@ scene::Scene instanced() {
     add_instance(s, i % 2 ? mixed : balls,
                  translation({-3 + 0.15 * i, -0.85, 2.6 + 0.02 * i}) * rotation(y, i) *
                      scaling(dvec3(0.004 * (1 + i % 5))));
+  return s;
+}
+
+}  // namespace
+
+scene::Scene instanced() {
+  return instanced_with(painted());
+}
+
+scene::Scene instanced_maps() {
+  using scene::rotation, scene::scaling, scene::translation;
+  scene::Scene s = instanced_with(mapped());
+  const auto painted_part = static_cast<std::uint32_t>(s.meshes.size() - 1);
+  add_instance(s, painted_part,
+               translation({-2.4, 0.3, -1}) * rotation({0, 1, 0}, -0.4) * scaling({-0.4, 0.5, 0.3}));
   return s;
 }
 

@@ -30,6 +30,7 @@ scene::Scene under_a_sky();  // a picture all around, seen through a lens
 // Meshes that are seen many times: smooth and flat ones, with holes, and of shapes; turned, mirrored,
 // stretched, large, small, in glass and mirrors, one within another, and one twice in the same place.
 scene::Scene instanced();
+scene::Scene instanced_maps();  // ... of surfaces with mipmaps and pictures of normals, one of them mirrored
 
 // Moves the primitives of `part` into a new mesh of the scene, with their materials; its number.
 std::uint32_t add_mesh(scene::Scene& scene, const scene::Scene& part);

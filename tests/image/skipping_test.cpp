@@ -80,7 +80,8 @@ INSTANTIATE_TEST_SUITE_P(Painted, AllRules,
                          testing::Values(NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
                                          NamedScene{"soft_light", soft_light},
                                          NamedScene{"under_a_sky", under_a_sky},
-                                         NamedScene{"instanced", instanced}),
+                                         NamedScene{"instanced", instanced},
+                                         NamedScene{"instanced_maps", instanced_maps}),
                          [](const auto& info) { return info.param.name; });
 
 // Reflected and refracted rays start beside the flat triangle, whatever its normals are.
