@@ -9,6 +9,7 @@
 
 #include "scene/importers.h"
 #include "scene/json_keys.h"
+#include "scene/pictures.h"
 #include "scene/scratch.h"
 #include "support/data.h"
 
@@ -49,6 +50,9 @@ json example(const json& root, const json& rule, const std::string& key) {
   if (key == "vertices" || key == "normals") return json::parse("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]");
   if (key == "faces") return json::parse("[[0, 1, 2]]");
   if (key == "file") return "mesh.nff";
+  if (key.ends_with("picture")) return "p.png";
+  if (key == "uv") return json::parse("[[0, 0], [1, 0], [0, 1]]");
+  if (rule.contains("enum")) return rule["enum"][0];
   if (key == "material") return "m";
   if (key == "materials") return json::object({{"m", example_object(root, definition(root, "material"))}});
   if (key == "at" || key == "apex") return {1, 2, 9};
@@ -91,6 +95,7 @@ class Schema : public ::testing::Test {
  protected:
   Schema() {
     folder_.write("mesh.nff", "f 1 1 1 1 0 1 0 0\ns 0 0 0 1\n");
+    folder_.write("p.png", test::four_colors());
     folder_.write("sky.hdr", "#?RADIANCE\n\n-Y 1 +X 1\nabcd");
   }
 

@@ -128,7 +128,8 @@ class Batch {
         context_.build(K::kFile, "-cl-std=CL1.2 " + device::build_option(context_.simd()) +
                                      fmt::format(" -DKDRAY_FEATURES={}ul",
                                                  ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_SKY |
-                                                   KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_CUTOUTS))));
+                                                   KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_CUTOUTS |
+                                                   KDRAY_FEATURE_INSTANCES | KDRAY_FEATURE_FOOTPRINTS))));
 #define KDRAY_SET_NONE(access, type, name) kernel.set(K::name, none);
     KDRAY_SURFACE_ARRAYS(KDRAY_SET_NONE)
     KDRAY_PAINT_ARRAYS(KDRAY_SET_NONE)
