@@ -118,7 +118,7 @@ static void check_looks(void) {
   light.size = sizeof light, camera.size = sizeof camera;
   expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
   expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, NULL, NULL) == KDRAY_OK, "a mesh");
-  light.kind = 3;
+  light.kind = 99;
   expect(kdray_add_light(scene, &light) == KDRAY_USAGE, "a light of no kind");
   light.kind = KDRAY_SPOT_LIGHT, light.outer_degrees = 200;
   expect(kdray_add_light(scene, &light) == KDRAY_INPUT, "an angle beyond all");

@@ -388,7 +388,7 @@ scene::Scene instanced_maps() {
   scene::Scene s = instanced_with(mapped());
   const auto painted_part = static_cast<std::uint32_t>(s.meshes.size() - 1);
   add_instance(s, painted_part,
-               translation({-2.4, 0.3, -1}) * rotation({0, 1, 0}, -0.4) * scaling({-0.4, 0.5, 0.3}));
+               translation({-2.4, 0.3, -1}) * rotation({0, 1, 0}, -0.4) * scaling({-0.4, 0.4, 0.4}));
   return s;
 }
 

@@ -177,11 +177,14 @@ TEST_F(Schema, RequiresWhatTheReaderRequires) {
     const std::string name(keys.name);
     const json& rule = definition(root_, name);
     const json required = rule.value("required", json::array());
+    const json dependent = rule.value("dependentRequired", json::object());
     const json full = example_object(root_, rule);
     for (const auto& [key, value] : full.items()) {
       json less = full;
       less.erase(key);
-      const bool needed = std::find(required.begin(), required.end(), key) != required.end();
+      bool needed = std::find(required.begin(), required.end(), key) != required.end();
+      for (const auto& [other, wanted] : dependent.items())
+        needed = needed || std::find(wanted.begin(), wanted.end(), key) != wanted.end();
       if (key == "materials") continue;  // the objects of the example name one
       if (needed) {
         EXPECT_THROW(read(document_with(name, less)), Error) << name << " without " << key;
