@@ -1,11 +1,11 @@
 // What    How rank 0 finds out that a list of tiles is done on all ranks: that none has anything to do, and
 //         nothing is on its way that could give it something.
 // Shape   In waves. A rank answers a wave when it has nothing to do, with how many messages it has sent and
-//         received so far of those that bring work. All is over when two waves in a row bring the same counts,
-//         and as many were received as sent: nobody has received anything between its two answers, so all
-//         had nothing to do at the moment between the waves, and nothing was on its way then.
-// Source  F. Mattern, "Algorithms for distributed termination detection", Distributed Computing 2 (1987), 4.2:
-//         the four counter method.
+//         received so far of those that bring work. All is over when two waves in a row bring the same
+//         counts, and as many were received as sent: nobody has received anything between its two answers,
+//         so all had nothing to do at the moment between the waves, and nothing was on its way then.
+// Source  F. Mattern, "Algorithms for distributed termination detection", Distributed Computing 2 (1987),
+//         4.2: the four counter method.
 #pragma once
 
 #include <cstddef>

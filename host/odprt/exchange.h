@@ -8,8 +8,8 @@
 // Why     A queue waits for another only when it has no outbox left that isn't being read, or no grant:
 //         receivers read before they launch and need nothing for it, so no ring of queues can wait for each
 //         other (ledger.h has the rest).
-// Ranks   With others (post.h) the mail of their parts goes to them, and only all together know when the frame
-//         is done.
+// Ranks   With others (post.h) the mail of their parts goes to them, and only all together know when the
+//         frame is done.
 // Threads One for each queue, and one for the post.
 #pragma once
 
@@ -64,8 +64,8 @@ struct ExchangeCounts {
 
 class Exchange {
  public:
-  // `owner` has the queue of each part, among those of all ranks; `direct[q][p]`: queue q's outbox can be read
-  // by the queue of part p. Else queues are this rank's.
+  // `owner` has the queue of each part, among those of all ranks; `direct[q][p]`: queue q's outbox can be
+  // read by the queue of part p. Else queues are this rank's.
   Exchange(const Plan& plan, const RankTable& table, std::vector<std::size_t> owner,
            std::vector<std::vector<bool>> direct, std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes,
            const Shares& shares);

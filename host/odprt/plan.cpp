@@ -20,8 +20,8 @@ constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 
 // How many rays of a level a slice may have: enough that no queue waits for what others hold, or a few of the
-// buffers that were asked for; and so many that, whoever has the room for them, some rank has twice what a ray
-// needs (post.h).
+// buffers that were asked for; and so many that, whoever has the room for them, some rank has twice what a
+// ray needs (post.h).
 std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uint32_t n_slices) {
   if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least * r.n_ranks);
   const std::uint32_t in_work = kBatch * (std::min(least, 4u) * r.n_queues + 2);

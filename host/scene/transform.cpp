@@ -31,8 +31,8 @@ double similarity_factor(const dmat3& m, const std::string& what) {
   return factor;
 }
 
-// What is in front stays there when all is mirrored: the second and third corners change places, with all that
-// is at them.
+// What is in front stays there when all is mirrored: the second and third corners change places, with all
+// that is at them.
 void turn_round(Scene& scene) {
   for (Triangle& t : scene.triangles) {
     std::swap(t.vertex[1], t.vertex[2]);

@@ -18,8 +18,8 @@ constexpr Hash kKey{0x123456789abcdef0, 0x0fedcba987654321};
 constexpr std::size_t kPage = 4096;
 
 // The header's checksum lies behind the bytes that it is of; entry.cpp.
-// The facts, materials, coats and lights, fourteen arrays of the flat form, the wide form's nodes; each shape's
-// own array, and each kind's blocks.
+// The facts, materials, coats and lights, fourteen arrays of the flat form, the wide form's nodes; each
+// shape's own array, and each kind's blocks.
 constexpr std::size_t kSections = 1 + 3 + 14 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
 constexpr std::size_t kHeaderBytes = 8 + 8 + 8 + 16 + kSections * 40;
 constexpr std::size_t kFirstSection = 8 + 8 + 8 + 16;

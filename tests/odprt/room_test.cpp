@@ -1,5 +1,5 @@
-// Room in the ledger that goes from rank to rank: it is never more nor less than it was, goes back to where it
-// came from, and a rank without any gets some.
+// Room in the ledger that goes from rank to rank: it is never more nor less than it was, goes back to where
+// it came from, and a rank without any gets some.
 #include "odprt/room.h"
 
 #include <gtest/gtest.h>
