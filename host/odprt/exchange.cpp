@@ -133,7 +133,13 @@ bool Exchange::is_idle() const {
 
 bool Exchange::is_short_of_room() const {
   const std::lock_guard lock(mutex_);
-  return !nothing_is_left() && std::ranges::all_of(stuck_, [](char stuck) { return stuck; });
+  if (nothing_is_left()) return false;
+  bool any = false, all = true;
+  for (std::size_t q = 0; q < stuck_.size(); ++q) {
+    any = any || stuck_[q] != 0;
+    all = all && (stuck_[q] != 0 || waiting_[q] != 0);  // one that waits may have no rays
+  }
+  return any && all;
 }
 
 std::uint64_t Exchange::n_mail(std::uint32_t first_part, std::size_t n_parts) const {
