@@ -46,7 +46,7 @@ Crew make_crew(const Request& request, const Provision& provision, const Divisio
   crew.direct.resize(crew.workers.size());
   for (std::size_t q = 0; q < crew.workers.size(); ++q)
     for (std::uint32_t part = 0; part < provision.n_parts; ++part)
-      crew.direct[q].push_back(!provision.streamed && request.table.is_own(crew.owner[part]) &&
+      crew.direct[q].push_back(provision.plan.outbox.n_places > 1 && request.table.is_own(crew.owner[part]) &&
                                request.queues[q].context ==
                                    request.queues[crew.owner[part] - request.table.own_first()].context);
   return crew;

@@ -16,7 +16,8 @@ constexpr std::uint32_t kBatch = 512;                     // large batches keep 
 constexpr std::uint32_t kWaves = 16, kLaunchWaves = 256;  // of a slice in a launch, and of all slices
 // For all slices together, how many rays of a depth may be alive, and how many an outbox holds for a part.
 constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
-// Where parts come and go: rays that may wait in the host's memory, in a queue's pool, and in the outbox.
+constexpr std::uint32_t kMostPlaces = 4;
+// Where the host sorts: rays that may wait in its memory, in a queue's pool, and in the outbox.
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 
 // How many rays of a level a slice may have: enough that no queue waits for what others hold, or a few of the
@@ -44,11 +45,16 @@ std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {
 
 // Rays of one depth that a slice's pool holds, where that is less than what may be alive.
 std::uint32_t streamed_pool(const PlanRequest& r, std::uint32_t n_slices, std::uint32_t max_depth) {
+  if (!r.streamed) return kStreamedPool;
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(
       r.memory / kPoolShare / kRayBytes / max_depth / n_slices, 2 * kBatch, kStreamedPool));
 }
 
 }  // namespace
+
+bool host_sorts(const PlanRequest& r) {
+  return r.streamed || r.n_parts > kMostPlaces;
+}
 
 Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   Plan plan;
@@ -67,16 +73,16 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
     plan.capacity.push_back(level_capacity(r, least, plan.n_slices));
   const std::uint32_t largest = *std::max_element(plan.capacity.begin() + 1, plan.capacity.end());
   const std::uint32_t streamed = streamed_pool(r, plan.n_slices, frame.max_depth);
-  frame.pool_size = r.streamed ? std::min(streamed, largest) : largest;
+  const bool sorts = host_sorts(r);
+  frame.pool_size = sorts ? std::min(streamed, largest) : largest;
   frame.pool_capacity = capacity_for(frame.pool_size);
-  plan.shadow_pool = r.streamed ? std::min(streamed, plan.capacity[0]) : plan.capacity[0];
+  plan.shadow_pool = sorts ? std::min(streamed, plan.capacity[0]) : plan.capacity[0];
 
   OutboxShape& out = plan.outbox;
-  // Where parts come and go all rays are copied, and few parts are what most of a launch's go to: they share
-  // the room.
-  out.n_places = r.streamed ? 1 : r.n_parts;
+  // Few parts are what most of a launch's rays go to: where all are copied, they share the room.
+  out.n_places = sorts ? 1 : r.n_parts;
   out.n_slices = plan.n_slices;
-  out.ray_fields += wavefront::pencil_fields(r.features);
+  out.ray_fields = wavefront::travel_fields(r.features);
   out.rays = outbox_rays(r, plan.n_slices);
   out.shadow = lights ? std::max(r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights) : 1;
   // Where there is one part nothing is ever sent.

@@ -45,17 +45,18 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
   p.frame = request.frame;
   p.n_parts = n_parts;
   p.streamed = streamed;
-  p.n_outboxes = streamed ? 1  // what is sent is copied at once
-                          : std::clamp(kOutboxPlaces / n_parts, kLeastOutboxes, kMostOutboxes);
-  p.plan = make_plan(p.frame, {.features = request.features,
-                               .n_parts = n_parts,
-                               .n_queues = static_cast<std::uint32_t>(request.table.n_queues()),
-                               .n_ranks = request.table.place().ranks,
-                               // Where memory is short, there are no more slices than compute units, about.
-                               .n_slices = streamed ? (request.n_slices + 15) / 16 : request.n_slices,
-                               .ray_buffer = request.ray_buffer,
-                               .memory = of_queue,
-                               .streamed = streamed});
+  const PlanRequest plan{.features = request.features,
+                         .n_parts = n_parts,
+                         .n_queues = static_cast<std::uint32_t>(request.table.n_queues()),
+                         .n_ranks = request.table.place().ranks,
+                         // Where memory is short, there are no more slices than compute units, about.
+                         .n_slices = streamed ? (request.n_slices + 15) / 16 : request.n_slices,
+                         .ray_buffer = request.ray_buffer,
+                         .memory = of_queue,
+                         .streamed = streamed};
+  p.n_outboxes = host_sorts(plan) ? 1  // what is sent is copied at once
+                                  : std::clamp(kOutboxPlaces / n_parts, kLeastOutboxes, kMostOutboxes);
+  p.plan = make_plan(p.frame, plan);
   p.bands = wavefront::bands_of(p.frame, film_bytes);
   for (const wavefront::Band& band : p.bands) p.room.places = std::max(p.room.places, band.n_pixels);
   p.room.entries = p.frame.n_tiles;
@@ -88,8 +89,8 @@ std::optional<Provision> try_streamed(const Request& request, std::size_t geomet
       p.most_geometry = of_queue - work;
       return p;
     }
-    if (n_parts >= most_parts(request)) return std::nullopt;
-    n_parts = std::min<std::uint32_t>(n_parts + std::max(n_parts / 2, 1u), most_parts(request));
+    if (n_parts >= kMostParts) return std::nullopt;
+    n_parts = std::min<std::uint32_t>(n_parts + std::max(n_parts / 2, 1u), kMostParts);
   }
 }
 
@@ -102,10 +103,6 @@ Provision provide_streamed(const Request& request, std::size_t geometry_bytes, s
 }
 
 }  // namespace
-
-std::uint32_t most_parts(const Request& request) {
-  return (request.features & KDRAY_FEATURE_AREA_LIGHTS) != 0 ? KDRAY_MAX_PARTS_TELLING : KDRAY_MAX_PARTS;
-}
 
 Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts) {
   const auto n_queues = static_cast<std::uint32_t>(request.table.n_queues());
@@ -121,7 +118,7 @@ bool fits(const Provision& provision, const Division& division, const Request& r
   if (!provision.streamed) return true;
   const std::size_t largest = room_bytes(division) + division.directory.size() * sizeof(layout::PartCell);
   if (largest <= provision.most_geometry) return true;
-  if (provision.n_parts < most_parts(request)) return false;
+  if (provision.n_parts < kMostParts) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "layout/odprt.layout.h"
 #include "odprt/division.h"
 #include "odprt/plan.h"
 #include "odprt/render.h"
@@ -18,6 +19,9 @@ namespace kdray::odprt {
 // several parts and parts are of unequal size.
 inline constexpr double kSpareGeometry = 1.3;
 
+// The most parts that a ray can name.
+inline constexpr std::uint32_t kMostParts = KDRAY_MAX_PARTS;
+
 struct Provision {
   layout::Frame frame;  // with the plan's sizes
   Plan plan;
@@ -28,9 +32,6 @@ struct Provision {
   std::vector<wavefront::Band> bands;
   WorkRoom room;  // of a queue: the largest band, or a round's samples
 };
-
-// The most parts that rays have bits for.
-std::uint32_t most_parts(const Request& request);
 
 // There are as many parts as queues where that fits, and more, which come and go, where the request's limit
 // is too small for it; then `least_parts` at least.

@@ -17,7 +17,7 @@ namespace kdray::odprt {
 
 namespace {
 
-constexpr std::size_t kSubtreesPerPart = 16, kLeastSubtrees = 64, kMostSubtrees = 512;
+constexpr std::size_t kSubtreesPerPart = 16, kLeastSubtrees = 64, kMostSubtrees = 512, kFewPerPart = 4;
 // A queue may hold so much more than an equal share of the geometry. Less is replicated where primitives in
 // several parts would take it beyond that.
 constexpr double kMostSpare = 0.2;
@@ -26,7 +26,8 @@ constexpr std::uint32_t kCensusEvery = 16;
 constexpr double kHitCost = 20;  // of what a hit is shaded for; a node costs 1
 
 std::size_t subtrees_for(std::size_t n_parts) {
-  return std::clamp(kSubtreesPerPart * n_parts, kLeastSubtrees, kMostSubtrees);
+  return std::clamp(kSubtreesPerPart * n_parts, kLeastSubtrees,
+                    std::max(kMostSubtrees, kFewPerPart * n_parts));
 }
 
 // With a limit nothing is held twice. Where all parts stay, they keep to what has been provided for; where
@@ -132,7 +133,7 @@ Provision DividedScene::divide_for(const Request& request) {
     if (!provision.streamed) measure_costs(request);
     divide_by(options_for(provision, request));
     if (fits(provision, *division_, request)) return provision;
-    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, most_parts(request));
+    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, kMostParts);
   }
 }
 
@@ -179,10 +180,10 @@ Result DividedScene::render_once(const Request& request) {
 
 Result DividedScene::render(const Request& asked) {
   Request request = asked;
-  if (request.table.n_queues() > most_parts(request))
+  if (request.table.n_queues() > kMostParts)
     throw Error(ErrorCode::usage,
                 fmt::format("odprt takes {} queues at most, of all ranks together; take fewer (--queues)",
-                            most_parts(request)));
+                            kMostParts));
   const bool learns = request.balance == Balance::dynamic && request.table.ranks == nullptr;
   if (learns) request.census_every = kCensusEvery;
   std::vector<Quarantined> quarantined;

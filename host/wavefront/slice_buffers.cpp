@@ -24,6 +24,11 @@ std::uint32_t pencil_fields(layout::Features features) {
   return features & KDRAY_FEATURE_FOOTPRINTS ? 1 : 0;
 }
 
+std::uint32_t travel_fields(layout::Features features) {
+  const std::uint32_t of_sample = features & KDRAY_FEATURE_AREA_LIGHTS ? 1 : 0;
+  return KDRAY_TRAVEL_RAY_FIELDS + pencil_fields(features) + of_sample;
+}
+
 std::uint32_t capacity_for(std::uint32_t n) {
   return (n + 2 * KDRAY_LANES - 1) / KDRAY_LANES * KDRAY_LANES;
 }
@@ -46,7 +51,7 @@ StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, l
 StreamForm StreamForm::of_odprt(const layout::Frame& frame, layout::Features features) {
   StreamForm form;
   form.pools = frame.max_depth;
-  form.pool_fields = form.ray_fields = KDRAY_TRAVEL_RAY_FIELDS + pencil_fields(features);
+  form.pool_fields = form.ray_fields = travel_fields(features);
   form.shadow_fields = KDRAY_TRAVEL_SHADOW_FIELDS;
   form.sparse_pools = true;
   form.film_cleared = true;

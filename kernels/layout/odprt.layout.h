@@ -1,14 +1,13 @@
 // What    ODPRT: what a queue knows of the division of the scene, and what a slice keeps account of.
-// Shape   The scene is divided into parts; a ray carries a bit for each part that has been asked for its hit,
-//         in two words.
+// Shape   The scene is divided into parts; a ray carries how far it has come on its way through them, in two
+//         words (odprt/way.clh).
 #ifndef KDRAY_LAYOUT_ODPRT_H
 #define KDRAY_LAYOUT_ODPRT_H
 #include "layout/base.layout.h"
 #include "layout/frame.layout.h"
 
-#define KDRAY_MAX_PARTS 64
-#define KDRAY_MAX_PARTS_TELLING 32  // where rays tell their sample (KDRAY_RAY_SAMPLE)
-#define KDRAY_NO_PART 255u
+#define KDRAY_MAX_PARTS 2048
+#define KDRAY_NO_PART 4095u
 
 KDRAY_LAYOUT_BEGIN
 // Bounds of some of a part's contents; the cells that follow, if any are below it, are bounds of less of them

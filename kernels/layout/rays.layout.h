@@ -44,13 +44,13 @@
 // In ODPRT a ray brings the best hit so far, whose t is the float below t_max.
 #define KDRAY_RAY_NUMBER 12u         // u32: of its primitive, in file order
 #define KDRAY_RAY_FINDER 13u         // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
-#define KDRAY_RAY_VISITED 14u        // two u32: a bit for each part that was asked
-#define KDRAY_TRAVEL_RAY_FIELDS 16u  // and its pencil
+#define KDRAY_RAY_WAY 14u            // a float, u32: the parts that were asked (odprt/way.clh)
+#define KDRAY_TRAVEL_RAY_FIELDS 16u  // and its pencil, and its sample
 #if KDRAY_ODPRT
-#define KDRAY_RAY_SKIP 0u     // none: a part may not know another's triangle
-#define KDRAY_RAY_SAMPLE 15u  // in place of the second word of VISITED: there are 32 parts at most then
+#define KDRAY_RAY_SKIP 0u  // none: a part may not know another's triangle
 #define KDRAY_RAY_PENCIL 16u
-#define KDRAY_RAY_FIELDS (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_PENCIL_FIELDS)
+#define KDRAY_RAY_SAMPLE (16u + KDRAY_PENCIL_FIELDS)
+#define KDRAY_RAY_FIELDS (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_PENCIL_FIELDS + KDRAY_TELLS_SAMPLE)
 #else
 // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
 #define KDRAY_RAY_SKIP 12u
@@ -66,16 +66,15 @@
 #else
 #define KDRAY_TELLS_SAMPLE 0u  // by the host: in scenes without
 #endif
-#define KDRAY_VISITED_WORDS (2u - KDRAY_TELLS_SAMPLE)  // of a ray
 
-// The word of KDRAY_RAY_FINDER: the part that holds the best hit, a byte; on the ray's way its depth in the
-// byte above and, from bit 16 on, the part that it goes to. For u32 and vectors of them. A ray that is there
+// The word of KDRAY_RAY_FINDER: the part that holds the best hit, in 12 bits; on the ray's way its depth in
+// the 7 above and, from bit 19 on, the part that it goes to. For u32 and vectors of them. A ray that is there
 // has the part alone.
-#define KDRAY_FINDER(part, depth) ((part) | (depth) << 8)
-#define KDRAY_FINDER_TO(word, to) ((word) | (to) << 16)
-#define KDRAY_FINDER_PART(word) ((word)&255u)
-#define KDRAY_FINDER_DEPTH(word) ((word) >> 8 & 255u)
-#define KDRAY_FINDER_GOES_TO(word) ((word) >> 16)
+#define KDRAY_FINDER(part, depth) ((part) | (depth) << 12)
+#define KDRAY_FINDER_TO(word, to) ((word) | (to) << 19)
+#define KDRAY_FINDER_PART(word) ((word)&4095u)
+#define KDRAY_FINDER_DEPTH(word) ((word) >> 12 & 127u)
+#define KDRAY_FINDER_GOES_TO(word) ((word) >> 19)
 
 // Shadow rays: each adds `contribution` to its pixel unless something lies inside of its interval.
 #define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS
@@ -83,7 +82,7 @@
 #define KDRAY_SHADOW_PIXEL 12u                                  // u32
 #define KDRAY_SHADOW_SKIP_INSTANCE 13u                          // as for rays; not in ODPRT
 #define KDRAY_MADE_SHADOW_FIELDS (13u + KDRAY_INSTANCE_FIELDS)  // what shading writes
-#define KDRAY_SHADOW_VISITED 13u  // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
+#define KDRAY_SHADOW_WAY 13u  // ODPRT, of those that come from elsewhere: as KDRAY_RAY_WAY
 #define KDRAY_TRAVEL_SHADOW_FIELDS 15u
 #define KDRAY_SENT_SHADOW_TO 15u  // on its way: the part that it goes to
 #define KDRAY_SENT_SHADOW_FIELDS 16u

@@ -121,6 +121,15 @@ TEST_P(OdprtRanksTest, AnyNumberOfRanksAndQueues) {
   }
 }
 
+// More than a ray could have a bit for each.
+TEST_P(OdprtRanksTest, ManyQueues) {
+  const Result reference = alone_with({.small = true});
+  for (const std::vector<int>& queues : {std::vector{70}, {40, 33}}) {
+    SCOPED_TRACE(testing::PrintToString(queues));
+    expect_same(render({.queues_of = queues, .small = true}), reference);
+  }
+}
+
 TEST_P(OdprtRanksTest, AdaptiveSampling) {
   const Result reference = alone_with({.adaptive_target = 0.02});
   expect_same(render({.queues_of = {1, 2, 1}, .adaptive_target = 0.02}), reference);
