@@ -1,0 +1,24 @@
+// What    A rank's share of a scene that every rank has read whole: for formats that can't be read otherwise.
+// Memory  The scene's, until the share is taken.
+
+#include "distribute/share.h"
+#include "flatten/features.h"
+
+namespace kdray::distribute {
+
+Share share_of(const scene::Scene& scene, const transport::Together& all) {
+  Share share;
+  const scene::Geometry geometry = scene::make_geometry(scene);
+  prepare::describe(share.whole, scene, geometry);
+  share.whole.features = flatten::features_of(scene, geometry);
+  share.whole.geometry.bounds = geometry.bounds;
+  flatten::FlatScene flat = flatten::flatten(scene, geometry, kdtree::Tree(), false);
+  add_slice(share.goods, scene, geometry, flat, all.rank(), all.size());
+  share.goods.bare_stitches.clear();  // they have their neighbours' normals, which are here
+  flat.triangles = {}, flat.normals = {}, flat.corner_colors = {}, flat.texcoords = {};
+  primitives::for_each_shape([&](auto kind) { decltype(kind)::of(flat) = {}; });
+  share.whole.flat = std::move(flat);
+  return share;
+}
+
+}  // namespace kdray::distribute
