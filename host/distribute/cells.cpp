@@ -96,7 +96,8 @@ void offer_planes(const std::array<Bin, kBins>& bins, int axis, std::uint64_t n,
 
 class Divider {
  public:
-  Divider(const Goods& goods, transport::Together& all) : goods_(goods), all_(all), cell_of_(goods.size(), 0) {
+  Divider(const Goods& goods, transport::Together& all)
+      : goods_(goods), all_(all), cell_of_(goods.size(), 0) {
     for_each_box(goods_, [&](std::uint32_t number, const Box& bounds) {
       const Item item = item_of(number, bounds);
       root_.all.add({1, item.bounds, {item.middle, item.middle}});
@@ -206,9 +207,9 @@ class Divider {
   transport::Together& all_;
   std::vector<std::uint32_t> cell_of_;
   Node root_;
-  std::vector<Node> nodes_;           // the leaves, in order
-  std::vector<std::size_t> places_;   // of each, among those that are to be split; kWhole: it isn't
-  std::vector<Bins> bins_;            // of these
+  std::vector<Node> nodes_;          // the leaves, in order
+  std::vector<std::size_t> places_;  // of each, among those that are to be split; kWhole: it isn't
+  std::vector<Bins> bins_;           // of these
   std::uint64_t most_ = 1;
 };
 
@@ -231,8 +232,10 @@ std::vector<std::uint32_t> deal_cells(const std::vector<Cell>& cells, int ranks)
   for (const Cell& cell : cells) {
     // Where its middle is in the run of all.
     const auto middle = static_cast<unsigned __int128>(2 * before + cell.n);
-    const auto rank = static_cast<std::uint64_t>(middle * static_cast<unsigned>(ranks) / (2 * std::max<std::uint64_t>(n, 1)));
-    rank_of.push_back(static_cast<std::uint32_t>(std::min<std::uint64_t>(rank, static_cast<std::uint64_t>(ranks) - 1)));
+    const auto rank = static_cast<std::uint64_t>(middle * static_cast<unsigned>(ranks) /
+                                                 (2 * std::max<std::uint64_t>(n, 1)));
+    rank_of.push_back(
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(rank, static_cast<std::uint64_t>(ranks) - 1)));
     before += cell.n;
   }
   return rank_of;

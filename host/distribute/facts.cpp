@@ -15,7 +15,8 @@ void Facts::add(const scene::Scene& scene, const scene::Geometry& geometry) {
   part.stitches = geometry.stitches.size();
   primitives::for_each_kind(
       [&](auto kind) { part.counts[kind.kNumber] = decltype(kind)::of(geometry).size(); });
-  if (!geometry.triangles.empty()) part.last_number = geometry.triangles[geometry.triangles.size() - 1].number;
+  if (!geometry.triangles.empty())
+    part.last_number = geometry.triangles[geometry.triangles.size() - 1].number;
   part.features = flatten::features_of(scene, geometry) & ~KDRAY_FEATURE_NUMBERS;
   part.bounds = geometry.bounds;
   add(part);

@@ -36,7 +36,9 @@ struct Goods {
   // Places of stitches to which the file gives no normals.
   std::vector<std::uint32_t> bare_stitches;
 
-  std::size_t size() const { return primitives::count_primitives(*this); }
+  std::size_t size() const {
+    return primitives::count_primitives(*this);
+  }
 };
 
 // From the first of n to before the last: which of n things are the `rank`-th of `size` ranks'.

@@ -75,7 +75,9 @@ CornerRows rows_of(const prepare::Prepared& whole) {
 class Builder {
  public:
   Builder(prepare::Prepared whole, const TreeOptions& options, transport::Together& all)
-      : made_(std::move(whole)), options_(options), all_(all) {}
+      : made_(std::move(whole)), options_(options), all_(all) {
+    options_.binary_form = false;  // what ODPRT divides is the wide form
+  }
 
   prepare::Prepared build(Goods goods) {
     const Timer timer;
@@ -142,17 +144,14 @@ class Builder {
 };
 
 flatten::Core core_of_all(const flatten::FlatScene& flat, transport::Together& all) {
-  const Box bounds = all.join_values(flatten::triangle_bounds(flat),
-                                     [](Box& sum, const Box& one) { sum.grow(one); });
-  const flatten::Sides sides =
-      all.join_values(flatten::sides_of(flat, bounds),
-                      [](flatten::Sides& sum, const flatten::Sides& one) { sum.grow(one); });
+  const Box bounds =
+      all.join_values(flatten::triangle_bounds(flat), [](Box& sum, const Box& one) { sum.grow(one); });
+  const flatten::Sides sides = all.join_values(
+      flatten::sides_of(flat, bounds), [](flatten::Sides& sum, const flatten::Sides& one) { sum.grow(one); });
   return flatten::core_of(bounds, sides);
 }
 
 Holding hold_share(Share share, const TreeOptions& tree, transport::Together& all) {
-  if (tree.binary_form)
-    throw Error(ErrorCode::usage, "a scene that is divided among ranks has no binary tree; take another --traversal");
   Holding holding;
   Cells cells = divide_into_cells(share.goods, cells_for(all.sum<std::uint64_t>(share.goods.size())), all);
   holding.rank_of = deal_cells(cells.cells, all.size());

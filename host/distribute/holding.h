@@ -35,7 +35,7 @@ struct Holding {
   std::vector<std::uint32_t> rank_of;  // of each cell
 };
 
-// Every rank calls it, with the same options.
+// Every rank calls it, with the same options; there is no binary tree, whatever they say.
 Holding hold(const std::filesystem::path& file, const LoadOptions& load, const TreeOptions& tree,
              transport::Together& all);
 

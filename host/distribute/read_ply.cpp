@@ -117,7 +117,8 @@ class PlyReader {
     for (const Corners& c : faces)
       mesh.add_triangle(place_in(wanted, c[0]), place_in(wanted, c[1]), place_in(wanted, c[2]));
     scene::Scene part = mesh.finish(file_);
-    const auto first = static_cast<std::uint32_t>(first_face_ + static_cast<std::size_t>(faces.data() - faces_.data()));
+    const auto first =
+        static_cast<std::uint32_t>(first_face_ + static_cast<std::size_t>(faces.data() - faces_.data()));
     for (scene::Triangle& t : part.triangles) t.number += first;
     sample_middles(part);
     const scene::Geometry geometry = scene::make_geometry_in(share_.whole.geometry.space, part);
@@ -152,8 +153,9 @@ class PlyReader {
       reader.take(middles, parts[from].size() / sizeof(dvec3));
       reader.end();
     }
-    scene::frame_scene(share_.whole.settings,
-                       {.bounds = bounds, .n_primitives = rows_.n_faces(), .middles = [&] { return middles; }});
+    scene::frame_scene(
+        share_.whole.settings,
+        {.bounds = bounds, .n_primitives = rows_.n_faces(), .middles = [&] { return middles; }});
   }
 
   std::string file_;

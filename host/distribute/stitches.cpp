@@ -42,7 +42,8 @@ const layout::Triangle& triangle_of(const Goods& goods, std::uint32_t number) {
 std::vector<vec3> normals_of_neighbours(const Goods& goods, scene::StitchSides& sides,
                                         transport::Together& all) {
   const std::vector<std::uint32_t> own(sides.neighbours().begin(), sides.neighbours().end());
-  all.join_lists(sides.neighbours(), [](std::uint32_t& least, std::uint32_t one) { least = std::min(least, one); });
+  all.join_lists(sides.neighbours(),
+                 [](std::uint32_t& least, std::uint32_t one) { least = std::min(least, one); });
   std::vector<vec3> normals(own.size(), vec3(0));
   for (std::size_t i = 0; i < own.size(); ++i)
     if (own[i] != scene::StitchSides::kNobody && own[i] == sides.neighbours()[i])
@@ -58,17 +59,19 @@ std::vector<vec3> normals_of_neighbours(const Goods& goods, scene::StitchSides& 
 void settle_stitches(Goods& goods, transport::Together& all) {
   const Stitches stitches = gather_stitches(goods, all);
   scene::StitchSides sides(stitches);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, goods.triangles.size(), kGrainOfStitches), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      sides.meet(goods.triangles[i], goods.triangles[i].number);
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, goods.triangles.size(), kGrainOfStitches),
+                    [&](const auto& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i)
+                        sides.meet(goods.triangles[i], goods.triangles[i].number);
+                    });
   const std::vector<vec3> neighbours = normals_of_neighbours(goods, sides, all);
   const std::vector<vec3> normals = sides.normals([&](std::size_t side) { return neighbours[side]; });
   for (const std::uint32_t place : goods.bare_stitches) {
     const layout::Triangle& t = goods.triangles[place];
     const auto found = std::ranges::lower_bound(stitches, t.number, {}, &layout::Triangle::number);
     const vec3& normal = normals[static_cast<std::size_t>(found - stitches.begin())];
-    for (auto& at_corner : goods.normals[t.normals & KDRAY_NORMALS_MASK].n) primitives::set(at_corner, normal);
+    for (auto& at_corner : goods.normals[t.normals & KDRAY_NORMALS_MASK].n)
+      primitives::set(at_corner, normal);
   }
   goods.bare_stitches.clear();
 }

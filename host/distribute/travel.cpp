@@ -26,7 +26,8 @@ bool has_normals(const layout::Triangle& t) {
 
 class Carrier {
  public:
-  Carrier(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows, transport::Together& all)
+  Carrier(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
+          transport::Together& all)
       : goods_(std::move(goods)), rank_of_(rank_of), rows_(rows), all_(all) {}
 
   Goods carry() {
@@ -36,7 +37,8 @@ class Carrier {
       const std::size_t n = decltype(kind)::of(goods_).size();
       const std::size_t n_rounds = all_.most((n + kBatchOfGoods - 1) / kBatchOfGoods);
       for (std::size_t round = 0; round < n_rounds; ++round) {
-        const std::size_t begin = std::min(n, round * kBatchOfGoods), end = std::min(n, begin + kBatchOfGoods);
+        const std::size_t begin = std::min(n, round * kBatchOfGoods),
+                          end = std::min(n, begin + kBatchOfGoods);
         exchange(kind, first, begin, end);
       }
       first += n;
@@ -151,7 +153,8 @@ class Carrier {
 
 }  // namespace
 
-Goods bring(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows, transport::Together& all) {
+Goods bring(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
+            transport::Together& all) {
   return Carrier(std::move(goods), rank_of, rows, all).carry();
 }
 

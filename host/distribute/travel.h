@@ -17,6 +17,7 @@ namespace kdray::distribute {
 struct CornerRows {
   std::size_t colors = 0, texcoords = 0;
 };
-Goods bring(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows, transport::Together& all);
+Goods bring(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
+            transport::Together& all);
 
 }  // namespace kdray::distribute

@@ -25,8 +25,7 @@ std::vector<std::vector<std::uint32_t>> VertexHolders::ask(const std::vector<std
   std::vector<Bytes> out(static_cast<std::size_t>(all_.size()));
   auto first = wanted.begin();
   for (int to = 0; to < all_.size(); ++to) {
-    const auto last =
-        std::lower_bound(first, wanted.end(), slice_of(n_vertices_, to, all_.size()).last);
+    const auto last = std::lower_bound(first, wanted.end(), slice_of(n_vertices_, to, all_.size()).last);
     out[static_cast<std::size_t>(to)] = transport::bytes_of_list(std::span(first, last));
     first = last;
   }
@@ -69,8 +68,7 @@ Vertices VertexHolders::fetch(const std::vector<std::uint32_t>& wanted) {
   Vertices found;
   auto first = wanted.begin();
   for (int from = 0; from < all_.size(); ++from) {
-    const auto last =
-        std::lower_bound(first, wanted.end(), slice_of(n_vertices_, from, all_.size()).last);
+    const auto last = std::lower_bound(first, wanted.end(), slice_of(n_vertices_, from, all_.size()).last);
     const auto n = static_cast<std::size_t>(last - first);
     WireReader reader(in[static_cast<std::size_t>(from)], from);
     reader.take(found.places, n);

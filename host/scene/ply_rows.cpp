@@ -143,19 +143,20 @@ bool Rows::read_vertices(const RowRange& range, Vertices& out) {
   if (columns_.has_normals) out.normals.resize(range.n);
   const float opaque = static_cast<float>(columns_.color_unit);
   if (columns_.has_colors) out.colors.assign(range.n, {0, 0, 0, opaque});
-  return for_each_piece(vertices_, range, [&](std::uint64_t first, std::uint64_t n, const std::string& bytes) {
-    Vertices piece{RawVector<dvec3>(n), RawVector<vec3>(columns_.has_normals ? n : 0), {}};
-    if (columns_.has_colors) piece.colors.assign(n, {0, 0, 0, opaque});
-    const bool little = header_.format == Format::little_endian;
-    const Element& element = *vertices_.element;
-    const bool good = little == kLittleEndianHost ? columns_of<false>(bytes, element, n, columns_, piece)
-                                                  : columns_of<true>(bytes, element, n, columns_, piece);
-    const auto to = static_cast<std::ptrdiff_t>(first);
-    std::ranges::copy(piece.places, out.places.begin() + to);
-    std::ranges::copy(piece.normals, out.normals.begin() + to);
-    std::ranges::copy(piece.colors, out.colors.begin() + to);
-    return good;
-  });
+  return for_each_piece(
+      vertices_, range, [&](std::uint64_t first, std::uint64_t n, const std::string& bytes) {
+        Vertices piece{RawVector<dvec3>(n), RawVector<vec3>(columns_.has_normals ? n : 0), {}};
+        if (columns_.has_colors) piece.colors.assign(n, {0, 0, 0, opaque});
+        const bool little = header_.format == Format::little_endian;
+        const Element& element = *vertices_.element;
+        const bool good = little == kLittleEndianHost ? columns_of<false>(bytes, element, n, columns_, piece)
+                                                      : columns_of<true>(bytes, element, n, columns_, piece);
+        const auto to = static_cast<std::ptrdiff_t>(first);
+        std::ranges::copy(piece.places, out.places.begin() + to);
+        std::ranges::copy(piece.normals, out.normals.begin() + to);
+        std::ranges::copy(piece.colors, out.colors.begin() + to);
+        return good;
+      });
 }
 
 bool Rows::read_faces(const RowRange& range, RawVector<Corners>& out) {

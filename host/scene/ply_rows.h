@@ -24,7 +24,7 @@ struct RowRange {
 
 struct Vertices {
   RawVector<dvec3> places;
-  RawVector<vec3> normals;       // or none
+  RawVector<vec3> normals;        // or none
   RawVector<VertexColor> colors;  // or none
 };
 using Corners = std::array<std::uint32_t, 3>;

@@ -38,7 +38,8 @@ void add_words(Words& words, const flatten::FlatScene& flat) {
       auto item = Kind::of(flat)[i];
       std::string bytes;
       if constexpr (!Kind::kIsShape) {
-        if (item.normals != KDRAY_NO_NORMALS) append(bytes, &flat.normals[item.normals & KDRAY_NORMALS_MASK], 1);
+        if (item.normals != KDRAY_NO_NORMALS)
+          append(bytes, &flat.normals[item.normals & KDRAY_NORMALS_MASK], 1);
         item.normals = item.normals == KDRAY_NO_NORMALS ? item.normals : item.normals & KDRAY_STITCH;
         const auto rows = [&](const auto& all) {
           const std::size_t each = all.size() / flat.triangles.size();
@@ -85,8 +86,10 @@ void expect_same_whole(const prepare::Prepared& one, const prepare::Prepared& he
 }
 
 void expect_same_core(const flatten::Core& a, const flatten::Core& b) {
-  EXPECT_EQ(a.lo, b.lo), EXPECT_EQ(a.hi, b.hi);
-  EXPECT_EQ(a.face_lo, b.face_lo), EXPECT_EQ(a.face_hi, b.face_hi);
+  EXPECT_EQ(a.lo, b.lo);
+  EXPECT_EQ(a.hi, b.hi);
+  EXPECT_EQ(a.face_lo, b.face_lo);
+  EXPECT_EQ(a.face_hi, b.face_hi);
   EXPECT_EQ(a.has_faces, b.has_faces);
 }
 
@@ -164,7 +167,8 @@ TEST(Holding, OfMeshesWithStitches) {
     for (const auto& v : mesh.vertices)
       ply.vertex(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
     for (const auto& t : mesh.triangles)
-      ply.face(static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]), static_cast<std::int32_t>(t[2]));
+      ply.face(static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
+               static_cast<std::int32_t>(t[2]));
     const auto file = folder.write(std::to_string(i++) + ".ply", ply.text());
     expect_the_scene(in_one(file), from(file));
   }

@@ -21,7 +21,8 @@ class PlyWriter {
             "\nproperty float x\nproperty float y\nproperty float z\n";
     if (parts.normals) text_ += "property float nx\nproperty float ny\nproperty float nz\n";
     if (parts.colors) text_ += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-    text_ += "element face " + std::to_string(n_faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
+    text_ +=
+        "element face " + std::to_string(n_faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
   }
 
   void vertex(float x, float y, float z, std::uint32_t color = 0) {
@@ -56,9 +57,11 @@ inline std::string ball_ply(int rows, const PlyParts& parts, bool with_degenerat
   PlyWriter ply(static_cast<std::size_t>((rows + 1) * columns + 1), static_cast<std::size_t>(n_faces), parts);
   for (int i = 0; i <= rows; ++i)
     for (int j = 0; j < columns; ++j) {
-      const double a = 3.14159265 * i / rows, b = 2 * 3.14159265 * j / columns, r = 1 + 0.1 * std::sin(7 * b) * std::sin(5 * a);
+      const double a = 3.14159265 * i / rows, b = 2 * 3.14159265 * j / columns,
+                   r = 1 + 0.1 * std::sin(7 * b) * std::sin(5 * a);
       ply.vertex(static_cast<float>(r * std::sin(a) * std::cos(b)), static_cast<float>(r * std::cos(a)),
-                 static_cast<float>(r * std::sin(a) * std::sin(b)), static_cast<std::uint32_t>(i * 77 + j * 3001));
+                 static_cast<float>(r * std::sin(a) * std::sin(b)),
+                 static_cast<std::uint32_t>(i * 77 + j * 3001));
     }
   ply.vertex(1e6f, 0, 0);  // which no face uses
   for (int i = 0; i < rows; ++i)

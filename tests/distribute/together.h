@@ -3,6 +3,7 @@
 // Shape   With a seed messages are held back for a while, so that they come in another order.
 #pragma once
 
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <random>
@@ -23,7 +24,10 @@ class Shuffled : public transport::Transport {
   std::size_t bytes_waiting() const override { return inner_->bytes_waiting(); }
   double now() const override { return inner_->now(); }
   void close() override { inner_->close(); }
-  [[noreturn]] void abort(int exit_code) override { inner_->abort(exit_code); }
+  [[noreturn]] void abort(int exit_code) override {
+    inner_->abort(exit_code);
+    std::abort();  // it doesn't return
+  }
 
  private:
   void post(int to, transport::Tag tag, transport::Bytes bytes) override {
@@ -53,7 +57,11 @@ inline RankEnd run_one(transport::Ranks& ranks, const std::function<void(transpo
   try {
     transport::Together all(ranks);
     run(all);
+    // The end may overtake what rank 0 has sent before.
+    constexpr transport::Tags kDone = transport::kTagsOfFrames;
+    if (!ranks.leads()) ranks.send(0, kDone.first, {});
     if (!ranks.leads()) return {{}, ranks.wait_for_end(nullptr)};
+    for (int n = 1; n < ranks.size(); ++n) ranks.wait(kDone);
     ranks.end(0);
     return {};
   } catch (const transport::Ended& ended) {
