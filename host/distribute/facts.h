@@ -20,7 +20,7 @@ struct Facts {
   layout::Features features = 0;  // but for KDRAY_FEATURE_NUMBERS and those of light
   Box bounds;
 
-  // Of the next part of a scene that is flattened part by part.
+  // Adds the next part of a scene that is flattened part by part.
   void add(const scene::Scene& scene, const scene::Geometry& geometry);
   void add(const Facts& o);
 };

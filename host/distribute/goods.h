@@ -1,6 +1,6 @@
 // What    Primitives on their way from who has read them to who holds them: as the kernels have them, with
 //         their numbers in the file and what belongs to their corners.
-// Shape   Of each kind in the order of the file. A triangle's `normals` is its place among the goods' own.
+// Shape   Each kind is in the order of the file. A triangle's `normals` is its place among the goods' own.
 //         `colors` has a row for each triangle or none at all, `texcoords` as many rows for each as there are
 //         sets.
 #pragma once

@@ -39,7 +39,7 @@ struct Holding {
 Holding hold(const std::filesystem::path& file, const LoadOptions& load, const TreeOptions& tree,
              transport::Together& all);
 
-// Of a scene that every rank has.
+// The same of a scene that every rank has.
 Holding hold(const scene::Scene& scene, const TreeOptions& tree, transport::Together& all);
 
 }  // namespace kdray::distribute

@@ -136,7 +136,7 @@ class PlyReader {
     }
   }
 
-  // In the order of ply.cpp.
+  // They come in the order of ply.cpp.
   void warn() {
     std::vector<std::string>& warnings = share_.whole.settings.warnings;
     if (rows_.has_more())

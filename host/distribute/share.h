@@ -25,7 +25,7 @@ struct Share {
 std::optional<Share> read_in_shares(const std::filesystem::path& file, const LoadOptions& options,
                                     transport::Together& all);
 
-// Of a scene that every rank has.
+// The same of a scene that every rank has.
 Share share_of(const scene::Scene& scene, const transport::Together& all);
 
 }  // namespace kdray::distribute

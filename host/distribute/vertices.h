@@ -20,7 +20,7 @@ class VertexHolders {
 
   // That somebody uses them.
   void use(const std::vector<std::uint32_t>& wanted);
-  // Of all that somebody uses.
+  // The bounds are those of all that somebody uses.
   DBox bounds_of_used();
 
   scene::ply::Vertices fetch(const std::vector<std::uint32_t>& wanted);

@@ -47,7 +47,7 @@ class WireReader {
     std::memcpy(static_cast<void*>(&value), next(sizeof(T)), sizeof(T));
     return value;
   }
-  // Into memory for n of them.
+  // There has to be memory for n of them.
   template <class T>
   void get_all(T* to, std::size_t n) {
     if (n > left() / sizeof(T)) transport::throw_odd_message(from_);

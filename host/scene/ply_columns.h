@@ -20,7 +20,7 @@ struct VertexColumns {
 
 VertexColumns find_columns(const Element& element, const std::string& file);
 
-// Of what the header says of an element.
+// An error in what the header says of an element.
 Error element_error(const Element& element, const std::string& file, const std::string& what);
 
 }  // namespace kdray::scene::ply

@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <string>
 
 #include "distribute/ply_files.h"
-#include "distribute/scene_hash.h"
+#include "distribute/share.h"
 #include "distribute/together.h"
 #include "image/scenes.h"
 #include "primitives/shapes.h"
@@ -99,6 +102,25 @@ std::string bytes_of_cells(const Holding& h) {
   return bytes;
 }
 
+// That the rank's tree names each of its triangles, with the words that the triangle has.
+void expect_tree_over_all(const prepare::Prepared& held) {
+  const auto block = static_cast<std::size_t>(held.wide.block);
+  const auto& words = held.wide.triangle_blocks;
+  std::vector<bool> named(held.flat.triangles.size());
+  for (std::size_t first = 0; first < words.size(); first += KDRAY_TRIANGLE_ROWS * block) {
+    for (std::size_t lane = 0; lane < block; ++lane) {
+      const auto word = [&](std::size_t row) { return words[first + row * block + lane]; };
+      const layout::u32 index = word(KDRAY_ROW_TRIANGLE_INDEX);
+      ASSERT_LT(index & KDRAY_REF_INDEX_MASK, std::max<std::size_t>(1, named.size()));
+      const layout::Triangle& t = held.flat.triangles[index & KDRAY_REF_INDEX_MASK];
+      named[index & KDRAY_REF_INDEX_MASK] = true;
+      for (std::size_t k = 0; k < 9; ++k) ASSERT_EQ(word(k), std::bit_cast<layout::u32>(t.v[k / 3][k % 3]));
+      if (index & KDRAY_WIDE_LAST) break;
+    }
+  }
+  for (std::size_t i = 0; i < named.size(); ++i) EXPECT_TRUE(named[i]) << "no leaf has triangle " << i;
+}
+
 using Hold = std::function<Holding(transport::Together&)>;
 
 // What hold() gives each rank against the scene in one process.
@@ -119,6 +141,7 @@ void expect_the_scene(const prepare::Prepared& one, const Hold& hold) {
       add_words(words, h.prepared.flat);
       expect_same_whole(one, h.prepared);
       expect_same_core(h.core, flatten::core_of(one.flat));
+      expect_tree_over_all(h.prepared);
       EXPECT_EQ(h.prepared.wide.block, holdings[0].prepared.wide.block);
       if (cells.empty()) cells = bytes_of_cells(h);
       EXPECT_EQ(bytes_of_cells(h), cells) << "other cells";
@@ -154,6 +177,9 @@ TEST(Holding, OfPlyFilesReadInShares) {
     for (const bool with_degenerate : {false, true}) {
       SCOPED_TRACE(std::to_string(i));
       const auto file = folder.write(std::to_string(i++) + ".ply", ball_ply(24, parts, with_degenerate));
+      run_ranks(3, [&](transport::Together& all) {
+        EXPECT_TRUE(distribute::read_in_shares(file, {}, all)) << "every rank would read all of it";
+      });
       expect_the_scene(in_one(file), from(file));
     }
 }
