@@ -29,6 +29,10 @@ if(Boost_FOUND AND turbojpeg_FOUND)
 else()
   set(KDRAY_CAN_VIEW OFF)
 endif()
+# Optional: what glTF files may be packed with (host/scene/abilities.cpp tells users which of them are there).
+pkg_check_modules(draco QUIET IMPORTED_TARGET draco)   # libdraco-dev
+find_package(meshoptimizer CONFIG QUIET)               # libmeshoptimizer-dev
+pkg_check_modules(webp QUIET IMPORTED_TARGET libwebp)  # libwebp-dev
 if(KDRAY_TESTS)
   find_package(GTest REQUIRED)         # libgtest-dev, libgmock-dev
   pkg_check_modules(gmpxx REQUIRED IMPORTED_TARGET gmpxx)  # libgmp-dev: the stress suite's exact arithmetic

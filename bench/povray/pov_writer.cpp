@@ -104,7 +104,8 @@ void write_meshes(std::ostream& out, const scene::Scene& scene) {
 
 bool pov_has_words_for(const scene::Scene& scene) {
   const auto glows = [](const scene::Material& m) { return largest(m.emission) > 0; };
-  return std::all_of(scene.lights.begin(), scene.lights.end(), has_words_for) &&
+  const bool plain = scene.sky.kind == scene::SkyKind::none && !(scene.camera && scene.camera->aperture > 0);
+  return plain && std::all_of(scene.lights.begin(), scene.lights.end(), has_words_for) &&
          std::none_of(scene.materials.begin(), scene.materials.end(), glows);
 }
 

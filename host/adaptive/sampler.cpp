@@ -59,10 +59,11 @@ float variance_of(const layout::i64* sums, double squares, double n) {
 
 }  // namespace
 
-Sampler::Sampler(Size size, double target)
+Sampler::Sampler(Size size, double target, bool noisy)
     : size_(size),
       target_(target),
       blocks_(size),
+      noisy_(noisy),
       sums_(3 * size.pixels()),
       squares_(size.pixels()),
       variance_(size.pixels()),
@@ -148,7 +149,7 @@ bool Sampler::refined_around(std::size_t block) const {
 // pixel that are traced together cost less than those of several rounds.
 int Sampler::next_level(std::size_t pixel) const {
   const int level = level_[pixel];
-  if (class_[pixel] <= limit_) return level;
+  if (class_[pixel] <= limit_) return noisy_ ? std::max(level, 1) : level;
   const int most = level == 0 ? kFirstLevels : kLevels;
   return refined(level, Prices::price_of(class_[pixel]), Prices::price_of(limit_), most).level;
 }
@@ -156,7 +157,7 @@ int Sampler::next_level(std::size_t pixel) const {
 void Sampler::list() {
   first_of_block_.assign(blocks_.count() + 1, 0);
   for_each_of(blocks_.count(), [&](std::size_t block) {
-    if (dearest_[block] <= limit_) return;
+    if (dearest_[block] <= limit_ && !refines_all()) return;
     std::size_t n = 0;
     blocks_.for_each(block, [&](std::size_t pixel, std::uint32_t, std::uint32_t) {
       n += samples_of(next_level(pixel)) - samples_of(level_[pixel]);
@@ -184,7 +185,7 @@ std::span<const layout::u32> Sampler::next() {
   estimate(changed_);
   const double pixels = static_cast<double>(size_.pixels());
   list_.clear();
-  met_ = std::sqrt(prices_.sum() / pixels) <= target_;
+  met_ = std::sqrt(prices_.sum() / pixels) <= target_ && !refines_all();
   if (met_) return {};
   limit_ = prices_.limit_for(kAim * kAim * target_ * target_ * pixels);
   list();

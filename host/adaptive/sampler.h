@@ -26,8 +26,10 @@ namespace kdray::adaptive {
 
 class Sampler {
  public:
-  // `target` is the RMSE that is wanted, over all channels of linear RGB.
-  Sampler(Size size, double target);
+  // `target` is the RMSE that is wanted, over all channels of linear RGB. `noisy`: a pixel's samples differ
+  // where the picture is even, too, since each sees another place of a light or of the lens. Of such noise
+  // one sample tells nothing, so that every pixel gets four.
+  Sampler(Size size, double target, bool noisy = false);
 
   // The first round's sums are written here, three for each pixel.
   std::span<layout::i64> first_sums() { return sums_; }
@@ -50,12 +52,14 @@ class Sampler {
   void estimate_block(std::size_t block, Prices& changes, const ErrorOf& error_of);
   void estimate(std::span<const std::size_t> blocks);
   int next_level(std::size_t pixel) const;
+  bool refines_all() const { return noisy_ && rounds_ == 1; }
   void list();
 
   Size size_;
   double target_;
   Blocks blocks_;
   int rounds_ = 1;
+  bool noisy_;
   bool met_ = false;
   std::uint32_t limit_ = 0;
   std::vector<layout::i64> sums_;

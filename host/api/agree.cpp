@@ -19,18 +19,25 @@ ledger::Cut cut_of_schedule(State& state, const Job& job) {
   return {job.frame.width, job.frame.height, schedule.tile_width, schedule.tile_height};
 }
 
-void lead(State& state, Job& job) {
+// What follows the header.
+struct Rest {
+  std::uint64_t film_bytes = 0;  // of PDPRT
+  std::uint32_t mode = 0, unused = 0;
+};
+
+Mode lead(State& state, Job& job, Mode mode) {
   const ledger::Header header{.identity = identity_of(state, job),
                               .cut = job.ledger ? job.ledger->cut() : cut_of_schedule(state, job),
                               .maker = "rank 0"};
-  job.film_of_ranks = film_bytes(state, job);
+  if (mode == Mode::pdprt) job.film_of_ranks = film_bytes(state, job);
   job.shared_frame = header.frame();
   job.options.tile_width = static_cast<int>(header.cut.tile_width);
   job.options.tile_height = static_cast<int>(header.cut.tile_height);
   transport::Bytes bytes = ledger::to_bytes(header);
-  const std::uint64_t film = job.film_of_ranks;
-  bytes.append(reinterpret_cast<const char*>(&film), sizeof film);
+  const Rest rest{job.film_of_ranks, static_cast<std::uint32_t>(mode)};
+  bytes.append(reinterpret_cast<const char*>(&rest), sizeof rest);
   state.ranks->send_to_others(kFrame, bytes);
+  return mode;
 }
 
 void check_same(const ledger::Identity& own, const ledger::Identity& first) {
@@ -44,28 +51,33 @@ void check_same(const ledger::Identity& own, const ledger::Identity& first) {
   if (own.settings != first.settings) refuse(fmt::format("other settings ({})", own.settings_text));
 }
 
-void follow(State& state, Job& job) {
+Mode follow(State& state, Job& job) {
   const transport::Message message = state.ranks->wait(transport::kTagsOfFrames);
   const auto header = ledger::header_of(message.bytes);
-  std::uint64_t film = 0;
-  if (message.from != 0 || !header || message.bytes.size() != ledger::kHeaderBytes + sizeof film)
+  Rest rest;
+  if (message.from == 0 && header && message.bytes.size() == ledger::kHeaderBytes + sizeof rest)
+    std::memcpy(&rest, message.bytes.data() + ledger::kHeaderBytes, sizeof rest);
+  const auto mode = static_cast<Mode>(rest.mode);
+  if (!header || (mode != Mode::pdprt && mode != Mode::odprt))
     throw Error(ErrorCode::input, "rank 0 is of another version of kdray than this rank");
-  std::memcpy(&film, message.bytes.data() + ledger::kHeaderBytes, sizeof film);
   check_same(identity_of(state, job), header->identity);
   job.options.tile_width = static_cast<int>(header->cut.tile_width);
   job.options.tile_height = static_cast<int>(header->cut.tile_height);
   job.shared_frame = header->frame();
+  if (mode == Mode::odprt) return mode;
+  const std::uint64_t film = rest.film_bytes;
   if (const std::size_t own = film_bytes(state, job); own < film)
     throw Error(ErrorCode::out_of_memory,
                 fmt::format("this rank's devices have room for {} MiB of a film, rank 0's for {}", own >> 20,
                             film >> 20));
   job.film_of_ranks = film;
+  return mode;
 }
 
 }  // namespace
 
-void agree(State& state, Job& job) {
-  state.ranks->leads() ? lead(state, job) : follow(state, job);
+Mode agree(State& state, Job& job, Mode mode) {
+  return state.ranks->leads() ? lead(state, job, mode) : follow(state, job);
 }
 
 }  // namespace kdray::api

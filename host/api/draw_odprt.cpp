@@ -46,6 +46,12 @@ odprt::Request request_for(State& state, Job& job) {
   request.traversal = traversal_of(o.traversal, !state.devices.first().global);
   request.balance = o.balance;
   request.n_slices = schedule.n_slices;
+  request.table = odprt::alone(request.queues.size());
+  if (state.ranks) {
+    odprt::Joined joined = odprt::join(*state.ranks, request.queues.size(), schedule.n_slices);
+    request.table = std::move(joined.table);
+    request.n_slices = joined.n_slices;
+  }
   request.ray_buffer = static_cast<std::uint32_t>(o.ray_buffer);
   request.device_memory = memory_limit(state, o);
   request.timeline = job.timeline;
@@ -70,6 +76,9 @@ Drawn draw_odprt(State& state, Job& job) {
   const RenderOptions& o = job.options;
   if (o.device_memory > 0 && !o.channels.empty())
     throw Error(ErrorCode::usage, "--aov needs the whole scene on a device; leave --device-memory out");
+  if (o.device_memory > 0 && state.ranks)
+    throw Error(ErrorCode::usage,
+                "with ranks each part of the scene stays where it is; take more ranks for --device-memory");
   const odprt::Request request = request_for(state, job);
   if (!state.divided)
     state.divided = std::make_unique<odprt::DividedScene>(state.scene.flat, state.scene.wide);
@@ -77,6 +86,7 @@ Drawn draw_odprt(State& state, Job& job) {
   state.speeds.take(job.frame).odprt = mrays_per_s(result.counters.total(), result.render_seconds);
   Drawn drawn;
   drawn.division = division_of(result, job, state.divided->geometry_bytes());
+  if (state.ranks) tell_of_ranks(drawn.division, result.queues, *state.ranks);
   for (const odprt::QueueReport& queue : result.queues)
     drawn.memory_of_queues.push_back({queue.geometry_bytes, queue.work_bytes});
   drawn.divide_seconds = result.divide_seconds;

@@ -45,13 +45,6 @@ void add_memory(Drawn& drawn, const pdprt::Result& result, std::uint64_t scene_b
   }
 }
 
-void tell_of_ranks(Statistics::Division& division, const pdprt::Result& result,
-                   const transport::Ranks& ranks) {
-  const transport::Counters& c = ranks.counters();
-  division.ranks = Statistics::Ranks{ranks.size(), c.sent, c.received, c.bytes_sent, c.bytes_received};
-  for (std::size_t i = 0; i < result.queues.size(); ++i) division.per_queue[i].rank = result.queues[i].rank;
-}
-
 }  // namespace
 
 Drawn draw_pdprt(State& state, const Job& job) {
@@ -71,7 +64,7 @@ Drawn draw_pdprt(State& state, const Job& job) {
   state.speeds.take(job.frame).pdprt = mrays_per_s(result.counters.total(), result.render_seconds);
   Drawn drawn;
   drawn.division = division_of(result, job, state.devices.first().global);
-  if (state.ranks) tell_of_ranks(drawn.division, result, *state.ranks);
+  if (state.ranks) tell_of_ranks(drawn.division, result.queues, *state.ranks);
   add_memory(drawn, result, state.scene_bytes);
   drawn.warnings = warnings_of(result);
   drawn.owners = {result.tile_width, result.tile_height, std::move(result.tile_queues)};

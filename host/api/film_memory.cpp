@@ -24,7 +24,7 @@ std::optional<std::size_t> film_left_by_limit(const State& state, const Device& 
   const std::size_t row = std::size_t{frame.tile_height} * frame.width;
   const std::size_t least = (adaptive ? std::max(row, pdprt::kLeastSamples) : row) * kPlace;
   const std::size_t n_queues = device.context.queues().size();
-  const std::size_t taken = state.scene_bytes + n_queues * schedule.stream_bytes(frame);
+  const std::size_t taken = state.scene_bytes + n_queues * schedule.stream_bytes(frame, job.features);
   if (taken > job.options.device_memory) return std::nullopt;
   std::size_t left = (job.options.device_memory - taken) / n_queues;
   if (adaptive) left = left / (kPlace + kListed) * kPlace;

@@ -36,6 +36,7 @@ std::string settings_in_full(const Job& job) {
   const auto add = [&text](const auto& values) { text += fmt::format("{:a} ", fmt::join(values, " ")); };
   add(f.eye), add(f.forward), add(f.right), add(f.up), add(f.background);
   add(std::array{f.hither, f.x_scale, f.x_offset, f.y_scale, f.y_offset, f.spawn_threshold});
+  add(std::array{f.lens_radius, f.lens_slope});
   return text + fmt::format("{} {} {} {} {} {} {} {:a} {}", f.width, f.height, f.n_samples, f.max_depth,
                             f.corner_grid, f.keep_weightless, f.parallel, job.options.adaptive_target,
                             name_of(job.options.precision));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "prepare/instanced.h"
+
 #include <algorithm>
 
 namespace kdray::api {
@@ -20,6 +22,7 @@ Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& 
 }
 
 void check_form(bool is_walked, const prepare::Prepared& scene) {
+  if (is_walked) prepare::refuse_instances(scene, "the binary walk, which double and channels take,");
   if (is_walked && scene.flat.nodes.empty())
     throw Error(
         ErrorCode::usage,

@@ -26,6 +26,8 @@ scene::View view_of(const View& view) {
                 .up = vector_of(view.up),
                 .vertical_fov = {},
                 .ortho_width = view.ortho_width,
+                .aperture = view.aperture,
+                .focus = view.focus,
                 .headlight = view.headlight};
   if (view.fov) v.vertical_fov = glm::radians(*view.fov);
   return v;

@@ -27,6 +27,14 @@ Statistics::Division division_of(const pdprt::Result& result, const Job& job, bo
 // `bytes_of_whole` is the scene's geometry.
 Statistics::Division division_of(const odprt::Result& result, const Job& job, std::uint64_t bytes_of_whole);
 
+// What this rank has sent, and whose each queue is.
+template <class Queues>
+void tell_of_ranks(Statistics::Division& division, const Queues& queues, const transport::Ranks& ranks) {
+  const transport::Counters& c = ranks.counters();
+  division.ranks = Statistics::Ranks{ranks.size(), c.sent, c.received, c.bytes_sent, c.bytes_received};
+  for (std::size_t i = 0; i < queues.size(); ++i) division.per_queue[i].rank = queues[i].rank;
+}
+
 // What all modes tell of a frame.
 void record_frame(Statistics& statistics, const State& state, const Job& job, Drawn& drawn,
                   const std::string& why);

@@ -18,6 +18,7 @@
 #include "base/median.h"
 #include "base/timer.h"
 #include "kdray/kdray.h"
+#include "prepare/instanced.h"
 #include "query/trace.h"
 #include "timeline/timeline.h"
 
@@ -90,13 +91,8 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
   api::Job job = api::make_job(state, options, options.timeline ? &kept : nullptr);
   const bool leads = !state.ranks || state.ranks->leads();
   if (options.ledger && leads) api::open_ledger(state, job);
-  const api::ChosenMode chosen = api::choose_mode(state, job);
-  if (state.ranks) {
-    if (chosen.mode == Mode::odprt)
-      throw Error(ErrorCode::usage,
-                  "ranks divide the pixels, for which each needs the whole scene: " + chosen.why);
-    api::agree(state, job);
-  }
+  api::ChosenMode chosen = api::choose_mode(state, job);
+  if (state.ranks) chosen.mode = api::agree(state, job, chosen.mode);
   const Preparing preparing(state.devices);
   api::Drawn drawn = chosen.mode == Mode::odprt ? api::draw_odprt(state, job) : api::draw_pdprt(state, job);
   timeline = options.timeline ? kept.json() : std::string();
@@ -111,6 +107,7 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
 
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
                                        Precision precision) {
+  prepare::refuse_instances(state.scene, "queries");
   api::Device& first = state.devices.first();
   Traversal traversal = api::traversal_in(precision, wanted, first.context.info());
   api::check_form(takes_binary_form(traversal, precision), state.scene);

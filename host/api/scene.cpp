@@ -13,6 +13,7 @@
 #include "query/crossings.h"
 #include "query/points.h"
 #include "scene/added_geometry.h"
+#include "scene/added_paint.h"
 #include "scene/check_scene.h"
 #include "scene/frame.h"
 #include "scene/load.h"
@@ -27,6 +28,7 @@ struct Scene::Impl {
   double load_seconds = 0;
   std::vector<std::optional<scene::AddedGeometry>> geometries;  // by id, after the file's; none: removed
   std::vector<scene::Material> materials;
+  scene::Paint paint;     // of these materials
   bool changed = false;   // since `assembled` was made
   bool touched = false;   // since the last commit(), but for masks
   bool reshaped = false;  // since then: other geometries, not only other vertices or another look
@@ -68,6 +70,7 @@ scene::Scene only_settings(const scene::Scene& scene) {
   settings.framing = scene.framing;
   settings.cameras = scene.cameras;
   settings.background = scene.background;
+  settings.sky = scene.sky;
   settings.ambient = scene.ambient;
   settings.settings = scene.settings;
   settings.warnings = scene.warnings;
@@ -121,6 +124,7 @@ const scene::Scene& Scene::Impl::model() {
   } else {
     scene::assemble(all, enabled, materials);
   }
+  scene::assemble_paint(all, enabled, paint, materials.size());
   // It is the file's no more, and is not to be kept as the file's (host/cache). What was made up for the file
   // alone is made up anew.
   all.files.clear();
@@ -224,9 +228,17 @@ GeometryInfo Scene::info(GeometryId geometry) const {
 }
 
 MaterialId Scene::add_material(const Material& material) {
-  impl_->materials.push_back(scene::material_of(material));
+  impl_->materials.push_back(scene::painted_material(material, impl_->paint));
   impl_->touch();
   return static_cast<MaterialId>(impl_->materials.size() - 1);
+}
+PictureId Scene::add_picture(const std::filesystem::path& file) {
+  impl_->paint.pictures.push_back(scene::picture_of(file, impl_->base.warnings));
+  return static_cast<PictureId>(impl_->paint.pictures.size() - 1);
+}
+PictureId Scene::add_picture(const Pixels& pixels) {
+  impl_->paint.pictures.push_back(scene::picture_of(pixels));
+  return static_cast<PictureId>(impl_->paint.pictures.size() - 1);
 }
 void Scene::add_light(const Light& light) {
   const scene::Light made = scene::light_of(light);
@@ -243,6 +255,15 @@ void Scene::set_camera(const Camera& camera) {
 }
 void Scene::set_background(const Color& color) {
   impl_->base.background = scene::color_of(color, "background");
+  impl_->base.sky = {};
+  impl_->touch();
+}
+void Scene::set_background(const Gradient& gradient) {
+  impl_->base.sky = scene::sky_of(gradient);
+  impl_->touch();
+}
+void Scene::set_background(const Environment& environment) {
+  impl_->base.sky = scene::sky_of(environment, impl_->base.warnings);
   impl_->touch();
 }
 void Scene::set_ambient(const Color& color) {
@@ -275,6 +296,7 @@ double Scene::load_seconds() const {
 std::optional<PreparedScene> Scene::Impl::refit(const CommitOptions& options, CommitReport& report) {
   if (!committed || reshaped || !(options.refit_growth > 0)) return std::nullopt;
   const prepare::Prepared& last = committed->scene().prepared();
+  if (!last.flat.instances.empty()) return std::nullopt;
   // The binary form has planes, which don't move; and a limit on memory asks for trees of several kinds.
   if (!(last.tree_options == options.tree) || options.tree.binary_form || options.tree.memory_bytes > 0)
     return std::nullopt;

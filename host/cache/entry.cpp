@@ -19,13 +19,13 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "entries are in the machine's own order");
 
 constexpr std::array<char, 8> kMagic = {'k', 'd', 'r', 'a', 'y', 's', 'c', '\n'};
-constexpr std::uint32_t kVersion = 3;  // of the form of entries
+constexpr std::uint32_t kVersion = 4;  // of the form of entries
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kPiece = std::size_t{1} << 20;  // hashed by one thread
 
 // The facts; materials, coats, lights and the arrays of the flat form but for the shapes' own; the wide
 // form's nodes; and for each shape its array, for each kind its blocks.
-constexpr std::size_t kSections = 1 + 3 + 11 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
+constexpr std::size_t kSections = 1 + 3 + 14 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
 
 struct Section {
   std::uint64_t offset, bytes;

@@ -32,8 +32,8 @@ Json of(const std::optional<T>& value) {
 
 Json of(const std::optional<scene::Camera>& camera) {
   if (!camera) return nullptr;
-  const auto& [eye, at, up, fov, hither, ortho_width] = *camera;
-  return {of(eye), of(at), of(up), fov, hither, ortho_width};
+  const auto& [eye, at, up, fov, hither, ortho_width, aperture, focus] = *camera;
+  return {of(eye), of(at), of(up), fov, hither, ortho_width, aperture, focus};
 }
 
 void get(const Json& from, std::optional<scene::Camera>& camera) {
@@ -45,6 +45,8 @@ void get(const Json& from, std::optional<scene::Camera>& camera) {
   from.at(3).get_to(c.vertical_fov);
   from.at(4).get_to(c.hither);
   from.at(5).get_to(c.ortho_width);
+  from.at(6).get_to(c.aperture);
+  from.at(7).get_to(c.focus);
 }
 
 Json of(const std::vector<scene::Camera>& cameras) {
@@ -131,6 +133,8 @@ Json of(const prepare::Counts& c) {
   Json counts = {c.primitives};
   primitives::for_each_kind([&](auto kind) { counts.push_back(decltype(kind)::of(c)); });
   counts.push_back(c.stitches);
+  counts.push_back(c.instances);
+  counts.push_back(c.instanced);
   return counts;
 }
 
@@ -138,14 +142,16 @@ void get(const Json& from, prepare::Counts& c) {
   from.at(0).get_to(c.primitives);
   primitives::for_each_kind([&](auto kind) { from.at(1 + kind.kNumber).get_to(decltype(kind)::of(c)); });
   from.at(1 + primitives::kKinds).get_to(c.stitches);
+  from.at(2 + primitives::kKinds).get_to(c.instances);
+  from.at(3 + primitives::kKinds).get_to(c.instanced);
 }
 
 }  // namespace
 
 std::string to_bytes(const prepare::Prepared& p) {
-  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
-               unlit, camera, cameras, framing, background, ambient, settings, warnings, files,
-               load_options] = p.settings;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
+               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
+               warnings, files, load_options] = p.settings;
   const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, tree_options,
                seconds] = p;
   const Json facts = {{"name", name},
@@ -155,6 +161,7 @@ std::string to_bytes(const prepare::Prepared& p) {
                       {"cameras", of(cameras)},
                       {"framing", of(framing)},
                       {"background", of(background)},
+                      {"sky", {static_cast<int>(sky.kind), sky.brightest}},  // the rest is flat
                       {"ambient", of(ambient)},
                       {"settings", of(settings)},
                       {"center", of(geometry.space.center)},
@@ -168,6 +175,7 @@ std::string to_bytes(const prepare::Prepared& p) {
                       {"tree_nodes", tree_nodes},
                       {"tree", of(tree)},
                       {"block", wide.block},
+                      {"widen", wide.widen},
                       {"stack_size", wide.stack_size}};
   std::string bytes;
   Json::to_cbor(facts, bytes);
@@ -184,6 +192,8 @@ void from_bytes(std::string_view bytes, prepare::Prepared& p) {
   get(facts.at("cameras"), s.cameras);
   get(facts.at("framing"), s.framing);
   get(facts.at("background"), s.background);
+  s.sky.kind = static_cast<scene::SkyKind>(facts.at("sky").at(0).get<int>());
+  facts.at("sky").at(1).get_to(s.sky.brightest);
   get(facts.at("ambient"), s.ambient);
   get(facts.at("settings"), s.settings);
   get(facts.at("center"), p.geometry.space.center);
@@ -197,6 +207,7 @@ void from_bytes(std::string_view bytes, prepare::Prepared& p) {
   facts.at("tree_nodes").get_to(p.tree_nodes);
   get(facts.at("tree"), p.tree);
   facts.at("block").get_to(p.wide.block);
+  facts.at("widen").get_to(p.wide.widen);
   facts.at("stack_size").get_to(p.wide.stack_size);
 }
 

@@ -82,6 +82,8 @@ typedef struct kdray_geometry_options {
   const char* name;  /* NULL: none */
   uint32_t mask;     /* 0: every bit. A ray meets the geometry where both masks have a bit in common. */
   uint32_t material; /* of kdray_add_material */
+  /* Of meshes: rows of two, one for each vertex; (0, 0) is a picture's upper left corner. count = 0: none */
+  kdray_in texcoords;
 } kdray_geometry_options;
 
 /* `triangles`: rows of three indices (32 or 64 bits); `normals`: count = 0, or one for each vertex.
@@ -110,7 +112,24 @@ typedef struct kdray_material {
   float emission[3], ambient[3], diffuse[3], specular[3], reflect[3], transmit[3];
   float shine;
   float index; /* of refraction; 0: 1 */
+  /* Of kdray_add_picture; 0: none. The first is multiplied by the ambient and diffuse terms and by what goes
+   * through, the last by the emission, or by white where that is black. */
+  uint32_t picture, normal_picture, emission_picture;
+  int32_t alpha; /* kdray_alpha, of `picture` */
 } kdray_material;
+/* What a picture's alpha means: nothing; below a half nothing is there; the share that isn't let through. */
+typedef enum kdray_alpha { KDRAY_ALPHA_OPAQUE = 0, KDRAY_ALPHA_MASK = 1, KDRAY_ALPHA_BLEND = 2 } kdray_alpha;
+/* Rows from the top; 1 to 4 channels: grey, grey with alpha, red green blue, or these with alpha; codes of
+ * sRGB, as files have them. */
+typedef struct kdray_pixels {
+  size_t size;
+  const uint8_t* data;
+  uint32_t width, height, channels;
+  size_t row_bytes; /* 0: none between rows */
+} kdray_pixels;
+/* Pictures are numbered from 1. The second reads a PNG or a JPEG. */
+KDRAY_API kdray_status kdray_add_picture(kdray_scene* scene, const kdray_pixels* pixels, uint32_t* id);
+KDRAY_API kdray_status kdray_add_picture_file(kdray_scene* scene, const char* file, uint32_t* id);
 KDRAY_API kdray_status kdray_add_material(kdray_scene* scene, const kdray_material* material, uint32_t* id);
 
 typedef struct kdray_camera {
@@ -119,6 +138,8 @@ typedef struct kdray_camera {
   double fov;         /* of the picture's height, in degrees; 0: 45 */
   double ortho_width; /* above 0: orthographic */
   double hither;      /* nothing is seen nearer than this */
+  double aperture;    /* above 0: the diameter of a thin lens */
+  double focus;       /* how far off, along the view, what is in focus is; 0: as far as `at` */
 } kdray_camera;
 /* A scene without a camera is seen as a whole, from the front, the right and above. */
 KDRAY_API kdray_status kdray_set_camera(kdray_scene* scene, const kdray_camera* camera);
@@ -126,23 +147,38 @@ KDRAY_API kdray_status kdray_set_camera(kdray_scene* scene, const kdray_camera* 
 typedef enum kdray_light_kind {
   KDRAY_POINT_LIGHT = 0,
   KDRAY_DIRECTIONAL_LIGHT = 1,
-  KDRAY_SPOT_LIGHT = 2
+  KDRAY_SPOT_LIGHT = 2,
+  KDRAY_RECTANGLE_LIGHT = 3, /* this one and the next two have an area, and throw soft shadows */
+  KDRAY_SPHERE_LIGHT = 4,
+  KDRAY_DISC_LIGHT = 5
 } kdray_light_kind;
 typedef struct kdray_light {
   size_t size;
   int32_t kind;          /* kdray_light_kind */
-  double position[3];    /* of point and spot lights */
+  double position[3];    /* of all but directional lights; the middle of those with an area */
   double direction[3];   /* of directional and spot lights: the way the light travels; all 0: (0, 0, -1) */
   float color[3];        /* red, green, blue; all 0: white */
   double attenuation[3]; /* 1 / (a[0] + a[1]*d + a[2]*d^2); all 0: 1, 0, 0 */
   double range;          /* 0: any distance */
   double inner_degrees, outer_degrees; /* of spot lights: half angles; outer 0: 45 */
+  double across[3], down[3];           /* of rectangles: the edges */
+  double normal[3];                    /* of discs; all 0: (0, -1, 0) */
+  double radius;                       /* of spheres and discs */
 } kdray_light;
 /* A scene without lights gets some. */
 KDRAY_API kdray_status kdray_add_light(kdray_scene* scene, const kdray_light* light);
 
 /* Linear red, green and blue: of what is seen where nothing is, and of light from everywhere. */
 KDRAY_API kdray_status kdray_set_background(kdray_scene* scene, const float rgb[3]);
+/* Colours by height, the sine of the angle above the horizon, in place of one colour: heights ascend from -1
+ * to 1; `rgb` has three for each. `up` NULL: along y. */
+KDRAY_API kdray_status kdray_set_gradient(kdray_scene* scene, const double* heights, const float* rgb,
+                                          size_t count, const double up[3]);
+/* A picture all around (equirectangular EXR, Radiance HDR, PNG or JPEG) in place of one colour: its top lies
+ * at `up` (NULL: along y), its middle at -z, turned about `up` by so many degrees; what it shows is
+ * multiplied by `strength`. */
+KDRAY_API kdray_status kdray_set_environment(kdray_scene* scene, const char* file, const double up[3],
+                                             double turn_degrees, double strength);
 KDRAY_API kdray_status kdray_set_ambient(kdray_scene* scene, const float rgb[3]);
 
 typedef struct kdray_commit_options {

@@ -31,12 +31,13 @@ void put(std::uint32_t* id, std::uint32_t value) {
   if (id != nullptr) *id = value;
 }
 
-constexpr Light::Kind kLightKinds[] = {Light::Kind::point, Light::Kind::directional, Light::Kind::spot};
+constexpr Light::Kind kLightKinds[] = {Light::Kind::point,     Light::Kind::directional, Light::Kind::spot,
+                                       Light::Kind::rectangle, Light::Kind::sphere,      Light::Kind::disc};
 
 // What is left 0 has C++'s default, where that is another; kdray.h says so beside each.
 Light light_of(const kdray_light& l) {
   const Light usual;
-  if (l.kind < KDRAY_POINT_LIGHT || l.kind > KDRAY_SPOT_LIGHT) refuse("light: there is no such kind");
+  if (l.kind < KDRAY_POINT_LIGHT || l.kind > KDRAY_DISC_LIGHT) refuse("light: there is no such kind");
   return {.kind = kLightKinds[l.kind],
           .position = vector(l.position),
           .direction = vector_or(l.direction, usual.direction),
@@ -44,7 +45,23 @@ Light light_of(const kdray_light& l) {
           .attenuation = vector_or(l.attenuation, usual.attenuation),
           .range = l.range == 0 ? usual.range : l.range,
           .inner_degrees = l.inner_degrees,
-          .outer_degrees = l.outer_degrees == 0 ? usual.outer_degrees : l.outer_degrees};
+          .outer_degrees = l.outer_degrees == 0 ? usual.outer_degrees : l.outer_degrees,
+          .across = vector(l.across),
+          .down = vector(l.down),
+          .normal = vector_or(l.normal, usual.normal),
+          .radius = l.radius};
+}
+
+// They are numbered from 1 here, since what is left 0 is none.
+PictureId picture_of(std::uint32_t number) {
+  return number == 0 ? kNoPicture : number - 1;
+}
+
+AlphaMode alpha_of(std::int32_t mode) {
+  constexpr AlphaMode kModes[] = {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend};
+  if (mode < KDRAY_ALPHA_OPAQUE || mode > KDRAY_ALPHA_BLEND)
+    refuse("material: there is no such mode of alpha");
+  return kModes[mode];
 }
 
 Color color_at(const float* rgb, const char* name) {
@@ -62,7 +79,9 @@ Camera camera_of(const kdray_camera* given) {
           .up = vector_or(c.up, usual.up),
           .fov = c.fov == 0 ? usual.fov : c.fov,
           .ortho_width = c.ortho_width,
-          .hither = c.hither};
+          .hither = c.hither,
+          .aperture = c.aperture,
+          .focus = c.focus};
 }
 
 }  // namespace kdray::capi
@@ -94,7 +113,8 @@ kdray_status kdray_add_mesh(kdray_scene* scene, kdray_in vertices, kdray_in tria
                             const kdray_geometry_options* options, uint32_t* id) {
   return guarded([&] {
     const Mesh mesh{view_of<Points>(vertices, "vertices"), view_of<Triples>(triangles, "triangles"),
-                    view_of<Points>(normals, "normals")};
+                    view_of<Points>(normals, "normals"),
+                    view_of<Pairs>(grown(options, "options").texcoords, "texcoords")};
     put(id, needed(scene, "scene")->scene.add_mesh(mesh, options_of(options)));
   });
 }
@@ -150,7 +170,28 @@ kdray_status kdray_add_material(kdray_scene* scene, const kdray_material* materi
                                       .reflect = color(m.reflect),
                                       .transmit = color(m.transmit),
                                       .shine = m.shine,
-                                      .index = m.index == 0 ? 1.0f : m.index}));
+                                      .index = m.index == 0 ? 1.0f : m.index,
+                                      .picture = picture_of(m.picture),
+                                      .normal_picture = picture_of(m.normal_picture),
+                                      .emission_picture = picture_of(m.emission_picture),
+                                      .alpha = alpha_of(m.alpha)}));
+  });
+}
+
+kdray_status kdray_add_picture(kdray_scene* scene, const kdray_pixels* pixels, uint32_t* id) {
+  return guarded([&] {
+    const kdray_pixels p = grown(needed(pixels, "pixels"), "pixels");
+    put(id, 1 + needed(scene, "scene")
+                    ->scene.add_picture(Pixels{.data = p.data,
+                                               .width = p.width,
+                                               .height = p.height,
+                                               .channels = p.channels,
+                                               .row_bytes = p.row_bytes}));
+  });
+}
+kdray_status kdray_add_picture_file(kdray_scene* scene, const char* file, uint32_t* id) {
+  return guarded([&] {
+    put(id, 1 + needed(scene, "scene")->scene.add_picture(std::filesystem::path(needed(file, "file"))));
   });
 }
 
@@ -163,6 +204,24 @@ kdray_status kdray_set_camera(kdray_scene* scene, const kdray_camera* camera) {
 }
 kdray_status kdray_set_background(kdray_scene* scene, const float rgb[3]) {
   return guarded([&] { needed(scene, "scene")->scene.set_background(color_at(rgb, "rgb")); });
+}
+kdray_status kdray_set_gradient(kdray_scene* scene, const double* heights, const float* rgb, size_t count,
+                                const double up[3]) {
+  return guarded([&] {
+    Gradient gradient;
+    for (size_t i = 0; i < count; ++i)
+      gradient.stops.push_back({needed(heights, "heights")[i], color_at(needed(rgb, "rgb") + 3 * i, "rgb")});
+    if (up != nullptr) gradient.up = {up[0], up[1], up[2]};
+    needed(scene, "scene")->scene.set_background(gradient);
+  });
+}
+kdray_status kdray_set_environment(kdray_scene* scene, const char* file, const double up[3],
+                                   double turn_degrees, double strength) {
+  return guarded([&] {
+    Environment environment{.file = needed(file, "file"), .turn_degrees = turn_degrees, .strength = strength};
+    if (up != nullptr) environment.up = {up[0], up[1], up[2]};
+    needed(scene, "scene")->scene.set_background(environment);
+  });
 }
 kdray_status kdray_set_ambient(kdray_scene* scene, const float rgb[3]) {
   return guarded([&] { needed(scene, "scene")->scene.set_ambient(color_at(rgb, "rgb")); });

@@ -19,6 +19,7 @@
 #include "device/pocl_cache.h"
 #include "device/verdicts.h"
 #include "kdray/kdray.h"
+#include "scene/abilities.h"
 #include "selftest/self_test.h"
 #include "trial/devices.h"
 #include "trial/listing.h"
@@ -157,8 +158,16 @@ int check_devices() {
   return passed;
 }
 
+// Nobody needs all of them, so that what isn't there is no fault.
+void tell_abilities() {
+  for (const scene::Ability& a : scene::abilities())
+    note(a.here ? fmt::format("reads {}", a.what)
+                : fmt::format("does not read {}: it was built without {}", a.what, a.package));
+}
+
 int run() {
   good("kdray " KDRAY_VERSION);
+  tell_abilities();
   check_environment();
   device::pocl_cache();  // before OpenCL's first call
   check_drivers();

@@ -1,6 +1,8 @@
 // What    kdray info: what a scene holds, the tree kdray builds for it, the memory both take. Needs no
 //         device.
 // Units   world units; bytes as held by this process; the tree's cost in units of its own constants.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -75,6 +77,9 @@ int run(const InfoArgs& o) {
   const scene::Scene scene = load_model(o.scene);
   const double load_seconds = step.seconds();
   for (const std::string& warning : scene.warnings) say(warning);
+  if (!scene.instances.empty())
+    say(fmt::format("what is told is of the scene without its {} instances of {} meshes",
+                    scene.instances.size(), scene.meshes.size()));
 
   step.restart();
   const scene::Geometry geometry = scene::make_geometry(scene);

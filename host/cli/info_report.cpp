@@ -35,13 +35,14 @@ Json paint_arrays(const scene::Paint& paint) {
 }
 
 Json scene_arrays(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
-               unlit, camera, cameras, framing, background, ambient, settings, warnings, files,
-               load_options] = scene;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
+               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
+               warnings, files, load_options] = scene;
   Json arrays = {{"vertices", bytes_of(vertices)}, {"normals", bytes_of(normals)}};
   add_kinds(scene, arrays);
   arrays.update({{"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
   if (!paint.coats.empty()) arrays.update(paint_arrays(paint));
+  if (sky.picture) arrays["sky"] = bytes_of(sky.picture->rgb);
   return arrays;
 }
 
@@ -61,8 +62,8 @@ Json tree_arrays(const kdtree::Tree& tree) {
 }
 
 Json flat_arrays(const flatten::FlatScene& flat) {
-  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures,
-               texels, texcoords, corner_colors, lights] = flat;
+  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, coats,
+               textures, texels, texcoords, corner_colors, lights, sky, sky_colors] = flat;
   Json arrays = {{"nodes", bytes_of(nodes)}, {"references", bytes_of(refs)}};
   add_kinds(flat, arrays);
   arrays.update(
@@ -73,6 +74,7 @@ Json flat_arrays(const flatten::FlatScene& flat) {
                    {"texels", bytes_of(texels)},
                    {"texcoords", bytes_of(texcoords)},
                    {"corner_colors", bytes_of(corner_colors)}});
+  if (!sky.empty()) arrays["sky"] = bytes_of(sky) + bytes_of(sky_colors);
   return arrays;
 }
 
@@ -116,12 +118,17 @@ Json materials_report(const scene::Scene& scene) {
 }
 
 Json lights_report(const scene::Scene& scene) {
-  static constexpr std::array<const char*, 3> kKinds = {"point", "directional", "spot"};
+  static constexpr std::array<const char*, 6> kKinds = {"point",     "directional", "spot",
+                                                        "rectangle", "sphere",      "disc"};
   Json list = Json::array();
   for (const scene::Light& l : scene.lights) {
     Json light = {{"kind", kKinds[static_cast<std::size_t>(l.kind)]}, {"color", as_json(l.color)}};
     if (l.kind != scene::LightKind::directional) light["position"] = as_json(l.position);
-    if (l.kind != scene::LightKind::point) light["direction"] = as_json(l.direction);
+    if (l.kind == scene::LightKind::directional || l.kind == scene::LightKind::spot)
+      light["direction"] = as_json(l.direction);
+    if (l.kind == scene::LightKind::sphere) light["radius"] = l.radius;
+    if (l.kind == scene::LightKind::rectangle || l.kind == scene::LightKind::disc)
+      light["across"] = as_json(l.across), light["down"] = as_json(l.down);
     list.push_back(std::move(light));
   }
   return list;
@@ -143,7 +150,20 @@ Json camera_report(const scene::Scene& scene) {
           {"vertical_fov_degrees", c.ortho_width > 0 ? Json() : Json(c.vertical_fov * kDegrees)},
           {"ortho_width", c.ortho_width > 0 ? Json(c.ortho_width) : Json()},
           {"hither", c.hither},
+          {"aperture", c.aperture},
+          {"focus", c.focus > 0 ? c.focus : safe_length(c.at - c.from)},
           {"in_file", scene.cameras.size()}};
+}
+
+// A colour, or what is there instead.
+Json background_report(const scene::Scene& scene) {
+  const scene::Sky& sky = scene.sky;
+  if (sky.kind == scene::SkyKind::none) return as_json(scene.background);
+  if (sky.kind == scene::SkyKind::gradient) return {{"type", "gradient"}, {"stops", sky.stops.size()}};
+  Json report = {{"type", "picture"}, {"brightest", sky.brightest}};
+  if (sky.picture)
+    report.update({{"file", sky.picture->name}, {"size", {sky.picture->width, sky.picture->height}}});
+  return report;
 }
 
 }  // namespace
@@ -160,7 +180,7 @@ Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
   report["primitives"] = counts;
   report["bounds"] = bounds_report(scene);
   report["camera"] = camera_report(scene);
-  report["background"] = as_json(scene.background);
+  report["background"] = background_report(scene);
   report["lights"] = lights_report(scene);
   report["materials"] = materials_report(scene);
   report["warnings"] = scene.warnings;

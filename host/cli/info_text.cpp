@@ -43,13 +43,25 @@ std::string primitives_text(const Json& p) {
   return text;
 }
 
+std::string background_text(const Json& b) {
+  if (b.is_array()) return vector_text(b);
+  if (b["type"] == "gradient") return fmt::format("a gradient of {} stops", b["stops"].get<std::size_t>());
+  if (!b.contains("file")) return "a picture all around";
+  return fmt::format("{}, {}x{} all around", one_line(b["file"].get<std::string>()), b["size"][0].get<int>(),
+                     b["size"][1].get<int>());
+}
+
 std::string camera_text(const Json& c) {
   if (c.is_null()) return "none";
   const std::string lens = c["ortho_width"].is_null()
                                ? fmt::format("{:.4g} degrees high", c["vertical_fov_degrees"].get<double>())
                                : fmt::format("orthographic, {:.4g} wide", c["ortho_width"].get<double>());
   const auto n = c["in_file"].get<std::size_t>();
-  return fmt::format("from {} at {}, {}{}", vector_text(c["from"]), vector_text(c["at"]), lens,
+  const auto aperture = c["aperture"].get<double>();
+  const std::string blur =
+      aperture > 0 ? fmt::format(", a lens of {:.4g} in focus at {:.4g}", aperture, c["focus"].get<double>())
+                   : "";
+  return fmt::format("from {} at {}, {}{}{}", vector_text(c["from"]), vector_text(c["at"]), lens, blur,
                      n > 1 ? fmt::format("; the first of {}", n) : "");
 }
 
@@ -154,7 +166,7 @@ std::string report_as_text(const Json& r) {
   text += line("bounds", bounds.is_null() ? "none: the scene is empty"
                                           : vector_text(bounds["min"]) + " to " + vector_text(bounds["max"]));
   text += line("camera", camera_text(r["camera"]));
-  text += line("background", vector_text(r["background"]));
+  text += line("background", background_text(r["background"]));
   text += lights_text(r["lights"]) + materials_text(r["materials"]) + tree_text(r["tree"]) +
           memory_text(r["memory"]);
   text += line("time", fmt::format("load {}, build {}, flatten {}",

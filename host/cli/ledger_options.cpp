@@ -50,6 +50,8 @@ void LedgerChoice::check() const {
     refuse("--restarts goes on from a ledger; add --checkpoint DIR or --share DIR");
   if (!camera_path.empty() && !frames)
     refuse("--camera-path is for the frames of a sequence; add --frames A..B");
+  if (fps && !frames)
+    refuse("--fps is for the frames of a sequence; add --frames A..B, or say --time SECONDS");
 }
 
 std::optional<LedgerOptions> LedgerChoice::options(const std::filesystem::path& in) const {
@@ -83,6 +85,9 @@ void add_ledger_options(CLI::App& app, LedgerChoice& choice) {
       ->group("Sequence");
   add_path(app, "--camera-path", "JSON with cameras at some frames, between which the camera moves",
            choice.camera_path)
+      ->group("Sequence");
+  add_text(app, "--fps", "N", "Play a glTF file's animation: frame F is its second F/N, after --time",
+           [&choice](const std::string& text) { choice.fps = parse_real("--fps", text, 1e-6, 1e6); })
       ->group("Sequence");
 }
 

@@ -1,5 +1,5 @@
 // What    The options of render on ledgers and on sequences: --checkpoint --resume --checkpoint-every --share
-//         --lease --restarts, --frames --camera-path.
+//         --lease --restarts, --frames --camera-path --fps.
 // Errors  kdray::Error, ErrorCode::usage: options that don't go together.
 #pragma once
 
@@ -22,7 +22,8 @@ struct LedgerChoice {
   std::optional<double> every_seconds = {}, lease_seconds = {};
   int restarts = 0;
   std::optional<FrameRange> frames = {};
-  std::string camera_path;  // empty: none
+  std::string camera_path;         // empty: none
+  std::optional<double> fps = {};  // frames to a second of the scene's animation; none: it stands still
 
   void check() const;
   const std::string& folder() const { return share.empty() ? checkpoint : share; }

@@ -123,8 +123,6 @@ void check_ranks(const RenderArgs& o) {
     refuse(
         "ranks render the frames of a sequence one after the other; take --checkpoint for --share, or --mpi "
         "off");
-  if (o.render.mode == Mode::odprt)
-    refuse("ranks divide the pixels (pdprt); leave --mode odprt out, or add --mpi off");
   if (o.render.division != Division::bag)
     refuse("ranks take their tiles from a bag; leave --division out, or add --mpi off");
   if (!o.timeline.empty()) refuse("--trace tells of one process's queues; leave it out, or add --mpi off");

@@ -77,9 +77,17 @@ void check_memory(const RenderArgs& o, const scene::RenderSettings& asked) {
   check_picture_fits(picture, free_memory());
 }
 
+// What eye rays have brought of a background can be taken out where it is the same everywhere.
+void check_transparent(const RenderArgs& o, const scene::Scene& scene) {
+  if (o.view.transparent && scene.sky.kind != scene::SkyKind::none)
+    throw Error(ErrorCode::usage,
+                "--background transparent is for scenes whose background is one colour; this one's is not");
+}
+
 // Before a tree is built for nothing.
 void check_view_of(const RenderArgs& o, const scene::Scene& asked) {
   if (o.view.any) check_view(asked, o.view.view);
+  check_transparent(o, asked);
 }
 
 // The picture's alpha, where it is wanted; the background is taken out of its colours then.
@@ -137,6 +145,7 @@ FrameMaker::FrameMaker(RenderArgs& o) {
       o.hooks);
   if (is_cached) tell_of_scene(*scene_);
   seen_ = o.view.any ? scene_->scene().seen(o.view.view, o.render.width, o.render.height) : scene_->scene();
+  check_transparent(o, seen_->settings());
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }
 

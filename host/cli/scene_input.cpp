@@ -44,13 +44,46 @@ void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help) 
   add_text(
       app, "--scene-format", "NAME", "Format of a SCENE from standard input: nff, obj, ply, ...",
       [&input](const std::string& text) { input.format = text.starts_with('.') ? text.substr(1) : text; });
-  add_smooth(app, input.load);
+  add_load_options(app, input.load);
 }
 
-void add_smooth(CLI::App& app, LoadOptions& load) {
+namespace {
+
+Instances instances_named(const std::string& name) {
+  if (name == "auto") return Instances::automatic;
+  if (name == "flat") return Instances::flat;
+  if (name == "kept") return Instances::kept;
+  throw Error(ErrorCode::usage, "--instances is auto, flat or kept, not '" + name + "'");
+}
+
+}  // namespace
+
+void add_load_options(CLI::App& app, LoadOptions& load) {
   add_text(app, "--smooth", "DEG",
            "Smooth shading for triangles without normals, where faces turn by no more than DEG (as in 40)",
            [&load](const std::string& text) { load.smooth_degrees = parse_real("--smooth", text, 0, 180); });
+  add_text(app, "--time", "SECONDS",
+           "The second of a glTF file's animation that is seen (default: it is at rest)",
+           [&load](const std::string& text) { load.time = parse_real("--time", text, -1e9, 1e9); });
+  add_text(app, "--animation", "NAME",
+           "Which animation --time is of: a name or a number from 0 (default 0), or all at once",
+           [&load](const std::string& text) {
+             if (text.empty()) throw usage_error("--animation", text, "a name, a number or all");
+             load.animation = text;
+           });
+  add_text(app, "--texture-memory", "BYTES",
+           "The most that pictures on surfaces may take, as in 500M: larger ones are made smaller",
+           [&load](const std::string& text) { load.texture_bytes = parse_bytes("--texture-memory", text); });
+  add_text(app, "--instances", "HOW",
+           "What shows many times: auto (held once where copies would be over a million primitives), flat "
+           "(copied) "
+           "or kept (held once)",
+           [&load](const std::string& text) { load.instances = instances_named(text); });
+}
+
+void check_load_options(const LoadOptions& load) {
+  if (!load.animation.empty() && !load.time)
+    throw Error(ErrorCode::usage, "--animation says which one is seen; say at which second with --time");
 }
 
 void check_scene_input(const SceneInput& input) {
@@ -62,6 +95,7 @@ void check_scene_input(const SceneInput& input) {
     throw Error(
         ErrorCode::usage,
         "--scene-format is for a scene from standard input ('-'); a file's format is that of its name");
+  check_load_options(input.load);
 }
 
 scene::Scene load_model(const SceneInput& input) {

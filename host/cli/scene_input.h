@@ -19,12 +19,14 @@ struct SceneInput {
   bool is_stdin() const { return file == "-"; }
 };
 
-// SCENE, --scene-format and --smooth
+// SCENE, --scene-format, and how it is loaded
 void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help);
 
-void add_smooth(CLI::App& app, LoadOptions& load);
+// --smooth --time --animation --texture-memory --instances
+void add_load_options(CLI::App& app, LoadOptions& load);
 
 // Before anything else is done with it.
+void check_load_options(const LoadOptions& load);
 void check_scene_input(const SceneInput& input);
 
 // The scene with a camera and lights, as scene::load() and Scene::load() give it.

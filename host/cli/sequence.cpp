@@ -48,9 +48,11 @@ bool is_numbered(const RenderArgs& o) {
 
 void check_sequence(const RenderArgs& o) {
   const auto refuse = [](const std::string& what) { throw Error(ErrorCode::usage, what); };
-  if (o.ledger.camera_path.empty() && !is_numbered(o))
+  if (o.ledger.camera_path.empty() && !is_numbered(o) && !o.ledger.fps)
     refuse(
-        "all frames would be the same picture: add --camera-path FILE, or number the scenes (scene%04d.nff)");
+        "all frames would be the same picture: add --camera-path FILE, or number the scenes (scene%04d.nff), "
+        "or "
+        "play a glTF file's animation with --fps N");
   if (o.scene.is_stdin() || o.output == "-" || o.stats == "-")
     refuse("a sequence has a file for each frame; standard input and output have room for one");
   const View& v = o.view.view;
@@ -73,6 +75,7 @@ RenderArgs args_of(const RenderArgs& o, const std::optional<CameraPath>& path, i
   if (!o.stats.empty()) frame.stats = numbered(o.stats, number, true);
   if (!o.timeline.empty()) frame.timeline = numbered(o.timeline, number, true);
   if (path) frame.render.camera = path->at(number);
+  if (o.ledger.fps) frame.scene.load.time = o.scene.load.time.value_or(0) + number / *o.ledger.fps;
   frame.render.ledger = o.ledger.options(fs::path(o.ledger.folder()) / fmt::format("frame-{}", number));
   return frame;
 }
@@ -100,15 +103,15 @@ class Sequence {
   FrameRange range_;
   std::optional<CameraPath> path_;
   std::optional<FrameMaker> maker_;
-  std::string opened_;  // the scene that the maker has
+  SceneInput opened_;  // what the maker has
 };
 
 void Sequence::make(int number) {
   RenderArgs frame = args_of(o_, path_, number);
-  if (!maker_ || opened_ != frame.scene.file) {
+  if (!maker_ || opened_.file != frame.scene.file || !(opened_.load == frame.scene.load)) {
     maker_.reset();
     maker_.emplace(frame);
-    opened_ = frame.scene.file;
+    opened_ = frame.scene;
   }
   maker_->make(frame);
 }

@@ -1,5 +1,5 @@
-// What    --frames: the frames of a sequence, by a camera path or from numbered scenes, to numbered pictures;
-//         alone one after the other, with --share each by whoever is free.
+// What    --frames: the frames of a sequence, by a camera path, from numbered scenes or of an animation, to
+//         numbered pictures; alone one after the other, with --share each by whoever is free.
 // Shape   A shared sequence has a lease for each frame: a process takes one that nobody has; when there is
 //         none left it joins the others in theirs, tile by tile. Each frame has its own ledger, in
 //         DIR/frame-N.

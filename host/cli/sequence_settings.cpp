@@ -48,12 +48,20 @@ std::string settings_of(const RenderArgs& o) {
   add("--grid", fmt::format("{}", static_cast<int>(r.grid)));
   add("--precision", fmt::format("{}", static_cast<int>(r.precision)));
   add("--camera-path", hash_of_file(o.ledger.camera_path));
+  const LoadOptions& load = o.scene.load;
+  if (o.ledger.fps || load.time) {
+    add("--fps", in_text(o.ledger.fps));
+    add("--time", in_text(load.time));
+    add("--animation", load.animation);
+  }
   add("--camera", in_text(v.camera));
   add("--from", in_text(v.from));
   add("--at", in_text(v.at));
   add("--up", in_text(v.up));
   add("--fov", in_text(v.fov));
   add("--ortho", in_text(v.ortho_width));
+  add("--aperture", in_text(v.aperture));
+  add("--focus", in_text(v.focus));
   add("--background", o.view.transparent ? "transparent" : in_text(v.background));
   add("--headlight", fmt::format("{}", v.headlight));
   return text;

@@ -57,7 +57,7 @@ Command add_view(CLI::App& kdray) {
       ->required()
       ->type_name("");
   add_page_options(*app, *o);
-  add_smooth(*app, o->load);
+  add_load_options(*app, o->load);
   add_loudness(*app, o->quiet, o->verbose);
   add_view_options(*app, o->view);
   add_picture_options(*app, o->render);

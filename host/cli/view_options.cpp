@@ -88,6 +88,14 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
       })
       ->expected(0, 1)
       ->excludes(fov);
+  add("--aperture", "D", "A thin lens of this diameter: what is not in focus is blurred (0: a pinhole)",
+      [&view](const std::string& name, const std::string& text) {
+        view.aperture = parse_real(name, text, 0, 1e30);
+      });
+  add("--focus", "DISTANCE", "How far off, along the view, what is in focus is (default: as far as --at)",
+      [&view](const std::string& name, const std::string& text) {
+        view.focus = parse_real(name, text, 1e-30, 1e30);
+      });
   add("--headlight", "S", "One more light at the camera, of strength S (as in 0.5)",
       [&view](const std::string& name, const std::string& text) {
         view.headlight = parse_real(name, text, 0, 1000);

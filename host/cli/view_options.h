@@ -1,5 +1,5 @@
 // What    The options of render on where the picture is seen from and what is behind it: --from --at --up
-//         --fov --camera --ortho --headlight --background.
+//         --fov --camera --ortho --aperture --focus --headlight --background.
 // Errors  kdray::Error, ErrorCode::usage.
 #pragma once
 

@@ -139,6 +139,7 @@ class PlyReader {
   // They come in the order of ply.cpp.
   void warn() {
     std::vector<std::string>& warnings = share_.whole.settings.warnings;
+    for (const std::string& what : rows_.left_out()) warnings.push_back(file_ + ": " + what);
     if (rows_.has_more())
       warnings.push_back(file_ + ": more data after the last element of the header are left out");
     if (rows_.n_faces() == 0) warnings.push_back(file_ + ": no faces");
@@ -182,7 +183,7 @@ std::optional<Rows> open_together(const std::filesystem::path& file, transport::
 
 std::optional<Share> read_in_shares(const std::filesystem::path& file, const LoadOptions& options,
                                     transport::Together& all) {
-  if (options.smooth_degrees) return std::nullopt;
+  if (options.smooth_degrees || options.time) return std::nullopt;  // the latter has to be warned of
   scene::FilesRead files;
   std::optional<Rows> rows = open_together(file, all);
   if (!rows) return std::nullopt;

@@ -69,6 +69,8 @@ Hash scene_hash(const flatten::FlatScene& flat, transport::Together& all) {
   append(bytes, flat.textures.data(), flat.textures.size());
   append(bytes, flat.texels.data(), flat.texels.size());
   append(bytes, flat.lights.data(), flat.lights.size());
+  append(bytes, flat.sky.data(), flat.sky.size());
+  append(bytes, flat.sky_colors.data(), flat.sky_colors.size());
   return hash_of(bytes);
 }
 

@@ -1,12 +1,16 @@
 // What    A rank's share of a scene that every rank has read whole: for formats that can't be read otherwise.
 // Memory  The scene's, until the share is taken.
 
+#include "base/error.h"
 #include "distribute/share.h"
 #include "flatten/features.h"
 
 namespace kdray::distribute {
 
 Share share_of(const scene::Scene& scene, const transport::Together& all) {
+  if (!scene.instances.empty())
+    throw Error(ErrorCode::usage,
+                "a scene with instances can't be divided among ranks yet; take --mode pdprt for it");
   Share share;
   const scene::Geometry geometry = scene::make_geometry(scene);
   prepare::describe(share.whole, scene, geometry);

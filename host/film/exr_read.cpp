@@ -94,13 +94,17 @@ void append_rows(Imf::InputFile& input, const ColorNames& names, int left, int f
     for (std::size_t i = n_before; i < image.pixels.size(); ++i) image.pixels[i] = vec3(image.pixels[i].x);
 }
 
-Image read_all(std::string_view bytes, const std::string& file) {
+Image read_all(std::string_view bytes, const std::string& file, std::uint64_t most) {
   MemoryStream stream(bytes, file);
   Imf::InputFile input(stream, exr_threads());
   const auto window = input.header().dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   check_sides(width, height, file);
+  if (static_cast<std::uint64_t>(width * height) > most)
+    throw input_error(file, 0,
+                      "says it is " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
+                      "make it smaller: " + std::to_string(most) + " are the most");
   const ColorNames names = find_color(input.header().channels(), file);
   Image image;
   image.width = static_cast<int>(width), image.height = static_cast<int>(height);
@@ -112,7 +116,7 @@ Image read_all(std::string_view bytes, const std::string& file) {
 
 }  // namespace
 
-Image decode_exr(std::string_view bytes, const std::string& file) {
+Image decode_exr(std::string_view bytes, const std::string& file, std::uint64_t most) {
   // OpenEXR allocates line buffers from the header before a caller can see it, so it needs the limit itself.
   static const bool limited = (Imf::Header::setMaxImageSize(kMaxSide, kMaxSide), true);
   static_cast<void>(limited);
@@ -120,7 +124,7 @@ Image decode_exr(std::string_view bytes, const std::string& file) {
   if (bytes.size() < 8 || std::memcmp(bytes.data(), kMagic, 4) != 0)
     throw input_error(file, 0, "is not an OpenEXR file", "name a PNG or EXR picture");
   try {
-    return read_all(bytes, file);
+    return read_all(bytes, file, most);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {

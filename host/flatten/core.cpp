@@ -79,6 +79,7 @@ Sides sides_of(const FlatScene& scene, const Box& all) {
 }
 
 Core core_of(const FlatScene& scene) {
+  if (!scene.instances.empty()) return {};  // their meshes are among the primitives, elsewhere than they lie
   const Box all = triangle_bounds(scene);
   return core_of(all, sides_of(scene, all));
 }
@@ -110,9 +111,13 @@ void Core::apply(layout::Frame& frame, const Array<layout::Light>& lights) const
   frame.open_lights = 0;
   const float margin = kMargin * frame.world_max;
   for (std::size_t i = 0; i < std::min<std::size_t>(lights.size(), 32); ++i) {
-    bool inside = has_faces && lights[i].kind != KDRAY_LIGHT_DIRECTIONAL;
-    for (int k = 0; k < 3; ++k)
-      inside &= lights[i].position[k] - face_lo[k] > margin && face_hi[k] - lights[i].position[k] > margin;
+    const layout::Light& light = lights[i];
+    bool inside = has_faces && light.kind != KDRAY_LIGHT_DIRECTIONAL;
+    for (int k = 0; k < 3; ++k) {
+      const float reach = std::abs(light.across[k]) + std::abs(light.down[k]) + light.radius;  // of its area
+      inside &= light.position[k] - reach - face_lo[k] > margin &&
+                face_hi[k] - (light.position[k] + reach) > margin;
+    }
     if (inside) frame.open_lights |= 1u << i;
   }
 }

@@ -17,6 +17,11 @@ using layout::Features;
 // What the scene needs, whatever the render's settings.
 Features features_of(const scene::Scene& scene, const scene::Geometry& geometry);
 
+// What a mesh of the scene needs besides, and what its instances do.
+Features features_of_mesh(const scene::Scene& scene, const scene::Scene& mesh,
+                          const scene::Geometry& geometry);
+Features features_of_instances(const scene::Scene& scene);
+
 // The same mask for a scene that has the background and the lights of `scene` instead.
 Features features_in_light(Features mask, const scene::Scene& scene);
 

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "flatten/paint.h"
+#include "flatten/sky.h"
 #include "primitives/pack.h"
 #include "primitives/shapes.h"
 
@@ -104,6 +105,12 @@ layout::u32 kind_of(scene::LightKind kind) {
       return KDRAY_LIGHT_DIRECTIONAL;
     case scene::LightKind::spot:
       return KDRAY_LIGHT_SPOT;
+    case scene::LightKind::rectangle:
+      return KDRAY_LIGHT_RECTANGLE;
+    case scene::LightKind::sphere:
+      return KDRAY_LIGHT_SPHERE;
+    case scene::LightKind::disc:
+      return KDRAY_LIGHT_DISC;
     default:
       return KDRAY_LIGHT_POINT;
   }
@@ -125,7 +132,7 @@ constexpr double kFarLight = 0x1p40 * kLocalReach;
 
 // A light so far away is taken to be at kFarLight, in its direction, and to have lost what its true distance
 // costs.
-void bring_near(layout::Light& out, const scene::Light& light, const dvec3& way) {
+void bring_near(layout::Light& out, const scene::Light& light, const dvec3& way, const LocalSpace& space) {
   const double distance = safe_length(way);
   const dvec3& a = light.attenuation;
   const double fall_off = a.x + a.y * distance + a.z * distance * distance;
@@ -134,6 +141,27 @@ void bring_near(layout::Light& out, const scene::Light& light, const dvec3& way)
   set(out.color, reaches ? vec3(dvec3(light.color) / fall_off) : vec3(0));
   set(out.attenuation, vec3(1, 0, 0));
   out.range = std::numeric_limits<float>::infinity();
+  const double nearer = kFarLight / space.local_length(distance);  // it looks as large as before
+  for (int k = 0; k < 3; ++k) {
+    out.across[k] = static_cast<float>(out.across[k] * nearer);
+    out.down[k] = static_cast<float>(out.down[k] * nearer);
+  }
+  out.radius = static_cast<float>(out.radius * nearer);
+}
+
+float near_enough(double length) {
+  return static_cast<float>(std::clamp(length, -kFarLight, kFarLight));
+}
+
+// Kernels take half of a rectangle's edges.
+void pack_area(layout::Light& out, const scene::Light& light, const LocalSpace& space) {
+  if (!scene::has_area(light.kind)) return;
+  const double share = light.kind == scene::LightKind::rectangle ? 0.5 : 1;
+  for (int k = 0; k < 3; ++k) {
+    out.across[k] = near_enough(space.local_length(light.across[k] * share));
+    out.down[k] = near_enough(space.local_length(light.down[k] * share));
+  }
+  out.radius = near_enough(space.local_length(light.radius));
 }
 
 layout::Light pack(const scene::Light& light, const LocalSpace& space) {
@@ -147,8 +175,9 @@ layout::Light pack(const scene::Light& light, const LocalSpace& space) {
   out.range = static_cast<float>(space.local_length(light.range));
   out.cos_inner = light.cos_inner;
   out.cos_outer = light.cos_outer;
+  pack_area(out, light, space);
   if (light.kind != scene::LightKind::directional && largest_component(position) > kFarLight)
-    bring_near(out, light, light.position - space.center);
+    bring_near(out, light, light.position - space.center, space);
   return out;
 }
 
@@ -180,6 +209,7 @@ FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, co
   flat.materials = pack_materials(scene);
   pack_paint(scene, geometry, flat);
   flat.lights = pack_lights(scene, geometry.space);
+  pack_sky(scene.sky, flat);
   return flat;
 }
 

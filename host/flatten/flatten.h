@@ -8,10 +8,12 @@
 
 #include "base/array.h"
 #include "kdtree/tree.h"
+#include "layout/instances.layout.h"
 #include "layout/kinds.h"
 #include "layout/paint.layout.h"
 #include "layout/primitives.layout.h"
 #include "layout/shading.layout.h"
+#include "layout/sky.layout.h"
 #include "layout/tree.layout.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
@@ -26,6 +28,8 @@ struct FlatScene {
 #define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) Array<layout::Struct> names;
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
+  Array<layout::Instance>
+      instances;  // made by prepare/instanced.h, as what is of their meshes in the arrays above
   Array<layout::Material> materials;
   Array<layout::Coat> coats;
   Array<layout::Texture> textures;
@@ -33,6 +37,8 @@ struct FlatScene {
   Array<layout::TexCoords> texcoords;
   Array<layout::CornerColors> corner_colors;
   Array<layout::Light> lights;
+  Array<layout::Sky> sky;  // one, or none
+  Array<float> sky_colors;
 
   std::size_t bytes() const;
 };
@@ -41,11 +47,11 @@ struct FlatScene {
 // added can't be forgotten.
 template <class Flat, class Visit>
 void for_each_flat_array(Flat& flat, const Visit& visit) {
-  auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures, texels,
-         texcoords, corner_colors, lights] = flat;
+  auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, coats,
+         textures, texels, texcoords, corner_colors, lights, sky, sky_colors] = flat;
   const auto visit_all = [&visit](auto&... arrays) { (visit(arrays), ...); };
-  visit_all(nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, coats, textures,
-            texels, texcoords, corner_colors, lights);
+  visit_all(nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, coats,
+            textures, texels, texcoords, corner_colors, lights, sky, sky_colors);
 }
 
 // The binary form, `nodes` and `refs`, is for the binary walk alone: without it these are empty.

@@ -47,6 +47,14 @@ dvec3 local_eye(const LocalSpace& space, const dvec3& from) {
   return safe_normalize(from * 0.5 - space.center * 0.5) * kFarthestEye;
 }
 
+// A pinhole's rays go along forward + x*right + y*up, and are in focus at `focus` times that.
+void set_lens(layout::Frame& f, const scene::Camera& camera, const LocalSpace& space) {
+  if (!(camera.aperture > 0)) return;
+  const double focus = camera.focus > 0 ? camera.focus : safe_length(camera.at - camera.from);
+  f.lens_radius = static_cast<float>(space.local_length(camera.aperture / 2));
+  f.lens_slope = static_cast<float>(camera.aperture / 2 / focus);
+}
+
 }  // namespace
 
 RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings& settings) {
@@ -70,10 +78,12 @@ RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings
 double radiance_bound(const scene::Scene& scene, int depth) {
   double incident = 0;
   for (const scene::Light& light : scene.lights) incident += brightest(light);
-  double shown = largest(scene.background), passed = 0;
+  const bool sky = scene.sky.kind != scene::SkyKind::none;
+  double shown = sky ? scene.sky.brightest : largest(scene.background), passed = 0;
   for (const scene::Material& m : scene.materials) {
     // Base colours are 1 at most; what a veil takes of a term it passes on.
-    const scene::Coat coat = m.coat == scene::kNone ? scene::Coat{} : scene.paint.coats[m.coat];
+    const scene::Coat coat =
+        m.coat == scene::kNone ? scene::Coat{} : scene::largest_terms(scene.paint.coats[m.coat]);
     const double lit = largest(m.diffuse + coat.diffuse) + largest(m.specular + coat.specular);
     shown = std::max(shown, largest(m.emission + coat.emission) +
                                 largest(m.ambient + coat.ambient) * largest(scene.ambient) +
@@ -131,6 +141,10 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
   f.n_lights = static_cast<layout::u32>(scene.lights.size());
   f.corner_grid = corners ? 1 : 0;
   f.parallel = parallel ? 1 : 0;
+  // The samples of a pixel share it.
+  f.pencil = static_cast<float>(
+      std::sqrt(std::abs(double{f.x_scale} * double{f.y_scale}) / static_cast<double>(o.samples)));
+  set_lens(f, camera, geometry.space);
   return f;
 }
 

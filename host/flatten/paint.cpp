@@ -4,11 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
 #include <vector>
 
-#include "base/error.h"
+#include "flatten/texels.h"
 #include "primitives/pack.h"
 
 namespace kdray::flatten {
@@ -19,15 +17,54 @@ using primitives::set;
 
 constexpr std::size_t kGrain = 8192;  // triangles that one task packs
 
+// Where it is shown smaller; `alike`: one texel where it is shown larger.
+layout::u32 how_minified(scene::Minify minify, bool alike) {
+  using scene::Minify;
+  const bool one = minify == Minify::as_magnified
+                       ? alike
+                       : minify == Minify::nearest || minify == Minify::nearest_mipmap_nearest ||
+                             minify == Minify::nearest_mipmap_linear;
+  const bool two_levels = minify == Minify::nearest_mipmap_linear || minify == Minify::linear_mipmap_linear;
+  return (one ? KDRAY_TEXTURE_MIN_NEAREST : 0u) | (scene::has_mipmaps(minify) ? KDRAY_TEXTURE_MIPMAPS : 0u) |
+         (two_levels ? KDRAY_TEXTURE_MIP_LINEAR : 0u);
+}
+
 layout::u32 how_of(const scene::Texture& t, bool two_sets) {
   return static_cast<layout::u32>(t.wrap_across) | static_cast<layout::u32>(t.wrap_down) << 2 |
          (t.nearest ? KDRAY_TEXTURE_NEAREST : 0u) | (t.curved ? KDRAY_TEXTURE_CURVED : 0u) | t.set << 6 |
-         (two_sets ? 1u << 7 : 0u);
+         (two_sets ? 1u << 7 : 0u) | how_minified(t.minify, t.nearest);
 }
 
 layout::u32 how_of(const scene::Coat& c) {
   return (c.colored ? KDRAY_COAT_COLORED : 0u) | (c.mode == scene::Alpha::mask ? KDRAY_COAT_MASK : 0u) |
-         (c.mode == scene::Alpha::blend ? KDRAY_COAT_BLEND : 0u);
+         (c.mode == scene::Alpha::blend ? KDRAY_COAT_BLEND : 0u) |
+         (c.metal_map != scene::kNone ? KDRAY_COAT_METAL : 0u);
+}
+
+// What the coat's pictures say beside its base colour. Where ambient light is occluded, it is kept apart from
+// what is unshadowed.
+void pack_maps(const scene::Coat& c, const vec3& ambient_light, layout::Coat& out) {
+  static_assert(scene::kNone == KDRAY_NO_TEXTURE);
+  out.normal_map = c.normal_map;
+  out.emission_map = c.emission_map;
+  out.occlusion_map = c.occlusion_map;
+  out.highlight_map = c.highlight_map;
+  out.metal_map = c.metal_map;
+  out.normal_scale = c.normal_scale;
+  out.occlusion = c.occlusion;
+  set(out.emissive, c.emissive);
+  const bool metal = c.metal_map != scene::kNone;
+  if (metal) {
+    set(out.ambient, KDRAY_METAL_AMBIENT * ambient_light);
+  } else if (c.occlusion_map != scene::kNone) {
+    set(out.unshadowed, c.emission);
+    set(out.ambient, c.ambient * ambient_light);
+  }
+  out.metallic = c.metal.metallic;
+  out.roughness = c.metal.roughness;
+  out.transmission = c.metal.transmission;
+  out.mirrored = c.metal.mirrored;
+  set(out.base_color, c.metal.base);
 }
 
 layout::Coat pack(const scene::Coat& c, const vec3& ambient_light) {
@@ -39,46 +76,25 @@ layout::Coat pack(const scene::Coat& c, const vec3& ambient_light) {
   set(out.transmit, c.transmit);
   out.alpha = c.alpha;
   out.cutoff = c.cutoff;
-  out.base = c.base == scene::kNone ? KDRAY_NO_TEXTURE : c.base;
+  out.base = c.base;
   out.how = how_of(c);
+  pack_maps(c, ambient_light, out);
   return out;
 }
 
-// Where each picture's texels begin; the last entry is their end.
-std::vector<std::size_t> places_of(const scene::Scene& scene) {
-  std::vector<std::size_t> places{KDRAY_TEXEL_CURVE};
-  for (const auto& picture : scene.paint.pictures)
-    places.push_back(places.back() + std::size_t{picture->width} * picture->height);
-  if (places.back() > std::numeric_limits<layout::u32>::max())
-    throw Error(ErrorCode::input, "the scene's pictures have over 2^32 texels; make them smaller");
-  return places;
-}
-
-Array<layout::u32> pack_texels(const scene::Scene& scene, const std::vector<std::size_t>& places) {
-  Array<layout::u32> texels(places.back());
-  for (layout::u32 code = 0; code < KDRAY_TEXEL_CURVE; ++code)
-    texels[code] = scene::linear_unit_of_srgb(code / 255.0);
-  tbb::parallel_for(std::size_t{0}, scene.paint.pictures.size(), [&](std::size_t i) {
-    // Bytes in this order are words of a little-endian machine, as every one with an OpenCL device is.
-    const auto& bytes = scene.paint.pictures[i]->texels;
-    std::memcpy(texels.data() + places[i], bytes.data(), bytes.size());
-  });
-  return texels;
-}
-
-Array<layout::Texture> pack_textures(const scene::Scene& scene, const std::vector<std::size_t>& places,
-                                     bool two_sets) {
-  Array<layout::Texture> textures(scene.paint.textures.size());
+Array<layout::Texture> pack_textures(const scene::Paint& paint, const TexelPlan& plan, bool two_sets) {
+  Array<layout::Texture> textures(paint.textures.size());
   for (std::size_t i = 0; i < textures.size(); ++i) {
-    const scene::Texture& from = scene.paint.textures[i];
-    const scene::Picture& picture = *scene.paint.pictures[from.picture];
+    const scene::Texture& from = paint.textures[i];
+    const Chain& chain = plan.chains[plan.chain_of[i]];
     layout::Texture t{};
     std::copy(from.across.begin(), from.across.end(), t.across);
     std::copy(from.down.begin(), from.down.end(), t.down);
-    t.first = static_cast<layout::u32>(places[from.picture]);
-    t.width = picture.width;
-    t.height = picture.height;
+    t.first = static_cast<layout::u32>(chain.first);
+    t.width = chain.size.width;
+    t.height = chain.size.height;
     t.how = how_of(from, two_sets);
+    t.n_levels = static_cast<layout::u32>(chain.n_levels);
     textures[i] = t;
   }
   return textures;
@@ -119,17 +135,25 @@ void pack_paint(const scene::Scene& scene, const scene::Geometry& geometry, Flat
   if (paint.coats.empty()) return;
   flat.coats = pack_coats(scene);
   if (!paint.textures.empty()) {
-    const std::vector<std::size_t> places = places_of(scene);
+    const TexelPlan plan = plan_texels(paint);
     const bool two_sets = uses_second_set(paint);
-    flat.texels = pack_texels(scene, places);
-    flat.textures = pack_textures(scene, places, two_sets);
-    std::vector<const PageVector<layout::TexCoords>*> sets{&paint.texcoords[0]};
-    if (two_sets) sets.push_back(&paint.texcoords[1]);
+    flat.texels = pack_texels(paint, plan);
+    flat.textures = pack_textures(paint, plan, two_sets);
+  }
+  pack_corners_of(paint, scene, geometry, flat);
+}
+
+void pack_corners_of(const scene::Paint& paint, const scene::Scene& mesh, const scene::Geometry& geometry,
+                     FlatScene& flat) {
+  const scene::Paint& own = mesh.paint;
+  if (!paint.textures.empty()) {
+    std::vector<const PageVector<layout::TexCoords>*> sets{&own.texcoords[0]};
+    if (uses_second_set(paint)) sets.push_back(&own.texcoords[1]);
     flat.texcoords = pack_corners(geometry, sets, layout::TexCoords{});
   }
   const bool colored = std::any_of(paint.coats.begin(), paint.coats.end(),
                                    [](const scene::Coat& c) { return c.colored != 0; });
-  if (colored) flat.corner_colors = pack_corners(geometry, {&paint.colors}, scene::kWhiteCorners);
+  if (colored) flat.corner_colors = pack_corners(geometry, {&own.colors}, scene::kWhiteCorners);
 }
 
 }  // namespace kdray::flatten

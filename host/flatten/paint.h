@@ -11,4 +11,8 @@ namespace kdray::flatten {
 
 void pack_paint(const scene::Scene& scene, const scene::Geometry& geometry, FlatScene& flat);
 
+// What a mesh's triangles have at their corners, as the paint of the scene that it is in asks for.
+void pack_corners_of(const scene::Paint& paint, const scene::Scene& mesh, const scene::Geometry& geometry,
+                     FlatScene& flat);
+
 }  // namespace kdray::flatten

@@ -23,6 +23,8 @@ struct WideForm {
 #define KDRAY_BLOCK_ARRAY(NAME, name, names, Struct) Array<layout::u32> name##_blocks;
   KDRAY_KINDS(KDRAY_BLOCK_ARRAY)
 #undef KDRAY_BLOCK_ARRAY
+  // By what the usual widening of boxes is multiplied, a power of two: more than 1 where there are instances.
+  int widen = 1;
   int stack_size = 0;  // the most entries that a walk stacks which pushes all children of a node, for any ray
 
   std::size_t bytes() const;
@@ -31,7 +33,7 @@ struct WideForm {
 // visit(array) for each of them, in the order of the members (see for_each_flat_array).
 template <class Wide, class Visit>
 void for_each_wide_array(Wide& wide, const Visit& visit) {
-  auto& [block, nodes, KDRAY_KINDS(KDRAY_KIND_BLOCKS) stack_size] = wide;
+  auto& [block, nodes, KDRAY_KINDS(KDRAY_KIND_BLOCKS) widen, stack_size] = wide;
   visit(nodes);
   primitives::for_each_kind([&](auto kind) { visit(decltype(kind)::blocks_of(wide)); });
 }

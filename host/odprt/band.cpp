@@ -29,22 +29,34 @@ std::uint64_t sum_of(std::span<const layout::Traffic> traffic, layout::u32 layou
 
 }  // namespace
 
-BandRun::BandRun(const Request& request, Crew& crew)
+BandRun::BandRun(const Request& request, Crew& crew, BandWork& band)
     : request_(request),
       crew_(crew),
-      exchange_(crew.plan, crew.owner, crew.direct, crew.outboxes),
+      band_(band),
+      exchange_(crew.plan, request.table, crew.owner, crew.direct, crew.outboxes, band.shares),
       tiles_left_(crew.workers.size()),
-      sent_(crew.workers.size(), std::vector<Mail>(crew.owner.size(), Mail(crew.plan.n_slices))) {}
+      sent_(crew.workers.size(),
+            std::vector<Mail>(crew.owner.size(), Mail(crew.plan.n_slices, crew.plan.outbox.ray_fields))) {
+  if (request.table.ranks == nullptr) return;
+  const RaysKnown known{.first_part = static_cast<std::uint32_t>(request.table.own_first()),
+                        .n_parts = static_cast<std::uint32_t>(crew.workers.size()),
+                        .n_all_parts = static_cast<std::uint32_t>(crew.owner.size()),
+                        .n_slices = crew.plan.n_slices,
+                        .ray_fields = crew.plan.outbox.ray_fields,
+                        .max_depth = request.frame.max_depth,
+                        .first_pixel = band.first_pixel,
+                        .n_pixels = band.n_places};
+  post_.emplace(request.table, band.list, known, crew.plan, exchange_, band.shares, band.is_entry);
+}
 
-void BandRun::run(BandWork& band, const std::function<void(double)>& progress) {
+void BandRun::run(const std::function<void(double)>& progress) {
   n_serving_ = crew_.workers.size();
-  const std::size_t n_entries = band.shares.left();
   std::vector<std::jthread> threads;
   for (std::size_t q = 0; q < crew_.workers.size(); ++q)
-    threads.emplace_back([this, q, &band] {
+    threads.emplace_back([this, q] {
       try {
-        crew_.workers[q]->begin({band.first_pixel, band.n_places, band.samples});
-        take_turns(q, band.shares);
+        crew_.workers[q]->begin({band_.first_pixel, band_.n_places, band_.samples});
+        take_turns(q);
       } catch (...) {
         exchange_.fail(q, std::current_exception());
       }
@@ -53,7 +65,7 @@ void BandRun::run(BandWork& band, const std::function<void(double)>& progress) {
       ended_.notify_one();
     });
   try {
-    wait(band, n_entries, progress);
+    wait(progress);
   } catch (...) {
     // The caller's progress threw: nobody goes on.
     exchange_.fail(crew_.workers.size(), std::current_exception());
@@ -61,32 +73,50 @@ void BandRun::run(BandWork& band, const std::function<void(double)>& progress) {
   }
 }
 
-void BandRun::wait(BandWork& band, std::size_t n_entries, const std::function<void(double)>& progress) {
+// The messages of other ranks are looked at much more often.
+void BandRun::wait(const std::function<void(double)>& progress) {
   using namespace std::chrono_literals;
   const Timer timer;
+  double told = 0;
   std::unique_lock lock(mutex_);
   const auto ended = [this] { return n_serving_ == 0; };
-  while (!ended_.wait_for(lock, 20ms, ended)) {
-    if (timer.seconds() > band.seconds && band.shares.left() > 0) band.left = band.shares.close();
-    if (!progress) continue;
-    auto left = static_cast<double>(band.shares.left());
+  while (!ended_.wait_for(lock, post_ ? 500us : 20ms, ended)) {
+    if (post_) post_->step();
+    const double now = timer.seconds();
+    if (now > band_.seconds) close();
+    if (!progress || now < told + 0.02) continue;
+    told = now;
+    auto left = static_cast<double>(band_.shares.left());
     for (const auto& n : tiles_left_) left += n;
-    progress(std::clamp(1 - left / static_cast<double>(std::max<std::size_t>(n_entries, 1)), 0.0, 1.0));
+    left *= request_.table.place().ranks;  // others', about
+    const auto all = static_cast<double>(std::max<std::size_t>(band_.n_entries, 1));
+    progress(std::clamp(1 - left / all, 0.0, 1.0));
   }
+  if (post_) band_.left = post_->left();
 }
 
-void BandRun::take_turns(std::size_t queue, Shares& shares) {
+// The time is over: what is left is not begun.
+void BandRun::close() {
+  band_.seconds = kForever;
+  if (post_)
+    post_->close();
+  else
+    band_.left = band_.shares.close();
+}
+
+void BandRun::take_turns(std::size_t queue) {
   QueueState state;
-  const auto first = std::find(crew_.owner.begin(), crew_.owner.end(), queue);
+  const auto first = std::find(crew_.owner.begin(), crew_.owner.end(), request_.table.own_first() + queue);
   state.part = static_cast<std::uint32_t>(first - crew_.owner.begin());
   crew_.workers[queue]->serve(crew_.stores[queue]->get(state.part), request_.census_every);
   Mail pending(crew_.plan.n_slices);
   while (const std::optional<Turn> turn = exchange_.next_turn(queue, state))
-    take_turn(queue, *turn, shares, state, pending);
+    take_turn(queue, *turn, state, pending);
 }
 
 // Takes as many entries as a launch may begin, and fewer when the end is near.
-void BandRun::take_entries(std::size_t queue, Shares& shares) {
+void BandRun::take_entries(std::size_t queue) {
+  Shares& shares = band_.shares;
   Worker& worker = *crew_.workers[queue];
   const std::size_t n = std::min<std::size_t>(worker.launch_tiles(), shares.left() / (4 * shares.n_queues()));
   const std::size_t wanted = std::max<std::size_t>(n, crew_.plan.n_slices), has = worker.tiles_left();
@@ -94,8 +124,7 @@ void BandRun::take_entries(std::size_t queue, Shares& shares) {
   tiles_left_[queue] = worker.tiles_left();
 }
 
-void BandRun::take_turn(std::size_t queue, const Turn& turn, Shares& shares, QueueState& state,
-                        Mail& pending) {
+void BandRun::take_turn(std::size_t queue, const Turn& turn, QueueState& state, Mail& pending) {
   Worker& worker = *crew_.workers[queue];
   if (turn.part != state.part) change_part(queue, turn.part, state, pending);
   const double start = request_.timeline ? request_.timeline->now() : 0;
@@ -103,14 +132,14 @@ void BandRun::take_turn(std::size_t queue, const Turn& turn, Shares& shares, Que
   exchange_.take_mail(turn.part, pending);
   if (pending.n > 0) worker.receive(pending);
   if (turn.outbox) {
-    take_entries(queue, shares);
+    take_entries(queue);
     launch(queue, turn, state);
   } else {
     worker.finish();
   }
   check(worker);
   tiles_left_[queue] = worker.tiles_left();
-  state.has_tiles = tiles_left_[queue] > 0 || shares.left() > 0;
+  state.has_tiles = tiles_left_[queue] > 0;
   state.has_rays = worker.n_waiting() + pending.n > 0;
   state.progressed = state.progressed || !turn.letters.empty();
   if (request_.timeline && turn.outbox) {

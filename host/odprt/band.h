@@ -5,51 +5,62 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "odprt/crew.h"
 #include "odprt/exchange.h"
+#include "odprt/post.h"
 #include "odprt/render.h"
 #include "odprt/shares.h"
 #include "wavefront/bands.h"
 
 namespace kdray::odprt {
 
+inline constexpr double kForever = 1e9;  // seconds
+
 // What the queues render together.
 struct BandWork {
-  Shares shares;                              // of tiles, or of runs of samples
-  std::size_t first_pixel = 0, n_places = 0;  // of the film
-  std::span<const layout::u32> samples = {};  // empty: tiles
-  double seconds = 1e9;                       // for which entries are begun; the others are left
+  std::uint32_t list = 0;                          // its number among ranks'
+  std::size_t n_entries = 0;                       // of all ranks
+  Shares shares;                                   // of tiles, or of runs of samples
+  std::size_t first_pixel = 0, n_places = 0;       // of the film
+  std::span<const layout::u32> samples = {};       // empty: tiles
+  double seconds = kForever;                       // for which entries are begun; the others are left
+  std::function<bool(layout::u32)> is_entry = {};  // with ranks: whether the list may have it
   Shares::Entries left = {};
 };
 
 class BandRun {
  public:
-  BandRun(const Request& request, Crew& crew);
+  BandRun(const Request& request, Crew& crew, BandWork& band);
 
-  // Blocks until the band is done or a queue has failed. `progress` hears the share of the tiles that have
-  // been begun.
-  void run(BandWork& band, const std::function<void(double)>& progress);
+  // Blocks until the band is done, by all ranks, or a queue has failed. `progress` hears the share of the
+  // tiles that have been begun.
+  void run(const std::function<void(double)>& progress);
 
   const Exchange& exchange() const { return exchange_; }
 
  private:
-  void take_turns(std::size_t queue, Shares& shares);
-  void take_turn(std::size_t queue, const Turn& turn, Shares& shares, QueueState& state, Mail& pending);
-  void take_entries(std::size_t queue, Shares& shares);
+  void take_turns(std::size_t queue);
+  void take_turn(std::size_t queue, const Turn& turn, QueueState& state, Mail& pending);
+  void take_entries(std::size_t queue);
   void change_part(std::size_t queue, std::uint32_t part, QueueState& state, Mail& pending);
   void launch(std::size_t queue, const Turn& turn, QueueState& state);
   bool sends_mail(std::size_t queue, const Outbox& outbox) const;
   void hand_over(std::size_t queue, const Turn& turn, const QueueState& state);
-  void wait(BandWork& band, std::size_t n_entries, const std::function<void(double)>& progress);
+  void wait(const std::function<void(double)>& progress);
+  void close();
 
   const Request& request_;
   Crew& crew_;
+  BandWork& band_;
   Exchange exchange_;
+  std::optional<Post> post_;  // with other ranks
   std::mutex mutex_;
   std::condition_variable ended_;
   std::size_t n_serving_ = 0;

@@ -42,19 +42,21 @@ Crew make_crew(const Request& request, const Provision& provision, const Divisio
     on_queue(q, "setting up the queues",
              [&] { add_worker(request, provision, division, cut, request.queues[q], crew); });
   for (std::uint32_t part = 0; part < provision.n_parts; ++part)
-    crew.owner.push_back(part % request.queues.size());
+    crew.owner.push_back(part % request.table.n_queues());
   crew.direct.resize(crew.workers.size());
   for (std::size_t q = 0; q < crew.workers.size(); ++q)
     for (std::uint32_t part = 0; part < provision.n_parts; ++part)
-      crew.direct[q].push_back(!provision.streamed &&
-                               request.queues[q].context == request.queues[crew.owner[part]].context);
+      crew.direct[q].push_back(!provision.streamed && request.table.is_own(crew.owner[part]) &&
+                               request.queues[q].context ==
+                                   request.queues[crew.owner[part] - request.table.own_first()].context);
   return crew;
 }
 
-void load_parts(Crew& crew, const Provision& provision) {
+void load_parts(Crew& crew, const RankTable& table, const Provision& provision) {
   if (provision.streamed) return;
   for (std::uint32_t part = 0; part < crew.owner.size(); ++part) {
-    const std::size_t q = crew.owner[part];
+    if (!table.is_own(crew.owner[part])) continue;
+    const std::size_t q = crew.owner[part] - table.own_first();
     on_queue(q, "loading the parts of the scene",
              [&] { crew.workers[q]->warm_up(crew.stores[q]->get(part), *crew.outboxes[q].front()); });
   }

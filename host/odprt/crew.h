@@ -16,7 +16,7 @@ struct Crew {
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<std::unique_ptr<PartStore>> stores;
   std::vector<std::vector<std::unique_ptr<Outbox>>> outboxes;  // by worker
-  std::vector<std::size_t> owner;                              // the worker of each part
+  std::vector<std::size_t> owner;         // the queue of each part, among those of all ranks
   std::vector<std::vector<bool>> direct;  // [worker][part]: reads the worker's outbox itself
   std::vector<QueueReport> reports;       // by worker; grow from band to band
 };
@@ -25,6 +25,6 @@ struct Crew {
 Crew make_crew(const Request& request, const Provision& provision, const Division& division, const Cut& cut);
 
 // Loads what stays on the devices, before the frame's time is taken.
-void load_parts(Crew& crew, const Provision& provision);
+void load_parts(Crew& crew, const RankTable& table, const Provision& provision);
 
 }  // namespace kdray::odprt

@@ -1,6 +1,7 @@
 #include "odprt/division.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "odprt/deal.h"
 #include "odprt/replicate.h"
@@ -69,14 +70,19 @@ std::vector<std::uint32_t> assign(const Cut& cut, std::span<const double> costs,
 
 Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
                 std::span<const double> costs, const DivideOptions& options) {
+  return divide(scene, form, cut, assign(cut, costs, options), options.n_parts);
+}
+
+Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
+                std::vector<std::uint32_t> part_of, std::uint32_t n_parts) {
   Division division;
-  division.part_of = assign(cut, costs, options);
-  if (options.n_parts == 1) {  // nothing to take apart, and nowhere to go
+  division.part_of = std::move(part_of);
+  if (n_parts == 1) {  // nothing to take apart, and nowhere to go
     division.parts.push_back({scene, form, 0});
     return division;
   }
   division.directory = make_directory(form, cut, division.part_of);
-  division.parts = make_parts(scene, form, cut, division.part_of, options.n_parts);
+  division.parts = make_parts(scene, form, cut, division.part_of, n_parts);
   return division;
 }
 

@@ -41,5 +41,8 @@ std::vector<std::uint32_t> assign(const Cut& cut, std::span<const double> costs,
 
 Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
                 std::span<const double> costs, const DivideOptions& options);
+// By what somebody has assigned.
+Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
+                std::vector<std::uint32_t> part_of, std::uint32_t n_parts);
 
 }  // namespace kdray::odprt

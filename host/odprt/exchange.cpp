@@ -4,20 +4,29 @@
 
 namespace kdray::odprt {
 
-Exchange::Exchange(const Plan& plan, std::vector<std::size_t> owner, std::vector<std::vector<bool>> direct,
-                   std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes)
-    : owner_(std::move(owner)),
+Exchange::Exchange(const Plan& plan, const RankTable& table, std::vector<std::size_t> owner,
+                   std::vector<std::vector<bool>> direct,
+                   std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes, const Shares& shares)
+    : table_(table),
+      owner_(std::move(owner)),
       direct_(std::move(direct)),
       outboxes_(outboxes),
-      ledger_(plan.n_slices, plan.capacity, plan.least, outboxes.size()),
+      shares_(shares),
+      ledger_(plan.n_slices, plan.capacity, plan.least, outboxes.size(), table.place()),
       letters_(owner_.size()),
-      mail_(owner_.size(), Mail(plan.n_slices)),
+      mail_(owner_.size(), Mail(plan.n_slices, plan.outbox.ray_fields)),
       has_tiles_(outboxes.size(), 1),
       running_(outboxes.size(), 0),
+      waiting_(outboxes.size(), 0),
+      stuck_(outboxes.size(), 0),
       seen_version_(outboxes.size(), ~std::uint64_t{0}),
-      counts_(outboxes.size()) {}
+      counts_(table.n_queues()) {}
 
 bool Exchange::done() const {
+  return table_.ranks ? finished_ : nothing_is_left();
+}
+
+bool Exchange::nothing_is_left() const {
   return ledger_.alive() == 0 &&
          std::none_of(has_tiles_.begin(), has_tiles_.end(), [](char c) { return c; }) &&
          std::none_of(running_.begin(), running_.end(), [](char c) { return c; });
@@ -31,7 +40,7 @@ Outbox* Exchange::free_outbox(std::size_t queue) const {
 
 // Whether a launch may do something. One that did nothing is not repeated before the ledger has changed.
 bool Exchange::may_launch(std::size_t queue, const QueueState& state) const {
-  return (state.has_rays || state.has_tiles) &&
+  return (state.has_rays || has_tiles_[queue]) &&
          (state.progressed || ledger_.version() != seen_version_[queue]);
 }
 
@@ -42,14 +51,16 @@ std::optional<std::uint32_t> Exchange::choose_part(std::size_t queue, const Queu
   const auto rank = [&](std::uint32_t part) {
     return state.progressed ? mail_[part].n : std::uint64_t{mail_[part].deepest} << 48 | mail_[part].n;
   };
+  const std::size_t own = table_.own_first() + queue;
   for (std::uint32_t part = 0; part < owner_.size(); ++part)
-    if (owner_[part] == queue && mail_[part].n > 0 && (!best || rank(part) > rank(*best))) best = part;
+    if (owner_[part] == own && mail_[part].n > 0 && (!best || rank(part) > rank(*best))) best = part;
   return best;
 }
 
 std::optional<Turn> Exchange::next_turn(std::size_t queue, const QueueState& state) {
   std::unique_lock lock(mutex_);
-  for (;; changed_.wait(lock)) {
+  for (;; waiting_[queue] = 1, changed_.wait(lock)) {
+    waiting_[queue] = 0;
     if (!failures_.empty() || done()) return std::nullopt;
     const std::optional<std::uint32_t> part = choose_part(queue, state);
     if (!part) continue;
@@ -83,20 +94,22 @@ void Exchange::end_turn(std::size_t queue, const Turn& turn, std::span<const lay
                         const QueueState& state, std::vector<Mail>& sent) {
   const std::lock_guard lock(mutex_);
   for (const Letter& letter : turn.letters) --letter.outbox->n_readers;
-  has_tiles_[queue] = state.has_tiles;
+  has_tiles_[queue] = state.has_tiles || shares_.left() > 0;
   if (turn.outbox) {
     // A queue's own settling changes the ledger, but tells it nothing new.
     const bool news = ledger_.version() != seen_version_[queue];
     ledger_.settle(queue, traffic);
     if (!news) seen_version_[queue] = ledger_.version();
     running_[queue] = 0;
+    stuck_[queue] = !state.progressed;
     for (std::uint32_t part = 0; part < owner_.size(); ++part) {
       const bool directly = direct_[queue][part];
       const std::uint64_t n_rays = directly ? turn.outbox->n_rays(part) : sent[part].n_rays();
       const std::uint64_t n_shadow = directly ? turn.outbox->n_shadow_rays(part) : sent[part].n - n_rays;
       if (n_rays + n_shadow == 0) continue;
-      counts_.rays[queue][owner_[part]] += n_rays;
-      counts_.shadow_rays[queue][owner_[part]] += n_shadow;
+      const std::size_t from = table_.own_first() + queue;
+      counts_.rays[from][owner_[part]] += n_rays;
+      counts_.shadow_rays[from][owner_[part]] += n_shadow;
       if (directly) {
         ++turn.outbox->n_readers;
         letters_[part].push_back({turn.outbox, queue});
@@ -105,13 +118,81 @@ void Exchange::end_turn(std::size_t queue, const Turn& turn, std::span<const lay
       }
     }
   }
+  wake();
+}
+
+bool Exchange::is_busy() const {
+  const std::lock_guard lock(mutex_);
+  return std::ranges::any_of(waiting_, [](char waits) { return !waits; });
+}
+
+bool Exchange::is_idle() const {
+  const std::lock_guard lock(mutex_);
+  return nothing_is_left();
+}
+
+bool Exchange::is_short_of_room() const {
+  const std::lock_guard lock(mutex_);
+  return !nothing_is_left() && std::ranges::all_of(stuck_, [](char stuck) { return stuck; });
+}
+
+std::uint64_t Exchange::n_mail(std::uint32_t first_part, std::size_t n_parts) const {
+  const std::lock_guard lock(mutex_);
+  std::uint64_t n = 0;
+  for (std::size_t p = 0; p < n_parts; ++p) n += mail_[first_part + p].n;
+  return n;
+}
+
+void Exchange::depart(std::span<const std::uint32_t> counts) {
+  const std::lock_guard lock(mutex_);
+  ledger_.depart(counts);
+}
+
+void Exchange::deliver(std::uint32_t first_part, std::span<Mail> mail,
+                       std::span<const std::uint32_t> counts) {
+  const std::lock_guard lock(mutex_);
+  ledger_.arrive(counts);
+  for (std::size_t p = 0; p < mail.size(); ++p) mail_[first_part + p].take_all(mail[p]);
+  wake();
+}
+
+void Exchange::add_room(std::span<const std::uint32_t> counts) {
+  const std::lock_guard lock(mutex_);
+  ledger_.add_room(counts);
+  wake();
+}
+
+Exchange::Counts Exchange::take_room(
+    const std::function<Counts(std::span<const std::uint32_t> spare)>& choose) {
+  const std::lock_guard lock(mutex_);
+  Counts taken = choose(ledger_.spare());
+  ledger_.take_room(taken);
+  return taken;
+}
+
+void Exchange::tiles_have_come() {
+  const std::lock_guard lock(mutex_);
+  std::ranges::fill(has_tiles_, 1);
+  std::ranges::fill(seen_version_, ~std::uint64_t{0});
+  wake();
+}
+
+void Exchange::finish() {
+  const std::lock_guard lock(mutex_);
+  finished_ = true;
+  wake();
+}
+
+// Whoever waits looks anew, and counts as busy until it has.
+void Exchange::wake() {
+  std::ranges::fill(waiting_, 0);
   changed_.notify_all();
 }
 
 void Exchange::fail(std::size_t queue, std::exception_ptr error) {
   const std::lock_guard lock(mutex_);
   failures_.emplace(queue, std::move(error));
-  changed_.notify_all();
+  wake();
 }
 
 }  // namespace kdray::odprt

@@ -8,12 +8,15 @@
 // Why     A queue waits for another only when it has no outbox left that isn't being read, or no grant:
 //         receivers read before they launch and need nothing for it, so no ring of queues can wait for each
 //         other (ledger.h has the rest).
-// Threads One for each queue.
+// Ranks   With others (post.h) the mail of their parts goes to them, and only all together know when the
+//         frame is done.
+// Threads One for each queue, and one for the post.
 #pragma once
 
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -25,6 +28,8 @@
 #include "odprt/mail.h"
 #include "odprt/outbox.h"
 #include "odprt/plan.h"
+#include "odprt/rank_table.h"
+#include "odprt/shares.h"
 
 namespace kdray::odprt {
 
@@ -45,12 +50,12 @@ struct Turn {
 // What a queue knows of itself after a turn.
 struct QueueState {
   std::uint32_t part = 0;  // that it serves
-  bool has_tiles = true;   // eye rays still to make, its own or what it may take of others'
+  bool has_tiles = true;   // eye rays still to make, beside what it may take of others'
   bool has_rays = false;   // in its pools, or in mail that it has taken
   bool progressed = true;  // the last launch did something
 };
 
-// Rays of each queue to each.
+// Rays of each queue to each, of all ranks.
 struct ExchangeCounts {
   std::vector<std::vector<std::uint64_t>> rays, shadow_rays;  // [from][to]
   explicit ExchangeCounts(std::size_t n)
@@ -59,9 +64,11 @@ struct ExchangeCounts {
 
 class Exchange {
  public:
-  // `owner` has the queue of each part; `direct[q][p]`: queue q's outbox can be read by the queue of part p.
-  Exchange(const Plan& plan, std::vector<std::size_t> owner, std::vector<std::vector<bool>> direct,
-           std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes);
+  // `owner` has the queue of each part, among those of all ranks; `direct[q][p]`: queue q's outbox can be
+  // read by the queue of part p. Else queues are this rank's.
+  Exchange(const Plan& plan, const RankTable& table, std::vector<std::size_t> owner,
+           std::vector<std::vector<bool>> direct, std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes,
+           const Shares& shares);
 
   // Blocks until there is something to do. Returns nothing when the frame is done or a queue has failed.
   std::optional<Turn> next_turn(std::size_t queue, const QueueState& state);
@@ -80,24 +87,45 @@ class Exchange {
   void fail(std::size_t queue, std::exception_ptr error);
   const std::map<std::size_t, std::exception_ptr>& failures() const { return failures_; }  // by queue
 
+  // For the post, of rays by part, and of counts by slice and level (ledger.h).
+  bool is_busy() const;           // some queue is at work, or will be at once
+  bool is_idle() const;           // there is nothing at all to do
+  bool is_short_of_room() const;  // there is something to do, and no queue could do any of it
+  std::uint64_t n_mail(std::uint32_t first_part, std::size_t n_parts) const;
+  void depart(std::span<const std::uint32_t> counts);
+  void deliver(std::uint32_t first_part, std::span<Mail> mail, std::span<const std::uint32_t> counts);
+  void add_room(std::span<const std::uint32_t> counts);
+  // Takes away what `choose` says of the room to spare, and returns it. At once: a queue may want it too.
+  using Counts = std::vector<std::uint32_t>;
+  Counts take_room(const std::function<Counts(std::span<const std::uint32_t> spare)>& choose);
+  void tiles_have_come();
+  void finish();
+
   bool direct(std::size_t queue, std::uint32_t part) const { return direct_[queue][part]; }
   const ExchangeCounts& counts() const { return counts_; }
 
  private:
   std::optional<std::uint32_t> choose_part(std::size_t queue, const QueueState& state) const;
   Outbox* free_outbox(std::size_t queue) const;
+  bool nothing_is_left() const;
+  void wake();
   bool may_launch(std::size_t queue, const QueueState& state) const;
   bool done() const;
 
+  const RankTable table_;
   const std::vector<std::size_t> owner_;
   const std::vector<std::vector<bool>> direct_;
   std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes_;
+  const Shares& shares_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Ledger ledger_;
   std::vector<std::vector<Letter>> letters_;  // by part
   std::vector<Mail> mail_;                    // by part
   std::vector<char> has_tiles_, running_;     // by queue
+  std::vector<char> waiting_;                 // by queue: in next_turn(), with nothing that it could do
+  std::vector<char> stuck_;                   // by queue: its last launch did nothing
+  bool finished_ = false;                     // with other ranks: there and here
   std::vector<std::uint64_t> seen_version_;   // of the ledger, by queue, when it last launched
   ExchangeCounts counts_;
   std::map<std::size_t, std::exception_ptr> failures_;

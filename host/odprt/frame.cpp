@@ -12,6 +12,8 @@
 #include "ledger/render_round.h"
 #include "odprt/band.h"
 #include "odprt/queue_failure.h"
+#include "odprt/rank_lists.h"
+#include "odprt/rank_report.h"
 #include "odprt/replicate.h"
 #include "wavefront/curve.h"
 #include "wavefront/develop.h"
@@ -29,8 +31,10 @@ void check(const Exchange& exchange) {
 
 using wavefront::Films;
 
-void take_films(Crew& crew, const std::function<void(Films)>& take) {
+// `of_others`: of other ranks, if there are any.
+void take_films(Crew& crew, std::span<const layout::i64> of_others, const std::function<void(Films)>& take) {
   std::vector<std::span<const layout::i64>> films;
+  if (!of_others.empty()) films.push_back(of_others);
   for (std::size_t q = 0; q < crew.workers.size(); ++q)
     films.push_back(on_queue(q, "reading the film", [&] { return crew.workers[q]->map_film(); }));
   take(films);
@@ -75,7 +79,14 @@ void share_out_seconds(const Crew& crew, Result& result) {
   for (const auto& [stage, n] : cycles) result.stage_seconds[stage] += busy * (n / sum);
 }
 
-void finish(Crew& crew, const Division& division, Result& result) {
+// Of the queue that serves a part. A rank's queues have numbers one after the other; without ranks some may
+// be left out.
+std::uint32_t number_of(const Crew& crew, const RankTable& table, std::uint32_t part) {
+  const std::size_t queue = crew.owner[part];
+  return static_cast<std::uint32_t>(table.ranks ? queue : crew.reports[queue].number);
+}
+
+void finish(Crew& crew, const RankTable& table, const Division& division, Result& result) {
   for (std::size_t q = 0; q < crew.workers.size(); ++q) {
     QueueReport& report = crew.reports[q];
     report.busy_seconds =
@@ -84,14 +95,13 @@ void finish(Crew& crew, const Division& division, Result& result) {
     report.geometry_bytes = crew.stores[q]->bytes();
     result.counters.waves += report.waves;
     for (std::uint32_t part = 0; part < crew.owner.size(); ++part) {
-      if (crew.owner[part] != q) continue;
+      if (crew.owner[part] != table.own_first() + q) continue;
       ++report.n_parts;
       report.n_subtrees += static_cast<std::uint32_t>(division.subtrees_of(part).size());
     }
   }
   for (const std::uint32_t part : division.part_of)
-    result.subtree_queues.push_back(
-        part == kEveryPart ? kEveryPart : static_cast<std::uint32_t>(crew.reports[crew.owner[part]].number));
+    result.subtree_queues.push_back(part == kEveryPart ? kEveryPart : number_of(crew, table, part));
   result.queues = crew.reports;
   share_out_seconds(crew, result);
 }
@@ -106,6 +116,7 @@ class FrameRun {
   void render_uniform();
   void render_kept_uniform();
   void render_adaptive();
+  void render_for_rank_0();
 
  private:
   void render_bands(const std::function<void(const wavefront::Band&, Films)>& take);
@@ -118,7 +129,13 @@ class FrameRun {
   void tell(double share_of_round) const;
   double share_present() const;
   void render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
+  BandWork work_of(const ListHead& list, std::span<const layout::u32> entries,
+                   std::span<const layout::u32> samples = {});
+  Dealt deal_out(const ListHead& list, std::span<const layout::u32> entries) const;
+  std::function<bool(layout::u32)> entry_test(const ListHead& list) const;
+  void check_list(const List& list) const;
   void render(BandWork& work, double from, double to, const std::function<void(Films)>& take);
+  void run(BandWork& work, double from, double to);
 
   const Request& request_;
   const Provision& provision_;
@@ -129,15 +146,78 @@ class FrameRun {
   std::uint32_t n_rounds_ = 1;  // that were begun, of a frame with a ledger
 };
 
+// Which entries a list may have.
+std::function<bool(layout::u32)> FrameRun::entry_test(const ListHead& list) const {
+  if (list.of_runs) return [n = list.n_places / KDRAY_SAMPLE_RUN](layout::u32 run) { return run < n; };
+  const layout::Frame& frame = provision_.frame;
+  const auto first_row = static_cast<std::uint32_t>(list.first_pixel / frame.width / frame.tile_height);
+  const auto n_rows =
+      static_cast<std::uint32_t>((list.n_places / frame.width + frame.tile_height - 1) / frame.tile_height);
+  return [=, n_tiles_x = frame.n_tiles_x](layout::u32 tile) {
+    return KDRAY_TILE_COLUMN(tile) < n_tiles_x && KDRAY_TILE_ROW(tile) - first_row < n_rows;
+  };
+}
+
+Dealt FrameRun::deal_out(const ListHead& list, std::span<const layout::u32> entries) const {
+  const std::size_t n_queues = request_.table.n_queues();
+  const Dealt all =
+      list.of_runs ? share_evenly(entries, n_queues)
+                   : share_by_part(entries, n_queues, provision_.frame, division_.directory, crew_.owner);
+  return request_.table.ranks ? of_rank(all, request_.table) : all;
+}
+
+// Of `samples` where there are any, else of tiles. Rank 0 tells the others.
+BandWork FrameRun::work_of(const ListHead& list, std::span<const layout::u32> entries,
+                           std::span<const layout::u32> samples) {
+  const RankTable& table = request_.table;
+  return {.list = table.ranks && table.leads() ? begin_list(*table.ranks, list, entries, samples) : list.list,
+          .n_entries = entries.size(),
+          .shares = Shares(deal_out(list, entries)),
+          .first_pixel = list.first_pixel,
+          .n_places = list.n_places,
+          .samples = samples,
+          .is_entry = entry_test(list)};
+}
+
 // `from`, `to`: of the round.
-void FrameRun::render(BandWork& work, double from, double to, const std::function<void(Films)>& take) {
-  BandRun run(request_, crew_);
+void FrameRun::run(BandWork& work, double from, double to) {
+  BandRun run(request_, crew_, work);
   const auto progress = [&](double share) { tell(from + (to - from) * share); };
-  run.run(work, request_.progress ? progress : std::function<void(double)>());
+  run.run(request_.progress ? progress : std::function<void(double)>());
   check(run.exchange());
-  take_films(crew_, take);
   add_band(crew_, run.exchange(), result_);
+}
+
+void FrameRun::render(BandWork& work, double from, double to, const std::function<void(Films)>& take) {
+  run(work, from, to);
+  std::vector<layout::i64> of_others;
+  if (request_.table.ranks) {
+    of_others.resize(3 * work.n_places);
+    gather_sums(*request_.table.ranks, work.list, of_others, work.left);
+  }
+  take_films(crew_, of_others, take);
   if (request_.census_every > 0) add_visits(crew_, division_, result_);
+}
+
+// What rank 0 begins has to fit what this rank has made room for.
+void FrameRun::check_list(const List& list) const {
+  const ListHead& head = list.head;
+  const std::size_t n_words = head.of_runs ? 2 * head.n_places : 0;
+  if (head.n_places > provision_.room.places || head.n_entries > provision_.room.entries ||
+      list.samples.size() != n_words || !std::ranges::all_of(list.entries, entry_test(head)))
+    throw Error(ErrorCode::internal, "rank 0 has cut the picture otherwise than this rank");
+}
+
+void FrameRun::render_for_rank_0() {
+  transport::Ranks& ranks = *request_.table.ranks;
+  while (const std::optional<List> list = next_list(ranks)) {
+    check_list(*list);
+    BandWork work = work_of(list->head, list->entries, list->samples);
+    run(work, 0, 1);
+    std::vector<layout::i64> sums(3 * work.n_places);
+    take_films(crew_, {}, [&](Films films) { wavefront::add_up(films, sums); });
+    send_sums(ranks, work.list, sums, work.left);
+  }
 }
 
 void FrameRun::render_bands(const std::function<void(const wavefront::Band&, Films)>& take) {
@@ -145,9 +225,7 @@ void FrameRun::render_bands(const std::function<void(const wavefront::Band&, Fil
   double done = 0;
   for (const wavefront::Band& band : provision_.bands) {
     const auto tiles = wavefront::tile_curve(provision_.frame.n_tiles_x, band.first_row, band.n_rows);
-    BandWork work{
-        share_by_part(tiles, crew_.workers.size(), provision_.frame, division_.directory, crew_.owner),
-        band.first_pixel, band.n_pixels};
+    BandWork work = work_of({.first_pixel = band.first_pixel, .n_places = band.n_pixels}, tiles);
     render(work, done / n_bands, (done + 1) / n_bands, [&](Films films) { take(band, films); });
     ++done;
   }
@@ -174,9 +252,7 @@ double FrameRun::share_present() const {
 std::vector<layout::u32> FrameRun::render_tiles(const wavefront::Band& band,
                                                 std::span<const layout::u32> tiles, double seconds,
                                                 std::span<layout::i64> sums) {
-  BandWork work{
-      share_by_part(tiles, crew_.workers.size(), provision_.frame, division_.directory, crew_.owner),
-      band.first_pixel, band.n_pixels};
+  BandWork work = work_of({.first_pixel = band.first_pixel, .n_places = band.n_pixels}, tiles);
   work.seconds = seconds;
   const double share = share_present();
   std::vector<layout::i64> of_band(3 * band.n_pixels);
@@ -221,8 +297,8 @@ std::vector<layout::u32> FrameRun::render_runs(std::size_t first, std::span<cons
   const std::size_t n = std::min(most, samples.size() / kWords - first);
   std::vector<layout::u32> in_stretch;
   for (const layout::u32 run : runs) in_stretch.push_back(run - begin);
-  BandWork work{share_evenly(in_stretch, crew_.workers.size()), 0, n * KDRAY_SAMPLE_RUN,
-                samples.subspan(first * kWords, n * kWords)};
+  BandWork work = work_of({.of_runs = 1, .n_places = n * KDRAY_SAMPLE_RUN}, in_stretch,
+                          samples.subspan(first * kWords, n * kWords));
   work.seconds = seconds;
   const double share = share_present();
   std::vector<layout::i64> of_stretch(n * kSums);
@@ -254,8 +330,8 @@ void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<la
     const std::size_t n = std::min(most, n_runs - first), n_places = n * KDRAY_SAMPLE_RUN;
     std::vector<layout::u32> runs(n);
     std::iota(runs.begin(), runs.end(), 0u);
-    BandWork work{share_evenly(runs, crew_.workers.size()), 0, n_places,
-                  samples.subspan(first * kWords, n * kWords)};
+    BandWork work =
+        work_of({.of_runs = 1, .n_places = n_places}, runs, samples.subspan(first * kWords, n * kWords));
     render(work, static_cast<double>(first) / all, static_cast<double>(first + n) / all, [&](Films films) {
       wavefront::add_up(films, sums.subspan(3 * first * KDRAY_SAMPLE_RUN, 3 * n_places));
     });
@@ -263,7 +339,8 @@ void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<la
 }
 
 void FrameRun::render_adaptive() {
-  adaptive::Sampler sampler({provision_.frame.width, provision_.frame.height}, request_.adaptive_target);
+  adaptive::Sampler sampler({provision_.frame.width, provision_.frame.height}, request_.adaptive_target,
+                            (request_.features & KDRAY_FEATURES_NOISY) != 0);
   to_ = 0.5;
   if (request_.ledger)
     render_kept_tiles(sampler.first_sums());
@@ -283,32 +360,44 @@ void FrameRun::render_adaptive() {
   result_.samples = sampler.report();
 }
 
+// Rank 0 gets what the others have done.
+void share_reports(const RankTable& table, Result& result) {
+  transport::Ranks& ranks = *table.ranks;
+  if (!ranks.leads()) return ranks.send(0, kReport, to_report(result, table));
+  result.queues.resize(table.n_queues());
+  finish_lists(ranks, [&](const transport::Message& report) { add_report(report, table, result); });
+}
+
 }  // namespace
 
 Result render_frame(const Request& request, const Provision& provision, const Division& division,
                     const Cut& cut) {
   Result result;
-  result.image = {static_cast<int>(provision.frame.width), static_cast<int>(provision.frame.height),
-                  std::vector<vec3>(std::size_t{provision.frame.width} * provision.frame.height)};
-  result.exchange = ExchangeCounts(request.queues.size());
+  if (request.table.leads())
+    result.image = {static_cast<int>(provision.frame.width), static_cast<int>(provision.frame.height),
+                    std::vector<vec3>(std::size_t{provision.frame.width} * provision.frame.height)};
+  result.exchange = ExchangeCounts(request.table.n_queues());
   result.n_bands = static_cast<std::uint32_t>(provision.bands.size());
   result.n_parts = provision.n_parts;
   result.n_cells = static_cast<std::uint32_t>(division.directory.size());
   Crew crew = make_crew(request, provision, division, cut);
   if (request.census_every > 0) result.visits.resize(cut.subtrees.size());
-  load_parts(crew, provision);
+  load_parts(crew, request.table, provision);
   if (request.timeline)
     for (const QueueReport& report : crew.reports)
       request.timeline->name_row(static_cast<int>(report.number),
                                  fmt::format("queue {}: {}", report.number, report.device));
   const Timer timer;
   FrameRun run(request, provision, division, crew, result);
-  if (request.adaptive_target > 0)
+  if (!request.table.leads())
+    run.render_for_rank_0();
+  else if (request.adaptive_target > 0)
     run.render_adaptive();
   else
     request.ledger ? run.render_kept_uniform() : run.render_uniform();
   result.render_seconds = timer.seconds();
-  finish(crew, division, result);
+  finish(crew, request.table, division, result);
+  if (request.table.ranks) share_reports(request.table, result);
   return result;
 }
 

@@ -15,29 +15,36 @@
 
 namespace kdray::odprt {
 
-// kFields words to a ray.
-template <std::uint32_t kFields>
+// n_fields words to a ray.
 class RayPile {
  public:
-  std::size_t size() const { return words_.size() / kFields; }
+  explicit RayPile(std::uint32_t n_fields) : n_fields_(n_fields) {}
+
+  std::uint32_t n_fields() const { return n_fields_; }
+  std::size_t size() const { return words_.size() / n_fields_; }
 
   // Ray i of a stream: its field f is at stream[f*capacity + i].
   void put(const float* stream, std::size_t capacity, std::size_t i) {
     const std::size_t first = words_.size();
-    words_.resize(first + kFields);
-    for (std::uint32_t f = 0; f < kFields; ++f) words_[first + f] = stream[f * capacity + i];
+    words_.resize(first + n_fields_);
+    for (std::uint32_t f = 0; f < n_fields_; ++f) words_[first + f] = stream[f * capacity + i];
   }
 
   // Moves the last n rays into a stream, behind the `at` that are there.
   void take(float* stream, std::size_t capacity, std::size_t at, std::size_t n) {
-    const std::size_t first = words_.size() - n * kFields;
+    const std::size_t first = words_.size() - n * n_fields_;
     // A cache line of each field at a time.
     for (std::size_t from = 0; from < n; from += KDRAY_LANES)
-      for (std::uint32_t f = 0; f < kFields; ++f)
+      for (std::uint32_t f = 0; f < n_fields_; ++f)
         for (std::size_t i = from; i < std::min<std::size_t>(from + KDRAY_LANES, n); ++i)
-          stream[f * capacity + at + i] = words_[first + i * kFields + f];
+          stream[f * capacity + at + i] = words_[first + i * n_fields_ + f];
     words_.resize(first);
   }
+
+  // The last n, ray by ray; drop() takes them away, put_all() adds such.
+  std::span<const float> last(std::size_t n) const { return std::span(words_).last(n * n_fields_); }
+  void drop(std::size_t n) { words_.resize(words_.size() - n * n_fields_); }
+  void put_all(std::span<const float> rays) { words_.insert(words_.end(), rays.begin(), rays.end()); }
 
   void take_all(RayPile& other) {
     if (words_.empty()) {
@@ -49,17 +56,19 @@ class RayPile {
   }
 
  private:
+  std::uint32_t n_fields_;
   std::vector<float> words_;
 };
 
 // The rays that wait for a part.
 struct Mail {
-  std::vector<RayPile<KDRAY_TRAVEL_RAY_FIELDS>> rays;            // by slice
-  std::vector<RayPile<KDRAY_TRAVEL_SHADOW_FIELDS>> shadow_rays;  // by slice
-  std::uint64_t n = 0;                                           // of both
-  std::uint32_t deepest = 0;  // depth of a ray that has come since there was none
+  std::vector<RayPile> rays;         // by slice
+  std::vector<RayPile> shadow_rays;  // by slice
+  std::uint64_t n = 0;               // of both
+  std::uint32_t deepest = 0;         // depth of a ray that has come since there was none
 
-  explicit Mail(std::size_t n_slices) : rays(n_slices), shadow_rays(n_slices) {}
+  explicit Mail(std::size_t n_slices, std::uint32_t ray_fields = KDRAY_TRAVEL_RAY_FIELDS)
+      : rays(n_slices, RayPile(ray_fields)), shadow_rays(n_slices, RayPile(KDRAY_TRAVEL_SHADOW_FIELDS)) {}
 
   std::uint64_t n_rays() const;
 

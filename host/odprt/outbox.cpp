@@ -9,7 +9,7 @@ namespace kdray::odprt {
 Outbox::Outbox(const device::Context& context, const OutboxShape& shape)
     : shape_(shape),
       rays_(context.buffer(CL_MEM_READ_WRITE,
-                           shape.n_streams() * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity * sizeof(float),
+                           shape.n_streams() * shape.ray_fields * shape.ray_capacity * sizeof(float),
                            "the rays between queues")),
       shadow_rays_(
           context.buffer(CL_MEM_READ_WRITE,
@@ -20,7 +20,7 @@ Outbox::Outbox(const device::Context& context, const OutboxShape& shape)
 
 std::size_t Outbox::bytes() const {
   return shape_.n_streams() *
-         (std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * shape_.ray_capacity * sizeof(float) +
+         (std::size_t{shape_.ray_fields} * shape_.ray_capacity * sizeof(float) +
           std::size_t{KDRAY_SENT_SHADOW_FIELDS} * shape_.shadow_capacity * sizeof(float) +
           2 * sizeof(layout::u32));
 }

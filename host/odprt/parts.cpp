@@ -268,6 +268,8 @@ flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numb
   flat.corner_colors = select_rows(scene.corner_colors, triangles, scene.triangles.size());
   flat.texcoords = select_rows(scene.texcoords, triangles, scene.triangles.size());
   flat.lights = scene.lights;
+  flat.sky = scene.sky;
+  flat.sky_colors = scene.sky_colors;
   std::vector<std::uint32_t> normals;
   for (layout::Triangle& t : flat.triangles) {
     if (t.normals == KDRAY_NO_NORMALS) continue;

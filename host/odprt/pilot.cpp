@@ -27,6 +27,7 @@ layout::Frame small_frame(layout::Frame frame) {
 std::vector<SubtreeUse> run_pilot(const Request& request, const Division& whole, const Cut& cut) {
   Request pilot = request;
   pilot.queues.resize(1);
+  pilot.table = alone(1);
   pilot.n_slices = (request.n_slices + 3) / 4;  // its tiles are few
   pilot.frame = small_frame(request.frame);
   pilot.adaptive_target = 0;

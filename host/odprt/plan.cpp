@@ -20,11 +20,12 @@ constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 
 // How many rays of a level a slice may have: enough that no queue waits for what others hold, or a few of the
-// buffers that were asked for.
+// buffers that were asked for; and so many that, whoever has the room for them, some rank has twice what a
+// ray needs (post.h).
 std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uint32_t n_slices) {
-  if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least);
+  if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least * r.n_ranks);
   const std::uint32_t in_work = kBatch * (std::min(least, 4u) * r.n_queues + 2);
-  return std::max({(r.streamed ? kStreamedRays : kRays) / n_slices, in_work, 2 * least});
+  return std::max({(r.streamed ? kStreamedRays : kRays) / n_slices, in_work, 2 * least * r.n_ranks});
 }
 
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
@@ -75,6 +76,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   // the room.
   out.n_places = r.streamed ? 1 : r.n_parts;
   out.n_slices = plan.n_slices;
+  out.ray_fields += wavefront::pencil_fields(r.features);
   out.rays = outbox_rays(r, plan.n_slices);
   out.shadow = lights ? std::max(r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights) : 1;
   // Where there is one part nothing is ever sent.
@@ -82,6 +84,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   out.shadow_capacity = capacity_for(r.n_parts > 1 ? out.shadow : 0);
   OutboxShape& in = plan.inbox;
   in.n_places = 1;
+  in.ray_fields = out.ray_fields;
   in.n_slices = plan.n_slices;
   in.rays = frame.pool_size;
   in.shadow = plan.shadow_pool;
@@ -92,12 +95,12 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
 
 std::size_t work_bytes(const layout::Frame& frame, const Plan& plan, std::size_t band_pixels,
                        std::size_t n_outboxes) {
-  const std::size_t pools = std::size_t{frame.max_depth} * KDRAY_TRAVEL_RAY_FIELDS * frame.pool_capacity +
+  const std::size_t pools = std::size_t{frame.max_depth} * plan.outbox.ray_fields * frame.pool_capacity +
                             std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * (plan.shadow_pool + 2 * KDRAY_LANES);
-  const std::size_t streams = std::size_t{KDRAY_TRAVEL_RAY_FIELDS + KDRAY_HIT_FIELDS} * frame.batch_capacity +
+  const std::size_t streams = std::size_t{plan.outbox.ray_fields + KDRAY_HIT_FIELDS} * frame.batch_capacity +
                               std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS + 1} * frame.shadow_capacity;
   const auto words = [](const OutboxShape& box) {
-    return std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * box.ray_capacity +
+    return std::size_t{box.ray_fields} * box.ray_capacity +
            std::size_t{KDRAY_SENT_SHADOW_FIELDS} * box.shadow_capacity;
   };
   const std::size_t boxes = words(plan.outbox) * n_outboxes * plan.outbox.n_places + words(plan.inbox);

@@ -24,11 +24,11 @@ struct Plan {
 // What is asked of a plan.
 struct PlanRequest {
   layout::Features features = 0;
-  std::uint32_t n_parts = 1, n_queues = 1;
-  std::uint32_t n_slices = 16;   // of each queue
-  std::uint32_t ray_buffer = 0;  // rays in a place of the outbox; 0: chosen
-  std::size_t memory = 0;        // of a queue, when streamed: buffers take a part of it
-  bool streamed = false;         // parts come and go: rays wait in the host's memory, and there may be many
+  std::uint32_t n_parts = 1, n_queues = 1, n_ranks = 1;  // of all ranks
+  std::uint32_t n_slices = 16;                           // of each queue
+  std::uint32_t ray_buffer = 0;                          // rays in a place of the outbox; 0: chosen
+  std::size_t memory = 0;  // of a queue, when streamed: buffers take a part of it
+  bool streamed = false;   // parts come and go: rays wait in the host's memory, and there may be many
 };
 
 // `frame` has tiles; its batch, pool and shadow sizes are set.

@@ -49,7 +49,8 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
                           : std::clamp(kOutboxPlaces / n_parts, kLeastOutboxes, kMostOutboxes);
   p.plan = make_plan(p.frame, {.features = request.features,
                                .n_parts = n_parts,
-                               .n_queues = static_cast<std::uint32_t>(request.queues.size()),
+                               .n_queues = static_cast<std::uint32_t>(request.table.n_queues()),
+                               .n_ranks = request.table.place().ranks,
                                // Where memory is short, there are no more slices than compute units, about.
                                .n_slices = streamed ? (request.n_slices + 15) / 16 : request.n_slices,
                                .ray_buffer = request.ray_buffer,
@@ -87,8 +88,8 @@ std::optional<Provision> try_streamed(const Request& request, std::size_t geomet
       p.most_geometry = of_queue - work;
       return p;
     }
-    if (n_parts == KDRAY_MAX_PARTS) return std::nullopt;
-    n_parts = std::min<std::uint32_t>(n_parts + std::max(n_parts / 2, 1u), KDRAY_MAX_PARTS);
+    if (n_parts >= most_parts(request)) return std::nullopt;
+    n_parts = std::min<std::uint32_t>(n_parts + std::max(n_parts / 2, 1u), most_parts(request));
   }
 }
 
@@ -102,8 +103,12 @@ Provision provide_streamed(const Request& request, std::size_t geometry_bytes, s
 
 }  // namespace
 
+std::uint32_t most_parts(const Request& request) {
+  return (request.features & KDRAY_FEATURE_AREA_LIGHTS) != 0 ? KDRAY_MAX_PARTS_TELLING : KDRAY_MAX_PARTS;
+}
+
 Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts) {
-  const auto n_queues = static_cast<std::uint32_t>(request.queues.size());
+  const auto n_queues = static_cast<std::uint32_t>(request.table.n_queues());
   Provision all = provide_for(request, n_queues, false, kMaxFilmBytes);
   if (request.device_memory == 0) return all;
   const std::size_t of_queue = request.device_memory / queues_on_a_device(request);
@@ -116,7 +121,7 @@ bool fits(const Provision& provision, const Division& division, const Request& r
   if (!provision.streamed) return true;
   const std::size_t largest = room_bytes(division) + division.directory.size() * sizeof(layout::PartCell);
   if (largest <= provision.most_geometry) return true;
-  if (provision.n_parts < KDRAY_MAX_PARTS) return false;
+  if (provision.n_parts < most_parts(request)) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));
 }
 

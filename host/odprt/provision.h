@@ -29,6 +29,9 @@ struct Provision {
   WorkRoom room;  // of a queue: the largest band, or a round's samples
 };
 
+// The most parts that rays have bits for.
+std::uint32_t most_parts(const Request& request);
+
 // There are as many parts as queues where that fits, and more, which come and go, where the request's limit
 // is too small for it; then `least_parts` at least.
 Provision provide(const Request& request, std::size_t geometry_bytes, std::uint32_t least_parts = 0);

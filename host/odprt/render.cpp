@@ -10,6 +10,7 @@
 #include "odprt/frame.h"
 #include "odprt/pilot.h"
 #include "odprt/queue_failure.h"
+#include "odprt/rank_lists.h"
 #include "odprt/replicate.h"
 
 namespace kdray::odprt {
@@ -131,14 +132,45 @@ Provision DividedScene::divide_for(const Request& request) {
     if (!provision.streamed) measure_costs(request);
     divide_by(options_for(provision, request));
     if (fits(provision, *division_, request)) return provision;
-    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, KDRAY_MAX_PARTS);
+    least_parts = std::min<std::uint32_t>(provision.n_parts + provision.n_parts / 4 + 1, most_parts(request));
   }
+}
+
+// Rank 0 says who holds what, since it alone has measured; each keeps its own parts.
+Provision DividedScene::divide_with_ranks(const Request& request) {
+  Provision provision = provide(request, geometry_bytes());
+  cut_for(provision.n_parts);
+  if (request.table.leads()) {
+    Request pilot = request;
+    pilot.ledger = nullptr;
+    measure_costs(pilot);
+    divide_by(options_for(provision, request));
+  }
+  std::vector<std::uint32_t> part_of = share_division(
+      *request.table.ranks, request.table.leads() ? division_->part_of : std::vector<std::uint32_t>());
+  if (!request.table.leads()) {
+    check_division(part_of, provision.n_parts);
+    if (!division_ || division_->part_of != part_of)
+      division_ = divide(flat_, wide_, cut_, std::move(part_of), provision.n_parts);
+    divided_by_ = {};
+  }
+  for (std::uint32_t part = 0; part < division_->parts.size(); ++part)
+    if (!request.table.is_own(part)) division_->parts[part] = {};
+  return provision;
+}
+
+// Of rank 0's division: all have the same subtrees.
+void DividedScene::check_division(std::span<const std::uint32_t> part_of, std::uint32_t n_parts) const {
+  const bool fits =
+      std::ranges::all_of(part_of, [&](std::uint32_t part) { return part < n_parts || part == kEveryPart; });
+  if (!fits || part_of.size() != cut_.subtrees.size())
+    throw Error(ErrorCode::internal, "rank 0 has divided the scene otherwise than this rank could");
 }
 
 Result DividedScene::render_once(const Request& request) {
   const Timer timer;
-  cut_for(static_cast<std::uint32_t>(request.queues.size()));
-  const Provision provision = divide_for(request);
+  cut_for(static_cast<std::uint32_t>(request.table.n_queues()));
+  const Provision provision = request.table.ranks ? divide_with_ranks(request) : divide_for(request);
   const double seconds = timer.seconds();
   Result result = render_frame(request, provision, *division_, cut_);
   result.divide_seconds = seconds;
@@ -147,23 +179,27 @@ Result DividedScene::render_once(const Request& request) {
 
 Result DividedScene::render(const Request& asked) {
   Request request = asked;
-  if (request.queues.size() > KDRAY_MAX_PARTS)
+  if (request.table.n_queues() > most_parts(request))
     throw Error(ErrorCode::usage,
-                fmt::format("odprt takes {} queues at most; take fewer (--queues)", KDRAY_MAX_PARTS));
-  if (request.balance == Balance::dynamic) request.census_every = kCensusEvery;
+                fmt::format("odprt takes {} queues at most, of all ranks together; take fewer (--queues)",
+                            most_parts(request)));
+  const bool learns = request.balance == Balance::dynamic && request.table.ranks == nullptr;
+  if (learns) request.census_every = kCensusEvery;
   std::vector<Quarantined> quarantined;
   for (;;) {
     try {
       Result result = render_once(request);
       result.quarantined = std::move(quarantined);
-      if (request.balance == Balance::dynamic) learn(result);
+      if (learns) learn(result);
       return result;
     } catch (const QueueFailures& e) {
+      if (request.table.ranks) throw Error(e.failures.front().error);
       // The last first, so that the places of the others stay.
       for (auto failure = e.failures.rbegin(); failure != e.failures.rend(); ++failure) {
         quarantined.push_back({request.queues[failure->queue].number, failure->error.what()});
         request.queues.erase(request.queues.begin() + static_cast<std::ptrdiff_t>(failure->queue));
       }
+      request.table = alone(request.queues.size());
       if (request.queues.empty()) throw Error(e.failures.front().error);
     }
   }

@@ -2,8 +2,9 @@
 //         travel between them.
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed parallel ray tracing.
 // Errors  A queue whose device fails, or has too little memory, is left out from then on: the scene is
-//         divided among the others, and the frame begun anew. The error itself when no queue is left. Any
-//         other error ends the frame (device/opencl_error.h).
+//         divided among the others, and the frame begun anew. The error itself when no queue is left, or
+//         there are other ranks. Any other error ends the frame (device/opencl_error.h).
+// Ranks   All call render(), with the same frame. Rank 0 has the picture; the result of the others has none.
 #pragma once
 
 #include <functional>
@@ -20,6 +21,7 @@
 #include "ledger/frame_ledger.h"
 #include "odprt/division.h"
 #include "odprt/exchange.h"
+#include "odprt/rank_table.h"
 #include "timeline/timeline.h"
 #include "wavefront/programs.h"
 #include "wavefront/wavefront.h"
@@ -35,6 +37,7 @@ struct Queue {
 
 struct Request {
   std::vector<Queue> queues;
+  RankTable table;      // of them, and of other ranks'
   layout::Frame frame;  // with tiles
   layout::Features features = 0;
   Traversal traversal = Traversal::automatic;
@@ -61,6 +64,7 @@ struct QueueReport {
   std::uint64_t n_loads = 0;                       // of parts
   std::size_t geometry_bytes = 0, work_bytes = 0;  // geometry: the most at one time
   double cost_share = 0;                           // of the expected cost
+  int rank = 0;
 };
 
 struct Quarantined {
@@ -105,6 +109,8 @@ class DividedScene {
   double cost_of(const SubtreeUse& use, std::size_t subtree) const;
   void learn(const Result& result);
   Provision divide_for(const Request& request);
+  Provision divide_with_ranks(const Request& request);
+  void check_division(std::span<const std::uint32_t> part_of, std::uint32_t n_parts) const;
   Result render_once(const Request& request);
 
   flatten::FlatScene flat_;

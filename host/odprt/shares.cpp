@@ -85,8 +85,7 @@ std::size_t queue_of(layout::u32 tile, const layout::Frame& frame, const Probe& 
 
 }  // namespace
 
-Shares::Shares(std::vector<Entries> of_queues, Entries anyones)
-    : own_(std::move(of_queues)), anyones_(std::move(anyones)) {
+Shares::Shares(Dealt dealt) : own_(std::move(dealt.of_queues)), anyones_(std::move(dealt.anyones)) {
   for (Entries& own : own_) std::reverse(own.begin(), own.end());
   std::reverse(anyones_.begin(), anyones_.end());
 }
@@ -110,6 +109,27 @@ Shares::Entries Shares::take(std::size_t queue, std::size_t n) {
   return taken;
 }
 
+void Shares::add(Entries entries) {
+  const std::lock_guard lock(mutex_);
+  anyones_.insert(anyones_.end(), entries.rbegin(), entries.rend());
+}
+
+Shares::Entries Shares::give(std::size_t n) {
+  const std::lock_guard lock(mutex_);
+  Entries given;
+  while (given.size() < n) {
+    Entries& from = anyones_.empty() ? *std::ranges::max_element(own_, {}, &Entries::size) : anyones_;
+    if (from.empty()) break;
+    const std::size_t some = std::min(n - given.size(), (from.size() + 1) / 2);
+    // The front is what would be taken last.
+    const auto end = from.begin() + static_cast<std::ptrdiff_t>(some);
+    given.insert(given.end(), from.begin(), end);
+    from.erase(from.begin(), end);
+  }
+  std::ranges::reverse(given);
+  return given;
+}
+
 Shares::Entries Shares::close() {
   const std::lock_guard lock(mutex_);
   Entries left = std::move(anyones_);
@@ -127,12 +147,12 @@ std::size_t Shares::left() const {
                          [](std::size_t n, const Entries& own) { return n + own.size(); });
 }
 
-Shares share_evenly(std::span<const layout::u32> list, std::size_t n_queues) {
+Dealt share_evenly(std::span<const layout::u32> list, std::size_t n_queues) {
   return {std::vector<Shares::Entries>(n_queues), scattered(list)};
 }
 
-Shares share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
-                     std::span<const layout::PartCell> directory, std::span<const std::size_t> owner) {
+Dealt share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
+                    std::span<const layout::PartCell> directory, std::span<const std::size_t> owner) {
   const Probe probe(frame, directory);
   const std::vector<layout::u32> order = scattered(tiles);
   std::vector<std::size_t> queues(order.size());
@@ -143,6 +163,16 @@ Shares share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, c
   Shares::Entries anyones = std::move(shares.back());
   shares.pop_back();
   return {std::move(shares), std::move(anyones)};
+}
+
+Dealt of_rank(const Dealt& all, const RankTable& table) {
+  Dealt own;
+  for (std::size_t q = 0; q < table.n_own(); ++q)
+    own.of_queues.push_back(all.of_queues[table.own_first() + q]);
+  const RankOf place = table.place();
+  for (std::size_t i = place.rank; i < all.anyones.size(); i += place.ranks)
+    own.anyones.push_back(all.anyones[i]);
+  return own;
 }
 
 }  // namespace kdray::odprt

@@ -13,17 +13,29 @@
 #include <vector>
 
 #include "layout/odprt.layout.h"
+#include "odprt/rank_table.h"
 
 namespace kdray::odprt {
+
+// Entries as they are dealt out: in the order in which they are to be taken.
+struct Dealt {
+  std::vector<std::vector<layout::u32>> of_queues;
+  std::vector<layout::u32> anyones;
+};
 
 class Shares {
  public:
   using Entries = std::vector<layout::u32>;
 
-  Shares(std::vector<Entries> of_queues, Entries anyones);
+  explicit Shares(Dealt dealt);
 
   // Takes at most n entries for a queue. None means that none are left anywhere. Any thread may call it.
   Entries take(std::size_t queue, std::size_t n);
+
+  // Entries that another rank has given, for anyone; and such for another rank, which this one's queues
+  // would take last: n at most.
+  void add(Entries entries);
+  Entries give(std::size_t n);
 
   // What nobody has taken yet, which nobody gets from then on.
   Entries close();
@@ -40,11 +52,14 @@ class Shares {
 };
 
 // Entries of any kind: all are anyone's.
-Shares share_evenly(std::span<const layout::u32> list, std::size_t n_queues);
+Dealt share_evenly(std::span<const layout::u32> list, std::size_t n_queues);
 
 // Tiles: each belongs to the owner of the part that most of its rays enter first; those whose rays enter none
 // are anyone's. `owner`: the queue of each part.
-Shares share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
-                     std::span<const layout::PartCell> directory, std::span<const std::size_t> owner);
+Dealt share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
+                    std::span<const layout::PartCell> directory, std::span<const std::size_t> owner);
+
+// What of them is a rank's: its queues' own, and an equal part of anyone's.
+Dealt of_rank(const Dealt& all, const RankTable& table);
 
 }  // namespace kdray::odprt

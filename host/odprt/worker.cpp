@@ -25,7 +25,7 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       traffic_(plan.n_slices),
       visits_(2 * plan.n_slices * max_subtrees),
       buffers_(context, frame, {plan.n_slices, room.entries, room.samples, room.places},
-               wavefront::StreamForm::of_odprt(frame)),
+               wavefront::StreamForm::of_odprt(frame, features)),
       travel_buffer_(make(sizeof(layout::Travel), "the division")),
       cells_(make(directory.size_bytes(), "the directory")),
       grant_buffer_(make(plan.n_slices * sizeof(layout::Grant), "the slices' grants")),
@@ -36,7 +36,7 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
       inbox_(context, plan.inbox),
       wave_(programs.kernel<kernels::TravelWave>(features | KDRAY_FEATURE_NUMBERS, traversal)),
-      receive_(programs.kernel<kernels::Receive>(0)) {
+      receive_(programs.kernel<kernels::Receive>(features)) {
   bytes_ += inbox_.bytes() + buffers_.bytes;
   if (!directory.empty())
     queue_.enqueueWriteBuffer(cells_, CL_TRUE, 0, directory.size_bytes(), directory.data());
@@ -150,9 +150,9 @@ void Worker::receive(const Outbox& outbox, std::uint32_t place) {
 
 std::uint64_t Worker::receive(Mail& mail) {
   const OutboxShape& shape = inbox_.shape();
-  auto* rays = static_cast<float*>(queue_.enqueueMapBuffer(
-      inbox_.rays(), CL_FALSE, CL_MAP_WRITE, 0,  // the next one waits for both
-      shape.n_streams() * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity * sizeof(float)));
+  auto* rays = static_cast<float*>(
+      queue_.enqueueMapBuffer(inbox_.rays(), CL_FALSE, CL_MAP_WRITE, 0,  // the next one waits for both
+                              shape.n_streams() * shape.ray_fields * shape.ray_capacity * sizeof(float)));
   auto* shadow_rays = static_cast<float*>(queue_.enqueueMapBuffer(
       inbox_.shadow_rays(), CL_TRUE, CL_MAP_WRITE, 0,
       shape.n_streams() * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity * sizeof(float)));
@@ -164,8 +164,8 @@ std::uint64_t Worker::receive(Mail& mail) {
         std::min<std::size_t>({mail.rays[s].size(), shape.rays, frame_.pool_size - fullest});
     const std::size_t n_shadow = std::min<std::size_t>(
         {mail.shadow_rays[s].size(), shape.shadow, plan_.shadow_pool - traffic_[s].n_shadow_pool});
-    mail.rays[s].take(rays + std::size_t{s} * KDRAY_TRAVEL_RAY_FIELDS * shape.ray_capacity,
-                      shape.ray_capacity, 0, n);
+    mail.rays[s].take(rays + std::size_t{s} * shape.ray_fields * shape.ray_capacity, shape.ray_capacity, 0,
+                      n);
     mail.shadow_rays[s].take(shadow_rays + std::size_t{s} * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity,
                              shape.shadow_capacity, 0, n_shadow);
     inbox_.n()[s] = static_cast<layout::u32>(n);
@@ -203,7 +203,7 @@ void Worker::finish() {
 }
 
 void Worker::stash(Mail& mail) {
-  const std::size_t pool_words = std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * frame_.pool_capacity;
+  const std::size_t pool_words = std::size_t{plan_.inbox.ray_fields} * frame_.pool_capacity;
   const std::size_t shadow_words = KDRAY_TRAVEL_SHADOW_FIELDS * std::size_t{travel_.shadow_pool_capacity};
   stashed_.clear();
   const auto begin_reading = [&](const cl::Buffer& buffer, std::size_t place, std::size_t n_words) {
@@ -245,7 +245,7 @@ void Worker::stash(Mail& mail) {
 
 void Worker::copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of) {
   const OutboxShape& shape = outbox.shape();
-  const std::size_t ray_words = std::size_t{KDRAY_TRAVEL_RAY_FIELDS} * shape.ray_capacity;
+  const std::size_t ray_words = std::size_t{shape.ray_fields} * shape.ray_capacity;
   const std::size_t shadow_words = std::size_t{KDRAY_SENT_SHADOW_FIELDS} * shape.shadow_capacity;
   const auto map = [&](const cl::Buffer& buffer, std::size_t words) {
     return static_cast<float*>(

@@ -5,14 +5,10 @@
 // Errors  ErrorCode::internal: bytes that are no such message. Values are checked by whoever knows the list.
 #pragma once
 
-#include <algorithm>
-#include <span>
-#include <type_traits>
-#include <vector>
-
 #include "layout/frame.layout.h"
 #include "ledger/header.h"
 #include "transport/ranks.h"
+#include "transport/words.h"
 
 namespace kdray::pdprt {
 
@@ -52,31 +48,6 @@ struct SharedFrame {
   ledger::Rectangle places_of(bool of_runs, layout::u32 entry) const;
 };
 
-// A head and the words that lie behind it.
-template <class Head>
-transport::Bytes to_bytes(const Head& head, std::span<const layout::u32> words = {}) {
-  static_assert(std::is_trivially_copyable_v<Head> && sizeof(Head) % sizeof(layout::u32) == 0);
-  transport::Bytes bytes(reinterpret_cast<const char*>(&head), sizeof head);
-  return bytes.append(reinterpret_cast<const char*>(words.data()), words.size_bytes());
-}
-
-[[noreturn]] void refuse(const transport::Message& message);
-
-template <class Head>
-Head head_of(const transport::Message& message) {
-  Head head;
-  if (message.bytes.size() < sizeof head) refuse(message);
-  std::copy_n(message.bytes.data(), sizeof head, reinterpret_cast<char*>(&head));
-  return head;
-}
-
-template <class Head>
-std::vector<layout::u32> words_behind(const transport::Message& message) {
-  const std::size_t n = message.bytes.size() - sizeof(Head);
-  if (n % sizeof(layout::u32) != 0) refuse(message);
-  std::vector<layout::u32> words(n / sizeof(layout::u32));
-  std::copy_n(message.bytes.data() + sizeof(Head), n, reinterpret_cast<char*>(words.data()));
-  return words;
-}
+using transport::head_of, transport::refuse, transport::to_bytes, transport::words_behind;
 
 }  // namespace kdray::pdprt

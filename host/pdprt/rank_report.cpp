@@ -1,65 +1,20 @@
 #include "pdprt/rank_report.h"
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 
 #include "pdprt/rank_messages.h"
+#include "transport/values.h"
 
 namespace kdray::pdprt {
 
 namespace {
 
-constexpr std::size_t kMostNames = 1 << 16, kMostQueues = 1 << 16;
-
-// Values one after the other, and texts with their lengths before them.
-class Writer {
- public:
-  template <class T>
-  void put(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  void put_text(const std::string& text) {
-    const std::string_view kept = std::string_view(text).substr(0, kMostNames);
-    put(kept.size());
-    bytes_.append(kept);
-  }
-  transport::Bytes take() { return std::move(bytes_); }
-
- private:
-  transport::Bytes bytes_;
-};
-
-class Reader {
- public:
-  explicit Reader(const transport::Message& message) : message_(message), rest_(message.bytes) {}
-
-  template <class T>
-  T get() {
-    T value;
-    if (rest_.size() < sizeof value) refuse(message_);
-    std::memcpy(&value, rest_.data(), sizeof value);
-    rest_.remove_prefix(sizeof value);
-    return value;
-  }
-  std::string get_text() {
-    const auto n = get<std::size_t>();
-    if (n > kMostNames || n > rest_.size()) refuse(message_);
-    std::string text(rest_.substr(0, n));
-    rest_.remove_prefix(n);
-    return text;
-  }
-
- private:
-  const transport::Message& message_;
-  std::string_view rest_;
-};
+constexpr std::size_t kMostQueues = 1 << 16;
 
 }  // namespace
 
 transport::Bytes to_report(const Result& result) {
-  Writer writer;
+  transport::Writer writer;
   writer.put(result.counters);
   writer.put(result.tile_cost);
   writer.put(result.stage_seconds.size());
@@ -77,7 +32,7 @@ transport::Bytes to_report(const Result& result) {
 }
 
 void add_report(const transport::Message& message, Result& result) {
-  Reader reader(message);
+  transport::Reader reader(message);
   result.counters.add(reader.get<wavefront::Counters>());
   const auto cost = reader.get<TileCost>();
   result.tile_cost.costliest = std::max(result.tile_cost.costliest, cost.costliest);

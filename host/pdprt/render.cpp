@@ -24,7 +24,8 @@ Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), f
   const adaptive::Size size{frame_.width, frame_.height};
   image_ = {static_cast<int>(size.width), static_cast<int>(size.height), {}};
   const bool has_picture = !task.ranks || task.ranks->leads();
-  if (task.adaptive_target > 0 && has_picture) sampler_.emplace(size, task.adaptive_target);
+  if (task.adaptive_target > 0 && has_picture)
+    sampler_.emplace(size, task.adaptive_target, (task.features & KDRAY_FEATURES_NOISY) != 0);
   if (task.adaptive_target == 0 && has_picture) image_.pixels.resize(size.pixels());
   room_.tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
   room_.pixels = bands_.front().n_pixels;

@@ -4,6 +4,7 @@
 
 #include "base/timer.h"
 #include "flatten/features.h"
+#include "prepare/instanced.h"
 #include "prepare/within.h"
 
 namespace kdray::prepare {
@@ -36,14 +37,18 @@ kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
 // The scene is taken apart into all its members, so that one that is added can't be forgotten.
 #define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
 scene::Scene settings_of(const scene::Scene& scene) {
-  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) materials, paint, lights,
-               unlit, camera, cameras, framing, background, ambient, settings, warnings, files,
-               load_options] = scene;
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
+               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
+               warnings, files, load_options] = scene;
+  scene::Sky without_picture = sky;
+  without_picture.picture.reset();
   return {.name = name,
           .vertices = {},
           .normals = {},
           .triangles = {},
-          KDRAY_SHAPES(KDRAY_NO_SHAPES).materials = materials,
+          KDRAY_SHAPES(KDRAY_NO_SHAPES).meshes = {},
+          .instances = {},
+          .materials = materials,
           .paint = {.coats = paint.coats},
           .lights = lights,
           .unlit = unlit,
@@ -51,6 +56,7 @@ scene::Scene settings_of(const scene::Scene& scene) {
           .cameras = cameras,
           .framing = framing,
           .background = background,
+          .sky = without_picture,
           .ambient = ambient,
           .settings = settings,
           .warnings = warnings,
@@ -86,7 +92,7 @@ Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
                  const std::optional<LocalSpace>& kept) {
   const Timer timer;
   const scene::Geometry geometry = scene::make_geometry(scene, kept);
-  const kdtree::BuildConfig config = config_of(options, geometry.size());
+  const kdtree::BuildConfig config = config_of(options, std::max(geometry.size(), largest_mesh(scene)));
   const double seconds = timer.seconds();
   Prepared made = options.memory_bytes > 0
                       ? prepare_within(scene, geometry, config, options.binary_form, options.memory_bytes)
@@ -116,16 +122,18 @@ Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
 
   Timer step;
   const kdtree::Tree tree = kdtree::build(geometry, config);
+  const Meshes meshes(scene, config);
   made.seconds.build = step.seconds();
 
   step.restart();
-  made.flat = flatten::flatten(scene, geometry, tree, binary_form);
-  made.wide = flatten::make_wide(tree, made.flat, flatten::choose_block(tree));
-  made.seconds.flatten = step.seconds();
-
+  made.flat = flatten::flatten(scene, geometry, tree, binary_form && scene.instances.empty());
+  made.wide = flatten::make_wide(tree, made.flat, meshes.block(tree, geometry.size()));
   made.geometry.bounds = tree.bounds;
   made.tree_depth = tree.max_depth;
   made.tree_nodes = tree.nodes.size();
+  meshes.join(made);
+  made.seconds.flatten = step.seconds();
+
   made.tree = kdtree::measure(tree, geometry, config);
   return made;
 }

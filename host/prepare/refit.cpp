@@ -8,6 +8,7 @@
 #include "base/timer.h"
 #include "flatten/features.h"
 #include "flatten/refit.h"
+#include "flatten/sky.h"
 
 namespace kdray::prepare {
 
@@ -58,6 +59,8 @@ Refitted refit(const scene::Scene& scene, const Prepared& last, const Fitting& f
   out.flat.materials = flatten::pack_materials(scene);
   out.flat.coats = flatten::pack_coats(scene);
   out.flat.lights = flatten::pack_lights(scene, geometry.space);
+  out.flat.sky = {}, out.flat.sky_colors = {};
+  flatten::pack_sky(scene.sky, out.flat);
   out.wide = std::move(fit.form);
   out.seconds = {.load = last.seconds.load, .build = 0, .flatten = timer.seconds()};
   return made;

@@ -13,6 +13,11 @@ void light_anew(Prepared& scene) {
   scene.features = flatten::features_in_light(scene.features, scene.settings);
 }
 
+void take_out_sky(Prepared& scene) {
+  scene.settings.sky = {};
+  scene.flat.sky = {}, scene.flat.sky_colors = {};
+}
+
 // What is cut out covers nothing. Of other coats nothing is left.
 void keep_holes(Prepared& white) {
   for (scene::Coat& c : white.settings.paint.coats)
@@ -29,7 +34,7 @@ Prepared seen(const Prepared& prepared, const scene::View& view, const std::opti
               double aspect) {
   Prepared changed = prepared;
   scene::set_view(changed.settings, view, aspect);
-  if (background) changed.settings.background = *background;
+  if (background) changed.settings.background = *background, take_out_sky(changed);
   light_anew(changed);
   return changed;
 }
@@ -40,6 +45,7 @@ Prepared coverage_of(const Prepared& prepared) {
   Prepared white = prepared;
   for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1), .coat = m.coat};
   white.settings.background = vec3(0);
+  take_out_sky(white);
   white.settings.lights.clear();
   keep_holes(white);
   white.flat.materials = flatten::pack_materials(white.settings);

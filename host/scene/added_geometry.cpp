@@ -9,8 +9,10 @@
 
 #include "base/error.h"
 #include "math/local_space.h"
+#include "scene/area_light.h"
 #include "scene/check_scene.h"
 #include "scene/settle_normals.h"
+#include "scene/sky_picture.h"
 
 namespace kdray::scene {
 
@@ -68,6 +70,28 @@ RawVector<vec3> unit_normals(const Points& normals, std::size_t n_vertices) {
   });
   if (bad < n_vertices) refuse(fmt::format("normals[{}]: not finite, or without a direction", bad));
   return copy;
+}
+
+// Vertices' coordinates, brought to their triangles.
+PageVector<layout::TexCoords> texcoords_of(const Mesh& mesh, const PageVector<Triangle>& triangles) {
+  const std::size_t n = mesh.texcoords.size();
+  if (n == 0) return {};
+  if (n != mesh.vertices.size())
+    refuse(fmt::format("texcoords: {} of them for {} vertices; give one for each, or none", n,
+                       mesh.vertices.size()));
+  RawVector<std::array<float, 2>> narrow(n);
+  const std::size_t bad = first_fault(n, [&](std::size_t i) {
+    const auto row = mesh.texcoords[i];
+    narrow[i] = {static_cast<float>(row[0]), static_cast<float>(row[1])};
+    return std::isfinite(narrow[i][0]) && std::isfinite(narrow[i][1]);
+  });
+  if (bad < n) refuse(fmt::format("texcoords[{}]: not finite, or beyond 3.4e38", bad));
+  PageVector<layout::TexCoords> out(triangles.size());
+  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) {
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t c = 0; c < 2; ++c) out[i].uv[k][c] = narrow[triangles[i].vertex[k]][c];
+  });
+  return out;
 }
 
 // Indices as the caller wrote them: those beyond 2^63 are negative ones.
@@ -132,6 +156,7 @@ AddedGeometry make_added(const Mesh& mesh) {
   if (bad < n)
     refuse(fmt::format("triangles[{}]: an index of {} is out of range; there are {} vertices", bad,
                        in_words(mesh.triangles, bad), n_vertices));
+  geometry.texcoords = texcoords_of(mesh, geometry.triangles);
   return geometry;
 }
 
@@ -202,10 +227,9 @@ Material material_of(const kdray::Material& m) {
 
 Light light_of(const kdray::Light& l) {
   constexpr double kRadians = std::numbers::pi / 180;
-  static_assert(static_cast<int>(kdray::Light::Kind::spot) == static_cast<int>(LightKind::spot));
-  if (l.kind != kdray::Light::Kind::point && l.kind != kdray::Light::Kind::directional &&
-      l.kind != kdray::Light::Kind::spot)
-    refuse("light: there is no such kind");
+  using Kind = kdray::Light::Kind;
+  static_assert(static_cast<int>(Kind::disc) == static_cast<int>(LightKind::disc));
+  if (l.kind < Kind::point || l.kind > Kind::disc) refuse("light: there is no such kind");
   const auto good_angle = [](double degrees) { return degrees >= 0 && degrees <= 180; };
   if (!good_angle(l.inner_degrees) || !good_angle(l.outer_degrees))
     refuse("light: the spot's angles may be 0 to 180 degrees");
@@ -215,12 +239,19 @@ Light light_of(const kdray::Light& l) {
   light.color = color(l.color);
   light.attenuation = vector(l.attenuation);
   light.range = l.range;
-  if (l.kind != kdray::Light::Kind::point) {
+  if (l.kind == Kind::directional || l.kind == Kind::spot) {
     const dvec3 direction = vector(l.direction);
     if (!is_finite(direction) || direction == dvec3(0)) refuse("light: the direction is not finite, or 0");
     light.direction = safe_normalize(direction);
   }
-  if (l.kind == kdray::Light::Kind::spot) {
+  if (l.kind == Kind::rectangle) light.across = vector(l.across), light.down = vector(l.down);
+  if (l.kind == Kind::sphere) light.radius = l.radius;
+  if (l.kind == Kind::disc) {
+    const dvec3 normal = vector(l.normal);
+    if (!is_finite(normal) || normal == dvec3(0)) refuse("light: the normal is not finite, or 0");
+    set_disc(light, safe_normalize(normal), l.radius);
+  }
+  if (l.kind == Kind::spot) {
     light.cos_inner = static_cast<float>(std::cos(l.inner_degrees * kRadians));
     light.cos_outer = static_cast<float>(std::cos(l.outer_degrees * kRadians));
   }
@@ -234,9 +265,30 @@ Camera camera_of(const kdray::Camera& c) {
                       .up = vector(c.up),
                       .vertical_fov = c.fov * (std::numbers::pi / 180),
                       .hither = c.hither,
-                      .ortho_width = c.ortho_width};
+                      .ortho_width = c.ortho_width,
+                      .aperture = c.aperture,
+                      .focus = c.focus};
   if (const char* const fault = fault_of(camera)) refuse(fmt::format("camera: {}", fault));
   return camera;
+}
+
+Sky sky_of(const kdray::Gradient& g) {
+  Sky sky{.kind = SkyKind::gradient, .up = safe_normalize(vector(g.up))};
+  for (const GradientStop& stop : g.stops) sky.stops.push_back({stop.height, color(stop.color)});
+  if (const char* const fault = fault_of(sky)) refuse(fmt::format("background: {}", fault));
+  sky.brightest = brightest_of(sky);
+  return sky;
+}
+
+Sky sky_of(const kdray::Environment& e, std::vector<std::string>& warnings) {
+  Sky sky{.kind = SkyKind::picture,
+          .up = safe_normalize(vector(e.up)),
+          .turn = e.turn_degrees * (std::numbers::pi / 180),
+          .strength = e.strength};
+  if (const char* const fault = fault_of(sky)) refuse(fmt::format("background: {}", fault));
+  sky.picture = read_sky_picture(e.file, warnings);
+  sky.brightest = brightest_of(sky);
+  return sky;
 }
 
 vec3 color_of(const Color& c, const char* name) {

@@ -25,6 +25,7 @@ struct AddedGeometry {
   RawVector<dvec3> vertices;
   RawVector<vec3> normals;
   PageVector<Triangle> triangles;
+  PageVector<layout::TexCoords> texcoords;  // of the triangles; or none
 #define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct> names;
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
@@ -45,6 +46,8 @@ void move_vertices(AddedGeometry& geometry, const Points& vertices, const Points
 
 Material material_of(const kdray::Material& m);
 Light light_of(const kdray::Light& l);
+Sky sky_of(const kdray::Gradient& gradient);
+Sky sky_of(const kdray::Environment& environment, std::vector<std::string>& warnings);  // reads its file
 Camera camera_of(const kdray::Camera& c);
 vec3 color_of(const Color& c, const char* name);
 

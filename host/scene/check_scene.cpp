@@ -19,7 +19,8 @@ bool at_least_zero(const vec3& v) {
 
 class Checker {
  public:
-  explicit Checker(const Scene& scene) : scene_(scene) {}
+  explicit Checker(const Scene& scene) : Checker(scene, scene.materials.size()) {}
+  Checker(const Scene& scene, std::size_t n_materials) : scene_(scene), n_materials_(n_materials) {}
 
   void run() const {
     check_counts();
@@ -27,6 +28,15 @@ class Checker {
     check_triangles();
     primitives::for_each_shape([this](auto kind) { check_shapes(kind); });
     check_paint();
+    check_instances();
+  }
+
+  void run_mesh() const {
+    check_counts();
+    check_values();
+    check_triangles();
+    primitives::for_each_shape([this](auto kind) { check_shapes(kind); });
+    check_corners();
   }
 
  private:
@@ -45,8 +55,7 @@ class Checker {
       if (decltype(kind)::of(scene_).size() >= kMaxPrimitivesPerKind)
         throw input_error(scene_.name, 0, "2^28 primitives of one kind or more", "split the scene");
     });
-    require_internal(scene_.primitive_count() == 0 || !scene_.materials.empty(),
-                     "primitives without a material");
+    require_internal(scene_.primitive_count() == 0 || n_materials_ > 0, "primitives without a material");
   }
 
   void check_values() const {
@@ -65,6 +74,7 @@ class Checker {
     }
     if (scene_.camera) require_none(fault_of(*scene_.camera), "camera");
     require(at_least_zero(scene_.background), "the background colour is not finite, or below 0");
+    require_none(fault_of(scene_.sky), "background");
     require(at_least_zero(scene_.ambient), "the ambient light is not finite, or below 0");
   }
 
@@ -72,7 +82,7 @@ class Checker {
     const std::size_t n_vertices = scene_.vertices.size();
     const std::size_t n_normals = scene_.normals.size();
     for (const Triangle& t : scene_.triangles) {
-      bool good = t.material < scene_.materials.size();
+      bool good = t.material < n_materials_;
       for (const std::uint32_t v : t.vertex) good = good && v < n_vertices;
       const bool smooth = t.normal[0] != kNone;
       for (const std::uint32_t n : t.normal) good = good && (smooth ? n < n_normals : n == kNone);
@@ -83,7 +93,7 @@ class Checker {
   template <class Kind>
   void check_shapes(Kind) const {
     for (const auto& shape : Kind::of(scene_)) {
-      if (shape.material >= scene_.materials.size())
+      if (shape.material >= n_materials_)
         require_internal(false, std::string("a ") + Kind::kName + " without a material");
       if (const char* const fault = fault_of(shape))
         require(false, "primitive " + std::to_string(shape.number) + ": " + fault);
@@ -97,7 +107,7 @@ class Checker {
       require_internal(m.coat == kNone || m.coat < paint.coats.size(), "a material without its coat");
     for (const Coat& c : paint.coats) check_coat(c);
     for (const Texture& t : paint.textures) {
-      bool good = t.picture < paint.pictures.size() && t.set < 2;
+      bool good = t.picture < paint.pictures.size() && t.set < 2 && t.minify <= Minify::linear_mipmap_linear;
       for (const float f : t.across) good = good && std::isfinite(f);
       for (const float f : t.down) good = good && std::isfinite(f);
       require_internal(good, "a texture without its picture");
@@ -106,21 +116,49 @@ class Checker {
       require_internal(
           p && p->width > 0 && p->height > 0 && p->texels.size() == std::size_t{4} * p->width * p->height,
           "a picture without its texels");
+    check_corners();
+  }
+
+  void check_corners() const {
+    const Paint& paint = scene_.paint;
     const std::size_t n = scene_.triangles.size();
     require_internal(
         paint.colors.size() <= n && paint.texcoords[0].size() <= n && paint.texcoords[1].size() <= n,
         "colours or texture coordinates of more triangles than there are");
   }
 
+  void check_instances() const {
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+      const Instance& instance = scene_.instances[i];
+      if (instance.mesh >= scene_.meshes.size() ||
+          (instance.material != kNone && instance.material >= scene_.materials.size()))
+        require_internal(false, "an instance without its mesh");
+      if (const char* const fault = fault_of(instance))
+        require(false, "instance " + std::to_string(i) + ": " + fault);
+    }
+    // Meshes are looked at as scenes with this one's materials; what they have is theirs already.
+    for (const auto& mesh : scene_.meshes) {
+      require_internal(mesh->instances.empty(), "instances in a mesh");
+      Checker(*mesh, scene_.materials.size()).run_mesh();
+    }
+  }
+
   void check_coat(const Coat& c) const {
-    require_internal(c.base == kNone || c.base < scene_.paint.textures.size(), "a coat without its texture");
-    bool good = c.alpha >= 0 && c.alpha <= 1 && std::isfinite(c.cutoff);
-    for (const vec3* term : {&c.emission, &c.ambient, &c.diffuse, &c.specular, &c.reflect, &c.transmit})
+    for (const std::uint32_t map :
+         {c.base, c.normal_map, c.emission_map, c.occlusion_map, c.highlight_map, c.metal_map})
+      require_internal(map == kNone || map < scene_.paint.textures.size(), "a coat without its texture");
+    bool good = c.alpha >= 0 && c.alpha <= 1 && std::isfinite(c.cutoff) && std::isfinite(c.normal_scale);
+    for (const float share :
+         {c.occlusion, c.metal.metallic, c.metal.roughness, c.metal.transmission, c.metal.mirrored})
+      good = good && share >= 0 && share <= 1;
+    for (const vec3* term : {&c.emission, &c.ambient, &c.diffuse, &c.specular, &c.reflect, &c.transmit,
+                             &c.emissive, &c.metal.base})
       good = good && at_least_zero(*term);
     require_internal(good, "a coat with a term that is not finite, or below 0");
   }
 
   const Scene& scene_;
+  std::size_t n_materials_;
 };
 
 }  // namespace
@@ -142,6 +180,10 @@ const char* fault_of(const Camera& c) {
   if (!(c.vertical_fov > 0 && c.vertical_fov < 3.14159265))
     return "the angle of view is not between 0 and 180 degrees";
   if (!std::isfinite(c.hither) || c.hither < 0) return "'hither' is below 0";
+  if (!std::isfinite(c.aperture) || c.aperture < 0) return "the aperture is below 0";
+  if (!std::isfinite(c.focus) || c.focus < 0) return "the focus is below 0";
+  if (!std::isfinite(c.aperture / (c.focus > 0 ? c.focus : safe_length(forward))))
+    return "the aperture is out of all proportion to the focus";
   return nullptr;
 }
 
@@ -154,16 +196,32 @@ const char* fault_of(const Material& m) {
   return nullptr;
 }
 
+namespace {
+
+const char* fault_of_area(const Light& l) {
+  if (l.kind == LightKind::sphere)
+    return std::isfinite(l.radius) && l.radius > 0 ? nullptr : "the light's radius is not above 0";
+  if (!has_area(l.kind)) return nullptr;
+  if (!is_finite(l.across) || !is_finite(l.down)) return "an edge of the light is not finite";
+  if (l.across == dvec3(0) || l.down == dvec3(0))
+    return l.kind == LightKind::disc ? "the light's radius is not above 0"
+                                     : "an edge of the light has no length";
+  return nullptr;
+}
+
+}  // namespace
+
 const char* fault_of(const Light& l) {
   if (!at_least_zero(l.color)) return "the colour is not finite, or below 0";
   if (!is_finite(l.position)) return "the position is not finite";
-  const bool has_direction = l.kind != LightKind::point;
+  const bool has_direction = l.kind == LightKind::directional || l.kind == LightKind::spot;
   if (has_direction && !(std::abs(glm::length(l.direction) - 1) < 1e-6))
     return "the direction has no unit length";
   const dvec3 a = l.attenuation;
   if (!is_finite(a) || glm::any(glm::lessThan(a, dvec3(0))) || !(a.x + a.y + a.z > 0))
     return "the attenuation is not finite, below 0, or all 0";
   if (!(l.range > 0)) return "the range is not above 0";
+  if (const char* const fault = fault_of_area(l)) return fault;
   if (!(l.cos_outer >= -1 && l.cos_outer <= l.cos_inner && l.cos_inner <= 1)) {
     return "the spot's inner angle is wider than its outer one";
   }

@@ -121,6 +121,19 @@ struct Floats {
   static constexpr std::size_t kParts = n_parts;
   static void set(Element& element, std::size_t c, double value) { element[c] = static_cast<float>(value); }
 };
+template <std::size_t n_parts>
+struct Doubles {
+  using Element = std::array<double, n_parts>;
+  static constexpr std::size_t kParts = n_parts;
+  static void set(Element& element, std::size_t c, double value) { element[c] = value; }
+};
+struct Matrices {
+  using Element = dmat4;
+  static constexpr std::size_t kParts = 16;
+  static void set(dmat4& element, std::size_t c, double value) {
+    element[static_cast<int>(c / 4)][static_cast<int>(c % 4)] = value;
+  }
+};
 struct Indices {
   using Element = std::uint32_t;
   static constexpr std::size_t kParts = 1;
@@ -166,19 +179,33 @@ void apply_sparse(Document& document, const JsonNode& accessor, Component compon
   }
 }
 
+// Those that were unpacked for it.
+template <class Kind>
+RawVector<typename Kind::Element> copy_unpacked(const Unpacked& from, bool normalized) {
+  const auto component = static_cast<Component>(from.component);
+  RawVector<typename Kind::Element> out;
+  out.resize(from.count);
+  if (from.bytes.size() / (Kind::kParts * size_of(component)) < from.count)
+    throw Error(ErrorCode::internal, "a packed accessor has fewer components than its type");
+  copy_elements<Kind>({from.bytes, Kind::kParts * size_of(component), component, normalized}, out);
+  return out;
+}
+
 template <class Kind>
 RawVector<typename Kind::Element> read_elements(Document& document, const JsonNode& accessor,
                                                 Component component) {
   const std::uint64_t count = accessor_count(accessor);
   const auto flag = accessor.find("normalized");
   const bool normalized = flag && component != Component::f32 && flag->boolean();
+  if (const Unpacked* const unpacked = document.unpacked(accessor))
+    return copy_unpacked<Kind>(*unpacked, normalized);
   RawVector<typename Kind::Element> out;
   if (accessor.find("bufferView")) {
     Elements elements = find_elements(document, accessor, accessor, count, Kind::kParts, component);
     elements.normalized = normalized;
     out.resize(count);
     copy_elements<Kind>(elements, out);
-  } else if (count > std::max<std::uint64_t>(kMostZeros, document.file_size())) {
+  } else if (count > std::max(kMostZeros, document.bytes_read())) {
     throw accessor["count"].error("as many zeros as that are not believed", "give the accessor a bufferView");
   } else {
     out.assign(count, typename Kind::Element{});
@@ -212,14 +239,47 @@ RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor) {
 
 namespace {
 
-template <class Element>
-void check_finite(const JsonNode& accessor, const RawVector<Element>& elements) {
+template <class Elements>
+void check_finite(const JsonNode& accessor, const Elements& elements) {
   for (std::size_t i = 0; i < elements.size(); ++i)
-    for (const float part : elements[i])
+    for (const auto part : elements[i])
       if (!std::isfinite(part)) throw accessor.error("element " + std::to_string(i) + " is not finite");
 }
 
+template <std::size_t n_parts>
+auto read_doubles(Document& document, const JsonNode& accessor) {
+  auto out = read_elements<Doubles<n_parts>>(document, accessor, component_of(accessor["componentType"]));
+  check_finite(accessor, out);
+  return out;
+}
+
 }  // namespace
+
+RawVector<double> read_scalars(Document& document, const JsonNode& accessor) {
+  expect_type(accessor, "SCALAR");
+  const auto all = read_doubles<1>(document, accessor);
+  RawVector<double> out(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) out[i] = all[i][0];
+  return out;
+}
+
+RawVector<std::array<double, 4>> read_quads(Document& document, const JsonNode& accessor) {
+  expect_type(accessor, "VEC4");
+  return read_doubles<4>(document, accessor);
+}
+
+// Only of floats: columns of smaller components would be padded.
+RawVector<dmat4> read_matrices(Document& document, const JsonNode& accessor) {
+  expect_type(accessor, "MAT4");
+  const Component component = component_of(accessor["componentType"]);
+  if (component != Component::f32) throw accessor["componentType"].expected("floats (5126)");
+  auto out = read_elements<Matrices>(document, accessor, component);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    for (int c = 0; c < 16; ++c)
+      if (!std::isfinite(out[i][c / 4][c % 4]))
+        throw accessor.error("element " + std::to_string(i) + " is not finite");
+  return out;
+}
 
 RawVector<std::array<float, 2>> read_pairs(Document& document, const JsonNode& accessor) {
   expect_type(accessor, "VEC2");

@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "scene/files_read.h"
+#include "scene/gltf_draco.h"
+#include "scene/gltf_meshopt.h"
 #include "scene/gltf_uri.h"
 #include "scene/read_file.h"
 #include "scene/text_scanner.h"
@@ -28,24 +30,34 @@ std::uint32_t load_u32(std::string_view text, std::size_t at) {
   return value;
 }
 
+// A file may make this many bytes of one of its own, or kMostUnpacked where that is more.
+constexpr std::uint64_t kMostUnpackedPerByte = 64;
+constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 28;
+
 // Extensions that a file may require and that are read, or change nothing but pictures, names and surfaces.
 bool can_do_with(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kKnown = {"KHR_lights_punctual",
-                                                      "KHR_node_visibility",
-                                                      "KHR_mesh_quantization",
-                                                      "EXT_texture_webp",
-                                                      "EXT_texture_avif",
-                                                      "MSFT_texture_dds",
-                                                      "KHR_xmp",
-                                                      "KHR_xmp_json_ld"};
+  constexpr std::array<std::string_view, 9> kKnown = {
+      "KHR_lights_punctual", "EXT_mesh_gpu_instancing", "KHR_node_visibility", "KHR_mesh_quantization",
+      "EXT_texture_webp",    "EXT_texture_avif",        "MSFT_texture_dds",    "KHR_xmp",
+      "KHR_xmp_json_ld"};
+  if (name == "KHR_draco_mesh_compression") return has_draco();
+  if (name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression") return has_meshopt();
   return name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
          std::ranges::find(kKnown, name) != kKnown.end();
+}
+
+// The Debian package that kdray was built without; empty: no package helps.
+std::string package_for(std::string_view extension) {
+  if (extension == "KHR_draco_mesh_compression") return "libdraco-dev";
+  if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression")
+    return "libmeshoptimizer-dev";
+  return "";
 }
 
 }  // namespace
 
 Document::Document(std::string_view text, const std::filesystem::path& path)
-    : text_(text), json_text_(text), path_(path), file_(path.string()) {
+    : text_(text), json_text_(text), path_(path), file_(path.string()), bytes_read_(text.size()) {
   if (text.starts_with("glTF")) {
     split_glb();
   } else if (format_of(path) == ".glb" && !text.starts_with("{")) {
@@ -116,9 +128,12 @@ void Document::check_extensions() {
   for (const JsonNode& node : required->elements()) {
     const std::string name = node.string();
     if (can_do_with(name)) continue;
-    const bool packed = name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression";
-    throw node.error("the file needs the extension " + printable(name) + ", which is not read",
-                     packed ? "export it without mesh compression" : "export it without that extension");
+    const std::string package = package_for(name);
+    if (package.empty())
+      throw node.error("the file needs the extension " + printable(name) + ", which is not read",
+                       "export it without that extension");
+    throw node.error("the file needs the extension " + name + ", which this kdray was built without",
+                     "build it with " + package + " installed, or export the file without mesh compression");
   }
 }
 
@@ -141,6 +156,31 @@ const JsonNode& Document::entry(const std::string& array, const JsonNode& index)
 }
 
 std::string_view Document::view_bytes(const JsonNode& view) {
+  const auto packed = meshopt_of(view);
+  if (!packed || (!has_meshopt() && has_bytes(view["buffer"]))) return slice(view);
+  if (!has_meshopt()) throw no_meshopt(*packed);
+  const auto found = unpacked_views_.find(view.id());
+  if (found != unpacked_views_.end()) return found->second;
+  const std::string_view bytes = slice(*packed);
+  count_unpacked(meshopt_size(view, *packed, bytes.size()), *packed);
+  return unpacked_views_[view.id()] = unpack_meshopt(*packed, bytes);
+}
+
+void Document::count_unpacked(std::uint64_t n, const JsonNode& packed) {
+  bytes_unpacked_ += n;
+  if (bytes_unpacked_ <= std::max(kMostUnpacked, kMostUnpackedPerByte * bytes_read_)) return;
+  throw packed.error("the file is unpacked to more than " + std::to_string(kMostUnpackedPerByte) +
+                         " times what was read of it",
+                     "export it without mesh compression");
+}
+
+const Unpacked* Document::unpacked(const JsonNode& accessor) const {
+  const auto found = unpacked_.find(accessor.id());
+  return found == unpacked_.end() ? nullptr : &found->second;
+}
+
+// Of a buffer view, or of what an extension says in the place of one.
+std::string_view Document::slice(const JsonNode& view) {
   const std::string_view buffer = buffer_bytes(view["buffer"]);
   const std::uint64_t offset = whole_or(view, "byteOffset", 0);
   const std::uint64_t length = whole(view["byteLength"]);
@@ -151,6 +191,10 @@ std::string_view Document::view_bytes(const JsonNode& view) {
   return buffer.substr(offset, length);
 }
 
+bool Document::has_bytes(const JsonNode& buffer_index) {
+  return entry("buffers", buffer_index).find("uri") || (whole(buffer_index) == 0 && binary_chunk_);
+}
+
 std::string_view Document::buffer_bytes(const JsonNode& index) {
   const JsonNode& buffer = entry("buffers", index);
   const std::uint64_t length = whole(buffer["byteLength"]);
@@ -158,7 +202,10 @@ std::string_view Document::buffer_bytes(const JsonNode& index) {
   std::string_view bytes;
   if (uri) {
     const auto [it, added] = buffers_.try_emplace(whole(index));
-    if (added) it->second = read_uri(*uri);
+    if (added) {
+      it->second = read_uri(*uri);
+      bytes_read_ += it->second.size();
+    }
     bytes = it->second;
   } else if (whole(index) == 0 && binary_chunk_) {
     bytes = *binary_chunk_;

@@ -1,6 +1,7 @@
 #include "scene/gltf_materials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -9,11 +10,11 @@ namespace kdray::scene::gltf {
 namespace {
 
 constexpr std::uint64_t kDefault = ~std::uint64_t{0};
-constexpr float kAmbient = 0.1f;
+constexpr float kAmbient = KDRAY_METAL_AMBIENT;
 // The strength of a perfectly smooth dielectric's highlight. Physically it is 0.04 times a very large peak; a
 // hard Phong lobe of this height looks about like it.
-constexpr float kHighlight = 0.25f;
-// Where a picture would say how metallic and how rough a surface is, which is not read: a plain, half-rough
+constexpr float kHighlight = KDRAY_METAL_HIGHLIGHT;
+// Where a picture would say how metallic and how rough a surface is, and can't be read: a plain, half-rough
 // dielectric. The factors alone (usually 1) would make it a perfect mirror or a black one.
 constexpr float kUnknownRoughness = 0.5f;
 constexpr float kMostColor = 1e6f;
@@ -85,9 +86,7 @@ Material whitted(const Surface& s) {
   return m;
 }
 
-// Emission comes with a picture nearly always with the factor 1, which would make the whole object a lamp.
 vec3 emission_of(const JsonNode& node) {
-  if (node.find("emissiveTexture")) return vec3(0);
   const auto strength = extension(node, "KHR_materials_emissive_strength");
   const double times = strength ? number_or(*strength, "emissiveStrength", 1) : 1;
   return color(node, "emissiveFactor", vec3(0)) * static_cast<float>(std::clamp(times, 0.0, 1e6));
@@ -97,7 +96,6 @@ void read_metallic_roughness(const JsonNode& node, Surface& s) {
   s.base = color(node, "baseColorFactor", vec3(1), &s.alpha);
   s.metallic = factor(node, "metallicFactor", 1);
   s.roughness = factor(node, "roughnessFactor", 1);
-  if (node.find("metallicRoughnessTexture")) s.metallic = 0, s.roughness = kUnknownRoughness;
 }
 
 void read_transparency(const JsonNode& node, Surface& s) {
@@ -159,9 +157,23 @@ Material coated(const Surface& s, const std::function<Material(const Surface&)>&
   return plain;
 }
 
-// Pictures that are not read.
-constexpr std::string_view kPictures[] = {"normalTexture", "occlusionTexture", "emissiveTexture"};
-constexpr std::string_view kPicturesOfTerms[] = {"metallicRoughnessTexture", "specularGlossinessTexture"};
+// What a surface is made of where a picture says how metallic and rough it is.
+Material metal(const Surface& s, Coat& coat) {
+  coat.metal = {.base = s.base,
+                .metallic = s.metallic,
+                .roughness = s.roughness,
+                .transmission = s.transmission,
+                .mirrored = s.transmission > 0 ? mean_fresnel(s.index) : 0};
+  coat.alpha = s.alpha;
+  coat.cutoff = s.cutoff;
+  coat.mode = s.mode;
+  return {.emission = s.emission, .index = s.is_body ? s.index : 1};
+}
+
+bool shows_pictures(const Coat& c) {
+  return std::ranges::any_of(std::array{c.base, c.normal_map, c.emission_map, c.occlusion_map, c.metal_map},
+                             [](std::uint32_t map) { return map != kNone; });
+}
 
 // Extensions that change how a surface looks and that no term of Whitted's stands for; each does nothing
 // while its factor is 0.
@@ -186,11 +198,8 @@ void Materials::count_left_out(const JsonNode& node) {
   const auto count = [this](const JsonNode& holder, std::string_view key) {
     if (holder.find(key)) ++left_out_[std::string(key)];
   };
-  for (const std::string_view key : kPictures) count(node, key);
-  for (const std::string_view key : kPicturesOfTerms) {
-    if (const auto pbr = node.find("pbrMetallicRoughness")) count(*pbr, key);
-    if (const auto glossy = extension(node, "KHR_materials_pbrSpecularGlossiness")) count(*glossy, key);
-  }
+  if (const auto glossy = extension(node, "KHR_materials_pbrSpecularGlossiness"))
+    count(*glossy, "specularGlossinessTexture");
 }
 
 // Of metallic-roughness, or of specular-glossiness where a material has that.
@@ -201,27 +210,60 @@ std::optional<std::uint32_t> Materials::base_texture(const JsonNode& node) {
   return info ? textures_.number_of(*info, true) : std::nullopt;
 }
 
+// Linear, but for emission's; none where the picture can't be read.
+std::uint32_t Materials::map_of(const JsonNode& holder, std::string_view key, bool curved) {
+  const auto info = holder.find(key);
+  return info ? textures_.number_of(*info, curved).value_or(kNone) : kNone;
+}
+
+// Emission comes with a picture nearly always with the factor 1: where the picture can't be read, that would
+// make the whole object a lamp.
+void Materials::read_maps(const JsonNode& node, bool has_metal, Coat& coat, vec3& emission) {
+  coat.normal_map = map_of(node, "normalTexture", false);
+  coat.occlusion_map = map_of(node, "occlusionTexture", false);
+  const auto scale = [&node](std::string_view key, std::string_view factor, double least, double most) {
+    const auto info = node.find(key);
+    return static_cast<float>(info ? std::clamp(number_or(*info, factor, 1), least, most) : 1.0);
+  };
+  coat.normal_scale = scale("normalTexture", "scale", -1e3, 1e3);
+  coat.occlusion = scale("occlusionTexture", "strength", 0, 1);
+  if (node.find("emissiveTexture")) {
+    coat.emission_map = map_of(node, "emissiveTexture", true);
+    if (coat.emission_map != kNone) coat.emissive = emission;
+    emission = vec3(0);
+  }
+  if (const auto pbr = node.find("pbrMetallicRoughness"); pbr && has_metal)
+    coat.metal_map = map_of(*pbr, "metallicRoughnessTexture", false);
+}
+
 Material Materials::read(const JsonNode* node, bool colored) {
   Surface s;
   std::function<Material(const Surface&)> terms = whitted;
   Coat coat{.colored = colored};
   if (node) {
     count_left_out(*node);
-    if (const auto pbr = node->find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, s);
+    const bool flat = extension(*node, "KHR_materials_unlit").has_value();
+    const auto glossy = extension(*node, "KHR_materials_pbrSpecularGlossiness");
+    const auto pbr = node->find("pbrMetallicRoughness");
+    if (pbr) read_metallic_roughness(*pbr, s);
     read_transparency(*node, s);
     read_alpha(*node, s);
     s.emission = emission_of(*node);
-    if (const auto glossy = extension(*node, "KHR_materials_pbrSpecularGlossiness")) {
+    if (!flat) read_maps(*node, !glossy, coat, s.emission);
+    if (pbr && pbr->find("metallicRoughnessTexture") && coat.metal_map == kNone)
+      s.metallic = 0, s.roughness = kUnknownRoughness;
+    if (glossy) {
       read_glossiness(*glossy, s);
       terms = [glossy = *glossy](const Surface& surface) { return specular_glossiness(glossy, surface); };
     }
-    if (extension(*node, "KHR_materials_unlit")) terms = unlit;
+    if (flat) terms = unlit;
     if (const auto base = base_texture(*node)) coat.base = *base;
   }
   const bool has_hole = s.mode == Alpha::mask && s.alpha < s.cutoff;
+  const bool coats = shows_pictures(coat) || colored || has_hole;
   if (s.mode != Alpha::blend && coat.base == kNone && !colored && !has_hole) s.alpha = 1;
-  if (coat.base == kNone && !colored && !has_hole) return terms(s);
-  Material m = coated(s, terms, coat);
+  if (!coats) return terms(s);
+  Material m = coat.metal_map != kNone ? metal(s, coat) : coated(s, terms, coat);
   m.coat = scene_.paint.add(coat);
   return m;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/gltf_accessor.h"
+#include "scene/gltf_draco.h"
 #include "scene/settle_normals.h"
 
 namespace kdray::scene::gltf {
@@ -57,45 +58,76 @@ dmat3 normal_matrix(const dmat3& m) {
 }  // namespace
 
 MeshReader::MeshReader(Document& document, Scene& scene)
-    : document_(document),
-      scene_(scene),
-      materials_(document, scene),
-      most_(std::max(kMostOfSmallFile, kMostPerByte * document.file_size())) {}
+    : document_(document), scene_(scene), into_(&scene), materials_(document, scene) {}
 
-void MeshReader::add(const JsonNode& mesh, const dmat4& to_world) {
-  if (mesh.find("weights")) warn("morph targets are left out");
-  for (const JsonNode& primitive : mesh["primitives"].elements()) add_primitive(primitive, to_world);
+void MeshReader::add(const JsonNode& mesh, const dmat4& to_world, const Deformation& deformation) {
+  for (const JsonNode& primitive : mesh["primitives"].elements())
+    add_primitive(primitive, to_world, deformation);
+}
+
+Scene MeshReader::alone(const JsonNode& mesh) {
+  Scene scene;
+  into_ = &scene;
+  add(mesh, dmat4(1));
+  into_ = &scene_;
+  settle_normals(scene, document_.file());
+  scene_.warnings.insert(scene_.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+  scene.warnings.clear();
+  return scene;
+}
+
+std::uint64_t MeshReader::count_triangles(const JsonNode& mesh) {
+  std::uint64_t n = 0;
+  for (const JsonNode& primitive : mesh["primitives"].elements()) {
+    const std::uint64_t mode = whole_or(primitive, "mode", kTriangles);
+    const auto indices = primitive.find("indices");
+    const auto corners = indices ? indices : primitive["attributes"].find("POSITION");
+    if (mode < kTriangles || !corners) continue;
+    const std::uint64_t count = accessor_count(document_.entry("accessors", *corners));
+    n += mode == kTriangles ? count / 3 : count;
+  }
+  return n;
 }
 
 void MeshReader::check_size(const JsonNode& primitive) const {
-  if (scene_.vertices.size() <= most_ && scene_.triangles.size() <= most_ && n_primitives_ <= most_ / 16)
-    return;
+  // Buffers beside the file count as soon as they are read.
+  const std::size_t most = std::max(kMostOfSmallFile, kMostPerByte * document_.bytes_read());
+  if (into_->vertices.size() <= most && into_->triangles.size() <= most && n_primitives_ <= most / 16) return;
   throw primitive.error(
-      "the instances of this file make more than " + std::to_string(most_) + " triangles of it",
+      "the instances of this file make more than " + std::to_string(most) + " triangles of it",
       "split the scene");
 }
 
-void MeshReader::add_vertices(const JsonNode& accessor, const dmat4& to_world) {
-  const auto positions = read_vectors(document_, accessor);
-  reserve_more(scene_.vertices, positions.size());
-  for (const dvec3& p : positions) {
-    const dvec3 moved = dvec3(to_world * glm::dvec4(p, 1));
+void MeshReader::add_vertices(const JsonNode& primitive, const VertexMatrices& matrices,
+                              const Deformation& deformation) {
+  const JsonNode& accessor = document_.entry("accessors", primitive["attributes"]["POSITION"]);
+  auto positions = read_vectors(document_, accessor);
+  morph(document_, primitive, "POSITION", deformation.weights, positions);
+  reserve_more(into_->vertices, positions.size());
+  const dmat4 to_world = matrices.of(0);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const dmat4 m = matrices.are_all_one() ? to_world : matrices.of(i);
+    const dvec3 moved = dvec3(m * glm::dvec4(positions[i], 1));
     if (!is_finite(moved)) throw accessor.error("a node's transform makes a position infinite");
-    scene_.vertices.push_back(moved);
+    into_->vertices.push_back(moved);
   }
 }
 
-bool MeshReader::add_normals(const JsonNode& attributes, std::size_t n_vertices, const dmat4& to_world) {
-  const auto index = attributes.find("NORMAL");
+bool MeshReader::add_normals(const JsonNode& primitive, std::size_t n_vertices,
+                             const VertexMatrices& matrices, const Deformation& deformation) {
+  const auto index = primitive["attributes"].find("NORMAL");
   if (!index) return false;
   const auto& accessor = document_.entry("accessors", *index);
   if (accessor_count(accessor) != n_vertices) {
-    warn("normals that are not as many as their positions are left out");
+    count("primitives have normals that are not as many as their positions: they are left out");
     return false;
   }
-  const dmat3 to_normal = normal_matrix(dmat3(to_world));
-  for (const dvec3& n : read_vectors(document_, accessor)) {
-    scene_.normals.push_back(direction_of(to_normal * n));
+  auto normals = read_vectors(document_, accessor);
+  morph(document_, primitive, "NORMAL", deformation.weights, normals);
+  const dmat3 to_normal = normal_matrix(dmat3(matrices.of(0)));
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const dmat3 m = matrices.are_all_one() ? to_normal : normal_matrix(dmat3(matrices.of(i)));
+    into_->normals.push_back(direction_of(m * normals[i]));
   }
   return true;
 }
@@ -105,7 +137,7 @@ std::optional<JsonNode> MeshReader::colors_of(const JsonNode& attributes, std::s
   if (!index) return std::nullopt;
   const JsonNode& accessor = document_.entry("accessors", *index);
   if (accessor_count(accessor) == n_vertices) return accessor;
-  warn("colours that are not as many as their positions are left out");
+  count("primitives have colours that are not as many as their positions: they are left out");
   return std::nullopt;
 }
 
@@ -113,9 +145,9 @@ std::optional<JsonNode> MeshReader::colors_of(const JsonNode& attributes, std::s
 void MeshReader::add_colors(const JsonNode& accessor,
                             std::span<const std::array<std::uint32_t, 3>> triangles) {
   const auto values = read_colors(document_, accessor);
-  auto& colors = scene_.paint.colors;
-  reserve_more(colors, scene_.triangles.size() - colors.size());
-  colors.resize(scene_.triangles.size() - triangles.size(), kWhiteCorners);
+  auto& colors = into_->paint.colors;
+  reserve_more(colors, into_->triangles.size() - colors.size());
+  colors.resize(into_->triangles.size() - triangles.size(), kWhiteCorners);
   for (const auto& corners : triangles) {
     layout::CornerColors c{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -135,13 +167,13 @@ void MeshReader::add_texcoords(const JsonNode& attributes,
     if (!index) continue;
     const JsonNode& accessor = document_.entry("accessors", *index);
     if (accessor_count(accessor) != n_vertices) {
-      warn("texture coordinates that are not as many as their positions are left out");
+      count("primitives have texture coordinates that are not as many as their positions: they are left out");
       continue;
     }
     const auto values = read_pairs(document_, accessor);
-    auto& out = scene_.paint.texcoords[set];
-    reserve_more(out, scene_.triangles.size() - out.size());
-    out.resize(scene_.triangles.size() - triangles.size());
+    auto& out = into_->paint.texcoords[set];
+    reserve_more(out, into_->triangles.size() - out.size());
+    out.resize(into_->triangles.size() - triangles.size());
     for (const auto& corners : triangles) {
       layout::TexCoords at{};
       for (std::size_t i = 0; i < 3; ++i)
@@ -151,26 +183,25 @@ void MeshReader::add_texcoords(const JsonNode& attributes,
   }
 }
 
-void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world) {
+void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world,
+                               const Deformation& deformation) {
   ++n_primitives_;
   check_size(primitive);
-  if (extension(primitive, "KHR_draco_mesh_compression")) {
-    throw primitive.error("is packed with KHR_draco_mesh_compression, which is not read",
-                          "export it without mesh compression");
-  }
-  if (primitive.find("targets")) warn("morph targets are left out");
-  const std::uint64_t mode = whole_or(primitive, "mode", kTriangles);
+  std::uint64_t mode = whole_or(primitive, "mode", kTriangles);
   if (mode > kFan) throw primitive["mode"].expected("a mode from 0 to 6");
-  if (mode < kTriangles) return warn("points and lines are left out: they have no surface");
+  if (mode < kTriangles) return count("primitives of points or lines are left out: they have no surface");
   const JsonNode attributes = primitive["attributes"];
-  const auto position = attributes.find("POSITION");
-  if (!position) return warn("primitives without positions are left out");
+  if (!attributes.find("POSITION")) return count("primitives without positions are left out");
 
-  const auto first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
-  const auto first_normal = static_cast<std::uint32_t>(scene_.normals.size());
-  add_vertices(document_.entry("accessors", *position), to_world);
-  const std::size_t n_vertices = scene_.vertices.size() - first_vertex;
-  const bool smooth = add_normals(attributes, n_vertices, to_world);
+  const DracoMesh packed(document_, primitive);
+  if (packed.is_there()) mode = kTriangles;
+
+  const auto first_vertex = static_cast<std::uint32_t>(into_->vertices.size());
+  const auto first_normal = static_cast<std::uint32_t>(into_->normals.size());
+  const VertexMatrices matrices(document_, primitive, deformation, to_world);
+  add_vertices(primitive, matrices, deformation);
+  const std::size_t n_vertices = into_->vertices.size() - first_vertex;
+  const bool smooth = add_normals(primitive, n_vertices, matrices, deformation);
 
   RawVector<std::uint32_t> corners;
   if (const auto indices = primitive.find("indices")) {
@@ -180,21 +211,21 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
     std::iota(corners.begin(), corners.end(), 0u);
   }
   if (mode == kTriangles && corners.size() % 3 != 0) {
-    warn("corners that are left over after the last whole triangle of a primitive are left out");
+    count("primitives have corners after their last whole triangle: they are left out");
   }
-  const bool mirrored = glm::determinant(dmat3(to_world)) < 0;
+  const bool mirrored = glm::determinant(dmat3(matrices.of(0))) < 0;
   const auto colors = colors_of(attributes, n_vertices);
   const std::uint32_t material = materials_.number_of(primitive, colors.has_value());
   std::vector<std::array<std::uint32_t, 3>> picks;
   const bool painted = scene_.materials[material].coat != kNone;
-  reserve_more(scene_.triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
+  reserve_more(into_->triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
   for_each_triangle(mode, corners, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (mirrored) std::swap(b, c);
     Triangle t{.vertex = {first_vertex + a, first_vertex + b, first_vertex + c}};
     if (smooth) t.normal = {first_normal + a, first_normal + b, first_normal + c};
     t.material = material;
-    t.number = static_cast<std::uint32_t>(scene_.triangles.size());
-    scene_.triangles.push_back(t);
+    t.number = static_cast<std::uint32_t>(into_->triangles.size());
+    into_->triangles.push_back(t);
     if (painted) picks.push_back({a, b, c});
   });
   if (!painted) return;
@@ -204,6 +235,7 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world)
 
 void MeshReader::finish() {
   materials_.warn();
+  for (const auto& [what, n] : counted_) left_out_.insert(std::to_string(n) + " " + what);
   for (const std::string& what : left_out_) scene_.warnings.push_back(document_.file() + ": " + what);
   settle_normals(scene_, document_.file());
 }

@@ -1,17 +1,19 @@
 // What    Adds the primitives of a glTF mesh to a scene, moved by a node's transform; a mirroring transform
 //         turns the triangles over, so that their front stays where the normals point.
-// Shape   Strips and fans become triangles. Points and lines and morph targets are left out, with a warning.
+// Shape   Strips and fans become triangles. Points and lines are left out, with a warning.
 // Errors  The errors are those of gltf_accessor.h; one more is that instances multiply a small file beyond
 //         all measure.
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 
 #include "math/vec.h"
+#include "scene/gltf_deform.h"
 #include "scene/gltf_document.h"
 #include "scene/gltf_materials.h"
 #include "scene/scene.h"
@@ -22,16 +24,24 @@ class MeshReader {
  public:
   MeshReader(Document& document, Scene& scene);
 
-  void add(const JsonNode& mesh, const dmat4& to_world);
+  void add(const JsonNode& mesh, const dmat4& to_world, const Deformation& deformation = {});
+  // The mesh by itself, with the scene's materials.
+  Scene alone(const JsonNode& mesh);
+  // As many triangles as add() would add, or a few more.
+  std::uint64_t count_triangles(const JsonNode& mesh);
   // Called after the last mesh.
   void finish();
   // There is one warning for each kind of thing that is left out, however often it comes.
   void warn(const std::string& what) { left_out_.insert(what); }
+  // The same with how many of it there were before it: "primitives without positions are left out".
+  void count(const std::string& what) { ++counted_[what]; }
 
  private:
-  void add_primitive(const JsonNode& primitive, const dmat4& to_world);
-  void add_vertices(const JsonNode& accessor, const dmat4& to_world);
-  bool add_normals(const JsonNode& attributes, std::size_t n_vertices, const dmat4& to_world);
+  void add_primitive(const JsonNode& primitive, const dmat4& to_world, const Deformation& deformation);
+  void add_vertices(const JsonNode& primitive, const VertexMatrices& matrices,
+                    const Deformation& deformation);
+  bool add_normals(const JsonNode& primitive, std::size_t n_vertices, const VertexMatrices& matrices,
+                   const Deformation& deformation);
   void add_texcoords(const JsonNode& attributes, std::span<const std::array<std::uint32_t, 3>> triangles,
                      std::size_t n_vertices);
   void add_colors(const JsonNode& accessor, std::span<const std::array<std::uint32_t, 3>> triangles);
@@ -39,11 +49,12 @@ class MeshReader {
   void check_size(const JsonNode& primitive) const;
 
   Document& document_;
-  Scene& scene_;
+  Scene& scene_;  // that has the materials
+  Scene* into_;   // that triangles are added to
   Materials materials_;
-  std::size_t most_;  // vertices or triangles
   std::size_t n_primitives_ = 0;
   std::set<std::string> left_out_;
+  std::map<std::string, std::size_t> counted_;
 };
 
 }  // namespace kdray::scene::gltf

@@ -25,6 +25,20 @@ Wrap wrap_of(const JsonNode& sampler, std::string_view key) {
   }
 }
 
+// Without a filter a picture is shown by all its mipmaps, which the format leaves to the program.
+Minify minify_of(const JsonNode& sampler) {
+  constexpr std::string_view kKey = "minFilter";
+  constexpr std::uint64_t kLinear = 9729, kFirstOfMipmaps = 9984, kLastOfMipmaps = 9987;
+  const std::uint64_t filter = whole_or(sampler, kKey, kLastOfMipmaps);
+  if (filter == kNearest) return Minify::nearest;
+  if (filter == kLinear) return Minify::linear;
+  if (filter < kFirstOfMipmaps || filter > kLastOfMipmaps)
+    throw sampler[kKey].expected("9728, 9729 or one of 9984 to 9987");
+  // In the same order: nearest and linear, of the nearer mipmap and then of two.
+  return static_cast<Minify>(static_cast<std::uint64_t>(Minify::nearest_mipmap_nearest) + filter -
+                             kFirstOfMipmaps);
+}
+
 struct Pair {
   double u, v;
 };
@@ -75,8 +89,11 @@ std::uint32_t Textures::decode(const JsonNode& image, std::uint64_t number) {
 
 // Said once for each picture, however many textures show it.
 std::optional<std::uint32_t> Textures::picture_of(const JsonNode& texture) {
-  const auto source = texture.find("source");
-  if (!source) throw texture.error("names no PNG or JPEG");
+  const auto webp = extension(texture, "EXT_texture_webp");
+  const auto source = texture.find("source") ? texture.find("source")
+                      : webp                 ? webp->find("source")
+                                             : std::nullopt;
+  if (!source) throw texture.error("names no PNG, JPEG or WebP");
   const std::uint64_t number = whole(*source);
   const JsonNode& image = document_.entry("images", *source);
   const auto [it, added] = pictures_.try_emplace(number);
@@ -91,6 +108,7 @@ void Textures::read_sampler(const JsonNode& texture, Texture& out) {
   out.wrap_across = wrap_of(sampler, "wrapS");
   out.wrap_down = wrap_of(sampler, "wrapT");
   out.nearest = whole_or(sampler, "magFilter", 0) == kNearest;
+  out.minify = minify_of(sampler);
 }
 
 std::optional<std::uint32_t> Textures::number_of(const JsonNode& info, bool curved) {
@@ -107,7 +125,7 @@ std::optional<std::uint32_t> Textures::read(const JsonNode& info, bool curved) {
   const JsonNode& texture = document_.entry("textures", info["index"]);
   const auto picture = picture_of(texture);
   if (!picture) return std::nullopt;
-  Texture out{.picture = *picture, .curved = curved};
+  Texture out{.picture = *picture, .minify = Minify::linear_mipmap_linear, .curved = curved};
   read_sampler(texture, out);
   std::uint64_t set = whole_or(info, "texCoord", 0);
   if (const auto transform = extension(info, "KHR_texture_transform")) {

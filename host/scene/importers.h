@@ -16,6 +16,8 @@ Scene read_obj(std::string_view text, const std::filesystem::path& file);
 Scene read_ply(std::string_view text, const std::filesystem::path& file);
 Scene read_stl(std::string_view text, const std::filesystem::path& file);
 Scene read_gltf(std::string_view text, const std::filesystem::path& file);  // .gltf and .glb
+// Its animation at a time, where one is given.
+Scene read_gltf(std::string_view text, const std::filesystem::path& file, const LoadOptions& options);
 Scene read_json(std::string_view text, const std::filesystem::path& file);
 Scene read_assimp(std::string_view text,
                   const std::filesystem::path& file);  // throws when built without assimp

@@ -4,13 +4,14 @@
 // Units   Angles in degrees; `fov` is the full vertical field of view; colours linear RGB, a single number is
 //         grey.
 // Errors  "file:line" for what is not JSON, "file: /path/of/the/value" for what is not a scene.
-#include <cmath>
 #include <filesystem>
 
 #include "scene/check_scene.h"
 #include "scene/importers.h"
+#include "scene/json_lights.h"
 #include "scene/json_node.h"
 #include "scene/json_objects.h"
+#include "scene/json_sky.h"
 
 namespace kdray::scene {
 
@@ -29,6 +30,8 @@ Camera read_camera(const JsonNode& node) {
     camera.ortho_width = width->number_above(0);
   }
   if (const auto hither = node.find("hither")) camera.hither = hither->number_from(0);
+  if (const auto aperture = node.find("aperture")) camera.aperture = aperture->number_from(0);
+  if (const auto focus = node.find("focus")) camera.focus = focus->number_above(0);
   if (const char* fault = fault_of(camera)) throw node.error(fault);
   return camera;
 }
@@ -48,54 +51,6 @@ RenderSettings read_settings(const JsonNode& node) {
   return settings;
 }
 
-void read_reach(const JsonNode& node, Light& light) {
-  if (const auto range = node.find("range")) light.range = range->number_above(0);
-  if (const auto attenuation = node.find("attenuation")) {
-    light.attenuation = attenuation->vector();
-    if (glm::any(glm::lessThan(light.attenuation, dvec3(0)))) throw attenuation->error("a value below 0");
-    light.attenuation.x = static_cast<float>(light.attenuation.x);  // it is no length
-    if (light.attenuation == dvec3(0)) {
-      throw attenuation->expected("[constant, linear, quadratic], not all 0");
-    }
-  }
-}
-
-void read_cone_angles(const JsonNode& node, Light& light) {
-  const double outer = node["outer"].number_between(0, 180);
-  const auto inner = node.find("inner");
-  const double full = inner ? inner->number_between(0, 180) : outer;
-  if (full > outer) throw inner->error("the inner angle is wider than the outer one");
-  light.cos_inner = static_cast<float>(std::cos(glm::radians(full)));
-  light.cos_outer = static_cast<float>(std::cos(glm::radians(outer)));
-}
-
-Light read_light(const JsonNode& node) {
-  const JsonNode type = node["type"];
-  const std::string name = type.string();
-  Light light;
-  if (name == "point") {
-    node.expect_keys(json_keys::kPointLight);
-    light.position = node["position"].vector();
-    read_reach(node, light);
-  } else if (name == "directional") {
-    node.expect_keys(json_keys::kDirectionalLight);
-    light.kind = LightKind::directional;
-    light.direction = node["direction"].direction();
-  } else if (name == "spot") {
-    node.expect_keys(json_keys::kSpotLight);
-    light.kind = LightKind::spot;
-    light.position = node["position"].vector();
-    light.direction = node["direction"].direction();
-    read_cone_angles(node, light);
-    read_reach(node, light);
-  } else {
-    throw type.expected("one of point, directional, spot");
-  }
-  if (const auto color = node.find("color")) light.color = color->color();
-  if (const char* fault = fault_of(light)) throw node.error(fault);
-  return light;
-}
-
 void check_head(const JsonNode& root) {
   root.expect_keys(json_keys::kScene);
   if (const auto schema = root.find("$schema")) (void)schema->string();
@@ -111,7 +66,8 @@ Scene read_json(std::string_view text, const std::filesystem::path& file) {
   check_head(root);
   Scene scene;
   if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera);
-  if (const auto background = root.find("background")) scene.background = background->color();
+  if (const auto background = root.find("background"))
+    read_background(*background, file.parent_path(), scene);
   if (const auto ambient = root.find("ambient")) scene.ambient = ambient->color();
   if (const auto render = root.find("render")) scene.settings = read_settings(*render);
   if (const auto lights = root.find("lights")) {
@@ -119,12 +75,14 @@ Scene read_json(std::string_view text, const std::filesystem::path& file) {
     scene.unlit = scene.lights.empty();
   }
   NamedMaterials named;
+  JsonMaterials reader(scene, file.parent_path());
   if (const auto materials = root.find("materials")) {
-    for (const auto& [key, material] : materials->members()) named.emplace(key, read_material(material));
+    for (const auto& [key, material] : materials->members()) named.emplace(key, reader.read(material));
   }
-  JsonObjects objects(scene, named, file.parent_path());
+  JsonObjects objects(scene, named, reader, file.parent_path());
   if (const auto list = root.find("objects")) {
     for (const JsonNode& object : list->elements()) objects.read(object);
+    objects.finish();
   }
   return scene;
 }

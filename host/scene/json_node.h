@@ -56,6 +56,8 @@ class JsonNode {
   bool is_object() const { return value_->is_object(); }
   std::size_t size() const { return value_->size(); }
   const std::string& file() const { return *file_; }
+  // The same for all nodes of one value.
+  const void* id() const { return value_; }
 
   [[nodiscard]] Error error(const std::string& what, const std::string& remedy = "") const;
   [[nodiscard]] Error expected(const std::string& what) const;

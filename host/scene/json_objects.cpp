@@ -1,5 +1,6 @@
 #include "scene/json_objects.h"
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <tuple>
@@ -8,6 +9,7 @@
 #include "scene/add_polygon.h"
 #include "scene/check_scene.h"
 #include "scene/import.h"
+#include "scene/instances.h"
 #include "scene/read_file.h"
 #include "scene/smooth_normals.h"
 #include "scene/transform.h"
@@ -16,11 +18,6 @@
 namespace kdray::scene {
 
 namespace {
-
-vec3 color_or(const JsonNode& object, std::string_view key, const vec3& otherwise) {
-  const auto node = object.find(key);
-  return node ? node->color() : otherwise;
-}
 
 // [x, y, z] degrees about the axes, x first; or {"axis": [x, y, z], "angle": degrees}.
 dmat4 read_rotation(const JsonNode& node) {
@@ -98,39 +95,41 @@ void read_field(const JsonNode& object, const primitives::Field<Shape, double>& 
   value = field.meaning == Meaning::above_zero ? node.number_above(0) : node.number_from(0);
 }
 
-float narrow(const JsonNode& node, double value) {
-  const auto f = static_cast<float>(value);
-  if (!std::isfinite(f)) throw node.error("a value beyond 3.4e38");
-  return f;
+// v goes downwards, as u goes to the right.
+std::vector<std::array<float, 2>> read_texcoords(const JsonNode& node, std::size_t n_vertices) {
+  std::vector<std::array<float, 2>> out;
+  for (const JsonNode& pair : node.elements()) {
+    const auto parts = pair.elements();
+    if (parts.size() != 2) throw pair.expected("[u, v]");
+    out.emplace_back();
+    for (std::size_t c = 0; c < 2; ++c) {
+      out.back()[c] = static_cast<float>(parts[c].number());
+      if (!std::isfinite(out.back()[c])) throw parts[c].error("a value beyond 3.4e38");
+    }
+  }
+  if (out.size() != n_vertices) throw node.error("not one pair for each vertex");
+  return out;
 }
 
 }  // namespace
 
-Material read_material(const JsonNode& node) {
-  node.expect_keys(json_keys::kMaterial);
-  const vec3 color = color_or(node, "color", vec3(1));
-  Material m;
-  m.ambient = color_or(node, "ka", vec3(0.1f)) * color;
-  m.diffuse = color_or(node, "kd", vec3(0.9f)) * color;
-  m.specular = color_or(node, "ks", vec3(0));
-  m.reflect = color_or(node, "reflect", vec3(0));
-  m.transmit = color_or(node, "transmit", vec3(0)) * color;
-  m.emission = color_or(node, "emission", vec3(0));
-  if (const auto shine = node.find("shine")) m.shine = narrow(*shine, shine->number_from(0));
-  if (const auto index = node.find("index")) m.index = narrow(*index, index->number_above(0));
-  if (const char* fault = fault_of(m)) throw node.error(fault);
-  return m;
-}
-
-JsonObjects::JsonObjects(Scene& scene, const NamedMaterials& named, std::filesystem::path folder)
-    : scene_(scene), named_(named), folder_(std::move(folder)), materials_(scene.materials) {}
+JsonObjects::JsonObjects(Scene& scene, const NamedMaterials& named, JsonMaterials& unnamed,
+                         std::filesystem::path folder)
+    : scene_(scene),
+      named_(named),
+      unnamed_(unnamed),
+      folder_(std::move(folder)),
+      materials_(scene.materials) {}
 
 void JsonObjects::read(const JsonNode& object) {
   const JsonNode type = object["type"];
   const std::string name = type.string();
   if (name == "mesh") return read_mesh(object);
   if (name == "triangles") return read_triangles(object);
-  std::string known = "mesh, triangles";
+  if (name == "box") return read_box(object);
+  if (name == "cylinder") return read_cylinder(object);
+  if (name == "plane") return read_plane(object);
+  std::string known = "mesh, triangles, box, cylinder, plane";
   bool found = false;
   primitives::for_each_shape([&](auto kind) {
     using Kind = decltype(kind);
@@ -142,10 +141,19 @@ void JsonObjects::read(const JsonNode& object) {
   if (!found) throw type.expected("one of " + known);
 }
 
+// A part's materials have their coats in the part's own paint.
+void JsonObjects::wear(Scene& part, const Material& material) const {
+  part.materials = {material};
+  if (material.coat == kNone) return;
+  part.paint.coats = scene_.paint.coats;
+  part.paint.textures = scene_.paint.textures;
+  part.paint.pictures = scene_.paint.pictures;
+}
+
 Material JsonObjects::material_of(const JsonNode& object) const {
   const auto node = object.find("material");
   if (!node) return Material{.ambient = vec3(0.08f), .diffuse = vec3(0.72f)};
-  if (!node->is_string()) return read_material(*node);
+  if (!node->is_string()) return unnamed_.read(*node);
   const std::string name = node->string();
   const auto it = named_.find(name);
   if (it != named_.end()) return it->second;
@@ -160,6 +168,7 @@ const Scene& JsonObjects::mesh(const JsonNode& file) {
   if (it != meshes_.end()) return it->second;
   const std::filesystem::path path = folder_ / name;
   if (format_of(path) == ".json") throw file.error("a scene cannot include another .json scene");
+  const Instancing copied(Instances::flat);  // a part has no instances of its own
   Scene& part = meshes_[name] = import_scene(path);
   scene_.warnings.insert(scene_.warnings.end(), part.warnings.begin(), part.warnings.end());
   return part;
@@ -171,20 +180,77 @@ void JsonObjects::read_mesh(const JsonNode& object) {
   if (const auto smooth = object.find("smooth")) smooth_normals(part, smooth->number_between(0, 180));
   place(object, part);
   if (object.find("material")) {
-    part.materials = {material_of(object)};
-    part.paint = {};
+    part.paint = {.texcoords = std::move(part.paint.texcoords)};
+    wear(part, material_of(object));
+    if (part.materials[0].coat == kNone) part.paint = {};
+    if (part.materials[0].coat != kNone && part.paint.texcoords[0].empty())
+      scene_.warnings.push_back(
+          object["file"].error("has no texture coordinates, so pictures show one place").what());
     for (Triangle& t : part.triangles) t.material = 0;
     primitives::for_each_shape([&](auto kind) {
       for (auto& shape : decltype(kind)::of(part)) shape.material = 0;
     });
   }
+  if (const auto instances = object.find("instances")) return append_instances(std::move(part), *instances);
   append(part, object);
+}
+
+// The part with the scene's materials in place of its own.
+Scene JsonObjects::adopted(Scene&& part) {
+  const std::vector<std::uint32_t> coats = scene_.paint.append(
+      {.coats = part.paint.coats, .textures = part.paint.textures, .pictures = part.paint.pictures},
+      scene_.triangles.size(), 0);
+  std::vector<std::uint32_t> numbers;
+  for (Material material : part.materials) {
+    if (material.coat != kNone) material.coat = coats[material.coat];
+    numbers.push_back(materials_.add(material));
+  }
+  for (Triangle& t : part.triangles) t.material = numbers[t.material];
+  primitives::for_each_shape([&](auto kind) {
+    for (auto& shape : decltype(kind)::of(part)) shape.material = numbers[shape.material];
+  });
+  Scene mesh;
+  mesh.name = part.name;
+  mesh.vertices = std::move(part.vertices);
+  mesh.normals = std::move(part.normals);
+  mesh.triangles = std::move(part.triangles);
+  primitives::for_each_shape(
+      [&](auto kind) { decltype(kind)::of(mesh) = std::move(decltype(kind)::of(part)); });
+  mesh.paint.colors = std::move(part.paint.colors);
+  mesh.paint.texcoords = std::move(part.paint.texcoords);
+  return mesh;
+}
+
+void JsonObjects::append_instances(Scene&& part, const JsonNode& list) {
+  if (!list.is_array()) throw list.expected("a list of placements");
+  const auto mesh = std::make_shared<const Scene>(adopted(std::move(part)));
+  if (mesh->primitive_count() == 0) return;
+  const bool kept = worth_keeping(mesh->primitive_count(), list.size());
+  const auto number = static_cast<std::uint32_t>(scene_.meshes.size());
+  if (kept && list.size() > 0) scene_.meshes.push_back(mesh);
+  for (const JsonNode& placement : list.elements()) {
+    placement.expect_keys(json_keys::kInstance);
+    Instance instance = instance_of(read_transform(placement).value_or(dmat4(1)), number);
+    if (placement.find("material")) instance.material = materials_.add(material_of(placement));
+    if (const char* const fault = fault_of(instance)) throw placement.error(fault);
+    if (kept) {
+      scene_.instances.push_back(instance);
+      continue;
+    }
+    try {
+      add_copy(*mesh, instance, scene_);
+    } catch (const std::domain_error& e) {
+      throw placement.error(e.what());
+    }
+  }
+  if (scene_.instances.size() >= kMaxInstances) throw list.error("2^27 instances or more", "leave some out");
+  number_ = scene_.primitive_count();
 }
 
 void JsonObjects::read_triangles(const JsonNode& object) {
   object.expect_keys(json_keys::kTriangles);
   Scene part;
-  part.materials = {material_of(object)};
+  wear(part, material_of(object));
   part.vertices = object["vertices"].vectors();
   const auto normals = object.find("normals");
   if (normals) {
@@ -196,6 +262,8 @@ void JsonObjects::read_triangles(const JsonNode& object) {
       part.normals.emplace_back(n / length);
     }
   }
+  std::vector<std::array<float, 2>> texcoords;
+  if (const auto uv = object.find("uv")) texcoords = read_texcoords(*uv, part.vertices.size());
   std::vector<dvec3> corners;
   for (const auto& face : object["faces"].faces(part.vertices.size())) {
     corners.clear();
@@ -209,9 +277,47 @@ void JsonObjects::read_triangles(const JsonNode& object) {
       if (normals) t.normal = t.vertex;
       t.number = static_cast<std::uint32_t>(part.triangles.size());
       part.triangles.push_back(t);
+      if (texcoords.empty()) continue;
+      layout::TexCoords at{};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t c = 0; c < 2; ++c) at.uv[i][c] = texcoords[t.vertex[i]][c];
+      part.paint.texcoords[0].push_back(at);
     }
   }
   place(object, part);
+  append(part, object);
+}
+
+void JsonObjects::read_box(const JsonNode& object) {
+  object.expect_keys(json_keys::kBox);
+  Scene part;
+  part.materials = {material_of(object)};
+  const dvec3 lo = object["min"].vector(), hi = object["max"].vector();
+  if (lo.x == hi.x || lo.y == hi.y || lo.z == hi.z) throw object.error("a box without a volume");
+  add_box(part, lo, hi);
+  place(object, part);
+  append(part, object);
+}
+
+void JsonObjects::read_cylinder(const JsonNode& object) {
+  object.expect_keys(json_keys::kCylinder);
+  Closed closed{object["base"].vector(), object["apex"].vector(), object["radius"].number_from(0), 0};
+  const auto apex_radius = object.find("apex_radius");
+  closed.apex_radius = apex_radius ? apex_radius->number_from(0) : closed.base_radius;
+  if (const char* const fault = fault_of(closed)) throw object.error(fault);
+  Scene part;
+  part.materials = {material_of(object)};
+  add_closed(part, closed, scene_.discs.size(), unsettled_);
+  append(part, object);
+}
+
+void JsonObjects::read_plane(const JsonNode& object) {
+  object.expect_keys(json_keys::kPlane);
+  Plane plane{object["point"].vector(), object["normal"].direction(), 0};
+  if (const auto extent = object.find("extent")) plane.extent = extent->number_above(0);
+  Scene part;
+  part.materials = {material_of(object)};
+  add_plane(part, plane, scene_.discs.size(), unsettled_);
   append(part, object);
 }
 
@@ -224,7 +330,7 @@ void JsonObjects::read_shape(Kind, const JsonNode& object) {
              fields_of(static_cast<const Shape*>(nullptr)));
   if (const char* const fault = fault_of(shape)) throw object.error(fault);
   Scene part;
-  part.materials = {material_of(object)};
+  wear(part, material_of(object));
   Kind::of(part) = {shape};
   append(part, object);
 }

@@ -1,7 +1,10 @@
 #include "scene/load.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "base/error.h"
@@ -9,6 +12,8 @@
 #include "scene/frame.h"
 #include "scene/import.h"
 #include "scene/importers.h"
+#include "scene/instances.h"
+#include "scene/picture_limit.h"
 #include "scene/read_file.h"
 #include "scene/smooth_normals.h"
 
@@ -47,7 +52,9 @@ std::string known_endings() {
   return "known are " + known + ", each also with .gz or .xz after it";
 }
 
-Scene read_by_ending(std::string_view text, const std::filesystem::path& file, const std::string& ending) {
+Scene read_by_ending(std::string_view text, const std::filesystem::path& file, const std::string& ending,
+                     const LoadOptions& options) {
+  if (ending == ".gltf" || ending == ".glb") return read_gltf(text, file, options);
   const auto format = std::ranges::find(kFormats, ending, &Format::ending);
   if (format != kFormats.end()) return format->read(text, file);
   return read_assimp(text, file);
@@ -72,8 +79,8 @@ void check_ending(const std::filesystem::path& file, const std::string& ending) 
 
 namespace {
 
-Scene import_text(std::string_view text, const std::filesystem::path& file) {
-  Scene scene = read_by_ending(text, file, format_of(file));
+Scene import_text(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
+  Scene scene = read_by_ending(text, file, format_of(file), options);
   scene.name = file.string();
   if (scene.cameras.empty() && scene.camera) scene.cameras = {*scene.camera};
   check_scene(scene);
@@ -84,21 +91,48 @@ Scene import_text(std::string_view text, const std::filesystem::path& file) {
 
 Scene import_scene(const std::filesystem::path& file) {
   check_ending(file, format_of(file));
-  return import_text(read_file(file), file);
+  return import_text(read_file(file), file, {});
 }
 
 namespace {
 
 void check(const LoadOptions& options) {
+  if (options.time && !std::isfinite(*options.time))
+    throw Error(ErrorCode::usage, "the time of an animation is not finite");
+  if (!options.time && !options.animation.empty())
+    throw Error(ErrorCode::usage, "an animation is seen at a time; say which");
   if (!options.smooth_degrees) return;
   const double degrees = *options.smooth_degrees;
   if (!(degrees >= 0 && degrees <= 180))
     throw Error(ErrorCode::usage, "the smoothing angle may be 0 to 180 degrees");
 }
 
-Scene finished(Scene&& scene, const LoadOptions& options) {
+// Said in one line, since the picture looks coarser for it.
+void fit_pictures(Scene& scene, std::uint64_t most_bytes) {
+  const LimitedPictures limited = limit_pictures(scene.paint, most_bytes);
+  if (limited.n_halved == 0) return;
+  const auto megabytes = [](std::uint64_t bytes) {
+    return fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
+  };
+  scene.warnings.push_back(
+      fmt::format("{}: {} of {} pictures are made smaller, from {} to {} in all; the limit of textures is {}",
+                  scene.name, limited.n_halved, scene.paint.pictures.size(), megabytes(limited.bytes_before),
+                  megabytes(limited.bytes), megabytes(most_bytes)));
+}
+
+Scene finished(Scene&& scene, const std::filesystem::path& file, const LoadOptions& options) {
+  if (const std::string format = format_of(file); options.time && format != ".gltf" && format != ".glb")
+    scene.warnings.push_back(file.string() + ": at any time it is the same; only glTF files have animations");
   scene.load_options = options;
-  if (options.smooth_degrees) smooth_normals(scene, *options.smooth_degrees);
+  if (options.smooth_degrees) {
+    smooth_normals(scene, *options.smooth_degrees);
+    for (auto& mesh : scene.meshes) {
+      auto smooth = std::make_shared<Scene>(*mesh);
+      smooth_normals(*smooth, *options.smooth_degrees);
+      mesh = std::move(smooth);
+    }
+  }
+  if (options.texture_bytes > 0) fit_pictures(scene, options.texture_bytes);
   frame_scene(scene);
   return std::move(scene);
 }
@@ -108,7 +142,9 @@ Scene finished(Scene&& scene, const LoadOptions& options) {
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   check(options);
   FilesRead files;
-  Scene scene = finished(import_scene(file), options);
+  check_ending(file, format_of(file));
+  const Instancing instancing(options.instances);
+  Scene scene = finished(import_text(read_file(file), file, options), file, options);
   scene.files = files.take();
   return scene;
 }
@@ -116,8 +152,9 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
 Scene load_from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options) {
   check(options);
   FilesRead files;
+  const Instancing instancing(options.instances);
   check_ending(name, format_of(name));
-  Scene scene = finished(import_text(unpacked(std::move(bytes), name), name), options);
+  Scene scene = finished(import_text(unpacked(std::move(bytes), name), name, options), name, options);
   scene.files = files.take();
   return scene;
 }

@@ -45,9 +45,19 @@ class MtlReader {
     if (names_picture(keyword)) {
       const std::string_view rest = in_.rest();
       note_picture(rest);
-      if (keyword == "map_Kd") m.map_kd = picture_of(rest, m);
+      if (std::optional<MtlPicture>* const map = map_named(keyword, m)) *map = picture_of(keyword, rest, m);
     }
     if (means_nothing(keyword)) note_left_out(keyword, m);
+  }
+
+  static std::optional<MtlPicture>* map_named(std::string_view keyword, MtlMaterial& m) {
+    if (keyword == "map_Kd") return &m.map_kd;
+    if (keyword == "map_Ks") return &m.map_ks;
+    if (keyword == "map_Ke") return &m.map_ke;
+    if (keyword == "map_d") return &m.map_d;
+    if (keyword == "norm" || keyword == "map_Kn") return &m.normals;
+    if (keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump") return &m.relief;
+    return nullptr;
   }
 
   static bool names_picture(std::string_view keyword) {
@@ -87,7 +97,7 @@ class MtlReader {
   }
 
   // Options stand before the name, which is all that is left then.
-  MtlPicture picture_of(std::string_view rest, MtlMaterial& m) {
+  MtlPicture picture_of(std::string_view keyword, std::string_view rest, MtlMaterial& m) {
     MtlPicture picture;
     while (rest.starts_with('-')) {
       std::string_view after = rest;
@@ -99,8 +109,12 @@ class MtlReader {
         take_numbers(after, picture.offset);
       } else if (option == "-clamp") {
         picture.clamp = take_word(after) == "on";
+      } else if (option == "-bm") {
+        std::array<double, 2> strength{1, 0};
+        take_numbers(after, strength);
+        picture.strength = std::clamp(strength[0], -1e3, 1e3);
       } else {
-        skip_option(option, after, m);
+        skip_option(keyword, option, after, m);
       }
       rest = after;
     }
@@ -109,7 +123,8 @@ class MtlReader {
   }
 
   // Those whose absence shows are told. -t and -mm have several values.
-  void skip_option(std::string_view option, std::string_view& rest, MtlMaterial& m) {
+  void skip_option(std::string_view keyword, std::string_view option, std::string_view& rest,
+                   MtlMaterial& m) {
     std::array<double, 2> ignored{};
     if (option == "-t" || option == "-mm") {
       take_numbers(rest, ignored);
@@ -117,17 +132,15 @@ class MtlReader {
       take_word(rest);
     }
     const bool shows = option == "-t" || option == "-mm" || option == "-imfchan" || option == "-cc";
-    const std::string what = "map_Kd " + std::string(option);
+    const std::string what = std::string(keyword) + " " + std::string(option);
     if (shows && std::ranges::find(m.left_out, what) == m.left_out.end()) m.left_out.push_back(what);
   }
 
-  // What would change how the surface looks: other pictures than map_Kd, and terms of physically based
-  // shading.
+  // What would change how the surface looks: further pictures, and terms of physically based shading.
   static bool means_nothing(std::string_view keyword) {
-    constexpr std::string_view kLeftOut[] = {"map_d",    "map_Ks", "map_Ns", "map_Ke",   "map_Tr", "map_bump",
-                                             "map_Bump", "bump",   "norm",   "disp",     "refl",   "decal",
-                                             "map_Pr",   "map_Pm", "map_Ps", "map_refl", "Pr",     "Pm",
-                                             "Ps",       "Pc",     "Pcr",    "aniso",    "anisor"};
+    constexpr std::string_view kLeftOut[] = {"map_Ns", "map_Tr", "disp",     "refl",  "decal", "map_Pr",
+                                             "map_Pm", "map_Ps", "map_refl", "Pr",    "Pm",    "Ps",
+                                             "Pc",     "Pcr",    "aniso",    "anisor"};
     return std::ranges::find(kLeftOut, keyword) != std::end(kLeftOut);
   }
 

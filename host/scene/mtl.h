@@ -20,6 +20,7 @@ struct MtlPicture {
   std::string file;
   std::array<double, 2> scale{1, 1}, offset{0, 0};
   bool clamp = false;
+  double strength = 1;  // of a relief
 };
 
 struct MtlMaterial {
@@ -30,8 +31,9 @@ struct MtlMaterial {
   std::optional<float> tr;        // 1 - d, as some exporters write it; `d` wins
   float ns = 0, ni = 1;
   std::optional<int> illum;
-  std::optional<MtlPicture> map_kd;
-  std::vector<std::string> left_out;  // statements that nothing is made of
+  std::optional<MtlPicture> map_kd, map_ks, map_ke, map_d;
+  std::optional<MtlPicture> normals, relief;  // `norm`; `bump` and `map_Bump`, which may show normals as well
+  std::vector<std::string> left_out;          // statements that nothing is made of
 };
 
 // Adds the file's materials to `materials`, its warnings to `warnings`.

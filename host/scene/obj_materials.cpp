@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "scene/derived_pictures.h"
 #include "scene/files_read.h"
 #include "scene/mesh_material.h"
 #include "scene/picture.h"
@@ -43,6 +44,16 @@ std::vector<std::string> split(std::string_view names) {
 std::string slashed(std::string path) {
   std::ranges::replace(path, '\\', '/');
   return path;
+}
+
+// Black beside a picture is how exporters say that the picture alone counts.
+vec3 factor_of_picture(const vec3& color) {
+  return color == vec3(0) ? vec3(1) : color;
+}
+
+bool says_something(const Coat& c) {
+  return c.base != kNone || c.emission_map != kNone || c.highlight_map != kNone || c.normal_map != kNone ||
+         c.colored != 0;
 }
 
 }  // namespace
@@ -114,32 +125,87 @@ std::optional<std::uint32_t> ObjMaterials::picture_of(const std::string& name) {
   return it->second;
 }
 
+// A relief's picture may show its normals instead of its heights: it isn't grey then.
+std::optional<std::uint32_t> ObjMaterials::normals_of(const MtlMaterial& mtl) {
+  if (mtl.normals) return texture_of(*mtl.normals, false);
+  if (!mtl.relief) return std::nullopt;
+  const auto picture = picture_of(mtl.relief->file);
+  if (!picture) return std::nullopt;
+  const Picture& shown = *scene_.paint.pictures[*picture];
+  if (!is_grey(shown)) return add_texture(*picture, *mtl.relief, false);
+  const auto normals = normals_of_heights(shown, mtl.relief->strength);
+  return add_texture(scene_.paint.add(normals), *mtl.relief, false);
+}
+
+// The picture of `map_d` becomes the alpha of that of `map_Kd`, which is laid on as it is.
+std::optional<std::uint32_t> ObjMaterials::veiled(const MtlMaterial& mtl, Coat& coat) {
+  const auto base = mtl.map_kd ? picture_of(mtl.map_kd->file) : std::nullopt;
+  const auto alpha = picture_of(mtl.map_d->file);
+  if (!alpha) return mtl.map_kd ? texture_of(*mtl.map_kd, true) : std::nullopt;
+  const MtlPicture& laid = base ? *mtl.map_kd : *mtl.map_d;
+  if (laid.scale != mtl.map_d->scale || laid.offset != mtl.map_d->offset)
+    scene_.warnings.push_back(file_.string() + ": map_d of '" + printable(mtl.name) +
+                              "' is laid on as map_Kd is, whose options are others");
+  const auto mixed =
+      with_alpha(base ? scene_.paint.pictures[*base].get() : nullptr, *scene_.paint.pictures[*alpha]);
+  coat.mode = is_cut_out(*mixed) ? Alpha::mask : Alpha::blend;
+  return add_texture(scene_.paint.add(mixed), laid, true);
+}
+
 // In MTL, v goes upwards from the picture's lower edge; in textures downwards from the upper one, which
 // 1 - v at corners amounts to.
-std::optional<std::uint32_t> ObjMaterials::texture_of(const MtlPicture& map) {
-  const auto picture = picture_of(map.file);
-  if (!picture) return std::nullopt;
+std::uint32_t ObjMaterials::add_texture(std::uint32_t picture, const MtlPicture& map, bool curved) {
   const auto f = [](double v) { return static_cast<float>(v); };
   const Wrap wrap = map.clamp ? Wrap::clamp : Wrap::repeat;
-  return scene_.paint.add(Texture{.picture = *picture,
+  return scene_.paint.add(Texture{.picture = picture,
                                   .across = {f(map.scale[0]), 0, f(map.offset[0])},
                                   .down = {0, f(map.scale[1]), f(1 - map.scale[1] - map.offset[1])},
                                   .wrap_across = wrap,
-                                  .wrap_down = wrap});
+                                  .wrap_down = wrap,
+                                  .minify = Minify::linear_mipmap_linear,
+                                  .curved = curved});
+}
+
+std::optional<std::uint32_t> ObjMaterials::texture_of(const MtlPicture& map, bool curved) {
+  const auto picture = picture_of(map.file);
+  return picture ? std::optional(add_texture(*picture, map, curved)) : std::nullopt;
+}
+
+// Emission, highlights and normals by pictures, which go over from the material into its coat.
+void ObjMaterials::add_maps(const MtlMaterial& mtl, Material& m, Coat& coat) {
+  if (const auto map = mtl.map_ke ? texture_of(*mtl.map_ke, true) : std::nullopt) {
+    coat.emission_map = *map;
+    coat.emissive = factor_of_picture(mtl.ke);
+    m.emission = vec3(0);
+  }
+  if (const auto map = mtl.map_ks ? texture_of(*mtl.map_ks, true) : std::nullopt) {
+    coat.highlight_map = *map;
+    coat.specular = m.specular;
+    coat.reflect = m.reflect;
+    m.specular = m.reflect = vec3(0);
+  }
+  if (const auto map = normals_of(mtl)) coat.normal_map = *map;
 }
 
 Material ObjMaterials::material_of(const MtlMaterial* mtl, bool colored) {
-  std::optional<std::uint32_t> texture;
-  if (mtl && mtl->map_kd) texture = texture_of(*mtl->map_kd);
   Coat coat;
   Material m;
-  if (!mtl && colored) {
+  if (!mtl && !colored) return mesh_material();
+  if (!mtl) {
     m = colored_mesh_material(coat);
   } else {
-    m = mtl ? whitted_from_mtl(*mtl, texture.has_value()) : mesh_material();
-    if (!texture && !colored) return m;
-    coat = {.ambient = m.ambient, .diffuse = m.diffuse, .colored = colored};
+    std::optional<std::uint32_t> texture;
+    if (mtl->map_d) {
+      texture = veiled(*mtl, coat);
+    } else if (mtl->map_kd) {
+      texture = texture_of(*mtl->map_kd, true);
+    }
+    m = whitted_from_mtl(*mtl, texture.has_value());
     if (texture) coat.base = *texture;
+    coat.colored = colored;
+    add_maps(*mtl, m, coat);
+    if (!says_something(coat)) return m;
+    coat.ambient = m.ambient, coat.diffuse = m.diffuse;
     m.ambient = m.diffuse = vec3(0);
   }
   m.coat = scene_.paint.add(coat);

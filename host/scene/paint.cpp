@@ -43,14 +43,35 @@ std::vector<std::uint32_t> Paint::append(const Paint& part, std::size_t before, 
     append_corners(texcoords[set], part.texcoords[set], before, n_triangles, layout::TexCoords{});
   std::vector<std::uint32_t> numbers;
   for (Coat coat : part.coats) {
-    if (coat.base < part.textures.size()) {
-      Texture texture = part.textures[coat.base];
+    for (std::uint32_t* const map : {&coat.base, &coat.normal_map, &coat.emission_map, &coat.occlusion_map,
+                                     &coat.highlight_map, &coat.metal_map}) {
+      if (*map >= part.textures.size()) continue;
+      Texture texture = part.textures[*map];
       texture.picture = add(part.pictures[texture.picture]);
-      coat.base = add(texture);
+      *map = add(texture);
     }
     numbers.push_back(add(coat));
   }
   return numbers;
+}
+
+Coat largest_terms(const Coat& coat) {
+  Coat out = coat;
+  out.emission += coat.emissive;
+  if (coat.metal_map == 0xffffffffu) return out;
+  const Metal& m = coat.metal;
+  out.diffuse = m.base;
+  out.ambient = KDRAY_METAL_AMBIENT * m.base;
+  out.specular = KDRAY_METAL_HIGHLIGHT + m.base;
+  out.reflect = std::min(m.metallic, 1.0f) * m.base + m.transmission * m.mirrored;
+  out.transmit = m.transmission * m.base;
+  return out;
+}
+
+bool needs_footprints(const Texture& texture, const Picture& picture) {
+  if (picture.width == 1 && picture.height == 1) return false;
+  const Minify same = texture.nearest ? Minify::nearest : Minify::linear;
+  return texture.minify != Minify::as_magnified && texture.minify != same;
 }
 
 std::uint32_t linear_unit(double value) {

@@ -32,13 +32,29 @@ enum class Wrap : std::uint32_t {
   clamp = KDRAY_WRAP_CLAMP
 };
 
+// What is looked at where a picture is shown smaller than it is, as glTF and OpenGL name it: a texel or four,
+// of the picture itself, of the mipmap that is the nearest in size, or of two.
+enum class Minify : std::uint32_t {
+  as_magnified,  // as where it is shown larger
+  nearest,
+  linear,
+  nearest_mipmap_nearest,
+  linear_mipmap_nearest,
+  nearest_mipmap_linear,
+  linear_mipmap_linear
+};
+inline bool has_mipmaps(Minify m) {
+  return m >= Minify::nearest_mipmap_nearest;
+}
+
 // How a picture is laid onto triangles. From the left of the picture it is looked at across[0]*u +
 // across[1]*v + across[2] of its width, from the top at the same of its height with `down`.
 struct Texture {
   std::uint32_t picture = 0;
   std::array<float, 3> across{1, 0, 0}, down{0, 1, 0};
   Wrap wrap_across = Wrap::repeat, wrap_down = Wrap::repeat;
-  bool nearest = false;
+  bool nearest = false;  // where it is shown as large as it is, or larger
+  Minify minify = Minify::as_magnified;
   bool curved = true;     // its colours are codes of sRGB
   std::uint32_t set = 0;  // of the coordinates at the corners
   bool operator==(const Texture&) const = default;
@@ -50,6 +66,14 @@ enum class Alpha : std::uint32_t {
   blend  // the share 1 - alpha of the light goes through
 };
 
+// What a picture of metallic and rough places multiplies: green is how rough, blue how metallic.
+struct Metal {
+  vec3 base{1};  // the base colour's factor
+  float metallic = 1, roughness = 1;
+  float transmission = 0, mirrored = 0;  // what goes through, and the share of it that is reflected
+  bool operator==(const Metal&) const = default;
+};
+
 // These terms, times the base colour, come to the material's own (scene.h). The base colour is what the
 // texture shows times the colour between the triangle's corners; its alpha is `alpha` times theirs.
 struct Coat {
@@ -58,8 +82,23 @@ struct Coat {
   std::uint32_t base = 0xffffffffu;  // into the textures; none: white
   std::uint32_t colored = 0;         // 1: by the colours at corners
   Alpha mode = Alpha::opaque;
+  // Further pictures, into the textures, or none.
+  std::uint32_t normal_map = 0xffffffffu;
+  float normal_scale = 1;                    // of what bends the normal
+  std::uint32_t emission_map = 0xffffffffu;  // times `emissive`, comes to the emission
+  vec3 emissive{0};
+  std::uint32_t occlusion_map = 0xffffffffu;  // its red, what ambient light is left
+  float occlusion = 1;                        // 0: it doesn't count
+  std::uint32_t highlight_map = 0xffffffffu;  // multiplies specular and reflect in place of the base colour
+  std::uint32_t metal_map = 0xffffffffu;      // the terms follow from it and `metal`, not from those above
+  Metal metal = {};
   bool operator==(const Coat&) const = default;
 };
+
+// The largest terms that a coat can have anywhere, base colours being 1 at most.
+Coat largest_terms(const Coat& coat);
+// Whether a texture on this picture looks different where it is shown smaller.
+bool needs_footprints(const Texture& texture, const Picture& picture);
 
 inline constexpr layout::CornerColors kWhiteCorners = {
     {{0xffffffffu, 0xffffffffu}, {0xffffffffu, 0xffffffffu}, {0xffffffffu, 0xffffffffu}}};

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "film/png.h"
+#include "scene/webp_picture.h"
 #ifdef KDRAY_WITH_JPEG
 #include <turbojpeg.h>
 #endif
@@ -100,8 +101,9 @@ std::shared_ptr<const Picture> decode_picture(std::string_view bytes, const std:
     throw input_error(name, 0, "is a JPEG, and kdray was built without libjpeg-turbo", "convert it to PNG");
 #endif
   }
+  if (is_webp(bytes)) return std::make_shared<const Picture>(decode_webp(bytes, name, check_size));
   (void)warnings;
-  throw input_error(name, 0, "is neither PNG nor JPEG", "convert it to PNG");
+  throw input_error(name, 0, "is neither PNG, JPEG nor WebP", "convert it to PNG");
 }
 
 }  // namespace kdray::scene

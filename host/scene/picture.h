@@ -1,5 +1,5 @@
-// What    Decodes the pictures of textures: PNG and, where kdray was built with libjpeg-turbo, JPEG; told by
-//         their first bytes.
+// What    Decodes the pictures of textures: PNG and, where kdray was built with libjpeg-turbo and libwebp,
+//         JPEG and WebP; told by their first bytes.
 // Shape   Eight bits for each of red, green, blue and alpha, whatever the file has: 16 bits are rounded, grey
 //         and palettes widened, CMYK turned into RGB as its inks say. Colour profiles are left alone, as glTF
 //         asks for.

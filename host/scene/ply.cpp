@@ -16,6 +16,7 @@
 #include "scene/ply_binary.h"
 #include "scene/ply_columns.h"
 #include "scene/ply_header.h"
+#include "scene/ply_left_out.h"
 #include "scene/ply_mesh.h"
 #include "scene/ply_source.h"
 
@@ -39,6 +40,7 @@ class BodyReader {
       read_element(element);
     }
     const bool at_end = source_.at_end();
+    for (const std::string& what : left_out_of(header_)) mesh_.warn(what);
     if (source_.has_extra_values())
       mesh_.warn("values at the end of a line that the header doesn't know are left out");
     if (!at_end) mesh_.warn("more data after the last element of the header are left out");

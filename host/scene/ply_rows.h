@@ -14,6 +14,7 @@
 #include "base/raw_vector.h"
 #include "scene/ply_columns.h"
 #include "scene/ply_header.h"
+#include "scene/ply_left_out.h"
 #include "scene/ply_mesh.h"
 
 namespace kdray::scene::ply {
@@ -38,6 +39,7 @@ class Rows {
   std::uint64_t n_faces() const { return faces_.n; }
   const VertexColumns& columns() const { return columns_; }
   bool has_more() const { return has_more_; }  // behind the last element of the header
+  std::vector<std::string> left_out() const { return left_out_of(header_); }
   // A hash of the header and the file's size, for ranks to agree on.
   std::uint64_t fingerprint() const { return fingerprint_; }
 

@@ -49,6 +49,9 @@ DBox Scene::bounds() const {
   primitives::for_each_shape([&](auto kind) {
     for (const auto& shape : decltype(kind)::of(*this)) box.grow(bounds_of(shape));
   });
+  std::vector<DBox> of_meshes;
+  for (const auto& mesh : meshes) of_meshes.push_back(mesh->bounds());
+  for (const Instance& instance : instances) box.grow(bounds_of(instance, of_meshes[instance.mesh]));
   return box;
 }
 

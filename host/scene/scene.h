@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,9 @@
 #include "math/vec.h"
 #include "primitives/shapes.h"
 #include "scene/files_read.h"
+#include "scene/instances.h"
 #include "scene/paint.h"
+#include "scene/sky.h"
 
 namespace kdray::scene {
 
@@ -42,16 +45,24 @@ struct Material {
   bool operator==(const Material&) const = default;
 };
 
-enum class LightKind { point, directional, spot };
+// The last three have an area: a hit is lit from one place of it, which differs from sample to sample
+// (kernels/shade/area_light.clh).
+enum class LightKind { point, directional, spot, rectangle, sphere, disc };
+
+constexpr bool has_area(LightKind kind) {
+  return kind >= LightKind::rectangle;
+}
 
 struct Light {
   LightKind kind = LightKind::point;
-  dvec3 position{0};           // point, spot
+  dvec3 position{0};           // all but directional; the middle of those with an area
   dvec3 direction{0, 0, -1};   // directional, spot: the way the light travels, unit length
   vec3 color{1};               // linear RGB intensity
   dvec3 attenuation{1, 0, 0};  // att(d) = 1 / (a.x + a.y*d + a.z*d^2); sum > 0, all >= 0
   double range = std::numeric_limits<double>::infinity();  // no light beyond this distance
   float cos_inner = 1, cos_outer = -1;                     // spot: full inside inner, none outside outer
+  dvec3 across{0}, down{0};  // rectangle: its edges; disc: two of its radii, at right angles
+  double radius = 0;         // sphere
 };
 
 // A pinhole camera, or an orthographic one. `vertical_fov` spans the full height of the picture, from its
@@ -61,7 +72,9 @@ struct Camera {
   double vertical_fov = 0.7853981633974483;
   double hither = 0;  // distance along the view direction in front of which nothing is seen
   double ortho_width =
-      0;  // > 0: orthographic, parallel rays from the plane through `from`; the picture's width
+      0;                // > 0: orthographic, parallel rays from the plane through `from`; the picture's width
+  double aperture = 0;  // > 0: the diameter of a thin lens; what is not in its focus is blurred
+  double focus = 0;     // distance along the view direction of what is in focus; 0: that of `at`
 };
 
 // What frame_scene() made up where the file has nothing, so that another view can be made up as well
@@ -96,7 +109,9 @@ struct Scene {
 #define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct> names;
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
-  std::vector<Material> materials;  // at least one when there is a primitive
+  std::vector<std::shared_ptr<const Scene>> meshes;  // of primitives alone
+  PageVector<Instance> instances;                    // of these, in file order
+  std::vector<Material> materials;                   // at least one when there is a primitive
   Paint paint;
   std::vector<Light> lights;
   bool unlit = false;  // the file says that there are no lights; else frame_scene() adds some where none are
@@ -104,16 +119,18 @@ struct Scene {
   std::vector<Camera> cameras;   // all that the file has; `camera` is the first of them, or made up
   Framing framing;
   vec3 background{0};
+  Sky sky;          // in place of the background's colour
   vec3 ambient{1};  // Camb
   RenderSettings settings;
   std::vector<std::string> warnings;  // one line each: what the loader left out or changed
   std::vector<FileRead> files;        // what it was loaded from, by load() only
   LoadOptions load_options;           // that it was loaded with
 
+  // Of the scene's own, without its meshes'.
   std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(primitives::count_primitives(*this));
   }
-  DBox bounds() const;
+  DBox bounds() const;  // with its instances'
 };
 
 }  // namespace kdray::scene

@@ -31,6 +31,18 @@ double similarity_factor(const dmat3& m, const std::string& what) {
   return factor;
 }
 
+// What is in front stays there when all is mirrored: the second and third corners change places, with all
+// that is at them.
+void turn_round(Scene& scene) {
+  for (Triangle& t : scene.triangles) {
+    std::swap(t.vertex[1], t.vertex[2]);
+    std::swap(t.normal[1], t.normal[2]);
+  }
+  for (layout::CornerColors& colors : scene.paint.colors) std::swap(colors.c[1], colors.c[2]);
+  for (auto& set : scene.paint.texcoords)
+    for (layout::TexCoords& at : set) std::swap(at.uv[1], at.uv[2]);
+}
+
 }  // namespace
 
 void apply_transform(const dmat4& m, Scene& scene) {
@@ -40,12 +52,7 @@ void apply_transform(const dmat4& m, Scene& scene) {
     const dmat3 of_normals = glm::transpose(glm::inverse(linear));
     for (vec3& n : scene.normals) n = vec3(glm::normalize(of_normals * dvec3(n)));
   }
-  if (glm::determinant(linear) < 0) {
-    for (Triangle& t : scene.triangles) {
-      std::swap(t.vertex[1], t.vertex[2]);
-      std::swap(t.normal[1], t.normal[2]);
-    }
-  }
+  if (glm::determinant(linear) < 0) turn_round(scene);
   primitives::for_each_shape([&](auto kind) {
     auto& shapes = decltype(kind)::of(scene);
     if (shapes.empty()) return;

@@ -60,6 +60,8 @@ Camera camera_of(const Scene& scene, const View& view, double aspect) {
     camera.ortho_width = *view.ortho_width;
   else if (view.ortho_width)
     camera.ortho_width = width_of(scene.framing.box, camera, aspect);
+  if (view.aperture) camera.aperture = *view.aperture;
+  if (view.focus) camera.focus = *view.focus;
   return camera;
 }
 

@@ -16,7 +16,8 @@ struct View {
   std::optional<dvec3> from = {}, at = {}, up = {};
   std::optional<double> vertical_fov = {};
   std::optional<double> ortho_width = {};  // parallel eye rays; 0: as wide as the scene needs
-  double headlight = 0;                    // above 0: one more light, of this strength, at the camera
+  std::optional<double> aperture = {}, focus = {};
+  double headlight = 0;  // above 0: one more light, of this strength, at the camera
 };
 
 // The camera that it asks for. `aspect`: width by height of the picture that is going to be made.

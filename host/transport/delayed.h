@@ -1,7 +1,8 @@
 // What    A transport as if its network were slower: what comes is held back, so that real runs can be
 //         measured with a delay where the system has no means for it (docs/logbook/ranks.md).
 // Shape   A message that comes is handed over `latency` later, and not before those that came earlier have
-//         taken their time at the bandwidth.
+//         taken their time at the bandwidth; with jitter, up to so many times the latency later, by a seed,
+//         so that messages overtake each other.
 // Units   Seconds; bytes a second.
 #pragma once
 
@@ -11,7 +12,7 @@
 
 namespace kdray::transport {
 
-// Of `link`, latency and bandwidth count.
-std::unique_ptr<Transport> delayed(std::unique_ptr<Transport> transport, const Link& link);
+std::unique_ptr<Transport> delayed(std::unique_ptr<Transport> transport, const Link& link,
+                                   std::uint64_t seed = 1);
 
 }  // namespace kdray::transport

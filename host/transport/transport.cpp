@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "transport/words.h"
 
 namespace kdray::transport {
 
@@ -24,6 +25,11 @@ std::optional<Message> Transport::poll() {
   ++counters_.received;
   counters_.bytes_received += message->bytes.size();
   return message;
+}
+
+void refuse(const Message& message) {
+  throw Error(ErrorCode::internal, fmt::format("rank {} sent {} bytes with tag {}, which mean nothing here",
+                                               message.from, message.bytes.size(), message.tag));
 }
 
 }  // namespace kdray::transport

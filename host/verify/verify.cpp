@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/timer.h"
+#include "prepare/instanced.h"
 #include "prepare/prepared.h"
 #include "verify/boxes.h"
 #include "verify/picture.h"
@@ -59,6 +60,7 @@ Findings verify(const scene::Scene& scene, const Options& o) {
   found.space = geometry.space;
   found.dropped = geometry.dropped_degenerate;
   const prepare::Prepared prepared = in_local_space(prepare::prepare(scene, o.tree));
+  prepare::refuse_instances(prepared, "verify");
   found.counts = prepared.counts;
   found.seconds.build = take(timer);
 

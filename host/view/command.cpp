@@ -34,6 +34,8 @@ std::string view_options(const View& view) {
   if (view.camera) text += fmt::format(" --camera {}", *view.camera);
   if (view.fov) text += fmt::format(" --fov {}", *view.fov);
   if (view.ortho_width) text += fmt::format(" --ortho {}", *view.ortho_width);
+  if (view.aperture) text += fmt::format(" --aperture {}", *view.aperture);
+  if (view.focus) text += fmt::format(" --focus {}", *view.focus);
   if (view.headlight > 0) text += fmt::format(" --headlight {}", view.headlight);
   if (const auto& b = view.background)
     text += fmt::format(" --background {},{},{}", (*b)[0], (*b)[1], (*b)[2]);
@@ -73,7 +75,13 @@ std::string division_options(const RenderOptions& o, int queues) {
 std::string command_for(const Sight& sight, const Settings& settings, const std::string& scene) {
   const RenderOptions options = render_of(sight, settings);
   std::string text = "kdray render " + quoted(scene);
+  if (settings.load.instances == Instances::flat) text += " --instances flat";
+  if (settings.load.instances == Instances::kept) text += " --instances kept";
   if (settings.load.smooth_degrees) text += fmt::format(" --smooth {}", *settings.load.smooth_degrees);
+  if (settings.load.time) text += fmt::format(" --time {}", *settings.load.time);
+  if (!settings.load.animation.empty()) text += " --animation " + quoted(settings.load.animation);
+  if (settings.load.texture_bytes > 0)
+    text += fmt::format(" --texture-memory {}", settings.load.texture_bytes);
   return text + view_options(view_of(sight, settings)) + picture_options(options) +
          division_options(options, queues_of(sight, settings));
 }

@@ -18,13 +18,18 @@ namespace {
 // What pictures and colours at corners need. Programs that have this though they needn't would be slower.
 constexpr layout::Features kPaint =
     KDRAY_FEATURE_COATS | KDRAY_FEATURE_CORNER_COLORS | KDRAY_FEATURE_TEXTURES | KDRAY_FEATURE_CUTOUTS;
-constexpr layout::Features kGeometry =
-    KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS | KDRAY_FEATURE_STITCHES | KDRAY_KEEP_TRACING;
+// What they need in shading alone.
+constexpr layout::Features kLooks = kPaint | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_METAL_MAPS |
+                                    KDRAY_FEATURE_NORMAL_MAPS | KDRAY_FEATURE_LIGHT_MAPS;
+// What lights with an area add to rays, and what else a scene has to have for its code to be of use.
+constexpr layout::Features kSamples = KDRAY_FEATURES_NOISY;
+constexpr layout::Features kGeometry = KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS |
+                                       KDRAY_FEATURE_STITCHES | KDRAY_FEATURE_INSTANCES | KDRAY_KEEP_TRACING;
 constexpr layout::Features kShading =
-    kGeometry | kPaint | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT |
+    kGeometry | kLooks | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT |
     KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
     KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND | KDRAY_FEATURE_FACES |
-    KDRAY_KEEP_SHADING;
+    KDRAY_FEATURE_SKY | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_KEEP_SHADING;
 
 // A wide form larger than this lies outside of the nearer caches, where fetching ahead is worth its
 // instructions: a tenth is lost at 1 and 3 MB, up to a third gained at 20 MB.
@@ -40,22 +45,28 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 // The bits a file reads: a scene that differs elsewhere shares the program.
 layout::Features bits_read_by(const std::string& file) {
   if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
-  if (file == "raygen/admit.cl") return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
-  if (file == "film/add.cl") return 0;
+  if (file == "raygen/admit.cl")
+    return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_FOOTPRINTS | kSamples |
+           KDRAY_FEATURE_INSTANCES;
+  if (file == "film/add.cl") return KDRAY_FEATURE_INSTANCES;
   if (file == "film/channels.cl") return kGeometry | kPaint | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
   if (file == "shade/shade.cl") return kShading;
   if (file == "wave/wave.cl" || file == "odprt/wave.cl")
-    return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE;
-  if (file == "odprt/receive.cl") return 0;
-  if (file == "traverse/trace_closest.cl" || file == "traverse/trace_shadow.cl") return kGeometry | kPaint;
+    return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | kSamples;
+  if (file == "odprt/receive.cl") return KDRAY_FEATURE_FOOTPRINTS;
+  if (file == "traverse/trace_closest.cl")
+    return kGeometry | kPaint | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS;
+  if (file == "traverse/trace_shadow.cl") return kGeometry | kPaint;
   return kGeometry;
 }
 
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
-// rays are counted; not masks, which a scene has to have, nor paint; and not in ODPRT what sizes its plan
+// rays are counted; not masks, which a scene has to have, nor paint, nor a sky, whose arrays would be read,
+// nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
 // (odprt/admit.clh).
 layout::Features spare_bits_of(const std::string& file) {
-  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kPaint);
+  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks |
+                                                 KDRAY_FEATURE_SKY | kSamples | KDRAY_FEATURE_INSTANCES);
   if (file == "odprt/wave.cl")
     bits &= ~(KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS);
   return bits;
@@ -105,6 +116,7 @@ Programs::Programs(const device::Context& context, const TreeForm& form, std::st
       wide_stack_size_(std::max(rounded_up(form.stack, kWideStacks), kLeastWideStack)),
       any_order_stack_size_(any_order_stack_size(form.depth)),
       block_(form.block),
+      widen_(form.widen),
       prefetch_(form.bytes > kNear),
       far_(form.bytes > kFar) {
   use({});
@@ -112,7 +124,12 @@ Programs::Programs(const device::Context& context, const TreeForm& form, std::st
 
 Programs::Programs(const device::Context& context, int tree_depth, const flatten::WideForm& wide,
                    std::string more_options)
-    : Programs(context, TreeForm{tree_depth, wide.stack_size, wide.block, wide.bytes()},
+    : Programs(context,
+               TreeForm{.depth = tree_depth,
+                        .widen = wide.widen,
+                        .stack = wide.stack_size,
+                        .block = wide.block,
+                        .bytes = wide.bytes()},
                std::move(more_options)) {}
 
 // Large trees are deep ones.
@@ -156,6 +173,7 @@ std::string Programs::options_for(const std::string& file, Traversal traversal, 
                            number_of(traversal), block_, stack) +
                walk_options_;
   }
+  if (widen_ > 1) options += fmt::format(" -DKDRAY_PAD={}*0x1p-19f", widen_);
   if (file == "closest/closest_points.cl")
     options += fmt::format(" -DKDRAY_CLOSEST_STACK={}", any_order_stack_size_);
   if (context_->rounds_division_correctly()) options += " -cl-fp32-correctly-rounded-divide-sqrt";

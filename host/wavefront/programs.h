@@ -22,6 +22,7 @@ namespace kdray::wavefront {
 // What programs depend on of the trees that they walk.
 struct TreeForm {
   int depth = 0;          // of the binary tree: sizes that walk's stack
+  int widen = 1;          // of the wide form
   int stack = 0;          // what a walk of the wide form stacks at most
   int block = 4;          // of the wide form
   std::size_t bytes = 0;  // of the wide form
@@ -99,7 +100,7 @@ class Programs {
 
   const device::Context* context_;
   std::string more_options_, walk_options_;
-  int stack_size_, wide_stack_size_, any_order_stack_size_, block_;
+  int stack_size_, wide_stack_size_, any_order_stack_size_, block_, widen_;
   bool prefetch_, far_, everything_ = false;
   double build_seconds_ = 0;
   mutable std::mutex mutex_;  // of what is built: queries of several threads ask for kernels

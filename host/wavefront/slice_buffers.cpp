@@ -20,25 +20,33 @@ std::uint32_t spawned_per_ray(layout::Features features) {
   return features & KDRAY_FEATURE_REFLECT ? 1 : 0;
 }
 
+std::uint32_t pencil_fields(layout::Features features) {
+  return features & KDRAY_FEATURE_FOOTPRINTS ? 1 : 0;
+}
+
 std::uint32_t capacity_for(std::uint32_t n) {
   return (n + 2 * KDRAY_LANES - 1) / KDRAY_LANES * KDRAY_LANES;
 }
 
-StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word) {
+// Rays and hits name an instance where there are some (rays.layout.h).
+StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, layout::Features features) {
+  const std::uint32_t instance = features & KDRAY_FEATURE_INSTANCES ? 1 : 0;
+  const std::uint32_t of_ray = instance + frame.tells_sample + pencil_fields(features);
   StreamForm form;
   form.word = word;
   form.pools = frame.pool_size > 0 ? frame.max_depth - 1 : 0;
-  form.pool_fields = KDRAY_POOL_FIELDS;
-  form.ray_fields = KDRAY_RAY_FIELDS;
-  form.shadow_fields = KDRAY_SHADOW_FIELDS;
+  form.pool_fields = KDRAY_POOL_FIELDS + of_ray;
+  form.ray_fields = KDRAY_RAY_FIELDS + of_ray;
+  form.shadow_fields = KDRAY_SHADOW_FIELDS + instance;
+  form.hit_fields = KDRAY_HIT_FIELDS + instance;
   return form;
 }
 
 // Eye rays travel as well, so they have a pool; and of each depth's many rays few are there at a time.
-StreamForm StreamForm::of_odprt(const layout::Frame& frame) {
+StreamForm StreamForm::of_odprt(const layout::Frame& frame, layout::Features features) {
   StreamForm form;
   form.pools = frame.max_depth;
-  form.pool_fields = form.ray_fields = KDRAY_TRAVEL_RAY_FIELDS;
+  form.pool_fields = form.ray_fields = KDRAY_TRAVEL_RAY_FIELDS + pencil_fields(features);
   form.shadow_fields = KDRAY_TRAVEL_SHADOW_FIELDS;
   form.sparse_pools = true;
   form.film_cleared = true;
@@ -52,7 +60,7 @@ std::size_t StreamForm::batch_bytes(const layout::Frame& frame) const {
   return word * ray_fields * frame.batch_capacity;
 }
 std::size_t StreamForm::hit_bytes(const layout::Frame& frame) const {
-  return word * KDRAY_HIT_FIELDS * frame.batch_capacity;
+  return word * hit_fields * frame.batch_capacity;
 }
 std::size_t StreamForm::shadow_bytes(const layout::Frame& frame) const {
   return word * shadow_fields * frame.shadow_capacity;

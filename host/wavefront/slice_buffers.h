@@ -24,6 +24,9 @@ namespace kdray::wavefront {
 // Rays that one ray can put into the pool. Where one is refracted another may be reflected, if of no weight.
 std::uint32_t spawned_per_ray(layout::Features features);
 
+// The words of a ray that its pencil takes: rays that wait, travel, or are in work have it.
+std::uint32_t pencil_fields(layout::Features features);
+
 // A stream's words per field for `n` rays: whole vectors, and one behind the last ray (rays.layout.h).
 std::uint32_t capacity_for(std::uint32_t n);
 
@@ -38,13 +41,13 @@ struct SliceRoom {
 struct StreamForm {
   std::size_t word = sizeof(float);  // bytes of a number
   std::uint32_t pools = 0;           // of a slice: depths whose rays may have to wait
-  std::uint32_t pool_fields = 0, ray_fields = 0, shadow_fields = 0;
+  std::uint32_t pool_fields = 0, ray_fields = 0, shadow_fields = 0, hit_fields = KDRAY_HIT_FIELDS;
   bool sparse_pools = false;  // most of them are nearly empty at any time
   bool film_cleared = false;  // as it is made
 
   // The streams of the kernels of a single device, and of ODPRT's.
-  static StreamForm of_device(const layout::Frame& frame, std::size_t word);
-  static StreamForm of_odprt(const layout::Frame& frame);
+  static StreamForm of_device(const layout::Frame& frame, std::size_t word, layout::Features features = 0);
+  static StreamForm of_odprt(const layout::Frame& frame, layout::Features features);
 
   // Of one slice's streams: all of them, and the largest.
   std::size_t bytes(const layout::Frame& frame) const;

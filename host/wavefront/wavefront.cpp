@@ -43,16 +43,17 @@ void Schedule::apply(layout::Frame& frame, layout::Features features) const {
   if (!(features & KDRAY_FEATURE_LIGHTS)) frame.n_lights = 0;
   frame.light_batch = std::min({light_batch, frame.n_lights, std::uint32_t{KDRAY_MAX_LIGHT_BATCH}});
   frame.shadow_capacity = frame.light_batch * frame.batch_capacity;
+  frame.tells_sample = (features & KDRAY_FEATURE_AREA_LIGHTS) != 0 ? 1 : 0;
 }
 
-std::size_t Schedule::stream_bytes(const layout::Frame& frame) const {
-  return n_slices * StreamForm::of_device(frame, word_of(precision)).bytes(frame);
+std::size_t Schedule::stream_bytes(const layout::Frame& frame, layout::Features features) const {
+  return n_slices * StreamForm::of_device(frame, word_of(precision), features).bytes(frame);
 }
 
 void Schedule::fit(layout::Frame frame, layout::Features features, std::size_t max_bytes) {
   for (;; batch_size /= 2) {
     apply(frame, features);
-    const std::size_t of_slice = StreamForm::of_device(frame, sizeof(float)).largest(frame);
+    const std::size_t of_slice = StreamForm::of_device(frame, sizeof(float), features).largest(frame);
     n_slices = static_cast<std::uint32_t>(std::clamp<std::size_t>(max_bytes / of_slice, 1, n_slices));
     if (of_slice <= max_bytes || batch_size == 1) return;
   }
@@ -69,7 +70,7 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       room_{std::max(room.tiles, room.samples / KDRAY_SAMPLE_RUN), std::max(room.pixels, room.samples),
             room.samples},
       buffers_(context, frame, {schedule.n_slices, room_.tiles, room_.samples, room_.pixels},
-               StreamForm::of_device(frame, word_of(schedule.precision))),
+               StreamForm::of_device(frame, word_of(schedule.precision), features)),
       tile_cycles_(context.buffer(CL_MEM_READ_WRITE, tile_cycle_bytes(), "the tiles' cycles")) {
   device::checked("setting up the kernels", [&] {
     if (schedule.fill) buffers_.fill(queue_, *schedule.fill);

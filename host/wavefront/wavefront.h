@@ -39,7 +39,7 @@ struct Schedule {
   std::optional<cl_uint> fill = {};  // for tests: what streams and film hold before they are written
 
   // Bytes of a queue's slices and their streams, in a frame that the schedule was applied to.
-  std::size_t stream_bytes(const layout::Frame& frame) const;
+  std::size_t stream_bytes(const layout::Frame& frame, layout::Features features) const;
 
   // Writes tiles, batch, pool and light batch into the frame.
   void apply(layout::Frame& frame, layout::Features features) const;

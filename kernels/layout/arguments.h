@@ -10,10 +10,13 @@
 //         nowhere is refused at the first launch, by name; one that is set and is not here does not compile.
 #ifndef KDRAY_LAYOUT_ARGUMENTS_H
 #define KDRAY_LAYOUT_ARGUMENTS_H
+#include "layout/instances.layout.h"
 #include "layout/kinds.h"
 
 // The scene's arrays. host/wavefront/scene_buffers.h holds a buffer for each of them, by these names.
-#define KDRAY_PRIMITIVE_ARRAYS(X) KDRAY_KINDS_WITH(KDRAY_ARRAY_OF_KIND, X)
+#define KDRAY_PRIMITIVE_ARRAYS(X)          \
+  KDRAY_KINDS_WITH(KDRAY_ARRAY_OF_KIND, X) \
+  X(IN, Instance, instances)
 #define KDRAY_ARRAY_OF_KIND(X, NAME, name, names, Struct) X(IN, Struct, names)
 #define KDRAY_TREE_ARRAYS(X)  \
   X(IN, KdNode, nodes)        \
@@ -30,9 +33,14 @@
   X(IN, u32, texels)          \
   X(IN, TexCoords, texcoords) \
   X(IN, CornerColors, corner_colors)
+// What rays that meet nothing see, where that is not one colour.
+#define KDRAY_SKY_ARRAYS(X) \
+  X(IN, Sky, sky)           \
+  X(IN, float, sky_colors)
 #define KDRAY_LOOK_ARRAYS(X) \
   KDRAY_PAINT_ARRAYS(X)      \
-  X(IN, Light, lights)
+  X(IN, Light, lights)       \
+  KDRAY_SKY_ARRAYS(X)
 
 // What tracing reads, and what finding the surface at a hit reads.
 #define KDRAY_TRACED_ARRAYS(X) \

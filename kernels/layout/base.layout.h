@@ -6,7 +6,7 @@
 #define KDRAY_LAYOUT_BASE_H
 
 // Goes into every file or message that holds these bytes; raise it with any change of a struct.
-#define KDRAY_LAYOUT_VERSION 3
+#define KDRAY_LAYOUT_VERSION 4
 
 #ifdef __OPENCL_C_VERSION__
 

@@ -35,6 +35,13 @@
 #define KDRAY_FEATURE_TRANSMIT KDRAY_FEATURE(41)  // removes refracted rays
 #define KDRAY_FEATURE_SPECULAR KDRAY_FEATURE(42)  // removes highlights
 #define KDRAY_FEATURE_DIFFUSE KDRAY_FEATURE(43)   // removes the diffuse term
+// A background by direction (sky.layout.h) beside that of one colour; removes looking it up.
+#define KDRAY_FEATURE_SKY KDRAY_FEATURE(44)
+// Lights with an area; removes choosing a place on them, and the word by which rays tell their sample.
+#define KDRAY_FEATURE_AREA_LIGHTS KDRAY_FEATURE(45)
+#define KDRAY_FEATURE_LENS KDRAY_FEATURE(46)  // removes choosing a place on the camera's lens
+// What makes samples differ where the picture is even.
+#define KDRAY_FEATURES_NOISY (KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_LENS)
 // Light, bits 48-55, and film, bits 56-63.
 #define KDRAY_FEATURE_LIGHTS KDRAY_FEATURE(48)       // removes shadow rays, their buffers and launches
 #define KDRAY_FEATURE_ATTENUATION KDRAY_FEATURE(49)  // removes fall-off and range
@@ -42,14 +49,25 @@
 #define KDRAY_FEATURE_SPOT KDRAY_FEATURE(51)
 // A core with faces around it; removes looking whether rays pass it by.
 #define KDRAY_FEATURE_FACES KDRAY_FEATURE(52)
+// Instances of meshes (instances.layout.h); removes walks and surfaces in other spaces, and the instance from
+// rays and hits.
+#define KDRAY_FEATURE_INSTANCES KDRAY_FEATURE(53)
 #define KDRAY_FEATURE_BACKGROUND KDRAY_FEATURE(56)   // a background other than black
 #define KDRAY_FEATURE_SUPERSAMPLE KDRAY_FEATURE(57)  // more than one sample per pixel
 #define KDRAY_FEATURE_ADAPTIVE KDRAY_FEATURE(58)     // rounds of single samples beside whole tiles
-#define KDRAY_FEATURE_COST KDRAY_FEATURE(63)         // counts nodes and tests per ray, for the cost channel
+// More of surfaces. Textures that are shown smaller otherwise than larger; removes rays' pencils and mipmaps.
+#define KDRAY_FEATURE_FOOTPRINTS KDRAY_FEATURE(59)
+// Pictures of how metallic and rough surfaces are, of normals, and of emission, occlusion and highlights;
+// each removes looking for them.
+#define KDRAY_FEATURE_METAL_MAPS KDRAY_FEATURE(60)
+#define KDRAY_FEATURE_NORMAL_MAPS KDRAY_FEATURE(61)
+#define KDRAY_FEATURE_LIGHT_MAPS KDRAY_FEATURE(62)
+#define KDRAY_FEATURE_COST KDRAY_FEATURE(63)  // counts nodes and tests per ray, for the cost channel
 
 #ifdef __OPENCL_C_VERSION__
 #ifndef KDRAY_FEATURES
-#define KDRAY_FEATURES (~KDRAY_KEEP_ALL)
+// Instances are left out: streams have other fields with them.
+#define KDRAY_FEATURES (~(KDRAY_KEEP_ALL | KDRAY_FEATURE_INSTANCES))
 #endif
 #define KDRAY_HAS_KIND(NAME) ((KDRAY_FEATURES & KDRAY_FEATURE_KIND(NAME)) != 0)
 // Kinds whose test asks for the square of the direction.
@@ -61,6 +79,10 @@
 #define KDRAY_HAS_COATS ((KDRAY_FEATURES & KDRAY_FEATURE_COATS) != 0)
 #define KDRAY_HAS_CORNER_COLORS ((KDRAY_FEATURES & KDRAY_FEATURE_CORNER_COLORS) != 0)
 #define KDRAY_HAS_TEXTURES ((KDRAY_FEATURES & KDRAY_FEATURE_TEXTURES) != 0)
+#define KDRAY_HAS_FOOTPRINTS ((KDRAY_FEATURES & KDRAY_FEATURE_FOOTPRINTS) != 0)
+#define KDRAY_HAS_METAL_MAPS (KDRAY_HAS_COATS && (KDRAY_FEATURES & KDRAY_FEATURE_METAL_MAPS) != 0)
+#define KDRAY_HAS_NORMAL_MAPS (KDRAY_HAS_COATS && (KDRAY_FEATURES & KDRAY_FEATURE_NORMAL_MAPS) != 0)
+#define KDRAY_HAS_LIGHT_MAPS (KDRAY_HAS_COATS && (KDRAY_FEATURES & KDRAY_FEATURE_LIGHT_MAPS) != 0)
 // Queries, which ask for the shape, meet triangles whole.
 #ifdef KDRAY_WHOLE_TRIANGLES
 #define KDRAY_HAS_CUTOUTS 0
@@ -75,7 +97,11 @@
 #define KDRAY_HAS_ATTENUATION ((KDRAY_FEATURES & KDRAY_FEATURE_ATTENUATION) != 0)
 #define KDRAY_HAS_DIRECTIONAL ((KDRAY_FEATURES & KDRAY_FEATURE_DIRECTIONAL) != 0)
 #define KDRAY_HAS_SPOT ((KDRAY_FEATURES & KDRAY_FEATURE_SPOT) != 0)
+#define KDRAY_HAS_SKY ((KDRAY_FEATURES & KDRAY_FEATURE_SKY) != 0)
+#define KDRAY_HAS_AREA_LIGHTS ((KDRAY_FEATURES & KDRAY_FEATURE_AREA_LIGHTS) != 0)
+#define KDRAY_HAS_LENS ((KDRAY_FEATURES & KDRAY_FEATURE_LENS) != 0)
 #define KDRAY_HAS_FACES ((KDRAY_FEATURES & KDRAY_FEATURE_FACES) != 0)
+#define KDRAY_HAS_INSTANCES ((KDRAY_FEATURES & KDRAY_FEATURE_INSTANCES) != 0)
 #define KDRAY_HAS_BACKGROUND ((KDRAY_FEATURES & KDRAY_FEATURE_BACKGROUND) != 0)
 #define KDRAY_HAS_SUPERSAMPLE ((KDRAY_FEATURES & KDRAY_FEATURE_SUPERSAMPLE) != 0)
 #define KDRAY_HAS_ADAPTIVE ((KDRAY_FEATURES & KDRAY_FEATURE_ADAPTIVE) != 0)

@@ -55,8 +55,15 @@ typedef struct Frame {
   float core_lo[3], core_hi[3];
   float face_lo[3], face_hi[3];
   u32 parallel;  // 1: an orthographic camera
+  // The side of the square that a sample stands for: at the distance 1 along `forward`, or of a parallel
+  // camera anywhere.
+  float pencil;
+  // A lens: eye rays start so far from `eye` at most, and are turned back by so much for what is in focus to
+  // stay where it is; 0: a pinhole.
+  float lens_radius, lens_slope;
+  u32 tells_sample;  // 1: rays have a word that tells their sample (KDRAY_RAY_SAMPLE)
 } Frame;
-KDRAY_ASSERT_SIZE(Frame, 244)
+KDRAY_ASSERT_SIZE(Frame, 260)
 KDRAY_ASSERT_OFFSET(Frame, core_lo, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 

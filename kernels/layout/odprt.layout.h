@@ -7,6 +7,7 @@
 #include "layout/frame.layout.h"
 
 #define KDRAY_MAX_PARTS 64
+#define KDRAY_MAX_PARTS_TELLING 32  // where rays tell their sample (KDRAY_RAY_SAMPLE)
 #define KDRAY_NO_PART 255u
 
 KDRAY_LAYOUT_BEGIN

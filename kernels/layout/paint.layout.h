@@ -20,10 +20,22 @@
 #define KDRAY_TEXTURE_SET(how) ((how) >> 6 & 1u)         // of the coordinates at a triangle's corners
 #define KDRAY_TEXTURE_SETS(how) (((how) >> 7 & 1u) + 1)  // that triangles have, one behind the other
 
+// The same where the picture is shown smaller than it is, and how its smaller forms take part.
+#define KDRAY_TEXTURE_MIN_NEAREST 256u
+#define KDRAY_TEXTURE_MIPMAPS 512u      // it has some; else only the picture itself is looked at
+#define KDRAY_TEXTURE_MIP_LINEAR 1024u  // two of them are mixed; else the nearer one is taken
+// The most places along a footprint at which one is looked at.
+#define KDRAY_MOST_PROBES 8u
+
 // Coat::how.
 #define KDRAY_COAT_COLORED 1u  // triangles have colours at their corners
 #define KDRAY_COAT_MASK 2u     // nothing is there where alpha is below the cutoff
 #define KDRAY_COAT_BLEND 4u    // the share 1 - alpha goes through
+#define KDRAY_COAT_METAL 8u    // its terms follow from how metallic and rough the place is (see below)
+
+// What a coat of metal takes for ambient light, and the strength of a smooth dielectric's highlight.
+#define KDRAY_METAL_AMBIENT 0.1f
+#define KDRAY_METAL_HIGHLIGHT 0.25f
 
 KDRAY_LAYOUT_BEGIN
 // At (u, v) of a triangle the picture is looked at across[0]*u + across[1]*v + across[2] of its width from
@@ -33,7 +45,10 @@ typedef struct Texture {
   u32 first;  // texel of the top row
   u32 width, height;
   u32 how;
-  u32 pad[2];
+  // Forms of it, each half as wide and as high as the one before, rounded down, but one at least; they lie
+  // one behind the other.
+  u32 n_levels;
+  u32 pad;
 } Texture;
 KDRAY_ASSERT_SIZE(Texture, 48)
 KDRAY_ASSERT_OFFSET(Texture, first, 24)
@@ -47,12 +62,29 @@ typedef struct Coat {
   float transmit[3];
   float alpha;
   float cutoff;
-  u32 base;  // into the textures, or KDRAY_NO_TEXTURE
+  u32 base;  // into the textures, or KDRAY_NO_TEXTURE; and so are the other maps
   u32 how;
+  u32 normal_map;
+  // By light maps: emission is `emissive` times one; `ambient` times the base colour comes to what is
+  // unshadowed, less what occlusion takes; highlights and mirrors are multiplied by one instead of by the
+  // base colour.
+  u32 emission_map, occlusion_map, highlight_map;
+  float occlusion;  // its strength
+  float emissive[3];
+  float normal_scale;
+  float ambient[3];
+  // Of metal: the base colour's factor and those of the map, whose green is rough and whose blue is metallic.
+  float metallic;
+  float base_color[3];
+  float roughness;
+  float transmission;  // the share of the dielectric's base colour that goes through
+  float mirrored;      // the share of that which a smooth surface reflects
+  u32 metal_map;
   u32 pad;
 } Coat;
-KDRAY_ASSERT_SIZE(Coat, 80)
+KDRAY_ASSERT_SIZE(Coat, 160)
 KDRAY_ASSERT_OFFSET(Coat, alpha, 60)
+KDRAY_ASSERT_OFFSET(Coat, metallic, 124)
 
 // Of a triangle's corners, linear, in 65535ths: red and in the upper half green, then blue and alpha.
 typedef struct CornerColors {

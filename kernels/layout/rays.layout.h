@@ -8,12 +8,27 @@
 #ifndef KDRAY_LAYOUT_RAYS_H
 #define KDRAY_LAYOUT_RAYS_H
 #include "layout/base.layout.h"
+#include "layout/features.h"
 
 #define KDRAY_LANES 16u  // rays to a vector
 
 // This is 1 in the kernels of ODPRT, whose rays carry what another queue needs to go on with them.
 #ifndef KDRAY_ODPRT
 #define KDRAY_ODPRT 0
+#endif
+
+// In scenes with footprints rays have a last field, u32: their pencil (paint/pencil.clh). The host counts it
+// by itself (host/wavefront/slice_buffers.h).
+#ifdef __OPENCL_C_VERSION__
+#define KDRAY_PENCIL_FIELDS (KDRAY_HAS_FOOTPRINTS ? 1u : 0u)
+#else
+#define KDRAY_PENCIL_FIELDS 0u
+#endif
+// Where a scene has instances, rays, hits and shadow rays have a field more: what the host adds.
+#if defined(KDRAY_HAS_INSTANCES) && KDRAY_HAS_INSTANCES
+#define KDRAY_INSTANCE_FIELDS 1u
+#else
+#define KDRAY_INSTANCE_FIELDS 0u
 #endif
 
 // The traced fields: the ray origin + t*direction with t_min < t < t_max.
@@ -27,18 +42,31 @@
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
 // In ODPRT a ray brings the best hit so far, whose t is the float below t_max.
-#define KDRAY_RAY_NUMBER 12u   // u32: of its primitive, in file order
-#define KDRAY_RAY_FINDER 13u   // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
-#define KDRAY_RAY_VISITED 14u  // two u32: a bit for each part that was asked
-#define KDRAY_TRAVEL_RAY_FIELDS 16u
+#define KDRAY_RAY_NUMBER 12u         // u32: of its primitive, in file order
+#define KDRAY_RAY_FINDER 13u         // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
+#define KDRAY_RAY_VISITED 14u        // two u32: a bit for each part that was asked
+#define KDRAY_TRAVEL_RAY_FIELDS 16u  // and its pencil
 #if KDRAY_ODPRT
-#define KDRAY_RAY_SKIP 0u  // none: a part may not know another's triangle
-#define KDRAY_RAY_FIELDS KDRAY_TRAVEL_RAY_FIELDS
+#define KDRAY_RAY_SKIP 0u     // none: a part may not know another's triangle
+#define KDRAY_RAY_SAMPLE 15u  // in place of the second word of VISITED: there are 32 parts at most then
+#define KDRAY_RAY_PENCIL 16u
+#define KDRAY_RAY_FIELDS (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_PENCIL_FIELDS)
 #else
 // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
 #define KDRAY_RAY_SKIP 12u
-#define KDRAY_RAY_FIELDS 13u
+#define KDRAY_RAY_SKIP_INSTANCE 13u  // where there are instances: the one that the triangle is in
+#define KDRAY_RAY_SAMPLE (13u + KDRAY_INSTANCE_FIELDS)
+#define KDRAY_RAY_PENCIL (13u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE)
+#define KDRAY_RAY_FIELDS (13u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
 #endif
+// With area lights a ray tells its pixel and sample: u32, 16 bits of the pixel's hash above the sample's
+// number.
+#ifdef __OPENCL_C_VERSION__
+#define KDRAY_TELLS_SAMPLE (KDRAY_HAS_AREA_LIGHTS ? 1u : 0u)
+#else
+#define KDRAY_TELLS_SAMPLE 0u  // by the host: in scenes without
+#endif
+#define KDRAY_VISITED_WORDS (2u - KDRAY_TELLS_SAMPLE)  // of a ray
 
 // The word of KDRAY_RAY_FINDER: the part that holds the best hit, a byte; on the ray's way its depth in the
 // byte above and, from bit 16 on, the part that it goes to. For u32 and vectors of them. A ray that is there
@@ -51,10 +79,11 @@
 
 // Shadow rays: each adds `contribution` to its pixel unless something lies inside of its interval.
 #define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS
-#define KDRAY_SHADOW_CONTRIBUTION 9u  // red green blue
-#define KDRAY_SHADOW_PIXEL 12u        // u32
-#define KDRAY_MADE_SHADOW_FIELDS 13u  // what shading writes
-#define KDRAY_SHADOW_VISITED 13u      // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
+#define KDRAY_SHADOW_CONTRIBUTION 9u                            // red green blue
+#define KDRAY_SHADOW_PIXEL 12u                                  // u32
+#define KDRAY_SHADOW_SKIP_INSTANCE 13u                          // as for rays; not in ODPRT
+#define KDRAY_MADE_SHADOW_FIELDS (13u + KDRAY_INSTANCE_FIELDS)  // what shading writes
+#define KDRAY_SHADOW_VISITED 13u  // ODPRT, of those that come from elsewhere: as KDRAY_RAY_VISITED
 #define KDRAY_TRAVEL_SHADOW_FIELDS 15u
 #define KDRAY_SENT_SHADOW_TO 15u  // on its way: the part that it goes to
 #define KDRAY_SENT_SHADOW_FIELDS 16u
@@ -71,12 +100,20 @@
 #if KDRAY_ODPRT
 #define KDRAY_POOL_WEIGHT KDRAY_RAY_WEIGHT
 #define KDRAY_POOL_PIXEL KDRAY_RAY_PIXEL
+#define KDRAY_POOL_SAMPLE KDRAY_RAY_SAMPLE
 #define KDRAY_POOL_FIELDS KDRAY_RAY_FIELDS
 #else
 #define KDRAY_POOL_WEIGHT 6u
 #define KDRAY_POOL_PIXEL 9u
 #define KDRAY_POOL_SKIP 10u
-#define KDRAY_POOL_FIELDS 11u
+#define KDRAY_POOL_SKIP_INSTANCE 11u
+#define KDRAY_POOL_SAMPLE (11u + KDRAY_INSTANCE_FIELDS)
+#define KDRAY_POOL_FIELDS (11u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
+#endif
+#if KDRAY_ODPRT
+#define KDRAY_POOL_PENCIL KDRAY_RAY_PENCIL
+#else
+#define KDRAY_POOL_PENCIL (11u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE)
 #endif
 
 // Hits of a batch, with the batch's capacity.
@@ -84,7 +121,8 @@
 #define KDRAY_HIT_REF 1u  // u32: kind and index (tree.layout.h), or KDRAY_REF_MISS, KDRAY_REF_INVALID
 #define KDRAY_HIT_U 2u
 #define KDRAY_HIT_V 3u
-#define KDRAY_HIT_FIELDS 4u
+#define KDRAY_HIT_INSTANCE 4u  // u32: 1 + the instance's index, or 0
+#define KDRAY_HIT_FIELDS (4u + KDRAY_INSTANCE_FIELDS)
 
 // What became of a shadow ray: one byte for each.
 #define KDRAY_CLEAR 0u

@@ -8,6 +8,9 @@
 #define KDRAY_LIGHT_POINT 0u
 #define KDRAY_LIGHT_DIRECTIONAL 1u
 #define KDRAY_LIGHT_SPOT 2u
+#define KDRAY_LIGHT_RECTANGLE 3u
+#define KDRAY_LIGHT_SPHERE 4u
+#define KDRAY_LIGHT_DISC 5u
 
 KDRAY_LAYOUT_BEGIN
 typedef struct Material {
@@ -34,8 +37,13 @@ typedef struct Light {
   float cos_inner;
   float attenuation[3];
   float cos_outer;
+  // Half of a rectangle's edges, or two of a disc's radii at right angles. (0: it has none.)
+  float across[3];
+  float radius;  // a sphere's
+  float down[3];
+  u32 pad;
 } Light;
-KDRAY_ASSERT_SIZE(Light, 64)
+KDRAY_ASSERT_SIZE(Light, 96)
 KDRAY_ASSERT_OFFSET(Light, cos_outer, 60)
 KDRAY_LAYOUT_END
 #endif

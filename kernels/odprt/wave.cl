@@ -25,6 +25,7 @@ typedef struct Streams {
 typedef struct Shaders {
   SurfaceArrays surfaces;
   PaintArrays paint;
+  SkyArrays sky;
   __global const Light* lights;
 } Shaders;
 
@@ -46,8 +47,8 @@ inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32
   u32 first_light = 0;
   do {
     const u32 before = t->slice->n_pool[t->slice->depth];
-    shade_batch(&shaders->surfaces, &shaders->paint, shaders->lights, frame, slice_id, first_light, t->slice,
-                s->batch, s->hits, s->pool, s->shadow_rays, s->film);
+    shade_batch(&shaders->surfaces, &shaders->paint, &shaders->sky, shaders->lights, frame, slice_id,
+                first_light, t->slice, s->batch, s->hits, s->pool, s->shadow_rays, s->film);
     const u32 made = t->slice->depth < frame->max_depth ? t->slice->n_pool[t->slice->depth] - before : 0;
     if (made > 0) {
       t->traffic->made[t->slice->depth + 1] += made;
@@ -120,7 +121,8 @@ KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARG
                      io_grants + slice_id,
                      io_traffic + slice_id};
   const Shaders shaders = {KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS),
-                           KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_PAINT_ARRAYS), in_lights};
+                           KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_PAINT_ARRAYS),
+                           KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SKY_ARRAYS), in_lights};
   const Streams streams = {io_pool, io_batch, io_hits, io_shadow_rays, io_shadow_pool, io_occluded, io_film};
   const Census census = {in_subtrees, travel->n_subtrees,
                          out_visits + (size_t)slice_id * 2 * travel->n_subtrees};

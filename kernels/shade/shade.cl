@@ -7,6 +7,7 @@ __kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
   if (slice >= n_slices) return;
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const PaintArrays paint = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_PAINT_ARRAYS);
-  shade_batch(&arrays, &paint, in_lights, frame, slice, first_light, io_slices + slice, in_batch, in_hits,
-              io_pool, out_shadow_rays, io_film);
+  const SkyArrays sky = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SKY_ARRAYS);
+  shade_batch(&arrays, &paint, &sky, in_lights, frame, slice, first_light, io_slices + slice, in_batch,
+              in_hits, io_pool, out_shadow_rays, io_film);
 }

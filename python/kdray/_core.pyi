@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 class Scene:
     def __init__(self) -> None: ...
     @staticmethod
-    def load(file: str, smooth_degrees: float | None) -> Scene: ...
+    def load(file: str, smooth_degrees: float | None, time: float | None, animation: str) -> Scene: ...
     def add_mesh(
         self,
         vertices: NDArray[Any] | None,
@@ -71,6 +71,10 @@ class Scene:
         arg5: float,
         arg6: float,
         arg7: float,
+        arg8: Sequence[float],
+        arg9: Sequence[float],
+        arg10: Sequence[float],
+        arg11: float,
         /,
     ) -> None: ...
     def set_camera(
@@ -81,9 +85,15 @@ class Scene:
         arg3: float,
         arg4: float,
         arg5: float,
+        arg6: float,
+        arg7: float,
         /,
     ) -> None: ...
     def set_background(self, arg: Sequence[float], /) -> None: ...
+    def set_gradient(
+        self, arg0: Sequence[float], arg1: Sequence[Sequence[float]], arg2: Sequence[float], /
+    ) -> None: ...
+    def set_environment(self, arg0: str, arg1: Sequence[float], arg2: float, arg3: float, /) -> None: ...
     def set_ambient(self, arg: Sequence[float], /) -> None: ...
     def commit(self, quality: str, device: str, compute_units: int, binary_form: bool) -> None: ...
     def closest(

@@ -18,6 +18,8 @@ class Camera:
 
     `fov` is of the picture's full height, in degrees. `ortho_width` above 0 makes the camera
     orthographic: it is the picture's width in the scene's units. Nothing nearer than `hither` is seen.
+    `aperture` above 0 is the diameter of a thin lens: what is not in focus is blurred; `focus` is how far
+    off, along the view, what is in focus is (0: as far as `target`).
     """
 
     origin: Vector = (0.0, 0.0, 5.0)
@@ -26,21 +28,27 @@ class Camera:
     fov: float = 45.0
     ortho_width: float = 0.0
     hither: float = 0.0
+    aperture: float = 0.0
+    focus: float = 0.0
 
     def numbers(self) -> list[float]:
-        """Its twelve numbers, for kdray._core."""
-        numbers = [float(x) for x in (*self.origin, *self.target, *self.up, self.fov, self.ortho_width, self.hither)]
-        if len(numbers) != 12:
+        """Its fourteen numbers, for kdray._core."""
+        lens = (self.fov, self.ortho_width, self.hither, self.aperture, self.focus)
+        numbers = [float(x) for x in (*self.origin, *self.target, *self.up, *lens)]
+        if len(numbers) != 14:
             raise UsageError("a camera's origin, target and up have three coordinates each")
         return numbers
 
 
 @dataclass(frozen=True)
 class Light:
-    """A light: "point", "directional" or "spot".
+    """A light: "point", "directional", "spot", "rectangle", "sphere" or "disc".
 
     `direction` is the way it travels. `attenuation` (a, b, c) divides by ``a + b*d + c*d*d`` at
     distance d. `inner` and `outer` are a spot's half angles in degrees, full light inside of the inner one.
+    The last three kinds have an area and throw soft shadows: each sample of a pixel sees another place of it.
+    `position` is the middle; a rectangle has the edges `across` and `down`, a disc `normal` and `radius`, a
+    sphere `radius`.
     """
 
     kind: str = "point"
@@ -51,6 +59,10 @@ class Light:
     range: float = math.inf
     inner: float = 0.0
     outer: float = 45.0
+    across: Vector = (0.0, 0.0, 0.0)
+    down: Vector = (0.0, 0.0, 0.0)
+    normal: Vector = (0.0, -1.0, 0.0)
+    radius: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import copy
 import math
 import os
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,7 @@ from . import _arrays, _core, _drivers, errors
 from ._arrays import Array, ArrayLike, RayArrays
 from ._results import FLOATS, Rows, as_rows, hit_columns, in_parts, known, result_of, type_of, width_of
 from .hits import AllHits, ClosestPoints, Hits
-from .looks import Camera, Color, Light, Material
+from .looks import Camera, Color, Light, Material, Vector
 from .picture import Picture
 from .progress import Progress, teller
 from .view import View, page_of
@@ -76,11 +76,12 @@ class Scene:
     def _start(self, core: Any, device: str, compute_units: int) -> None:
         self._core = core
         self._device, self._compute_units = device, compute_units
-        self._file: tuple[str, float | None] | None = None
+        self._file: tuple[str, float | None, float | None, str] | None = None
         self._added: dict[int, _Added] = {}  # by id
         self._materials: list[Material] = []
         self._lights: list[Light] = []
         self._colors: dict[str, Color] = {}  # "background", "ambient"
+        self._sky: tuple[Any, ...] | None = None  # "gradient" or "environment", and what it was set by
         self._changed, self._committed, self._binary_form, self._quality = True, False, False, "balanced"
         self._lock = threading.RLock()
 
@@ -242,6 +243,10 @@ class Scene:
                 light.range,
                 light.inner,
                 light.outer,
+                light.across,
+                light.down,
+                light.normal,
+                light.radius,
             )
             self._lights.append(light)
             self._changed = True
@@ -251,6 +256,33 @@ class Scene:
         with self._lock:
             self._core.set_background(color)
             self._colors["background"] = tuple(color)
+            self._sky = None
+            self._changed = True
+
+    def set_gradient(self, heights: Sequence[float], colors: Sequence[Color], up: Vector = (0.0, 1.0, 0.0)) -> None:
+        """Rays that hit nothing see colours by height, the sine of the angle above the horizon, from -1 to 1.
+
+        Heights ascend; below the first and above the last their colours go on.
+        """
+        if len(heights) != len(colors):
+            raise errors.UsageError(f"{len(heights)} heights for {len(colors)} colours")
+        with self._lock:
+            self._core.set_gradient(heights, colors, up)
+            self._sky = ("gradient", tuple(heights), tuple(tuple(c) for c in colors), tuple(up))
+            self._changed = True
+
+    def set_environment(
+        self, file: str | os.PathLike[str], up: Vector = (0.0, 1.0, 0.0), turn: float = 0.0, strength: float = 1.0
+    ) -> None:
+        """Rays that hit nothing see a picture all around, from an EXR, Radiance HDR, PNG or JPEG file.
+
+        It is equirectangular: its top lies at `up`, its middle at -z, turned about `up` by `turn` degrees. What
+        it shows is multiplied by `strength`.
+        """
+        name = os.fspath(file)
+        with self._lock:
+            self._core.set_environment(name, up, turn, strength)
+            self._sky = ("environment", name, tuple(up), turn, strength)
             self._changed = True
 
     def set_ambient(self, color: Color) -> None:
@@ -508,7 +540,7 @@ class Scene:
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
             infos = [self.info(id) for id in self._core.geometries()]
-            names = ("_device", "_compute_units", "_quality", "_file", "_materials", "_lights", "_colors")
+            names = ("_device", "_compute_units", "_quality", "_file", "_materials", "_lights", "_colors", "_sky")
             return {name: copy.copy(getattr(self, name)) for name in names} | {
                 "added": {id: added.copy() for id, added in self._added.items()},
                 "infos": infos,
@@ -525,6 +557,8 @@ class Scene:
             self.add_light(light)
         for name, color in state["_colors"].items():
             getattr(self, "set_" + name)(color)
+        if state["_sky"]:
+            getattr(self, "set_" + state["_sky"][0])(*state["_sky"][1:])
         infos = {info.id: info for info in state["infos"]}
         if file and 0 not in infos:
             self._core.remove(0)
@@ -558,14 +592,23 @@ class Scene:
         return f"<kdray.Scene of {len(self._core.geometries())} geometries, {self.primitives} primitives>"
 
 
-def load(path: str | os.PathLike[str], *, smooth: float | None = None, device: str = "auto") -> Scene:
+def load(
+    path: str | os.PathLike[str],
+    *,
+    smooth: float | None = None,
+    time: float | None = None,
+    animation: str | int = "",
+    device: str = "auto",
+) -> Scene:
     """A scene from a file: .obj, .ply, .stl, .gltf, .glb, .nff, kdray's .json, also .gz and .xz of these.
 
     What is in it is geometry 0. `smooth`: triangles without normals get some where the surface turns by no more
-    than so many degrees. Raises InputError with file, line, what is wrong and what to do.
+    than so many degrees. `time`: the second of a glTF file's animation that is seen, of the first or of the
+    `animation` with this name or number, or "all"; without it nodes are at rest. Raises InputError with file,
+    line, what is wrong and what to do.
     """
     scene = Scene.__new__(Scene)
-    file = (os.path.abspath(os.fspath(path)), smooth)
+    file = (os.path.abspath(os.fspath(path)), smooth, time, str(animation))
     scene._start(_core.Scene.load(*file), device, 0)
     scene._file = file
     return scene

@@ -19,7 +19,8 @@ namespace {
 namespace nb = nanobind;
 using namespace nb::literals;
 using Released = nb::call_guard<nb::gil_scoped_release>;
-using CameraNumbers = std::array<double, 12>;  // from, at, up, fov, ortho_width, hither
+// These are: from, at, up, fov, ortho_width, hither, aperture, focus.
+using CameraNumbers = std::array<double, 14>;
 
 // As it was committed last, with the ids and names of its geometries.
 view::Opened opened(const Scene& scene) {
@@ -42,6 +43,8 @@ View view_of(const std::optional<CameraNumbers>& camera) {
     view.ortho_width = n[10];
   else
     view.fov = n[9];
+  if (n[12] > 0) view.aperture = n[12];
+  if (n[13] > 0) view.focus = n[13];
   return view;
 }
 

@@ -24,10 +24,12 @@ using namespace nb::literals;
 using Pixels = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using Values = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
 using Progress = std::function<void(double)>;
-using CameraNumbers = std::array<double, 12>;  // from, at, up, fov, ortho_width, hither
+// These are: from, at, up, fov, ortho_width, hither, aperture, focus.
+using CameraNumbers = std::array<double, 14>;
 
 Camera camera_of(const CameraNumbers& n) {
-  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n[10], n[11]};
+  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n[10], n[11],
+          n[12],               n[13]};
 }
 
 // Calls Python's function, whose exceptions end the picture.

@@ -78,6 +78,18 @@ void add_geometries(SceneClass& scene) {
   scene.def("warnings", &Scene::warnings);
 }
 
+Light::Kind light_kind(const std::string& name) {
+  using Kind = Light::Kind;
+  constexpr std::pair<const char*, Kind> kKinds[] = {
+      {"point", Kind::point},         {"directional", Kind::directional}, {"spot", Kind::spot},
+      {"rectangle", Kind::rectangle}, {"sphere", Kind::sphere},           {"disc", Kind::disc}};
+  for (const auto& [n, kind] : kKinds)
+    if (name == n) return kind;
+  throw Error(ErrorCode::usage,
+              "a light is \"point\", \"directional\", \"spot\", \"rectangle\", \"sphere\" or \"disc\", not \"" +
+                  name + "\"");
+}
+
 void add_looks(SceneClass& scene) {
   scene.def("add_material",
             [](Scene& s, const Color& emission, const Color& ambient, const Color& diffuse,
@@ -86,21 +98,27 @@ void add_looks(SceneClass& scene) {
             });
   scene.def("add_light",
             [](Scene& s, const std::string& kind, const Vec3& position, const Vec3& direction,
-               const Color& color, const Vec3& attenuation, double range, double inner, double outer) {
-              const Light::Kind k = kind == "point"         ? Light::Kind::point
-                                    : kind == "directional" ? Light::Kind::directional
-                                    : kind == "spot"        ? Light::Kind::spot
-                                                            : throw Error(ErrorCode::usage,
-                                                                          "a light is \"point\", \"directional\" or "
-                                                                                 "\"spot\", not \"" +
-                                                                              kind + "\"");
-              s.add_light({k, position, direction, color, attenuation, range, inner, outer});
+               const Color& color, const Vec3& attenuation, double range, double inner, double outer,
+               const Vec3& across, const Vec3& down, const Vec3& normal, double radius) {
+              s.add_light({light_kind(kind), position, direction, color, attenuation, range, inner, outer, across,
+                           down, normal, radius});
             });
   scene.def("set_camera", [](Scene& s, const Vec3& from, const Vec3& at, const Vec3& up, double fov,
-                             double ortho_width, double hither) {
-    s.set_camera({from, at, up, fov, ortho_width, hither});
+                             double ortho_width, double hither, double aperture, double focus) {
+    s.set_camera({from, at, up, fov, ortho_width, hither, aperture, focus});
   });
-  scene.def("set_background", &Scene::set_background);
+  scene.def("set_background", nb::overload_cast<const Color&>(&Scene::set_background));
+  scene.def("set_gradient",
+            [](Scene& s, const std::vector<double>& heights, const std::vector<Color>& colors, const Vec3& up) {
+              Gradient gradient{.stops = {}, .up = up};
+              for (std::size_t i = 0; i < heights.size(); ++i)
+                gradient.stops.push_back({heights[i], colors.at(i)});
+              s.set_background(gradient);
+            });
+  scene.def("set_environment",
+            [](Scene& s, const std::string& file, const Vec3& up, double turn, double strength) {
+              s.set_background(Environment{file, up, turn, strength});
+            });
   scene.def("set_ambient", &Scene::set_ambient);
 }
 
@@ -111,10 +129,12 @@ SceneClass add_scene(nb::module_& module) {
   scene.def(nb::init<>());
   scene.def_static(
       "load",
-      [](const std::string& file, std::optional<double> smooth_degrees) {
-        return Scene::load(file, {smooth_degrees});
+      [](const std::string& file, std::optional<double> smooth_degrees, std::optional<double> time,
+         const std::string& animation) {
+        return Scene::load(file, {smooth_degrees, time, animation});
       },
-      Released(), "file"_a, "smooth_degrees"_a.none());
+      Released(), "file"_a, "smooth_degrees"_a.none(), "time"_a.none() = nb::none(),
+      "animation"_a = "");
   add_geometries(scene);
   add_looks(scene);
   scene.def(

@@ -37,6 +37,31 @@ def test_orthographic_rays_are_those_of_pictures(lit):
     )
 
 
+def test_backgrounds_by_direction(tmp_path):
+    scene = kdray.Scene()
+    scene.set_gradient([0, 0.5], [(0, 0, 0), (1, 0.5, 0)])
+    camera = kdray.Camera((0, 0, 0), (0, 0, -1), fov=60)
+    rows = scene.render(camera, (1, 8))[:, 0]
+    assert (rows[4:] == 0).all() and (np.diff(rows[:4, 0]) < 0).all()
+    (tmp_path / "sky.hdr").write_bytes(b"#?RADIANCE\n\n-Y 1 +X 1\n" + bytes([128, 64, 0, 129]))
+    scene.set_environment(tmp_path / "sky.hdr", strength=0.5)
+    assert (scene.render(camera, (2, 2)) == [0.5, 0.25, 0]).all()
+    assert (pickle.loads(pickle.dumps(scene)).render(camera, (2, 2)) == [0.5, 0.25, 0]).all()
+    with pytest.raises(kdray.errors.InputError):
+        scene.set_environment(tmp_path / "none.hdr")
+
+
+def test_a_lamp_of_some_size_throws_a_soft_shadow():
+    scene = kdray.Scene()
+    scene.add_discs([[0, 0, 0]], [0, 1, 0], 5)
+    scene.add_discs([[0, 1, 0]], [0, 1, 0], 0.5)
+    scene.add_light(kdray.Light("sphere", position=(0, 2, 0), radius=0.4))
+    camera = kdray.Camera((0, 0.5, 0), (0, 0, 0), up=(0, 0, 1), ortho_width=4, aperture=0.01, focus=0.5)
+    row = np.asarray(scene.render(camera, (64, 1), samples=64))[0, :, 0]
+    assert row.min() < 0.1 < 0.3 < row.max()
+    assert ((row > 0.12) & (row < row.max() * 0.8)).sum() > 8
+
+
 def test_colors_are_those_of_the_material():
     scene = kdray.Scene()
     glow = scene.add_material(kdray.Material(emission=(0.25, 0.5, 1), diffuse=(0, 0, 0)))

@@ -50,8 +50,8 @@ struct Outcome {
   Report report;
 };
 
-Outcome sample(const Function& f, double target) {
-  Sampler sampler(kPictureSize, target);
+Outcome sample(const Function& f, double target, bool noisy = false) {
+  Sampler sampler(kPictureSize, target, noisy);
   const auto value = [&](std::uint32_t x, std::uint32_t y, std::uint32_t k) {
     const Point p = point_of(y * kPictureSize.width + x, k);
     return units(f(x + p.x, y + p.y));
@@ -129,6 +129,25 @@ TEST(Sampler, AnEdgeIsRefinedAndNothingElse) {
       static_cast<double>(edge.report.samples) / static_cast<double>(kPictureSize.pixels());
   EXPECT_LT(per_pixel, 3);
   EXPECT_LT(error_of(edge.picture, half_plane), 0.5 * error_of(uniform(half_plane, 4), half_plane));
+}
+
+// Each pixel is lit in some of its samples, by chance: an even picture of one grey, of which one sample in
+// each pixel tells little.
+TEST(Sampler, NoiseGetsFourSamplesInEachPixelAtLeast) {
+  constexpr double kShare = 0.9;
+  const Function noise = [](double x, double y) {
+    std::minstd_rand engine(static_cast<unsigned>(x * 7919) * 31 + static_cast<unsigned>(y * 6007) + 1);
+    engine.discard(5);
+    return std::uniform_real_distribution<double>()(engine) < kShare ? 1.0 : 0.0;
+  };
+  const Outcome o = sample(noise, 0.1, true);
+  EXPECT_EQ(o.report.pixels[0], 0u);
+  double sum = 0;
+  for (const vec3& pixel : o.picture) sum += (pixel.x - kShare) * (pixel.x - kShare);
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(kPictureSize.pixels())), 0.2);
+  const Outcome flat = sample([](double, double) { return 0.4; }, 1e-6, true);
+  EXPECT_EQ(flat.report.samples, 4 * kPictureSize.pixels());
+  EXPECT_TRUE(flat.report.met);
 }
 
 TEST(Sampler, ItsBeliefIsWithinAFactorOfTwo) {

@@ -279,7 +279,10 @@ TEST_P(Refit, PicturesAreThoseOfABuiltTree) {
     scene.add_light({.position = {5, 6, 7}});
     scene.commit(&scene == &twins.fitted ? always() : never());
     scene.update_vertices(id, mesh.moved(bent));
-    scene.set_camera({.from = {2, 3, 6}, .at = {0, 0, 0}});  // which is no reason to build
+    // These are no reason to build.
+    scene.set_camera({.from = {2, 3, 6}, .at = {0, 0, 0}, .aperture = 0.1});
+    scene.set_background(Gradient{.stops = {{-1, {1, 0, 0}}, {1, {0, 0, 1}}}});
+    scene.add_light({.kind = Light::Kind::disc, .position = {-3, 4, 2}, .normal = {0, -2, 0}, .radius = 0.5});
     EXPECT_EQ(scene.commit(&scene == &twins.fitted ? always() : never()).refitted, &scene == &twins.fitted);
   });
   RenderOptions picture;

@@ -18,9 +18,9 @@ constexpr Hash kKey{0x123456789abcdef0, 0x0fedcba987654321};
 constexpr std::size_t kPage = 4096;
 
 // The header's checksum lies behind the bytes that it is of; entry.cpp.
-// The facts, materials, coats and lights, eleven arrays of the flat form, the wide form's nodes; each shape's
-// own array, and each kind's blocks.
-constexpr std::size_t kSections = 1 + 3 + 11 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
+// The facts, materials, coats and lights, fourteen arrays of the flat form, the wide form's nodes; each
+// shape's own array, and each kind's blocks.
+constexpr std::size_t kSections = 1 + 3 + 14 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
 constexpr std::size_t kHeaderBytes = 8 + 8 + 8 + 16 + kSections * 40;
 constexpr std::size_t kFirstSection = 8 + 8 + 8 + 16;
 
@@ -155,10 +155,10 @@ TEST_F(EntryTest, CutAndGrownFilesAreSeen) {
 }
 
 TEST_F(EntryTest, AHeaderOfAnotherFormIsRefusedUnderARightChecksum) {
-  ASSERT_TRUE(read(forged(8, std::uint32_t{3})));  // as it is: the forger knows the form
+  ASSERT_TRUE(read(forged(8, std::uint32_t{4})));  // as it is: the forger knows the form
   EXPECT_FALSE(read(forged(0, 'x'))) << "magic";
-  EXPECT_FALSE(read(forged(8, std::uint32_t{2}))) << "an old version";
-  EXPECT_FALSE(read(forged(8, std::uint32_t{4}))) << "a new version";
+  EXPECT_FALSE(read(forged(8, std::uint32_t{3}))) << "an old version";
+  EXPECT_FALSE(read(forged(8, std::uint32_t{5}))) << "a new version";
   EXPECT_FALSE(read(forged(12, std::uint32_t{kSections - 1}))) << "fewer sections";
   EXPECT_FALSE(read(forged(16, whole.size() - 1))) << "another size";
   EXPECT_FALSE(read(forged(24, std::uint64_t{7}))) << "another key";

@@ -15,7 +15,8 @@ prepare::Prepared with_everything() {
                       {"c.mtl", std::nullopt},
                       {.path = "d.png", .content = std::nullopt, .only_named = true}};
   p.settings.camera = scene::Camera{{0.1, 1e300, -0.0}, {1, 2, 3}, {0, 0, 1}, 0.7, 1e-308};
-  p.settings.cameras = {*p.settings.camera, scene::Camera{.ortho_width = 0.3}};
+  p.settings.cameras = {*p.settings.camera, scene::Camera{.ortho_width = 0.3, .aperture = 0.2, .focus = 7}};
+  p.settings.sky = {.kind = scene::SkyKind::picture, .brightest = 1e4};
   p.settings.framing = {true, true, {dvec3(-0.1), dvec3(1.0 / 3)}};
   p.settings.background = vec3(0.1f, 1e-40f, 3e38f);
   p.settings.settings.width = 640;
@@ -46,6 +47,10 @@ TEST(Facts, ComeBackBitForBit) {
   EXPECT_TRUE(std::signbit(back.settings.camera->from.z));
   ASSERT_EQ(back.settings.cameras.size(), 2u);
   EXPECT_EQ(back.settings.cameras[1].ortho_width, 0.3);
+  EXPECT_EQ(back.settings.cameras[1].aperture, 0.2);
+  EXPECT_EQ(back.settings.cameras[1].focus, 7);
+  EXPECT_EQ(back.settings.sky.kind, scene::SkyKind::picture);
+  EXPECT_EQ(back.settings.sky.brightest, 1e4);
   EXPECT_TRUE(back.settings.framing.lights);
   EXPECT_EQ(back.settings.framing.box.hi.z, 1.0 / 3);
   EXPECT_EQ(back.settings.background.y, 1e-40f);

@@ -97,7 +97,25 @@ TEST_F(MpirunTest, PicturesAreTheSameForAnyNumberOfRanks) {
     EXPECT_EQ(told()["rays"]["total"], rays);
     EXPECT_EQ(told()["mode"]["per_queue"].size(), static_cast<std::size_t>(n) * std::stoul(queues));
     EXPECT_EQ(told()["mode"]["ranks"]["number"], n);
+    EXPECT_EQ(together(n, scene, {"--size", "180x140", "--queues", queues, "--mpi", "on", "--mode", "odprt"}),
+              whole);
+    EXPECT_EQ(told()["rays"]["total"], rays);
+    EXPECT_EQ(told()["mode"]["parts"], n * std::stoi(queues));
   }
+}
+
+TEST_F(MpirunTest, TheSceneDividedWithChannelsAndALedger) {
+  const std::string scene = folder / "balls.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "3", "-o", scene})));
+  const Arguments sampled{"--size", "120x90", "--samples", "adaptive:0.02", "--mode", "odprt"};
+  const std::string whole = alone(scene, sampled), ledger = folder / "ledger";
+  Arguments kept = sampled;
+  kept.insert(kept.end(), {"--checkpoint", ledger, "--resume", "--checkpoint-every", "0.05"});
+  EXPECT_EQ(together(3, scene, kept), whole);
+  EXPECT_EQ(together(2, scene, kept), whole);
+  EXPECT_EQ(told()["ledger"]["rendered"], 0);
+  EXPECT_EQ(together(2, scene, {"--size", "120x90", "--mode", "odprt", "--aov", "depth,normal"}),
+            alone(scene, {"--size", "120x90", "--aov", "depth,normal"}));
 }
 
 TEST_F(MpirunTest, AdaptiveSamplingSequencesAndCaches) {
@@ -157,7 +175,9 @@ TEST_F(MpirunTest, ARankThatFailsEndsTheJobInOneLine) {
   EXPECT_FALSE(fs::exists(picture));
   EXPECT_NE(line_of(3, render(folder / "none.nff", {})).find("none.nff"), std::string::npos);
   EXPECT_NE(line_of(3, render(scene, {"--sise", "9x9"})).find("did you mean"), std::string::npos);
-  EXPECT_NE(line_of(2, render(scene, {"--mode", "odprt"})).find("ranks divide the pixels"),
+  EXPECT_NE(line_of(3, render(scene, {"--mode", "odprt", "--inject-fault", "1/0@1"})).find("kdray: rank 1: "),
+            std::string::npos);
+  EXPECT_NE(line_of(2, render(scene, {"--mode", "odprt", "--device-memory", "200M"})).find("take more ranks"),
             std::string::npos);
   EXPECT_NE(line_of(2, render(scene, {"--trace", folder / "t.json"})).find("--trace"), std::string::npos);
   EXPECT_NE(line_of(2, render(scene, {"--checkpoint", folder / "l", "--restarts", "2"})).find("--restarts"),
@@ -178,7 +198,8 @@ TEST_F(MpirunTest, WhateverRankIsKilledTheNextRunGoesOn) {
     const auto pick = [&](int lo, int hi) { return std::uniform_int_distribution(lo, hi)(random); };
     fs::remove_all(folder / "ledger");
     Arguments kept = size;
-    kept.insert(kept.end(), {"--checkpoint", folder / "ledger", "--resume", "--checkpoint-every", "0.1"});
+    kept.insert(kept.end(), {"--checkpoint", folder / "ledger", "--resume", "--checkpoint-every", "0.1",
+                             "--mode", pick(0, 1) == 0 ? "pdprt" : "odprt"});
     {
       auto environment = mpirun_environment();
       environment["KDRAY_MPI_PLUGIN"] = KDRAY_MPI_PLUGIN;

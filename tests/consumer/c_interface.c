@@ -118,7 +118,7 @@ static void check_looks(void) {
   light.size = sizeof light, camera.size = sizeof camera;
   expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
   expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, NULL, NULL) == KDRAY_OK, "a mesh");
-  light.kind = 3;
+  light.kind = 99;
   expect(kdray_add_light(scene, &light) == KDRAY_USAGE, "a light of no kind");
   light.kind = KDRAY_SPOT_LIGHT, light.outer_degrees = 200;
   expect(kdray_add_light(scene, &light) == KDRAY_INPUT, "an angle beyond all");
@@ -144,6 +144,44 @@ static void check_looks(void) {
          "darkness");
   expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit again");
   expect_colors(scene, from_below, "its lower side in the dark");
+  kdray_scene_free(scene);
+}
+
+/* Red by a picture, before a grey that is the middle of a gradient from below to above. */
+static void check_paint(void) {
+  const unsigned char red[3] = {255, 0, 0};
+  const float white[3] = {1, 1, 1}, stops[6] = {0, 0, 0, 1, 1, 1}, uv[16] = {0.5f, 0.5f};
+  const double heights[2] = {-1, 1}, upwards[2] = {1, -1};
+  const float seen[2][3] = {{0.5f, 0.5f, 0.5f}, {0.5f, 0, 0}};
+  kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
+  kdray_scene* scene = NULL;
+  kdray_pixels pixels = {0};
+  kdray_material material = {0};
+  kdray_geometry_options options = {0};
+  kdray_camera camera = {0};
+  uint32_t picture = 0;
+  pixels.size = sizeof pixels, pixels.data = red, pixels.width = pixels.height = 1, pixels.channels = 3;
+  material.size = sizeof material, options.size = sizeof options, camera.size = sizeof camera;
+  expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
+  expect(kdray_add_picture(scene, &pixels, &picture) == KDRAY_OK && picture == 1, "a picture of one pixel");
+  pixels.channels = 5;
+  expect(kdray_add_picture(scene, &pixels, NULL) != KDRAY_OK, "a picture of five channels");
+  expect(kdray_add_picture_file(scene, "there is none.png", NULL) != KDRAY_OK, "a picture of no file");
+  material.ambient[0] = material.ambient[1] = material.ambient[2] = 0.5f, material.picture = 7;
+  expect(kdray_add_material(scene, &material, &options.material) != KDRAY_OK, "no such picture");
+  material.picture = picture;
+  expect(kdray_add_material(scene, &material, &options.material) == KDRAY_OK, "a material");
+  options.texcoords = floats(uv, 8);
+  expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, &options, NULL) == KDRAY_OK, "a mesh");
+  expect(kdray_set_ambient(scene, white) == KDRAY_OK, "ambient light");
+  expect(kdray_set_gradient(scene, upwards, stops, 2, NULL) != KDRAY_OK, "a gradient from above to below");
+  expect(kdray_set_gradient(scene, heights, stops, 2, NULL) == KDRAY_OK, "a gradient");
+  expect(kdray_set_environment(scene, "there is none.exr", NULL, 0, 1) != KDRAY_OK, "no environment");
+  camera.from[0] = camera.from[1] = camera.at[0] = camera.at[1] = 0.5, camera.from[2] = 4;
+  camera.ortho_width = 2;
+  expect(kdray_set_camera(scene, &camera) == KDRAY_OK, "a camera");
+  expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit");
+  expect_colors(scene, seen, "a red box before grey");
   kdray_scene_free(scene);
 }
 
@@ -205,6 +243,7 @@ int main(void) {
   check_answers(scene, box);
   check_cancel_and_picture(scene);
   check_looks();
+  check_paint();
   check_refit(scene, box);
   expect(kdray_keep_programs() == KDRAY_OK, "programs are kept");
   kdray_scene_free(scene);

@@ -12,6 +12,7 @@
 #include "layout/rays.layout.h"
 #include "layout/shading.layout.h"
 #include "layout/simd_test.layout.h"
+#include "layout/sky.layout.h"
 #include "layout/tree.layout.h"
 #include "layout/verify.layout.h"
 #include "layout/wide.layout.h"
@@ -47,6 +48,12 @@ const std::vector<Probe> kProbes = {KDRAY_KINDS(PRIMITIVE) SIZE(KdNode),
                                     SIZE(TexCoords),
                                     OFFSET(Coat, how),
                                     OFFSET(Texture, how),
+                                    SIZE(Sky),
+                                    OFFSET(Sky, height),
+                                    OFFSET(Light, across),
+                                    OFFSET(Light, down),
+                                    OFFSET(Frame, lens_radius),
+                                    OFFSET(Frame, tells_sample),
                                     SIZE(QueryRay),
                                     SIZE(QueryHit),
                                     SIZE(QueryPoint),
@@ -138,8 +145,8 @@ class LayoutTest : public test::EachDevice {};
 
 TEST_P(LayoutTest, TheDeviceSeesTheSameStructs) {
   std::string source;
-  for (const char* header :
-       {"closest", "frame", "paint", "primitives", "rays", "shading", "simd_test", "tree", "verify", "wide"})
+  for (const char* header : {"closest", "frame", "paint", "primitives", "rays", "shading", "simd_test", "sky",
+                             "tree", "verify", "wide"})
     source += "#include \"layout/" + std::string(header) + ".layout.h\"\n";
   source += "__kernel void probe(__global uint* out) {\n";
   for (std::size_t i = 0; i < kProbes.size(); ++i)

@@ -172,8 +172,9 @@ TEST(Holding, OfScenesThatEveryRankHas) {
 TEST(Holding, OfPlyFilesReadInShares) {
   const ScratchFolder folder;
   int i = 0;
-  for (const PlyParts& parts : {PlyParts{}, PlyParts{.normals = true}, PlyParts{.colors = true},
-                                PlyParts{.normals = true, .colors = true, .big_endian = true}})
+  for (const PlyParts& parts :
+       {PlyParts{}, PlyParts{.normals = true}, PlyParts{.colors = true},
+        PlyParts{.normals = true, .colors = true, .big_endian = true, .quality = true}})
     for (const bool with_degenerate : {false, true}) {
       SCOPED_TRACE(std::to_string(i));
       const auto file = folder.write(std::to_string(i++) + ".ply", ball_ply(24, parts, with_degenerate));

@@ -11,6 +11,7 @@ namespace kdray::test {
 struct PlyParts {
   bool normals = false, colors = false;
   bool big_endian = false;
+  bool quality = false;  // which nothing is made of
 };
 
 class PlyWriter {
@@ -21,6 +22,7 @@ class PlyWriter {
             "\nproperty float x\nproperty float y\nproperty float z\n";
     if (parts.normals) text_ += "property float nx\nproperty float ny\nproperty float nz\n";
     if (parts.colors) text_ += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    if (parts.quality) text_ += "property float quality\n";
     text_ +=
         "element face " + std::to_string(n_faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
   }
@@ -31,6 +33,7 @@ class PlyWriter {
       for (const float value : {x, y, z}) put(value);
     if (parts_.colors)
       for (int k = 0; k < 3; ++k) text_ += static_cast<char>(color >> 8 * k);
+    if (parts_.quality) put(0.5f);
   }
   void face(std::int32_t a, std::int32_t b, std::int32_t c) {
     text_ += '\3';

@@ -118,6 +118,10 @@ TEST_P(Adaptive, IsBetterThanUniformForTheSameSamples) {
   EXPECT_LT(rmse(shot.picture, reference.picture), error_of_four);
 }
 
+INSTANTIATE_TEST_SUITE_P(Light, Adaptive,
+                         testing::Values(NamedScene{"soft_light", soft_light},
+                                         NamedScene{"under_a_sky", under_a_sky}),
+                         [](const auto& info) { return info.param.name; });
 INSTANTIATE_TEST_SUITE_P(Scenes, Adaptive, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return info.param.name; });
 

@@ -181,6 +181,9 @@ TEST_P(ShippedScenes, LookLikeTheOracles) {
   constexpr std::uint32_t kMost = 5000;
   if (scene.primitives() > kMost)
     GTEST_SKIP() << scene.primitives() << " primitives: too many for brute force";
+  const auto& lights = scene.model().lights;
+  if (std::any_of(lights.begin(), lights.end(), [](const auto& l) { return scene::has_area(l.kind); }))
+    GTEST_SKIP() << "lit by samples, which the oracle doesn't take";
   expect_like_oracle(scene.model(), exact_options(kSize, kSize));
 }
 

@@ -139,7 +139,10 @@ TEST_P(Modes, ASequenceOfFramesThatMovesSubtrees) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Modes, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return info.param.name; });
-INSTANTIATE_TEST_SUITE_P(Painted, Modes, testing::Values(NamedScene{"painted", painted}),
+INSTANTIATE_TEST_SUITE_P(Painted, Modes,
+                         testing::Values(NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
+                                         NamedScene{"soft_light", soft_light},
+                                         NamedScene{"under_a_sky", under_a_sky}),
                          [](const auto& info) { return info.param.name; });
 
 scene::Scene nothing() {

@@ -1,11 +1,13 @@
 #include "image/scenes.h"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 
 #include "conformance/all_kinds.h"
 #include "oracle/build_scene.h"
+#include "scene/transform.h"
 #include "support/scene_fields.h"
 
 namespace kdray::test {
@@ -224,9 +226,179 @@ scene::Scene painted() {
   return s;
 }
 
+// The same with mipmaps, and with more pictures: a floor of metal and glass here and there, bent normals on
+// what is flat and what is smooth, a screen that shines, and a mirror whose reflection a picture scales.
+scene::Scene mapped() {
+  scene::Scene s = painted();
+  std::mt19937 random(59);
+  const std::uint32_t picture = s.paint.add(noise(64, 64, random));
+  using scene::Minify, scene::Texture;
+  for (Texture& t : s.paint.textures)
+    t.minify = t.nearest ? Minify::nearest_mipmap_nearest : Minify::linear_mipmap_linear;
+  const auto plain = [&](std::array<float, 3> across, std::array<float, 3> down, Minify minify) {
+    return s.paint.add(
+        Texture{.picture = picture, .across = across, .down = down, .minify = minify, .curved = false});
+  };
+  const std::uint32_t fine = plain({3, 1, 0}, {0, 4, 0}, Minify::linear_mipmap_linear);
+  const std::uint32_t coarse = plain({0.5f, 0, 0.2f}, {0.1f, 0.7f, 0}, Minify::linear_mipmap_nearest);
+  const std::uint32_t sharp = plain({9, 0, 0}, {0, 9, 0}, Minify::nearest_mipmap_linear);
+  const auto of = [&](std::uint32_t material) -> scene::Coat& {
+    return s.paint.coats[s.materials[material].coat];
+  };
+  for (const std::uint32_t half : {0u, 1u}) {
+    of(half).metal_map = fine;
+    of(half).metal = {.base = vec3(0.9f, 0.7f, 0.6f), .transmission = 0.4f, .mirrored = 0.1f};
+    of(half).normal_map = coarse;
+    of(half).normal_scale = 0.3f;
+    of(2 + half).emission_map = sharp;
+    of(2 + half).emissive = {0.2f, 0.4f, 0.1f};
+    of(4 + half).occlusion_map = fine;
+    of(4 + half).occlusion = 0.8f;
+    of(6 + half).highlight_map = coarse;
+  }
+  of(9).normal_map = fine;
+  of(9).normal_scale = 0.5f;
+  return s;
+}
+
+// Over a floor that is a face, so that rays in the open see lights and background as well.
+scene::Scene soft_light() {
+  SceneBuilder b;
+  b.quad({-20, -1, 20}, {40, 0, 0}, {0, 0, -40}, plastic({0.6f, 0.55f, 0.4f}, 8, 0.1f));
+  b.sphere({-1.3, 0, 0.4}, 1, tinted_glass({1, 0.9f, 0.9f}, 1.5f));
+  b.sphere({1.2, -0.2, 0.2}, 0.8, plastic({0.1f, 0.1f, 0.15f}, 60, 0.7f));
+  b.cone({0, -1, 1.4}, 0.4, {0, 0.2, 1.4}, 0.1, plastic({0.8f, 0.2f, 0.1f}, 20));
+  b.ambient(vec3(0.5f)).camera({0, 2.3, 7.1}, {0.05, 0.1, 0}, 0.62);
+  scene::Light window, lamp, disc;
+  window.kind = scene::LightKind::rectangle;
+  window.position = {4, 6, 4}, window.across = {2, 0, -2}, window.down = {0.5, 2, 0.5};
+  window.color = vec3(0.5f);
+  lamp.kind = scene::LightKind::sphere;
+  lamp.position = {-4, 3, 2}, lamp.radius = 0.8;
+  lamp.color = {0.9f, 0.8f, 0.6f}, lamp.attenuation = {0.2, 0.1, 0.05};
+  disc.kind = scene::LightKind::disc;
+  disc.position = {0, 5, -3}, disc.across = {1, 0, 0}, disc.down = {0, 0, 1.5};
+  disc.color = {0.3f, 0.35f, 0.4f}, disc.range = 9;
+  b.light(window).light({6, 4, -2}, vec3(0.2f)).light(lamp).light(disc);
+  return b
+      .change([](scene::Scene& s) {
+        s.sky = {.kind = scene::SkyKind::gradient,
+                 .up = glm::normalize(dvec3(0.1, 1, 0.2)),
+                 .stops = {{-0.5, {0.1f, 0.1f, 0.05f}}, {0, {0.6f, 0.6f, 0.7f}}, {0.8, {0.1f, 0.2f, 0.6f}}}};
+        s.sky.brightest = scene::brightest_of(s.sky);
+      })
+      .scene();
+}
+
+scene::Scene under_a_sky() {
+  scene::Scene s = glass_and_mirror_balls();
+  scene::SkyPicture picture{"noise", 37, 19, {}};
+  std::mt19937 random(5);
+  for (int i = 0; i < 3 * 37 * 19; ++i) picture.rgb.push_back(static_cast<float>(random() % 1000) / 800.0f);
+  picture.brightest = 1.25f;
+  s.sky = {.kind = scene::SkyKind::picture,
+           .up = glm::normalize(dvec3(-0.2, 1, 0.1)),
+           .turn = 0.7,
+           .picture = std::make_shared<const scene::SkyPicture>(std::move(picture))};
+  s.sky.brightest = scene::brightest_of(s.sky);
+  s.camera->aperture = 0.3;
+  s.camera->focus = 6;
+  return s;
+}
+
+std::uint32_t add_mesh(scene::Scene& scene, const scene::Scene& part) {
+  const auto first = static_cast<std::uint32_t>(scene.materials.size());
+  const std::vector<std::uint32_t> coats = scene.paint.append(
+      {.coats = part.paint.coats, .textures = part.paint.textures, .pictures = part.paint.pictures}, 0, 0);
+  for (scene::Material m : part.materials) {
+    if (m.coat != scene::kNone) m.coat = coats[m.coat];
+    scene.materials.push_back(m);
+  }
+  auto mesh = std::make_shared<scene::Scene>();
+  mesh->vertices = part.vertices;
+  mesh->normals = part.normals;
+  mesh->triangles = part.triangles;
+  primitives::for_each_shape([&](auto kind) { decltype(kind)::of(*mesh) = decltype(kind)::of(part); });
+  mesh->paint.colors = part.paint.colors;
+  mesh->paint.texcoords = part.paint.texcoords;
+  for (auto& t : mesh->triangles) t.material += first;
+  primitives::for_each_shape([&](auto kind) {
+    for (auto& shape : decltype(kind)::of(*mesh)) shape.material += first;
+  });
+  scene.meshes.push_back(mesh);
+  return static_cast<std::uint32_t>(scene.meshes.size() - 1);
+}
+
+void add_instance(scene::Scene& scene, std::uint32_t mesh, const dmat4& to_world, std::uint32_t material) {
+  scene::Instance instance = scene::instance_of(to_world, mesh);
+  instance.material = material;
+  scene.instances.push_back(instance);
+}
+
+namespace {
+
+// `picture` is painted() or mapped().
+scene::Scene instanced_with(scene::Scene picture) {
+  using scene::rotation, scene::scaling, scene::translation;
+  scene::Scene s = with_floor().scene();
+  scene::Scene ball;
+  add_smooth_ball(ball, {3, 1, 0}, 1.5, 9, plastic({0.8f, 0.3f, 0.2f}, 20, 0.2f));
+  scene::Scene glass_ball;
+  add_smooth_ball(glass_ball, {0, 0, 0}, 1, 8, tinted_glass({0.6f, 0.9f, 0.7f}, 1.4f));
+  SceneBuilder shapes;
+  shapes.sphere({0, 0, 0}, 0.5, plastic({0.2f, 0.4f, 0.9f}, 15, 0.1f));
+  shapes.cone({0, 0.4, 0}, 0.4, {0.2, 1.4, 0}, 0.1, plastic({0.9f, 0.8f, 0.2f}, 10));
+  shapes.quad({-0.7, -0.5, 0.7}, {1.4, 0, 0}, {0, 0, -1.4}, oracle::mirror({0.7f, 0.7f, 0.8f}));
+  // Without the floor, which are its first triangles.
+  const auto drop_floor = [](auto& items) {
+    if (items.size() > 2) items.erase(items.begin(), items.begin() + 2);
+  };
+  drop_floor(picture.triangles);
+  drop_floor(picture.paint.colors);
+  for (auto& set : picture.paint.texcoords) drop_floor(set);
+  for (auto& t : picture.triangles) t.number -= 2;
+  const std::uint32_t balls = add_mesh(s, ball), glass = add_mesh(s, glass_ball),
+                      mixed = add_mesh(s, shapes.scene()), painted_part = add_mesh(s, picture);
+  const auto own = static_cast<std::uint32_t>(s.materials.size());
+  s.materials.push_back(plastic({0.3f, 0.7f, 0.3f}, 30, 0.3f));
+  const dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  add_instance(s, balls, translation({-3.4, -0.6, 0}) * scaling(dvec3(0.6)));
+  add_instance(s, balls, translation({1.8, 0.4, -3}) * rotation(z, 0.5) * scaling({-0.7, 0.4, 0.9}), own);
+  add_instance(s, glass, translation({-0.3, -0.2, 1.6}) * rotation(x, 0.3) * scaling({0.8, 0.6, 0.7}));
+  add_instance(s, balls, translation({-0.5, -0.3, 1.6}) * scaling(dvec3(0.1)));
+  add_instance(s, mixed, translation({1.7, -0.3, 1.5}) * rotation(y, 1) * scaling(dvec3(1.2)));
+  add_instance(s, mixed, translation({1.7, -0.3, 1.5}) * rotation(y, 1) * scaling(dvec3(1.2)), own);
+  add_instance(s, mixed, translation({-2.5, 0.8, -1}) * rotation(z, 2) * scaling({0.9, -0.9, 0.9}));
+  add_instance(s, painted_part, translation({0.2, 0.9, -2.5}) * rotation(y, 0.2) * scaling(dvec3(0.6)));
+  for (int i = 0; i < 40; ++i)
+    add_instance(s, i % 2 ? mixed : balls,
+                 translation({-3 + 0.15 * i, -0.85, 2.6 + 0.02 * i}) * rotation(y, i) *
+                     scaling(dvec3(0.004 * (1 + i % 5))));
+  return s;
+}
+
+}  // namespace
+
+scene::Scene instanced() {
+  return instanced_with(painted());
+}
+
+scene::Scene instanced_maps() {
+  using scene::rotation, scene::scaling, scene::translation;
+  scene::Scene s = instanced_with(mapped());
+  const auto painted_part = static_cast<std::uint32_t>(s.meshes.size() - 1);
+  add_instance(s, painted_part,
+               translation({-2.4, 0.3, -1}) * rotation({0, 1, 0}, -0.4) * scaling({-0.4, 0.4, 0.4}));
+  return s;
+}
+
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset) {
   const auto place = [&](dvec3& p) { p = p * scale + offset; };
   scale_and_move(model, scale, offset);
+  for (scene::Instance& i : model.instances) {
+    i.linear *= scale;
+    place(i.move);
+  }
   for (scene::Light& l : model.lights) {
     place(l.position);
     l.range *= scale;

@@ -22,7 +22,20 @@ scene::Scene every_kind();              // random ones of each kind: matte, mirr
 scene::Scene every_light();             // point with attenuation, range, directional, spots; emission
 scene::Scene flat_glass();              // a slab, a prism with total reflection, index 1, a box of mirrors
 
-scene::Scene painted();  // pictures, colours at corners, holes, veils
+scene::Scene painted();      // pictures, colours at corners, holes, veils
+scene::Scene mapped();       // mipmaps, and pictures of metal, normals, emission, occlusion and highlights
+scene::Scene soft_light();   // lights of each kind that has an area, before a gradient
+scene::Scene under_a_sky();  // a picture all around, seen through a lens
+
+// Meshes that are seen many times: smooth and flat ones, with holes, and of shapes; turned, mirrored,
+// stretched, large, small, in glass and mirrors, one within another, and one twice in the same place.
+scene::Scene instanced();
+scene::Scene instanced_maps();  // ... of surfaces with mipmaps and pictures of normals, one of them mirrored
+
+// Moves the primitives of `part` into a new mesh of the scene, with their materials; its number.
+std::uint32_t add_mesh(scene::Scene& scene, const scene::Scene& part);
+void add_instance(scene::Scene& scene, std::uint32_t mesh, const dmat4& to_world,
+                  std::uint32_t material = scene::kNone);
 
 // `model` moved by `offset` and scaled by `scale` about the origin, camera and lights with it.
 scene::Scene moved(scene::Scene model, double scale, const dvec3& offset);

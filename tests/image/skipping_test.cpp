@@ -66,7 +66,7 @@ class AllRules : public testing::TestWithParam<NamedScene> {};
 TEST_P(AllRules, ChangeNoBit) {
   const scene::Scene model = GetParam().make();
   // Where a shadow ray may start behind its triangle.
-  const bool smooth = !model.normals.empty() && !model.lights.empty();
+  const bool smooth = (!model.normals.empty() || !model.instances.empty()) && !model.lights.empty();
   const Scene scene{scene::Scene(model)};
   Renderer renderer(scene, {}, device_of());
   const Picture usual = keeping(renderer, 0);
@@ -76,7 +76,12 @@ TEST_P(AllRules, ChangeNoBit) {
 
 INSTANTIATE_TEST_SUITE_P(Skipping, AllRules, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return info.param.name; });
-INSTANTIATE_TEST_SUITE_P(Painted, AllRules, testing::Values(NamedScene{"painted", painted}),
+INSTANTIATE_TEST_SUITE_P(Painted, AllRules,
+                         testing::Values(NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
+                                         NamedScene{"soft_light", soft_light},
+                                         NamedScene{"under_a_sky", under_a_sky},
+                                         NamedScene{"instanced", instanced},
+                                         NamedScene{"instanced_maps", instanced_maps}),
                          [](const auto& info) { return info.param.name; });
 
 // Reflected and refracted rays start beside the flat triangle, whatever its normals are.

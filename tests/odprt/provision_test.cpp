@@ -31,6 +31,7 @@ constexpr layout::Features kFeatures =
 odprt::Request request_of(std::size_t n_queues, std::uint64_t device_memory) {
   odprt::Request request;
   request.queues.resize(n_queues);
+  request.table = odprt::alone(n_queues);
   request.frame = frame_of(512);
   request.features = kFeatures;
   request.device_memory = device_memory;

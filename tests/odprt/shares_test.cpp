@@ -20,7 +20,7 @@ std::vector<layout::u32> numbers(std::size_t n) {
 }
 
 TEST(Shares, OwnFirstThenAnyonesThenTheLongestOther) {
-  Shares shares({{1, 2}, {3, 4, 5}, {6}}, {7, 8});
+  Shares shares({{{1, 2}, {3, 4, 5}, {6}}, {7, 8}});
   EXPECT_EQ(shares.left(), 8u);
   EXPECT_EQ(shares.take(0, 1), (Shares::Entries{1}));
   EXPECT_EQ(shares.take(0, 2), (Shares::Entries{2, 7}));
@@ -34,7 +34,7 @@ TEST(Shares, EveryEntryIsTakenOnce) {
   for (const std::size_t n : {0u, 1u, 2u, 5u, 64u, 1000u})
     for (const std::size_t n_queues : {1u, 3u, 8u}) {
       const std::vector<layout::u32> list = numbers(n);
-      Shares shares = odprt::share_evenly(list, n_queues);
+      Shares shares(odprt::share_evenly(list, n_queues));
       std::vector<Shares::Entries> taken(n_queues);
       {
         std::vector<std::jthread> threads;
@@ -53,7 +53,7 @@ TEST(Shares, EveryEntryIsTakenOnce) {
 
 // Neighbours in the list are far apart in what is taken, wherever one looks.
 TEST(Shares, EntriesGoAllOverTheList) {
-  Shares shares = odprt::share_evenly(numbers(1000), 2);
+  Shares shares(odprt::share_evenly(numbers(1000), 2));
   for (int i = 0; i < 20; ++i) {
     const Shares::Entries some = shares.take(0, 50);
     const auto early = std::count_if(some.begin(), some.end(), [](layout::u32 e) { return e < 500; });
@@ -90,7 +90,7 @@ TEST(Shares, TilesGoToTheOwnerOfWhatTheySeeFirst) {
   for (layout::u32 row = 0; row < 4; ++row)
     for (layout::u32 column = 0; column < 8; ++column) tiles.push_back(KDRAY_TILE(column, row));
   const auto taken_by = [&](std::size_t queue, std::size_t n) {
-    Shares shares = odprt::share_by_part(tiles, 2, frame_from_above(), directory, owner);
+    Shares shares(odprt::share_by_part(tiles, 2, frame_from_above(), directory, owner));
     Shares::Entries taken = shares.take(queue, n);
     std::sort(taken.begin(), taken.end());
     return taken;
@@ -112,12 +112,12 @@ TEST(Shares, FromWithinAndFromOutside) {
   const std::vector<layout::u32> tiles = {KDRAY_TILE(0, 0), KDRAY_TILE(7, 3)};
   const std::vector<layout::PartCell> around = {{{-1, -1, 9}, 1, {1, 1, 11}, 0}};
   const std::vector<std::size_t> owner = {0, 1};
-  EXPECT_EQ(odprt::share_by_part(tiles, 2, frame, around, owner).take(1, 2).size(), 2u);
+  EXPECT_EQ(Shares(odprt::share_by_part(tiles, 2, frame, around, owner)).take(1, 2).size(), 2u);
   frame.forward[2] = 1;
   frame.eye[2] = 12;
-  Shares outside = odprt::share_by_part(tiles, 2, frame, around, owner);
+  Shares outside(odprt::share_by_part(tiles, 2, frame, around, owner));
   EXPECT_EQ(outside.take(0, 2).size(), 2u);
-  EXPECT_EQ(odprt::share_by_part(tiles, 2, frame, {}, owner).take(0, 2).size(), 2u);
+  EXPECT_EQ(Shares(odprt::share_by_part(tiles, 2, frame, {}, owner)).take(0, 2).size(), 2u);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "oracle/whitted.h"
 
+#include "oracle/sky.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,6 +33,14 @@ double spot_factor(const scene::Light& light, const dvec3& to_light) {
 
 dvec3 mirrored(const dvec3& d, const dvec3& n) {
   return d - 2 * glm::dot(d, n) * n;
+}
+
+// What a ray sees that meets nothing, by the definition of the sky.
+dvec3 seen_beyond(const scene::Scene& scene, const dvec3& direction) {
+  if (scene.sky.kind == scene::SkyKind::none) return dvec3(scene.background);
+  if (scene.sky.kind == scene::SkyKind::gradient)
+    return gradient(scene.sky, glm::dot(glm::normalize(direction), scene.sky.up));
+  return sky_picture(scene.sky, glm::normalize(direction));
 }
 
 double largest(const dvec3& v) {
@@ -71,7 +81,7 @@ dvec3 Whitted::trace_eye(const Ray& ray, Path& path, RayCounts& counts) const {
 dvec3 Whitted::trace(const Ray& ray, int depth, Tree& tree) const {
   const Hit hit = world_.closest(ray);
   tree.path.push_back(hit.primitive);
-  if (!hit.found()) return dvec3(scene_.background);
+  if (!hit.found()) return seen_beyond(scene_, ray.direction);
 
   const Shading s = prepare(ray, hit);
   const scene::Material& m = *s.material;

@@ -2,9 +2,7 @@
 // of one process, each ray is counted once, and a rank that fails ends all.
 #include <gtest/gtest.h>
 
-#include <barrier>
 #include <numeric>
-#include <thread>
 
 #include "base/hash.h"
 #include "kdray/error.h"
@@ -12,6 +10,7 @@
 #include "support/device.h"
 #include "support/errors.h"
 #include "support/programs.h"
+#include "support/rank_threads.h"
 #include "transport/in_process.h"
 #include "wavefront/hall_of_mirrors.h"
 
@@ -31,35 +30,18 @@ class RanksTest : public test::EachDevice {
   // `queues_of`: of each rank. What rank 0 has; what the ranks throw is thrown, rank 0's first.
   Result render(const std::vector<int>& queues_of, const Task& wanted,
                 const std::vector<device::Faults*>& faults = {}) const {
-    const auto n = queues_of.size();
-    auto transports = transport::in_process(static_cast<int>(n));
-    std::vector<Result> results(n);
-    std::vector<std::exception_ptr> thrown(n);
-    std::barrier ready(
-        static_cast<std::ptrdiff_t>(n));  // else rank 0 may have done all before others are there
-    std::vector<std::jthread> threads;
-    for (std::size_t rank = 0; rank < n; ++rank)
-      threads.emplace_back([&, rank] {
-        transport::Ranks ranks(std::move(transports[rank]));
-        Task task = wanted;
-        task.ranks = &ranks;
-        task.shared_frame = hash_of(std::string("a frame"));
-        if (rank < faults.size()) task.faults = faults[rank];
-        const device::Context context(GetParam(), queues_of[rank], 0, test::kept_programs());
-        ready.arrive_and_wait();
-        try {
-          results[rank] = hall.render({context}, kOfRanks, task);
-          rank == 0 ? ranks.end(0) : void(ranks.wait_for_end(nullptr));
-        } catch (const Error& error) {
-          thrown[rank] = std::current_exception();
-          rank == 0 ? ranks.end(1) : void(ranks.wait_for_end(&error));
-        } catch (const transport::Ended&) {
-          ranks.leave();
-        }
-      });
-    threads.clear();
-    for (const std::exception_ptr& error : thrown)
-      if (error) std::rethrow_exception(error);
+    std::vector<Result> results(queues_of.size());
+    test::run_ranks(transport::in_process(static_cast<int>(queues_of.size())),
+                    [&](transport::Ranks& ranks, const std::function<void()>& ready) {
+                      const auto rank = static_cast<std::size_t>(ranks.rank());
+                      Task task = wanted;
+                      task.ranks = &ranks;
+                      task.shared_frame = hash_of(std::string("a frame"));
+                      if (rank < faults.size()) task.faults = faults[rank];
+                      const device::Context context(GetParam(), queues_of[rank], 0, test::kept_programs());
+                      ready();
+                      results[rank] = hall.render({context}, kOfRanks, task);
+                    });
     return std::move(results.front());
   }
 

@@ -6,6 +6,7 @@
 #include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
 #include "scene/importers.h"
+#include "scene/instances.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {
@@ -116,11 +117,11 @@ TEST(Gltf, ReadsAllModes) {
   s = read(sample);
   EXPECT_EQ(s.triangles.size(), 1u);
   ASSERT_EQ(s.warnings.size(), 1u);
-  EXPECT_SAYS(s.warnings[0], "left over after the last whole triangle");
+  EXPECT_SAYS(s.warnings[0], "1 primitives have corners after their last whole triangle: they are left out");
   primitive["mode"] = 1;
   s = read(sample);
   EXPECT_EQ(s.triangles.size(), 0u);
-  EXPECT_SAYS(s.warnings.at(1), "points and lines are left out");
+  EXPECT_SAYS(s.warnings.at(0), "1 primitives of points or lines are left out: they have no surface");
   primitive["mode"] = 7;
   EXPECT_SAYS(refused(sample), "/meshes/0/primitives/0/mode: expected a mode from 0 to 6");
 }
@@ -293,13 +294,10 @@ TEST(Gltf, LeavesHiddenNodesOut) {
   EXPECT_SAYS(s.warnings[0], "1 hidden nodes (KHR_node_visibility) are left out");
 }
 
-TEST(Gltf, RefusesPackedMeshes) {
+TEST(Gltf, RefusesWhatItCannotDoWithout) {
   GltfSample sample = square();
-  sample.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_draco_mesh_compression"};
-  EXPECT_SAYS(refused(sample),
-              "needs the extension KHR_draco_mesh_compression, which is not read; export it without");
-  sample.json["extensionsRequired"] = {"EXT_meshopt_compression"};
-  EXPECT_SAYS(refused(sample), "EXT_meshopt_compression");
+  sample.json["extensionsRequired"] = {"KHR_materials_unlit", "EXT_other_shapes"};
+  EXPECT_SAYS(refused(sample), "needs the extension EXT_other_shapes, which is not read; export it without");
   sample.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_lights_punctual", "KHR_mesh_quantization"};
   EXPECT_EQ(read(sample).triangles.size(), 2u);
 }
@@ -314,7 +312,10 @@ TEST(Gltf, BoundsWhatInstancesMake) {
   for (int i = 0; i < 2000; ++i) nodes.push_back({{"mesh", 0}}), roots.push_back(i);
   sample.json["nodes"] = nodes;
   sample.json["scenes"][0]["nodes"] = roots;
+  const Instancing copied(Instances::flat);
   EXPECT_SAYS(refused(sample), "the instances of this file make more than");
+  const Instancing kept(Instances::automatic);
+  EXPECT_EQ(read(sample).instances.size(), 2000u);
 }
 
 TEST(Gltf, ReadsTheFirstPerspectiveCamera) {
@@ -383,16 +384,31 @@ TEST(Gltf, ReadsAndExposesLights) {
   EXPECT_SAYS(refused(sample), "/nodes/1/extensions/KHR_lights_punctual/light: there is no such light");
 }
 
-TEST(Gltf, WarnsOfWhatItLeavesOut) {
+TEST(Gltf, TellsOfWhatItLeavesOut) {
   GltfSample sample = square();
-  sample.json["animations"] = {json::object()};
-  sample.json["nodes"][0]["skin"] = 0;
-  sample.primitive()["targets"] = json::array();
-  const Scene s = read(sample);
-  ASSERT_EQ(s.warnings.size(), 3u);
-  EXPECT_SAYS(s.warnings[0], "a.gltf: animations are left out");
-  EXPECT_SAYS(s.warnings[1], "morph targets");
-  EXPECT_SAYS(s.warnings[2], "skins");
+  sample.json["extensionsUsed"] = {"EXT_other", "KHR_xmp"};
+  sample.json["extensions"]["KHR_xmp"] = json::object();
+  sample.json["nodes"][0]["extensions"]["EXT_other"] = json::object();
+  sample.json["meshes"][0]["extensions"]["EXT_other"] = json::object();
+  sample.json["scenes"].push_back({{"nodes", {0}}});
+  sample.json["animations"] = {{{"samplers", json::array()}, {"channels", json::array()}}};
+  sample.primitive()["attributes"]["TEXCOORD_2"] = 0;
+  sample.primitive()["attributes"]["COLOR_1"] = 0;
+  sample.primitive()["attributes"]["_OWN"] = 0;
+  sample.primitive()["targets"] = {{{"TEXCOORD_0", 0}}};
+  json lines = sample.primitive();
+  lines["mode"] = 1;
+  lines["attributes"].erase("COLOR_1");
+  sample.json["meshes"][0]["primitives"].push_back(lines);
+  const std::vector<std::string> wanted = {
+      "a.gltf: 1 animation is at rest; --time SECONDS shows a moment of one",
+      "a.gltf: 1 further scene is left out",
+      "a.gltf: 1 primitives of points or lines are left out: they have no surface",
+      "a.gltf: COLOR_1 of 1 primitive is left out",
+      "a.gltf: EXT_other of 2 objects is left out",
+      "a.gltf: TEXCOORD_0 of 2 morph targets is left out",
+      "a.gltf: TEXCOORD_2 of 2 primitives is left out"};
+  EXPECT_EQ(read(sample).warnings, wanted);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "scene/importers.h"
 #include "scene/json_keys.h"
+#include "scene/pictures.h"
 #include "scene/scratch.h"
 #include "support/data.h"
 
@@ -49,9 +50,13 @@ json example(const json& root, const json& rule, const std::string& key) {
   if (key == "vertices" || key == "normals") return json::parse("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]");
   if (key == "faces") return json::parse("[[0, 1, 2]]");
   if (key == "file") return "mesh.nff";
+  if (key.ends_with("picture")) return "p.png";
+  if (key == "uv") return json::parse("[[0, 0], [1, 0], [0, 1]]");
+  if (rule.contains("enum")) return rule["enum"][0];
   if (key == "material") return "m";
   if (key == "materials") return json::object({{"m", example_object(root, definition(root, "material"))}});
   if (key == "at" || key == "apex") return {1, 2, 9};
+  if (key == "max") return {4, 5, 9};
   if (key == "matrix") return {1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1};
   if (rule.contains("$ref")) {
     const std::string ref = rule["$ref"];
@@ -65,7 +70,9 @@ json example(const json& root, const json& rule, const std::string& key) {
     json array = json::array();
     const int n = rule.value("minItems", 1);
     for (int i = 0; i < n; ++i)
-      array.push_back(key == "objects" || key == "lights" ? example(root, rule["items"], "") : json(i + 1));
+      array.push_back(key == "objects" || key == "lights" || key == "stops" || key == "instances"
+                          ? example(root, rule["items"], "")
+                          : json(i + 1));
     return array;
   }
   const double low = rule.value("minimum", 1.0);
@@ -86,7 +93,11 @@ void expect_equal(const std::vector<Shape>& a, const std::vector<Shape>& b) {
 
 class Schema : public ::testing::Test {
  protected:
-  Schema() { folder_.write("mesh.nff", "f 1 1 1 1 0 1 0 0\ns 0 0 0 1\n"); }
+  Schema() {
+    folder_.write("mesh.nff", "f 1 1 1 1 0 1 0 0\ns 0 0 0 1\n");
+    folder_.write("p.png", test::four_colors());
+    folder_.write("sky.hdr", "#?RADIANCE\n\n-Y 1 +X 1\nabcd");
+  }
 
   // A scene around one object of the kind `name`.
   json document_with(const std::string& name, json object) const {
@@ -99,8 +110,16 @@ class Schema : public ::testing::Test {
       document["materials"]["m"] = object;
     } else if (name.ends_with("_light")) {
       document["lights"] = json::array({object});
+    } else if (name == "gradient" || name == "sky_picture") {
+      document["background"] = object;
+      if (object.value("file", json()) == "mesh.nff") document["background"]["file"] = "sky.hdr";
+    } else if (name == "stop") {
+      document["background"] = {{"type", "gradient"}, {"stops", json::array({object})}};
     } else if (name == "turn") {
       document["objects"] = json::array({json{{"type", "mesh"}, {"file", "mesh.nff"}, {"rotate", object}}});
+    } else if (name == "instance") {
+      document["objects"] =
+          json::array({json{{"type", "mesh"}, {"file", "mesh.nff"}, {"instances", json::array({object})}}});
     } else {
       document["objects"] = json::array({object});
     }
@@ -158,11 +177,14 @@ TEST_F(Schema, RequiresWhatTheReaderRequires) {
     const std::string name(keys.name);
     const json& rule = definition(root_, name);
     const json required = rule.value("required", json::array());
+    const json dependent = rule.value("dependentRequired", json::object());
     const json full = example_object(root_, rule);
     for (const auto& [key, value] : full.items()) {
       json less = full;
       less.erase(key);
-      const bool needed = std::find(required.begin(), required.end(), key) != required.end();
+      bool needed = std::find(required.begin(), required.end(), key) != required.end();
+      for (const auto& [other, wanted] : dependent.items())
+        needed = needed || std::find(wanted.begin(), wanted.end(), key) != wanted.end();
       if (key == "materials") continue;  // the objects of the example name one
       if (needed) {
         EXPECT_THROW(read(document_with(name, less)), Error) << name << " without " << key;

@@ -162,7 +162,8 @@ TEST(Json, NamesThePathOfWhatIsNoScene) {
   EXPECT_EQ(refused_object(R"({"type": "sphere", "center": [0, 0, 0], "radius": 0})"),
             "s.json: /objects/0/radius: expected a number above 0.0, found 0");
   EXPECT_EQ(refused_object(R"({"type": "cube"})"),
-            "s.json: /objects/0/type: expected one of mesh, triangles, sphere, cone, disc, found \"cube\"");
+            "s.json: /objects/0/type: expected one of mesh, triangles, box, cylinder, plane, sphere, cone, "
+            "disc, found \"cube\"");
   EXPECT_EQ(refused(R"({"materials": {"a/b": {"index": 0}}})"),
             "s.json: /materials/a~1b/index: expected a number above 0.0, found 0");
   EXPECT_EQ(refused(R"({"materials": {"red": {}}, "objects": [

@@ -39,10 +39,15 @@ void expect_near(const vec3& a, const vec3& b) {
 
 TEST(Mtl, KnowsWhatItLeavesOut) {
   const auto m = read(
-      "newmtl a\nmap_d a.png\nmap_bump -bm 0.5 b.png\nnorm n.png\nPr 0\nPm 0\nPm 0.0\nmap_Ke e.png\nmap_Ke "
+      "newmtl a\nmap_d -t 1 1 1 a.png\nmap_bump -bm 0.5 b.png\nnorm n.png\nPr 0\nPm 0\nPm 0.0\nmap_Ns "
+      "e.png\nmap_Ns "
       "e.png\n"
       "newmtl b\nmap_Kd a.png\nKd 1 1 1\nPm 0.5\n");
-  EXPECT_EQ(m[0].left_out, (std::vector<std::string>{"map_d", "map_bump", "norm", "Pr", "map_Ke"}));
+  EXPECT_EQ(m[0].left_out, (std::vector<std::string>{"map_d -t", "Pr", "map_Ns"}));
+  EXPECT_EQ(m[0].map_d->file, "a.png");
+  EXPECT_EQ(m[0].relief->file, "b.png");
+  EXPECT_EQ(m[0].relief->strength, 0.5);
+  EXPECT_EQ(m[0].normals->file, "n.png");
   EXPECT_EQ(m[1].left_out, (std::vector<std::string>{"Pm"}));
 }
 

@@ -148,7 +148,7 @@ TEST(Paint, OfObjWithoutItsPicture) {
   ASSERT_EQ(s.warnings.size(), 2u);
   EXPECT_SAYS(s.warnings[0], "a.obj: no picture 'gone.png'");
   EXPECT_SAYS(s.warnings[0], "(the picture is left out)");
-  EXPECT_SAYS(s.warnings[1], "is neither PNG nor JPEG");
+  EXPECT_SAYS(s.warnings[1], "is neither PNG, JPEG nor WebP");
   EXPECT_TRUE(s.paint.coats.empty());
   EXPECT_TRUE(s.paint.texcoords[0].empty());
   EXPECT_EQ(s.materials[0].diffuse, vec3(0.6f));
@@ -183,7 +183,7 @@ TEST(Paint, OfGltfTexture) {
   EXPECT_EQ(coat.mode, Alpha::opaque);
   EXPECT_EQ(s.materials[0].diffuse, vec3(0));
   const Texture& t = s.paint.textures.at(coat.base);
-  EXPECT_EQ(t, (Texture{.picture = 0}));
+  EXPECT_EQ(t, (Texture{.picture = 0, .minify = Minify::linear_mipmap_linear}));
   EXPECT_EQ(s.paint.pictures[0]->texels,
             (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}));
   ASSERT_EQ(s.paint.texcoords[0].size(), 2u);
@@ -270,8 +270,8 @@ TEST(Paint, SaysWhichPictureIsLeftOut) {
   EXPECT_SAYS(warning([](auto& f) { f.json["images"][0]["uri"] = "gone.png"; }),
               "there is no file 'gone.png'");
   EXPECT_SAYS(warning([](auto& f) { f.json["images"][0]["uri"] = "data:image/png;base64,AAAA"; }),
-              "a.gltf: image 0: is neither PNG nor JPEG");
-  EXPECT_SAYS(warning([](auto& f) { f.json["textures"][0].erase("source"); }), "names no PNG or JPEG");
+              "a.gltf: image 0: is neither PNG, JPEG nor WebP");
+  EXPECT_SAYS(warning([](auto& f) { f.json["textures"][0].erase("source"); }), "names no PNG, JPEG or WebP");
   EXPECT_SAYS(warning([](auto& f) {
                 f.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 2;
               }),

@@ -99,8 +99,8 @@ TEST(Picture, InterlacedIsTheSame) {
 }
 
 TEST(Picture, RefusesWhatIsNone) {
-  EXPECT_SAYS(refused(""), "p: is neither PNG nor JPEG");
-  EXPECT_SAYS(refused("GIF89a"), "is neither PNG nor JPEG");
+  EXPECT_SAYS(refused(""), "p: is neither PNG, JPEG nor WebP");
+  EXPECT_SAYS(refused("GIF89a"), "is neither PNG, JPEG nor WebP");
   EXPECT_SAYS(refused("\x89PNG"), "is not a PNG");
   const std::string good = test::four_colors();
   EXPECT_SAYS(refused(good.substr(0, good.size() - 20)), "damaged PNG");

@@ -110,7 +110,8 @@ TEST(Ply, ReadsAllTypesAndSkipsTheRest) {
   ASSERT_EQ(s.triangles.size(), 1u);
   EXPECT_EQ(s.triangles[0].vertex, (std::array<std::uint32_t, 3>{2, 1, 0}));
   EXPECT_EQ(s.vertices[2], dvec3(2.25, -2, 3));
-  EXPECT_TRUE(s.warnings.empty());
+  ASSERT_FALSE(s.warnings.empty());
+  for (const std::string& what : s.warnings) EXPECT_SAYS(what, "left out");
 }
 
 TEST(Ply, TakesFacesBeforeVertices) {
@@ -254,6 +255,20 @@ TEST(Ply, DoesNotBelieveCounts) {
   // Elements without properties take no bytes, however many there are.
   EXPECT_EQ(
       read(kAscii + "element nothing 18446744073709551615\n" + kVertex + kEnd + kSquare).vertices.size(), 4u);
+}
+
+TEST(Ply, TellsOfWhatItLeavesOut) {
+  const Scene s = read_ply(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float confidence\nproperty uchar quality\nelement edge 2\nproperty int from\nelement face 1\n"
+      "property list uchar int vertex_indices\nproperty int flags\nend_header\n"
+      "0 0 0 1 1\n1 0 0 1 1\n0 1 0 1 1\n0\n1\n3 0 1 2 7\n",
+      "a.ply");
+  EXPECT_EQ(s.triangles.size(), 1u);
+  EXPECT_EQ(s.warnings,
+            (std::vector<std::string>{"a.ply: 2 properties of 'vertex' are left out: confidence, quality",
+                                      "a.ply: 2 rows of element 'edge' are left out",
+                                      "a.ply: 1 property of 'face' is left out: flags"}));
 }
 
 }  // namespace

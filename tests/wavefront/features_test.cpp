@@ -39,12 +39,14 @@ constexpr layout::Features kT = KDRAY_FEATURE_KIND(TRIANGLE), kSmooth = KDRAY_FE
                            kSpot = KDRAY_FEATURE_SPOT, kBackground = KDRAY_FEATURE_BACKGROUND,
                            kSamples = KDRAY_FEATURE_SUPERSAMPLE, kStitches = KDRAY_FEATURE_STITCHES,
                            kCoats = KDRAY_FEATURE_COATS, kColors = KDRAY_FEATURE_CORNER_COLORS,
-                           kTextures = KDRAY_FEATURE_TEXTURES, kCutouts = KDRAY_FEATURE_CUTOUTS;
+                           kTextures = KDRAY_FEATURE_TEXTURES, kCutouts = KDRAY_FEATURE_CUTOUTS,
+                           kSky = KDRAY_FEATURE_SKY, kArea = KDRAY_FEATURE_AREA_LIGHTS,
+                           kLens = KDRAY_FEATURE_LENS;
 constexpr layout::Features kKinds = (KDRAY_FEATURE_OF_KIND(primitives::kKinds) - 1) & KDRAY_FEATURE_ALL_KINDS;
 constexpr layout::Features kLit = kDiffuse | kLights,
                            kAll = kKinds | kStitches | kSmooth | kNumbers | kReflect | kTransmit | kSpecular |
                                   kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples | kCoats |
-                                  kColors | kTextures | kCutouts;
+                                  kColors | kTextures | kCutouts | kSky | kArea | kLens;
 
 constexpr std::uint64_t kSeed = 3;
 
@@ -79,6 +81,12 @@ std::vector<scene::Light> lights_of(layout::Features mask) {
                       .color = vec3(0.6f),
                       .cos_inner = 0.95f,
                       .cos_outer = 0.8f});
+  if (has(mask, kArea))
+    lights.push_back({.kind = scene::LightKind::rectangle,
+                      .position = {2, 4, 2},
+                      .color = vec3(0.4f),
+                      .across = {1, 0, 0},
+                      .down = {0, 0.3, 1}});
   return lights;
 }
 
@@ -133,7 +141,12 @@ scene::Scene scene_of(layout::Features mask) {
     }
   });
   if (has(mask, kBackground)) s.background = {0.1f, 0.2f, 0.3f};
+  if (has(mask, kSky)) {
+    s.sky = {.kind = scene::SkyKind::gradient, .stops = {{-1, {0.1f, 0.2f, 0.3f}}, {1, {0.2f, 0.3f, 0.4f}}}};
+    s.sky.brightest = scene::brightest_of(s.sky);
+  }
   s.camera = scene::Camera{.from = {0.5, 0.8, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 0.7};
+  if (has(mask, kLens)) s.camera->aperture = 0.1;
   return s;
 }
 
@@ -259,14 +272,21 @@ const std::vector<layout::Features> kLightsMasks = {kT | kLit | kFallOff,
                                                     kT | kLit | kFallOff | kDirectional,
                                                     kT | kLit | kFallOff | kSpot,
                                                     kT | kLit | kDirectional | kSpot,
-                                                    kT | kLit | kSpecular | kSpot};
+                                                    kT | kLit | kSpecular | kSpot,
+                                                    kT | kLit | kArea,
+                                                    kT | kLit | kArea | kFallOff | kSamples,
+                                                    kT | kReflect | kTransmit | kLit | kArea};
 const std::vector<layout::Features> kFilmMasks = {kBackground,
                                                   kT | kBackground,
                                                   kT | kLit | kSamples,
                                                   kT | kLit | kSamples | kBackground,
                                                   kT | kReflect | kBackground,
                                                   kT | kTransmit | kBackground,
-                                                  kT | kReflect | kLit | kSamples};
+                                                  kT | kReflect | kLit | kSamples,
+                                                  kBackground | kSky,
+                                                  kT | kReflect | kBackground | kSky,
+                                                  kT | kLit | kLens,
+                                                  kT | kLit | kLens | kSamples};
 
 class FeaturesTest : public test::EachDevice {
  protected:

@@ -77,8 +77,8 @@ TEST_P(SliceBuffersTest, HaveRoomForWhatTheKernelsWrite) {
   frame.shadow_capacity = 2 * frame.batch_capacity;
   EXPECT_EQ(frame.batch_capacity, 80u);  // 50 rays to whole vectors, and a vector behind the last ray
   const SliceRoom room{3, 10, 0, 100};
-  SliceBuffers alone(context, frame, room, StreamForm::of_device(frame, sizeof(double)));
-  SliceBuffers odprt(context, frame, {3, 10, 64, 100}, StreamForm::of_odprt(frame));
+  SliceBuffers alone(context, frame, room, StreamForm::of_device(frame, sizeof(double), 0));
+  SliceBuffers odprt(context, frame, {3, 10, 64, 100}, StreamForm::of_odprt(frame, 0));
   if (alone.film_made.valid()) alone.film_made.get();
   if (odprt.film_made.valid()) odprt.film_made.get();
   EXPECT_EQ(size_of(alone.batch), 3 * 13 * 80 * sizeof(double));
@@ -97,7 +97,7 @@ TEST_P(SliceBuffersTest, HaveRoomForWhatTheKernelsWrite) {
     EXPECT_EQ(b->bytes, sum);
   }
   const std::size_t beside = sizeof(layout::Frame) + size_of(alone.tiles) + size_of(alone.film);
-  EXPECT_EQ(3 * StreamForm::of_device(frame, sizeof(double)).bytes(frame), alone.bytes - beside);
+  EXPECT_EQ(3 * StreamForm::of_device(frame, sizeof(double), 0).bytes(frame), alone.bytes - beside);
 }
 
 KDRAY_FOR_EACH_DEVICE(SliceBuffersTest);

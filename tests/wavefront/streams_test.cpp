@@ -2,6 +2,7 @@
 // and in the batch's order; spawned rays in the pool of their depth, sixteen hits' refracted rays before
 // their reflected ones; and nothing written beyond a stream's capacity. For batches around multiples of
 // sixteen.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,10 +124,16 @@ class Batch {
                      sums = upload(film.data(), film.size() * sizeof(layout::i64));
     using K = kernels::Shade;
     device::Kernel<K> kernel(
-        context_.build(K::kFile, "-cl-std=CL1.2 " + device::build_option(context_.simd())));
+        // Everything but what would give rays another word, and read more arrays.
+        context_.build(K::kFile, "-cl-std=CL1.2 " + device::build_option(context_.simd()) +
+                                     fmt::format(" -DKDRAY_FEATURES={}ul",
+                                                 ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_SKY |
+                                                   KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_CUTOUTS |
+                                                   KDRAY_FEATURE_INSTANCES | KDRAY_FEATURE_FOOTPRINTS))));
 #define KDRAY_SET_NONE(access, type, name) kernel.set(K::name, none);
     KDRAY_SURFACE_ARRAYS(KDRAY_SET_NONE)
     KDRAY_PAINT_ARRAYS(KDRAY_SET_NONE)
+    KDRAY_SKY_ARRAYS(KDRAY_SET_NONE)
 #undef KDRAY_SET_NONE
     kernel.set(K::triangles, floors).set(K::materials, glasses).set(K::lights, lamps).set(K::frame, frame);
     kernel.set(K::n_slices, cl_uint{1}).set(K::first_light, cl_uint{0}).set(K::slices, slice);

@@ -37,6 +37,7 @@ struct View {
   std::optional<double> fov = {};  // of the picture's full height, in degrees
   // An orthographic camera: the picture's width in the scene's units; 0: as wide as the scene needs.
   std::optional<double> ortho_width = {};
+  std::optional<double> aperture = {}, focus = {};  // of a thin lens: its diameter, and what it shows sharp
   std::optional<std::array<float, 3>> background = {};  // linear RGB
   double headlight = 0;  // above 0: one more light, of this strength, at the camera
 };

@@ -94,9 +94,14 @@ class Scene {
   // Materials are numbered from 0; without any, geometries are matt and light grey. (A file's own materials
   // are not among them.)
   MaterialId add_material(const Material& material);
+  // Pictures for materials, numbered from 0: PNG or JPEG files, or pixels, which are copied.
+  PictureId add_picture(const std::filesystem::path& file);
+  PictureId add_picture(const Pixels& pixels);
   void add_light(const Light& light);
   void set_camera(const Camera& camera);
   void set_background(const Color& color);
+  void set_background(const Gradient& gradient);
+  void set_background(const Environment& environment);  // reads the file: ErrorCode::input
   void set_ambient(const Color& color);
 
   std::uint32_t primitives() const;

@@ -5,9 +5,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "kdray/arrays.h"
 
@@ -22,14 +25,31 @@ inline constexpr GeometryId kNoGeometry = 0xffffffffu;
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
 using MaterialId = std::uint32_t;
+using PictureId = std::uint32_t;
+inline constexpr PictureId kNoPicture = 0xffffffffu;
 
 // Triangles, three indices into `vertices` each. `normals`: one for each vertex, of any length but 0, or
-// none.
+// none. `texcoords`: where in its material's pictures each vertex lies, or none: (0, 0) is a picture's upper
+// left corner, (1, 1) its lower right one, and beyond them it is repeated.
 struct Mesh {
   Points vertices;
   Triples triangles;
   Points normals = {};
+  Pairs texcoords = {};
 };
+
+// A picture in memory, row by row from the top: grey, grey with alpha, red green blue, or these with alpha;
+// codes of sRGB, as files have them.
+struct Pixels {
+  const std::uint8_t* data = nullptr;
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t channels = 3;  // 1 to 4
+  std::size_t row_bytes = 0;   // from one row to the next; 0: none between them
+};
+
+// What a picture's alpha means: nothing; below a half nothing is there; or the share of light that isn't let
+// through.
+enum class AlphaMode { opaque, mask, blend };
 
 struct Spheres {
   Points centers;
@@ -61,17 +81,25 @@ struct Material {
   Color reflect{0, 0, 0}, transmit{0, 0, 0};
   float shine = 1;  // exponent of the highlight, at least 0
   float index = 1;  // of refraction, above 0
+  // Pictures on meshes with texture coordinates. The first is multiplied by the ambient and diffuse terms and
+  // by what goes through, the last by the emission, or by white where that is black.
+  PictureId picture = kNoPicture, normal_picture = kNoPicture, emission_picture = kNoPicture;
+  AlphaMode alpha = AlphaMode::opaque;  // of `picture`
 };
 
 struct Light {
-  enum class Kind { point, directional, spot };
+  // The last three have an area, and throw soft shadows: each sample of a pixel sees another place of it.
+  enum class Kind { point, directional, spot, rectangle, sphere, disc };
   Kind kind = Kind::point;
-  Vec3 position{0, 0, 0};    // point, spot
+  Vec3 position{0, 0, 0};    // all but directional; the middle of those with an area
   Vec3 direction{0, 0, -1};  // directional, spot: the way the light travels, of any length but 0
   Color color{1, 1, 1};
   Vec3 attenuation{1, 0, 0};  // 1 / (a[0] + a[1]*d + a[2]*d^2)
   double range = std::numeric_limits<double>::infinity();
   double inner_degrees = 0, outer_degrees = 45;  // spot: half angles, full light inside of the inner one
+  Vec3 across{0, 0, 0}, down{0, 0, 0};           // rectangle: its edges
+  Vec3 normal{0, -1, 0};                         // disc: of any length but 0
+  double radius = 0;                             // sphere, disc
 };
 
 struct Camera {
@@ -79,6 +107,28 @@ struct Camera {
   double fov = 45;         // of the picture's full height
   double ortho_width = 0;  // above 0: orthographic; the picture's width
   double hither = 0;       // nothing is seen nearer than this
+  double aperture = 0;     // above 0: the diameter of a thin lens; what is not in its focus is blurred
+  double focus = 0;        // how far off what is in focus is, along the view; 0: as far as `at`
+};
+
+// What is seen where nothing is: colours by height, which is the sine of the angle above the horizon, from -1
+// to 1. Heights ascend; below the first and above the last their colours go on.
+struct GradientStop {
+  double height = 0;
+  Color color{0, 0, 0};
+};
+struct Gradient {
+  std::vector<GradientStop> stops;
+  Vec3 up{0, 1, 0};  // of any length but 0
+};
+
+// A picture all around (equirectangular), from an EXR, Radiance HDR, PNG or JPEG file. Its top lies at `up`,
+// its middle at -z; turned about `up`, right-handed.
+struct Environment {
+  std::filesystem::path file;
+  Vec3 up{0, 1, 0};
+  double turn_degrees = 0;
+  double strength = 1;  // what it shows is multiplied by this
 };
 
 }  // namespace kdray

@@ -18,11 +18,27 @@ namespace kdray {
 // How much time goes into the tree (docs/design/kdtree.md). A choice changes times and memory, never a hit.
 enum class BuildQuality { fast, balanced, best };
 
+// What becomes of meshes that a file shows many times. A choice changes time and memory, and at edges the
+//         picture (docs/design/instances.md).
+enum class Instances {
+  automatic,  // they are held once where copies would be over a million primitives
+  flat,       // all are copied
+  kept        // all that the file names as such are held once
+};
+
 // How a scene file is read.
 struct LoadOptions {
   // Triangles without normals get them from the faces around each corner, where the surface turns by no more
   // than this: 0 to 180 degrees. Empty: they stay flat.
   std::optional<double> smooth_degrees = {};
+  // Of a glTF file: the second of its animation that is seen. Empty: nodes are as the file has them, at rest.
+  std::optional<double> time = {};
+  // Of several animations the number or the name of one, or "all" of them; empty: the first.
+  std::string animation = {};
+  // The most that the texels of pictures may take; larger pictures are made smaller until they fit; 0: no
+  // limit.
+  std::uint64_t texture_bytes = 0;
+  Instances instances = Instances::automatic;
   bool operator==(const LoadOptions&) const = default;
 };
 
