@@ -45,4 +45,8 @@ std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work) {
   return *peak - *before;
 }
 
+std::optional<std::uint64_t> peak_bytes() {
+  return resident("VmHWM:");
+}
+
 }  // namespace kdray

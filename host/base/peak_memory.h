@@ -13,4 +13,7 @@ namespace kdray {
 // anew: getrusage and VmHWM no longer know of earlier ones.
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
 
+// Since the process began, or was last asked about some work.
+std::optional<std::uint64_t> peak_bytes();
+
 }  // namespace kdray

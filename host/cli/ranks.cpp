@@ -99,6 +99,12 @@ const std::shared_ptr<transport::Ranks>& ranks_of_this_run() {
   return this_run();
 }
 
+// One for the whole run, since it numbers the steps.
+std::shared_ptr<transport::Together> together_of_this_run() {
+  static const auto together = std::make_shared<transport::Together>(*this_run());
+  return together;
+}
+
 bool leads() {
   return !this_run() || this_run()->leads();
 }

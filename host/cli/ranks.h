@@ -13,6 +13,7 @@
 
 #include "cli/render_frame.h"
 #include "transport/ranks.h"
+#include "transport/together.h"
 
 namespace kdray::cli {
 
@@ -21,6 +22,8 @@ int run_in_ranks(const std::vector<std::string>& arguments, const std::function<
 
 // Of this run; null: this process works alone.
 const std::shared_ptr<transport::Ranks>& ranks_of_this_run();
+// The steps that its ranks take together; there have to be some.
+std::shared_ptr<transport::Together> together_of_this_run();
 bool leads();  // alone, or rank 0
 
 // --mpi

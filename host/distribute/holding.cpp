@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/timer.h"
-#include "distribute/scene_hash.h"
 #include "distribute/share.h"
 #include "distribute/travel.h"
+#include "flatten/scene_hash.h"
 #include "kdtree/build.h"
 #include "prepare/within.h"
 #include "primitives/pack.h"
@@ -161,18 +161,25 @@ Holding hold_share(Share share, const TreeOptions& tree, transport::Together& al
   Goods own = bring(std::move(share.goods), ranks, rows_of(share.whole), all);
   holding.prepared = Builder(std::move(share.whole), tree, all).build(std::move(own));
   holding.core = core_of_all(holding.prepared.flat, all);
-  holding.scene = scene_hash(holding.prepared.flat, all);
+  holding.primitives = all.join_values(flatten::hash_of_primitives(holding.prepared.flat),
+                                       [](Hash& sum, const Hash& one) { flatten::add(sum, one); });
   return holding;
 }
 
 }  // namespace
 
-Holding hold(const std::filesystem::path& file, const LoadOptions& load, const TreeOptions& tree,
-             transport::Together& all) {
+std::optional<Holding> hold(const std::filesystem::path& file, const LoadOptions& load,
+                            const TreeOptions& tree, transport::Together& all,
+                            const std::function<void(const scene::Scene&)>& check) {
   const Timer timer;
   std::optional<Share> share = read_in_shares(file, load, all);
-  if (!share) share = share_of(scene::load(file, load), all);
+  if (!share) {
+    const scene::Scene whole = scene::load(file, load);
+    if (all.any(!whole.instances.empty())) return std::nullopt;
+    share = share_of(whole, all);
+  }
   share->whole.seconds.load = timer.seconds();
+  if (check) check(share->whole.settings);
   return hold_share(std::move(*share), tree, all);
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -27,19 +28,19 @@ struct Holding {
   // are the whole scene's. So are tree_nodes (the sum), tree_depth and wide.stack_size (the most) and the
   // size of blocks. `tree` is of the rank's own tree.
   prepare::Prepared prepared;
-  flatten::Core core;  // the whole scene's
-  // The whole scene's, whichever ranks hold it, without what is made up for a view: for ranks and ledgers to
-  // tell scenes apart.
-  Hash scene;
+  flatten::Core core;                  // the whole scene's
+  Hash primitives;                     // of the whole scene, whichever ranks hold it (flatten/scene_hash.h)
   std::vector<Cell> cells;             // of the whole scene
   std::vector<std::uint32_t> rank_of;  // of each cell
 };
 
-// Every rank calls it, with the same options; there is no binary tree, whatever they say.
-Holding hold(const std::filesystem::path& file, const LoadOptions& load, const TreeOptions& tree,
-             transport::Together& all);
+// Every rank calls it, with the same options; there is no binary tree, whatever they say. `check` sees the
+// settings before any tree is built. Nothing, on all ranks: the scene has instances, which are not divided.
+std::optional<Holding> hold(const std::filesystem::path& file, const LoadOptions& load,
+                            const TreeOptions& tree, transport::Together& all,
+                            const std::function<void(const scene::Scene&)>& check = {});
 
-// The same of a scene that every rank has.
+// The same of a scene without instances that every rank has.
 Holding hold(const scene::Scene& scene, const TreeOptions& tree, transport::Together& all);
 
 }  // namespace kdray::distribute

@@ -25,7 +25,7 @@ struct Share {
 std::optional<Share> read_in_shares(const std::filesystem::path& file, const LoadOptions& options,
                                     transport::Together& all);
 
-// The same of a scene that every rank has.
-Share share_of(const scene::Scene& scene, const transport::Together& all);
+// The same of a scene that every rank has. Throws ErrorCode::input where they have different ones.
+Share share_of(const scene::Scene& scene, transport::Together& all);
 
 }  // namespace kdray::distribute

@@ -4,10 +4,30 @@
 #include "base/error.h"
 #include "distribute/share.h"
 #include "flatten/features.h"
+#include "flatten/scene_hash.h"
 
 namespace kdray::distribute {
 
-Share share_of(const scene::Scene& scene, const transport::Together& all) {
+namespace {
+
+// Of other scenes a rank's share would be of something else.
+void check_same(const scene::Scene& scene, const flatten::FlatScene& flat, transport::Together& all) {
+  struct Seen {
+    Hash hash;
+    std::uint64_t same = 1;
+  };
+  const Seen all_have = all.join_values(Seen{flatten::scene_hash(flatten::hash_of_primitives(flat), flat)},
+                                        [](Seen& sum, const Seen& one) {
+                                          if (!(one.hash == sum.hash)) sum.same = 0;
+                                        });
+  if (all_have.same == 0)
+    throw Error(ErrorCode::input,
+                scene.name + ": is another scene for another rank; all of them need the same");
+}
+
+}  // namespace
+
+Share share_of(const scene::Scene& scene, transport::Together& all) {
   if (!scene.instances.empty())
     throw Error(ErrorCode::usage,
                 "a scene with instances can't be divided among ranks yet; take --mode pdprt for it");
@@ -17,6 +37,7 @@ Share share_of(const scene::Scene& scene, const transport::Together& all) {
   share.whole.features = flatten::features_of(scene, geometry);
   share.whole.geometry.bounds = geometry.bounds;
   flatten::FlatScene flat = flatten::flatten(scene, geometry, kdtree::Tree(), false);
+  check_same(scene, flat, all);
   add_slice(share.goods, scene, geometry, flat, all.rank(), all.size());
   share.goods.bare_stitches.clear();  // they have their neighbours' normals, which are here
   flat.triangles = {}, flat.normals = {}, flat.corner_colors = {}, flat.texcoords = {};

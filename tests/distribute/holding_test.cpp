@@ -13,6 +13,7 @@
 #include "distribute/ply_files.h"
 #include "distribute/share.h"
 #include "distribute/together.h"
+#include "flatten/scene_hash.h"
 #include "image/scenes.h"
 #include "primitives/shapes.h"
 #include "scene/load.h"
@@ -128,7 +129,7 @@ void expect_the_scene(const prepare::Prepared& one, const Hold& hold) {
   Words whole;
   add_words(whole, one.flat);
   std::string cells;
-  std::optional<Hash> scene;
+  const Hash primitives = flatten::hash_of_primitives(one.flat);
   for (const int n : kRanks) {
     SCOPED_TRACE(std::to_string(n) + " ranks");
     std::vector<Holding> holdings(static_cast<std::size_t>(n));
@@ -145,8 +146,9 @@ void expect_the_scene(const prepare::Prepared& one, const Hold& hold) {
       EXPECT_EQ(h.prepared.wide.block, holdings[0].prepared.wide.block);
       if (cells.empty()) cells = bytes_of_cells(h);
       EXPECT_EQ(bytes_of_cells(h), cells) << "other cells";
-      if (!scene) scene = h.scene;
-      EXPECT_EQ(h.scene, *scene);
+      EXPECT_EQ(h.primitives, primitives);
+      EXPECT_EQ(flatten::scene_hash(h.primitives, h.prepared.flat),
+                flatten::scene_hash(primitives, one.flat));
     }
     EXPECT_EQ(words.size(), whole.size());
     EXPECT_TRUE(words == whole) << "a primitive has other words";
@@ -157,7 +159,7 @@ prepare::Prepared in_one(const std::filesystem::path& file) {
   return prepare::prepare(scene::load(file), TreeOptions());
 }
 Hold from(const std::filesystem::path& file) {
-  return [file](transport::Together& all) { return distribute::hold(file, {}, {}, all); };
+  return [file](transport::Together& all) { return distribute::hold(file, {}, {}, all).value(); };
 }
 
 TEST(Holding, OfScenesThatEveryRankHas) {
@@ -208,7 +210,7 @@ TEST(Holding, SharesAreAboutEqual) {
   std::vector<std::size_t> held(8);
   run_ranks(8, [&](transport::Together& all) {
     held[static_cast<std::size_t>(all.rank())] =
-        distribute::hold(file, {}, {}, all).prepared.flat.triangles.size();
+        distribute::hold(file, {}, {}, all)->prepared.flat.triangles.size();
   });
   for (const std::size_t n : held) EXPECT_NEAR(static_cast<double>(n), 40000.0 / 8, 40000.0 / 8 * 0.1);
 }

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
     transport::Ranks ranks(transport::open_mpi(transport::launched().ranks));
     std::printf("rank %d: %ld MiB before\n", ranks.rank(), peak_mib());
     transport::Together all(ranks);
-    const distribute::Holding holding = distribute::hold(argv[1], {}, {}, all);
+    const distribute::Holding holding = distribute::hold(argv[1], {}, {}, all).value();
     tell(all.rank(), holding.prepared);
     // The end may overtake what rank 0 has sent before.
     constexpr transport::Tags kDone = transport::kTagsOfFrames;
