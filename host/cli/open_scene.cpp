@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <future>
 
+#include "base/peak_memory.h"
 #include "base/timer.h"
 #include "cli/hold_scene.h"
 #include "cli/message.h"
@@ -57,6 +58,7 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
       for (const std::string& warning : settings.warnings) say(warning);
     wait_for(device_opened);
   };
+  if (ranks.in_shares) wait_for(device_opened);
   if (ranks.in_shares && hold(input, tree, tell)) return;
   if (has_cache(input, choice)) {
     if (ranks.before_lookup) ranks.before_lookup();
@@ -65,20 +67,16 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
   read(input, tree, tell);
 }
 
-// False: the scene isn't one that is divided.
+// False: the scene isn't one that is divided. The device is open: what it takes of memory to compile for the
+// self-test, and what reading and building take, are not to come together.
 bool OpenedScene::hold(const SceneInput& input, const TreeOptions& tree, const Tell& tell) {
   std::size_t told = 0;
-  std::optional<SceneHeld> share = [&] {
-    try {
-      return hold_scene(input, tree, quiet_, [&](const scene::Scene& settings) {
-        told = settings.warnings.size();
-        tell(settings);
-      });
-    } catch (...) {
-      notice_.mute();
-      throw;
-    }
-  }();
+  give_back_free_memory();
+  std::optional<SceneHeld> share = hold_scene(input, tree, quiet_, [&](const scene::Scene& settings) {
+    told = settings.warnings.size();
+    tell(settings);
+  });
+  give_back_free_memory();
   if (!share) return false;
   seconds_.load = share->prepared.seconds.load;
   scene_.emplace(std::move(share->prepared));
@@ -129,8 +127,9 @@ void OpenedScene::keep() {
   seconds_.keep_programs = timer.seconds();
 }
 
-// The self-test comes last.
+// The self-test comes last. Once is enough.
 void OpenedScene::wait_for(std::future<OpenSeconds>& device) {
+  if (!device.valid()) return;
   const Timer timer;
   const OpenSeconds opened = device.get();
   const double waited = timer.seconds();
