@@ -178,9 +178,11 @@ std::optional<Holding> hold(const std::filesystem::path& file, const LoadOptions
     if (all.any(!whole.instances.empty())) return std::nullopt;
     share = share_of(whole, all);
   }
-  share->whole.seconds.load = timer.seconds();
   if (check) check(share->whole.settings);
-  return hold_share(std::move(*share), tree, all);
+  Holding holding = hold_share(std::move(*share), tree, all);
+  // Waiting for others, too.
+  holding.prepared.seconds.load = timer.seconds() - holding.prepared.seconds.build;
+  return holding;
 }
 
 Holding hold(const scene::Scene& scene, const TreeOptions& tree, transport::Together& all) {

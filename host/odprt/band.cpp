@@ -109,7 +109,7 @@ void BandRun::take_turns(std::size_t queue) {
   const auto first = std::find(crew_.owner.begin(), crew_.owner.end(), request_.table.own_first() + queue);
   state.part = static_cast<std::uint32_t>(first - crew_.owner.begin());
   crew_.workers[queue]->serve(crew_.stores[queue]->get(state.part), request_.census_every);
-  Mail pending(crew_.plan.n_slices);
+  Mail pending(crew_.plan.n_slices, crew_.plan.outbox.ray_fields);
   while (const std::optional<Turn> turn = exchange_.next_turn(queue, state))
     take_turn(queue, *turn, state, pending);
 }
