@@ -18,10 +18,11 @@ void say_whole(const std::string& why, bool quiet) {
 }  // namespace
 
 bool holds_shares(const RenderArgs& o) {
-  if (!ranks_of_this_run() || o.render.mode != Mode::odprt || o.tree.binary_form) return false;
-  if (!o.render.channels.empty()) say_whole("--aov needs it", o.quiet);
+  if (!ranks_of_this_run() || o.render.mode != Mode::odprt) return false;
+  const bool channels = !o.render.channels.empty();
+  if (channels) say_whole("--aov needs it", o.quiet);
   if (o.view.transparent) say_whole("--background transparent needs it", o.quiet);
-  return o.render.channels.empty() && !o.view.transparent;
+  return !channels && !o.view.transparent && !o.tree.binary_form;  // what needs that, ODPRT refuses
 }
 
 std::optional<SceneHeld> hold_scene(const SceneInput& input, const TreeOptions& tree, bool quiet,
