@@ -10,7 +10,7 @@ namespace kdray::distribute {
 
 namespace {
 
-// Of other scenes a rank's share would be of something else.
+// A rank with another scene would give away a share of that.
 void check_same(const scene::Scene& scene, const flatten::FlatScene& flat, transport::Together& all) {
   struct Seen {
     Hash hash;

@@ -14,7 +14,7 @@ inline void add(Hash& sum, const Hash& one) {
   sum.low += one.low;
 }
 
-// Of a scene in parts it is the sum of the parts'.
+// A scene in parts has the sum of the parts'.
 Hash hash_of_primitives(const FlatScene& flat);
 
 // `primitives` of the whole scene, of which `flat` may be a part.

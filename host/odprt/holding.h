@@ -19,7 +19,7 @@ namespace kdray::odprt {
 Division divide_holding(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
                         std::span<const double> costs, const RankTable& table, transport::Together& all);
 
-// Of so many subtrees of all ranks those that this one is to cut its holding into.
+// How many subtrees this rank is to cut its holding into, of those of all ranks.
 std::size_t subtrees_of_rank(std::size_t n_subtrees, const RankTable& table);
 
 }  // namespace kdray::odprt
