@@ -224,6 +224,32 @@ TEST_P(Holdings, RanksWithOtherScenesAreRefused) {
   EXPECT_TRUE(fails([&] { together(of_each, {3, 1, {options()}}); }, "another scene", ErrorCode::input));
 }
 
+// As rays have it that come from another part: t_max is the t of what lies there, whose number is no place.
+TEST_P(Holdings, RaysThatEndAtAHit) {
+  scene::Scene scene;
+  scene.vertices = {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, {-9, -9, -1}, {9, -9, -1}, {0, 9, -1}};
+  for (const std::uint32_t i : {0u, 1u}) {
+    scene::Triangle t;
+    t.vertex = {3 * i, 3 * i + 1, 3 * i + 2};
+    t.number = 7 + 100 * i;
+    scene.triangles.push_back(t);
+  }
+  scene.materials = {{}};
+  Renderer renderer(Scene(scene::Scene(scene)), {.binary_form = false}, device(1));
+  std::vector<Ray> rays;
+  for (int i = 0; i < 64; ++i)
+    rays.push_back({{0.01f * static_cast<float>(i), 0.3f, 2.5f}, 0, {0, 0, -1}, 100});
+  for (const Traversal walk : {Traversal::wide, Traversal::packet, Traversal::batch}) {
+    std::vector<Ray> ending = rays;
+    const std::vector<Hit> hits = renderer.trace(rays, false, 1, walk);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(hits[i].primitive, 7);
+      ending[i].t_max = hits[i].t;
+    }
+    for (const Hit& hit : renderer.trace(ending, false, 1, walk)) EXPECT_EQ(hit.primitive, -1);
+  }
+}
+
 KDRAY_FOR_EACH_DEVICE(Holdings);
 
 }  // namespace
