@@ -1,6 +1,9 @@
 #include "cli/hold_scene.h"
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "cli/message.h"
@@ -11,6 +14,17 @@ namespace kdray::cli {
 
 namespace {
 
+constexpr std::uintmax_t kLargeFile = std::uintmax_t{64} << 20;
+
+// Of a small scene all can have all: rays travel less where the costs of the whole are known, and what most of
+// them come to is held by every rank. Ranks that see other files do the same, too.
+bool wants_shares(const RenderArgs& o) {
+  if (o.hold != "auto") return o.hold == "shares";
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(o.scene.file, error);
+  return together_of_this_run()->any(!error && size >= kLargeFile);
+}
+
 void say_whole(const std::string& why, bool quiet) {
   if (!quiet) say("every rank holds the whole scene: " + why);
 }
@@ -19,10 +33,11 @@ void say_whole(const std::string& why, bool quiet) {
 
 bool holds_shares(const RenderArgs& o) {
   if (!ranks_of_this_run() || o.render.mode != Mode::odprt) return false;
-  const bool channels = !o.render.channels.empty();
-  if (channels) say_whole("--aov needs it", o.quiet);
+  if (!wants_shares(o)) return false;
+  if (!o.render.channels.empty()) say_whole("--aov needs it", o.quiet);
   if (o.view.transparent) say_whole("--background transparent needs it", o.quiet);
-  return !channels && !o.view.transparent && !o.tree.binary_form;  // what needs that, ODPRT refuses
+  const bool needs_whole = !o.render.channels.empty() || o.view.transparent;
+  return !needs_whole && !o.tree.binary_form;  // what needs that, ODPRT refuses
 }
 
 std::optional<SceneHeld> hold_scene(const SceneInput& input, const TreeOptions& tree, bool quiet,

@@ -19,7 +19,7 @@ struct SceneHeld {
   std::shared_ptr<const api::Held> held;
 };
 
-// Says so where options that go with ODPRT need the whole scene.
+// Says so where options that go with ODPRT need the whole scene. All ranks call it.
 bool holds_shares(const RenderArgs& o);
 
 // All ranks call it. `check` sees the settings before a tree is built. Nothing: the scene has instances, and

@@ -26,8 +26,8 @@ const std::shared_ptr<transport::Ranks>& ranks_of_this_run();
 std::shared_ptr<transport::Together> together_of_this_run();
 bool leads();  // alone, or rank 0
 
-// --mpi
-void add_ranks_option(CLI::App& app);
+// --mpi, --hold
+void add_ranks_options(CLI::App& app, std::string& hold);
 
 void check_ranks(const RenderArgs& o);
 

@@ -137,8 +137,10 @@ TEST_F(MpirunTest, SharesOfTheScene) {
     const auto rays = told()["rays"]["total"];
     for (const auto& [n, queues] : {std::pair(1, "2"), {2, "1"}, {3, "2"}, {4, "1"}, {7, "1"}}) {
       SCOPED_TRACE(scene + ": " + std::to_string(n) + " ranks of " + queues);
-      EXPECT_EQ(together(n, scene, with(view, {"--mode", "odprt", "--mpi", "on", "--queues", queues})),
-                whole);
+      EXPECT_EQ(
+          together(n, scene,
+                   with(view, {"--mode", "odprt", "--hold", "shares", "--mpi", "on", "--queues", queues})),
+          whole);
       EXPECT_EQ(told()["mode"]["ranks"]["scene"], "shares");
       EXPECT_EQ(told()["mode"]["ranks"]["peak_bytes"].size(), static_cast<std::size_t>(n));
       EXPECT_EQ(told()["rays"]["total"], rays);
@@ -152,7 +154,7 @@ TEST_F(MpirunTest, LedgersOfSharesAndOfWholeScenes) {
   const Arguments size{"--size", "200x150", "--samples", "4"};
   const std::string whole = alone(scene, size), ledger = folder / "ledger";
   const Arguments kept = with(size, {"--checkpoint", ledger, "--resume", "--checkpoint-every", "0.05"});
-  const Arguments in_shares = with(kept, {"--mode", "odprt"});
+  const Arguments in_shares = with(kept, {"--mode", "odprt", "--hold", "shares"});
   const auto lose_some = [&] {
     for (const auto& entry : fs::directory_iterator(ledger))
       if (entry.path().extension() == ".tiles")
@@ -182,13 +184,17 @@ TEST_F(MpirunTest, WhatIsNotInShares) {
   const std::string scene = folder.put("ball.ply", ball_ply(20, {})).string();
   const Arguments size{"--size", "60x50"};
   const auto shares_of = [&](const Arguments& more) {
-    const Outcome run = ranks(2, render(scene, with(with(size, {"--mode", "odprt"}), more)));
+    const Outcome run =
+        ranks(2, render(scene, with(with(size, {"--mode", "odprt", "--hold", "shares"}), more)));
     EXPECT_TRUE(succeeds(run));
     EXPECT_EQ(folder.get("a.png"), alone(scene, with(size, more)));
     return run.err;
   };
   for (const Arguments& more : {Arguments{"--aov", "depth"}, Arguments{"--background", "transparent"}})
     EXPECT_NE(shares_of(more).find("every rank holds the whole scene: "), std::string::npos) << more[0];
+  // A small file's ranks have all of it.
+  together(2, scene, with(size, {"--mode", "odprt"}));
+  EXPECT_EQ(told()["mode"]["ranks"]["scene"], "whole");
 }
 
 TEST_F(MpirunTest, AdaptiveSamplingSequencesAndCaches) {
