@@ -53,7 +53,7 @@ odprt::Request request_for(State& state, Job& job) {
     request.n_slices = joined.n_slices;
   }
   request.ray_buffer = static_cast<std::uint32_t>(o.ray_buffer);
-  request.device_memory = memory_limit(state, o);
+  request.device_memory = state.held ? 0 : memory_limit(state, o);
   request.timeline = job.timeline;
   request.faults = &state.faults;
   request.progress = o.progress;
@@ -79,14 +79,20 @@ Drawn draw_odprt(State& state, Job& job) {
   if (o.device_memory > 0 && state.ranks)
     throw Error(ErrorCode::usage,
                 "with ranks each part of the scene stays where it is; take more ranks for --device-memory");
+  if (state.held) job.options.balance = Balance::sah;  // each rank divides what it holds
   const odprt::Request request = request_for(state, job);
   if (!state.divided)
-    state.divided = std::make_unique<odprt::DividedScene>(state.scene.flat, state.scene.wide);
+    state.divided = std::make_unique<odprt::DividedScene>(state.scene.flat, state.scene.wide,
+                                                          state.held ? state.held->ranks : nullptr);
   odprt::Result result = state.divided->render(request);
   state.speeds.take(job.frame).odprt = mrays_per_s(result.counters.total(), result.render_seconds);
   Drawn drawn;
   drawn.division = division_of(result, job, state.divided->geometry_bytes());
-  if (state.ranks) tell_of_ranks(drawn.division, result.queues, *state.ranks);
+  if (state.ranks) {
+    tell_of_ranks(drawn.division, result.queues, *state.ranks);
+    drawn.division.ranks->whole = state.held == nullptr;
+    drawn.division.ranks->peak_bytes = result.peak_bytes;
+  }
   for (const odprt::QueueReport& queue : result.queues)
     drawn.memory_of_queues.push_back({queue.geometry_bytes, queue.work_bytes});
   drawn.divide_seconds = result.divide_seconds;

@@ -14,6 +14,8 @@ class Ranks;
 
 namespace kdray::api {
 
+struct Held;
+
 struct Hooks {
   // "1@5,0@9" makes the fifth launch on queue 1 and the ninth on queue 0 fail as if the device had;
   // "self-test@0" makes device 0 fail the self-test.
@@ -26,6 +28,9 @@ struct Hooks {
   // Other processes that render the same frames, one after the other: of rank 0 the pictures are whole, those
   // of the others are empty. Null: there are none.
   std::shared_ptr<transport::Ranks> ranks = {};
+  // With ranks, for frames in ODPRT alone: the scene is what this rank holds of one that no rank has whole.
+  // Null: each has all of it.
+  std::shared_ptr<const Held> held = {};
 };
 
 Renderer make_renderer(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks);

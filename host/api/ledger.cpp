@@ -9,24 +9,13 @@
 #include "api/precision.h"
 #include "base/hash.h"
 #include "device/program.h"
+#include "flatten/scene_hash.h"
 #include "ledger_fingerprint.h"
 #include "pdprt/tile_size.h"
 
 namespace kdray::api {
 
 namespace {
-
-// Of all that a ray can meet, and how it looks: not of the tree, which changes no hit.
-Hash scene_hash(const flatten::FlatScene& flat) {
-  std::vector<Hash> hashes;
-  flatten::for_each_flat_array(flat, [&](const auto& array) {
-    const void* const first = array.data();
-    const bool of_tree = first == flat.nodes.data() || first == flat.refs.data();
-    if (of_tree && first != nullptr) return;
-    hashes.push_back(hash_of(first, array.size() * sizeof(*array.data())));
-  });
-  return hash_of(hashes.data(), hashes.size() * sizeof(Hash));
-}
 
 // All of the frame that has a say in its film; what is left out is about how it is divided, or about what
 // need not be done.
@@ -87,8 +76,10 @@ ledger::Cut cut_of(const Job& job) {
 
 }  // namespace
 
-ledger::Identity identity_of(const State& state, const Job& job) {
-  return {.scene = scene_hash(state.scene.flat),
+ledger::Identity identity_of(State& state, const Job& job) {
+  const flatten::FlatScene& flat = state.scene.flat;
+  if (!state.primitives) state.primitives = flatten::hash_of_primitives(flat);
+  return {.scene = flatten::scene_hash(*state.primitives, flat),
           .settings = hash_of(settings_in_full(job)),
           .build = hash_of(build_in_full(state)),
           .settings_text = settings_in_words(job),

@@ -7,7 +7,7 @@
 namespace kdray::api {
 
 // What tells the frame from others.
-ledger::Identity identity_of(const State& state, const Job& job);
+ledger::Identity identity_of(State& state, const Job& job);
 
 // For a job whose options ask for one. Puts the ledger's tiles into the job's options.
 void open_ledger(State& state, Job& job);

@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "api/device.h"
+#include "api/held.h"
 #include "api/hooks.h"
 #include "api/scheduler.h"
+#include "base/hash.h"
 #include "device/faults.h"
 #include "flatten/core.h"
 #include "odprt/render.h"
@@ -38,7 +40,10 @@ struct State {
         scheduler(devices, hooks.ranks ? static_cast<std::uint32_t>(hooks.ranks->size()) : 1),
         faults(hooks.faults),
         keep(hooks.keep),
-        ranks(hooks.ranks) {}
+        ranks(hooks.ranks),
+        held(hooks.held) {
+    if (held) core = held->core, primitives = held->primitives;
+  }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -51,7 +56,9 @@ struct State {
   Speeds speeds;
   std::uint64_t keep;                       // Hooks::keep
   std::shared_ptr<transport::Ranks> ranks;  // Hooks::ranks
+  std::shared_ptr<const Held> held;         // Hooks::held
   std::optional<flatten::Core> core;        // looked for with the first frame that could make use of it
+  std::optional<Hash> primitives;           // their hash, made for the first ledger or ranks
 };
 
 }  // namespace kdray::api

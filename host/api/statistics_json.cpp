@@ -160,7 +160,9 @@ Json division_json(const Statistics::Division& d) {
                          {"messages_out", d.ranks->messages_out},
                          {"messages_in", d.ranks->messages_in},
                          {"bytes_out", d.ranks->bytes_out},
-                         {"bytes_in", d.ranks->bytes_in}};
+                         {"bytes_in", d.ranks->bytes_in},
+                         {"scene", d.ranks->whole ? "whole" : "shares"},
+                         {"peak_bytes", d.ranks->peak_bytes}};
   if (d.odprt) {
     division["balance"] = d.odprt->balance;
     division["parts"] = d.odprt->parts;

@@ -26,23 +26,26 @@ bool forget_peak() {
   return static_cast<bool>(out);
 }
 
-// Gives back what malloc keeps for later, which would count as held already.
+}  // namespace
+
 void give_back_free_memory() {
 #if defined(__GLIBC__)
   ::malloc_trim(0);
 #endif
 }
 
-}  // namespace
-
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work) {
-  give_back_free_memory();
+  give_back_free_memory();  // it would count as held already
   const bool counts_anew = forget_peak();
   const std::optional<std::uint64_t> before = resident("VmRSS:");
   work();
   const std::optional<std::uint64_t> peak = resident("VmHWM:");
   if (!counts_anew || !before || !peak || *peak < *before) return std::nullopt;
   return *peak - *before;
+}
+
+std::optional<std::uint64_t> peak_bytes() {
+  return resident("VmHWM:");
 }
 
 }  // namespace kdray

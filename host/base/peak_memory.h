@@ -13,4 +13,10 @@ namespace kdray {
 // anew: getrusage and VmHWM no longer know of earlier ones.
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
 
+// To the system, as far as it is whole pages: what malloc keeps for later.
+void give_back_free_memory();
+
+// Since the process began, or was last asked about some work.
+std::optional<std::uint64_t> peak_bytes();
+
 }  // namespace kdray

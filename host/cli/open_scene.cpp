@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <future>
 
+#include "base/peak_memory.h"
 #include "base/timer.h"
+#include "cli/hold_scene.h"
 #include "cli/message.h"
 #include "scene/scene.h"
 
@@ -35,7 +37,8 @@ DeviceOptions with_cache(DeviceOptions device, const CacheChoice& choice) {
 
 OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const DeviceOptions& device,
                          const CacheChoice& choice, bool quiet,
-                         const std::function<void(const scene::Scene&)>& check, const api::Hooks& hooks)
+                         const std::function<void(const scene::Scene&)>& check, const api::Hooks& hooks,
+                         const OpeningByRanks& ranks)
     : choice_(choice),
       cache_(options_of(choice)),
       quiet_(quiet),
@@ -55,17 +58,43 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
       for (const std::string& warning : settings.warnings) say(warning);
     wait_for(device_opened);
   };
-  const bool is_cached = has_cache(input, choice);
+  if (ranks.in_shares) wait_for(device_opened);
+  if (ranks.in_shares && hold(input, tree, tell)) return;
+  if (has_cache(input, choice)) {
+    if (ranks.before_lookup) ranks.before_lookup();
+    if (find(input, tree, tell)) return;
+  }
+  read(input, tree, tell);
+}
+
+// False: the scene isn't one that is divided. The device is open: what it takes of memory to compile for the
+// self-test, and what reading and building take, are not to come together.
+bool OpenedScene::hold(const SceneInput& input, const TreeOptions& tree, const Tell& tell) {
+  std::size_t told = 0;
+  give_back_free_memory();
+  std::optional<SceneHeld> share = hold_scene(input, tree, quiet_, [&](const scene::Scene& settings) {
+    told = settings.warnings.size();
+    tell(settings);
+  });
+  give_back_free_memory();
+  if (!share) return false;
+  seconds_.load = share->prepared.seconds.load;
+  scene_.emplace(std::move(share->prepared));
+  held_ = share->held;
+  tell_more(scene_->warnings(), told);
+  return true;
+}
+
+bool OpenedScene::find(const SceneInput& input, const TreeOptions& tree, const Tell& tell) {
   const Timer look_up;
-  if (is_cached) scene_ = cache_.find(input.file, tree, input.load);
-  if (is_cached) {
-    outcome_ = scene_ ? kHit : kMiss;
-    seconds_.cache = look_up.seconds();
-  }
-  if (scene_) {
-    tell(scene_->settings());
-    return;
-  }
+  scene_ = cache_.find(input.file, tree, input.load);
+  outcome_ = scene_ ? kHit : kMiss;
+  seconds_.cache = look_up.seconds();
+  if (scene_) tell(scene_->settings());
+  return scene_.has_value();
+}
+
+void OpenedScene::read(const SceneInput& input, const TreeOptions& tree, const Tell& tell) {
   const Scene read = [&] {
     try {
       return load_scene(input);
@@ -77,11 +106,13 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
   seconds_.load = read.load_seconds();
   tell(read.model());  // without a device there is no use in building a tree
   scene_.emplace(read, tree);
-  // What the tree was built of is known to be in range, and to fit, only now.
-  if (!quiet) {
-    const std::vector<std::string>& warnings = scene_->settings().warnings;
-    for (std::size_t i = read.model().warnings.size(); i < warnings.size(); ++i) say(warnings[i]);
-  }
+  tell_more(scene_->warnings(), read.model().warnings.size());
+}
+
+// What the tree was built of is known to be in range, and to fit, only when it is there.
+void OpenedScene::tell_more(const std::vector<std::string>& warnings, std::size_t told) const {
+  if (quiet_) return;
+  for (std::size_t i = told; i < warnings.size(); ++i) say(warnings[i]);
 }
 
 // A scene from standard input is no file that could be found again.
@@ -96,8 +127,9 @@ void OpenedScene::keep() {
   seconds_.keep_programs = timer.seconds();
 }
 
-// The self-test comes last.
+// The self-test comes last. Once is enough.
 void OpenedScene::wait_for(std::future<OpenSeconds>& device) {
+  if (!device.valid()) return;
   const Timer timer;
   const OpenSeconds opened = device.get();
   const double waited = timer.seconds();

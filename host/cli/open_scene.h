@@ -6,9 +6,11 @@
 
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "api/hooks.h"
 #include "cli/build_notice.h"
@@ -18,14 +20,24 @@
 
 namespace kdray::cli {
 
+// What is different where there are ranks.
+struct OpeningByRanks {
+  bool in_shares = false;               // each is to have a share of the scene, which no cache keeps
+  std::function<void()> before_lookup;  // in the cache, if there is one
+};
+
 class OpenedScene {
  public:
   // `check` sees the scene's settings before any tree is built. Prints the scene's warnings, unless `quiet`.
   OpenedScene(const SceneInput& input, const TreeOptions& tree, const DeviceOptions& device,
               const CacheChoice& cache, bool quiet,
-              const std::function<void(const scene::Scene&)>& check = {}, const api::Hooks& hooks = {});
+              const std::function<void(const scene::Scene&)>& check = {}, const api::Hooks& hooks = {},
+              const OpeningByRanks& ranks = {});
 
   const PreparedScene& scene() const { return *scene_; }
+
+  // Where the scene is a share of it; else null.
+  const std::shared_ptr<const api::Held>& held() const { return held_; }
 
   // What the Renderer is to be made with.
   const DeviceOptions& device() const { return device_; }
@@ -46,7 +58,13 @@ class OpenedScene {
   void add_to(Statistics::Seconds& seconds) const;
 
  private:
+  using Tell = std::function<void(const scene::Scene&)>;
+
   void wait_for(std::future<OpenSeconds>& device);
+  bool hold(const SceneInput& input, const TreeOptions& tree, const Tell& tell);
+  bool find(const SceneInput& input, const TreeOptions& tree, const Tell& tell);
+  void read(const SceneInput& input, const TreeOptions& tree, const Tell& tell);
+  void tell_more(const std::vector<std::string>& warnings, std::size_t told) const;
 
   CacheChoice choice_;
   SceneCache cache_;
@@ -58,6 +76,7 @@ class OpenedScene {
   bool is_kept_ = false;
   Statistics::Seconds seconds_;
   std::optional<PreparedScene> scene_;
+  std::shared_ptr<const api::Held> held_;
 };
 
 }  // namespace kdray::cli

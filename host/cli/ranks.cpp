@@ -19,7 +19,8 @@ namespace kdray::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kChoices = {"auto", "on", "off"};
+constexpr std::array<std::string_view, 3> kChoices = {"auto", "on", "off"},
+                                          kHoldings = {"auto", "whole", "shares"};
 
 std::shared_ptr<transport::Ranks>& this_run() {
   static std::shared_ptr<transport::Ranks> ranks;
@@ -99,16 +100,28 @@ const std::shared_ptr<transport::Ranks>& ranks_of_this_run() {
   return this_run();
 }
 
+// One for the whole run, since it numbers the steps.
+std::shared_ptr<transport::Together> together_of_this_run() {
+  static const auto together = std::make_shared<transport::Together>(*this_run());
+  return together;
+}
+
 bool leads() {
   return !this_run() || this_run()->leads();
 }
 
-void add_ranks_option(CLI::App& app) {
+void add_ranks_options(CLI::App& app, std::string& hold) {
   add_text(app, "--mpi", "NAME",
            "Render together with the other processes that mpirun or srun has started: auto (default; when it "
            "has), on, "
            "off",
            [](const std::string& text) { parse_choice("--mpi", text, kChoices); })
+      ->group("Division");
+  add_text(
+      app, "--hold", "WHAT",
+      "With ranks and odprt each holds the whole scene, or shares of it: auto (default; shares of a file "
+      "of 64 MiB or more), whole, shares",
+      [&hold](const std::string& text) { hold = parse_choice("--hold", text, kHoldings); })
       ->group("Division");
 }
 

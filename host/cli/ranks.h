@@ -13,6 +13,7 @@
 
 #include "cli/render_frame.h"
 #include "transport/ranks.h"
+#include "transport/together.h"
 
 namespace kdray::cli {
 
@@ -21,10 +22,12 @@ int run_in_ranks(const std::vector<std::string>& arguments, const std::function<
 
 // Of this run; null: this process works alone.
 const std::shared_ptr<transport::Ranks>& ranks_of_this_run();
+// The steps that its ranks take together; there have to be some.
+std::shared_ptr<transport::Together> together_of_this_run();
 bool leads();  // alone, or rank 0
 
-// --mpi
-void add_ranks_option(CLI::App& app);
+// --mpi, --hold
+void add_ranks_options(CLI::App& app, std::string& hold);
 
 void check_ranks(const RenderArgs& o);
 

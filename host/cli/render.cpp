@@ -76,7 +76,7 @@ Command add_render(CLI::App& kdray) {
   add_view_options(*app, o->view);
   add_picture_options(*app, o->render);
   add_division_options(*app, o->render);
-  add_ranks_option(*app);
+  add_ranks_options(*app, o->hold);
   add_trace_options(*app, *o);
   add_ledger_options(*app, o->ledger);
   add_device_options(*app, o->device, o->render.traversal, o->render.precision);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/free_memory.h"
+#include "cli/hold_scene.h"
 #include "cli/memory.h"
 #include "cli/message.h"
 #include "cli/output.h"
@@ -133,8 +134,6 @@ FrameMaker::FrameMaker(RenderArgs& o) {
   if (leads()) check_files(o, files_);
   tell_of_options_without_effect(o);
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
-  const bool is_cached = OpenedScene::has_cache(o.scene, o.cache);
-  if (is_cached) wait_for_scene();
   scene_.emplace(
       o.scene, o.tree, o.device, o.cache, o.quiet,
       [&](const scene::Scene& asked) {
@@ -142,8 +141,9 @@ FrameMaker::FrameMaker(RenderArgs& o) {
         if (leads()) check_files(o, files_, asked);
         check_memory(o, asked.settings);
       },
-      o.hooks);
-  if (is_cached) tell_of_scene(*scene_);
+      o.hooks, OpeningByRanks{.in_shares = holds_shares(o), .before_lookup = wait_for_scene});
+  if (scene_->cache() != "off") tell_of_scene(*scene_);
+  o.hooks.held = scene_->held();
   seen_ = o.view.any ? scene_->scene().seen(o.view.view, o.render.width, o.render.height) : scene_->scene();
   check_transparent(o, seen_->settings());
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);

@@ -35,6 +35,7 @@ struct RenderArgs {
   ViewOptions view;
   film::WriteOptions write;
   LedgerChoice ledger;
+  std::string hold = "auto";  // --hold
 };
 
 // A scene on its device, ready for frames.

@@ -48,36 +48,43 @@ Box bounds_of_all(const Items& items) {
   return sum_of<Box>(items, [](Box& sum, const auto& item) { sum.grow(bounds_of(item)); });
 }
 
-// The boxes of the triangles that lie in each of the planes that bound them all, and of all others.
-struct Sides {
-  Box inner;
-  Box at[3][2];  // [axis][0: lo, 1: hi]
-
-  // A stitch in a plane may be hit from either side of it: it is no part of a face.
-  void add(const layout::Triangle& t, const Box& all) {
-    const Box triangle = bounds_of(t);
-    for (int k = 0; k < 3 && !scene::is_stitch(t); ++k) {
-      if (triangle.lo[k] != triangle.hi[k]) continue;
-      if (triangle.lo[k] == all.lo[k]) return at[k][0].grow(triangle);
-      if (triangle.hi[k] == all.hi[k]) return at[k][1].grow(triangle);
-    }
-    inner.grow(triangle);
-  }
-  void grow(const Sides& o) {
-    inner.grow(o.inner);
-    for (int k = 0; k < 3; ++k)
-      for (int side = 0; side < 2; ++side) at[k][side].grow(o.at[k][side]);
-  }
-};
-
 }  // namespace
 
-Core core_of(const FlatScene& scene) {
-  if (!scene.instances.empty()) return {};  // their meshes are among the primitives, elsewhere than they lie
-  const Box all = bounds_of_all(scene.triangles);
+// A stitch in a plane may be hit from either side of it: it is no part of a face.
+void Sides::add(const layout::Triangle& t, const Box& all) {
+  const Box triangle = bounds_of(t);
+  for (int k = 0; k < 3 && !scene::is_stitch(t); ++k) {
+    if (triangle.lo[k] != triangle.hi[k]) continue;
+    if (triangle.lo[k] == all.lo[k]) return at[k][0].grow(triangle);
+    if (triangle.hi[k] == all.hi[k]) return at[k][1].grow(triangle);
+  }
+  inner.grow(triangle);
+}
+
+void Sides::grow(const Sides& o) {
+  inner.grow(o.inner);
+  for (int k = 0; k < 3; ++k)
+    for (int side = 0; side < 2; ++side) at[k][side].grow(o.at[k][side]);
+}
+
+Box triangle_bounds(const FlatScene& scene) {
+  return bounds_of_all(scene.triangles);
+}
+
+Sides sides_of(const FlatScene& scene, const Box& all) {
   Sides sides =
       sum_of<Sides>(scene.triangles, [&](Sides& sum, const layout::Triangle& t) { sum.add(t, all); });
   primitives::for_each_shape([&](auto kind) { sides.inner.grow(bounds_of_all(decltype(kind)::of(scene))); });
+  return sides;
+}
+
+Core core_of(const FlatScene& scene) {
+  if (!scene.instances.empty()) return {};  // their meshes are among the primitives, elsewhere than they lie
+  const Box all = triangle_bounds(scene);
+  return core_of(all, sides_of(scene, all));
+}
+
+Core core_of(const Box& all, Sides sides) {
   Core core;
   if (sides.inner.empty()) return core;
   core.lo = sides.inner.lo, core.hi = sides.inner.hi;

@@ -22,4 +22,19 @@ struct Core {
 
 Core core_of(const FlatScene& scene);
 
+// The same in two steps, for scenes of several parts: bounds of all of their triangles, then for each part
+// what lies at these bounds.
+
+// The boxes of the triangles that lie in each of the planes that bound them all, and of all others.
+struct Sides {
+  Box inner;
+  Box at[3][2];  // [axis][0: lo, 1: hi]
+
+  void add(const layout::Triangle& t, const Box& all);
+  void grow(const Sides& o);
+};
+Box triangle_bounds(const FlatScene& scene);
+Sides sides_of(const FlatScene& scene, const Box& all);
+Core core_of(const Box& all, Sides sides);
+
 }  // namespace kdray::flatten

@@ -234,14 +234,22 @@ WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int bl
   return form;
 }
 
-int choose_block(const kdtree::Tree& tree) {
-  std::size_t lanes4 = 0, lanes8 = 0;
+Lanes count_lanes(const kdtree::Tree& tree) {
+  Lanes lanes;
   for (const kdtree::Node& node : tree.nodes)
     if (node.is_leaf()) {
-      lanes4 += (node.right + 3) / 4 * 4;
-      lanes8 += (node.right + 7) / 8 * 8;
+      lanes.of4 += (node.right + 3) / 4 * 4;
+      lanes.of8 += (node.right + 7) / 8 * 8;
     }
-  return 2 * lanes8 <= 3 * lanes4 ? 8 : 4;
+  return lanes;
+}
+
+int choose_block(const Lanes& lanes) {
+  return 2 * lanes.of8 <= 3 * lanes.of4 ? 8 : 4;
+}
+
+int choose_block(const kdtree::Tree& tree) {
+  return choose_block(count_lanes(tree));
 }
 
 }  // namespace kdray::flatten

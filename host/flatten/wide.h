@@ -46,8 +46,14 @@ inline std::uint32_t leaf_kind(layout::u32 leaf) {
 // `primitives` has the arrays that the tree's references name; `block` is 4 or 8.
 WideForm make_wide(const kdtree::Tree& tree, const FlatScene& primitives, int block);
 
-// The block size for a tree: 8 where it takes at most half as many lanes again as 4 would, as for fine
-// meshes, else 4.
+// How many lanes the leaves' blocks have, by the size of blocks.
+struct Lanes {
+  std::size_t of4 = 0, of8 = 0;
+};
+Lanes count_lanes(const kdtree::Tree& tree);
+
+// The block size: 8 where it takes at most half as many lanes again as 4 would, as for fine meshes, else 4.
+int choose_block(const Lanes& lanes);
 int choose_block(const kdtree::Tree& tree);
 
 }  // namespace kdray::flatten

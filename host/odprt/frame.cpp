@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "adaptive/sampler.h"
+#include "base/peak_memory.h"
 #include "base/raw_vector.h"
 #include "base/timer.h"
 #include "ledger/render_round.h"
@@ -363,6 +364,8 @@ void FrameRun::render_adaptive() {
 // Rank 0 gets what the others have done.
 void share_reports(const RankTable& table, Result& result) {
   transport::Ranks& ranks = *table.ranks;
+  result.peak_bytes.resize(table.place().ranks);
+  result.peak_bytes[table.place().rank] = peak_bytes().value_or(0);
   if (!ranks.leads()) return ranks.send(0, kReport, to_report(result, table));
   result.queues.resize(table.n_queues());
   finish_lists(ranks, [&](const transport::Message& report) { add_report(report, table, result); });

@@ -67,7 +67,7 @@ struct Mail {
   std::uint64_t n = 0;               // of both
   std::uint32_t deepest = 0;         // depth of a ray that has come since there was none
 
-  explicit Mail(std::size_t n_slices, std::uint32_t ray_fields = KDRAY_TRAVEL_RAY_FIELDS)
+  Mail(std::size_t n_slices, std::uint32_t ray_fields)
       : rays(n_slices, RayPile(ray_fields)), shadow_rays(n_slices, RayPile(KDRAY_TRAVEL_SHADOW_FIELDS)) {}
 
   std::uint64_t n_rays() const;

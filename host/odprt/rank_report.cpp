@@ -36,6 +36,7 @@ QueueReport queue_of(transport::Reader& reader) {
 transport::Bytes to_report(const Result& result, const RankTable& table) {
   transport::Writer writer;
   writer.put(result.counters);
+  writer.put(result.peak_bytes[table.place().rank]);
   writer.put(result.stage_seconds.size());
   for (const auto& [stage, seconds] : result.stage_seconds) writer.put_text(stage), writer.put(seconds);
   for (std::size_t q = 0; q < table.n_own(); ++q) {
@@ -49,6 +50,7 @@ transport::Bytes to_report(const Result& result, const RankTable& table) {
 void add_report(const transport::Message& message, const RankTable& table, Result& result) {
   transport::Reader reader(message);
   result.counters.add(reader.get<wavefront::Counters>());
+  result.peak_bytes[static_cast<std::size_t>(message.from)] = reader.get<std::uint64_t>();
   const auto n_stages = reader.get<std::size_t>();
   if (n_stages > kMostStages) transport::refuse(message);
   for (std::size_t i = 0; i < n_stages; ++i) {

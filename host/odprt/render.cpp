@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/timer.h"
 #include "odprt/frame.h"
+#include "odprt/holding.h"
 #include "odprt/pilot.h"
 #include "odprt/queue_failure.h"
 #include "odprt/rank_lists.h"
@@ -40,8 +41,9 @@ DivideOptions options_for(const Provision& provision, const Request& request) {
 
 }  // namespace
 
-DividedScene::DividedScene(flatten::FlatScene flat, flatten::WideForm wide)
-    : flat_(std::move(flat)), wide_(std::move(wide)) {
+DividedScene::DividedScene(flatten::FlatScene flat, flatten::WideForm wide,
+                           std::shared_ptr<transport::Together> all)
+    : flat_(std::move(flat)), wide_(std::move(wide)), all_(std::move(all)) {
   flat_.nodes = {};  // parts have no binary tree
   flat_.refs = {};
 }
@@ -53,7 +55,10 @@ void DividedScene::light(const Array<layout::Light>& lights) {
 }
 
 void DividedScene::cut_for(std::uint32_t n_parts) {
-  const std::size_t n = subtrees_for(n_parts);
+  cut_into(subtrees_for(n_parts));
+}
+
+void DividedScene::cut_into(std::size_t n) {
   if (n <= n_asked_) return;
   cut_ = odprt::cut(flat_, wide_, n);
   n_asked_ = n;
@@ -160,6 +165,17 @@ Provision DividedScene::divide_with_ranks(const Request& request) {
   return provision;
 }
 
+// Costs are the tree's, since a pilot would need the whole scene.
+Provision DividedScene::divide_what_is_held(const Request& request) {
+  Provision provision = provide(request, 0);
+  cut_into(subtrees_of_rank(subtrees_for(provision.n_parts), request.table));
+  if (!division_) {
+    held_bytes_ = all_->sum(odprt::geometry_bytes(flat_, wide_));
+    division_ = divide_holding(flat_, wide_, cut_, costs_, request.table, *all_);
+  }
+  return provision;
+}
+
 // Of rank 0's division: all have the same subtrees.
 void DividedScene::check_division(std::span<const std::uint32_t> part_of, std::uint32_t n_parts) const {
   const bool fits =
@@ -168,10 +184,15 @@ void DividedScene::check_division(std::span<const std::uint32_t> part_of, std::u
     throw Error(ErrorCode::internal, "rank 0 has divided the scene otherwise than this rank could");
 }
 
+Provision DividedScene::divide_as_asked(const Request& request) {
+  if (all_) return divide_what_is_held(request);
+  cut_for(static_cast<std::uint32_t>(request.table.n_queues()));
+  return request.table.ranks ? divide_with_ranks(request) : divide_for(request);
+}
+
 Result DividedScene::render_once(const Request& request) {
   const Timer timer;
-  cut_for(static_cast<std::uint32_t>(request.table.n_queues()));
-  const Provision provision = request.table.ranks ? divide_with_ranks(request) : divide_for(request);
+  const Provision provision = divide_as_asked(request);
   const double seconds = timer.seconds();
   Result result = render_frame(request, provision, *division_, cut_);
   result.divide_seconds = seconds;

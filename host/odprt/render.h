@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,6 +24,7 @@
 #include "odprt/exchange.h"
 #include "odprt/rank_table.h"
 #include "timeline/timeline.h"
+#include "transport/together.h"
 #include "wavefront/programs.h"
 #include "wavefront/wavefront.h"
 
@@ -84,6 +86,7 @@ struct Result {
   std::vector<std::uint32_t> subtree_queues;  // the number of the queue that holds it, or kEveryPart
   std::vector<Quarantined> quarantined;
   std::uint32_t n_bands = 0, n_parts = 0, n_cells = 0;
+  std::vector<std::uint64_t> peak_bytes;  // of each rank's process, so far; 0: not known
 };
 
 struct Provision;
@@ -91,7 +94,9 @@ struct Provision;
 // A scene that frames are rendered of, and what has been learned about its costs.
 class DividedScene {
  public:
-  DividedScene(flatten::FlatScene flat, flatten::WideForm wide);
+  // `all`: of ranks, if the scene is what this one holds of it (holding.h); they have one table in all frames.
+  DividedScene(flatten::FlatScene flat, flatten::WideForm wide,
+               std::shared_ptr<transport::Together> all = nullptr);
 
   Result render(const Request& request);
 
@@ -99,10 +104,12 @@ class DividedScene {
   void light(const Array<layout::Light>& lights);
 
   const Cut& cut() const { return cut_; }
-  std::size_t geometry_bytes() const { return odprt::geometry_bytes(flat_, wide_); }
+  // Of the whole scene; where it is held by ranks, once a frame was rendered.
+  std::size_t geometry_bytes() const { return all_ ? held_bytes_ : odprt::geometry_bytes(flat_, wide_); }
 
  private:
   void cut_for(std::uint32_t n_parts);
+  void cut_into(std::size_t n_subtrees);
   void divide_by(const DivideOptions& options);
   void measure_costs(const Request& request);
   void weigh(std::span<const SubtreeUse> visits);
@@ -110,6 +117,8 @@ class DividedScene {
   void learn(const Result& result);
   Provision divide_for(const Request& request);
   Provision divide_with_ranks(const Request& request);
+  Provision divide_what_is_held(const Request& request);
+  Provision divide_as_asked(const Request& request);
   void check_division(std::span<const std::uint32_t> part_of, std::uint32_t n_parts) const;
   Result render_once(const Request& request);
 
@@ -121,6 +130,8 @@ class DividedScene {
   bool measured_ = false;      // costs_ come from rays
   std::optional<Division> division_;
   DivideOptions divided_by_;
+  std::shared_ptr<transport::Together> all_;
+  std::size_t held_bytes_ = 0;  // by all ranks
 };
 
 }  // namespace kdray::odprt

@@ -34,8 +34,6 @@ kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
   return kdtree::suited(config, n_primitives);
 }
 
-namespace {
-
 // The scene is taken apart into all its members, so that one that is added can't be forgotten.
 #define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
 scene::Scene settings_of(const scene::Scene& scene) {
@@ -66,8 +64,6 @@ scene::Scene settings_of(const scene::Scene& scene) {
           .load_options = load_options};
 }
 #undef KDRAY_NO_SHAPES
-
-}  // namespace
 
 namespace {
 

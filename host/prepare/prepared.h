@@ -63,6 +63,9 @@ Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
                  const kdtree::BuildConfig& config, bool binary_form = true);
 
+// A scene but for its primitives, vertices and normals.
+scene::Scene settings_of(const scene::Scene& scene);
+
 // Writes what has nothing to do with the tree: settings, counts, warnings, and of the geometry all but its
 // bounds.
 void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& geometry);

@@ -83,22 +83,6 @@ void add_lights_for_camera(Scene& scene, const DBox& box) {
   }
 }
 
-// Middles of about kSampled primitives, evenly through the file.
-std::vector<dvec3> sampled_middles(const Scene& scene) {
-  constexpr std::size_t kSampled = 20000;
-  const std::size_t step = std::max<std::size_t>(1, scene.primitive_count() / kSampled);
-  std::vector<dvec3> middles;
-  for (std::size_t i = 0; i < scene.triangles.size(); i += step) {
-    const auto& v = scene.triangles[i].vertex;
-    middles.push_back((scene.vertices[v[0]] + scene.vertices[v[1]] + scene.vertices[v[2]]) / 3.0);
-  }
-  primitives::for_each_shape([&](auto kind) {
-    const auto& shapes = decltype(kind)::of(scene);
-    for (std::size_t i = 0; i < shapes.size(); i += step) middles.push_back(middle_of(shapes[i]));
-  });
-  return middles;
-}
-
 // The box of the middles of all but the outermost hundredth of the primitives, on each side of each axis.
 DBox inner_box(std::vector<dvec3> middles) {
   DBox box;
@@ -117,11 +101,12 @@ DBox inner_box(std::vector<dvec3> middles) {
 
 // What the camera should show: the bounding box, unless a few far or huge primitives (a ground plane, a stray
 // vertex) would leave the scene itself a speck in it. Then it is the box of all the others, with a warning.
-DBox worth_showing(Scene& scene, const DBox& bounds) {
+DBox worth_showing(Scene& scene, const Framed& framed) {
   constexpr double kSpeck = 4;
   constexpr std::size_t kFew = 100;  // with fewer primitives each of them matters
-  if (scene.primitive_count() < kFew) return bounds;
-  DBox box = inner_box(sampled_middles(scene));
+  const DBox& bounds = framed.bounds;
+  if (framed.n_primitives < kFew) return bounds;
+  DBox box = inner_box(framed.middles());
   const dvec3 margin = 0.05 * box.extent();
   box = intersection(DBox{box.lo - margin, box.hi + margin}, bounds);
   if (safe_length(box.extent()) * kSpeck > safe_length(bounds.extent())) return bounds;
@@ -176,9 +161,35 @@ void add_lights(Scene& scene) {
   if (!scene.framing.box.empty()) add_lights_for_camera(scene, scene.framing.box);
 }
 
+// Of about kSampled primitives, evenly through the file.
+std::size_t step_of_samples(std::size_t n_primitives) {
+  constexpr std::size_t kSampled = 20000;
+  return std::max<std::size_t>(1, n_primitives / kSampled);
+}
+
+std::vector<dvec3> sampled_middles(const Scene& scene) {
+  const std::size_t step = step_of_samples(scene.primitive_count());
+  std::vector<dvec3> middles;
+  for (std::size_t i = 0; i < scene.triangles.size(); i += step) {
+    const auto& v = scene.triangles[i].vertex;
+    middles.push_back((scene.vertices[v[0]] + scene.vertices[v[1]] + scene.vertices[v[2]]) / 3.0);
+  }
+  primitives::for_each_shape([&](auto kind) {
+    const auto& shapes = decltype(kind)::of(scene);
+    for (std::size_t i = 0; i < shapes.size(); i += step) middles.push_back(middle_of(shapes[i]));
+  });
+  return middles;
+}
+
 void frame_scene(Scene& scene) {
-  const DBox bounds = scene.bounds();
-  const DBox box = scene.camera || bounds.empty() ? bounds : worth_showing(scene, bounds);
+  frame_scene(scene, {.bounds = scene.bounds(), .n_primitives = scene.primitive_count(), .middles = [&] {
+                        return sampled_middles(scene);
+                      }});
+}
+
+void frame_scene(Scene& scene, const Framed& framed) {
+  const DBox& bounds = framed.bounds;
+  const DBox box = scene.camera || bounds.empty() ? bounds : worth_showing(scene, framed);
   scene.framing = {.camera = !scene.camera, .lights = scene.lights.empty() && !scene.unlit, .box = box};
   if (!scene.camera) {
     const double scale = box.empty() ? 1 : scale_of(box);

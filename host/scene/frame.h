@@ -3,11 +3,28 @@
 //         the others (a ground plane), the others are framed.
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "scene/scene.h"
 
 namespace kdray::scene {
 
 void frame_scene(Scene& scene);
+
+// The same where the scene's primitives aren't here: so many of them, with these bounds.
+struct Framed {
+  DBox bounds;
+  std::size_t n_primitives = 0;
+  // Those of sampled_middles(), in any order; asked for where the scene has no camera.
+  std::function<std::vector<dvec3>()> middles;
+};
+void frame_scene(Scene& scene, const Framed& framed);
+
+// The middles of every step-th triangle and shape, by their places among those of their kind, of a scene of n
+// primitives.
+std::size_t step_of_samples(std::size_t n_primitives);
+std::vector<dvec3> sampled_middles(const Scene& scene);
 
 // Width by height of the picture that the scene asks for.
 double aspect_of(const RenderSettings& settings);

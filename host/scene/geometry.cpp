@@ -37,7 +37,7 @@ dvec3 center_of(const DBox& box) {
           center_along(box.lo.z, box.hi.z, size)};
 }
 
-LocalSpace space_of(const DBox& box) {
+LocalSpace space_around(const DBox& box) {
   if (box.empty()) return {};
   const dvec3 center = center_of(box);
   const double reach = std::max(largest_component(box.lo - center), largest_component(box.hi - center));
@@ -69,13 +69,7 @@ void for_each_grain(std::size_t n, const Work& work) {
 
 class Maker {
  public:
-  Maker(const Scene& scene, const std::optional<LocalSpace>& kept) : scene_(scene) {
-    const DBox bounds = scene.bounds();
-    out_.space = kept && keeps_space(*kept, bounds) ? *kept : space_of(bounds);
-    if (!bounds.empty() && !is_finite(bounds.extent()))
-      throw input_error(scene_.name, 0, "coordinates beyond the range of double precision (1.8e308)",
-                        "scale the scene down");
-  }
+  Maker(const LocalSpace& space, const Scene& scene) : scene_(scene) { out_.space = space; }
 
   Geometry make() {
     add_triangles();
@@ -222,8 +216,21 @@ class Maker {
 
 }  // namespace
 
+LocalSpace space_of(const DBox& bounds, const std::string& name) {
+  if (!bounds.empty() && !is_finite(bounds.extent()))
+    throw input_error(name, 0, "coordinates beyond the range of double precision (1.8e308)",
+                      "scale the scene down");
+  return space_around(bounds);
+}
+
+Geometry make_geometry_in(const LocalSpace& space, const Scene& scene) {
+  return Maker(space, scene).make();
+}
+
 Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept) {
-  return Maker(scene, kept).make();
+  const DBox bounds = scene.bounds();
+  const LocalSpace own = space_of(bounds, scene.name);
+  return make_geometry_in(kept && keeps_space(*kept, bounds) ? *kept : own, scene);
 }
 
 bool keeps_space(const LocalSpace& space, const DBox& bounds) {
@@ -234,15 +241,17 @@ bool keeps_space(const LocalSpace& space, const DBox& bounds) {
 }
 
 std::string range_warning(const Geometry& geometry) {
-  const auto kept = static_cast<double>(geometry.size());
-  const bool many = geometry.fine > kFewFine * kept;
-  if (geometry.lost == 0 && !many) return "";
+  return range_warning(geometry.lost, geometry.fine, geometry.size());
+}
+
+std::string range_warning(std::size_t lost, std::size_t fine, std::size_t kept) {
+  const bool many = static_cast<double>(fine) > kFewFine * static_cast<double>(kept);
+  if (lost == 0 && !many) return "";
   std::string what;
-  if (geometry.lost > 0)
-    what = fmt::format("{} of the primitives are too small for it to see", geometry.lost);
+  if (lost > 0) what = fmt::format("{} of the primitives are too small for it to see", lost);
   if (many)
     what += fmt::format("{}{} primitives are smaller than a millionth of it, and may lose their shadows",
-                        what.empty() ? "" : " and ", geometry.fine);
+                        what.empty() ? "" : " and ", fine);
   return "the scene ranges wider than single precision: " + what +
          "; take out what lies far off, or what is huge, or split the scene";
 }

@@ -59,6 +59,12 @@ struct Geometry {
 // In `kept`, where the scene keeps_space(), or else in a space of its own.
 Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept = {});
 
+// The same in this space, whatever the scene's bounds: of a part of a larger scene, whose space it is.
+Geometry make_geometry_in(const LocalSpace& space, const Scene& scene);
+
+// The space of a scene with these bounds, whose name is for the error where they are too large.
+LocalSpace space_of(const DBox& bounds, const std::string& name);
+
 // Whether a scene that has moved may keep its space: its largest coordinate there is from half of kLocalReach
 // to four times that, so that it loses one bit at most. What keeps its space keeps the floats of all that has
 // not moved.
@@ -66,6 +72,8 @@ bool keeps_space(const LocalSpace& space, const DBox& bounds);
 
 // What the user should know of a scene that ranges too wide for floats, in one line; empty: nothing.
 std::string range_warning(const Geometry& geometry);
+std::string range_warning(std::size_t lost, std::size_t fine, std::size_t kept);
+
 // visit(Kind(), index) for the i-th of all primitives, kind by kind: the kind and the place in its array.
 template <class Visit>
 void visit_primitive(const Geometry& geometry, std::size_t i, const Visit& visit) {

@@ -7,19 +7,12 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "scene/ply_columns.h"
 #include "scene/ply_header.h"
 #include "scene/ply_mesh.h"
 #include "scene/ply_source.h"
 
 namespace kdray::scene::ply {
-
-// What each property of a vertex is: 0 1 2 for x y z, 3 4 5 for nx ny nz, 6 7 8 9 for red green blue alpha,
-// -1 for what is skipped.
-struct VertexColumns {
-  std::vector<int> of_property;
-  bool has_normals = false, has_colors = false;
-  double color_unit = 1;  // a colour of 1 in the file's numbers
-};
 
 // Fills `vertices` (and `normals` and `colors`), which have element.count entries, for which the source has
 // the bytes.

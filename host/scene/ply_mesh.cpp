@@ -90,7 +90,7 @@ Scene Mesh::finish(const std::string& file) {
   }
   if (!scene_.normals.empty()) {
     for (Triangle& t : scene_.triangles) t.normal = t.vertex;
-    settle_normals(scene_, file);
+    n_shaded_flat_ = settle_normals(scene_, file);
   }
   return std::move(scene_);
 }

@@ -41,6 +41,7 @@ class Mesh {
   void warn(const std::string& what) { scene_.warnings.push_back(what); }
   // `file` names the file in warnings.
   Scene finish(const std::string& file);
+  std::size_t n_shaded_flat() const { return n_shaded_flat_; }  // once it is finished
 
  private:
   struct Polygon {
@@ -59,7 +60,7 @@ class Mesh {
   std::uint32_t n_vertices_;
   std::vector<Polygon> polygons_;
   std::vector<std::uint32_t> polygon_corners_;
-  std::size_t n_small_faces_ = 0;
+  std::size_t n_small_faces_ = 0, n_shaded_flat_ = 0;
 };
 
 inline void Mesh::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {

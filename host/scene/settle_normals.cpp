@@ -37,20 +37,24 @@ vec3 direction_of(const dvec3& v) {
   return vec3(scaled / glm::length(scaled));
 }
 
-void settle_normals(Scene& scene, const std::string& file) {
+std::size_t settle_normals(Scene& scene, const std::string& file) {
   bool any_zero = false;
   for (vec3& n : scene.normals) {
     n = direction_of(dvec3(n));
     any_zero = any_zero || is_zero(n);
   }
-  if (!any_zero) return;
+  if (!any_zero) return 0;
   const std::size_t n_flat = flatten(scene);
   for (vec3& n : scene.normals) {
     if (is_zero(n)) n = vec3(0, 0, 1);
   }
-  if (n_flat == 0) return;
-  scene.warnings.push_back(file + ": " + std::to_string(n_flat) +
-                           " triangles have a corner normal without a direction: they are shaded flat");
+  if (n_flat > 0) scene.warnings.push_back(flat_warning(file, n_flat));
+  return n_flat;
+}
+
+std::string flat_warning(const std::string& file, std::size_t n_flat) {
+  return file + ": " + std::to_string(n_flat) +
+         " triangles have a corner normal without a direction: they are shaded flat";
 }
 
 }  // namespace kdray::scene

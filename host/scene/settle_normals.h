@@ -9,7 +9,11 @@
 
 namespace kdray::scene {
 
-void settle_normals(Scene& scene, const std::string& file);
+// Returns how many triangles are shaded flat.
+std::size_t settle_normals(Scene& scene, const std::string& file);
+
+// What the scene says of so many.
+std::string flat_warning(const std::string& file, std::size_t n_flat);
 
 // The unit vector along `v`, whatever its length; zero when it has no direction.
 vec3 direction_of(const dvec3& v);

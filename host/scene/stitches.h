@@ -8,6 +8,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "base/array.h"
@@ -42,5 +45,41 @@ struct Stitch {
 
 // Those that are marked, in the order of the triangles.
 std::vector<Stitch> find_stitches(const Array<layout::Triangle>& triangles);
+
+// The same in steps, where not all triangles are in one place: the sides of all stitches, which meet all
+// triangles, wherever these are.
+class StitchSides {
+ public:
+  static constexpr std::uint32_t kNobody = 0xffffffffu;
+
+  // All stitches of the scene, in the order of its triangles.
+  explicit StitchSides(std::span<const layout::Triangle> stitches);
+  ~StitchSides();
+  StitchSides(const StitchSides&) = delete;
+  StitchSides& operator=(const StitchSides&) = delete;
+
+  // `place` of the triangle among all; any thread's. Stitches meet nobody.
+  void meet(const layout::Triangle& t, std::uint32_t place);
+
+  // For each side the least place of a triangle that shares it, or kNobody: what has met them elsewhere may
+  // lower it.
+  std::span<std::uint32_t> neighbours() { return neighbours_; }
+
+  // Of each stitch, when all have met. `normal_of(side)`: normal_of() the side's neighbour, where it has one.
+  std::vector<vec3> normals(const std::function<vec3(std::size_t side)>& normal_of) const;
+
+  // Of unit length; 0: it has none.
+  static vec3 normal_of(const layout::Triangle& t);
+
+ private:
+  struct Side;
+  class Filter;
+  struct ByEdge;
+
+  std::size_t n_stitches_;
+  std::vector<Side> sides_;  // by edge
+  std::vector<std::uint32_t> neighbours_;
+  std::unique_ptr<Filter> filter_;
+};
 
 }  // namespace kdray::scene

@@ -23,8 +23,8 @@ struct Tags {
   bool hold(Tag tag) const { return first <= tag && tag <= last; }
 };
 inline constexpr Tags kTagsOfRanks{0, 15}, kTagsOfCores{16, 17}, kTagsOfScenes{24, 24}, kTagsOfFrames{32, 47},
-    kTagsOfTiles{48, 63}, kTagsOfLists{80, 86}, kTagsOfDivisions{87, 87}, kTagsOfJoining{88, 95},
-    kTagsOfRays{96, 111};
+    kTagsOfTiles{48, 63}, kTagsOfShares{64, 79}, kTagsOfLists{80, 86}, kTagsOfDivisions{87, 87},
+    kTagsOfJoining{88, 95}, kTagsOfRays{96, 111};
 
 // Not an error of this rank's; its code is the one to exit with.
 struct Ended {

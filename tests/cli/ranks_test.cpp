@@ -17,6 +17,7 @@
 #include "cli/ranks.h"
 #include "cli/running.h"
 #include "cli/scenes.h"
+#include "distribute/ply_files.h"
 #include "support/folder.h"
 #include "support/mpirun.h"
 
@@ -77,6 +78,11 @@ struct MpirunTest : testing::Test {
     return folder.get("a.png");
   }
 
+  static Arguments with(Arguments arguments, const Arguments& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
   nlohmann::json told() const { return nlohmann::json::parse(folder.get("a.json")); }
 };
 
@@ -116,6 +122,79 @@ TEST_F(MpirunTest, TheSceneDividedWithChannelsAndALedger) {
   EXPECT_EQ(told()["ledger"]["rendered"], 0);
   EXPECT_EQ(together(2, scene, {"--size", "120x90", "--mode", "odprt", "--aov", "depth,normal"}),
             alone(scene, {"--size", "120x90", "--aov", "depth,normal"}));
+}
+
+// No rank holds all of it: neither of a file that is read in shares, nor of one that is read whole and kept in
+// shares.
+TEST_F(MpirunTest, SharesOfTheScene) {
+  const std::string ply =
+      folder.put("ball.ply", ball_ply(40, {.normals = true, .colors = true}, true)).string();
+  const std::string nff = folder / "gears.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "gears", "--size", "2", "-o", nff})));
+  const Arguments view{"--size", "150x110"};
+  for (const std::string& scene : {ply, nff}) {
+    const std::string whole = alone(scene, view);
+    const auto rays = told()["rays"]["total"];
+    for (const auto& [n, queues] : {std::pair(1, "2"), {2, "1"}, {3, "2"}, {4, "1"}, {7, "1"}}) {
+      SCOPED_TRACE(scene + ": " + std::to_string(n) + " ranks of " + queues);
+      EXPECT_EQ(
+          together(n, scene,
+                   with(view, {"--mode", "odprt", "--hold", "shares", "--mpi", "on", "--queues", queues})),
+          whole);
+      EXPECT_EQ(told()["mode"]["ranks"]["scene"], "shares");
+      EXPECT_EQ(told()["mode"]["ranks"]["peak_bytes"].size(), static_cast<std::size_t>(n));
+      EXPECT_EQ(told()["rays"]["total"], rays);
+    }
+  }
+}
+
+// One process begins a ledger with the whole scene, ranks go on from it with shares, and the other way round.
+TEST_F(MpirunTest, LedgersOfSharesAndOfWholeScenes) {
+  const std::string scene = folder.put("ball.ply", ball_ply(30, {.colors = true})).string();
+  const Arguments size{"--size", "200x150", "--samples", "4"};
+  const std::string whole = alone(scene, size), ledger = folder / "ledger";
+  const Arguments kept = with(size, {"--checkpoint", ledger, "--resume", "--checkpoint-every", "0.05"});
+  const Arguments in_shares = with(kept, {"--mode", "odprt", "--hold", "shares"});
+  const auto lose_some = [&] {
+    for (const auto& entry : fs::directory_iterator(ledger))
+      if (entry.path().extension() == ".tiles")
+        fs::resize_file(entry.path(), fs::file_size(entry.path()) * 2 / 5);
+  };
+  EXPECT_EQ(alone(scene, kept), whole);
+  for (const int n : {3, 2, 5}) {
+    lose_some();
+    EXPECT_EQ(together(n, scene, in_shares), whole);
+    EXPECT_EQ(told()["mode"]["ranks"]["scene"], "shares");
+    EXPECT_GT(told()["ledger"]["found"], 0);
+    EXPECT_GT(told()["ledger"]["rendered"], 0);
+  }
+  lose_some();
+  EXPECT_EQ(alone(scene, kept), whole);
+  EXPECT_GT(told()["ledger"]["found"], 0);
+  EXPECT_EQ(together(3, scene, in_shares), whole);
+  EXPECT_EQ(told()["ledger"]["rendered"], 0);
+  const std::string other = folder.put("other.ply", ball_ply(31, {.colors = true})).string();
+  const Outcome refused = ranks(2, render(other, in_shares));
+  EXPECT_NE(refused.code, 0);
+  EXPECT_EQ(lines_of_kdray(refused.err).size(), 1u) << refused.err;
+}
+
+// What needs the whole scene on each rank says so.
+TEST_F(MpirunTest, WhatIsNotInShares) {
+  const std::string scene = folder.put("ball.ply", ball_ply(20, {})).string();
+  const Arguments size{"--size", "60x50"};
+  const auto shares_of = [&](const Arguments& more) {
+    const Outcome run =
+        ranks(2, render(scene, with(with(size, {"--mode", "odprt", "--hold", "shares"}), more)));
+    EXPECT_TRUE(succeeds(run));
+    EXPECT_EQ(folder.get("a.png"), alone(scene, with(size, more)));
+    return run.err;
+  };
+  for (const Arguments& more : {Arguments{"--aov", "depth"}, Arguments{"--background", "transparent"}})
+    EXPECT_NE(shares_of(more).find("every rank holds the whole scene: "), std::string::npos) << more[0];
+  // A small file's ranks have all of it.
+  together(2, scene, with(size, {"--mode", "odprt"}));
+  EXPECT_EQ(told()["mode"]["ranks"]["scene"], "whole");
 }
 
 TEST_F(MpirunTest, AdaptiveSamplingSequencesAndCaches) {

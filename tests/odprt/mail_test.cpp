@@ -30,7 +30,7 @@ std::vector<float> stream(std::uint32_t n_fields, std::uint32_t depth) {
 }
 
 TEST(Mail, RaysComeOutAsTheyWentIn) {
-  Mail mail(2);
+  Mail mail(2, KDRAY_TRAVEL_RAY_FIELDS);
   const std::vector<float> rays = stream(KDRAY_TRAVEL_RAY_FIELDS, 3);
   put_rays(mail, 1, rays, kCapacity, 20);
   odprt::sort_shadow_rays(stream(KDRAY_SENT_SHADOW_FIELDS, 0).data(), kCapacity, 7, 1,
@@ -64,7 +64,7 @@ TEST(Mail, RaysAreSortedByTheirParts) {
     word = std::bit_cast<float>(KDRAY_FINDER_TO(std::bit_cast<std::uint32_t>(word), i % 3));
     shadow[KDRAY_SENT_SHADOW_TO * kCapacity + i] = std::bit_cast<float>(i % 3);
   }
-  std::vector<Mail> mails(3, Mail(2));
+  std::vector<Mail> mails(3, Mail(2, KDRAY_TRAVEL_RAY_FIELDS));
   const auto mail_of = [&](std::uint32_t part) { return part == 1 ? nullptr : &mails.at(part); };
   odprt::sort_rays(rays.data(), kCapacity, 20, 0, mail_of);
   odprt::sort_shadow_rays(shadow.data(), kCapacity, 20, 1, mail_of);
@@ -80,7 +80,7 @@ TEST(Mail, RaysAreSortedByTheirParts) {
 }
 
 TEST(Mail, PooledRaysGetTheirDepth) {
-  Mail mail(1);
+  Mail mail(1, KDRAY_TRAVEL_RAY_FIELDS);
   std::vector<float> pool = stream(KDRAY_TRAVEL_RAY_FIELDS, 0);
   mail.put_pooled_rays(0, pool.data(), kCapacity, 5, 4);
   EXPECT_EQ(mail.deepest, 4u);
@@ -92,7 +92,7 @@ TEST(Mail, PooledRaysGetTheirDepth) {
 }
 
 TEST(Mail, TakingAllMovesAndEmpties) {
-  Mail a(2), b(2);
+  Mail a(2, KDRAY_TRAVEL_RAY_FIELDS), b(2, KDRAY_TRAVEL_RAY_FIELDS);
   const std::vector<float> rays = stream(KDRAY_TRAVEL_RAY_FIELDS, 2);
   put_rays(a, 0, rays, kCapacity, 3);
   put_rays(b, 0, rays, kCapacity, 4);

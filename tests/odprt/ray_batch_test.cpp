@@ -30,7 +30,7 @@ float as_float(std::uint32_t word) {
 
 std::vector<Mail> some_mail(unsigned seed, int n) {
   std::mt19937 random(seed);
-  std::vector<Mail> mail(2, Mail(kSlices));
+  std::vector<Mail> mail(2, Mail(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
   for (int i = 0; i < n; ++i) {
     float ray[KDRAY_TRAVEL_RAY_FIELDS];
     for (float& word : ray) word = static_cast<float>(random() % 1000);
@@ -71,7 +71,7 @@ std::vector<std::vector<float>> sorted(const Pile& pile, std::size_t n_fields) {
 TEST(RayBatchTest, ComesOutAsItWentIn) {
   for (const std::size_t most : {std::size_t{1}, std::size_t{500}, std::size_t{1} << 20}) {
     const std::vector<Mail> reference = some_mail(7, 200);
-    std::vector<Mail> from = some_mail(7, 200), to(2, Mail(kSlices));
+    std::vector<Mail> from = some_mail(7, 200), to(2, Mail(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
     std::vector<std::uint32_t> sent(kKnown.n_counts()), come(kKnown.n_counts());
     int n_messages = 0;
     while (from[0].n + from[1].n > 0) {
@@ -94,7 +94,7 @@ TEST(RayBatchTest, ComesOutAsItWentIn) {
 }
 
 bool is_refused(transport::Bytes bytes) {
-  std::vector<Mail> to(2, Mail(kSlices));
+  std::vector<Mail> to(2, Mail(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
   std::vector<std::uint32_t> counts(kKnown.n_counts());
   try {
     unpack_rays(message_of(std::move(bytes)), kKnown, to, counts);
@@ -105,7 +105,7 @@ bool is_refused(transport::Bytes bytes) {
 }
 
 TEST(RayBatchTest, RefusesWhatKernelsCouldNotTake) {
-  std::vector<Mail> mail(2, Mail(kSlices));
+  std::vector<Mail> mail(2, Mail(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
   float ray[KDRAY_TRAVEL_RAY_FIELDS] = {};
   ray[KDRAY_RAY_PIXEL] = as_float(149);
   ray[KDRAY_RAY_FINDER] = as_float(KDRAY_FINDER(KDRAY_NO_PART, 4u));

@@ -156,6 +156,8 @@ struct Statistics {
   struct Ranks {
     int ranks = 1;
     std::uint64_t messages_out = 0, messages_in = 0, bytes_out = 0, bytes_in = 0;
+    bool whole = true;                           // each has the whole scene
+    std::vector<std::uint64_t> peak_bytes = {};  // of ODPRT: the most that each process has had so far
   };
   // How a frame was divided and run, in whichever mode.
   struct Division {
