@@ -24,13 +24,21 @@ std::uint32_t pencil_fields(layout::Features features) {
   return features & KDRAY_FEATURE_FOOTPRINTS ? 1 : 0;
 }
 
+std::uint32_t instance_fields(layout::Features features) {
+  return features & KDRAY_FEATURE_INSTANCES ? 1 : 0;
+}
+
+std::uint32_t travel_ray_fields(layout::Features features) {
+  return KDRAY_TRAVEL_RAY_FIELDS + instance_fields(features) + pencil_fields(features);
+}
+
 std::uint32_t capacity_for(std::uint32_t n) {
   return (n + 2 * KDRAY_LANES - 1) / KDRAY_LANES * KDRAY_LANES;
 }
 
 // Rays and hits name an instance where there are some (rays.layout.h).
 StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, layout::Features features) {
-  const std::uint32_t instance = features & KDRAY_FEATURE_INSTANCES ? 1 : 0;
+  const std::uint32_t instance = instance_fields(features);
   const std::uint32_t of_ray = instance + frame.tells_sample + pencil_fields(features);
   StreamForm form;
   form.word = word;
@@ -46,8 +54,9 @@ StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, l
 StreamForm StreamForm::of_odprt(const layout::Frame& frame, layout::Features features) {
   StreamForm form;
   form.pools = frame.max_depth;
-  form.pool_fields = form.ray_fields = KDRAY_TRAVEL_RAY_FIELDS + pencil_fields(features);
-  form.shadow_fields = KDRAY_TRAVEL_SHADOW_FIELDS;
+  form.pool_fields = form.ray_fields = travel_ray_fields(features);
+  form.shadow_fields = KDRAY_TRAVEL_SHADOW_FIELDS + instance_fields(features);
+  form.hit_fields = KDRAY_HIT_FIELDS + instance_fields(features);
   form.sparse_pools = true;
   form.film_cleared = true;
   return form;

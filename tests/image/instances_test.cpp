@@ -159,9 +159,6 @@ TEST(Instances, AreRefusedWhereTheyAreNotKnown) {
     return refusal([&] { renderer.render(options); });
   };
   RenderOptions options = exact_options(16, 12);
-  options.mode = Mode::odprt;
-  EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
-  options = exact_options(16, 12);
   options.precision = Precision::float64;
   EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
   options = exact_options(16, 12);
