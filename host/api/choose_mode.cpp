@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "api/film_memory.h"
-#include "prepare/instanced.h"
 
 namespace kdray::api {
 
@@ -37,10 +36,8 @@ std::string why_it_does_not_fit(const State& state, const Job& job, const std::s
 }  // namespace
 
 ChosenMode choose_mode(const State& state, const Job& job) {
-  if (job.options.mode == Mode::odprt) prepare::refuse_instances(state.scene, "odprt");
   if (job.options.mode != Mode::automatic) return {job.options.mode, "asked for"};
   if (job.options.precision == Precision::float64) return {Mode::pdprt, "double precision has no other"};
-  if (!state.scene.flat.instances.empty()) return {Mode::pdprt, "a scene with instances has no other"};
   const std::string scene_takes = fmt::format("the scene takes {}", megabytes(state.scene_bytes));
   if (const std::string why = why_it_does_not_fit(state, job, scene_takes); !why.empty())
     return {Mode::odprt, why};

@@ -50,7 +50,7 @@ Job make_job(State& state, const RenderOptions& options, timeline::Timeline* tim
   RenderOptions o = flatten::resolved(options, scene.settings.settings);
   o.progress = progress_of(o);
   check_division(o);
-  check_form(takes_binary_form(o.traversal, o.precision, o.channels), scene);
+  check_channels(o, scene);
   const layout::Features features =
       scene.features | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | state.keep;
   Job job{o, frame_of(scene, o), features, timeline};

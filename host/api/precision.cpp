@@ -22,12 +22,21 @@ Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& 
 }
 
 void check_form(bool is_walked, const prepare::Prepared& scene) {
-  if (is_walked) prepare::refuse_instances(scene, "the binary walk, which double and channels take,");
+  if (is_walked) prepare::refuse_instances(scene, "the binary walk, which double takes,");
   if (is_walked && scene.flat.nodes.empty())
     throw Error(
         ErrorCode::usage,
         "the scene was prepared without the tree's binary form, which the binary walk, double and channels "
         "take; leave TreeOptions::binary_form true");
+}
+
+void check_channels(const RenderOptions& options, const prepare::Prepared& scene) {
+  const bool of_instances = !scene.flat.instances.empty();
+  const std::span<const std::string> by_binary_walk =
+      of_instances ? std::span<const std::string>() : std::span<const std::string>(options.channels);
+  check_form(takes_binary_form(options.traversal, options.precision, by_binary_walk), scene);
+  if (of_instances && std::ranges::find(options.channels, "cost") != options.channels.end())
+    prepare::refuse_instances(scene, "the channel cost, which counts the binary walk's steps,");
 }
 
 void check_division(const RenderOptions& options) {

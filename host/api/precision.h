@@ -14,6 +14,10 @@ Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& 
 // Throws ErrorCode::usage where the binary form is walked and the scene was prepared without it.
 void check_form(bool is_walked, const prepare::Prepared& scene);
 
+// The same for what a picture asks for: its channels too, but in a scene with instances, whose channels the
+// wide form has; all but the cost of the binary walk.
+void check_channels(const RenderOptions& options, const prepare::Prepared& scene);
+
 // Throws ErrorCode::usage for what odprt would have to do in double.
 void check_division(const RenderOptions& options);
 

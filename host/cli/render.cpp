@@ -18,7 +18,7 @@ namespace {
 
 void add_file_options(CLI::App& app, RenderArgs& o) {
   static constexpr std::array<std::string_view, 2> kBits = {"8", "16"};
-  static constexpr std::array<std::string_view, 6> kChannels = {"depth", "normal", "primitive",
+  static constexpr std::array<std::string_view, 7> kChannels = {"depth", "normal", "primitive", "instance",
                                                                 "cost",  "queue",  "samples"};
   add_path(app, "-o,--output",
            "The picture, .png or .exr; '-': standard output (default: the scene's name with .png, here)",
@@ -34,7 +34,8 @@ void add_file_options(CLI::App& app, RenderArgs& o) {
     o.bits_given = true;
   });
   add_text(app, "--aov", "LIST",
-           "More channels, in the EXR or as files beside the PNG: depth,normal,primitive,cost,queue,samples",
+           "More channels, in the EXR or as files beside the PNG: "
+           "depth,normal,primitive,instance,cost,queue,samples",
            [&o](const std::string& text) { o.render.channels = parse_list("--aov", text, kChannels); });
   add_path(app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o.stats);
   add_loudness(app, o.quiet, o.verbose);

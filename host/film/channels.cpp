@@ -66,9 +66,11 @@ ChannelPicture normal_picture(int width, int height, const std::vector<float>* c
 
 // Neighbouring numbers get unlike colours, none of them near black. The mixing is a 32-bit finaliser
 // (Degski's constants), a bijection, of which each colour takes a byte.
-ChannelPicture primitive_picture(int width, int height, const std::vector<float>& numbers) {
-  ChannelPicture picture{"primitive", blank(width, height, 3, 8), {}};
-  picture.meta.comment = "primitive: a colour per number, black is background";
+ChannelPicture number_picture(int width, int height, const Channel& channel) {
+  const std::vector<float>& numbers = channel.values;
+  ChannelPicture picture{channel.name, blank(width, height, 3, 8), {}};
+  picture.meta.comment = channel.name + ": a colour per number, black is " +
+                         (channel.name == "instance" ? "none" : "background");
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (!(numbers[i] >= 0 && numbers[i] < 4294967296.0f)) continue;
     auto bits = static_cast<std::uint32_t>(numbers[i]);
@@ -136,8 +138,8 @@ std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<co
   for (const Channel& channel : channels) {
     if (channel.name == "depth") {
       pictures.push_back(depth_picture(width, height, channel.values));
-    } else if (channel.name == "primitive") {
-      pictures.push_back(primitive_picture(width, height, channel.values));
+    } else if (channel.name == "primitive" || channel.name == "instance") {
+      pictures.push_back(number_picture(width, height, channel));
     } else if (channel.name == "queue") {
       pictures.push_back(queue_picture(width, height, channel.values, image));
     } else if (channel.name == "normal.x") {

@@ -34,7 +34,8 @@ std::vector<bool> choose_replicated(const Cut& cut, std::span<const double> cost
   double all_bytes = 0;
   for (std::size_t i = 0; i < cut.subtrees.size(); ++i) {
     bytes.push_back(cut.subtrees[i].bytes);
-    visits.push_back(costs[i] / cut.subtrees[i].visit);
+    // An instance is in one part alone: a shadow ray need not name the one that it leaves.
+    visits.push_back(cut.subtrees[i].placed ? 0 : costs[i] / cut.subtrees[i].visit);
     all_bytes += static_cast<double>(bytes.back());
   }
   // n parts that share s of the whole hold s + (1 - s)/n each.

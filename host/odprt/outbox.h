@@ -20,7 +20,7 @@ struct OutboxShape {
   std::uint32_t n_places = 0;  // one for each part, or one for all of them, where the host sorts the rays
   std::uint32_t n_slices = 0;
   std::uint32_t rays = 0, ray_capacity = 0, shadow = 0, shadow_capacity = 0;
-  std::uint32_t ray_fields = KDRAY_TRAVEL_RAY_FIELDS;  // words of a ray, with its pencil if it has one
+  std::uint32_t ray_fields = KDRAY_TRAVEL_RAY_FIELDS;  // words of a ray (travel_ray_fields)
 
   std::size_t n_streams() const { return std::size_t{n_places} * n_slices; }
 };

@@ -6,8 +6,12 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <limits>
 #include <map>
+#include <unordered_map>
+#include <unordered_set>
 
+#include "layout/instances.layout.h"
 #include "layout/primitives.layout.h"
 #include "layout/wide.layout.h"
 #include "odprt/kinds.h"
@@ -32,6 +36,11 @@ struct Holders {
 struct Sizes {
   std::size_t nodes = 0;
   std::array<std::size_t, kKinds> blocks{};
+  std::vector<std::uint32_t> instances;      // by number
+  std::vector<layout::u32> roots;            // of their meshes
+  std::array<std::uint32_t, kKinds> meshes;  // the first primitive that is in one of these
+
+  Sizes() { meshes.fill(std::numeric_limits<std::uint32_t>::max()); }
 };
 
 // Goes through what a part keeps of the tree.
@@ -72,7 +81,12 @@ bool is_empty(const layout::WideNode& node, std::uint32_t slot) {
 // First pass: how much there is, and who holds which primitives.
 class Counting {
  public:
-  Counting(const PartWalk& walk, Holders& holders) : walk_(walk), holders_(holders) { count_opened(0); }
+  Counting(const flatten::FlatScene& scene, const PartWalk& walk, Holders& holders)
+      : scene_(scene), walk_(walk), holders_(holders) {
+    count_opened(0);
+    std::sort(sizes_.instances.begin(), sizes_.instances.end());
+    count_meshes();
+  }
 
   const Sizes& sizes() const { return sizes_; }
 
@@ -101,7 +115,21 @@ class Counting {
       if (!is_empty(node, slot)) count_child(node.child[slot]);
   }
 
+  // Each that there is an instance of, once.
+  void count_meshes() {
+    std::unordered_set<layout::u32> known;
+    for (const std::uint32_t i : sizes_.instances)
+      if (const layout::u32 root = scene_.instances[i].root; known.insert(root).second)
+        sizes_.roots.push_back(root);
+    in_mesh_ = true;
+    for (const layout::u32 root : sizes_.roots) count_child(root);
+  }
+
   void count_leaf(layout::u32 leaf) {
+    if (is_instance(leaf)) {
+      sizes_.instances.push_back(leaf & KDRAY_WIDE_FIRST_MASK);
+      return;
+    }
     const std::uint32_t kind = flatten::leaf_kind(leaf), n = leaf_blocks(walk_.form(), leaf);
     const auto width = static_cast<std::size_t>(walk_.form().block);
     const layout::u32* words = blocks_of(walk_.form(), kind).data() +
@@ -109,14 +137,18 @@ class Counting {
                                (kBlockRows[kind] - 1) * width;
     for (std::uint32_t b = 0; b < n; ++b, words += kBlockRows[kind] * width)
       for (std::size_t lane = 0; lane < width; ++lane) {
-        holders_.add(kind, words[lane] & ~KDRAY_WIDE_LAST, std::uint64_t{1} << walk_.part());
+        const std::uint32_t index = words[lane] & ~KDRAY_WIDE_LAST;
+        holders_.add(kind, index, std::uint64_t{1} << walk_.part());
+        if (in_mesh_) sizes_.meshes[kind] = std::min(sizes_.meshes[kind], index);
         if (words[lane] & KDRAY_WIDE_LAST) break;  // the last primitive; empty lanes follow
       }
     sizes_.blocks[kind] += n;
   }
 
+  const flatten::FlatScene& scene_;
   const PartWalk& walk_;
   Holders& holders_;
+  bool in_mesh_ = false;
   Sizes sizes_;
 };
 
@@ -127,14 +159,17 @@ struct Numbering {
   std::uint32_t n_shared = 0;
 };
 
-Numbering number(const Holders& holders, const flatten::FlatScene& scene, std::uint32_t part) {
+// Primitives of meshes, which lie behind the scene's own, count as a part's own, whoever else holds them.
+Numbering number(const Holders& holders, const flatten::FlatScene& scene, const Sizes& sizes,
+                 std::uint32_t part) {
   Numbering n;
   const std::uint64_t bit = std::uint64_t{1} << part;
   for (std::uint32_t kind = 0; kind < kKinds; ++kind) {
     const std::vector<std::uint64_t>& of = holders.of[kind];
     std::vector<std::uint32_t> own;
     for (std::uint32_t i = 0; i < of.size(); ++i)
-      if (of[i] & bit) (std::has_single_bit(of[i]) ? own : n.members[kind]).push_back(i);
+      if (of[i] & bit)
+        (std::has_single_bit(of[i]) || i >= sizes.meshes[kind] ? own : n.members[kind]).push_back(i);
     if (kind == KDRAY_KIND_TRIANGLE) {
       n.n_shared = static_cast<std::uint32_t>(n.members[kind].size());
       std::sort(n.members[kind].begin(), n.members[kind].end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -152,15 +187,28 @@ Numbering number(const Holders& holders, const flatten::FlatScene& scene, std::u
 class Copying {
  public:
   Copying(const PartWalk& walk, const Sizes& sizes, const Numbering& numbering, flatten::WideForm& out)
-      : walk_(walk), numbering_(numbering), out_(out) {
+      : walk_(walk), sizes_(sizes), numbering_(numbering), out_(out) {
     const auto width = static_cast<std::size_t>(walk.form().block);
     out.block = walk.form().block;
+    out.widen = walk.form().widen;
     out.stack_size = walk.form().stack_size;  // a part's is no larger than the whole's
     out.nodes = Array<layout::WideNode>(sizes.nodes);
     for (std::uint32_t kind = 0; kind < kKinds; ++kind)
       blocks_of(out, kind) = Array<layout::u32>(sizes.blocks[kind] * kBlockRows[kind] * width);
     n_nodes_ = 1;
     copy_opened(0, 0);
+    for (const layout::u32 root : sizes.roots) roots_[root] = copy_child(root, n_nodes_++);
+  }
+
+  // The part's instances, of meshes that are where they have been copied to.
+  Array<layout::Instance> instances(const flatten::FlatScene& scene) const {
+    Array<layout::Instance> some(sizes_.instances.size());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      some[i] = scene.instances[sizes_.instances[i]];
+      some[i].root = roots_.at(some[i].root);
+      some[i].number = sizes_.instances[i];
+    }
+    return some;
   }
 
  private:
@@ -209,7 +257,14 @@ class Copying {
     return static_cast<layout::u32>(place);
   }
 
+  layout::u32 copy_instance(layout::u32 leaf) const {
+    const auto at =
+        std::lower_bound(sizes_.instances.begin(), sizes_.instances.end(), leaf & KDRAY_WIDE_FIRST_MASK);
+    return KDRAY_INSTANCE_LEAF | static_cast<layout::u32>(at - sizes_.instances.begin());
+  }
+
   layout::u32 copy_leaf(layout::u32 leaf) {
+    if (is_instance(leaf)) return copy_instance(leaf);
     const std::uint32_t kind = flatten::leaf_kind(leaf), n = leaf_blocks(walk_.form(), leaf);
     const auto width = static_cast<std::size_t>(walk_.form().block);
     const std::size_t words = kBlockRows[kind] * width;
@@ -232,9 +287,11 @@ class Copying {
   }
 
   const PartWalk& walk_;
+  const Sizes& sizes_;
   const Numbering& numbering_;
   flatten::WideForm& out_;
   std::size_t n_nodes_ = 0;
+  std::unordered_map<layout::u32, layout::u32> roots_;  // of meshes, by what they are in the whole
   std::array<std::size_t, kKinds> n_blocks_{};
 };
 
@@ -278,6 +335,15 @@ flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numb
   }
   flat.normals = select(scene.normals, normals);
   return flat;
+}
+
+// Of all parts, so that each tells the primitives of meshes, wherever those are used.
+void share_first_of_meshes(std::vector<Sizes>& sizes) {
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+    for (const Sizes& s : sizes) first = std::min(first, s.meshes[kind]);
+    for (Sizes& s : sizes) s.meshes[kind] = first;
+  }
 }
 
 Box box_of(const layout::PartCell& cell) {
@@ -397,8 +463,8 @@ class Directory {
 }  // namespace
 
 std::size_t geometry_bytes(const flatten::FlatScene& flat, const flatten::WideForm& wide) {
-  std::size_t bytes =
-      flat.normals.bytes() + flat.texcoords.bytes() + flat.corner_colors.bytes() + wide.bytes();
+  std::size_t bytes = flat.normals.bytes() + flat.texcoords.bytes() + flat.corner_colors.bytes() +
+                      flat.instances.bytes() + wide.bytes();
   primitives::for_each_kind([&](auto kind) { bytes += decltype(kind)::of(flat).bytes(); });
   return bytes;
 }
@@ -412,14 +478,16 @@ std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::Wid
   Holders holders(scene);
   std::vector<Sizes> sizes(n_parts);
   tbb::parallel_for(0u, n_parts, [&](std::uint32_t part) {
-    sizes[part] = Counting(PartWalk(form, cut, part_of, part), holders).sizes();
+    sizes[part] = Counting(scene, PartWalk(form, cut, part_of, part), holders).sizes();
   });
+  share_first_of_meshes(sizes);
   std::vector<Part> parts(n_parts);
   tbb::parallel_for(0u, n_parts, [&](std::uint32_t part) {
-    const Numbering numbering = number(holders, scene, part);
+    const Numbering numbering = number(holders, scene, sizes[part], part);
     parts[part].flat = select_primitives(scene, numbering);
     parts[part].n_shared = numbering.n_shared;
-    Copying(PartWalk(form, cut, part_of, part), sizes[part], numbering, parts[part].wide);
+    const PartWalk walk(form, cut, part_of, part);
+    parts[part].flat.instances = Copying(walk, sizes[part], numbering, parts[part].wide).instances(scene);
   });
   return parts;
 }

@@ -3,7 +3,8 @@
 //         they meet.
 // Shape   A primitive that lies in subtrees of several parts is in all of those. A part's triangles begin
 //         with such ones, ordered by number, so that a shadow ray from elsewhere can name the one that it
-//         left. Materials and lights are everywhere.
+//         left. A mesh is whole in every part that has an instance of it; an instance is in one part.
+//         Materials and lights are everywhere.
 // Why     The whole form's stack, blocks and boxes stay what they are, so one program serves the whole and
 //         every part, and a ray meets in the parts what it would meet in the whole.
 #pragma once

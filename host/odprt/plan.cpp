@@ -82,7 +82,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   // Few parts are what most of a launch's rays go to: where all are copied, they share the room.
   out.n_places = sorts ? 1 : r.n_parts;
   out.n_slices = plan.n_slices;
-  out.ray_fields = wavefront::travel_fields(r.features);
+  out.ray_fields = wavefront::travel_ray_fields(r.features);
   out.rays = outbox_rays(r, plan.n_slices);
   out.shadow = lights ? std::max(r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights) : 1;
   // Where there is one part nothing is ever sent.
@@ -103,8 +103,9 @@ std::size_t work_bytes(const layout::Frame& frame, const Plan& plan, std::size_t
                        std::size_t n_outboxes) {
   const std::size_t pools = std::size_t{frame.max_depth} * plan.outbox.ray_fields * frame.pool_capacity +
                             std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * (plan.shadow_pool + 2 * KDRAY_LANES);
-  const std::size_t streams = std::size_t{plan.outbox.ray_fields + KDRAY_HIT_FIELDS} * frame.batch_capacity +
-                              std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS + 1} * frame.shadow_capacity;
+  const std::size_t streams =
+      std::size_t{plan.outbox.ray_fields + KDRAY_HIT_FIELDS + 1} * frame.batch_capacity +
+      std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS + 2} * frame.shadow_capacity;
   const auto words = [](const OutboxShape& box) {
     return std::size_t{box.ray_fields} * box.ray_capacity +
            std::size_t{KDRAY_SENT_SHADOW_FIELDS} * box.shadow_capacity;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <list>
 #include <queue>
+#include <unordered_map>
 
+#include "layout/instances.layout.h"
 #include "layout/primitives.layout.h"
 #include "odprt/kinds.h"
 
@@ -20,17 +22,20 @@ constexpr double kNodeCost = 1, kBlockCost = 2;
 struct Load {
   double cost = 0;
   std::uint64_t bytes = 0;
+  bool placed = false;  // has instances
 
   void add(const Load& o) {
     cost += o.cost;
     bytes += o.bytes;
+    placed = placed || o.placed;
   }
 };
 
 class Loads {
  public:
   Loads(const flatten::FlatScene& scene, const flatten::WideForm& form)
-      : form_(form), nodes_(form.nodes.size()) {
+      : scene_(scene), form_(form), nodes_(form.nodes.size()) {
+    for (const layout::Instance& instance : scene.instances) ++n_placed_[instance.root];
     // A smooth triangle has its normals beside it, a painted one what is at its corners.
     const std::uint64_t beside =
         scene.normals.bytes() + scene.texcoords.bytes() + scene.corner_colors.bytes();
@@ -39,17 +44,22 @@ class Loads {
         [this](auto kind) { primitive_bytes_[kind.kNumber] = sizeof(typename decltype(kind)::Layout); });
     primitive_bytes_[KDRAY_KIND_TRIANGLE] += each;
     tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t i) { nodes_[i] = own(form_.nodes[i]); });
-    // Children come behind their parents.
+    // Children come behind their parents, meshes behind their instances.
     for (std::size_t i = nodes_.size(); i-- > 0;)
       for (std::uint32_t slot = 0; slot < 8; ++slot) {
         const layout::u32 child = form_.nodes[i].child[slot];
-        if (!child_bounds(form_.nodes[i], slot).empty() && !(child & KDRAY_WIDE_LEAF))
+        const Box bounds = child_bounds(form_.nodes[i], slot);
+        if (bounds.empty()) continue;
+        if (!(child & KDRAY_WIDE_LEAF))
           nodes_[i].add(nodes_[child]);
+        else if (is_instance(child))
+          nodes_[i].add(of_instance(child, bounds));
       }
   }
 
   Load of(layout::u32 child, const Box& bounds) const {
-    if (child & KDRAY_WIDE_LEAF) return of_leaf(child, bounds);
+    if (child & KDRAY_WIDE_LEAF)
+      return is_instance(child) ? of_instance(child, bounds) : of_leaf(child, bounds);
     Load load = nodes_[child];
     load.cost += kNodeCost * static_cast<double>(bounds.area());
     return load;
@@ -63,12 +73,24 @@ class Loads {
             lanes * (kBlockRows[kind] * sizeof(float) + primitive_bytes_[kind])};
   }
 
-  // A node's leaves, and that it costs something to come to its inner children.
+  // What a ray that meets the mesh's bounds is expected to cost there, it costs one that meets the instance's.
+  Load of_instance(layout::u32 leaf, const Box& bounds) const {
+    const layout::u32 root = scene_.instances[leaf & KDRAY_WIDE_FIRST_MASK].root;
+    Box of_mesh;
+    for (std::uint32_t slot = 0; slot < 8; ++slot) of_mesh.grow(child_bounds(form_.nodes[root], slot));
+    const Load& mesh = nodes_[root];
+    const auto area = static_cast<double>(of_mesh.area());
+    const double within = area > 0 ? mesh.cost / area : 0;
+    return {(kNodeCost + within) * static_cast<double>(bounds.area()),
+            sizeof(layout::Instance) + mesh.bytes / n_placed_.at(root), true};
+  }
+
+  // A node's leaves but for instances, and that it costs something to come to its inner children.
   Load own(const layout::WideNode& node) const {
     Load load{0, sizeof(layout::WideNode)};
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
       const Box bounds = child_bounds(node, slot);
-      if (bounds.empty()) continue;
+      if (bounds.empty() || is_instance(node.child[slot])) continue;
       if (node.child[slot] & KDRAY_WIDE_LEAF)
         load.add(of_leaf(node.child[slot], bounds));
       else
@@ -77,7 +99,9 @@ class Loads {
     return load;
   }
 
+  const flatten::FlatScene& scene_;
   const flatten::WideForm& form_;
+  std::unordered_map<layout::u32, std::uint64_t> n_placed_;  // by their mesh's root
   std::vector<Load> nodes_;
   std::array<std::uint64_t, kKinds> primitive_bytes_{};
 };
@@ -129,7 +153,7 @@ class Cutter {
   Subtree subtree(layout::u32 child, const Box& bounds) const {
     const Load load = loads_.of(child, bounds);
     const auto area = static_cast<double>(bounds.area());
-    return {bounds, load.cost, area > 0 ? load.cost / area : kNodeCost, load.bytes, child};
+    return {bounds, load.cost, area > 0 ? load.cost / area : kNodeCost, load.bytes, child, load.placed};
   }
 
   struct Cheaper {
@@ -149,6 +173,7 @@ class Cutter {
 }  // namespace
 
 std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf) {
+  if (is_instance(leaf)) return 1;
   const std::uint32_t kind = flatten::leaf_kind(leaf);
   const std::size_t words = kBlockRows[kind] * static_cast<std::size_t>(form.block);
   const layout::u32* block = blocks_of(form, kind).data() + (leaf & KDRAY_WIDE_FIRST_MASK) * words;

@@ -1,6 +1,7 @@
 // What    Cuts the wide form of a scene into subtrees of about equal expected cost: what ODPRT deals out to
 //         queues.
-// Shape   The costliest subtree is opened until there are enough. Subtrees come in the kd-tree's own order,
+// Shape   An instance is a leaf: it is as dear as its mesh, whose bytes its instances share.
+//         The costliest subtree is opened until there are enough. Subtrees come in the kd-tree's own order,
 //         so that neighbours in the list are neighbours in space; their cells are disjoint.
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed. Costs: the surface-area
 //         heuristic.
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "flatten/wide.h"
+#include "layout/instances.layout.h"
 #include "math/box.h"
 
 namespace kdray::odprt {
@@ -21,6 +23,7 @@ struct Subtree {
   double visit = 0;         // expected cost of a ray that meets the subtree's own bounds
   std::uint64_t bytes = 0;  // of its nodes, blocks and primitives
   layout::u32 child = 0;    // the wide node's word: a node or a leaf
+  bool placed = false;      // there are instances in it
 };
 
 // What rays did with a subtree.
@@ -45,7 +48,12 @@ struct Cut {
 // Cuts the form into at least `n` subtrees, if the tree has as many that can be told apart.
 Cut cut(const flatten::FlatScene& scene, const flatten::WideForm& form, std::size_t n);
 
-// The number of blocks of a leaf.
+// Whether a leaf is an instance of a mesh.
+inline bool is_instance(layout::u32 leaf) {
+  return (leaf & ~KDRAY_WIDE_FIRST_MASK) == KDRAY_INSTANCE_LEAF;
+}
+
+// The number of blocks of a leaf; an instance counts as one.
 std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf);
 
 // Bounds of a node's child.

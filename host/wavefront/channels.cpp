@@ -14,8 +14,8 @@ namespace kdray::wavefront {
 
 namespace {
 
-constexpr std::size_t kPlanes = 6;                 // floats per pixel that the kernel writes
-constexpr std::size_t kPixelsPerLaunch = 1 << 20;  // 24 MiB of buffer, whatever the picture's size
+constexpr std::size_t kPlanes = 7;                 // floats per pixel that the kernel writes
+constexpr std::size_t kPixelsPerLaunch = 1 << 20;  // 28 MiB of buffer, whatever the picture's size
 constexpr std::size_t kWorkGroup = 16;             // items of KDRAY_LANES pixels
 
 struct Plane {
@@ -25,7 +25,8 @@ struct Plane {
 };
 constexpr Plane kPlaneTable[kPlanes] = {{"depth", "depth", 0},         {"normal", "normal.x", 1},
                                         {"normal", "normal.y", 2},     {"normal", "normal.z", 3},
-                                        {"primitive", "primitive", 4}, {"cost", "cost", 5}};
+                                        {"primitive", "primitive", 4}, {"cost", "cost", 5},
+                                        {"instance", "instance", 6}};
 
 std::vector<Plane> wanted_planes(std::span<const std::string> names) {
   std::vector<Plane> planes;
@@ -34,10 +35,10 @@ std::vector<Plane> wanted_planes(std::span<const std::string> names) {
     for (const Plane& p : kPlaneTable)
       if (name == p.channel) planes.push_back(p);
     if (planes.size() == before)
-      throw Error(
-          ErrorCode::usage,
-          fmt::format("there is no channel '{}'; there are depth, normal, primitive, cost, queue and samples",
-                      name));
+      throw Error(ErrorCode::usage,
+                  fmt::format("there is no channel '{}'; there are depth, normal, primitive, instance, "
+                              "cost, queue and samples",
+                              name));
   }
   return planes;
 }
@@ -58,7 +59,9 @@ std::vector<film::Channel> render_channels(const device::Context& context, const
   const cl::Buffer out = context.buffer(CL_MEM_WRITE_ONLY, chunk * kPlanes * sizeof(float), "the channels");
   const cl::Buffer frame_buffer = context.buffer(CL_MEM_READ_ONLY, sizeof frame, "the frame");
   using K = kernels::Channels;
-  Stage stage(programs.kernel<K>(features | KDRAY_FEATURE_COST, Traversal::binary, precision));
+  // The binary tree has no instances.
+  const Traversal walk = features & KDRAY_FEATURE_INSTANCES ? Traversal::wide : Traversal::binary;
+  Stage stage(programs.kernel<K>(features | KDRAY_FEATURE_COST, walk, precision));
   cl::CommandQueue queue = context.queues().front();
   std::vector<float> values(chunk * kPlanes);
   device::checked("rendering the channels", [&] {

@@ -53,7 +53,8 @@ layout::Features bits_read_by(const std::string& file) {
   if (file == "shade/shade.cl") return kShading;
   if (file == "wave/wave.cl" || file == "odprt/wave.cl")
     return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | kSamples;
-  if (file == "odprt/receive.cl") return KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS;
+  if (file == "odprt/receive.cl")
+    return KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_INSTANCES;
   if (file == "traverse/trace_closest.cl")
     return kGeometry | kPaint | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS;
   if (file == "traverse/trace_shadow.cl") return kGeometry | kPaint;

@@ -24,9 +24,13 @@ std::uint32_t pencil_fields(layout::Features features) {
   return features & KDRAY_FEATURE_FOOTPRINTS ? 1 : 0;
 }
 
-std::uint32_t travel_fields(layout::Features features) {
+std::uint32_t instance_fields(layout::Features features) {
+  return features & KDRAY_FEATURE_INSTANCES ? 1 : 0;
+}
+
+std::uint32_t travel_ray_fields(layout::Features features) {
   const std::uint32_t of_sample = features & KDRAY_FEATURE_AREA_LIGHTS ? 1 : 0;
-  return KDRAY_TRAVEL_RAY_FIELDS + pencil_fields(features) + of_sample;
+  return KDRAY_TRAVEL_RAY_FIELDS + instance_fields(features) + pencil_fields(features) + of_sample;
 }
 
 std::uint32_t capacity_for(std::uint32_t n) {
@@ -35,7 +39,7 @@ std::uint32_t capacity_for(std::uint32_t n) {
 
 // Rays and hits name an instance where there are some (rays.layout.h).
 StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, layout::Features features) {
-  const std::uint32_t instance = features & KDRAY_FEATURE_INSTANCES ? 1 : 0;
+  const std::uint32_t instance = instance_fields(features);
   const std::uint32_t of_ray = instance + frame.tells_sample + pencil_fields(features);
   StreamForm form;
   form.word = word;
@@ -51,8 +55,9 @@ StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, l
 StreamForm StreamForm::of_odprt(const layout::Frame& frame, layout::Features features) {
   StreamForm form;
   form.pools = frame.max_depth;
-  form.pool_fields = form.ray_fields = travel_fields(features);
-  form.shadow_fields = KDRAY_TRAVEL_SHADOW_FIELDS;
+  form.pool_fields = form.ray_fields = travel_ray_fields(features);
+  form.shadow_fields = KDRAY_TRAVEL_SHADOW_FIELDS + instance_fields(features);
+  form.hit_fields = KDRAY_HIT_FIELDS + instance_fields(features);
   form.sparse_pools = true;
   form.film_cleared = true;
   return form;

@@ -27,8 +27,11 @@ std::uint32_t spawned_per_ray(layout::Features features);
 // The words of a ray that its pencil takes: rays that wait, travel, or are in work have it.
 std::uint32_t pencil_fields(layout::Features features);
 
-// The words of a ray of ODPRT.
-std::uint32_t travel_fields(layout::Features features);
+// The words by which hits, and rays that carry one, name an instance.
+std::uint32_t instance_fields(layout::Features features);
+
+// All words of a ray of ODPRT.
+std::uint32_t travel_ray_fields(layout::Features features);
 
 // A stream's words per field for `n` rays: whole vectors, and one behind the last ray (rays.layout.h).
 std::uint32_t capacity_for(std::uint32_t n);

@@ -1,13 +1,15 @@
 // What    The extra channels of a picture (AOVs) from one eye ray per pixel, through its centre (or corner).
-// Shape   One work-item per sixteen pixels; out_channels[pixel*6]: depth, normal x y z, primitive number,
-//         cost. Nothing hit: depth inf, normal 0, primitive -1. A failed walk: depth NaN, which the host
-//         takes for an error.
+// Shape   One work-item per sixteen pixels; out_channels[pixel*7]: depth, normal x y z, primitive number,
+//         cost, instance. Nothing hit: depth inf, normal 0, primitive -1, instance -1, as for the scene's own
+//         primitives. A failed walk: depth NaN, which the host takes for an error. The binary tree is walked,
+//         but where there are instances, which the wide form alone has; that walk has no cost.
 #include "layout/arguments.h"
 #include "layout/features.h"
 #include "layout/rays.layout.h"
 #include "raygen/primary.clh"
 #include "shade/surface.clh"
 #include "traverse/closest.clh"
+#include "traverse/wide.clh"
 
 // Sixteen numbers in turn, by lane.
 typedef struct Row {
@@ -18,6 +20,39 @@ inline Row row_of(real16 v) {
   Row row;
   vstore16(v, 0, row.lane);
   return row;
+}
+
+// What an eye ray hits first.
+typedef struct Seen {
+  real t, u, v, cost;
+  u32 ref, instance;  // 1 + the instance's index
+} Seen;
+
+inline Seen see(const SceneArrays* scene, __constant const Frame* frame, const real* origin,
+                const real* direction, real t_min) {
+#if KDRAY_HAS_INSTANCES
+  RayIn in;
+  for (int k = 0; k < 3; ++k) in.origin[k] = origin[k], in.direction[k] = direction[k];
+  in.t_min = t_min;
+  in.t_max = INFINITY;
+  in.skip = KDRAY_REF_MISS;
+  in.skip_instance = 0;
+  in.any_hit = 0;
+  WideRay r;
+  begin_ray(&r, &in, frame->world_max);
+  walk_wide(scene, &r);
+  const Seen seen = {
+      r.ref == KDRAY_REF_MISS ? INFINITY : r.t, r.wb / r.det, r.wc / r.det, 0.0f, r.ref, r.instance};
+#else
+  const TreeRay r =
+      make_tree_ray((real3)(origin[0], origin[1], origin[2]),
+                    (real3)(direction[0], direction[1], direction[2]), t_min, INFINITY, frame->world_max);
+  u32 steps = 0;
+  const Hit hit = find_closest(scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi),
+                               KDRAY_REF_MISS, &steps);
+  const Seen seen = {hit.t, hit.u, hit.v, (real)steps, hit.ref, 0};
+#endif
+  return seen;
 }
 
 __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
@@ -34,25 +69,32 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   const Row t_min = row_of(frame->hither / dot3(d, splat3(load3_constant(frame->forward))));
   // Lanes behind the last pixel are computed with: as a miss.
   Row t = row_of((real16)(INFINITY)), u = row_of((real16)(0.0f)), v = u, number = u, cost = u;
-  word refs[KDRAY_LANES];
+  word refs[KDRAY_LANES], instances[KDRAY_LANES];
   for (u32 i = 0; i < KDRAY_LANES; ++i) {
     refs[i] = KDRAY_REF_MISS;
+    instances[i] = 0;
     if (i >= n) continue;
-    const TreeRay r =
-        make_tree_ray((real3)(ox.lane[i], oy.lane[i], oz.lane[i]),
-                      (real3)(dx.lane[i], dy.lane[i], dz.lane[i]), t_min.lane[i], INFINITY, frame->world_max);
-    u32 steps = 0;
-    const Hit hit = find_closest(&scene, &r, load3_constant(frame->root_lo), load3_constant(frame->root_hi),
-                                 KDRAY_REF_MISS, &steps);
+    const real origin[3] = {ox.lane[i], oy.lane[i], oz.lane[i]};
+    const real direction[3] = {dx.lane[i], dy.lane[i], dz.lane[i]};
+    const Seen hit = see(&scene, frame, origin, direction, t_min.lane[i]);
     const bool found = hit.ref < KDRAY_REF_INVALID;
     t.lane[i] = hit.ref == KDRAY_REF_INVALID ? NAN : hit.t;
     u.lane[i] = hit.u;
     v.lane[i] = hit.v;
     refs[i] = found ? hit.ref : KDRAY_REF_MISS;
     number.lane[i] = found ? (real)primitive_number(&scene, hit.ref) : -1.0f;
-    cost.lane[i] = (real)steps;
+    instances[i] = found ? hit.instance : 0;
+    cost.lane[i] = hit.cost;
   }
-  const Hits hits = {vload16(0, t.lane), vload16(0, refs), vload16(0, u.lane), vload16(0, v.lane)};
+  const Hits hits = {
+    vload16(0, t.lane),
+    vload16(0, refs),
+    vload16(0, u.lane),
+    vload16(0, v.lane),
+#if KDRAY_HAS_INSTANCES
+    vload16(0, instances),
+#endif
+  };
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const lanes16 hit = hits.ref != KDRAY_REF_MISS;
   Surface s;
@@ -60,10 +102,11 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   const Real3x16 normal = select3(hit, s.shading, zero3());
   const Row nx = row_of(normal.x), ny = row_of(normal.y), nz = row_of(normal.z);
   for (u32 i = 0; i < n; ++i) {
-    __global float* out = out_channels + (size_t)(first + i) * 6;
+    __global float* out = out_channels + (size_t)(first + i) * 7;
     out[0] = t.lane[i];
     store3(out + 1, (real3)(nx.lane[i], ny.lane[i], nz.lane[i]));
     out[4] = number.lane[i];
     out[5] = cost.lane[i];
+    out[6] = (float)instances[i] - 1.0f;
   }
 }

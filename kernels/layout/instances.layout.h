@@ -30,7 +30,8 @@ typedef struct Instance {
   // What surfaces read besides.
   float to_world[3][3];  // by rows
   u32 material;          // of all its primitives, or KDRAY_MESH_MATERIAL: each has its own
-  u32 pad[5];
+  u32 number;            // in the whole scene; set in ODPRT's parts alone (host/odprt/parts.cpp)
+  u32 pad[4];
 } Instance;
 KDRAY_ASSERT_SIZE(Instance, 128)
 KDRAY_ASSERT_OFFSET(Instance, to_world, 68)

@@ -42,15 +42,18 @@
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
 // In ODPRT a ray brings the best hit so far, whose t is the float below t_max.
-#define KDRAY_RAY_NUMBER 12u         // u32: of its primitive, in file order
-#define KDRAY_RAY_FINDER 13u         // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
-#define KDRAY_RAY_WAY 14u            // a float, u32: the parts that were asked (odprt/way.clh)
-#define KDRAY_TRAVEL_RAY_FIELDS 16u  // and its pencil, and its sample
+#define KDRAY_RAY_NUMBER 12u  // u32: of its primitive, in file order
+#define KDRAY_RAY_FINDER 13u  // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
+#define KDRAY_RAY_WAY 14u     // a float, u32: the parts that were asked (odprt/way.clh)
+// Where there are instances a ray has another word, the number in the whole scene of the one that the
+// primitive is in + 1; last are its pencil and its sample.
+#define KDRAY_TRAVEL_RAY_FIELDS 16u
 #if KDRAY_ODPRT
 #define KDRAY_RAY_SKIP 0u  // none: a part may not know another's triangle
-#define KDRAY_RAY_PENCIL 16u
-#define KDRAY_RAY_SAMPLE (16u + KDRAY_PENCIL_FIELDS)
-#define KDRAY_RAY_FIELDS (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_PENCIL_FIELDS + KDRAY_TELLS_SAMPLE)
+#define KDRAY_RAY_INSTANCE 16u
+#define KDRAY_RAY_PENCIL (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_INSTANCE_FIELDS)
+#define KDRAY_RAY_SAMPLE (KDRAY_RAY_PENCIL + KDRAY_PENCIL_FIELDS)
+#define KDRAY_RAY_FIELDS (KDRAY_RAY_SAMPLE + KDRAY_TELLS_SAMPLE)
 #else
 // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
 #define KDRAY_RAY_SKIP 12u
@@ -80,17 +83,21 @@
 #define KDRAY_SHADOW_SKIP 8u  // u32: the reference that can't block (the triangle the point lies on), or MISS
 #define KDRAY_SHADOW_CONTRIBUTION 9u                            // red green blue
 #define KDRAY_SHADOW_PIXEL 12u                                  // u32
-#define KDRAY_SHADOW_SKIP_INSTANCE 13u                          // as for rays; not in ODPRT
 #define KDRAY_MADE_SHADOW_FIELDS (13u + KDRAY_INSTANCE_FIELDS)  // what shading writes
 #define KDRAY_SHADOW_WAY 13u  // ODPRT, of those that come from elsewhere: as KDRAY_RAY_WAY
 #define KDRAY_TRAVEL_SHADOW_FIELDS 15u
 #define KDRAY_SENT_SHADOW_TO 15u  // on its way: the part that it goes to
 #define KDRAY_SENT_SHADOW_FIELDS 16u
+// The instance of the triangle, as for rays. In ODPRT it doesn't travel: no instance lies in two parts.
 #if KDRAY_ODPRT
-#define KDRAY_SHADOW_FIELDS KDRAY_TRAVEL_SHADOW_FIELDS
+#define KDRAY_SHADOW_SKIP_INSTANCE KDRAY_TRAVEL_SHADOW_FIELDS
+#define KDRAY_SHADOW_FIELDS (KDRAY_TRAVEL_SHADOW_FIELDS + KDRAY_INSTANCE_FIELDS)
 #else
+#define KDRAY_SHADOW_SKIP_INSTANCE 13u
 #define KDRAY_SHADOW_FIELDS KDRAY_MADE_SHADOW_FIELDS
 #endif
+// The f-th field that shading writes.
+#define KDRAY_MADE_SHADOW_FIELD(f) ((f) < 13u ? (f) : KDRAY_SHADOW_SKIP_INSTANCE)
 
 // Pooled rays wait for their batch; they begin at t = 0 and have no end. Those of ODPRT may have come from
 // elsewhere, and are kept as they are in a batch.

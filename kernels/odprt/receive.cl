@@ -36,7 +36,7 @@ inline void receive_shadow_rays(__constant const Travel* travel, ConstStream fro
     return;
   }
   const u32 first = traffic->n_shadow_pool;
-  for (u32 f = 0; f < KDRAY_SHADOW_FIELDS; ++f)
+  for (u32 f = 0; f < KDRAY_TRAVEL_SHADOW_FIELDS; ++f)
     for (u32 i = 0; i < n; i += KDRAY_LANES) write16(pool, f, first + i, read16(from, f, i));
   traffic->n_shadow_pool = first + n;
 }
@@ -50,5 +50,5 @@ __kernel void receive(KDRAY_PARAMETERS(KDRAY_RECEIVE_ARGUMENTS)) {
   receive_shadow_rays(travel,
                       const_stream_of(in_sent_shadow_rays, from, KDRAY_SENT_SHADOW_FIELDS, shadow_capacity),
                       in_sent_counts[n_places * travel->n_slices + from], io_slices + s, io_traffic + s,
-                      stream_of(io_shadow_pool, s, KDRAY_SHADOW_FIELDS, travel->shadow_pool_capacity));
+                      stream_of(io_shadow_pool, s, KDRAY_TRAVEL_SHADOW_FIELDS, travel->shadow_pool_capacity));
 }

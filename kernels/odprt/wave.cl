@@ -89,10 +89,11 @@ inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* f
   if (work.n == 0) return false;
   if (work.depth == 0) {
 #if KDRAY_HAS_LIGHTS
-    admit_shadow_rays(
-        t, frame, work.n,
-        const_stream_of(s->shadow_pool, slice_id, KDRAY_SHADOW_FIELDS, t->travel->shadow_pool_capacity),
-        stream_of(s->shadow_rays, slice_id, KDRAY_SHADOW_FIELDS, frame->shadow_capacity), s->film);
+    admit_shadow_rays(t, frame, work.n,
+                      const_stream_of(s->shadow_pool, slice_id, KDRAY_TRAVEL_SHADOW_FIELDS,
+                                      t->travel->shadow_pool_capacity),
+                      stream_of(s->shadow_rays, slice_id, KDRAY_SHADOW_FIELDS, frame->shadow_capacity),
+                      s->film);
     clock_stage(&t->slice->cycles_admit, &since);
     trace_shadow_rays(t, frame, slice_id, census, s, false, &since);
 #endif

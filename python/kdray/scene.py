@@ -485,8 +485,8 @@ class Scene:
         """A Whitted picture, `size` = (width, height), by `camera` or one that sees all of the scene.
 
         `samples` per pixel, or `adaptive`: as many as each pixel needs (a float: the error in linear RGB that is
-        aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth", "normal", "primitive", "cost",
-        "samples", "queue".
+        aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth", "normal", "primitive",
+        "instance", "cost", "samples", "queue".
         `min_weight`: rays that change a pixel by less are left out; 0 traces all.
         """
         named = list(channels)

@@ -98,7 +98,6 @@ TEST_P(Identical, WhateverQueuesFail) {
 }
 
 TEST_P(Identical, FromRunToRunAndWithChannels) {
-  if (!GetParam().make().instances.empty()) GTEST_SKIP() << "channels refuse instances";
   const Scene scene{GetParam().make()};
   const Schedule schedule{16, 16, 0, 2};
   const std::vector<std::string> names = {"depth", "normal", "primitive"};

@@ -152,6 +152,58 @@ std::string refusal(const std::function<void()>& act) {
   return {};
 }
 
+// The number that a primitive has among copies, which lie one after the other behind the scene's own.
+class CopiedNumbers {
+ public:
+  explicit CopiedNumbers(const scene::Scene& model) {
+    std::uint32_t first = model.primitive_count();
+    for (const scene::Instance& i : model.instances) {
+      first_.push_back(first);
+      first += model.meshes[i.mesh]->primitive_count();
+    }
+  }
+  float of(float instance, float primitive) const {
+    return instance < 0 ? primitive
+                        : static_cast<float>(first_[static_cast<std::size_t>(instance)]) + primitive;
+  }
+
+ private:
+  std::vector<std::uint32_t> first_;
+};
+
+TEST(Instances, HaveTheChannelsOfCopies) {
+  const scene::Scene model = instanced();
+  const auto seen = [](const scene::Scene& m) {
+    Renderer renderer(Scene{scene::Scene(m)}, {}, device_of());
+    RenderOptions options = exact_options(kWidth, kHeight);
+    options.channels = {"depth", "normal", "primitive", "instance"};
+    return renderer.render(options);
+  };
+  const Picture kept = seen(model), flat = seen(with_copies(model));
+  const CopiedNumbers numbers(model);
+  int others = 0, off = 0, in_instances = 0;
+  for (std::size_t i = 0; i < std::size_t{kWidth} * kHeight; ++i) {
+    EXPECT_EQ(channel(flat, "instance")[i], -1);
+    const float instance = channel(kept, "instance")[i];
+    in_instances += instance >= 0;
+    if (numbers.of(instance, channel(kept, "primitive")[i]) != channel(flat, "primitive")[i]) {
+      ++others;
+      continue;
+    }
+    const float depth = channel(kept, "depth")[i], expected = channel(flat, "depth")[i];
+    if (std::isinf(expected)) {
+      EXPECT_EQ(depth, expected);
+      continue;
+    }
+    off += std::abs(depth - expected) > 1e-4f * expected;
+    for (const char* n : {"normal.x", "normal.y", "normal.z"})
+      off += std::abs(channel(kept, n)[i] - channel(flat, n)[i]) > 1e-3f;
+  }
+  EXPECT_GT(in_instances, kWidth * kHeight / 10);
+  EXPECT_LE(others, kWidth * kHeight / 200);  // at edges
+  EXPECT_LE(off, kWidth * kHeight / 200);
+}
+
 TEST(Instances, AreRefusedWhereTheyAreNotKnown) {
   const Scene scene{instanced()};
   Renderer renderer(scene, {}, device_of());
@@ -159,16 +211,13 @@ TEST(Instances, AreRefusedWhereTheyAreNotKnown) {
     return refusal([&] { renderer.render(options); });
   };
   RenderOptions options = exact_options(16, 12);
-  options.mode = Mode::odprt;
-  EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
-  options = exact_options(16, 12);
   options.precision = Precision::float64;
   EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
   options = exact_options(16, 12);
   options.traversal = Traversal::binary;
   EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
   options = exact_options(16, 12);
-  options.channels = {"depth"};
+  options.channels = {"cost"};
   EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
   const Ray ray{{0, 0, 9}, 0, {0, 0, -1}, 100};
   EXPECT_NE(refusal([&] { renderer.trace(std::span(&ray, 1)); }).find("--instances flat"), std::string::npos);

@@ -142,7 +142,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Modes, testing::ValuesIn(small_scenes()),
 INSTANTIATE_TEST_SUITE_P(Painted, Modes,
                          testing::Values(NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
                                          NamedScene{"soft_light", soft_light},
-                                         NamedScene{"under_a_sky", under_a_sky}),
+                                         NamedScene{"under_a_sky", under_a_sky},
+                                         NamedScene{"instanced", instanced},
+                                         NamedScene{"instanced_maps", instanced_maps}),
                          [](const auto& info) { return info.param.name; });
 
 scene::Scene nothing() {

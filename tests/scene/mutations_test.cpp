@@ -14,6 +14,7 @@
 #include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
 #include "scene/importers.h"
+#include "scene/instances.h"
 #include "scene/mtl.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
@@ -159,6 +160,33 @@ TEST(Mutations, OfPaintedJson) {
       R"("uv":[[0,0],[1,0],[0.5,1]],"material":"m"}]})";
   mutate([&](std::string_view text, const std::filesystem::path&) { return read_json(text, folder / "a"); },
          good, kRounds);
+}
+
+// Places of a mesh that is there, kept as they are and copied.
+TEST(Mutations, OfInstancesInJson) {
+  const test::ScratchFolder folder;
+  folder.write("a.gltf", test::square().text());
+  const std::string good =
+      R"({"materials":{"m":{"color":[1,0,0]}},"objects":[{"type":"mesh","file":"a.gltf","scale":2,)"
+      R"("instances":[{"translate":[5,0,0],"rotate":{"axis":[0,0,1],"angle":30}},)"
+      R"({"scale":[-1,2,0.5],"material":"m"},{},{"matrix":[1,0,0,7,0,1,0,0,0,0,1,0,0,0,0,1]}]}]})";
+  for (const Instances how : {Instances::kept, Instances::flat}) {
+    const Instancing as(how);
+    mutate([&](std::string_view text, const std::filesystem::path&) { return read_json(text, folder / "b"); },
+           good, kRounds);
+  }
+}
+
+TEST(Mutations, OfInstancesInGltf) {
+  test::GltfSample sample = test::square();
+  sample.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  auto& attributes = sample.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  attributes["TRANSLATION"] = sample.vectors({0, 0, 0, 3, 0, 0, 0, 4, 0});
+  attributes["SCALE"] = sample.vectors({1, 1, 1, 2, 2, 2, 1, -1, 3});
+  for (const Instances how : {Instances::kept, Instances::flat}) {
+    const Instancing as(how);
+    mutate(read_gltf_at_rest, sample.text(), kRounds);
+  }
 }
 
 TEST(Mutations, OfMtlPictures) {

@@ -88,7 +88,7 @@ class SceneCache {
 };
 
 struct Channel {
-  // "depth", "normal.x" "normal.y" "normal.z", "primitive", "cost", "queue", "samples"
+  // "depth", "normal.x" "normal.y" "normal.z", "primitive", "instance", "cost", "queue", "samples"
   std::string name;
   std::vector<float> values;  // width * height
 };
