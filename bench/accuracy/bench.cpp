@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "api/statistics_json.h"
+#include "bench/accuracy/exact.h"
 #include "bench/accuracy/pareto.h"
 #include "bench/accuracy/povray.h"
 #include "bench/accuracy/reference.h"
@@ -24,7 +25,10 @@ constexpr int kPovrayRounds = 2;  // beside the one that is judged
 class AccuracyScene {
  public:
   AccuracyScene(const AccuracyOptions& options, const AccuracyCalls& calls, const std::string& name)
-      : options_(options), calls_(calls), scene_(generate::load_scene(name)) {
+      : options_(options),
+        calls_(calls),
+        exact_(exact_scene(name)),
+        scene_(exact_ ? exact_->scene : generate::load_scene(name)) {
     run_.scene = name;
   }
 
@@ -34,6 +38,7 @@ class AccuracyScene {
     run_.device = device.at("name"), run_.cores = cores_of(device);
     run_.n_primitives = scene_.primitive_count();
     run_.reference_in_double = device.value("double_precision", false);
+    run_.reference_is_exact = exact_.has_value();
     make_reference(first);
     for (const Setting& s : accuracy_settings({.cpu = device.at("kind") == "cpu",
                             .fading_lights = has_fading_lights(scene_),
@@ -78,20 +83,23 @@ class AccuracyScene {
   }
 
   void make_reference(Renderer& r) {
-    calls_.working(run_.scene + (run_.reference_in_double
-                                     ? ": reference"
-                                     : ": reference, in float: the device does not compute in double"));
-    Reference reference =
-        bench::make_reference(r, options_.width, options_.height, options_.reference_samples,
-                              run_.reference_in_double ? Precision::float64 : Precision::float32);
+    Reference reference = exact_ ? exact_->reference(options_.width, options_.height) : rendered_reference(r);
     run_.reference_seconds = reference.seconds, run_.reference_error = reference.own_error;
     reference_ = std::move(reference.image);
     calls_.picture(run_.scene, "reference", reference_);
   }
 
+  Reference rendered_reference(Renderer& r) {
+    calls_.working(run_.scene + (run_.reference_in_double
+                                     ? ": reference"
+                                     : ": reference, in float: the device does not compute in double"));
+    return bench::make_reference(r, options_.width, options_.height, options_.reference_samples,
+                                 run_.reference_in_double ? Precision::float64 : Precision::float32);
+  }
+
   // `plain` is kdray's picture of one sample at depth 16.
   void make_povray(const film::Image& plain) {
-    if (!options_.povray || !has_povray() || !pov_has_words_for(scene_)) return;
+    if (exact_ || !options_.povray || !has_povray() || !pov_has_words_for(scene_)) return;
     calls_.working(run_.scene + ": POV-Ray");
     povray_ = std::make_unique<PovrayPoints>(scene_, reference_, plain, run_.cores, options_.quick);
     run_.povray.emplace();
@@ -160,6 +168,7 @@ class AccuracyScene {
 
   const AccuracyOptions& options_;
   const AccuracyCalls& calls_;
+  std::optional<ExactScene> exact_;
   scene::Scene scene_;
   std::map<std::pair<BuildQuality, double>, std::unique_ptr<Renderer>> renderers_;
   film::Image reference_;
@@ -191,7 +200,7 @@ const AccuracyPoint* fastest_within(std::span<const AccuracyPoint> points, doubl
 }
 
 std::vector<AccuracyRun> bench_accuracy(const AccuracyOptions& options, const AccuracyCalls& calls) {
-  static const std::vector<std::string> kDefault = {"balls", "gears", "lamps"};
+  static const std::vector<std::string> kDefault = {"balls", "gears", "lamps", "chessboard", "penumbra"};
   std::vector<AccuracyRun> runs;
   for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
     runs.push_back(AccuracyScene(options, calls, name).run());

@@ -22,7 +22,7 @@ namespace kdray::bench {
 inline constexpr const char* kPovray = "POV-Ray";  // its points' group
 
 struct AccuracyOptions {
-  std::vector<std::string> scenes = {};  // empty: two generated ones and an interior
+  std::vector<std::string> scenes = {};  // empty: two generated ones, an interior and the exact ones
   int width = 512, height = 512;
   int repeat = 5;
   int reference_samples = 256;
@@ -57,7 +57,7 @@ struct AccuracyRun {
   std::string scene, device;
   std::size_t n_primitives = 0;
   int cores = 1;
-  bool reference_in_double = false;
+  bool reference_in_double = false, reference_is_exact = false;  // the latter: nothing was rendered for it
   double reference_seconds = 0, reference_error = 0;  // RMSE that the reference itself may have
   std::vector<AccuracyPoint> points;                  // [0] is the base
   std::optional<PovrayRun> povray;

@@ -18,6 +18,9 @@ constexpr int kKdrayFront = 0, kPovrayFront = 1;
 const char* precision_name(bool in_double) {
   return in_double ? "double" : "float";
 }
+std::string precision_of(const AccuracyRun& run) {
+  return run.reference_is_exact ? "exact" : precision_name(run.reference_in_double);
+}
 
 // How many times as long a point takes as the fastest of kdray's that is no worse.
 struct Match {
@@ -166,7 +169,7 @@ std::string table_of(const AccuracyRun& run) {
       "{}: {} primitives, {} core{}; the reference in {} took {:.1f} s and has an RMSE of {:.1e} itself\n"
       "    {:<35}{:>10}{:>8}{:>11}{:>10}{:>9}{:>9}{:>11}{:>11}{:>8}\n",
       short_name(run.scene), run.n_primitives, run.cores, run.cores == 1 ? "" : "s",
-      precision_name(run.reference_in_double), run.reference_seconds, run.reference_error, "* on the front",
+      precision_of(run), run.reference_seconds, run.reference_error, "* on the front",
       "ms", "x base", "RMSE", "max", "% >1/255", "FLIP", "from base", "believed", "spp");
   const double base = run.points.front().seconds.median;
   for (const AccuracyPoint& p : run.points) out += row_of(p, base) + "\n";
@@ -199,7 +202,7 @@ Json json_of(std::span<const AccuracyRun> runs, const AccuracyOptions& options) 
                  {"reference",
                   {{"seconds", run.reference_seconds},
                    {"own_error", run.reference_error},
-                   {"precision", precision_name(run.reference_in_double)},
+                   {"precision", precision_of(run)},
                    {"picture", picture_name(run.scene, "reference")}}},
                  {"points", Json::array()},
                  {"povray", povray_json(run)},

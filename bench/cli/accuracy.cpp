@@ -8,6 +8,7 @@
 
 #include <memory>
 
+#include "bench/accuracy/exact.h"
 #include "bench/accuracy/reference.h"
 #include "bench/accuracy/report.h"
 #include "bench/cli/commands.h"
@@ -43,7 +44,8 @@ void prepare_pictures(const std::string& report) {
 }
 
 int run(const AccuracyCommand& c) {
-  require_scenes(c.options.scenes);
+  for (const std::string& name : c.options.scenes)
+    if (!bench::exact_scene(name)) require_scenes({name});
   prepare_report(c.report, kName);
   prepare_pictures(c.report);
   if (c.options.povray && !bench::has_povray()) say("povray is not installed: its points are left out");
@@ -81,7 +83,7 @@ Command add_bench_accuracy(CLI::App& bench) {
       kName, "Time against error: samples, depth, least weight and the rest, and POV-Ray's antialiasing");
   const auto c = std::make_shared<AccuracyCommand>();
   bench::AccuracyOptions& o = c->options;
-  add_scenes(*app, o.scenes, "balls gears lamps");
+  add_scenes(*app, o.scenes, "balls gears lamps chessboard penumbra");
   add_size(*app, "Pixels across and down (default 512x512)", kReferenceSideMax, kReferencePixelsMax, o.width,
            o.height);
   add_int(*app, "--repeat", "Rounds to take the median of (default 5)", 1, kRepeatMax, o.repeat);

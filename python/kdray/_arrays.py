@@ -69,6 +69,14 @@ def scalars(values: ArrayLike, name: str) -> tuple[Floats, Shape]:
     return _side_by_side(array.reshape(-1)), array.shape
 
 
+def pairs(values: ArrayLike, name: str) -> Floats:
+    """N x 2 floats of an array of that shape."""
+    array = _floats(as_array(values, name), name)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise errors.InputError(f"{name}: the shape is to be (n, 2), not {array.shape}")
+    return _side_by_side(array)
+
+
 def triangles(values: ArrayLike, name: str = "triangles") -> Array:
     """N x 3 indices, signed or not, of 32 or 64 bits."""
     array = as_array(values, name)

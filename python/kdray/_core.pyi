@@ -12,6 +12,7 @@ class Scene:
         vertices: NDArray[Any] | None,
         triangles: NDArray[Any] | None,
         normals: NDArray[Any] | None,
+        texcoords: NDArray[Any] | None,
         name: str,
         mask: int,
         material: int,
@@ -49,18 +50,6 @@ class Scene:
     def primitives(self) -> int: ...
     def bounds(self) -> tuple[list[float], list[float]] | None: ...
     def warnings(self) -> list[str]: ...
-    def add_material(
-        self,
-        arg0: Sequence[float],
-        arg1: Sequence[float],
-        arg2: Sequence[float],
-        arg3: Sequence[float],
-        arg4: Sequence[float],
-        arg5: Sequence[float],
-        arg6: float,
-        arg7: float,
-        /,
-    ) -> int: ...
     def add_light(
         self,
         arg0: str,
@@ -95,6 +84,22 @@ class Scene:
     ) -> None: ...
     def set_environment(self, arg0: str, arg1: Sequence[float], arg2: float, arg3: float, /) -> None: ...
     def set_ambient(self, arg: Sequence[float], /) -> None: ...
+    def add_picture(self, pixels: NDArray[Any]) -> int: ...
+    def add_picture_file(self, file: str) -> int: ...
+    def add_material(
+        self,
+        arg0: Sequence[float],
+        arg1: Sequence[float],
+        arg2: Sequence[float],
+        arg3: Sequence[float],
+        arg4: Sequence[float],
+        arg5: Sequence[float],
+        arg6: float,
+        arg7: float,
+        arg8: Sequence[int],
+        arg9: str,
+        /,
+    ) -> int: ...
     def commit(self, quality: str, device: str, compute_units: int, binary_form: bool) -> None: ...
     def closest(
         self,

@@ -11,6 +11,8 @@ from .errors import UsageError
 Vector = Sequence[float]
 Color = Sequence[float]
 
+_NO_PICTURE = 2**32 - 1
+
 
 @dataclass(frozen=True)
 class Camera:
@@ -70,6 +72,12 @@ class Material:
     """Whitted's terms, linear RGB, each with its colour multiplied in.
 
     `shine` is the exponent of the highlight, `index` that of refraction. The default is a matt light grey.
+
+    Pictures are numbers of `Scene.add_picture`, and are seen on meshes that have `uv`. `picture` is multiplied by
+    the ambient and diffuse terms and by what goes through; `alpha` says what its alpha means: nothing ("opaque"),
+    that nothing is there where it is below a half ("mask"), or the share of light that isn't let through
+    ("blend"). `emission_picture` is multiplied by `emission`, or by white where that is black.
+    `normal_picture` bends normals as glTF's do: x to the right, y up, z out of the surface.
     """
 
     diffuse: Color = (0.8, 0.8, 0.8)
@@ -80,3 +88,15 @@ class Material:
     transmit: Color = (0.0, 0.0, 0.0)
     shine: float = 1.0
     index: float = 1.0
+    picture: int | None = None
+    normal_picture: int | None = None
+    emission_picture: int | None = None
+    alpha: str = "opaque"
+
+    def picture_numbers(self) -> list[int]:
+        """Its three pictures, for kdray._core; 2**32 - 1 is none."""
+        numbers = (self.picture, self.normal_picture, self.emission_picture)
+        for number in numbers:
+            if number is not None and not 0 <= number < _NO_PICTURE:
+                raise UsageError(f"a material's picture is a number of Scene.add_picture, not {number!r}")
+        return [_NO_PICTURE if number is None else int(number) for number in numbers]

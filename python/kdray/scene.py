@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core, _drivers, errors
 from ._arrays import Array, ArrayLike, RayArrays
+from ._pixels import pixels_of
 from ._results import FLOATS, Rows, as_rows, hit_columns, in_parts, known, result_of, type_of, width_of
 from .hits import AllHits, ClosestPoints, Hits
 from .looks import Camera, Color, Light, Material, Vector
@@ -79,6 +80,8 @@ class Scene:
         self._file: tuple[str, float | None, float | None, str] | None = None
         self._added: dict[int, _Added] = {}  # by id
         self._materials: list[Material] = []
+        self._has_first_material = False
+        self._pictures: list[Array | str] = []  # bytes, or a file's path
         self._lights: list[Light] = []
         self._colors: dict[str, Color] = {}  # "background", "ambient"
         self._sky: tuple[Any, ...] | None = None  # "gradient" or "environment", and what it was set by
@@ -93,19 +96,23 @@ class Scene:
         triangles: ArrayLike,
         *,
         normals: ArrayLike | None = None,
+        uv: ArrayLike | None = None,
         mask: int = -1,
         name: str | None = None,
         material: int | None = None,
     ) -> int:
         """Adds triangles and returns their geometry id; arrays are copied.
 
-        `vertices` (n, 3), `triangles` (m, 3) indices into them, `normals` (n, 3) for smooth shading. A ray sees the
-        geometry where its mask and this one have a bit in common. `material` is one of `add_material`. Raises
-        InputError that names the element: an index out of range, a NaN.
+        `vertices` (n, 3), `triangles` (m, 3) indices into them, `normals` (n, 3) for smooth shading. `uv` (n, 2) says
+        where in its material's pictures each vertex lies: (0, 0) is a picture's upper left corner, (1, 1) its lower
+        right one, and beyond them it is repeated. A ray sees the geometry where its mask and this one have a bit in
+        common. `material` is one of `add_material`. Raises InputError that names the element: an index out of range, a
+        NaN.
         """
         v, _ = _arrays.vectors(vertices, "vertices")
         n = None if normals is None else _arrays.vectors(normals, "normals")[0]
-        return self._add("add_mesh", (v, _arrays.triangles(triangles), n), name, mask, material)
+        coordinates = None if uv is None else _arrays.pairs(uv, "uv")
+        return self._add("add_mesh", (v, _arrays.triangles(triangles), n, coordinates), name, mask, material)
 
     def add_spheres(
         self,
@@ -166,7 +173,7 @@ class Scene:
         with self._lock:
             self._core.update_vertices(id, v, n)
             added = self._added[id]
-            added.arrays = (v.copy(), added.arrays[1], None if n is None else n.copy())
+            added.arrays = (v.copy(), added.arrays[1], None if n is None else n.copy(), added.arrays[3])
             self._changed = True
 
     def remove(self, id: int) -> None:
@@ -215,11 +222,30 @@ class Scene:
 
     # ---- How it looks
 
+    def add_picture(self, picture: ArrayLike | str | os.PathLike[str]) -> int:
+        """Adds a picture for materials and returns its number, for `Material(picture=)` and its like.
+
+        `picture`: a PNG or JPEG file, or an array (h, w, 3) of bytes from the top row down (uint8, codes of sRGB as
+        files have them; red, green, blue), (h, w, 4) with alpha as well, (h, w) or (h, w, 1) grey, (h, w, 2) grey with
+        alpha; anything that NumPy makes such an array of, such as an image of Pillow's. It is copied. Raises
+        InputError for other types and shapes, for sides of more than 16384, and for a file that can't be read.
+        """
+        with self._lock:
+            if isinstance(picture, (str, os.PathLike)):
+                kept: Array | str = os.path.abspath(os.fspath(picture))
+                number = int(self._core.add_picture_file(kept))
+            else:
+                kept = pixels_of(picture).copy()
+                number = int(self._core.add_picture(kept))
+            self._pictures.append(kept)
+            return number
+
     def add_material(self, material: Material) -> int:
         """Adds a material, for `add_mesh(..., material=)`."""
         with self._lock:
-            if not self._materials:  # number 0 is of what is added without one
+            if not self._has_first_material:  # number 0 is of what is added without one
                 self._add_to_core(Material())
+                self._has_first_material = True
             number = self._add_to_core(material)
             self._materials.append(material)
             self._changed = True
@@ -228,7 +254,18 @@ class Scene:
     def _add_to_core(self, m: Material) -> int:
         ambient = m.ambient if m.ambient is not None else [0.1 * c for c in m.diffuse]
         return int(
-            self._core.add_material(m.emission, ambient, m.diffuse, m.specular, m.reflect, m.transmit, m.shine, m.index)
+            self._core.add_material(
+                m.emission,
+                ambient,
+                m.diffuse,
+                m.specular,
+                m.reflect,
+                m.transmit,
+                m.shine,
+                m.index,
+                m.picture_numbers(),
+                m.alpha,
+            )
         )
 
     def add_light(self, light: Light) -> None:
@@ -540,8 +577,8 @@ class Scene:
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
             infos = [self.info(id) for id in self._core.geometries()]
-            names = ("_device", "_compute_units", "_quality", "_file", "_materials", "_lights", "_colors", "_sky")
-            return {name: copy.copy(getattr(self, name)) for name in names} | {
+            names = ("_device", "_compute_units", "_quality", "_file", "_pictures", "_materials", "_lights", "_colors")
+            return {name: copy.copy(getattr(self, name)) for name in (*names, "_sky")} | {
                 "added": {id: added.copy() for id, added in self._added.items()},
                 "infos": infos,
             }
@@ -551,6 +588,8 @@ class Scene:
         core = _core.Scene.load(*file) if file else _core.Scene()
         self._start(core, state["_device"], state["_compute_units"])
         self._file, self._quality = file, state["_quality"]
+        for picture in state["_pictures"]:
+            self.add_picture(picture)
         for material in state["_materials"]:
             self.add_material(material)
         for light in state["_lights"]:

@@ -37,6 +37,9 @@ Rows view(const std::optional<Array>& given) {
 Points points_of(const In& array) {
   return view<Points, In::value_type, float, double>(array);
 }
+Pairs pairs_of(const In& array) {
+  return view<Pairs, In::value_type, float, double>(array);
+}
 Values values_of(const In& array) {
   return view<Values, In::value_type, float, double>(array);
 }

@@ -27,12 +27,14 @@ BuildQuality quality_of(const std::string& name) {
 void add_geometries(SceneClass& scene) {
   scene.def(
       "add_mesh",
-      [](Scene& s, const In& vertices, const In& triangles, const In& normals, const std::string& name,
-         std::uint32_t mask, std::uint32_t material) {
-        return s.add_mesh({points_of(vertices), triples_of(triangles), points_of(normals)},
-                          {name, mask, material});
+      [](Scene& s, const In& vertices, const In& triangles, const In& normals, const In& texcoords,
+         const std::string& name, std::uint32_t mask, std::uint32_t material) {
+        return s.add_mesh(
+            {points_of(vertices), triples_of(triangles), points_of(normals), pairs_of(texcoords)},
+            {name, mask, material});
       },
-      Released(), "vertices"_a, "triangles"_a, "normals"_a.none(), "name"_a, "mask"_a, "material"_a);
+      Released(), "vertices"_a, "triangles"_a, "normals"_a.none(), "texcoords"_a.none(), "name"_a, "mask"_a,
+      "material"_a);
   scene.def(
       "add_spheres",
       [](Scene& s, const In& centers, const In& radii, const std::string& name, std::uint32_t mask,
@@ -85,36 +87,31 @@ Light::Kind light_kind(const std::string& name) {
       {"rectangle", Kind::rectangle}, {"sphere", Kind::sphere},           {"disc", Kind::disc}};
   for (const auto& [n, kind] : kKinds)
     if (name == n) return kind;
-  throw Error(ErrorCode::usage,
-              "a light is \"point\", \"directional\", \"spot\", \"rectangle\", \"sphere\" or \"disc\", not \"" +
-                  name + "\"");
+  throw Error(
+      ErrorCode::usage,
+      "a light is \"point\", \"directional\", \"spot\", \"rectangle\", \"sphere\" or \"disc\", not \"" +
+          name + "\"");
 }
 
 void add_looks(SceneClass& scene) {
-  scene.def("add_material",
-            [](Scene& s, const Color& emission, const Color& ambient, const Color& diffuse,
-               const Color& specular, const Color& reflect, const Color& transmit, float shine, float index) {
-              return s.add_material({emission, ambient, diffuse, specular, reflect, transmit, shine, index});
-            });
   scene.def("add_light",
             [](Scene& s, const std::string& kind, const Vec3& position, const Vec3& direction,
                const Color& color, const Vec3& attenuation, double range, double inner, double outer,
                const Vec3& across, const Vec3& down, const Vec3& normal, double radius) {
-              s.add_light({light_kind(kind), position, direction, color, attenuation, range, inner, outer, across,
-                           down, normal, radius});
+              s.add_light({light_kind(kind), position, direction, color, attenuation, range, inner, outer,
+                           across, down, normal, radius});
             });
   scene.def("set_camera", [](Scene& s, const Vec3& from, const Vec3& at, const Vec3& up, double fov,
                              double ortho_width, double hither, double aperture, double focus) {
     s.set_camera({from, at, up, fov, ortho_width, hither, aperture, focus});
   });
   scene.def("set_background", nb::overload_cast<const Color&>(&Scene::set_background));
-  scene.def("set_gradient",
-            [](Scene& s, const std::vector<double>& heights, const std::vector<Color>& colors, const Vec3& up) {
-              Gradient gradient{.stops = {}, .up = up};
-              for (std::size_t i = 0; i < heights.size(); ++i)
-                gradient.stops.push_back({heights[i], colors.at(i)});
-              s.set_background(gradient);
-            });
+  scene.def("set_gradient", [](Scene& s, const std::vector<double>& heights, const std::vector<Color>& colors,
+                               const Vec3& up) {
+    Gradient gradient{.stops = {}, .up = up};
+    for (std::size_t i = 0; i < heights.size(); ++i) gradient.stops.push_back({heights[i], colors.at(i)});
+    s.set_background(gradient);
+  });
   scene.def("set_environment",
             [](Scene& s, const std::string& file, const Vec3& up, double turn, double strength) {
               s.set_background(Environment{file, up, turn, strength});
@@ -133,10 +130,10 @@ SceneClass add_scene(nb::module_& module) {
          const std::string& animation) {
         return Scene::load(file, {smooth_degrees, time, animation});
       },
-      Released(), "file"_a, "smooth_degrees"_a.none(), "time"_a.none() = nb::none(),
-      "animation"_a = "");
+      Released(), "file"_a, "smooth_degrees"_a.none(), "time"_a.none() = nb::none(), "animation"_a = "");
   add_geometries(scene);
   add_looks(scene);
+  add_paint(scene);
   scene.def(
       "commit",
       [](Scene& s, const std::string& quality, const std::string& device, int compute_units,

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -409,6 +410,23 @@ TEST(Gltf, TellsOfWhatItLeavesOut) {
       "a.gltf: TEXCOORD_0 of 2 morph targets is left out",
       "a.gltf: TEXCOORD_2 of 2 primitives is left out"};
   EXPECT_EQ(read(sample).warnings, wanted);
+}
+
+TEST(Gltf, TellsOfTangentsWhereNormalsAreBent) {
+  GltfSample sample = square();
+  sample.json["materials"] = {json::object()};
+  sample.primitive()["material"] = 0;
+  sample.primitive()["attributes"]["TANGENT"] = 0;
+  EXPECT_TRUE(read(sample).warnings.empty());
+  sample.json["materials"][0]["normalTexture"]["index"] = 0;
+  sample.json["textures"] = {json::object()};  // that names no picture
+  EXPECT_EQ(std::ranges::count(read(sample).warnings, "a.gltf: TANGENT of 1 primitive is left out"), 1);
+  json unused = sample.json["meshes"][0];
+  unused["primitives"][0]["material"] = 7;
+  sample.json["meshes"].push_back(unused);
+  unused["primitives"][0]["material"] = "none";
+  sample.json["meshes"].push_back(unused);
+  EXPECT_EQ(std::ranges::count(read(sample).warnings, "a.gltf: TANGENT of 1 primitive is left out"), 1);
 }
 
 }  // namespace
