@@ -58,8 +58,8 @@ struct AccuracyRun {
   std::size_t n_primitives = 0;
   int cores = 1;
   bool reference_in_double = false, reference_is_exact = false;  // the latter: nothing was rendered for it
-  double reference_seconds = 0, reference_error = 0;  // RMSE that the reference itself may have
-  std::vector<AccuracyPoint> points;                  // [0] is the base
+  double reference_seconds = 0, reference_error = 0;             // RMSE that the reference itself may have
+  std::vector<AccuracyPoint> points;                             // [0] is the base
   std::optional<PovrayRun> povray;
 };
 

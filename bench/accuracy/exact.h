@@ -1,6 +1,6 @@
-// What    Scenes of whose pictures the truth is known without rendering: `chessboard`, a floor with a picture
-//         on it that reaches far away, each pixel the area's mean; `penumbra`, the soft shadow that a straight
-//         edge throws in a rectangle's light, by the integral's closed form.
+// What    Scenes of whose pictures the truth is known without rendering: `chessboard`, a floor with a
+//         picture on it that reaches far away, each pixel the area's mean; `penumbra`, the soft shadow that
+//         a straight edge throws in a rectangle's light, by the integral's closed form.
 // Shape   The chessboard's mean is exact along a row and taken of thin rows across it. In the penumbra the
 //         light at a point is exact, and a pixel is the mean of the points of a grid in it. What that leaves
 //         open is told as the reference's own error: by how much a grid of half as many differs, and less.

@@ -168,9 +168,9 @@ std::string table_of(const AccuracyRun& run) {
   std::string out = fmt::format(
       "{}: {} primitives, {} core{}; the reference in {} took {:.1f} s and has an RMSE of {:.1e} itself\n"
       "    {:<35}{:>10}{:>8}{:>11}{:>10}{:>9}{:>9}{:>11}{:>11}{:>8}\n",
-      short_name(run.scene), run.n_primitives, run.cores, run.cores == 1 ? "" : "s",
-      precision_of(run), run.reference_seconds, run.reference_error, "* on the front",
-      "ms", "x base", "RMSE", "max", "% >1/255", "FLIP", "from base", "believed", "spp");
+      short_name(run.scene), run.n_primitives, run.cores, run.cores == 1 ? "" : "s", precision_of(run),
+      run.reference_seconds, run.reference_error, "* on the front", "ms", "x base", "RMSE", "max", "% >1/255",
+      "FLIP", "from base", "believed", "spp");
   const double base = run.points.front().seconds.median;
   for (const AccuracyPoint& p : run.points) out += row_of(p, base) + "\n";
   if (!run.povray) return out + answers_of(run);

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::uintmax_t kLargeFile = std::uintmax_t{64} << 20;
 
-// Of a small scene all can have all: rays travel less where the costs of the whole are known, and what most of
-// them come to is held by every rank. Ranks that see other files do the same, too.
+// Of a small scene all can have all: rays travel less where the costs of the whole are known, and what most
+// of them come to is held by every rank. Ranks that see other files do the same, too.
 bool wants_shares(const RenderArgs& o) {
   if (o.hold != "auto") return o.hold == "shares";
   std::error_code error;

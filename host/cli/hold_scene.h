@@ -1,5 +1,5 @@
-// What    Whether the ranks of this run hold shares of the scene, no rank all of it, as frames in ODPRT allow;
-//         and the way to such a share.
+// What    Whether the ranks of this run hold shares of the scene, no rank all of it, as frames in ODPRT
+//         allow; and the way to such a share.
 // Errors  Those of reading and building the scene in one process, on all ranks.
 #pragma once
 

@@ -94,7 +94,8 @@ struct Provision;
 // A scene that frames are rendered of, and what has been learned about its costs.
 class DividedScene {
  public:
-  // `all`: of ranks, if the scene is what this one holds of it (holding.h); they have one table in all frames.
+  // `all`: of ranks, if the scene is what this one holds of it (holding.h); they have one table in all
+  // frames.
   DividedScene(flatten::FlatScene flat, flatten::WideForm wide,
                std::shared_ptr<transport::Together> all = nullptr);
 

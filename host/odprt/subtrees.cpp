@@ -73,7 +73,8 @@ class Loads {
             lanes * (kBlockRows[kind] * sizeof(float) + primitive_bytes_[kind])};
   }
 
-  // What a ray that meets the mesh's bounds is expected to cost there, it costs one that meets the instance's.
+  // What a ray that meets the mesh's bounds is expected to cost there, it costs one that meets the
+  // instance's.
   Load of_instance(layout::u32 leaf, const Box& bounds) const {
     const layout::u32 root = scene_.instances[leaf & KDRAY_WIDE_FIRST_MASK].root;
     Box of_mesh;

@@ -36,7 +36,8 @@ class Together {
   // What each rank has given, by rank.
   std::vector<Bytes> gather(Bytes own);
 
-  // What `join(Bytes& all, const Bytes& one)` makes of all, in the order of ranks; of the same length as each.
+  // What `join(Bytes& all, const Bytes& one)` makes of all, in the order of ranks; of the same length as
+  // each.
   template <class Join>
   Bytes join(Bytes own, const Join& join);
 

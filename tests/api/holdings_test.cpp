@@ -1,6 +1,6 @@
-// Frames in ODPRT over ranks that hold shares of the scene, no rank all of it: whatever the number of ranks and
-// queues, and in whatever order messages come, rank 0 has the picture and the rays of one process; ledgers go
-// from one to the other.
+// Frames in ODPRT over ranks that hold shares of the scene, no rank all of it: whatever the number of ranks
+// and queues, and in whatever order messages come, rank 0 has the picture and the rays of one process;
+// ledgers go from one to the other.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -124,8 +124,8 @@ TEST_F(MpirunTest, TheSceneDividedWithChannelsAndALedger) {
             alone(scene, {"--size", "120x90", "--aov", "depth,normal"}));
 }
 
-// No rank holds all of it: neither of a file that is read in shares, nor of one that is read whole and kept in
-// shares.
+// No rank holds all of it: neither of a file that is read in shares, nor of one that is read whole and kept
+// in shares.
 TEST_F(MpirunTest, SharesOfTheScene) {
   const std::string ply =
       folder.put("ball.ply", ball_ply(40, {.normals = true, .colors = true}, true)).string();

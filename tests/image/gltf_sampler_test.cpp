@@ -1,6 +1,7 @@
-// What    Samplers of glTF as whole frames show them: each pair of wrapping modes, nearest and linear, both sets
-//         of coordinates and KHR_texture_transform (rotated, mirrored by a negative scale, moved), on pictures
-//         of odd sizes and of one texel, against a sampler in double that follows the two specifications.
+// What    Samplers of glTF as whole frames show them: each pair of wrapping modes, nearest and linear, both
+//         sets of coordinates and KHR_texture_transform (rotated, mirrored by a negative scale, moved), on
+//         pictures of odd sizes and of one texel, against a sampler in double that follows the two
+//         specifications.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // What    The parts that a ray asks one after the other (kernels/odprt/route.clh, way.clh), on the device,
 //         against the definition in double: each that it meets before its end, once, in the order in which it
 //         enters the first of their cells.
-// Shape   Random cells, also flat and touching ones, and rays of all kinds, axis-parallel ones too, which begin
-//         at a part of any place and whose ends come nearer as they go. Where entries differ by less than the
-//         widening either may come first, and a part may be named that the ray misses by that much; never the
-//         other way round.
+// Shape   Random cells, also flat and touching ones, and rays of all kinds, axis-parallel ones too, which
+//         begin at a part of any place and whose ends come nearer as they go. Where entries differ by less
+//         than the widening either may come first, and a part may be named that the ray misses by that
+//         much; never the other way round.
 #include <gtest/gtest.h>
 
 #include <algorithm>
