@@ -20,9 +20,10 @@ std::size_t Appetite::during(double seconds, std::size_t not_done, double now) c
   return std::max<std::size_t>(static_cast<std::size_t>(done / (now - since_) * seconds), 1);
 }
 
-std::optional<std::size_t> Appetite::ask(std::size_t stock, std::size_t usual, double now) {
+std::optional<std::size_t> Appetite::ask(std::size_t stock, std::size_t usual, std::size_t in_work,
+                                         double now) {
   if (asked_) return std::nullopt;
-  const std::size_t on_the_way = during(kCare * round_trip_, stock + usual, now);
+  const std::size_t on_the_way = during(kCare * round_trip_, stock + in_work, now);
   if (stock > std::max(usual, on_the_way)) return std::nullopt;
   asked_ = true;
   asked_at_ = now;

@@ -12,9 +12,9 @@ namespace kdray::pdprt {
 
 class Appetite {
  public:
-  // How many tiles are worth a message, if one is to be sent now. `stock`: what lies ready; `usual`: what the
-  // queues take at a time.
-  std::optional<std::size_t> ask(std::size_t stock, std::size_t usual, double now);
+  // How many tiles are worth a message, if one is to be sent now. `stock`: what lies ready; `usual`: what is
+  // taken of it at a time; `in_work`: what was taken, and may not be done.
+  std::optional<std::size_t> ask(std::size_t stock, std::size_t usual, std::size_t in_work, double now);
 
   void granted(std::size_t n, double now);
 

@@ -1,6 +1,7 @@
 // What    The side of every rank but 0 of a list of tiles that ranks share: gets tiles before they are
-//         wanted, and sends their sums home as they are done.
-// Shape   next_list(), then step() until the queues have rendered what there is of it, then
+//         wanted, and sends their sums home as they are done. Where others borrow from this rank (bags.h), it
+//         passes on to them what they want, and home what they have done.
+// Shape   next_list(), then step() until the queues have rendered what there is of it and is_done(), then
 //         finish_list(); until there is no list any more. What the queues' threads hand to deliver() is sent
 //         by step(), in messages of some hundred KiB.
 // Errors  ErrorCode::internal: messages that make no sense. transport::Ended.
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "pdprt/appetite.h"
+#include "pdprt/lender.h"
 #include "pdprt/rank_messages.h"
 #include "pdprt/tiles.h"
 #include "wavefront/wavefront.h"
@@ -21,7 +23,7 @@ namespace kdray::pdprt {
 
 class Borrower {
  public:
-  Borrower(transport::Ranks& ranks, const SharedFrame& frame) : ranks_(ranks), frame_(frame) {}
+  Borrower(transport::Ranks& ranks, const SharedFrame& frame, const Bags& bags);
 
   struct List {
     Begin head;
@@ -34,18 +36,26 @@ class Borrower {
   // `n_rendered`: of the list, so far.
   void step(Tiles& tiles, std::size_t n_rendered);
   void deliver(const wavefront::FilmSums& film, std::span<const layout::u32> entries);
+  bool is_done() const { return !below_ || below_->is_done(); }  // with those who borrow here
   void finish_list();
 
   void report(transport::Bytes bytes) { ranks_.send(0, kReport, std::move(bytes)); }
 
  private:
+  std::optional<transport::Message> next_message();
+  std::uint32_t number_of(const transport::Message& message) const;
   void take(const transport::Message& message, Tiles& tiles);
   void take_grant(const transport::Message& message, Tiles& tiles);
+  void ask(const Tiles& tiles, std::size_t n_rendered);
+  void pass_on(const List& list);
+  ledger::Rectangle places_of(layout::u32 entry) const;
   void append(const wavefront::FilmSums& film, layout::u32 entry, std::string& records) const;
   void send_pieces(std::size_t least_bytes);
 
   transport::Ranks& ranks_;
   SharedFrame frame_;
+  int lender_;
+  std::optional<Lender> below_;  // where others borrow from this rank
   Begin list_;
   std::optional<transport::Message> next_;  // has come while a list was in work
   std::size_t n_granted_ = 0;

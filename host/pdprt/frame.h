@@ -53,6 +53,7 @@ class Frame {
   void tell_progress() const;
   void idle();
   SharedFrame shared_frame() const;
+  Bags bags() const;
   Result collect(double seconds);
   void add_reports(Result& result);
 

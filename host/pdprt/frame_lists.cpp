@@ -88,13 +88,14 @@ void Frame::render_borrowed(Borrower& borrower) {
     const auto beside = [&] { borrower.step(tiles, crew_->shared().tiles_done); };
     beside();
     crew_->render(tiles, work, kRankStep, beside);
+    for (; !borrower.is_done(); nap()) beside();
     borrower.finish_list();
   }
 }
 
 Result Frame::render_for_others() {
   crew_->require_one();
-  Borrower borrower(*task_.ranks, shared_frame());
+  Borrower borrower(*task_.ranks, shared_frame(), bags());
   crew_->shared().deliver = [&](const wavefront::FilmSums& film, std::span<const layout::u32> entries) {
     borrower.deliver(film, entries);
   };

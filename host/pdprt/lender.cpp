@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "ledger/record.h"
 
@@ -15,49 +14,94 @@ constexpr std::size_t kPartsPerRank = 4;  // of its share of what is left, as Ti
 
 }  // namespace
 
-Lender::Lender(transport::Ranks& ranks, const SharedFrame& frame)
-    : ranks_(ranks), frame_(frame), rendered_(static_cast<std::size_t>(ranks.size())) {}
+Lender::Lender(transport::Ranks& ranks, const SharedFrame& frame, const Bags& bags)
+    : ranks_(ranks),
+      frame_(frame),
+      bags_(bags),
+      borrowers_(bags.borrowers_of(ranks.rank())),
+      n_fed_(static_cast<std::size_t>(bags.n_fed_by(ranks.rank()))) {}
+
+void Lender::tell(transport::Tag tag, const transport::Bytes& bytes) {
+  for (const int rank : borrowers_) ranks_.send(rank, tag, bytes);
+}
+
+void Lender::start(const Begin& head, std::span<const layout::u32> samples, Take take) {
+  list_ = head.list;
+  of_runs_ = head.of_runs != 0;
+  bag_.clear();
+  next_ = n_lent_ = elsewhere_ = n_rendered_ = 0;
+  borrower_.clear();
+  rendered_.clear();
+  waiting_.clear();
+  own_appetite_ = {};
+  own_wants_.reset();
+  take_ = std::move(take);
+  tell(kBegin, to_bytes(head, samples));
+}
 
 void Lender::begin(Begin head, std::vector<layout::u32> entries, std::span<const layout::u32> samples,
                    Take take) {
-  head.list = list_ = ranks_.next_number();
+  head.list = ranks_.next_number();
   head.n_entries = entries.size();
-  of_runs_ = head.of_runs != 0;
+  start(head, samples, std::move(take));
   bag_ = std::move(entries);
-  next_ = n_lent_ = 0;
-  borrower_.clear();
-  std::ranges::fill(rendered_, 0);
-  own_appetite_ = {};
-  take_ = std::move(take);
-  ranks_.send_to_others(kBegin, to_bytes(head, samples));
 }
 
-// At the end a rank that renders many tiles in a message's time gets up to half of its share.
-std::span<const layout::u32> Lender::lend(std::size_t least) {
-  const std::size_t left = bag_.size() - next_, ranks = static_cast<std::size_t>(ranks_.size());
-  const std::size_t part = left / (kPartsPerRank * ranks), most = (left + 2 * ranks - 1) / (2 * ranks);
-  const std::span<const layout::u32> entries =
-      std::span(bag_).subspan(next_, std::max(part, std::min(least, most)));
-  next_ += entries.size();
+void Lender::pass_on(const Begin& head, std::span<const layout::u32> samples, Take take) {
+  start(head, samples, std::move(take));
+  is_open_ = true;
+}
+
+void Lender::add(std::span<const layout::u32> entries, std::size_t elsewhere) {
+  bag_.insert(bag_.end(), entries.begin(), entries.end());
+  elsewhere_ = elsewhere;
+}
+
+void Lender::end() {
+  is_open_ = false;
+  elsewhere_ = 0;
+}
+
+std::size_t Lender::left_for_each() const {
+  return stock() / n_fed_ + elsewhere_;
+}
+
+// At the end a rank that renders many tiles in a message's time gets up to half of its share. `n_fed`: for
+// how many ranks it is.
+std::span<const layout::u32> Lender::lend(std::size_t least, int n_fed) {
+  const std::size_t left = (stock() + elsewhere_ * n_fed_) * static_cast<std::size_t>(n_fed);
+  const std::size_t part = left / (kPartsPerRank * n_fed_), most = (left + 2 * n_fed_ - 1) / (2 * n_fed_);
+  const std::size_t n = std::min(std::max(part, std::min(least, most)), stock());
+  const std::span<const layout::u32> entries = std::span(bag_).subspan(next_, n);
+  next_ += n;
   return entries;
 }
 
 void Lender::feed(Tiles& own) {
   const double now = ranks_.now();
-  const auto least = own_appetite_.ask(own.stock(), own.usual(), now);
-  if (!least) return;
-  const std::span<const layout::u32> entries = lend(*least);
+  if (const auto least = own_appetite_.ask(own.stock(), own.usual(), own.usual(), now)) own_wants_ = least;
+  if (!own_wants_ || !can_lend()) return;
+  const std::span<const layout::u32> entries = lend(*own_wants_, 1);
+  own_wants_.reset();
   own_appetite_.granted(entries.size(), now);
-  own.add(entries, (bag_.size() - next_) / static_cast<std::size_t>(ranks_.size()));
+  own.add(entries, left_for_each());
   if (entries.empty()) own.end();
 }
 
-void Lender::grant(int rank, const Want& want) {
-  rendered_[static_cast<std::size_t>(rank)] = want.n_rendered;
-  const std::span<const layout::u32> entries = lend(want.least);
-  for (const layout::u32 entry : entries) borrower_[entry] = rank;
+void Lender::grant(const Asked& asked) {
+  const std::span<const layout::u32> entries = lend(asked.least, bags_.n_fed_by(asked.rank));
+  for (const layout::u32 entry : entries) borrower_[entry] = asked.rank;
   n_lent_ += entries.size();
-  ranks_.send(rank, kGrant, to_bytes(Grant{list_, entries.empty() ? 1u : 0u, bag_.size() - next_}, entries));
+  ranks_.send(asked.rank, kGrant,
+              to_bytes(Grant{list_, entries.empty() ? 1u : 0u, left_for_each()}, entries));
+}
+
+void Lender::take_want(int rank, const Want& want) {
+  if (want.list != list_) return;  // of a list that has ended meanwhile: it wants nothing any more
+  std::size_t& rendered = rendered_[rank];
+  n_rendered_ += want.n_rendered - rendered;
+  rendered = want.n_rendered;
+  waiting_.push_back({rank, want.least});
 }
 
 void Lender::take_pieces(const transport::Message& message) {
@@ -82,25 +126,17 @@ void Lender::take_pieces(const transport::Message& message) {
 }
 
 void Lender::answer(const transport::Message& message) {
-  switch (message.tag) {
-    case kWant: {
-      const Want want = head_of<Want>(message);
-      // One of a list that has ended meanwhile wants nothing any more.
-      if (want.list == list_) grant(message.from, want);
-      break;
-    }
-    case kPieces:
-      if (head_of<Pieces>(message).list != list_) refuse(message);
-      take_pieces(message);
-      break;
-    default:
-      refuse(message);
-  }
+  if (!bags_.lends_to(ranks_.rank(), message.from)) refuse(message);
+  if (message.tag == kWant) return take_want(message.from, head_of<Want>(message));
+  if (message.tag != kPieces || head_of<Pieces>(message).list != list_) refuse(message);
+  take_pieces(message);
 }
 
 void Lender::step(Tiles& own) {
   feed(own);
-  while (const auto message = ranks_.next(transport::kTagsOfTiles)) answer(*message);
+  if (ranks_.leads())
+    while (const auto message = ranks_.next(transport::kTagsOfTiles)) answer(*message);
+  for (; !waiting_.empty() && can_lend(); waiting_.pop_front()) grant(waiting_.front());
 }
 
 std::vector<layout::u32> Lender::close() {
@@ -109,13 +145,9 @@ std::vector<layout::u32> Lender::close() {
   return left;
 }
 
-std::size_t Lender::n_rendered() const {
-  return std::accumulate(rendered_.begin(), rendered_.end(), std::size_t{0});
-}
-
 void Lender::finish() {
   reports_.clear();
-  ranks_.send_to_others(kFinish, to_bytes(Finish{list_}));
+  tell(kFinish, to_bytes(Finish{ranks_.number()}));
 }
 
 bool Lender::take_reports() {

@@ -1,6 +1,7 @@
 // What    What ranks say to each other while they render a frame's lists of tiles, as bytes and back.
-// Shape   Rank 0 begins a list, is asked for tiles (want), grants some, and gets their sums (pieces) as
-//         records of a ledger; when all lists are done it finishes the frame, and gets a report from each.
+// Shape   Who lends (bags.h) begins a list, is asked for tiles (want), grants some, and gets their sums
+//         (pieces) as records of a ledger; when all lists are done rank 0 finishes the frame, which is passed
+//         on, and gets a report from each.
 //         Every message names its list, by a number that goes up over all frames of a run.
 // Errors  ErrorCode::internal: bytes that are no such message. Values are checked by whoever knows the list.
 #pragma once
@@ -28,7 +29,7 @@ struct Want {
 struct Grant {
   std::uint32_t list = 0;
   std::uint32_t is_over = 0;  // nothing more comes
-  std::uint64_t n_left = 0;   // that nobody has
+  std::uint64_t n_left = 0;   // that nobody has, for each rank
 };
 
 struct Pieces {

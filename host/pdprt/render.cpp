@@ -34,11 +34,15 @@ Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), f
   crew_.emplace(devices, task, room_);
   crew_->shared().tile_queues.assign(frame_.n_tiles, kNobody);
   if (task.timeline) crew_->shared().tile_seconds.resize(frame_.n_tiles);
-  if (task.ranks && task.ranks->leads()) lender_.emplace(*task.ranks, shared_frame());
+  if (task.ranks && task.ranks->leads()) lender_.emplace(*task.ranks, shared_frame(), bags());
 }
 
 SharedFrame Frame::shared_frame() const {
   return {task_.shared_frame, frame_.width, frame_.height, frame_.tile_width, frame_.tile_height};
+}
+
+Bags Frame::bags() const {
+  return Bags(task_.ranks->size(), task_.ranks_to_a_bag);
 }
 
 void Frame::render_bands(const Destination& to) {

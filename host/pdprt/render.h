@@ -21,6 +21,7 @@
 #include "device/faults.h"
 #include "film/image.h"
 #include "ledger/frame_ledger.h"
+#include "pdprt/bags.h"
 #include "pdprt/tile_size.h"
 #include "timeline/timeline.h"
 #include "transport/ranks.h"
@@ -59,6 +60,7 @@ struct Task {
   // there are none.
   transport::Ranks* ranks = nullptr;
   Hash shared_frame = {};  // the same for all of them, and for no other frame (ledger::Header::frame())
+  int ranks_to_a_bag = kRanksToABag;  // the same for all of them; beyond that there are several
 };
 
 struct QueueResult {

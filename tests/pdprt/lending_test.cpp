@@ -27,8 +27,8 @@ constexpr std::uint32_t kSide = 8;
 
 constexpr std::uint32_t kWidth = 150, kHeight = 90, kTiles = 19 * 12;
 
-SharedFrame frame_of(const std::string& name) {
-  return {hash_of(name), kWidth, kHeight, kSide, kSide};
+SharedFrame frame_of(const std::string& name, std::uint32_t side = kSide) {
+  return {hash_of(name), kWidth, kHeight, side, side};
 }
 
 // What rendering an entry would give at a place.
@@ -62,7 +62,7 @@ class Pretender {
 
   void begin(bool of_runs) {
     of_runs_ = of_runs;
-    tiles_.emplace(1, kTiles);
+    tiles_.emplace(1, kWidth * kHeight / (frame_.tile_width * frame_.tile_height) + kTiles);
   }
 
   // What a list has is delivered when some entries are done, or when no more are there.
@@ -132,15 +132,16 @@ struct Outcome {
 // Some lists of a frame, by ranks of a simulated network.
 class Simulation {
  public:
-  Simulation(int n, const transport::Link& link, double seconds_per_entry, std::uint64_t seed)
-      : network_(n, link, seed) {
+  Simulation(const Bags& bags, int n, const transport::Link& link, double seconds_per_entry,
+             std::uint64_t seed, std::uint32_t side = kSide)
+      : frame_(frame_of("a frame", side)), network_(n, link, seed) {
     for (int rank = 0; rank < n; ++rank) {
       ranks_.push_back(std::make_unique<transport::Ranks>(std::make_unique<RankOf>(network_.rank(rank))));
       queues_.push_back(
           std::make_unique<Pretender>(frame_, seconds_per_entry, seed * 64 + static_cast<unsigned>(rank)));
-      if (rank > 0) borrowers_.push_back(std::make_unique<Borrower>(*ranks_.back(), frame_));
+      if (rank > 0) borrowers_.push_back(std::make_unique<Borrower>(*ranks_.back(), frame_, bags));
     }
-    lender_.emplace(*ranks_.front(), frame_);
+    lender_.emplace(*ranks_.front(), frame_, bags);
     in_list_.resize(static_cast<std::size_t>(n));
   }
 
@@ -175,6 +176,8 @@ class Simulation {
     for (lender_->finish(); !lender_->take_reports(); advance()) act_of_others();
     for (const auto& borrower : borrowers_) EXPECT_TRUE(borrower->is_finished());
   }
+
+  double received_by_first() const { return static_cast<double>(ranks_.front()->counters().received); }
 
   Outcome outcome() const {
     Outcome o{network_.now(), 0, 0, {}};
@@ -213,7 +216,7 @@ class Simulation {
       borrower.deliver(film, entries);
     });
     borrower.step(queue.tiles(), queue.n_rendered());
-    if (!queue.tiles().is_over()) return;
+    if (!queue.tiles().is_over() || !borrower.is_done()) return;
     borrower.finish_list();
     in_list_[rank] = false;
   }
@@ -225,7 +228,7 @@ class Simulation {
     network_.advance(next);
   }
 
-  SharedFrame frame_ = frame_of("a frame");
+  SharedFrame frame_;
   transport::Network network_;
   std::vector<std::unique_ptr<transport::Ranks>> ranks_;
   std::vector<std::unique_ptr<Pretender>> queues_;
@@ -243,13 +246,15 @@ TEST(Lending, EveryTileIsRenderedOnceInAnyOrderOfMessages) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     std::mt19937_64 random(seed);
     const auto pick = [&](std::uint64_t lo, std::uint64_t hi) { return lo + random() % (hi - lo + 1); };
-    const int n = static_cast<int>(pick(1, 9));
+    const int n = static_cast<int>(pick(1, 20));
     const transport::Link link{.latency = 1e-5 * std::pow(10.0, static_cast<double>(pick(0, 4))),
                                .jitter = static_cast<double>(pick(0, 20)),
                                .bandwidth = std::pow(10.0, static_cast<double>(pick(6, 10)))};
-    SCOPED_TRACE(fmt::format("seed {}: {} ranks, latency {}, jitter {}, bandwidth {}", seed, n, link.latency,
-                             link.jitter, link.bandwidth));
-    Simulation simulation(n, link, 1e-4 * static_cast<double>(pick(1, 100)), seed);
+    const Bags bags(n, static_cast<int>(pick(2, 12)));
+    SCOPED_TRACE(
+        fmt::format("seed {}: {} ranks, {} borrow from the first, latency {}, jitter {}, bandwidth {}", seed,
+                    n, bags.borrowers_of(0).size(), link.latency, link.jitter, link.bandwidth));
+    Simulation simulation(bags, n, link, 1e-4 * static_cast<double>(pick(1, 100)), seed);
     const auto left = simulation.render(all_tiles(), false, 0.01 * static_cast<double>(pick(1, 50)));
     if (!left.empty()) simulation.render(left, false);
     std::vector<layout::u32> runs(pick(1, 40));
@@ -264,7 +269,7 @@ TEST(Lending, EveryTileIsRenderedOnceInAnyOrderOfMessages) {
 // The bar of PDPRT with 5 ms of round trip: 0.95. The network's delay is in no tile's way.
 TEST(Lending, RanksDontWaitForTiles) {
   for (const double latency : {20e-6, 2.5e-3}) {
-    Simulation simulation(4, {.latency = latency, .jitter = 1, .bandwidth = 1e8}, 0.05, 3);
+    Simulation simulation(Bags(4), 4, {.latency = latency, .jitter = 1, .bandwidth = 1e8}, 0.05, 3);
     simulation.render(all_tiles(), false);
     const Outcome o = simulation.outcome();
     EXPECT_GT(o.busy / (4 * o.seconds), 0.95) << latency;
@@ -273,11 +278,25 @@ TEST(Lending, RanksDontWaitForTiles) {
   }
 }
 
+// Ranks that borrow from one of their own group, which borrows from the first: as busy, and the first has few
+// messages.
+TEST(Lending, BagsOfBags) {
+  const auto outcome_of = [](const Bags& bags) {
+    Simulation simulation(bags, 100, {.latency = 20e-6, .jitter = 1, .bandwidth = 1e9}, 0.02, 3, 2);
+    simulation.render(wavefront::tile_curve(75, 0, 45), false);
+    return std::pair(simulation.outcome(), simulation.received_by_first());
+  };
+  const auto [one, one_received] = outcome_of(Bags(100, 100));
+  const auto [several, several_received] = outcome_of(Bags(100));
+  EXPECT_LT(several.seconds, 1.05 * one.seconds);
+  EXPECT_LT(several_received, 0.5 * one_received);
+}
+
 TEST(Lending, WhatMakesNoSenseIsRefused) {
   const auto refused = [](transport::Tag tag, const transport::Bytes& bytes) {
     transport::Network network(2, {.latency = 0}, 1);
     transport::Ranks first(std::make_unique<RankOf>(network.rank(0)));
-    Lender lender(first, frame_of("a frame"));
+    Lender lender(first, frame_of("a frame"), Bags(2));
     Tiles own = Tiles::open(1, kTiles);
     lender.begin({}, {0, 1, 2}, {}, [](layout::u32, ledger::Sums) { FAIL() << "taken"; });
     network.rank(1).send(0, tag, bytes);
@@ -300,7 +319,7 @@ TEST(Lending, WhatMakesNoSenseIsRefusedByOthersToo) {
   const auto refused = [](transport::Tag tag, const transport::Bytes& bytes) {
     transport::Network network(2, {.latency = 0}, 1);
     transport::Ranks second(std::make_unique<RankOf>(network.rank(1)));
-    Borrower borrower(second, frame_of("a frame"));
+    Borrower borrower(second, frame_of("a frame"), Bags(2));
     const Begin head{.list = 5, .n_entries = 3};
     network.rank(0).send(1, kBegin, to_bytes(head));
     network.advance(1);
@@ -321,13 +340,38 @@ TEST(Lending, WhatMakesNoSenseIsRefusedByOthersToo) {
   EXPECT_FALSE(refused(kGrant, to_bytes(Grant{5, 0, 0}, Entries{0, 1, 2})));
 }
 
+// Of three ranks that borrow from each other, the second from the first and the third from the second, each
+// takes only what comes from its own lender or borrower.
+TEST(Lending, StrangersAreRefused) {
+  const Bags bags(4, 2);  // two groups of two
+  transport::Network network(4, {.latency = 0}, 1);
+  const auto ranks_of = [&](int rank) {
+    return transport::Ranks(std::make_unique<RankOf>(network.rank(rank)));
+  };
+  transport::Ranks first = ranks_of(0), third = ranks_of(2);
+  Tiles own = Tiles::open(1, kTiles);
+  Lender lender(first, frame_of("a frame"), bags);
+  lender.begin({}, {0, 1, 2}, {}, [](layout::u32, ledger::Sums) { FAIL() << "taken"; });
+  Borrower borrower(third, frame_of("a frame"), bags);
+  network.advance(1);
+  ASSERT_TRUE(borrower.next_list());
+  network.rank(3).send(0, kWant, to_bytes(Want{1, 1, 0, 0}));  // which borrows from the third
+  network.rank(1).send(2, kWant, to_bytes(Want{1, 1, 0, 0}));
+  network.advance(2);
+  EXPECT_TRUE(test::fails([&] { lender.step(own); }, "rank 3 sent", ErrorCode::internal));
+  EXPECT_TRUE(test::fails([&] { borrower.step(own, 0); }, "rank 1 sent", ErrorCode::internal));
+  network.rank(3).send(2, kGrant, to_bytes(Grant{1, 0, 0}, std::vector<layout::u32>{0}));
+  network.advance(3);
+  EXPECT_TRUE(test::fails([&] { borrower.step(own, 0); }, "rank 3 sent", ErrorCode::internal));
+}
+
 // A record that the rank was asked for, changed on its way.
 TEST(Lending, DamagedPiecesAreRefused) {
   const auto result_of = [](const std::function<void(std::string&)>& change) {
     transport::Network network(2, {.latency = 0}, 1);
     transport::Ranks first(std::make_unique<RankOf>(network.rank(0)));
     const SharedFrame frame = frame_of("a frame");
-    Lender lender(first, frame);
+    Lender lender(first, frame, Bags(2));
     Tiles own = Tiles::open(1, kTiles);
     own.add(std::vector<layout::u32>(10), 0);  // so that rank 0 has enough, and lends all
     int n_taken = 0;

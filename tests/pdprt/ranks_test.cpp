@@ -74,6 +74,25 @@ TEST_P(RanksTest, AnyNumberOfRanksAndQueues) {
   }
 }
 
+// Seven ranks with one bag to three of them at most: three groups.
+TEST_P(RanksTest, BagsOfBags) {
+  Task task = long_task();
+  const Result reference = alone(task);
+  task.ranks_to_a_bag = 3;
+  const Result result = render({1, 1, 1, 2, 1, 1, 1}, task);
+  expect_same(result, reference);
+  ASSERT_EQ(result.queues.size(), 8u);
+  std::uint64_t tiles = 0;
+  for (const QueueResult& queue : result.queues) tiles += queue.tiles;
+  EXPECT_EQ(tiles, result.n_tiles);
+  Task adaptive = hall.task();
+  adaptive.adaptive_target = 0.02;
+  adaptive.features |= flatten::features_of_samples(1, true);
+  const Result samples = alone(adaptive);
+  adaptive.ranks_to_a_bag = 2;
+  EXPECT_EQ(render({1, 1, 1, 1, 1}, adaptive).image.pixels, samples.image.pixels);
+}
+
 TEST_P(RanksTest, BandsAndAdaptiveSampling) {
   Task task = hall.task();
   task.max_film_bytes = std::size_t{61} * 12 * 24;  // three rows of tiles
