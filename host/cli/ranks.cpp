@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdlib>
 #include <new>
+#include <optional>
 #include <string_view>
 
 #include "cli/message.h"
@@ -42,12 +43,21 @@ bool wants_ranks(const std::vector<std::string>& arguments, const transport::Lau
   return choice == "on" || (choice == "auto" && launched.ranks > 1);
 }
 
-// KDRAY_MPI_DELAY: milliseconds that every message is to take longer, for measurements.
-std::unique_ptr<transport::Transport> with_delay(std::unique_ptr<transport::Transport> mpi) {
-  const char* const asked = std::getenv("KDRAY_MPI_DELAY");
-  if (asked == nullptr || *asked == '\0') return mpi;
-  return transport::delayed(std::move(mpi),
-                            {.latency = 1e-3 * parse_real("KDRAY_MPI_DELAY", asked, 0, 1000)});
+std::optional<double> asked_in(const char* variable, double least, double most) {
+  const char* const asked = std::getenv(variable);
+  if (asked == nullptr || *asked == '\0') return std::nullopt;
+  return parse_real(variable, asked, least, most);
+}
+
+// A slower network, for measurements. KDRAY_MPI_DELAY: milliseconds that every message is to take longer;
+// KDRAY_MPI_BANDWIDTH: gigabits a second that a rank receives at most.
+std::unique_ptr<transport::Transport> as_asked(std::unique_ptr<transport::Transport> mpi) {
+  const auto delay = asked_in("KDRAY_MPI_DELAY", 0, 1000);
+  const auto bandwidth = asked_in("KDRAY_MPI_BANDWIDTH", 1e-3, 1e6);
+  if (!delay && !bandwidth) return mpi;
+  transport::Link link{.latency = 1e-3 * delay.value_or(0)};
+  if (bandwidth) link.bandwidth = 1e9 / 8 * *bandwidth;
+  return transport::delayed(std::move(mpi), link);
 }
 
 // How a run ends that `error` has come out of.
@@ -84,7 +94,7 @@ int run_in_ranks(const std::vector<std::string>& arguments, const std::function<
   const transport::Launched launched = transport::launched();
   if (!wants_ranks(arguments, launched)) return run();
   try {
-    this_run() = std::make_shared<transport::Ranks>(with_delay(transport::open_mpi(launched.ranks)));
+    this_run() = std::make_shared<transport::Ranks>(as_asked(transport::open_mpi(launched.ranks)));
   } catch (const Error&) {
     // Processes that share a folder need no MPI, though srun may have started them.
     const bool shares =

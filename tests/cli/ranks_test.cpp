@@ -297,6 +297,23 @@ TEST_F(MpirunTest, WhateverRankIsKilledTheNextRunGoesOn) {
   }
 }
 
+// As measurements have it: later, and a few kilobytes after each other.
+TEST_F(MpirunTest, ASlowNetworkGivesTheSameBytes) {
+  const std::string scene = folder / "balls.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "2", "-o", scene})));
+  const Arguments size{"--size", "100x80"};
+  const std::string whole = alone(scene, size);
+  for (const std::string mode : {"pdprt", "odprt"}) {
+    fs::remove(picture);
+    EXPECT_TRUE(succeeds(ranks(3, render(scene, with(size, {"--mode", mode})),
+                               {{"KDRAY_MPI_DELAY", "2"}, {"KDRAY_MPI_BANDWIDTH", "0.1"}})));
+    EXPECT_EQ(folder.get("a.png"), whole) << mode;
+  }
+  const Outcome refused = ranks(2, render(scene, size), {{"KDRAY_MPI_BANDWIDTH", "much"}});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("KDRAY_MPI_BANDWIDTH"), std::string::npos) << refused.err;
+}
+
 TEST_F(MpirunTest, WithoutMpiEachWorksByItself) {
   const std::string scene = folder.put("ball.nff", kSphereOnSquare);
   const Outcome run = ranks(2, render(scene, {"--mpi", "off", "--size", "50x40"}));
