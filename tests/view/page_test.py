@@ -188,6 +188,14 @@ def channels(b, folder):
     print("ok  cells and figures")
 
 
+def resize(b, width, height):
+    """The page hears of it when it is drawn next."""
+    b.resize(width, height)
+    b.wait(f"innerWidth === {width} && innerHeight === {height}")
+    b.ask("new Promise(then => requestAnimationFrame(() => requestAnimationFrame(() => then(1))))")
+    rest(b)
+
+
 def address(b, viewer, folder):
     assert "token" not in b.ask("location.hash"), "the token leaves the address"
     b.drag(MIDDLE, (MIDDLE[0] + 50, MIDDLE[1]))
@@ -197,10 +205,9 @@ def address(b, viewer, folder):
     b.reload()
     b.wait("!window.isOld && window.kdray?.state.scene")
     assert (check_picture(b, folder, "after it"), camera(b)) == before, "the view is in the address"
-    b.resize(500, 400)
-    rest(b)
+    resize(b, 500, 400)
     assert b.ask("kdray.screen.picture.getBoundingClientRect().width") <= 500
-    b.resize(WIDTH, HEIGHT + 30)
+    resize(b, WIDTH, HEIGHT + 30)
     b.key("KeyC", "c")
     b.wait("document.getElementById('said').textContent.startsWith('kdray render ')")
     assert b.ask("document.getElementById('said').textContent") == b.ask("kdray.state.command")

@@ -34,7 +34,7 @@ class Viewer:
 def rest(browser, limit=LIMIT):
     """Waits for the final picture; the command that renders it."""
     time.sleep(0.1)
-    browser.wait("kdray.state.final && !kdray.state.changed && !kdray.state.moving", limit)
+    browser.wait("kdray.state.final && !kdray.state.changed && !kdray.state.moving && !kdray.state.resizing", limit)
     return browser.ask("kdray.state.command")
 
 
