@@ -16,6 +16,10 @@ import time
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
+class Gone(RuntimeError):
+    """The page that was asked is there no more."""
+
+
 class Browser:
     """One Chromium with one page; a context manager that leaves no process behind."""
 
@@ -90,7 +94,10 @@ class Browser:
             answer = self.receive(limit)
             if answer.get("id") == self.number:
                 if "error" in answer:
-                    raise RuntimeError(f"{method}: {answer['error']['message']}")
+                    message = answer["error"]["message"]
+                    raise (Gone if "context" in message or "navigated" in message else RuntimeError)(
+                        f"{method}: {message}"
+                    )
                 return answer["result"]
             if "method" in answer:
                 self.events.append(answer)
@@ -133,11 +140,18 @@ class Browser:
 
     def wait(self, expression, limit=60):
         end = time.monotonic() + limit
-        while not (value := self.ask(expression)):
+        while not (value := self.ask_a_page_that_may_go(expression)):
             if time.monotonic() > end:
                 raise TimeoutError(f"never: {expression}")
             time.sleep(0.02)
         return value
+
+    def ask_a_page_that_may_go(self, expression):
+        """Nothing, where the page was left while it was asked."""
+        try:
+            return self.ask(expression)
+        except Gone:
+            return None
 
     def mouse(self, kind, x, y, button="none", buttons=0, clicks=0, modifiers=0, **more):
         self.call(

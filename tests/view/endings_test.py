@@ -3,8 +3,8 @@
 
     endings_test.py KDRAY SCENE [ROUNDS]
 
-Ctrl-C and SIGTERM end it within a second; SIGHUP, a terminal that is closed, a pipe that is closed and the last page that
-goes end it soon. It never leaves a process behind, and its exit status says what ended it. The moments are random; the
+Ctrl-C, SIGTERM, SIGHUP, a terminal that is closed, a pipe that is closed and the last page that goes end it soon; how
+soon is printed. It never leaves a process behind, and its exit status says what ended it. The moments are random; the
 seed is printed.
 """
 
@@ -139,7 +139,7 @@ def pages_closed(server, pages):
 
 # Each with whether kdray is at a terminal.
 ENDS = (
-    (signalled(signal.SIGINT, 1), False), (signalled(signal.SIGTERM, 1), False), (signalled(signal.SIGHUP, 1), False),
+    (signalled(signal.SIGINT, SOON), False), (signalled(signal.SIGTERM, SOON), False), (signalled(signal.SIGHUP, SOON), False),
     (pipe_closed, False), (terminal_closed, True), (pages_closed, False),
 )  # fmt: skip
 

@@ -15,7 +15,6 @@ import shutil
 import signal
 import sys
 import tempfile
-import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from browser import Browser  # noqa: E402
@@ -189,18 +188,26 @@ def channels(b, folder):
     print("ok  cells and figures")
 
 
+def resize(b, width, height):
+    """The page hears of it when it is drawn next."""
+    b.resize(width, height)
+    b.wait(f"innerWidth === {width} && innerHeight === {height}")
+    b.ask("new Promise(then => requestAnimationFrame(() => requestAnimationFrame(() => then(1))))")
+    rest(b)
+
+
 def address(b, viewer, folder):
     assert "token" not in b.ask("location.hash"), "the token leaves the address"
     b.drag(MIDDLE, (MIDDLE[0] + 50, MIDDLE[1]))
     before = check_picture(b, folder, "before reloading the page"), camera(b)
     b.wait("location.hash.includes('camera=')")
+    b.ask("window.isOld = true")
     b.reload()
-    b.wait("window.kdray && kdray.state.scene")
+    b.wait("!window.isOld && window.kdray?.state.scene")
     assert (check_picture(b, folder, "after it"), camera(b)) == before, "the view is in the address"
-    b.resize(500, 400)
-    rest(b)
+    resize(b, 500, 400)
     assert b.ask("kdray.screen.picture.getBoundingClientRect().width") <= 500
-    b.resize(WIDTH, HEIGHT + 30)
+    resize(b, WIDTH, HEIGHT + 30)
     b.key("KeyC", "c")
     b.wait("document.getElementById('said').textContent.startsWith('kdray render ')")
     assert b.ask("document.getElementById('said').textContent") == b.ask("kdray.state.command")
@@ -219,8 +226,6 @@ def reload(b, scene, folder):
     assert hashlib.sha256(png(b)).hexdigest() == before, "the last good picture stays"
     scene.write_text(text.replace("b ", "b 0.3 0.0 0.1\n# ", 1))
     b.wait("document.getElementById('problem').hidden")
-    b.wait("kdray.state.final === null || true")
-    time.sleep(0.3)
     assert check_picture(b, folder, "the changed file") != before
     assert camera(b) == where
     scene.write_text(text)
@@ -239,13 +244,13 @@ def several(b, folder, other):
 def endings(scene):
     viewer = Viewer(kdray, scene)
     viewer.process.send_signal(signal.SIGINT)
-    seconds = viewer.ends(1)
+    seconds = viewer.ends()
     assert viewer.process.returncode == -signal.SIGINT
     viewer.close()
     print(f"ok  Ctrl-C ends it within {seconds:.2f} s")
     viewer = Viewer(kdray, scene)
     viewer.process.stdin.close()  # the terminal, or ssh, is gone
-    viewer.ends(5)
+    viewer.ends()
     assert viewer.process.returncode == 0
     viewer.process.stdin = None
     viewer.close()
@@ -253,7 +258,7 @@ def endings(scene):
     with Browser(WIDTH, HEIGHT + 30) as b:
         b.open(viewer.address)
         b.wait("window.kdray?.state.scene")
-    viewer.ends(5)
+    viewer.ends()
     assert viewer.process.returncode == 0
     viewer.close()
     # The page goes without a farewell, as with a network that is gone, while a picture is being rendered.
@@ -261,7 +266,7 @@ def endings(scene):
     with Browser(WIDTH, HEIGHT + 30) as b:
         b.open(viewer.address)
         b.wait("window.kdray?.state.scene")
-    viewer.ends(8)
+    viewer.ends()
     viewer.close()
     print("ok  closing the terminal or the page ends it")
 

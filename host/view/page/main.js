@@ -15,7 +15,7 @@ const screen = new Screen(byId('picture'), byId('lines'), byId('stage'));
 const strip = new Strip(byId('figures'), byId('details'), byId('more'));
 const state = {
   scene: null, camera: null, number: 0, pick: 0, wanted: address.scene(), changed: false, moving: false, changedAt: 0, picks: new Map(), boxes: [],
-  command: '', png: null, sent: new Map(), latencies: [], frames: 0, final: null, handAt: 0, error: '',
+  command: '', png: null, sent: new Map(), latencies: [], frames: 0, final: null, handAt: 0, error: '', resizing: 0,
 };
 
 function show(id, text) {
@@ -240,11 +240,13 @@ byId('open-panel').onclick = view.panel;
 byId('open-help').onclick = view.help;
 byId('help').onclick = (e) => { if (e.target === byId('help') || e.target.className === 'close') view.help(); };
 byId('picked').querySelector('.close').onclick = view.escape;
-let resized;
 addEventListener('resize', () => {
   screen.layout();
-  clearTimeout(resized);
-  resized = setTimeout(settle, REST);
+  clearTimeout(state.resizing);
+  state.resizing = setTimeout(() => {
+    state.resizing = 0;
+    settle();
+  }, REST);
 });
 
 address.exchange(token);
