@@ -12,6 +12,7 @@
 #include "base/write_file.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
+#include "bench/cli/modes_ranks.h"
 #include "bench/cli/report_files.h"
 #include "bench/modes/report.h"
 #include "bench/modes/timeline.h"
@@ -28,6 +29,8 @@ constexpr int kQueuesMax = 1024;
 struct ModesCommand {
   bench::ModesOptions options;
   std::string report;
+  bool ranks = false;
+  RanksCommand of_ranks;
 };
 
 // "1,2,4": each once, in order.
@@ -49,6 +52,7 @@ void write_plot(const std::string& folder, const std::string& name, const std::s
 
 int run(const ModesCommand& c) {
   require_scenes(c.options.scenes);
+  if (c.ranks) return run_ranks_bench(c.of_ranks, c.options, c.report);
   prepare_report(c.report, "modes");
   const auto runs = bench::bench_modes(
       c.options, [&](const bench::ModesRun& run) { print_table(bench::table_of(run, c.options)); },
@@ -85,6 +89,7 @@ Command add_bench_modes(CLI::App& bench) {
           o.model_options.sample);
   app->add_flag_callback(
       "--no-model", [&o] { o.model = false; }, "Measure only");
+  add_ranks(*app, c->ranks, c->of_ranks);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};
 }
