@@ -135,9 +135,7 @@ def gltf_square(material: dict, pictures: list) -> str:
             "scene": 0,
             "scenes": [{"nodes": [0]}],
             "nodes": [{"mesh": 0}],
-            "meshes": [
-                {"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 2}, "indices": 1, "material": 0}]}
-            ],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 2}, "indices": 1, "material": 0}]}],
             "buffers": [{"byteLength": len(data), "uri": uri("application/octet-stream", data)}],
             "bufferViews": [{"buffer": 0, "byteOffset": at, "byteLength": n} for at, n in parts],
             "accessors": [
