@@ -116,7 +116,14 @@ typedef struct kdray_material {
    * through, the last by the emission, or by white where that is black. */
   uint32_t picture, normal_picture, emission_picture;
   int32_t alpha; /* kdray_alpha, of `picture` */
+  /* As glTF's: green is how rough, blue how metallic, each times its factor. With the first all terms but the
+   * emission follow from these and from the base colour, which is `diffuse` times `picture`. The second's
+   * red is the share of ambient light that gets there; with `occlusion` below 1 that much of it counts.
+   * Factors: 0 to 1, but what is left 0 is 1; KDRAY_FACTOR_0 stands for 0. */
+  uint32_t metal_picture, occlusion_picture;
+  float metallic, roughness, occlusion;
 } kdray_material;
+#define KDRAY_FACTOR_0 (-1.0f)
 /* What a picture's alpha means: nothing; below a half nothing is there; the share that isn't let through. */
 typedef enum kdray_alpha { KDRAY_ALPHA_OPAQUE = 0, KDRAY_ALPHA_MASK = 1, KDRAY_ALPHA_BLEND = 2 } kdray_alpha;
 /* Rows from the top; 1 to 4 channels: grey, grey with alpha, red green blue, or these with alpha; codes of

@@ -57,6 +57,10 @@ PictureId picture_of(std::uint32_t number) {
   return number == 0 ? kNoPicture : number - 1;
 }
 
+float factor_of(float given) {
+  return given == 0 ? 1.0f : given == KDRAY_FACTOR_0 ? 0.0f : given;
+}
+
 AlphaMode alpha_of(std::int32_t mode) {
   constexpr AlphaMode kModes[] = {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend};
   if (mode < KDRAY_ALPHA_OPAQUE || mode > KDRAY_ALPHA_BLEND)
@@ -174,7 +178,12 @@ kdray_status kdray_add_material(kdray_scene* scene, const kdray_material* materi
                                       .picture = picture_of(m.picture),
                                       .normal_picture = picture_of(m.normal_picture),
                                       .emission_picture = picture_of(m.emission_picture),
-                                      .alpha = alpha_of(m.alpha)}));
+                                      .alpha = alpha_of(m.alpha),
+                                      .metal_picture = picture_of(m.metal_picture),
+                                      .metallic = factor_of(m.metallic),
+                                      .roughness = factor_of(m.roughness),
+                                      .occlusion_picture = picture_of(m.occlusion_picture),
+                                      .occlusion = factor_of(m.occlusion)}));
   });
 }
 

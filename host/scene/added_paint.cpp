@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scene/picture.h"
+#include "scene/picture_coat.h"
 #include "scene/read_file.h"
 
 namespace kdray::scene {
@@ -54,27 +55,23 @@ std::shared_ptr<const Picture> picture_of(const std::filesystem::path& file,
 }
 
 Material painted_material(const kdray::Material& material, Paint& paint) {
-  Material m = material_of(material);
-  Coat coat{.base = texture_of(material.picture, "picture", true, paint)};
-  coat.normal_map = texture_of(material.normal_picture, "normal_picture", false, paint);
-  coat.emission_map = texture_of(material.emission_picture, "emission_picture", true, paint);
+  const Material terms = material_of(material);
+  Coat maps{.base = texture_of(material.picture, "picture", true, paint)};
+  maps.normal_map = texture_of(material.normal_picture, "normal_picture", false, paint);
+  maps.emission_map = texture_of(material.emission_picture, "emission_picture", true, paint);
+  maps.metal_map = texture_of(material.metal_picture, "metal_picture", false, paint);
+  maps.occlusion_map = texture_of(material.occlusion_picture, "occlusion_picture", false, paint);
   static_assert(static_cast<int>(AlphaMode::blend) == static_cast<int>(Alpha::blend));
   if (material.alpha < AlphaMode::opaque || material.alpha > AlphaMode::blend)
     refuse("material: there is no such mode of alpha");
-  if (material.alpha != AlphaMode::opaque && coat.base == kNone)
+  if (material.alpha != AlphaMode::opaque && maps.base == kNone)
     refuse("material: there is no picture whose alpha is to be used");
-  coat.mode = static_cast<Alpha>(material.alpha);
-  if (coat.base == kNone && coat.normal_map == kNone && coat.emission_map == kNone) return m;
-  if (coat.base != kNone) {
-    coat.ambient = m.ambient, coat.diffuse = m.diffuse, coat.transmit = m.transmit;
-    m.ambient = m.diffuse = m.transmit = vec3(0);
-  }
-  if (coat.emission_map != kNone) {
-    coat.emissive = m.emission == vec3(0) ? vec3(1) : m.emission;
-    m.emission = vec3(0);
-  }
-  m.coat = paint.add(coat);
-  return m;
+  maps.mode = static_cast<Alpha>(material.alpha);
+  maps.metal = {.base = terms.diffuse, .metallic = material.metallic, .roughness = material.roughness};
+  maps.occlusion = material.occlusion;
+  if (const char* const fault = fault_of_factors(maps)) refuse(fmt::format("material: {}", fault));
+  if (maps.emission_map != kNone) maps.emissive = terms.emission == vec3(0) ? vec3(1) : terms.emission;
+  return with_pictures(terms, maps, paint);
 }
 
 void assemble_paint(Scene& scene, std::span<const AddedGeometry* const> geometries, const Paint& paint,

@@ -25,10 +25,24 @@ inline constexpr std::string_view scene[] = {"$schema", "kdray",     "camera", "
 inline constexpr std::string_view camera[] = {"from",  "at",     "up",       "fov",
                                               "ortho", "hither", "aperture", "focus"};
 inline constexpr std::string_view render[] = {"size", "depth", "samples", "min_weight"};
-inline constexpr std::string_view material[] = {
-    "color",    "ka",    "kd",       "ks",      "shine",          "reflect",
-    "transmit", "index", "emission", "picture", "normal_picture", "emission_picture",
-    "alpha"};
+inline constexpr std::string_view material[] = {"color",
+                                                "ka",
+                                                "kd",
+                                                "ks",
+                                                "shine",
+                                                "reflect",
+                                                "transmit",
+                                                "index",
+                                                "emission",
+                                                "picture",
+                                                "normal_picture",
+                                                "emission_picture",
+                                                "alpha",
+                                                "metal_picture",
+                                                "metallic",
+                                                "roughness",
+                                                "occlusion_picture",
+                                                "occlusion"};
 inline constexpr std::string_view point_light[] = {"type", "position", "color", "attenuation", "range"};
 inline constexpr std::string_view directional_light[] = {"type", "direction", "color"};
 inline constexpr std::string_view spot_light[] = {"type",  "position", "direction",   "inner",

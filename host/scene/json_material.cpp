@@ -6,6 +6,7 @@
 #include "scene/check_scene.h"
 #include "scene/json_keys.h"
 #include "scene/picture.h"
+#include "scene/picture_coat.h"
 #include "scene/read_file.h"
 
 namespace kdray::scene {
@@ -46,6 +47,16 @@ Alpha read_alpha(const JsonNode& node) {
   throw node.expected("one of opaque, mask, blend");
 }
 
+// What a picture's values are multiplied by.
+float factor_of(const JsonNode& material, std::string_view key, std::string_view picture) {
+  const auto node = material.find(key);
+  if (!node) return 1;
+  if (!material.find(picture))
+    throw node->error("there is no picture that it could multiply",
+                      "name one with '" + std::string(picture) + "'");
+  return static_cast<float>(node->number_between(0, 1));
+}
+
 }  // namespace
 
 std::uint32_t JsonMaterials::picture_of(const JsonNode& file) {
@@ -72,26 +83,23 @@ std::uint32_t JsonMaterials::texture_of(const JsonNode& material, std::string_vi
 // A picture multiplies what `color` does: the ambient and diffuse terms, and what goes through.
 Material JsonMaterials::read(const JsonNode& node) {
   node.expect_keys(json_keys::kMaterial);
-  Material m = read_terms(node);
-  Coat coat;
-  coat.base = texture_of(node, "picture", true);
-  coat.normal_map = texture_of(node, "normal_picture", false);
-  coat.emission_map = texture_of(node, "emission_picture", true);
+  const Material terms = read_terms(node);
+  Coat maps;
+  maps.base = texture_of(node, "picture", true);
+  maps.normal_map = texture_of(node, "normal_picture", false);
+  maps.emission_map = texture_of(node, "emission_picture", true);
+  maps.metal_map = texture_of(node, "metal_picture", false);
+  maps.occlusion_map = texture_of(node, "occlusion_picture", false);
   const auto alpha = node.find("alpha");
-  if (alpha) coat.mode = read_alpha(*alpha);
-  if (alpha && coat.base == kNone)
+  if (alpha) maps.mode = read_alpha(*alpha);
+  if (alpha && maps.base == kNone)
     throw alpha->error("there is no picture whose alpha it could mean", "name one with 'picture'");
-  if (coat.base == kNone && coat.normal_map == kNone && coat.emission_map == kNone) return m;
-  if (coat.base != kNone) {
-    coat.ambient = m.ambient, coat.diffuse = m.diffuse, coat.transmit = m.transmit;
-    m.ambient = m.diffuse = m.transmit = vec3(0);
-  }
-  if (coat.emission_map != kNone) {
-    coat.emissive = node.find("emission") ? m.emission : vec3(1);
-    m.emission = vec3(0);
-  }
-  m.coat = scene_.paint.add(coat);
-  return m;
+  maps.metal = {.base = color_or(node, "color", vec3(1)),
+                .metallic = factor_of(node, "metallic", "metal_picture"),
+                .roughness = factor_of(node, "roughness", "metal_picture")};
+  maps.occlusion = factor_of(node, "occlusion", "occlusion_picture");
+  if (maps.emission_map != kNone) maps.emissive = node.find("emission") ? terms.emission : vec3(1);
+  return with_pictures(terms, maps, scene_.paint);
 }
 
 }  // namespace kdray::scene

@@ -56,7 +56,7 @@ typedef struct Frame {
   float face_lo[3], face_hi[3];
   u32 parallel;  // 1: an orthographic camera
   // The side of the square that a sample stands for: at the distance 1 along `forward`, or of a parallel
-  // camera anywhere.
+  // camera anywhere. In adaptive rounds a pixel's, of which samples have shares (raygen/sequence.clh).
   float pencil;
   // A lens: eye rays start so far from `eye` at most, and are turned back by so much for what is in focus to
   // stay where it is; 0: a pinhole.

@@ -98,6 +98,7 @@ class Scene:
         arg7: float,
         arg8: Sequence[int],
         arg9: str,
+        arg10: Sequence[float],
         /,
     ) -> int: ...
     def commit(self, quality: str, device: str, compute_units: int, binary_form: bool) -> None: ...

@@ -78,6 +78,10 @@ class Material:
     that nothing is there where it is below a half ("mask"), or the share of light that isn't let through
     ("blend"). `emission_picture` is multiplied by `emission`, or by white where that is black.
     `normal_picture` bends normals as glTF's do: x to the right, y up, z out of the surface.
+    `metal_picture` says by its green how rough and by its blue how metallic a place is, times the factors
+    `roughness` and `metallic` (0 to 1). With it all terms but the emission follow from these and from the base
+    colour, which is `diffuse` times `picture`, as glTF's do. The red of `occlusion_picture` is the share of
+    ambient light that gets there; with `occlusion` below 1 that much of it counts.
     """
 
     diffuse: Color = (0.8, 0.8, 0.8)
@@ -92,10 +96,16 @@ class Material:
     normal_picture: int | None = None
     emission_picture: int | None = None
     alpha: str = "opaque"
+    metal_picture: int | None = None
+    metallic: float = 1.0
+    roughness: float = 1.0
+    occlusion_picture: int | None = None
+    occlusion: float = 1.0
 
     def picture_numbers(self) -> list[int]:
-        """Its three pictures, for kdray._core; 2**32 - 1 is none."""
-        numbers = (self.picture, self.normal_picture, self.emission_picture)
+        """Its five pictures, for kdray._core; 2**32 - 1 is none."""
+        surface = (self.picture, self.normal_picture, self.emission_picture)
+        numbers = (*surface, self.metal_picture, self.occlusion_picture)
         for number in numbers:
             if number is not None and not 0 <= number < _NO_PICTURE:
                 raise UsageError(f"a material's picture is a number of Scene.add_picture, not {number!r}")

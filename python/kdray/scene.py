@@ -265,6 +265,7 @@ class Scene:
                 m.index,
                 m.picture_numbers(),
                 m.alpha,
+                (m.metallic, m.roughness, m.occlusion),
             )
         )
 

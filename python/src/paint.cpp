@@ -41,13 +41,16 @@ void add_paint(SceneClass& scene) {
   scene.def(
       "add_picture_file", [](Scene& s, const std::string& file) { return s.add_picture(file); }, Released(),
       "file"_a);
-  // `pictures`: the material's own, its normals', its emission's; kNoPicture: none.
+  // `pictures`: the material's own, its normals', its emission's, metal's and occlusion's; kNoPicture: none.
+  // `factors`: metallic, roughness, occlusion.
   scene.def("add_material",
             [](Scene& s, const Color& emission, const Color& ambient, const Color& diffuse,
                const Color& specular, const Color& reflect, const Color& transmit, float shine, float index,
-               const std::array<PictureId, 3>& pictures, const std::string& alpha) {
+               const std::array<PictureId, 5>& pictures, const std::string& alpha,
+               const std::array<float, 3>& factors) {
               return s.add_material({emission, ambient, diffuse, specular, reflect, transmit, shine, index,
-                                     pictures[0], pictures[1], pictures[2], alpha_of(alpha)});
+                                     pictures[0], pictures[1], pictures[2], alpha_of(alpha), pictures[3],
+                                     factors[0], factors[1], pictures[4], factors[2]});
             });
 }
 

@@ -1,6 +1,10 @@
 """Pictures on meshes: where their pixels come to lie, what they multiply, and what is refused."""
 
+import base64
+import json
 import pickle
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -103,6 +107,74 @@ def test_bent_normals():
         np.testing.assert_allclose(shown(scene, 1)[0, 0], max(cosine, 0), atol=2e-3)
 
 
+def png(pixels: np.ndarray) -> bytes:
+    """A PNG file of an array (h, w, 3), written without kdray."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    rows = b"".join(b"\0" + row.tobytes() for row in pixels)
+    head = struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 8, 2, 0, 0, 0)
+    body = chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + body
+
+
+def gltf_square(material: dict, pictures: list) -> str:
+    corners = np.array(SQUARE, np.float32).tobytes()
+    faces = np.array(HALVES, np.uint32).tobytes()
+    data = corners + faces + np.array(UV, np.float32).tobytes()
+
+    def uri(kind: str, content: bytes) -> str:
+        return f"data:{kind};base64,{base64.b64encode(content).decode()}"
+
+    parts = ((0, len(corners)), (len(corners), len(faces)), (len(corners) + len(faces), 32))
+    kinds = ((5126, 4, "VEC3"), (5125, 6, "SCALAR"), (5126, 4, "VEC2"))
+    return json.dumps(
+        {
+            "asset": {"version": "2.0"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 2}, "indices": 1, "material": 0}]}],
+            "buffers": [{"byteLength": len(data), "uri": uri("application/octet-stream", data)}],
+            "bufferViews": [{"buffer": 0, "byteOffset": at, "byteLength": n} for at, n in parts],
+            "accessors": [
+                {"bufferView": i, "componentType": c, "count": n, "type": t} for i, (c, n, t) in enumerate(kinds)
+            ],
+            "materials": [material],
+            "images": [{"uri": uri("image/png", png(pixels))} for pixels in pictures],
+            "textures": [{"source": i} for i in range(len(pictures))],
+        }
+    )
+
+
+def test_metal_and_occlusion_are_those_of_gltf(tmp_path, rng):
+    metal, occlusion = rng.integers(0, 256, (2, 8, 8, 3), np.uint8)
+    factors = {"baseColorFactor": [0.75, 0.5, 0.25, 1], "metallicFactor": 0.75, "roughnessFactor": 0.5}
+    material = {
+        "pbrMetallicRoughness": factors | {"metallicRoughnessTexture": {"index": 0}},
+        "occlusionTexture": {"index": 1, "strength": 0.5},
+    }
+    (tmp_path / "square.gltf").write_text(gltf_square(material, [metal, occlusion]))
+    loaded, made = kdray.load(tmp_path / "square.gltf"), kdray.Scene()
+    same = kdray.Material(
+        diffuse=(0.75, 0.5, 0.25),
+        metal_picture=made.add_picture(metal),
+        metallic=0.75,
+        roughness=0.5,
+        occlusion_picture=made.add_picture(occlusion),
+        occlusion=0.5,
+    )
+    made.add_mesh(SQUARE, HALVES, uv=UV, material=made.add_material(same))
+    for scene in (loaded, made):
+        scene.set_ambient((0.5, 0.75, 1))
+        scene.set_background((0.25, 0.5, 1))
+        scene.add_light(kdray.Light("directional", direction=(0.25, 0.5, -1)))
+    np.testing.assert_array_equal(shown(made, 16), shown(loaded, 16))
+    np.testing.assert_array_equal(shown(made.copy(), 16), shown(loaded, 16))
+    assert np.ptp(shown(made, 16)) > 0.1
+
+
 def test_files(tmp_path, rng):
     pixels = rng.integers(0, 256, (8, 8, 3), np.uint8)
     scene = square(pixels=pixels)
@@ -180,6 +252,10 @@ def test_wrong_materials():
     for number in (-1, 1, 2**32 - 1, 2**40):
         with pytest.raises(kdray.errors.UsageError, match="picture"):
             scene.add_material(kdray.Material(picture=number))
+        with pytest.raises(kdray.errors.UsageError, match="picture"):
+            scene.add_material(kdray.Material(metal_picture=number))
+    with pytest.raises(kdray.errors.InputError, match="roughness"):
+        scene.add_material(kdray.Material(roughness=2))
     with pytest.raises(kdray.errors.UsageError, match="alpha"):
         scene.add_material(kdray.Material(picture=0, alpha="holes"))
     with pytest.raises(kdray.errors.InputError, match="alpha"):

@@ -185,6 +185,42 @@ static void check_paint(void) {
   kdray_scene_free(scene);
 }
 
+/* Rough everywhere and metal nowhere, by a picture of one pixel: a tenth of the base colour is ambient. */
+static void check_metal(void) {
+  const unsigned char rough[3] = {0, 255, 255}, half[3] = {51, 0, 0};
+  const float white[3] = {1, 1, 1}, dark[3] = {0, 0, 0}, uv[16] = {0.5f, 0.5f};
+  const float seen[2][3] = {{0, 0, 0}, {0.05f * 0.6f, 0.05f * 0.6f, 0.05f * 0.6f}};
+  kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
+  kdray_scene* scene = NULL;
+  kdray_pixels pixels = {0};
+  kdray_material material = {0};
+  kdray_geometry_options options = {0};
+  kdray_camera camera = {0};
+  kdray_light light = {0};
+  pixels.size = sizeof pixels, pixels.data = rough, pixels.width = pixels.height = 1, pixels.channels = 3;
+  material.size = sizeof material, options.size = sizeof options, camera.size = sizeof camera;
+  light.size = sizeof light, light.kind = KDRAY_DIRECTIONAL_LIGHT, light.direction[2] = 1;
+  expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
+  expect(kdray_add_picture(scene, &pixels, &material.metal_picture) == KDRAY_OK, "a picture of metal");
+  pixels.data = half;
+  expect(kdray_add_picture(scene, &pixels, &material.occlusion_picture) == KDRAY_OK, "one of occlusion");
+  material.diffuse[0] = material.diffuse[1] = material.diffuse[2] = 0.5f, material.metallic = -0.5f;
+  expect(kdray_add_material(scene, &material, NULL) != KDRAY_OK, "a negative factor");
+  material.metallic = KDRAY_FACTOR_0, material.occlusion = 0.5f;
+  expect(kdray_add_material(scene, &material, &options.material) == KDRAY_OK, "a material");
+  options.texcoords = floats(uv, 8);
+  expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, &options, NULL) == KDRAY_OK, "a mesh");
+  expect(kdray_add_light(scene, &light) == KDRAY_OK, "a light from below");
+  expect(kdray_set_ambient(scene, white) == KDRAY_OK && kdray_set_background(scene, dark) == KDRAY_OK,
+         "ambient light alone");
+  camera.from[0] = camera.from[1] = camera.at[0] = camera.at[1] = 0.5, camera.from[2] = 4;
+  camera.ortho_width = 2;
+  expect(kdray_set_camera(scene, &camera) == KDRAY_OK, "a camera");
+  expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit");
+  expect_colors(scene, seen, "a rough box of no metal");
+  kdray_scene_free(scene);
+}
+
 static void check_cancel_and_picture(const kdray_scene* scene) {
   static float rgb[3 * 16 * 16];
   kdray_picture_options picture = {0};
@@ -244,6 +280,7 @@ int main(void) {
   check_cancel_and_picture(scene);
   check_looks();
   check_paint();
+  check_metal();
   check_refit(scene, box);
   expect(kdray_keep_programs() == KDRAY_OK, "programs are kept");
   kdray_scene_free(scene);

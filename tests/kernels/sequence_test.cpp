@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "support/device.h"
@@ -69,6 +70,24 @@ TEST_P(SequenceTest, BeginsInTheMiddleAndStaysInThePixel) {
     const Point first = points_of(pixel, 1).front();
     EXPECT_EQ(first.x, 0.5f);
     EXPECT_EQ(first.y, 0.5f);
+  }
+}
+
+// Of how many samples one is the share: of the least that have it among them, which a pixel may have.
+TEST_P(SequenceTest, ShareIsTheRootOfItsPart) {
+  std::vector<cl_uint> numbers(64);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  const std::vector<float> shares = test::run_kernel<float>(GetParam(), R"(#include "raygen/sequence.clh"
+__kernel void test(__global const uint* in, __global float* out, uint n) {
+  const uint i = get_global_id(0);
+  if (i < n) out[i] = convert_float16(sequence_share((uint16)(in[i]))).s3;
+}
+)",
+                                                            numbers);
+  for (const cl_uint k : numbers) {
+    double n = 4;
+    while (n <= k) n *= 2;
+    EXPECT_FLOAT_EQ(shares[k], static_cast<float>(1 / std::sqrt(n))) << "sample " << k;
   }
 }
 

@@ -198,6 +198,8 @@ TEST(Maps, OfJsonAreRefusedWithThePath) {
   EXPECT_SAYS(refusal(json_scene(R"({"picture": "gone.png"})")), "/objects/0/material/picture");
   EXPECT_SAYS(refusal(json_scene(R"({"picture": "bad.png"})")), "/objects/0/material/picture");
   EXPECT_SAYS(refusal(json_scene(R"({"alpha": "mask"})")), "there is no picture whose alpha");
+  EXPECT_SAYS(refusal(json_scene(R"({"roughness": 0.5})")), "/objects/0/material/roughness");
+  EXPECT_SAYS(refusal(json_scene(R"({"metal_picture": "gone.png"})")), "/objects/0/material/metal_picture");
   EXPECT_SAYS(refusal(R"({"objects": [{"type": "triangles", "vertices": [[0,0,0],[1,0,0],[1,1,0]],
       "faces": [[0,1,2]], "uv": [[0,1]]}]})"),
               "not one pair for each vertex");
@@ -268,6 +270,10 @@ TEST(Maps, OfAProgramAreRefused) {
   Paint paint;
   refuses([&] { painted_material({.picture = 3}, paint); }, "there is no picture 3");
   refuses([&] { painted_material({.alpha = AlphaMode::mask}, paint); }, "no picture whose alpha");
+  refuses([&] { painted_material({.metal_picture = 3}, paint); }, "metal_picture: there is no picture 3");
+  refuses([&] { painted_material({.metallic = 1.5f}, paint); }, "metallic may be 0 to 1");
+  refuses([&] { painted_material({.roughness = NAN}, paint); }, "roughness may be 0 to 1");
+  refuses([&] { painted_material({.occlusion = -1}, paint); }, "occlusion may be 0 to 1");
   const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   const std::uint32_t triangles[] = {0, 1, 2};
   const float uv[] = {0, 0, 1, 0, 0, NAN};

@@ -155,7 +155,8 @@ TEST(Mutations, OfPaintedJson) {
   const test::ScratchFolder folder;
   folder.write("p", test::four_colors());
   const std::string good =
-      R"({"materials":{"m":{"picture":"p","normal_picture":"p","emission_picture":"p","alpha":"mask"}},)"
+      R"({"materials":{"m":{"picture":"p","normal_picture":"p","emission_picture":"p","alpha":"mask",)"
+      R"("metal_picture":"p","metallic":0.5,"roughness":1,"occlusion_picture":"p","occlusion":0}},)"
       R"("objects":[{"type":"triangles","vertices":[[0,0,0],[1,0,0],[1,1,0]],"faces":[[0,1,2]],)"
       R"("uv":[[0,0],[1,0],[0.5,1]],"material":"m"}]})";
   mutate([&](std::string_view text, const std::filesystem::path&) { return read_json(text, folder / "a"); },

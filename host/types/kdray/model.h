@@ -85,6 +85,13 @@ struct Material {
   // by what goes through, the last by the emission, or by white where that is black.
   PictureId picture = kNoPicture, normal_picture = kNoPicture, emission_picture = kNoPicture;
   AlphaMode alpha = AlphaMode::opaque;  // of `picture`
+  // As glTF's: green is how rough, blue how metallic, each times its factor (0 to 1). With this picture all
+  // terms but the emission follow from these and from the base colour, which is `diffuse` times `picture`.
+  PictureId metal_picture = kNoPicture;
+  float metallic = 1, roughness = 1;
+  // Its red is the share of ambient light that gets there; with `occlusion` below 1 that much of it counts.
+  PictureId occlusion_picture = kNoPicture;
+  float occlusion = 1;
 };
 
 struct Light {
