@@ -10,6 +10,8 @@ namespace {
 query::GeometryTable table_of_one(const prepare::Prepared& scene) {
   query::GeometryTable table;
   table.add(0, static_cast<std::uint32_t>(scene.counts.primitives), 0xffffffffu);
+  const auto& instances = scene.flat.instances;
+  if (!instances.empty()) table.add_instances(0, instances[instances.size() - 1].number + 1, 0xffffffffu);
   return table;
 }
 
@@ -46,7 +48,10 @@ query::Target Committed::target() {
   query::Target target{first.context,     first.buffers(),  first.programs,
                        scene_.prepared(), first.work_group, first.global};
   target.space = LocalSpace();
-  if (const std::vector<std::uint32_t> masks = table_.masks(); !masks.empty())
+  std::vector<std::uint32_t> instances;
+  for (const layout::Instance& instance : scene_.prepared().flat.instances)
+    instances.push_back(instance.number);
+  if (const std::vector<std::uint32_t> masks = table_.masks(instances); !masks.empty())
     target.masks = first.context.upload_copy(masks.data(), masks.size() * sizeof masks[0], "the masks");
   return target;
 }

@@ -10,7 +10,6 @@
 
 #include "api/device.h"
 #include "kdray/kdray.h"
-#include "prepare/instanced.h"
 #include "query/ask.h"
 
 namespace kdray::api {
@@ -25,10 +24,7 @@ class Committed {
 
   const PreparedScene& scene() const { return scene_; }
   Picture render(const RenderOptions& options);
-  query::Asked asked() {
-    prepare::refuse_instances(scene_.prepared(), "queries");
-    return {target_, table_, frame_, sessions_};
-  }
+  query::Asked asked() { return {target_, table_, frame_, sessions_}; }
 
   // Of a query over so many rays or points that took this long, and of all that came before it.
   Statistics statistics(std::uint64_t n_asked, std::span<const double> seconds) const;

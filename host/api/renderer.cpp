@@ -62,7 +62,7 @@ struct Renderer::Impl {
 
   Picture render(const RenderOptions& options);
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
-                         Precision precision);
+                         Precision precision, std::vector<std::uint32_t>* instances);
   void tune(const Tuning& tuning);
   void look(const prepare::Prepared& seen);
 
@@ -106,8 +106,7 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
 }
 
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
-                                       Precision precision) {
-  prepare::refuse_instances(state.scene, "queries");
+                                       Precision precision, std::vector<std::uint32_t>* instances) {
   api::Device& first = state.devices.first();
   Traversal traversal = api::traversal_in(precision, wanted, first.context.info());
   api::check_form(takes_binary_form(traversal, precision), state.scene);
@@ -125,6 +124,7 @@ std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, 
                      .seconds = median(result.seconds),
                      .traversal = traversal,
                      .precision = precision});
+  if (instances) *instances = std::move(result.instances);
   return std::move(result.hits);
 }
 
@@ -152,8 +152,8 @@ Picture Renderer::render(const RenderOptions& options) {
   return impl_->render(options);
 }
 std::vector<Hit> Renderer::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal,
-                                 Precision precision) {
-  return impl_->trace(rays, any_hit, repeat, traversal, precision);
+                                 Precision precision, std::vector<std::uint32_t>* instances) {
+  return impl_->trace(rays, any_hit, repeat, traversal, precision, instances);
 }
 void Renderer::look(const PreparedScene& seen) {
   impl_->look(seen.prepared());

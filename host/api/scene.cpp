@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -9,10 +11,12 @@
 #include "api/committed.h"
 #include "base/timer.h"
 #include "kdray/kdray.h"
+#include "prepare/instanced.h"
 #include "prepare/refit.h"
 #include "query/crossings.h"
 #include "query/points.h"
 #include "scene/added_geometry.h"
+#include "scene/added_instances.h"
 #include "scene/added_paint.h"
 #include "scene/check_scene.h"
 #include "scene/frame.h"
@@ -32,6 +36,15 @@ struct Scene::Impl {
   bool changed = false;   // since `assembled` was made
   bool touched = false;   // since the last commit(), but for masks
   bool reshaped = false;  // since then: other geometries, not only other vertices or another look
+  bool bent = false;      // since then: other vertices, not only other transforms or another look
+  bool replaced = false;  // by the last commit(): instances alone were elsewhere
+
+  // Of prototypes, by their ids, the meshes that their instances are of: as they are in `assembled`.
+  struct Prototype {
+    std::uint32_t first_material;
+    std::shared_ptr<const scene::Scene> mesh;
+  };
+  std::map<GeometryId, Prototype> prototypes;
 
   mutable std::optional<scene::Scene> assembled;  // base and geometries together, where there are some
 
@@ -45,9 +58,16 @@ struct Scene::Impl {
   bool is_file(GeometryId id) const { return has_file && id == 0 && !file_removed; }
   scene::AddedGeometry& added(GeometryId id);
   GeometryId add(scene::AddedGeometry&& geometry, const GeometryOptions& options);
+  GeometryId put(scene::AddedGeometry&& geometry);
+  const scene::AddedGeometry& prototype(GeometryId id);
+  bool has_instances(GeometryId prototype) const;
+  bool is_seen(const scene::AddedGeometry& instances) const;
+  const std::shared_ptr<const scene::Scene>& mesh_of(GeometryId prototype, std::uint32_t first_material);
+  void put_instances(scene::Scene& all, std::uint32_t first_material);
   const scene::Scene& model();
   void touch();
   void reshape();
+  std::optional<PreparedScene> replace_instances(CommitReport& report);
   std::optional<PreparedScene> refit(const CommitOptions& options, CommitReport& report);
   PreparedScene build(const CommitOptions& options);
   void settle(const CommitReport& report);
@@ -91,12 +111,61 @@ scene::AddedGeometry& Scene::Impl::added(GeometryId id) {
 GeometryId Scene::Impl::add(scene::AddedGeometry&& geometry, const GeometryOptions& options) {
   if (options.material >= std::max<std::size_t>(materials.size(), 1))
     throw Error(ErrorCode::usage, fmt::format("there is no material {}; add it first", options.material));
+  if (options.prototype && options.mask != 0xffffffffu)
+    throw Error(ErrorCode::usage, "a prototype has no mask; its instances have");
   geometry.name = options.name;
   geometry.mask = options.mask;
   geometry.material = options.material;
+  geometry.prototype = options.prototype;
+  return put(std::move(geometry));
+}
+
+GeometryId Scene::Impl::put(scene::AddedGeometry&& geometry) {
   geometries.emplace_back(std::move(geometry));
   reshape();
   return first_added() + static_cast<GeometryId>(geometries.size() - 1);
+}
+
+const scene::AddedGeometry& Scene::Impl::prototype(GeometryId id) {
+  const scene::AddedGeometry& geometry = added(id);
+  if (geometry.is_instances())
+    throw Error(ErrorCode::usage,
+                fmt::format("geometry {} is instances itself, of which there are no instances", id));
+  if (!geometry.prototype)
+    throw Error(ErrorCode::usage,
+                fmt::format("geometry {} is no prototype; add it as one to have instances of it", id));
+  return geometry;
+}
+
+bool Scene::Impl::has_instances(GeometryId prototype) const {
+  return std::ranges::any_of(geometries, [&](const auto& g) { return g && g->of == prototype; });
+}
+
+// Instances of what has no primitives are none.
+bool Scene::Impl::is_seen(const scene::AddedGeometry& instances) const {
+  const auto& prototype = geometries[instances.of - first_added()];
+  return instances.enabled && prototype->enabled && prototype->primitive_count() > 0;
+}
+
+const std::shared_ptr<const scene::Scene>& Scene::Impl::mesh_of(GeometryId prototype,
+                                                                std::uint32_t first_material) {
+  Prototype& known = prototypes[prototype];
+  if (!known.mesh || known.first_material != first_material)
+    known = {first_material,
+             std::make_shared<const scene::Scene>(scene::mesh_of(added(prototype), first_material))};
+  return known.mesh;
+}
+
+void Scene::Impl::put_instances(scene::Scene& all, std::uint32_t first_material) {
+  std::map<GeometryId, std::uint32_t> meshes;  // of `all`, by prototypes
+  for (const auto& geometry : geometries) {
+    if (!geometry || !geometry->is_instances() || !is_seen(*geometry)) continue;
+    const auto [at, is_new] = meshes.try_emplace(geometry->of, static_cast<std::uint32_t>(all.meshes.size()));
+    if (is_new) all.meshes.push_back(mesh_of(geometry->of, first_material));
+    scene::put_instances(all, *geometry, at->second, first_material);
+  }
+  if (all.materials.size() == first_material && !all.meshes.empty())
+    all.materials.push_back(scene::material_of({}));
 }
 
 void Scene::Impl::touch() {
@@ -112,19 +181,26 @@ const scene::Scene& Scene::Impl::model() {
   const bool with_file = has_file && !file_removed && file_info.enabled;
   std::vector<const scene::AddedGeometry*> enabled;
   for (const auto& geometry : geometries)
-    if (geometry && geometry->enabled) enabled.push_back(&*geometry);
+    if (geometry && geometry->enabled && !geometry->prototype && !geometry->is_instances())
+      enabled.push_back(&*geometry);
   const bool moved = assembled && !reshaped;  // since then
   scene::Scene all = with_file && !moved ? base : only_settings(base);
+  if (with_file && moved) {
+    all.materials = base.materials;
+    all.paint = base.paint;
+    all.meshes = base.meshes;
+    all.instances = base.instances;
+  }
+  const auto first_material = static_cast<std::uint32_t>(all.materials.size());
   if (moved) {
     scene::Scene before = std::move(*assembled);
     assembled.reset();
-    if (with_file) all.materials = base.materials;
-    if (with_file) all.paint = base.paint;
     scene::assemble_moved(all, std::move(before), enabled, materials);
   } else {
     scene::assemble(all, enabled, materials);
   }
   scene::assemble_paint(all, enabled, paint, materials.size());
+  put_instances(all, first_material);
   // It is the file's no more, and is not to be kept as the file's (host/cache). What was made up for the file
   // alone is made up anew.
   all.files.clear();
@@ -139,11 +215,21 @@ const scene::Scene& Scene::Impl::model() {
 
 query::GeometryTable Scene::Impl::table() const {
   query::GeometryTable table;
-  if (has_file && !file_removed && file_info.enabled) table.add(0, base.primitive_count(), file_info.mask);
-  for (std::size_t i = 0; i < geometries.size(); ++i)
-    if (geometries[i] && geometries[i]->enabled)
-      table.add(first_added() + static_cast<GeometryId>(i), geometries[i]->primitive_count(),
-                geometries[i]->mask);
+  if (has_file && !file_removed && file_info.enabled) {
+    table.add(0, base.primitive_count(), file_info.mask);
+    table.add_instances(0, static_cast<std::uint32_t>(base.instances.size()), file_info.mask);
+  }
+  for (std::size_t i = 0; i < geometries.size(); ++i) {
+    const auto& geometry = geometries[i];
+    const GeometryId id = first_added() + static_cast<GeometryId>(i);
+    if (!geometry || geometry->prototype) continue;
+    if (geometry->is_instances()) {
+      if (is_seen(*geometry))
+        table.add_instances(id, static_cast<std::uint32_t>(geometry->instances.size()), geometry->mask);
+    } else if (geometry->enabled) {
+      table.add(id, geometry->primitive_count(), geometry->mask);
+    }
+  }
   return table;
 }
 
@@ -173,7 +259,8 @@ Scene::Scene() : impl_(std::make_unique<Impl>()) {
 }
 Scene::Scene(scene::Scene&& model) : impl_(std::make_unique<Impl>()) {
   impl_->has_file = true;
-  impl_->file_info = {model.name, 0xffffffffu, model.primitive_count(), true};
+  impl_->file_info = {model.name, 0xffffffffu, model.primitive_count(),
+                      true,       false,       static_cast<std::uint32_t>(model.instances.size())};
   impl_->base = std::move(model);
 }
 Scene::Scene(Scene&&) noexcept = default;
@@ -193,15 +280,35 @@ GeometryId Scene::add_discs(const Discs& discs, const GeometryOptions& options) 
   return impl_->add(scene::make_added(discs), options);
 }
 
-void Scene::update_vertices(GeometryId mesh, const Points& vertices, const Points& normals) {
-  scene::move_vertices(impl_->added(mesh), vertices, normals);
+GeometryId Scene::add_instances(GeometryId prototype, const Transforms& transforms,
+                                const InstanceOptions& options) {
+  static_cast<void>(impl_->prototype(prototype));
+  scene::AddedGeometry made = scene::make_added(prototype, transforms, options.materials,
+                                                std::max<std::size_t>(impl_->materials.size(), 1));
+  made.name = options.name;
+  made.mask = options.mask;
+  return impl_->put(std::move(made));
+}
+void Scene::update_transforms(GeometryId instances, const Transforms& transforms) {
+  scene::move_instances(impl_->added(instances), transforms);
   impl_->touch();
+}
+
+void Scene::update_vertices(GeometryId mesh, const Points& vertices, const Points& normals) {
+  scene::AddedGeometry& geometry = impl_->added(mesh);
+  scene::move_vertices(geometry, vertices, normals);
+  impl_->touch();
+  impl_->bent = true;
+  if (impl_->prototypes.erase(mesh) > 0) impl_->reshape();
 }
 void Scene::remove(GeometryId geometry) {
   if (impl_->is_file(geometry)) {
     impl_->file_removed = true;
   } else {
-    static_cast<void>(impl_->added(geometry));
+    if (impl_->added(geometry).prototype && impl_->has_instances(geometry))
+      throw Error(ErrorCode::usage,
+                  fmt::format("geometry {} is a prototype that has instances; remove these first", geometry));
+    impl_->prototypes.erase(geometry);
     impl_->geometries[geometry - impl_->first_added()].reset();
   }
   impl_->reshape();
@@ -211,6 +318,8 @@ void Scene::enable(GeometryId geometry, bool enabled) {
   impl_->reshape();
 }
 void Scene::set_mask(GeometryId geometry, std::uint32_t mask) {
+  if (!impl_->is_file(geometry) && impl_->added(geometry).prototype && mask != 0xffffffffu)
+    throw Error(ErrorCode::usage, "a prototype has no mask; its instances have");
   (impl_->is_file(geometry) ? impl_->file_info.mask : impl_->added(geometry).mask) = mask;
 }
 
@@ -224,7 +333,10 @@ std::vector<GeometryId> Scene::geometries() const {
 GeometryInfo Scene::info(GeometryId geometry) const {
   if (impl_->is_file(geometry)) return impl_->file_info;
   const scene::AddedGeometry& added = impl_->added(geometry);
-  return {added.name, added.mask, added.primitive_count(), added.enabled};
+  const std::uint32_t primitives =
+      added.is_instances() ? impl_->added(added.of).primitive_count() : added.primitive_count();
+  return {added.name,    added.mask,      primitives,
+          added.enabled, added.prototype, static_cast<std::uint32_t>(added.instances.size())};
 }
 
 MaterialId Scene::add_material(const Material& material) {
@@ -292,18 +404,30 @@ double Scene::load_seconds() const {
   return impl_->load_seconds;
 }
 
+// What was committed with instances where they are now. Nothing where that isn't all that has changed.
+std::optional<PreparedScene> Scene::Impl::replace_instances(CommitReport& report) {
+  if (bent) return std::nullopt;
+  std::optional<prepare::Prepared> made = prepare::replace_instances(model(), committed->scene().prepared());
+  if (!made) return std::nullopt;
+  report.refitted = true;
+  return PreparedScene(std::move(*made));
+}
+
 // The tree of the last commit, fitted to where vertices are now. Nothing where it can't be, or isn't to be.
 std::optional<PreparedScene> Scene::Impl::refit(const CommitOptions& options, CommitReport& report) {
   if (!committed || reshaped || !(options.refit_growth > 0)) return std::nullopt;
   const prepare::Prepared& last = committed->scene().prepared();
-  if (!last.flat.instances.empty()) return std::nullopt;
-  // The binary form has planes, which don't move; and a limit on memory asks for trees of several kinds.
-  if (!(last.tree_options == options.tree) || options.tree.binary_form || options.tree.memory_bytes > 0)
+  const bool has_instances = !last.flat.instances.empty();
+  // The binary form has planes, which don't move (nor is there one of instances); and a limit on memory asks
+  // for trees of several kinds.
+  if (!(last.tree_options == options.tree) || (options.tree.binary_form && !has_instances) ||
+      options.tree.memory_bytes > 0)
     return std::nullopt;
   if (!touched && growth <= options.refit_growth) {
     report = {true, growth};
     return committed->scene();
   }
+  if (has_instances) return replace_instances(report);
   if (!fitting) fitting = std::make_unique<const prepare::Fitting>(last);
   prepare::Refitted made = prepare::refit(model(), last, *fitting, options.refit_growth);
   report.growth = made.growth;
@@ -322,11 +446,14 @@ PreparedScene Scene::Impl::build(const CommitOptions& options) {
 
 // Ends a commit. All arrays are held twice only where vertices go on moving.
 void Scene::Impl::settle(const CommitReport& report) {
-  if (assembled && !fitting) {
+  const bool has_moved = report.refitted && touched;
+  if (has_moved) replaced = !fitting;
+  if (!report.refitted) replaced = false;
+  if (assembled && !fitting && !replaced) {
     assembled.reset();
     changed = true;
   }
-  touched = reshaped = false;
+  touched = reshaped = bent = false;
   growth = report.refitted ? report.growth : 1;
   if (!report.refitted) fitting.reset();
 }

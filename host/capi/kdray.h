@@ -84,6 +84,7 @@ typedef struct kdray_geometry_options {
   uint32_t material; /* of kdray_add_material */
   /* Of meshes: rows of two, one for each vertex; (0, 0) is a picture's upper left corner. count = 0: none */
   kdray_in texcoords;
+  int32_t prototype; /* 1: it is seen by its instances alone */
 } kdray_geometry_options;
 
 /* `triangles`: rows of three indices (32 or 64 bits); `normals`: count = 0, or one for each vertex.
@@ -98,6 +99,22 @@ KDRAY_API kdray_status kdray_add_cones(kdray_scene* scene, kdray_in bases, kdray
                                        const kdray_geometry_options* options, uint32_t* id);
 KDRAY_API kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdray_in normals, kdray_in radii,
                                        const kdray_geometry_options* options, uint32_t* id);
+
+#define KDRAY_NO_INSTANCE 0xffffffffu
+#define KDRAY_OWN_MATERIAL 0xffffffffu
+
+typedef struct kdray_instance_options {
+  size_t size;
+  const char* name;   /* NULL: none */
+  uint32_t mask;      /* of all of them; 0: every bit */
+  kdray_in materials; /* uint32: of each in place of the prototype's, or KDRAY_OWN_MATERIAL; one for all */
+} kdray_instance_options;
+
+/* Instances of a geometry that was added as a prototype: together one geometry. `transforms`: rows of twelve
+ * floats, a matrix of three rows and four columns each, row by row: linear | move. */
+KDRAY_API kdray_status kdray_add_instances(kdray_scene* scene, uint32_t prototype, kdray_in transforms,
+                                           const kdray_instance_options* options, uint32_t* id);
+KDRAY_API kdray_status kdray_update_transforms(kdray_scene* scene, uint32_t instances, kdray_in transforms);
 
 KDRAY_API kdray_status kdray_update_vertices(kdray_scene* scene, uint32_t mesh, kdray_in vertices,
                                              kdray_in normals);
@@ -237,6 +254,7 @@ typedef struct kdray_hits {
   kdray_out geometry, primitive; /* uint32 */
   kdray_out u, v;                /* floats */
   kdray_out normal, point;       /* rows of three floats */
+  kdray_out instance;            /* uint32: of the geometry, from 0; or KDRAY_NO_INSTANCE */
 } kdray_hits;
 
 KDRAY_API kdray_status kdray_closest(const kdray_scene* scene, const kdray_rays* rays, const kdray_hits* hits,

@@ -66,7 +66,8 @@ kdray_status kdray_closest(const kdray_scene* scene, const kdray_rays* rays, con
                       view_of<ValuesOut>(h.u, "hits.u"),
                       view_of<ValuesOut>(h.v, "hits.v"),
                       view_of<PointsOut>(h.normal, "hits.normal"),
-                      view_of<PointsOut>(h.point, "hits.point")};
+                      view_of<PointsOut>(h.point, "hits.point"),
+                      view_of<WordsOut>(h.instance, "hits.instance")};
     return s.closest(rays_of(rays), out, with(o, QueryOptions()));
   });
 }

@@ -24,6 +24,16 @@ GeometryOptions options_of(const kdray_geometry_options* given) {
   if (o.name != nullptr) options.name = o.name;
   if (o.mask != 0) options.mask = o.mask;
   options.material = o.material;
+  options.prototype = o.prototype != 0;
+  return options;
+}
+
+InstanceOptions options_of(const kdray_instance_options* given) {
+  const kdray_instance_options o = grown(given, "options");
+  InstanceOptions options;
+  if (o.name != nullptr) options.name = o.name;
+  if (o.mask != 0) options.mask = o.mask;
+  options.materials = view_of<Words>(o.materials, "materials");
   return options;
 }
 
@@ -143,6 +153,19 @@ kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdray_in norm
     const Discs discs{view_of<Points>(centers, "centers"), view_of<Points>(normals, "normals"),
                       view_of<Values>(radii, "radii")};
     put(id, needed(scene, "scene")->scene.add_discs(discs, options_of(options)));
+  });
+}
+
+kdray_status kdray_add_instances(kdray_scene* scene, uint32_t prototype, kdray_in transforms,
+                                 const kdray_instance_options* options, uint32_t* id) {
+  return guarded([&] {
+    const Transforms rows = view_of<Transforms>(transforms, "transforms");
+    put(id, needed(scene, "scene")->scene.add_instances(prototype, rows, options_of(options)));
+  });
+}
+kdray_status kdray_update_transforms(kdray_scene* scene, uint32_t instances, kdray_in transforms) {
+  return guarded([&] {
+    needed(scene, "scene")->scene.update_transforms(instances, view_of<Transforms>(transforms, "transforms"));
   });
 }
 

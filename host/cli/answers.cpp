@@ -26,7 +26,19 @@ Column signed_column(const char* name, const std::vector<std::uint32_t>& values)
 }
 static_assert(static_cast<std::int32_t>(kNoPrimitive) == -1);
 
+static_assert(static_cast<std::int32_t>(kNoInstance) == -1);
+
+// Scenes without instances have no such column.
+std::vector<Column> with_instances(std::vector<Column> columns, const std::vector<std::uint32_t>& instances) {
+  if (!instances.empty()) columns.push_back(signed_column("instance", instances));
+  return columns;
+}
+
 constexpr double kMiss = std::numeric_limits<double>::infinity();
+
+bool has_instances(const query::Asked& scene) {
+  return !scene.scene().flat.instances.empty();
+}
 
 template <class T, class Holds>
 std::uint64_t count_if(const std::vector<T>& values, const Holds& holds) {
@@ -35,9 +47,10 @@ std::uint64_t count_if(const std::vector<T>& values, const Holds& holds) {
 
 }  // namespace
 
-std::vector<Column> columns_of(std::span<const Hit> hits) {
-  return {column("t", hits, &Hit::t), column("primitive", hits, &Hit::primitive), column("u", hits, &Hit::u),
-          column("v", hits, &Hit::v)};
+std::vector<Column> columns_of(std::span<const Hit> hits, const std::vector<std::uint32_t>& instances) {
+  return with_instances({column("t", hits, &Hit::t), column("primitive", hits, &Hit::primitive),
+                         column("u", hits, &Hit::u), column("v", hits, &Hit::v)},
+                        instances);
 }
 
 void Answers::ask(const query::Asked& scene, const AskedRows& rows, std::size_t n) {
@@ -67,7 +80,9 @@ void Answers::ask(const query::Asked& scene, const AskedRows& rows, std::size_t 
 
 void Answers::ask_closest(const query::Asked& scene, const Rays& rays, std::size_t n) {
   t_.resize(n), primitive_.resize(n), u_.resize(n), v_.resize(n);
-  query::closest(scene, rays, {.t = t_, .primitive = primitive_, .u = u_, .v = v_}, {});
+  if (has_instances(scene)) instance_.resize(n);
+  query::closest(scene, rays, {.t = t_, .primitive = primitive_, .u = u_, .v = v_, .instance = instance_},
+                 {});
 }
 
 // What a Renderer tells of any hit: t is 0, and nothing of where it is.
@@ -78,6 +93,7 @@ void Answers::ask_any(const query::Asked& scene, const Rays& rays, std::size_t n
   std::transform(flags_.begin(), flags_.end(), t_.begin(),
                  [](std::uint8_t hit) { return hit ? 0.0 : kMiss; });
   primitive_.assign(n, kNoPrimitive), u_.assign(n, 0), v_.assign(n, 0);
+  if (has_instances(scene)) instance_.assign(n, kNoInstance);
 }
 
 void Answers::ask_all(const query::Asked& scene, const Rays& rays, std::size_t) {
@@ -98,8 +114,9 @@ std::vector<Column> Answers::columns() const {
   switch (question_) {
     case Question::closest:
     case Question::any:
-      return {column_of("t", t_), signed_column("primitive", primitive_), column_of("u", u_),
-              column_of("v", v_)};
+      return with_instances({column_of("t", t_), signed_column("primitive", primitive_), column_of("u", u_),
+                             column_of("v", v_)},
+                            instance_);
     case Question::all:
       return {column_of("splits", all_.splits),
               column_of("t", all_.t),

@@ -16,8 +16,8 @@
 
 namespace kdray::cli {
 
-// The columns of hits that a Renderer has traced.
-std::vector<rays::Column> columns_of(std::span<const Hit> hits);
+// The columns of hits that a Renderer has traced; `instances`: of each hit, in a scene that has some.
+std::vector<rays::Column> columns_of(std::span<const Hit> hits, const std::vector<std::uint32_t>& instances);
 
 class Answers {
  public:
@@ -42,6 +42,7 @@ class Answers {
   std::vector<double> t_;  // or distances
   std::vector<std::array<double, 3>> point_;
   std::vector<std::uint32_t> geometry_, primitive_;  // a miss's primitive is -1 where that is signed
+  std::vector<std::uint32_t> instance_;              // in a scene that has instances
   std::vector<float> u_, v_;
   std::vector<std::uint32_t> counts_;
   std::vector<std::uint8_t> flags_;

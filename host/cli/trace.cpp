@@ -84,13 +84,14 @@ auto naming_file(const std::string& file, const Work& work) {
 // Closest and any hits of floats, which are on the device before the time counts.
 Traced trace(const OpenedScene& scene, const TraceArgs& o, const Asked& asked, const AskedRows& rows) {
   Renderer renderer(scene.scene(), scene.device());
+  std::vector<std::uint32_t> instances;
   const std::vector<Hit> hits = naming_file(asked.file, [&] {
-    return renderer.trace(rows.structs(), asked.question == Question::any, o.repeat, o.traversal,
-                          o.precision);
+    return renderer.trace(rows.structs(), asked.question == Question::any, o.repeat, o.traversal, o.precision,
+                          &instances);
   });
   const auto found = std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return std::isfinite(h.t); });
   Traced traced{renderer.statistics(), static_cast<std::uint64_t>(found)};
-  write_answers(o.output, columns_of(hits), format_of(o.output, asked.question), traced.figures);
+  write_answers(o.output, columns_of(hits, instances), format_of(o.output, asked.question), traced.figures);
   return traced;
 }
 

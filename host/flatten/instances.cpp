@@ -101,8 +101,9 @@ Box bounds_of(const MeshForm& mesh, const Placing& placing) {
   return widened(box, row_sums(placing.linear) * (128 * kRoundoff * reach_of(mesh.bounds)));
 }
 
+// No less than rotations with one scale have, so that instances that begin to turn need no other programs.
 int widening_for(double condition) {
-  int widen = 1;
+  int widen = 4;
   while (widen < condition * 42 / 32) widen *= 2;
   return widen;
 }

@@ -1,16 +1,21 @@
 #include "prepare/instanced.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <span>
 
 #include "base/error.h"
+#include "base/timer.h"
 #include "flatten/features.h"
 #include "flatten/instance_tree.h"
 #include "flatten/instances.h"
 #include "flatten/paint.h"
+#include "flatten/sky.h"
 
 namespace kdray::prepare {
 
@@ -152,30 +157,78 @@ std::vector<Box> parts_of(const WideForm& wide) {
   return parts;
 }
 
-// The scene's own nodes, the tree over the instances, and the meshes' trees, with a root above the first two.
-class Nodes {
- public:
-  Nodes(const WideForm& scene, bool is_empty, const flatten::InstanceTree& over, std::size_t n_over)
-      : first_over_(is_empty ? 0 : 1 + scene.nodes.size()), first_mesh_(first_over_ + n_over) {
-    if (!is_empty) {
-      nodes_.emplace_back();
-      for (const layout::WideNode& node : scene.nodes) nodes_.push_back(Shift{1, {}}(node));
-    }
-    for (const layout::WideNode& node : over.nodes) nodes_.push_back(Shift{first_over_, {}}(node));
-  }
-
-  std::size_t first_over() const { return first_over_; }
-  std::size_t first_mesh() const { return first_mesh_; }
-  void add(const WideForm& mesh, Shift shift) {
-    shift.nodes = nodes_.size();
-    for (const layout::WideNode& node : mesh.nodes) nodes_.push_back(shift(node));
-  }
-  RawVector<layout::WideNode>& all() { return nodes_; }
-
- private:
-  std::size_t first_over_, first_mesh_;
-  RawVector<layout::WideNode> nodes_;
+// Nodes of the scene's own tree, whose children are named as they come to lie, and of all meshes, whose
+// children are named from `first` on.
+struct Trees {
+  std::span<const layout::WideNode> own, meshes;
+  std::size_t first = 0;
 };
+
+void copy_nodes(std::span<const layout::WideNode> from, const Shift& shift, layout::WideNode* to) {
+  constexpr std::size_t kGrain = 4096;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, from.size(), kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) to[i] = shift(from[i]);
+  });
+}
+
+// The instances that can be hit, and their places in the scene's list.
+struct Hittable {
+  std::vector<scene::Instance> instances;
+  std::vector<layout::u32> places;
+
+  Hittable(const PageVector<scene::Instance>& all, const std::vector<std::size_t>& mesh_sizes) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (mesh_sizes[all[i].mesh] == 0) continue;
+      instances.push_back(all[i]);
+      places.push_back(static_cast<layout::u32>(i));
+    }
+    check(instances.size(), KDRAY_WIDE_FIRST_MASK, "instances");
+  }
+};
+
+// The scene's own nodes, the tree over the instances, and the meshes' trees, with a root above the first two.
+Array<layout::WideNode> joined_nodes(const Trees& trees, const flatten::InstanceTree& over,
+                                     std::span<const Box> boxes) {
+  const std::size_t first_over = trees.own.empty() ? 0 : 1 + trees.own.size(),
+                    first_mesh = first_over + over.nodes.size();
+  check(first_mesh + trees.meshes.size(), KDRAY_WIDE_NODE_MAX, "nodes");
+  Array<layout::WideNode> nodes(first_mesh + trees.meshes.size());
+  if (!trees.own.empty()) {
+    const layout::u32 children[] = {1, static_cast<layout::u32>(first_over)};
+    nodes[0] = flatten::node_of(boxes, children);
+    std::copy(trees.own.begin(), trees.own.end(), nodes.data() + 1);
+  }
+  copy_nodes(over.nodes, Shift{first_over, {}}, nodes.data() + first_over);
+  // A sum may wrap around, as a child's number does where nodes move to the front.
+  copy_nodes(trees.meshes, Shift{first_mesh - trees.first, {}}, nodes.data() + first_mesh);
+  return nodes;
+}
+
+// Places the instances of `placed_meshes` and joins all nodes.
+void place(Prepared& made, const Hittable& hittable, const Trees& trees) {
+  const PlacedMeshes& meshes = *made.placed_meshes;
+  flatten::PlacedInstances placed =
+      flatten::place_instances(hittable.instances, meshes.meshes, made.geometry.space);
+  const flatten::InstanceTree over = flatten::build_instance_tree(placed.bounds);
+  const bool empty = trees.own.empty();
+  const std::size_t first_mesh = (empty ? 0 : 1 + trees.own.size()) + over.nodes.size();
+  const Box boxes[] = {meshes.own_bounds, placed.all};
+  made.wide.nodes = joined_nodes(trees, over, boxes);
+  made.counts.instances = hittable.instances.size();
+  made.counts.instanced = 0;
+  for (std::size_t i = 0; i < hittable.instances.size(); ++i) {
+    placed.instances[i].root += static_cast<layout::u32>(first_mesh);
+    placed.instances[i].number = hittable.places[i];
+    made.counts.instanced += meshes.sizes[hittable.instances[i].mesh];
+  }
+  const int of_over = *std::max_element(over.needs.begin(), over.needs.end());
+  // In a mesh a batch goes on with the same stack, behind an entry that leads out.
+  made.wide.stack_size = std::max(meshes.own_stack, of_over) + (empty ? 0 : 1) + 1 + meshes.mesh_stack;
+  made.wide.widen = placed.widen;
+  made.flat.instances = std::move(placed.instances);
+  made.geometry.bounds = meshes.own_bounds;
+  made.geometry.bounds.grow(placed.all);
+}
 
 }  // namespace
 
@@ -195,16 +248,17 @@ int Meshes::block(const kdtree::Tree& tree, std::size_t n_primitives) const {
 }
 
 void Meshes::join(Prepared& made) const {
-  // A mesh that has nothing to be hit has no instances.
-  std::vector<scene::Instance> instances;
-  for (const scene::Instance& instance : scene_.instances)
-    if (meshes_[instance.mesh].geometry.size() > 0) instances.push_back(instance);
-  if (instances.empty()) return;
-  check(instances.size(), KDRAY_WIDE_FIRST_MASK, "instances");
+  std::vector<std::size_t> sizes;
+  for (const Mesh& mesh : meshes_) sizes.push_back(mesh.geometry.size());
+  const Hittable hittable(scene_.instances, sizes);
+  if (hittable.instances.empty()) return;
   const bool empty = made.wide.nodes.empty() || made.geometry.bounds.empty();
+  auto meshes = std::make_shared<PlacedMeshes>();
+  meshes->sizes = std::move(sizes);
+  meshes->own_bounds = made.geometry.bounds;
+  meshes->own_stack = made.wide.stack_size;
 
   std::vector<Part> parts(meshes_.size());
-  int of_meshes = 0;  // what walks stack in them
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part& part = parts[i];
     const Mesh& mesh = meshes_[i];
@@ -213,7 +267,7 @@ void Meshes::join(Prepared& made) const {
     part.wide = flatten::make_wide(mesh.tree, part.flat, made.wide.block);
     part.form = {mesh.geometry.space, mesh.tree.bounds, parts_of(part.wide), 0};
     made.features |= flatten::features_of_mesh(scene_, *scene_.meshes[i], mesh.geometry);
-    of_meshes = std::max(of_meshes, part.wide.stack_size);
+    meshes->mesh_stack = std::max(meshes->mesh_stack, part.wide.stack_size);
     made.geometry.dropped_degenerate += mesh.geometry.dropped_degenerate;
     made.tree_nodes += mesh.tree.nodes.size();
   }
@@ -229,34 +283,51 @@ void Meshes::join(Prepared& made) const {
   });
   join_normals_and_paint(made.flat, parts);
 
-  // Where meshes' roots come to lie depends on the tree over the instances, and that on their bounds alone.
-  std::vector<flatten::MeshForm> forms;
-  for (Part& part : parts) forms.push_back(part.form);
-  flatten::PlacedInstances placed = flatten::place_instances(instances, forms, made.geometry.space);
-  const flatten::InstanceTree over = flatten::build_instance_tree(placed.bounds);
-  Nodes nodes(made.wide, empty, over, over.nodes.size());
-  std::vector<layout::u32> roots;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    roots.push_back(static_cast<layout::u32>(nodes.all().size()));
-    nodes.add(parts[i].wide, shifts[i]);
-  }
-  for (std::size_t i = 0; i < instances.size(); ++i) placed.instances[i].root = roots[instances[i].mesh];
+  // Where meshes' roots come to lie depends on the tree over the instances.
+  RawVector<layout::WideNode> own, of_meshes;
   if (!empty) {
-    const Box boxes[] = {made.geometry.bounds, placed.all};
-    const layout::u32 children[] = {1, static_cast<layout::u32>(nodes.first_over())};
-    nodes.all()[0] = flatten::node_of(boxes, children);
+    own.resize(made.wide.nodes.size());
+    copy_nodes({made.wide.nodes.data(), own.size()}, Shift{1, {}}, own.data());
   }
-  check(nodes.all().size(), KDRAY_WIDE_NODE_MAX, "nodes");
-  const int of_over = *std::max_element(over.needs.begin(), over.needs.end());
-  // In a mesh a batch goes on with the same stack, behind an entry that leads out.
-  made.wide.stack_size = std::max(made.wide.stack_size, of_over) + (empty ? 0 : 1) + 1 + of_meshes;
-  made.wide.nodes = Array<layout::WideNode>::copy_of(nodes.all());
-  made.wide.widen = placed.widen;
-  made.flat.instances = std::move(placed.instances);
-  made.geometry.bounds.grow(placed.all);
-  made.counts.instances = instances.size();
-  for (const scene::Instance& instance : instances)
-    made.counts.instanced += meshes_[instance.mesh].geometry.size();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Part& part = parts[i];
+    shifts[i].nodes = of_meshes.size();
+    part.form.root = static_cast<layout::u32>(of_meshes.size());
+    of_meshes.resize(of_meshes.size() + part.wide.nodes.size());
+    copy_nodes({part.wide.nodes.data(), part.wide.nodes.size()}, shifts[i],
+               of_meshes.data() + part.form.root);
+    meshes->meshes.push_back(std::move(part.form));
+  }
+  meshes->n_own_nodes = own.size();
+  meshes->n_mesh_nodes = of_meshes.size();
+  made.placed_meshes = std::move(meshes);
+  place(made, hittable, {own, of_meshes, 0});
+}
+
+std::optional<Prepared> replace_instances(const scene::Scene& scene, const Prepared& last) {
+  const Timer timer;
+  if (!last.placed_meshes || scene.meshes.size() != last.placed_meshes->meshes.size() ||
+      !(scene.materials == last.settings.materials) ||
+      !scene::keeps_space(last.geometry.space, scene.bounds()))
+    return std::nullopt;
+  const PlacedMeshes& meshes = *last.placed_meshes;
+  const Hittable hittable(scene.instances, meshes.sizes);
+  if (hittable.instances.empty()) return std::nullopt;
+  Prepared out = last;
+  const std::vector<std::string> warnings = last.settings.warnings;
+  out.settings = settings_of(scene);
+  out.settings.warnings = warnings;
+  out.features = flatten::features_in_light(last.features, scene);
+  out.flat.lights = flatten::pack_lights(scene, last.geometry.space);
+  out.flat.sky = {}, out.flat.sky_colors = {};
+  flatten::pack_sky(scene.sky, out.flat);
+  const std::span<const layout::WideNode> nodes(last.wide.nodes.data(), last.wide.nodes.size());
+  const std::size_t first_mesh = nodes.size() - meshes.n_mesh_nodes;
+  place(out, hittable,
+        {nodes.subspan(meshes.n_own_nodes > 0 ? 1 : 0, meshes.n_own_nodes), nodes.subspan(first_mesh),
+         first_mesh});
+  out.seconds = {.load = last.seconds.load, .build = 0, .flatten = timer.seconds()};
+  return out;
 }
 
 std::size_t largest_mesh(const scene::Scene& scene) {
@@ -267,11 +338,9 @@ std::size_t largest_mesh(const scene::Scene& scene) {
 
 void refuse_instances(const Prepared& scene, const char* what) {
   if (!scene.flat.instances.empty())
-    throw Error(
-        ErrorCode::usage,
-        fmt::format(
-            "the scene has {} instances of meshes, which {} can't follow; load it with --instances flat",
-            scene.flat.instances.size(), what));
+    throw Error(ErrorCode::usage, fmt::format("the scene has {} instances of meshes, which {} can't follow; "
+                                              "load it with --instances flat, or add copies",
+                                              scene.flat.instances.size(), what));
 }
 
 }  // namespace kdray::prepare

@@ -4,6 +4,7 @@
 // Why     Memory grows with what is unique: an instance takes 128 bytes, and a share of a node.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kdtree/build.h"
@@ -30,6 +31,12 @@ class Meshes {
   const scene::Scene& scene_;
   std::vector<Mesh> meshes_;
 };
+
+// `last` with its instances where they are in `scene`, of which nothing else has changed but lights and what
+// sees it: trees of meshes, and of what is no instance, are kept, the tree over instances is built anew. All
+// is as if it had been prepared anew in the same space, bit for bit. Nothing where it has to be: where the
+// scene doesn't keep its space, or its materials have changed.
+std::optional<Prepared> replace_instances(const scene::Scene& scene, const Prepared& last);
 
 // The primitives of the largest mesh.
 std::size_t largest_mesh(const scene::Scene& scene);

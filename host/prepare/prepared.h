@@ -5,9 +5,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "flatten/flatten.h"
+#include "flatten/instances.h"
 #include "flatten/wide.h"
 #include "kdray/options.h"
 #include "kdtree/build.h"
@@ -35,6 +38,15 @@ struct Seconds {
   double total() const { return load + build + flatten; }
 };
 
+// What instances can be placed anew by, without a look at their meshes (prepare/instanced.h).
+struct PlacedMeshes {
+  std::vector<flatten::MeshForm> meshes;  // roots are counted from the first mesh's first node
+  std::vector<std::size_t> sizes;         // of each, primitives that can be hit
+  Box own_bounds;                         // of the scene without its instances
+  int own_stack = 0, mesh_stack = 0;      // what walks stack in the scene's own tree, and in meshes
+  std::size_t n_own_nodes = 0, n_mesh_nodes = 0;
+};
+
 struct Prepared {
   scene::Scene settings;     // the scene but for its primitives, vertices and normals
   scene::Geometry geometry;  // centre and bounds (the root's cell: what rays are clipped to); no primitives
@@ -45,8 +57,9 @@ struct Prepared {
   kdtree::Statistics tree;
   flatten::FlatScene flat;
   flatten::WideForm wide;
-  TreeOptions tree_options;  // that it was made with
-  Seconds seconds;           // that it took to make
+  std::shared_ptr<const PlacedMeshes> placed_meshes;  // where there are instances; not kept in files
+  TreeOptions tree_options;                           // that it was made with
+  Seconds seconds;                                    // that it took to make
 
   std::size_t bytes() const { return flat.bytes() + wide.bytes(); }
   std::size_t largest_array() const;  // what a device has to hold in one piece

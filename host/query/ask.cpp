@@ -119,9 +119,11 @@ QueryReport trace_chunks(const Asked& asked, const RayArrays& rays, bool any_hit
 QueryReport closest(const Asked& asked, const Rays& rays, const HitsOut& out, const QueryOptions& options) {
   const RayArrays arrays(rays);
   const HitWriter writer(asked, arrays, out);
-  return trace_chunks(asked, arrays, false, writer.wants_refs(), options,
-                      [&](const Chunk& chunk, std::span<const layout::QueryHit> hits, std::size_t begin,
-                          std::size_t end) { writer.write(chunk.first, begin, end, hits, chunk.local); });
+  return trace_chunks(
+      asked, arrays, false, writer.wants_refs(), options,
+      [&](const Chunk& chunk, std::span<const layout::QueryHit> hits, std::size_t begin, std::size_t end) {
+        writer.write(chunk.first, begin, end, {hits, chunk.session->instances()}, chunk.local);
+      });
 }
 
 QueryReport any(const Asked& asked, const Rays& rays, const BytesOut& out, const QueryOptions& options) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/memory.h"
+#include "prepare/instanced.h"
 #include "query/all_hits.h"
 #include "query/grains.h"
 
@@ -99,6 +100,7 @@ class Answer {
 }  // namespace
 
 QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, const QueryOptions& options) {
+  prepare::refuse_instances(asked.scene(), "counts of crossings");
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "counts");
   CollectedRays collected(asked, arrays);
@@ -116,6 +118,7 @@ QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, con
 
 // While a chunk is traced, the hits of the one before it are added to the answer.
 AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options) {
+  prepare::refuse_instances(asked.scene(), "all hits");
   const RayArrays arrays(rays);
   struct Chunk {
     Chunk(const Asked& asked, const RayArrays& rays) : rays(asked, rays) {}

@@ -10,24 +10,46 @@ void GeometryTable::add(GeometryId id, std::uint32_t n, std::uint32_t mask) {
   next_ += n;
 }
 
-GeometryTable::Place GeometryTable::of(std::uint32_t number) const {
-  if (geometries_.size() == 1) return {geometries_.front().id, number};
-  const auto after = std::upper_bound(geometries_.begin(), geometries_.end(), number,
+void GeometryTable::add_instances(GeometryId id, std::uint32_t n, std::uint32_t mask) {
+  if (n == 0) return;
+  instances_.push_back({next_instance_, n, id, mask});
+  next_instance_ += n;
+}
+
+const GeometryTable::Geometry& GeometryTable::holder(const std::vector<Geometry>& geometries,
+                                                     std::uint32_t number) {
+  if (geometries.size() == 1) return geometries.front();
+  const auto after = std::upper_bound(geometries.begin(), geometries.end(), number,
                                       [](std::uint32_t n, const Geometry& g) { return n < g.first; });
-  const Geometry& g = *(after - 1);
+  return *(after - 1);
+}
+
+GeometryTable::Place GeometryTable::of(std::uint32_t number) const {
+  const Geometry& g = holder(geometries_, number);
   return {g.id, number - g.first};
 }
 
-std::optional<GeometryId> GeometryTable::only() const {
-  return geometries_.size() == 1 ? std::optional(geometries_.front().id) : std::nullopt;
+GeometryTable::InstancePlace GeometryTable::of_instance(std::uint32_t instance) const {
+  const Geometry& g = holder(instances_, instance);
+  return {g.id, instance - g.first};
 }
 
-std::vector<std::uint32_t> GeometryTable::masks() const {
-  if (std::all_of(geometries_.begin(), geometries_.end(),
-                  [](const Geometry& g) { return g.mask == 0xffffffffu; }))
-    return {};
-  std::vector<std::uint32_t> masks(next_);
-  for (const Geometry& g : geometries_) std::fill_n(masks.begin() + g.first, g.n, g.mask);
+std::optional<GeometryId> GeometryTable::only() const {
+  return geometries_.size() == 1 && instances_.empty() ? std::optional(geometries_.front().id) : std::nullopt;
+}
+
+std::vector<std::uint32_t> GeometryTable::masks(std::span<const std::uint32_t> instances) const {
+  const auto sees_all = [](const Geometry& g) { return g.mask == 0xffffffffu; };
+  if (std::ranges::all_of(geometries_, sees_all) && std::ranges::all_of(instances_, sees_all)) return {};
+  std::vector<std::uint32_t> masks;
+  if (!instances.empty()) {
+    masks.push_back(static_cast<std::uint32_t>(1 + instances.size()));
+    for (const std::uint32_t instance : instances) masks.push_back(holder(instances_, instance).mask);
+  }
+  const std::size_t first = masks.size();
+  masks.resize(first + next_);
+  for (const Geometry& g : geometries_)
+    std::fill_n(masks.begin() + static_cast<std::ptrdiff_t>(first + g.first), g.n, g.mask);
   return masks;
 }
 

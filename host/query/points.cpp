@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "prepare/instanced.h"
 #include "query/all_hits.h"
 #include "query/closest_point.h"
 #include "query/grains.h"
@@ -111,6 +112,7 @@ QueryReport for_each_chunk(const Points& points, const PointOptions& options, co
 
 QueryReport closest_points(const Asked& asked, const Points& points, const ClosestPointsOut& out,
                            const PointOptions& options) {
+  prepare::refuse_instances(asked.scene(), "closest points");
   const std::size_t n = points.size();
   check_out(out.distance.size(), n, "distance");
   check_out(out.point.size(), n, "point");
@@ -143,6 +145,7 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
 
 QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out,
                    const PointOptions& options) {
+  prepare::refuse_instances(asked.scene(), "inside");
   check_out(out.size(), points.size(), "inside");
   return for_each_chunk(points, options,
                         [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
@@ -157,6 +160,7 @@ QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out
 
 QueryReport signed_distance(const Asked& asked, const Points& points, const ValuesOut& out,
                             const PointOptions& options) {
+  prepare::refuse_instances(asked.scene(), "signed distances");
   check_out(out.size(), points.size(), "distance");
   return for_each_chunk(
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {

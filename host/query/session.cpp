@@ -31,6 +31,7 @@ void throw_failed_walk() {
 
 Session::Session(const Target& target)
     : masked_(target.masks() != nullptr),
+      placed_(!target.scene.flat.instances.empty()),
       queue_(target.context),
       stage_(target.programs.kernel<kernels::TraceQuery>(features_to_trace(target), traversal_of(target))),
       work_group_(target.work_group),
@@ -41,9 +42,11 @@ Session::Session(const Target& target)
     rays_ = {target.context, CL_MEM_READ_ONLY, chunk, "the rays"};
     hits_ = {target.context, CL_MEM_WRITE_ONLY, chunk, "the hits"};
     masks_ = {target.context, CL_MEM_READ_ONLY, masked_ ? chunk : 1, "the rays' masks"};
+    instances_ = {target.context, CL_MEM_WRITE_ONLY, placed_ ? chunk : 1, "the hits' instances"};
     set_scene_arguments(stage_, target);
     stage_.set(K::space, float4(vec3(0), 1)).set(K::any_length, cl_uint{0});
     stage_.set(K::rays, rays_.buffer()).set(K::hits, hits_.buffer());
+    stage_.set(K::hit_instances, instances_.buffer());
     stage_.set(K::primitive_masks, masked_ ? target.masks : masks_.buffer());
     stage_.set(K::ray_masks, masks_.buffer());
     // PoCL compiles a kernel for good at its first launch.
@@ -84,6 +87,7 @@ std::span<const layout::QueryHit> Session::wait() {
   device::checked("tracing rays", [&] {
     queue_.get().finish();
     hits_.fetch(queue_.get(), n_started_);
+    if (placed_) instances_.fetch(queue_.get(), n_started_);
     stage_.forget_launches();
   });
   started_ = false;

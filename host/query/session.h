@@ -38,19 +38,23 @@ class Session {
   void start(std::size_t n, bool any_hit, bool as_refs);
   // The hits of what was started, valid until the next start. Whoever takes them looks for kFailedWalk.
   std::span<const layout::QueryHit> wait();
+  // Of each of these hits, where the scene has instances, the index of the one that it lies in, or
+  // kNoInstance; else nothing.
+  std::span<const std::uint32_t> instances() const { return instances_.first(placed_ ? n_started_ : 0); }
 
  private:
   void launch(std::size_t n);
 
   bool started_ = false;
   bool masked_;  // primitives have masks
+  bool placed_;  // there are instances
   device::SpareQueue queue_;
   wavefront::Stage<kernels::TraceQuery> stage_;
   std::size_t work_group_;
   bool chunked_;
   DeviceArray<layout::QueryRay> rays_;
   DeviceArray<layout::QueryHit> hits_;
-  DeviceArray<std::uint32_t> masks_;
+  DeviceArray<std::uint32_t> masks_, instances_;
   std::size_t n_started_ = 0;
 };
 

@@ -10,6 +10,7 @@
 #include "query/near_rays.h"
 #include "query/scene_arguments.h"
 #include "query/session.h"
+#include "query/surface.h"
 #include "wavefront/stage.h"
 
 namespace kdray::query {
@@ -36,13 +37,16 @@ void warm_up(const device::Context& context, wavefront::Stage<kernels::TraceQuer
 Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions& options) {
   const device::Context& context = target.context;
   check_rays(rays);
-  Traced result{std::vector<Hit>(rays.size()),
+  const bool placed = !target.scene.flat.instances.empty();
+  Traced result{std::vector<Hit>(rays.size()), std::vector<std::uint32_t>(placed ? rays.size() : 0),
                 std::vector<double>(static_cast<std::size_t>(std::max(options.repeat, 1)))};
   if (rays.empty()) return result;
   const std::size_t chunk = std::min({rays.size(), target.global ? kBoundedLaunch : kRaysPerChunk,
                                       static_cast<std::size_t>(context.info().max_allocation / sizeof(Ray))});
   const cl::Buffer ray_buffer = context.buffer(CL_MEM_READ_ONLY, chunk * sizeof(Ray), "the rays");
   const cl::Buffer hit_buffer = context.buffer(CL_MEM_WRITE_ONLY, chunk * sizeof(Hit), "the hits");
+  const cl::Buffer instance_buffer =
+      context.buffer(CL_MEM_WRITE_ONLY, (placed ? chunk : 1) * sizeof(cl_uint), "the hits' instances");
   using K = kernels::TraceQuery;
   const Traversal traversal = options.traversal;
   wavefront::Stage stage(target.programs.kernel<K>(target.scene.features, traversal, options.precision));
@@ -54,6 +58,7 @@ Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions
     set_scene_arguments(stage, target);
     stage.set(K::space, float4(space));
     stage.set(K::any_hit, cl_uint{options.any_hit}).set(K::rays, ray_buffer).set(K::hits, hit_buffer);
+    stage.set(K::hit_instances, instance_buffer);
     // Rays of the command line have no masks: what is bound for them is not read.
     stage.set(K::as_refs, cl_uint{0}).set(K::primitive_masks, hit_buffer).set(K::ray_masks, hit_buffer);
     stage.set(K::any_length, cl_uint{!std::all_of(rays.begin(), rays.end(), is_ordinary)});
@@ -77,6 +82,9 @@ Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions
         seconds += timer.seconds();
       }
       queue.enqueueReadBuffer(hit_buffer, CL_TRUE, 0, n * sizeof(Hit), result.hits.data() + first);
+      if (placed)
+        queue.enqueueReadBuffer(instance_buffer, CL_TRUE, 0, n * sizeof(cl_uint),
+                                result.instances.data() + first);
       near_rays.give_back(std::span(result.hits).subspan(first, n));
     }
   });
@@ -84,6 +92,7 @@ Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions
                   [](const Hit& h) { return h.primitive == kFailedWalk; }))
     throw Error(ErrorCode::internal,
                 "a ray overflowed the traversal's stack; please report it with the scene");
+  name_places(target.scene.flat, result.instances);
   return result;
 }
 

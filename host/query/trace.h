@@ -2,6 +2,7 @@
 // Errors  ErrorCode::input for a ray that is not one (check_rays.h); the message has the ray's number.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct TraceOptions {
 
 struct Traced {
   std::vector<Hit> hits;
+  // Of closest hits, where the scene has instances, the place in its list of the one that each lies in, or
+  // kNoInstance; else nothing. The hit's primitive is the mesh's.
+  std::vector<std::uint32_t> instances;
   std::vector<double> seconds;  // wall time of each repetition, rays already on the device
 };
 

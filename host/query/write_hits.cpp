@@ -83,6 +83,7 @@ HitWriter::HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& o
   check_out(out.v.size(), n, "v");
   check_out(out.normal.size(), n, "normal");
   check_out(out.point.size(), n, "point");
+  check_out(out.instance.size(), n, "instance");
   const double unit = asked.frame.unit();
   dense_ = is_dense<float>(out.t) && is_dense<std::uint32_t>(out.geometry) &&
            is_dense<std::uint32_t>(out.primitive) && is_dense<float>(out.u) && is_dense<float>(out.v) &&
@@ -90,11 +91,12 @@ HitWriter::HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& o
            unit <= std::numeric_limits<float>::max();
 }
 
-void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, std::span<const QueryHit> hits,
+void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, const FoundHits& found,
                       const LocalRays& local) const {
   Numbered numbered;
   for (; begin < end; begin += kRows) {
-    Some some{first + begin, begin, hits.subspan(begin, std::min(kRows, end - begin)), local};
+    const FoundHits part = found.part(begin, std::min(kRows, end - begin));
+    Some some{first + begin, begin, part.hits, part.instances, local};
     if (wants_refs()) {
       write_normals(some, numbered);
       some.hits = std::span(numbered).first(some.hits.size());
@@ -103,19 +105,25 @@ void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, std
   }
 }
 
+// Of a hit that is named by a reference, which gets its number.
+dvec3 HitWriter::normal_of(const Some& some, std::size_t i, QueryHit& hit) const {
+  const flatten::FlatScene& flat = asked_->scene().flat;
+  const std::uint32_t index = some.instance(i);
+  const layout::Instance* const instance = index == kNoInstance ? nullptr : &flat.instances[index];
+  const auto point = [&] {
+    const dvec3 local =
+        asked_->frame.space().local(point_of(some.ray + i, some.local.world_t(some.at + i, hit.t)));
+    return instance ? in_mesh(*instance, local) : local;
+  };
+  const Surface surface = surface_at(flat, static_cast<std::uint32_t>(hit.primitive), point);
+  hit.primitive = static_cast<std::int32_t>(surface.number);
+  return instance ? normal_in_scene(*instance, surface.normal) : surface.normal;
+}
+
 // The normals of hits that are named by references; `numbered`: the same hits named by numbers.
 void HitWriter::write_normals(const Some& some, Numbered& numbered) const {
   fill(out_.normal, some, 0, [&](std::size_t i, QueryHit hit) {
-    dvec3 normal(0);
-    if (!missed(hit)) {
-      const auto point = [&] {
-        return asked_->frame.space().local(point_of(some.ray + i, some.local.world_t(some.at + i, hit.t)));
-      };
-      const Surface surface =
-          surface_at(asked_->scene().flat, static_cast<std::uint32_t>(hit.primitive), point);
-      normal = surface.normal;
-      hit.primitive = static_cast<std::int32_t>(surface.number);
-    }
+    const dvec3 normal = missed(hit) ? dvec3(0) : normal_of(some, i, hit);
     numbered[i] = hit;
     return array(normal);
   });
@@ -130,6 +138,14 @@ std::size_t HitWriter::write_dense(const Some& some) const {
   std::size_t i = 0;
   for (; i + 4 <= some.hits.size(); i += 4) columns.put(some.ray + i, &some.hits[i], unit, id);
   return i;
+}
+
+void HitWriter::write_instances(const Some& some, std::size_t from) const {
+  fill(out_.instance, some, from, [&](std::size_t i, const QueryHit& hit) {
+    const std::uint32_t index = missed(hit) ? kNoInstance : some.instance(i);
+    if (index == kNoInstance) return std::array{kNoInstance};
+    return std::array{asked_->table.of_instance(asked_->scene().flat.instances[index].number).instance};
+  });
 }
 
 template <class Column, class ValueOf>
@@ -148,15 +164,20 @@ void HitWriter::write_columns(const Some& some, std::size_t from) const {
   const auto t_of = [&](std::size_t i, const QueryHit& hit) {
     return some.local.world_t(some.at + i, hit.t);
   };
-  const auto place_of = [&](const QueryHit& hit) {
-    return missed(hit) ? GeometryTable::Place{kNoGeometry, kNoPrimitive}
-                       : asked_->table.of(static_cast<std::uint32_t>(hit.primitive));
+  const auto place_of = [&](std::size_t i, const QueryHit& hit) {
+    if (missed(hit)) return GeometryTable::Place{kNoGeometry, kNoPrimitive};
+    const auto number = static_cast<std::uint32_t>(hit.primitive);
+    const std::uint32_t index = some.instance(i);
+    if (index == kNoInstance) return asked_->table.of(number);
+    const std::uint32_t place = asked_->scene().flat.instances[index].number;
+    return GeometryTable::Place{asked_->table.of_instance(place).geometry, number};
   };
   fill(out_.t, some, from, [&](std::size_t i, const auto& hit) { return std::array{t_of(i, hit)}; });
   fill(out_.geometry, some, from,
-       [&](std::size_t, const auto& hit) { return std::array{place_of(hit).geometry}; });
+       [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).geometry}; });
   fill(out_.primitive, some, from,
-       [&](std::size_t, const auto& hit) { return std::array{place_of(hit).primitive}; });
+       [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).primitive}; });
+  write_instances(some, from);
   fill(out_.u, some, from, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
   fill(out_.v, some, from, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
   fill(out_.point, some, 0,

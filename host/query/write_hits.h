@@ -5,9 +5,22 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
+
 #include "query/ask.h"
 
 namespace kdray::query {
+
+// Of the rays of a chunk; instances by index, or none where the scene has none.
+struct FoundHits {
+  std::span<const layout::QueryHit> hits;
+  std::span<const std::uint32_t> instances;
+
+  FoundHits part(std::size_t first, std::size_t n) const {
+    return {hits.subspan(first, n), instances.empty() ? instances : instances.subspan(first, n)};
+  }
+};
 
 class HitWriter {
  public:
@@ -16,7 +29,7 @@ class HitWriter {
   bool wants_refs() const { return !out_.normal.empty(); }
 
   // Of rays first + begin to first + end, of which hits[begin] is the first's.
-  void write(std::size_t first, std::size_t begin, std::size_t end, std::span<const layout::QueryHit> hits,
+  void write(std::size_t first, std::size_t begin, std::size_t end, const FoundHits& found,
              const LocalRays& local) const;
 
  private:
@@ -24,7 +37,10 @@ class HitWriter {
   struct Some {
     std::size_t ray, at;
     std::span<const layout::QueryHit> hits;
+    std::span<const std::uint32_t> instances;
     const LocalRays& local;
+
+    std::uint32_t instance(std::size_t i) const { return instances.empty() ? kNoInstance : instances[i]; }
   };
   static constexpr std::size_t kRows = 512;  // these stay in the nearest cache for all columns
   using Numbered = std::array<layout::QueryHit, kRows>;
@@ -35,6 +51,8 @@ class HitWriter {
   template <class Column, class ValueOf>
   void fill(const Column& column, const Some& some, std::size_t from, const ValueOf& value_of) const;
   dvec3 point_of(std::size_t ray, double t) const;
+  dvec3 normal_of(const Some& some, std::size_t i, layout::QueryHit& hit) const;
+  void write_instances(const Some& some, std::size_t from) const;
 
   const Asked* asked_;
   const RayArrays* rays_;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -11,6 +10,7 @@
 #include "math/local_space.h"
 #include "scene/area_light.h"
 #include "scene/check_scene.h"
+#include "scene/first_fault.h"
 #include "scene/settle_normals.h"
 #include "scene/sky_picture.h"
 
@@ -18,26 +18,8 @@ namespace kdray::scene {
 
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 14;
-
 [[noreturn]] void refuse(const std::string& what) {
   throw Error(ErrorCode::input, what);
-}
-
-// Calls work(i) for every i < n, in parallel; the least i of those for which it returns false, or n.
-template <class Work>
-std::size_t first_fault(std::size_t n, const Work& work) {
-  std::atomic<std::size_t> first{n};
-  tbb::parallel_for(std::size_t{0}, (n + kGrain - 1) / kGrain, [&](std::size_t grain) {
-    for (std::size_t i = grain * kGrain; i < std::min(n, (grain + 1) * kGrain); ++i) {
-      if (work(i)) continue;
-      std::size_t least = first.load();
-      while (i < least && !first.compare_exchange_weak(least, i)) {
-      }
-      return;
-    }
-  });
-  return first.load();
 }
 
 dvec3 vector(const std::array<double, 3>& v) {

@@ -22,6 +22,8 @@ struct AddedGeometry {
   std::uint32_t mask = 0xffffffffu;
   std::uint32_t material = 0;
   bool enabled = true;
+  bool prototype = false;  // seen by its instances alone
+  GeometryId of = kNone;   // instances: their prototype
   RawVector<dvec3> vertices;
   RawVector<vec3> normals;
   PageVector<Triangle> triangles;
@@ -29,7 +31,11 @@ struct AddedGeometry {
 #define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct> names;
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
+  PageVector<Instance> instances;  // their meshes are given as materials are
 
+  bool is_instances() const {
+    return of != kNone;
+  }
   std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(primitives::count_primitives(*this));
   }
@@ -50,6 +56,9 @@ Sky sky_of(const kdray::Gradient& gradient);
 Sky sky_of(const kdray::Environment& environment, std::vector<std::string>& warnings);  // reads its file
 Camera camera_of(const kdray::Camera& c);
 vec3 color_of(const Color& c, const char* name);
+
+// The geometry as a mesh that instances can be of; its materials' numbers begin at `first_material`.
+Scene mesh_of(const AddedGeometry& geometry, std::uint32_t first_material);
 
 // Puts the enabled geometries behind what `scene` has: each one's primitives are numbered in a row, one
 // geometry after the other, after those that are there. `materials` are those that the geometries' numbers

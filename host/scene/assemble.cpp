@@ -85,6 +85,17 @@ void add_materials(Scene& scene, std::span<const AddedGeometry* const> geometrie
 
 }  // namespace
 
+Scene mesh_of(const AddedGeometry& geometry, std::uint32_t first_material) {
+  Scene mesh;
+  mesh.name = geometry.name;
+  mesh.vertices.resize(geometry.vertices.size());
+  mesh.normals.resize(geometry.normals.size());
+  mesh.triangles.resize(geometry.triangles.size());
+  put(mesh, geometry, {0, 0, 0, 0, first_material});
+  mesh.paint.texcoords[0] = geometry.texcoords;
+  return mesh;
+}
+
 void assemble(Scene& scene, std::span<const AddedGeometry* const> geometries,
               std::span<const Material> materials) {
   check_capacity(scene, geometries);

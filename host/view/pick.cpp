@@ -5,7 +5,7 @@
 #include "api/committed.h"
 #include "layout/kinds.h"
 #include "math/local_space.h"
-#include "prepare/prepared.h"
+#include "prepare/instanced.h"
 #include "query/ask.h"
 
 namespace kdray::view {
@@ -54,6 +54,7 @@ Picker::Picker(const PreparedScene& scene, std::vector<GeometryName> geometries,
 Picker::~Picker() = default;
 
 std::optional<Picked> Picker::pick(const EyeRay& ray) {
+  prepare::refuse_instances(scene_.prepared(), "picking");
   std::uint32_t number = kNoPrimitive;
   Picked picked;
   const Rays rays{Points(ray.origin.data(), 1), Points(ray.direction.data(), 1)};

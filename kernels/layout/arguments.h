@@ -160,7 +160,8 @@
   X(IN, u32, primitive_masks)             \
   X(IN, u32, ray_masks)                   \
   X(IN, QueryRay, rays)                   \
-  X(OUT, QueryHit, hits)
+  X(OUT, QueryHit, hits)                  \
+  X(OUT, u32, hit_instances)
 
 // The hits are `capacity` for each ray; `after`, where the rays' last pass ended, is read where there was
 // one.

@@ -37,8 +37,10 @@ inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 
 __kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(in_primitive_masks);
-  const RaySource source =
-      ray_source(&scene, in_rays, in_ray_masks, out_hits, space, any_hit, any_length, as_refs);
+  RaySource source = ray_source(&scene, in_rays, in_ray_masks, out_hits, space, any_hit, any_length, as_refs);
+#if KDRAY_HAS_INSTANCES
+  source.hit_instances = out_hit_instances;
+#endif
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
   if (item < n_rays)
     query_binary(&scene, &source, item, convert_real3(root_lo.xyz), convert_real3(root_hi.xyz), world_max);

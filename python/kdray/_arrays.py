@@ -77,6 +77,25 @@ def pairs(values: ArrayLike, name: str) -> Floats:
     return _side_by_side(array)
 
 
+def transforms(values: ArrayLike, name: str = "transforms") -> Floats:
+    """N x 12 floats of an array of shape (n, 3, 4) or (n, 4, 4), or of one such matrix; not copied where it can be."""
+    array = _floats(as_array(values, name), name)
+    if array.ndim == 2 and array.shape in ((3, 4), (4, 4)):
+        array = array[np.newaxis]
+    if array.ndim == 2 and array.shape[1] == 12:
+        return _side_by_side(array)
+    if array.ndim != 3 or array.shape[1:] not in ((3, 4), (4, 4)):
+        raise errors.InputError(f"{name}: the shape is to be (n, 3, 4) or (n, 4, 4), not {array.shape}")
+    if array.shape[1] == 4:
+        wrong = np.flatnonzero((array[:, 3] != (0, 0, 0, 1)).any(axis=-1))
+        if wrong.size:
+            raise errors.InputError(f"{name}[{wrong[0]}]: the last row is not 0 0 0 1")
+        array = array[:, :3]
+    rows = np.lib.stride_tricks.as_strided(array, (len(array), 12), (array.strides[0], array.itemsize))
+    as_it_lies = array.strides[1:] == (4 * array.itemsize, array.itemsize) and array.strides[0] >= 0
+    return rows if as_it_lies else np.ascontiguousarray(array).reshape(-1, 12)
+
+
 def triangles(values: ArrayLike, name: str = "triangles") -> Array:
     """N x 3 indices, signed or not, of 32 or 64 bits."""
     array = as_array(values, name)

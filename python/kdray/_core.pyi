@@ -16,9 +16,10 @@ class Scene:
         name: str,
         mask: int,
         material: int,
+        prototype: bool,
     ) -> int: ...
     def add_spheres(
-        self, arg0: NDArray[Any] | None, arg1: NDArray[Any] | None, arg2: str, arg3: int, arg4: int, /
+        self, arg0: NDArray[Any] | None, arg1: NDArray[Any] | None, arg2: str, arg3: int, arg4: int, arg5: bool, /
     ) -> int: ...
     def add_cones(
         self,
@@ -29,6 +30,7 @@ class Scene:
         arg4: str,
         arg5: int,
         arg6: int,
+        arg7: bool,
         /,
     ) -> int: ...
     def add_discs(
@@ -39,8 +41,18 @@ class Scene:
         arg3: str,
         arg4: int,
         arg5: int,
+        arg6: bool,
         /,
     ) -> int: ...
+    def add_instances(
+        self,
+        prototype: int,
+        transforms: NDArray[Any] | None,
+        materials: NDArray[Any] | None,
+        name: str,
+        mask: int,
+    ) -> int: ...
+    def update_transforms(self, id: int, transforms: NDArray[Any] | None) -> None: ...
     def update_vertices(self, id: int, vertices: NDArray[Any] | None, normals: NDArray[Any] | None) -> None: ...
     def remove(self, arg: int, /) -> None: ...
     def enable(self, arg0: int, arg1: bool, /) -> None: ...
@@ -117,6 +129,7 @@ class Scene:
         v: NDArray[Any] | None,
         normal: NDArray[Any] | None,
         point: NDArray[Any] | None,
+        instance: NDArray[Any] | None,
     ) -> int: ...
     def any(
         self,

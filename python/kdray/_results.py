@@ -14,6 +14,7 @@ from .progress import Progress, teller
 
 Rows = dict[str, Array]  # results as kdray._core writes them
 FLOATS = (np.float32, np.float64)
+_WORDS = ("geometry", "primitive", "instance")
 _AT_ONCE = 1 << 20  # rays between two words of progress
 
 
@@ -31,7 +32,7 @@ def width_of(name: str) -> int:
 
 
 def type_of(name: str, of_rays: Any) -> Any:
-    if name in ("geometry", "primitive"):
+    if name in _WORDS:
         return np.int32
     return np.float32 if name in ("u", "v") else of_rays
 
@@ -47,7 +48,7 @@ def hit_columns(rays: RayArrays, out: Hits | None, fields: tuple[str, ...]) -> d
         raise errors.InputError(f"out: a kdray.Hits is wanted, not {type(out).__name__}")
     for name in out.fields:
         shape = (*rays.shape, 3) if width_of(name) == 3 else rays.shape
-        types = (np.int32,) if name in ("geometry", "primitive") else FLOATS
+        types = (np.int32,) if name in _WORDS else FLOATS
         columns[name] = _arrays.for_writing(getattr(out, name), shape, types, f"out.{name}")
     return columns
 

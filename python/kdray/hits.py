@@ -44,8 +44,19 @@ def _column(name: str, what: str) -> Any:
 class Hits(_Columns):
     """Of each ray what it hits first. All arrays have the shape of the rays, without the coordinates."""
 
-    __slots__ = ("_geometry", "_normal", "_point", "_point_given", "_point_later", "_primitive", "_t", "_u", "_v")
-    _names = ("t", "geometry", "primitive", "u", "v", "normal", "point")
+    __slots__ = (
+        "_geometry",
+        "_instance",
+        "_normal",
+        "_point",
+        "_point_given",
+        "_point_later",
+        "_primitive",
+        "_t",
+        "_u",
+        "_v",
+    )
+    _names = ("t", "geometry", "primitive", "u", "v", "normal", "point", "instance")
     _t: Array | None
     _geometry: Array | None
     _point: Array | None
@@ -53,6 +64,7 @@ class Hits(_Columns):
     t = _column("t", "float32 or float64, as the rays: multiples of the direction; infinity for a miss.")
     geometry = _column("geometry", "int32: the geometry's id; -1 for a miss.")
     primitive = _column("primitive", "int32: the number within the geometry, from 0; -1 for a miss.")
+    instance = _column("instance", "int32: the number among the geometry's instances; -1 where it isn't of such.")
     u = _column("u", "float32: the weight of a triangle's second corner; of cones, the share of the axis.")
     v = _column("v", "float32: the weight of a triangle's third corner.")
     normal = _column("normal", "(..., 3) of unit length, of the surface itself; 0 for a miss.")

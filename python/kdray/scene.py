@@ -7,7 +7,7 @@ import math
 import os
 import threading
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from .progress import Progress, teller
 from .view import View, page_of
 
 _USUAL = ("t", "geometry", "primitive", "u", "v", "normal")
+_USUAL_OF_INSTANCES = (*_USUAL, "instance")
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,10 @@ class Geometry:
     id: int
     name: str
     mask: int
-    primitives: int
+    primitives: int  #: of instances: of each of them
     enabled: bool
+    prototype: bool = False  #: seen by its instances alone
+    instances: int = 0
 
 
 @dataclass
@@ -44,9 +47,11 @@ class _Added:
     method: str
     arrays: tuple[Array | None, ...]
     material: int | None
+    prototype: bool
+    of: int | None = None  # instances: their prototype
 
     def copy(self) -> _Added:
-        return _Added(self.method, self.arrays, self.material)
+        return replace(self)
 
 
 class Scene:
@@ -81,6 +86,7 @@ class Scene:
         self._added: dict[int, _Added] = {}  # by id
         self._materials: list[Material] = []
         self._has_first_material = False
+        self._has_instances = any(core.info(id)[5] > 0 for id in core.geometries())
         self._pictures: list[Array | str] = []  # bytes, or a file's path
         self._lights: list[Light] = []
         self._colors: dict[str, Color] = {}  # "background", "ambient"
@@ -100,19 +106,21 @@ class Scene:
         mask: int = -1,
         name: str | None = None,
         material: int | None = None,
+        prototype: bool = False,
     ) -> int:
         """Adds triangles and returns their geometry id; arrays are copied.
 
         `vertices` (n, 3), `triangles` (m, 3) indices into them, `normals` (n, 3) for smooth shading. `uv` (n, 2) says
         where in its material's pictures each vertex lies: (0, 0) is a picture's upper left corner, (1, 1) its lower
         right one, and beyond them it is repeated. A ray sees the geometry where its mask and this one have a bit in
-        common. `material` is one of `add_material`. Raises InputError that names the element: an index out of range, a
-        NaN.
+        common. `material` is one of `add_material`. A `prototype` is seen by its instances alone (`add_instances`). Raises
+        InputError that names the element: an index out of range, a NaN.
         """
         v, _ = _arrays.vectors(vertices, "vertices")
         n = None if normals is None else _arrays.vectors(normals, "normals")[0]
         coordinates = None if uv is None else _arrays.pairs(uv, "uv")
-        return self._add("add_mesh", (v, _arrays.triangles(triangles), n, coordinates), name, mask, material)
+        arrays = (v, _arrays.triangles(triangles), n, coordinates)
+        return self._add("add_mesh", arrays, name, mask, material, prototype)
 
     def add_spheres(
         self,
@@ -122,9 +130,11 @@ class Scene:
         mask: int = -1,
         name: str | None = None,
         material: int | None = None,
+        prototype: bool = False,
     ) -> int:
         """Adds exact spheres: `centers` (n, 3), `radii` (n,) or one for all, above 0."""
-        return self._add("add_spheres", (_points(centers, "centers"), _scalars(radii, "radii")), name, mask, material)
+        arrays = (_points(centers, "centers"), _scalars(radii, "radii"))
+        return self._add("add_spheres", arrays, name, mask, material, prototype)
 
     def add_cones(
         self,
@@ -136,10 +146,11 @@ class Scene:
         mask: int = -1,
         name: str | None = None,
         material: int | None = None,
+        prototype: bool = False,
     ) -> int:
         """Adds truncated cones without caps, from p0 (n, 3) with radius r0 to p1 with r1 (equal: cylinders)."""
         arrays = (_points(p0, "p0"), _scalars(r0, "r0"), _points(p1, "p1"), _scalars(r1, "r1"))
-        return self._add("add_cones", arrays, name, mask, material)
+        return self._add("add_cones", arrays, name, mask, material, prototype)
 
     def add_discs(
         self,
@@ -150,21 +161,65 @@ class Scene:
         mask: int = -1,
         name: str | None = None,
         material: int | None = None,
+        prototype: bool = False,
     ) -> int:
         """Adds flat discs: `centers` (n, 3), `normals` (n, 3) of any length, `radii` (n,) or one for all."""
         arrays = (_points(centers, "centers"), _points(normals, "normals"), _scalars(radii, "radii"))
-        return self._add("add_discs", arrays, name, mask, material)
+        return self._add("add_discs", arrays, name, mask, material, prototype)
 
     def _add(
-        self, method: str, arrays: tuple[Array | None, ...], name: str | None, mask: int, material: int | None
+        self,
+        method: str,
+        arrays: tuple[Array | None, ...],
+        name: str | None,
+        mask: int,
+        material: int | None,
+        prototype: bool,
     ) -> int:
         with self._lock:
             bits = _arrays.mask_bits(mask)
-            geometry = int(getattr(self._core, method)(*arrays, name or "", bits, material or 0))
+            geometry = int(getattr(self._core, method)(*arrays, name or "", bits, material or 0, prototype))
             kept = tuple(None if a is None else a.copy() for a in arrays)
-            self._added[geometry] = _Added(method, kept, material)
+            self._added[geometry] = _Added(method, kept, material, prototype)
             self._changed = True
             return geometry
+
+    def add_instances(
+        self,
+        prototype: int,
+        transforms: ArrayLike,
+        *,
+        materials: ArrayLike | None = None,
+        mask: int = -1,
+        name: str | None = None,
+    ) -> int:
+        """Adds instances of a geometry that was added with `prototype=True`, and returns the id of all of them.
+
+        `transforms`: (n, 3, 4), or (n, 4, 4) with last rows of 0 0 0 1, or one such matrix: they take points of the
+        prototype to the scene, and may mirror and stretch (one direction up to 48 times as much as another).
+        `materials`: one of `add_material` for each, or one for all, in place of the prototype's; -1 leaves an
+        instance the prototype's. A million of them take a second and 0.3 GB, and no copy of the prototype. Raises
+        InputError that names the transform: a NaN, one that flattens.
+        """
+        rows = _arrays.transforms(transforms)
+        of_each = None if materials is None else _arrays.masks(materials, "materials")[0]
+        with self._lock:
+            bits = _arrays.mask_bits(mask)
+            geometry = int(self._core.add_instances(prototype, rows, of_each, name or "", bits))
+            kept = (rows.copy(), None if of_each is None else of_each.copy())
+            self._added[geometry] = _Added("add_instances", kept, None, False, prototype)
+            self._has_instances = True
+            self._changed = True
+            return geometry
+
+    def update_transforms(self, id: int, transforms: ArrayLike) -> None:
+        """Other places for instances, as many as there are; the next commit builds the tree over them alone."""
+        rows = _arrays.transforms(transforms)
+        with self._lock:
+            self._core.update_transforms(id, rows)
+            added = self._added[id]
+            added.arrays = (rows.copy(), *added.arrays[1:])
+            self._changed = True
 
     def update_vertices(self, id: int, vertices: ArrayLike, normals: ArrayLike | None = None) -> None:
         """New places for a mesh's vertices, as many as it has; ids and numbers stay."""
@@ -370,19 +425,20 @@ class Scene:
         mask: ArrayLike | None = None,
         out: Hits | None = None,
         *,
-        fields: Iterable[str] = _USUAL,
+        fields: Iterable[str] | None = None,
         strict: bool = False,
         progress: Progress = False,
     ) -> Hits:
         """What each ray hits first.
 
         float64 rays are met in the scene's own frame, begun and answered in double (shapes are floats about the
-        scene's centre); results are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted:
-        fewer are faster; `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or
+        scene's centre); results are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted (all but
+        `point`, and `instance` where the scene has instances, if you say nothing): fewer are faster; `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or
         with `strict` an InputError that names the first.
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
-        columns = hit_columns(rays, out, tuple(fields))
+        usual = _USUAL_OF_INSTANCES if self._has_instances else _USUAL
+        columns = hit_columns(rays, out, usual if fields is None else tuple(fields))
         rows = {name: as_rows(column, width_of(name)) for name, column in columns.items()}
         core = self._ready()
 
@@ -612,9 +668,12 @@ class Scene:
         """A geometry by the id that it had; one that was removed leaves its id."""
         if added is None or info is None:
             nothing = np.empty((0, 3), np.float32)
-            self._core.remove(self._core.add_spheres(nothing, nothing[:, 0], "", 0, 0))
+            self._core.remove(self._core.add_spheres(nothing, nothing[:, 0], "", 0, 0, False))
+        elif added.of is not None:
+            transforms, materials = added.arrays
+            self.add_instances(added.of, transforms, materials=materials, mask=info.mask, name=info.name)
         else:
-            self._add(added.method, added.arrays, info.name, info.mask, added.material)
+            self._add(added.method, added.arrays, info.name, info.mask, added.material, added.prototype)
 
     def __copy__(self) -> Scene:
         return self.copy()

@@ -40,6 +40,9 @@ Points points_of(const In& array) {
 Pairs pairs_of(const In& array) {
   return view<Pairs, In::value_type, float, double>(array);
 }
+Transforms transforms_of(const In& array) {
+  return view<Transforms, In::value_type, float, double>(array);
+}
 Values values_of(const In& array) {
   return view<Values, In::value_type, float, double>(array);
 }

@@ -20,6 +20,7 @@ using Out = std::optional<nanobind::ndarray<nanobind::device::cpu>>;
 
 Points points_of(const In& array);
 Pairs pairs_of(const In& array);
+Transforms transforms_of(const In& array);
 Values values_of(const In& array);
 Triples triples_of(const In& array);
 Words words_of(const In& array);

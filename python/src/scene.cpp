@@ -28,18 +28,18 @@ void add_geometries(SceneClass& scene) {
   scene.def(
       "add_mesh",
       [](Scene& s, const In& vertices, const In& triangles, const In& normals, const In& texcoords,
-         const std::string& name, std::uint32_t mask, std::uint32_t material) {
+         const std::string& name, std::uint32_t mask, std::uint32_t material, bool prototype) {
         return s.add_mesh(
             {points_of(vertices), triples_of(triangles), points_of(normals), pairs_of(texcoords)},
-            {name, mask, material});
+            {name, mask, material, prototype});
       },
       Released(), "vertices"_a, "triangles"_a, "normals"_a.none(), "texcoords"_a.none(), "name"_a, "mask"_a,
-      "material"_a);
+      "material"_a, "prototype"_a);
   scene.def(
       "add_spheres",
       [](Scene& s, const In& centers, const In& radii, const std::string& name, std::uint32_t mask,
-         std::uint32_t material) {
-        return s.add_spheres({points_of(centers), values_of(radii)}, {name, mask, material});
+         std::uint32_t material, bool prototype) {
+        return s.add_spheres({points_of(centers), values_of(radii)}, {name, mask, material, prototype});
       },
       Released());
   scene.def(
@@ -47,7 +47,7 @@ void add_geometries(SceneClass& scene) {
       [](Scene& s, const In& p0, const In& r0, const In& p1, const In& r1, const std::string& name,
          std::uint32_t mask, std::uint32_t material) {
         return s.add_cones({points_of(p0), points_of(p1), values_of(r0), values_of(r1)},
-                           {name, mask, material});
+                           {name, mask, material, prototype});
       },
       Released());
   scene.def(
@@ -55,9 +55,20 @@ void add_geometries(SceneClass& scene) {
       [](Scene& s, const In& centers, const In& normals, const In& radii, const std::string& name,
          std::uint32_t mask, std::uint32_t material) {
         return s.add_discs({points_of(centers), points_of(normals), values_of(radii)},
-                           {name, mask, material});
+                           {name, mask, material, prototype});
       },
       Released());
+  scene.def(
+      "add_instances",
+      [](Scene& s, GeometryId prototype, const In& transforms, const In& materials, const std::string& name,
+         std::uint32_t mask) {
+        return s.add_instances(prototype, transforms_of(transforms), {name, mask, words_of(materials)});
+      },
+      Released(), "prototype"_a, "transforms"_a, "materials"_a.none(), "name"_a, "mask"_a);
+  scene.def(
+      "update_transforms",
+      [](Scene& s, GeometryId id, const In& transforms) { s.update_transforms(id, transforms_of(transforms)); },
+      Released(), "id"_a, "transforms"_a);
   scene.def(
       "update_vertices",
       [](Scene& s, GeometryId id, const In& vertices, const In& normals) {
@@ -70,7 +81,8 @@ void add_geometries(SceneClass& scene) {
   scene.def("geometries", &Scene::geometries);
   scene.def("info", [](const Scene& s, GeometryId id) {
     const GeometryInfo info = s.info(id);
-    return nb::make_tuple(info.name, info.mask, info.primitives, info.enabled);
+    return nb::make_tuple(info.name, info.mask, info.primitives, info.enabled, info.prototype,
+                          info.instances);
   });
   scene.def("primitives", &Scene::primitives);
   scene.def("bounds", [](const Scene& s) {

@@ -221,6 +221,47 @@ static void check_metal(void) {
   kdray_scene_free(scene);
 }
 
+/* A box seen twice, and moved; and what has no inverse. */
+static void check_instances(void) {
+  double places[24] = {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 9, 0, 1, 0, 0, 0, 0, 1, 1};
+  const double flat[12] = {1};
+  const double origins[6] = {5.25, 0.5, 5, 9.25, 0.5, 5}, down[3] = {0, 0, -1};
+  kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
+  kdray_scene* scene = NULL;
+  kdray_geometry_options options = {0};
+  kdray_instance_options of_both = {0};
+  kdray_rays rays = {0};
+  kdray_hits hits = {0};
+  double t[2];
+  uint32_t box, both = 99, geometry[2], instance[2];
+  int refitted = 0;
+  options.size = sizeof options, options.prototype = 1;
+  of_both.size = sizeof of_both, of_both.name = "both";
+  expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
+  expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, &options, &box) == KDRAY_OK,
+         "a prototype");
+  expect(kdray_add_instances(scene, box, doubles(flat, 1), NULL, NULL) == KDRAY_INPUT, "a flat instance");
+  expect(strstr(kdray_last_error(), "transforms[0]") != NULL, "the transform is named");
+  expect(kdray_add_instances(scene, 7, doubles(places, 2), NULL, NULL) == KDRAY_USAGE, "no prototype");
+  expect(kdray_add_instances(scene, box, doubles(places, 2), &of_both, &both) == KDRAY_OK, "instances");
+  expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit");
+  rays.size = sizeof rays, rays.origins = doubles(origins, 2), rays.directions = doubles(down, 1);
+  hits.size = sizeof hits;
+  hits.t.data = t, hits.t.count = 2, hits.t.type = KDRAY_FLOAT64;
+  hits.geometry.data = geometry, hits.geometry.count = 2, hits.geometry.type = KDRAY_UINT32;
+  hits.instance.data = instance, hits.instance.count = 2, hits.instance.type = KDRAY_UINT32;
+  expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_OK, "closest");
+  expect(t[0] == 4 && t[1] == 3 && geometry[0] == both && geometry[1] == both, "instances are hit");
+  expect(instance[0] == 0 && instance[1] == 1, "they are told apart");
+  expect(kdray_update_transforms(scene, both, doubles(places, 1)) == KDRAY_INPUT, "too few transforms");
+  places[11] = 2;
+  expect(kdray_update_transforms(scene, both, doubles(places, 2)) == KDRAY_OK, "other transforms");
+  expect(kdray_commit(scene, NULL) == KDRAY_OK && kdray_last_commit(scene, &refitted, NULL) == KDRAY_OK,
+         "commit again");
+  expect(refitted == 1 && kdray_closest(scene, &rays, &hits, NULL) == KDRAY_OK && t[0] == 2, "it has moved");
+  kdray_scene_free(scene);
+}
+
 static void check_cancel_and_picture(const kdray_scene* scene) {
   static float rgb[3 * 16 * 16];
   kdray_picture_options picture = {0};
@@ -281,6 +322,7 @@ int main(void) {
   check_looks();
   check_paint();
   check_metal();
+  check_instances();
   check_refit(scene, box);
   expect(kdray_keep_programs() == KDRAY_OK, "programs are kept");
   kdray_scene_free(scene);

@@ -137,7 +137,7 @@ TEST(Instances, WideningFollowsTheCondition) {
     const scene::Instance instance = scene::instance_of(m, 0);
     return place_instances(std::span(&instance, 1), std::span(&mesh, 1), {}).widen;
   };
-  EXPECT_EQ(widen_of(dmat4(1)), 2);
+  EXPECT_EQ(widen_of(dmat4(1)), 4);
   EXPECT_EQ(widen_of(scene::rotation(glm::normalize(dvec3(1, 2, 3)), 1)), 4);
   EXPECT_EQ(widen_of(scene::scaling({1, 1, 48})), 64);
 }

@@ -220,7 +220,12 @@ TEST(Instances, AreRefusedWhereTheyAreNotKnown) {
   options.channels = {"cost"};
   EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
   const Ray ray{{0, 0, 9}, 0, {0, 0, -1}, 100};
-  EXPECT_NE(refusal([&] { renderer.trace(std::span(&ray, 1)); }).find("--instances flat"), std::string::npos);
+  for (const auto& [walk, precision] :
+       {std::pair{Traversal::binary, Precision::float32}, {Traversal::automatic, Precision::float64}})
+    EXPECT_NE(refusal([&] {
+                renderer.trace(std::span(&ray, 1), false, 1, walk, precision);
+              }).find("--instances flat"),
+              std::string::npos);
   EXPECT_FALSE(renderer.render(exact_options(16, 12)).rgb.empty());
 }
 

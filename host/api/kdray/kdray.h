@@ -121,10 +121,12 @@ class Renderer {
 
   // Hits in the order of the rays. `repeat` > 1 traces that often and reports the median time in
   // statistics(). A ray with NaN or infinite origin, or a direction that is not finite or 0, is refused
-  // (ErrorCode::input).
+  // (ErrorCode::input). Where the scene has instances, `instances` gets of each closest hit the place in the
+  // scene's list of the one that it lies in, or kNoInstance, and a hit in one has its mesh's primitive; else
+  // it gets nothing.
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit = false, int repeat = 1,
-                         Traversal traversal = Traversal::automatic,
-                         Precision precision = Precision::float32);
+                         Traversal traversal = Traversal::automatic, Precision precision = Precision::float32,
+                         std::vector<std::uint32_t>* instances = nullptr);
 
   // The scene as it is seen otherwise, from the next frame on: what seen() made of the scene that this
   // Renderer was made of. Takes no time, and the tree, the devices and what frames have told of costs are

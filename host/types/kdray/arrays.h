@@ -132,6 +132,7 @@ class Rows {
 };
 
 using Points = Rows<3, const float, const double>;
+using Transforms = Rows<12, const float, const double>;  // 3 x 4, row by row
 using Pairs = Rows<2, const float, const double>;
 using Values = Rows<1, const float, const double>;
 using Triples = Rows<3, const std::uint32_t, const std::int32_t, const std::uint64_t, const std::int64_t>;

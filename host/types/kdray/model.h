@@ -23,6 +23,7 @@ using Color = std::array<float, 3>;
 using GeometryId = std::uint32_t;
 inline constexpr GeometryId kNoGeometry = 0xffffffffu;
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
+inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
 
 using MaterialId = std::uint32_t;
 using PictureId = std::uint32_t;
@@ -73,7 +74,20 @@ struct GeometryOptions {
   // A ray meets the geometry where its own mask and this one have a bit in common.
   std::uint32_t mask = 0xffffffffu;
   MaterialId material = 0;
+  // It is seen by its instances alone (Scene::add_instances), which have masks of their own.
+  bool prototype = false;
 };
+
+// Instances of one prototype are a geometry together. A transform takes the prototype to the scene: its rows
+// are those of linear | move, p -> linear * p + move, as 12 values one after the other. It may mirror and
+// stretch, one direction up to 48 times as much as another.
+struct InstanceOptions {
+  std::string name = {};
+  std::uint32_t mask = 0xffffffffu;  // of all of them
+  // Of each in place of the prototype's, or kOwnMaterial; one for all; or none.
+  Words materials = {};
+};
+inline constexpr MaterialId kOwnMaterial = 0xffffffffu;
 
 // The Whitted terms of docs/scenes.md, each with its colour multiplied in. The default is a matt light grey.
 struct Material {

@@ -50,6 +50,9 @@ struct HitsOut {
   // corners run counterclockwise, of a sphere outward, of a cone away from its axis.
   PointsOut normal = {};
   PointsOut point = {};  // origin + t*direction
+  // Of the geometry, from 0, where that is instances; kNoInstance: a miss, or what is none. The primitive is
+  // the prototype's.
+  WordsOut instance = {};
 };
 
 enum class InvalidRays { error, miss };

@@ -1,0 +1,312 @@
+// Closest and any hits in scenes with instances: against copies in double, the same bits by every walk and
+// with every form of vectors, and of equal hits the one that comes first.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "query/device_scene.h"
+#include "query/instance_judge.h"
+#include "query/meshes.h"
+#include "query/trace.h"
+#include "scene/instances.h"
+#include "scene/transform.h"
+#include "support/device.h"
+#include "support/variable.h"
+
+namespace kdray::test {
+namespace {
+
+using scene::rotation, scene::scaling, scene::translation;
+
+constexpr unsigned kSeed = 28;
+constexpr Traversal kWalks[] = {Traversal::automatic, Traversal::wide, Traversal::packet, Traversal::batch};
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : bits_(seed) {}
+  double in(double lo, double hi) { return std::uniform_real_distribution<>(lo, hi)(bits_); }
+  std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(bits_); }
+  dvec3 vector(double size) { return {in(-size, size), in(-size, size), in(-size, size)}; }
+  dvec3 direction() {
+    for (;;)
+      if (const dvec3 v = vector(1); glm::length(v) > 0.1 && glm::length(v) < 1) return glm::normalize(v);
+  }
+
+ private:
+  std::mt19937 bits_;
+};
+
+// ---- Scenes
+
+std::uint32_t add_mesh(scene::Scene& s, scene::Scene mesh) {
+  mesh.materials.clear();
+  s.meshes.push_back(std::make_shared<const scene::Scene>(std::move(mesh)));
+  return static_cast<std::uint32_t>(s.meshes.size() - 1);
+}
+void add(scene::Scene& s, std::uint32_t mesh, const dmat4& to_world) {
+  s.instances.push_back(scene::instance_of(to_world, mesh));
+  ASSERT_EQ(scene::fault_of(s.instances.back()), nullptr);
+}
+scene::Scene empty_scene() {
+  scene::Scene s;
+  s.name = "instances";
+  s.materials.emplace_back();
+  return s;
+}
+scene::Scene with_ground(double height) {
+  scene::Scene s =
+      mesh_of({{-9, height, -9}, {9, height, -9}, {9, height, 9}, {-9, height, 9}}, {{0, 1, 2}, {0, 2, 3}});
+  s.name = "ground";
+  return s;
+}
+scene::Scene balls(Random& random, int n) {
+  scene::Scene s = empty_scene();
+  for (int i = 0; i < n; ++i)
+    s.spheres.push_back(
+        {.center = random.vector(1), .radius = random.in(0.1, 0.5), .number = static_cast<std::uint32_t>(i)});
+  return s;
+}
+
+dmat4 anywhere(Random& random, const dvec3& scale, double spread) {
+  return translation(random.vector(spread)) * rotation(random.direction(), random.in(0, 6)) * scaling(scale) *
+         rotation(random.direction(), random.in(0, 6));
+}
+
+scene::Scene turned_and_scaled(Random& random) {
+  scene::Scene s = with_ground(-2);
+  const std::uint32_t meshes[] = {add_mesh(s, torus(12, 8)), add_mesh(s, icosphere(2)),
+                                  add_mesh(s, cubes(5, 3))};
+  for (int i = 0; i < 40; ++i) add(s, meshes[i % 3], anywhere(random, dvec3(std::exp2(random.in(-5, 0))), 3));
+  return s;
+}
+
+scene::Scene mirrored_and_stretched(Random& random) {
+  scene::Scene s = empty_scene();
+  const std::uint32_t meshes[] = {add_mesh(s, torus(12, 8)), add_mesh(s, balls(random, 9))};
+  for (std::uint32_t i = 0; i < 30;) {
+    const dvec3 scale = {std::exp2(random.in(-2, 1)), std::exp2(random.in(-2, 1)),
+                         -std::exp2(random.in(-2, 1))};
+    const scene::Instance instance = scene::instance_of(anywhere(random, scale, 3), meshes[i % 2]);
+    if (scene::fault_of(instance) != nullptr) continue;
+    s.instances.push_back(instance);
+    ++i;
+  }
+  return s;
+}
+
+scene::Scene one_alone(Random& random) {
+  scene::Scene s = empty_scene();
+  add(s, add_mesh(s, icosphere(3)), anywhere(random, dvec3(0.7), 0.1));
+  return s;
+}
+
+// Far from the origin, where instances keep the bits that the scene's own floats would lose.
+scene::Scene far_away(Random& random) {
+  scene::Scene s = empty_scene();
+  const std::uint32_t mesh = add_mesh(s, torus(12, 8));
+  for (int i = 0; i < 12; ++i)
+    add(s, mesh, translation({1000, -2000, 500}) * anywhere(random, dvec3(0.4), 2));
+  return s;
+}
+
+// Meshes that nothing can be hit of, before and between others: they count where instances are numbered.
+scene::Scene among_empty_ones(Random& random) {
+  scene::Scene s = empty_scene();
+  const std::uint32_t none = add_mesh(s, empty_scene()), mesh = add_mesh(s, icosphere(2)),
+                      flat = add_mesh(s, mesh_of({{0, 0, 0}, {1, 1, 1}}, {{0, 1, 1}}));
+  for (int i = 0; i < 9; ++i) {
+    add(s, none, dmat4(1));
+    add(s, mesh, anywhere(random, dvec3(0.5), 2));
+    add(s, flat, dmat4(1));
+  }
+  return s;
+}
+
+// ---- Rays
+
+// Sixteen of a kind and single ones, from outside and inside; along axes, and to corners and centres.
+std::vector<Ray> rays_about(const scene::Scene& s, Random& random, std::size_t n) {
+  const DBox box = s.bounds();
+  const dvec3 middle = (box.lo + box.hi) * 0.5, half = (box.hi - box.lo) * 0.5;
+  std::vector<Ray> rays;
+  while (rays.size() < n) {
+    const scene::Instance& at = s.instances[random.below(s.instances.size())];
+    const scene::Scene& mesh = *s.meshes[at.mesh];
+    dvec3 to = middle + random.vector(1) * half;
+    if (!mesh.vertices.empty() && random.in(0, 1) < 0.5)
+      to = at.point(mesh.vertices[random.below(mesh.vertices.size())]);
+    if (random.in(0, 1) < 0.2) to = at.move;
+    const dvec3 from = random.in(0, 1) < 0.7 ? middle + random.direction() * (1.5 * glm::length(half))
+                                             : middle + random.vector(1) * half;
+    const std::size_t alike = random.below(3) ? 1 : 16;
+    const bool limited = random.below(4) == 0;
+    const std::size_t axis = random.below(12);
+    for (std::size_t k = 0; k < alike; ++k) {
+      const dvec3 o = from + random.vector(0.01);
+      dvec3 d = to - from + random.vector(1e-3);
+      if (axis < 6) d = dvec3(0), d[static_cast<int>(axis % 3)] = axis < 3 ? 1 : -1;
+      if (!(glm::length(d) > 0)) continue;
+      const dvec3 start = axis < 6 ? to - d * 3.0 * glm::length(half) : o;
+      Ray ray{{}, limited ? 0.3f : 0.0f, {}, limited ? 0.9f : std::numeric_limits<float>::infinity()};
+      for (int c = 0; c < 3; ++c)
+        ray.origin[c] = static_cast<float>(start[c]), ray.direction[c] = static_cast<float>(d[c]);
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+bool same(const query::Traced& a, const query::Traced& b) {
+  return a.hits.size() == b.hits.size() && a.instances == b.instances &&
+         std::memcmp(a.hits.data(), b.hits.data(), a.hits.size() * sizeof(Hit)) == 0;
+}
+
+class InstanceQueries : public EachDevice {
+ protected:
+  query::Traced traced(DeviceScene& scene, std::span<const Ray> rays, Traversal walk, bool any_hit = false) {
+    return query::trace(scene.target(), rays, {.any_hit = any_hit, .traversal = walk});
+  }
+  void expect_right(const scene::Scene& s, unsigned seed);
+};
+KDRAY_FOR_EACH_DEVICE(InstanceQueries);
+
+void InstanceQueries::expect_right(const scene::Scene& s, unsigned seed) {
+  Random random(seed);
+  const std::vector<Ray> rays = rays_about(s, random, 4000);
+  DeviceScene asked(s, GetParam());
+  const query::Traced first = traced(asked, rays, Traversal::wide);
+  const InstanceJudge judge(s);
+  std::size_t n_hits = 0, n_in_instances = 0, n_wrong = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    n_hits += first.hits[i].primitive >= 0;
+    n_in_instances += first.instances[i] != scene::kNone;
+    const std::string wrong = judge.wrong(rays[i], first.hits[i], first.instances[i]);
+    if (!wrong.empty() && ++n_wrong < 5) ADD_FAILURE() << "seed " << seed << ", ray " << i << ": " << wrong;
+  }
+  EXPECT_EQ(n_wrong, 0u) << "of " << rays.size();
+  EXPECT_GT(n_hits, rays.size() / 5);
+  EXPECT_GT(n_in_instances, rays.size() / 10);
+  for (const Traversal walk : kWalks) {
+    EXPECT_TRUE(same(first, traced(asked, rays, walk))) << "walk " << static_cast<int>(walk);
+    const query::Traced any = traced(asked, rays, walk, true);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      ASSERT_EQ(any.hits[i].t == 0, first.hits[i].primitive >= 0) << "ray " << i << " of seed " << seed;
+  }
+}
+
+TEST_P(InstanceQueries, TurnedAndScaled) {
+  for (unsigned seed = kSeed; seed < kSeed + 3; ++seed) {
+    Random random(seed);
+    expect_right(turned_and_scaled(random), seed);
+  }
+}
+TEST_P(InstanceQueries, MirroredAndStretched) {
+  for (unsigned seed = kSeed; seed < kSeed + 3; ++seed) {
+    Random random(seed);
+    expect_right(mirrored_and_stretched(random), seed);
+  }
+}
+TEST_P(InstanceQueries, OneAlone) {
+  Random random(kSeed);
+  expect_right(one_alone(random), kSeed);
+}
+TEST_P(InstanceQueries, FarAway) {
+  Random random(kSeed);
+  expect_right(far_away(random), kSeed);
+}
+TEST_P(InstanceQueries, AmongEmptyOnes) {
+  Random random(kSeed);
+  expect_right(among_empty_ones(random), kSeed);
+}
+
+// Triangles and spheres, by packets and batches, which the automatic walk has both.
+TEST_P(InstanceQueries, AreTheSameBitsWithEveryFormOfVectors) {
+  Random random(kSeed);
+  const scene::Scene s = mirrored_and_stretched(random);
+  const std::vector<Ray> rays = rays_about(s, random, 6000);
+  DeviceScene best(s, GetParam());
+  const query::Traced first = traced(best, rays, Traversal::automatic);
+  for (const char* const form : {"portable", "avx2"}) {
+    const Variable asked_for("KDRAY_SIMD", form);
+    std::unique_ptr<DeviceScene> asked;
+    try {
+      asked = std::make_unique<DeviceScene>(s, GetParam());
+    } catch (const Error&) {
+      continue;  // this device can't have it
+    }
+    EXPECT_TRUE(same(first, traced(*asked, rays, Traversal::automatic))) << form;
+  }
+}
+
+// The judge itself: what is told of another ray, or of another instance, or a little farther off, is wrong.
+TEST_P(InstanceQueries, AreJudgedStrictly) {
+  Random random(kSeed);
+  const scene::Scene s = turned_and_scaled(random);
+  const std::vector<Ray> rays = rays_about(s, random, 2000);
+  DeviceScene asked(s, GetParam());
+  const query::Traced all = traced(asked, rays, Traversal::wide);
+  const InstanceJudge judge(s);
+  int n = 0, moved = 0, swapped = 0, lost = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t instance = all.instances[i];
+    if (all.hits[i].primitive < 0 || instance == scene::kNone) continue;
+    ++n;
+    Hit farther = all.hits[i];
+    farther.t *= 1.02f;
+    moved += !judge.wrong(rays[i], farther, instance).empty();
+    swapped += !judge.wrong(rays[i], all.hits[i], instance ^ 1).empty();
+    lost += !judge.wrong(rays[i], {std::numeric_limits<float>::infinity(), -1, 0, 0}, scene::kNone).empty();
+  }
+  ASSERT_GT(n, 300);
+  EXPECT_GT(moved, n * 9 / 10);
+  EXPECT_GT(swapped, n * 9 / 10);
+  EXPECT_GT(lost, n * 8 / 10);
+}
+
+// Copies in one place, in any order and beside the scene's own: the scene's goes first, then the first one.
+TEST_P(InstanceQueries, OfEqualHitsTheFirstIsTold) {
+  Random random(kSeed);
+  scene::Scene s = empty_scene();
+  const std::uint32_t twin = add_mesh(s, doubled()), ball = add_mesh(s, icosphere(2));
+  const dmat4 place = anywhere(random, {0.7, 0.9, -1.1}, 0.5);
+  for (const std::uint32_t mesh : {twin, ball, twin, ball, ball, twin}) add(s, mesh, place);
+  DeviceScene asked(s, GetParam());
+  const std::vector<Ray> rays = rays_about(s, random, 3000);
+  for (const Traversal walk : kWalks) {
+    const query::Traced all = traced(asked, rays, walk);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (all.hits[i].primitive < 0) continue;
+      ASSERT_LT(all.instances[i], 2u) << i;
+      // The tetrahedron that is there twice: of its two faces in one place the smaller number.
+      if (all.instances[i] == 0) {
+        ASSERT_LT(all.hits[i].primitive, 4) << i;
+      }
+    }
+  }
+  // A floor of the scene's own in one plane with an instance's, exactly.
+  scene::Scene floors = with_ground(-2);
+  scene::Scene mesh = with_ground(-2);
+  add(floors, add_mesh(floors, std::move(mesh)), dmat4(1));
+  DeviceScene of_floors(floors, GetParam());
+  std::vector<Ray> down;
+  for (int i = 0; i < 500; ++i) {
+    const dvec3 o = random.vector(4);
+    down.push_back({{float(o.x), 5, float(o.z)}, 0, {0, -1, 0}, 1e9f});
+  }
+  for (const Traversal walk : kWalks) {
+    const query::Traced hits = traced(of_floors, down, walk);
+    for (const std::uint32_t instance : hits.instances) ASSERT_EQ(instance, scene::kNone);
+  }
+}
+
+TEST_P(InstanceQueries, ScenesWithoutInstancesTellNone) {
+  DeviceScene asked(icosphere(2), GetParam());
+  const Ray ray{{0, 0, 5}, 0, {0, 0, -1}, 100};
+  EXPECT_TRUE(traced(asked, std::span(&ray, 1), Traversal::automatic).instances.empty());
+}
+
+}  // namespace
+}  // namespace kdray::test
