@@ -38,7 +38,8 @@ struct PretendRank {
       : ranks(std::move(transport)),
         queue(frame, is_first ? kForeverAList : kDeliverEvery,
               is_first ? frame.take_back_seconds : frame.deliver_seconds) {
-    ranks.leads() ? void(lender.emplace(ranks, shared)) : void(borrower.emplace(ranks, shared));
+    const pdprt::Bags bags(ranks.size());
+    ranks.leads() ? void(lender.emplace(ranks, shared, bags)) : void(borrower.emplace(ranks, shared, bags));
   }
 
   struct Open {  // Tiles don't move
@@ -202,7 +203,7 @@ class PdprtSimulation {
       if (rank.borrower) rank.borrower->deliver(wavefront::FilmSums{film_, 0}, entries);
     };
     if (const auto work = rank.queue.go_on(network_.now(), ended, deliver)) cores_.start(r, *work);
-    if (rank.borrower && rank.in_list && rank.queue.is_over()) {
+    if (rank.borrower && rank.in_list && rank.queue.is_over() && rank.borrower->is_done()) {
       rank.borrower->finish_list();
       rank.in_list = false;
     }
