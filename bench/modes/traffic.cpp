@@ -55,17 +55,22 @@ std::uint32_t finder(std::span<const Visit> path) {
   return path.empty() ? kDirectory : path.back().owner;
 }
 
-// Where an eye ray is made: by the queue that it enters first, if any.
-std::uint32_t maker(std::span<const Visit> path, std::uint32_t otherwise) {
-  const auto first =
-      std::find_if(path.begin(), path.end(), [](const Visit& v) { return v.owner != kDirectory; });
-  return first != path.end() ? first->owner : otherwise;
-}
-
 }  // namespace
 
+std::uint32_t first_owner(std::span<const Visit> path) {
+  const auto first =
+      std::find_if(path.begin(), path.end(), [](const Visit& v) { return v.owner != kDirectory; });
+  return first != path.end() ? first->owner : kDirectory;
+}
+
 Traffic make_traffic(std::span<const LifeRay> lives, const Paths& paths, std::uint32_t n_queues,
-                     const Rates& rates, double rays_per_journey) {
+                     const Rates& rates, double rays_per_journey, std::span<const std::uint32_t> makers) {
+  // Where an eye ray is made: by the queue that it enters first, if any.
+  const auto maker = [&](std::uint32_t i) {
+    const std::uint32_t first = first_owner(paths.of(i));
+    if (first != kDirectory) return first;
+    return makers.empty() ? i % n_queues : makers[i];
+  };
   Traffic traffic;
   traffic.rays_per_journey = rays_per_journey;
   traffic.journeys.resize(lives.size());
@@ -75,7 +80,7 @@ Traffic make_traffic(std::span<const LifeRay> lives, const Paths& paths, std::ui
     journey.depth = life.depth;
     const bool from_eye = life.parent == kNoParent;
     (from_eye ? traffic.first : traffic.journeys[life.parent].next).push_back(i);
-    Way way(from_eye ? maker(paths.of(i), i % n_queues) : traffic.journeys[life.parent].hops.back().queue,
+    Way way(from_eye ? maker(i) : traffic.journeys[life.parent].hops.back().queue,
             rays_per_journey * rates.seconds_of_cost, journey.hops);
     for (const Visit& v : paths.of(i)) way.visit(v);
     if (const std::uint32_t found_by = finder(paths.of(i)); life.hit && found_by != kDirectory)

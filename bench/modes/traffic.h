@@ -22,8 +22,12 @@ struct Rates {
   double seconds_of_shade = 0;  // of a hit
 };
 
-// `paths` are those of the lives, by queues.
+// The queue that a ray enters first; kDirectory: none.
+std::uint32_t first_owner(std::span<const Visit> path);
+
+// `paths` are those of the lives, by queues. `makers`: where eye rays begin that enter none, by their place
+// among the lives; empty: on queues in turn.
 Traffic make_traffic(std::span<const LifeRay> lives, const Paths& paths, std::uint32_t n_queues,
-                     const Rates& rates, double rays_per_journey);
+                     const Rates& rates, double rays_per_journey, std::span<const std::uint32_t> makers = {});
 
 }  // namespace kdray::bench

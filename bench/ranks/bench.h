@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/ranks/real.h"
+#include "bench/ranks/simulate_odprt.h"
 #include "bench/ranks/simulate_pdprt.h"
 
 namespace kdray::bench {
@@ -26,6 +27,7 @@ struct RanksOptions {
   std::vector<std::string> scenes = {};  // empty: balls
   RanksAsked asked = {};
   std::vector<int> predicted = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1000, 2000, 5000, 10000};
+  std::vector<int> odprt_predicted = {1, 2, 4, 8, 16, 32, 64, 128};
   std::vector<AssumedLink> links = {{"10 GB/s, 10 us", 10e-6, 10e9}, {"1 Gbit/s, 50 us", 50e-6, 125e6}};
 };
 
@@ -38,6 +40,7 @@ struct RanksCheck {
   Spread ratio;  // of the predictions to what was measured
   double busy_predicted = 0, busy = 0;
   double messages_predicted = 0, messages = 0, bytes_predicted = 0, bytes = 0;
+  double rays_predicted = 0, rays = 0;  // from queue to queue, in ODPRT
   double error() const { return ratio.median - 1; }
 };
 
@@ -55,10 +58,10 @@ struct RanksRun {
   int cores = 1;
   bool over_mpi = false;
   RanksMeasured measured;
-  std::vector<RanksCheck> checks;
-  std::vector<RanksPrediction> predictions;
+  std::vector<RanksCheck> checks, odprt_checks;
+  std::vector<RanksPrediction> predictions, odprt_predictions;
 
-  double largest_error() const;  // of the checks, without sign
+  static double largest_error(const std::vector<RanksCheck>& checks);  // without sign, of several ranks
 };
 
 // What the setting of a real run was, as the simulation knows it.
@@ -80,7 +83,12 @@ class SceneShelf {
  public:
   SceneShelf();
   ~SceneShelf();
-  const PreparedScene& get(const std::string& name, std::size_t* n_primitives);
+  struct Held {
+    explicit Held(const std::string& name);
+    Scene scene;
+    PreparedScene prepared;
+  };
+  const Held& get(const std::string& name);
 
  private:
   struct Shelved;

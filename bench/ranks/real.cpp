@@ -25,15 +25,17 @@ namespace {
 // What pdprt gives ranks of one core each (api/scheduler.cpp); one rank alone would have others.
 constexpr Tuning kOfRanks{.slices = 1, .waves = 128};
 constexpr double kRaysOfBatch = 512;
+constexpr int kQueuesByMail = 5;  // so many that ODPRT sorts all rays on the host (odprt/plan.cpp)
 
 // OpenCL is opened by one thread at a time.
-Renderer open(const PreparedScene& scene, const RanksAsked& asked, std::shared_ptr<transport::Ranks> ranks) {
+Renderer open(const PreparedScene& scene, const RanksAsked& asked, std::shared_ptr<transport::Ranks> ranks,
+              int queues = 1) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   api::Hooks hooks;
   hooks.ranks = std::move(ranks);
   Renderer renderer =
-      api::make_renderer(scene, {.device = asked.device, .queues = 1, .compute_units = 1}, hooks);
+      api::make_renderer(scene, {.device = asked.device, .queues = queues, .compute_units = 1}, hooks);
   renderer.tune(kOfRanks);
   return renderer;
 }
@@ -43,6 +45,14 @@ RenderOptions frame_of(const RanksAsked& asked) {
   o.width = asked.width, o.height = asked.height, o.depth = asked.depth, o.samples = asked.samples;
   o.tile_width = o.tile_height = asked.tile;
   o.mode = Mode::pdprt;
+  return o;
+}
+
+// A ray for a ray is simulated in ODPRT: of a smaller frame, and of one sample.
+RenderOptions odprt_frame_of(const RanksAsked& asked) {
+  RenderOptions o = frame_of(asked);
+  o.width = std::max(1, asked.width / 2), o.height = std::max(1, asked.height / 2), o.samples = 1;
+  o.mode = Mode::odprt;
   return o;
 }
 
@@ -87,6 +97,8 @@ class Place {
     const nlohmann::json facts = api::statistics_json(renderer_->statistics());
     for (const auto& queue : facts.at("mode").at("per_queue")) busy += queue.at("busy_seconds").get<double>();
     busy_.push_back(busy);
+    const auto sent = facts.find("mode")->find("exchange");
+    rays_.push_back(sent == facts.at("mode").end() ? 0 : sent->at("rays_total").get<double>());
     messages_.push_back(static_cast<double>(after.sent + after.received - before.sent - before.received));
     bytes_.push_back(static_cast<double>(after.bytes_sent + after.bytes_received - before.bytes_sent -
                                          before.bytes_received));
@@ -95,7 +107,8 @@ class Place {
   RealRanks real() const {
     RealRanks real = real_;
     if (!messages_.empty())
-      real.messages = median(messages_), real.bytes = median(bytes_), real.busy = median(busy_);
+      real.messages = median(messages_), real.bytes = median(bytes_), real.busy = median(busy_),
+      real.rays_sent = median(rays_);
     return real;
   }
 
@@ -103,16 +116,26 @@ class Place {
   RealRanks real_;
   std::shared_ptr<transport::Ranks> ranks_;
   std::optional<Renderer> renderer_;
-  std::vector<double> messages_, bytes_, busy_;
+  std::vector<double> messages_, bytes_, busy_, rays_;
 };
 
 class Measuring {
  public:
   Measuring(Team& team, const PreparedScene& scene, const RanksAsked& asked)
-      : team_(team), asked_(asked), options_(frame_of(asked)), alone_(open(scene, asked, nullptr)) {
+      : team_(team),
+        asked_(asked),
+        options_(frame_of(asked)),
+        odprt_options_(odprt_frame_of(asked)),
+        alone_(open(scene, asked, nullptr)) {
     for (const int n : asked.ranks)
       for (const double delay : asked.delays)
-        if (n <= team.size() && (n > 1 || delay == 0)) places_.emplace_back(team, scene, asked, n, delay);
+        if (n <= team.size() && (n > 1 || delay == 0)) {
+          places_.emplace_back(team, scene, asked, n, delay);
+          if (asked.odprt) odprt_places_.emplace_back(team, scene, asked, n, delay);
+        }
+    if (!asked.odprt || !team.leads()) return;
+    odprt_alone_.emplace(open(scene, asked, nullptr));
+    odprt_by_mail_.emplace(open(scene, asked, nullptr, kQueuesByMail));
   }
 
   RanksMeasured run() {
@@ -126,9 +149,15 @@ class Measuring {
         team_.meet();
         place.render(options_, round >= 0, picture_);
       }
+      measure_odprt_alone();
+      for (Place& place : odprt_places_) {
+        team_.meet();
+        place.render(odprt_options_, round >= 0, odprt_picture_);
+      }
       team_.meet();
     }
     if (team_.leads()) conclude();
+    if (odprt_alone_) conclude_odprt();
     return std::move(measured_);
   }
 
@@ -136,6 +165,7 @@ class Measuring {
   void clear() {
     alone_seconds_.clear(), busy_.clear(), tiles_.clear(), prepare_.clear(), begin_.clear(), end_.clear();
     waves_.clear(), at_once_.clear(), looks_.clear();
+    odprt_seconds_.clear(), odprt_busy_.clear(), odprt_trace_.clear(), odprt_of_sent_.clear();
   }
 
   // A frame that keeps its tiles' times.
@@ -158,6 +188,29 @@ class Measuring {
     const auto [first, last] = launches_of(alone_.timeline());
     begin_.push_back(std::max(0.0, first - prepare));
     end_.push_back(std::max(0.0, seconds - (last - first) - begin_.back()));
+  }
+
+  // One queue, which sends nothing; then several on the same core, whose rays all go through the host.
+  void measure_odprt_alone() {
+    team_.meet();
+    if (!odprt_alone_) return;
+    odprt_picture_ = odprt_alone_->render(odprt_options_);
+    const nlohmann::json facts = api::statistics_json(odprt_alone_->statistics());
+    const nlohmann::json& seconds = facts.at("seconds");
+    odprt_seconds_.push_back(seconds.at("render"));
+    odprt_busy_.push_back(facts.at("mode").at("per_queue").at(0).at("busy_seconds"));
+    const double trace = seconds.value("trace", 0.0);
+    double all = trace;
+    for (const char* const stage : {"shade", "admit", "add", "route"}) all += seconds.value(stage, 0.0);
+    odprt_trace_.push_back(all > 0 ? trace / all : 1);
+    constexpr const char* kKinds[] = {"primary", "shadow", "reflected", "refracted"};  // by LifeKind
+    for (std::size_t kind = 0; kind < std::size(kKinds); ++kind)
+      measured_.odprt.rays[kind] = facts.at("rays").value(kKinds[kind], 0.0);
+    odprt_by_mail_->render(odprt_options_);
+    const nlohmann::json by_mail = api::statistics_json(odprt_by_mail_->statistics());
+    const double sent = by_mail.at("mode").at("exchange").at("rays_total");
+    const double more = by_mail.at("seconds").at("render").get<double>() - odprt_seconds_.back();
+    odprt_of_sent_.push_back(std::max(0.0, more) / std::max(sent, 1.0));
   }
 
   static std::pair<double, double> launches_of(const std::string& chrome_trace) {
@@ -219,6 +272,18 @@ class Measuring {
     frame.index();
   }
 
+  void conclude_odprt() {
+    measured_.odprt_width = odprt_options_.width, measured_.odprt_height = odprt_options_.height;
+    measured_.odprt_alone = spread_of(odprt_seconds_);
+    for (const Place& place : odprt_places_) measured_.real_odprt.push_back(place.real());
+    OdprtCosts& costs = measured_.odprt;
+    costs.busy = median(odprt_busy_), costs.trace_share = median(odprt_trace_);
+    costs.of_sent_ray = *std::ranges::min_element(odprt_of_sent_);  // what disturbs it only adds
+    costs.end_seconds = std::max(0.0, measured_.odprt_alone.median - costs.busy);
+    for (const RealRanks& real : measured_.real_odprt)
+      if (real.ranks == 1) costs.end_seconds = std::max(0.0, median(real.rounds) - real.busy);
+  }
+
   void conclude(std::size_t number) {
     RanksRound& round = measured_.rounds.emplace_back();
     round.alone = at_once_.count(1) ? at_once_[1][number] : alone_seconds_[number];
@@ -251,11 +316,14 @@ class Measuring {
   Team& team_;
   const RanksAsked& asked_;
   RenderOptions options_;
+  RenderOptions odprt_options_;
   Renderer alone_;
-  std::vector<Place> places_;
-  Picture picture_;
+  std::optional<Renderer> odprt_alone_, odprt_by_mail_;
+  std::vector<Place> places_, odprt_places_;
+  Picture picture_, odprt_picture_;
   RanksMeasured measured_;
   std::vector<double> alone_seconds_, busy_, prepare_, begin_, end_, waves_;
+  std::vector<double> odprt_seconds_, odprt_busy_, odprt_trace_, odprt_of_sent_;
   std::vector<std::vector<double>> tiles_;
   std::map<int, std::vector<double>> at_once_, looks_;
 };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/measure/spread.h"
+#include "bench/ranks/lived_frame.h"
 #include "bench/ranks/ping_pong.h"
 #include "bench/ranks/pretend_queue.h"
 #include "bench/ranks/team.h"
@@ -25,6 +26,7 @@ struct RealRanks {
   std::vector<double> rounds = {};  // seconds
   double messages = 0, bytes = 0;   // of rank 0, both ways, for a frame; medians
   double busy = 0;                  // of all queues together; median
+  double rays_sent = 0;             // from queue to queue, in ODPRT; median
   std::size_t differing_pixels = 0;
 };
 
@@ -49,6 +51,11 @@ struct RanksMeasured {
   std::map<int, AtOnce> at_once;  // by how many; medians
   std::vector<RanksRound> rounds;
   std::vector<RealRanks> real;
+  // The same in ODPRT, of a frame of half as many pixels across and down.
+  int odprt_width = 0, odprt_height = 0;
+  Spread odprt_alone;
+  OdprtCosts odprt;
+  std::vector<RealRanks> real_odprt;
 };
 
 struct RanksAsked {
@@ -56,6 +63,7 @@ struct RanksAsked {
   std::vector<double> delays = {0, 2.5e-3};
   int width = 1024, height = 1024, depth = 5, samples = 1, tile = 8, repeat = 7;
   std::string device = "auto";
+  bool odprt = true;  // too
 };
 
 // All members call it with the same; what member 0 gets counts.

@@ -67,7 +67,56 @@ Json json_of(const RanksCheck& c) {
           {"messages_predicted", c.messages_predicted},
           {"messages", c.messages},
           {"bytes_predicted", c.bytes_predicted},
-          {"bytes", c.bytes}};
+          {"bytes", c.bytes},
+          {"rays_predicted", c.rays_predicted},
+          {"rays", c.rays}};
+}
+
+Json json_of(const RanksPrediction& p) {
+  return {{"link", p.link},         {"ranks", p.ranks},
+          {"seconds", p.seconds},   {"efficiency", p.efficiency},
+          {"messages", p.messages}, {"simulation_seconds", p.simulation_seconds}};
+}
+
+template <class List>
+Json list_of(const List& list) {
+  Json json = Json::array();
+  for (const auto& entry : list) json.push_back(json_of(entry));
+  return json;
+}
+
+std::string checks_table(const std::vector<RanksCheck>& checks, bool odprt) {
+  std::string out = fmt::format("  {:>6}{:>10}{:>11}{:>11}{:>9}{:>9}{:>9}{:>9}{:>9} |{:>10}{:>10}{:>9}{:>9}",
+                                "ranks", "delay ms", "predicted", "measured", "least", "most", "error",
+                                "from", "to", "messages", "measured", "MB", "measured");
+  out += odprt ? fmt::format("{:>9}{:>9}\n", "M rays", "measured") : "\n";
+  for (const RanksCheck& c : checks) {
+    out += fmt::format(
+        "  {:>6}{:>10.1f}{:>11.4f}{:>11.4f}{:>9.4f}{:>9.4f}{:>8.1f}%{:>8.1f}%{:>8.1f}% |{:>10.0f}{:>10.0f}"
+        "{:>9.2f}{:>9.2f}",
+        c.ranks, 1e3 * c.delay, c.predicted.median, c.measured.median, c.measured.min, c.measured.max,
+        100 * c.error(), 100 * (c.ratio.min - 1), 100 * (c.ratio.max - 1), c.messages_predicted, c.messages,
+        1e-6 * c.bytes_predicted, 1e-6 * c.bytes);
+    out += odprt ? fmt::format("{:>9.3f}{:>9.3f}\n", 1e-6 * c.rays_predicted, 1e-6 * c.rays) : "\n";
+  }
+  return out;
+}
+
+std::string predictions_table(const std::vector<RanksPrediction>& predictions, double error,
+                              const RanksOptions& options) {
+  std::string out = fmt::format(
+      "  a core to each rank, simulated; the largest error of several ranks above is {:.1f}%\n"
+      "  {:>6}",
+      100 * error, "ranks");
+  for (const AssumedLink& link : options.links) out += fmt::format("{:>22}", link.name);
+  int line = 0;
+  std::vector<RanksPrediction> sorted = predictions;
+  std::ranges::stable_sort(sorted, {}, &RanksPrediction::ranks);
+  for (const RanksPrediction& p : sorted) {
+    if (p.ranks != line) out += fmt::format("\n  {:>6}", line = p.ranks);
+    out += fmt::format("{:>12.4f} s{:>7.1f}%", p.seconds, 100 * p.efficiency);
+  }
+  return out + "\n";
 }
 
 }  // namespace
@@ -77,28 +126,17 @@ std::string table_of(const RanksRun& run, const RanksOptions& options) {
                                 run.n_primitives, run.cores, options.asked.width, options.asked.height,
                                 options.asked.samples, options.asked.samples == 1 ? "" : "s");
   out += costs_line(run);
-  out += fmt::format("  {:>6}{:>10}{:>11}{:>11}{:>9}{:>9}{:>9}{:>9}{:>9} |{:>10}{:>10}{:>9}{:>9}\n", "ranks",
-                     "delay ms", "predicted", "measured", "least", "most", "error", "from", "to", "messages",
-                     "measured", "MB", "measured");
-  for (const RanksCheck& c : run.checks)
-    out += fmt::format(
-        "  {:>6}{:>10.1f}{:>11.4f}{:>11.4f}{:>9.4f}{:>9.4f}{:>8.1f}%{:>8.1f}%{:>8.1f}% |{:>10.0f}{:>10.0f}"
-        "{:>9.2f}{:>9.2f}\n",
-        c.ranks, 1e3 * c.delay, c.predicted.median, c.measured.median, c.measured.min, c.measured.max,
-        100 * c.error(), 100 * (c.ratio.min - 1), 100 * (c.ratio.max - 1), c.messages_predicted, c.messages,
-        1e-6 * c.bytes_predicted, 1e-6 * c.bytes);
-  out += fmt::format("  a core to each rank, simulated; the largest error above is {:.1f}%\n  {:>6}",
-                     100 * run.largest_error(), "ranks");
-  for (const AssumedLink& link : options.links) out += fmt::format("{:>22}", link.name);
-  out += "\n";
-  for (const int ranks : options.predicted) {
-    out += fmt::format("  {:>6}", ranks);
-    for (const AssumedLink& link : options.links)
-      for (const RanksPrediction& p : run.predictions)
-        if (p.link == link.name && p.ranks == ranks)
-          out += fmt::format("{:>12.4f} s{:>7.1f}%", p.seconds, 100 * p.efficiency);
-    out += "\n";
-  }
+  out += checks_table(run.checks, false);
+  out += predictions_table(run.predictions, RanksRun::largest_error(run.checks), options);
+  if (run.odprt_checks.empty()) return out;
+  const RanksMeasured& m = run.measured;
+  out += fmt::format(
+      "  ODPRT, {}x{}: alone {:.4f} s, busy {:.4f}, {:.0f}% of it walks; a ray by mail costs {:.3f} us "
+      "more\n",
+      m.odprt_width, m.odprt_height, m.odprt_alone.median, m.odprt.busy, 100 * m.odprt.trace_share,
+      1e6 * m.odprt.of_sent_ray);
+  out += checks_table(run.odprt_checks, true);
+  out += predictions_table(run.odprt_predictions, RanksRun::largest_error(run.odprt_checks), options);
   return out;
 }
 
@@ -120,21 +158,46 @@ Json json_of(const std::vector<RanksRun>& runs, const RanksOptions& options) {
                    {"cores", run.cores},
                    {"over", run.over_mpi ? "MPI" : "threads"},
                    {"measured", json_of(run.measured)},
-                   {"largest_error", run.largest_error()},
-                   {"checks", Json::array()},
-                   {"predictions", Json::array()}};
-    for (const RanksCheck& c : run.checks) of_run["checks"].push_back(json_of(c));
-    for (const RanksPrediction& p : run.predictions)
-      of_run["predictions"].push_back({{"link", p.link},
-                                       {"ranks", p.ranks},
-                                       {"seconds", p.seconds},
-                                       {"efficiency", p.efficiency},
-                                       {"messages", p.messages},
-                                       {"simulation_seconds", p.simulation_seconds}});
+                   {"largest_error", RanksRun::largest_error(run.checks)},
+                   {"checks", list_of(run.checks)},
+                   {"predictions", list_of(run.predictions)}};
+    if (!run.odprt_checks.empty())
+      of_run["odprt"] = {{"size", {run.measured.odprt_width, run.measured.odprt_height}},
+                         {"alone_seconds", json_of(run.measured.odprt_alone)},
+                         {"busy_seconds", run.measured.odprt.busy},
+                         {"trace_share", run.measured.odprt.trace_share},
+                         {"seconds_of_sent_ray", run.measured.odprt.of_sent_ray},
+                         {"end_seconds", run.measured.odprt.end_seconds},
+                         {"largest_error", RanksRun::largest_error(run.odprt_checks)},
+                         {"checks", list_of(run.odprt_checks)},
+                         {"predictions", list_of(run.odprt_predictions)}};
     json["runs"].push_back(std::move(of_run));
   }
   return json;
 }
+
+namespace {
+
+XyPanel panel_of(const std::string& title, const std::vector<RanksCheck>& checks,
+                 const std::vector<RanksPrediction>& predictions, const RanksOptions& options) {
+  XyPanel panel{title, {"ranks", true}, {"seconds", true}, {}};
+  for (const AssumedLink& link : options.links) {
+    auto& points = panel.points.emplace_back();
+    for (const RanksPrediction& p : predictions)
+      if (p.link == link.name) points.push_back({static_cast<double>(p.ranks), p.seconds});
+  }
+  std::vector<Point> real, predicted;
+  for (const RanksCheck& c : checks) {
+    if (c.delay > 0) continue;
+    real.push_back({static_cast<double>(c.ranks), c.measured.median});
+    predicted.push_back({static_cast<double>(c.ranks), c.predicted.median});
+  }
+  panel.points.push_back(std::move(real));
+  panel.points.push_back(std::move(predicted));
+  return panel;
+}
+
+}  // namespace
 
 XyPlot plot_of(const std::vector<RanksRun>& runs, const RanksOptions& options) {
   XyPlot plot{"Ranks: a frame's seconds by the protocol over a simulated network",
@@ -148,20 +211,10 @@ XyPlot plot_of(const std::vector<RanksRun>& runs, const RanksOptions& options) {
   plot.series.push_back({"real, on this machine", "#333333"});
   plot.series.push_back({"the same, predicted", "#999999"});
   for (const RanksRun& run : runs) {
-    XyPanel panel{short_name(run.scene), {"ranks", true}, {"seconds", true}, {}};
-    for (const AssumedLink& link : options.links) {
-      auto& points = panel.points.emplace_back();
-      for (const RanksPrediction& p : run.predictions)
-        if (p.link == link.name) points.push_back({static_cast<double>(p.ranks), p.seconds});
-    }
-    panel.points.resize(panel.points.size() + 2);
-    auto &real = *(panel.points.end() - 2), &predicted = panel.points.back();
-    for (const RanksCheck& c : run.checks) {
-      if (c.delay > 0) continue;
-      real.push_back({static_cast<double>(c.ranks), c.measured.median});
-      predicted.push_back({static_cast<double>(c.ranks), c.predicted.median});
-    }
-    plot.panels.push_back(std::move(panel));
+    plot.panels.push_back(panel_of(short_name(run.scene) + ", PDPRT", run.checks, run.predictions, options));
+    if (!run.odprt_checks.empty())
+      plot.panels.push_back(
+          panel_of(short_name(run.scene) + ", ODPRT", run.odprt_checks, run.odprt_predictions, options));
   }
   return plot;
 }

@@ -19,18 +19,6 @@ constexpr double kForeverAList = 1e9, kDeliverEvery = 1.0;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-transport::Link link_of(const RanksSetting& setting) {
-  const MessageCosts& m = setting.messages;
-  transport::Link link{.latency = m.latency + setting.delay, .bandwidth = m.bandwidth, .comes_in_turn = true};
-  link.of_bytes = [m, look = setting.look](std::size_t bytes) {
-    return look * (bytes >= kLongBytes           ? m.looks_of_long
-                   : bytes >= kMiddlingBytes / 2 ? m.looks_of_middling
-                                                 : 0);
-  };
-  if (setting.moved_by_looks) link.bandwidth = std::min(link.bandwidth, m.bytes_of_look / setting.look);
-  return link;
-}
-
 // A rank with its protocol, and one queue.
 struct PretendRank {
   PretendRank(std::unique_ptr<transport::Transport> transport, const ReplayedFrame& frame,
@@ -228,6 +216,18 @@ class PdprtSimulation {
 };
 
 }  // namespace
+
+transport::Link link_of(const RanksSetting& setting) {
+  const MessageCosts& m = setting.messages;
+  transport::Link link{.latency = m.latency + setting.delay, .bandwidth = m.bandwidth, .comes_in_turn = true};
+  link.of_bytes = [m, look = setting.look](std::size_t bytes) {
+    return look * (bytes >= kLongBytes           ? m.looks_of_long
+                   : bytes >= kMiddlingBytes / 2 ? m.looks_of_middling
+                                                 : 0);
+  };
+  if (setting.moved_by_looks) link.bandwidth = std::min(link.bandwidth, m.bytes_of_look / setting.look);
+  return link;
+}
 
 SimulatedRanks simulate_pdprt(const ReplayedFrame& frame, const RanksSetting& setting) {
   return PdprtSimulation(frame, setting).run();

@@ -11,6 +11,7 @@
 #include "bench/ranks/ping_pong.h"
 #include "bench/ranks/pretend_queue.h"
 #include "bench/ranks/shared_cores.h"
+#include "transport/simulated.h"
 
 namespace kdray::bench {
 
@@ -24,6 +25,9 @@ struct RanksSetting {
   SharedCores::Speed speed = [](std::size_t) { return 1.0; };
   std::uint64_t seed = 1;
 };
+
+// The network as the setting's ranks have it.
+transport::Link link_of(const RanksSetting& setting);
 
 struct SimulatedRanks {
   double seconds = 0;                      // of the frame, as rank 0 measures it

@@ -57,27 +57,41 @@ std::optional<std::uint32_t> Exchange::choose_part(std::size_t queue, const Queu
   return best;
 }
 
+// The caller locks.
+std::optional<Turn> Exchange::begin_turn(std::size_t queue, const QueueState& state) {
+  const std::optional<std::uint32_t> part = choose_part(queue, state);
+  if (!part) return std::nullopt;
+  Turn turn;
+  turn.part = *part;
+  turn.letters.swap(letters_[*part]);
+  const bool worth = !turn.letters.empty() || mail_[*part].n > 0 || may_launch(queue, state);
+  turn.outbox = worth ? free_outbox(queue) : nullptr;
+  if (turn.letters.empty() && !turn.outbox) return std::nullopt;
+  if (turn.outbox) {
+    turn.grants.resize(mail_.front().rays.size());
+    ledger_.grant(queue, turn.grants);
+    seen_version_[queue] = ledger_.version();
+    running_[queue] = 1;
+  }
+  return turn;
+}
+
 std::optional<Turn> Exchange::next_turn(std::size_t queue, const QueueState& state) {
   std::unique_lock lock(mutex_);
   for (;; waiting_[queue] = 1, changed_.wait(lock)) {
     waiting_[queue] = 0;
     if (!failures_.empty() || done()) return std::nullopt;
-    const std::optional<std::uint32_t> part = choose_part(queue, state);
-    if (!part) continue;
-    Turn turn;
-    turn.part = *part;
-    turn.letters.swap(letters_[*part]);
-    const bool worth = !turn.letters.empty() || mail_[*part].n > 0 || may_launch(queue, state);
-    turn.outbox = worth ? free_outbox(queue) : nullptr;
-    if (turn.letters.empty() && !turn.outbox) continue;
-    if (turn.outbox) {
-      turn.grants.resize(mail_.front().rays.size());
-      ledger_.grant(queue, turn.grants);
-      seen_version_[queue] = ledger_.version();
-      running_[queue] = 1;
-    }
-    return turn;
+    if (std::optional<Turn> turn = begin_turn(queue, state)) return turn;
   }
+}
+
+std::optional<Turn> Exchange::try_turn(std::size_t queue, const QueueState& state) {
+  const std::lock_guard lock(mutex_);
+  waiting_[queue] = 0;
+  if (!failures_.empty() || done()) return std::nullopt;
+  std::optional<Turn> turn = begin_turn(queue, state);
+  waiting_[queue] = !turn;
+  return turn;
 }
 
 void Exchange::take_mail(std::uint32_t part, Mail& into) {

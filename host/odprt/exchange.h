@@ -72,6 +72,8 @@ class Exchange {
 
   // Blocks until there is something to do. Returns nothing when the frame is done or a queue has failed.
   std::optional<Turn> next_turn(std::size_t queue, const QueueState& state);
+  // The same for who must not block: nothing also where there is nothing to do now.
+  std::optional<Turn> try_turn(std::size_t queue, const QueueState& state);
 
   // Takes over what came by mail for the part of the turn.
   void take_mail(std::uint32_t part, Mail& into);
@@ -106,6 +108,7 @@ class Exchange {
 
  private:
   std::optional<std::uint32_t> choose_part(std::size_t queue, const QueueState& state) const;
+  std::optional<Turn> begin_turn(std::size_t queue, const QueueState& state);
   Outbox* free_outbox(std::size_t queue) const;
   bool nothing_is_left() const;
   void wake();

@@ -19,8 +19,8 @@ void expect_report(const Folder& folder, int most_ranks, const std::string& over
   expect_keys(json, {"command", "size", "depth", "samples", "repeat", "links", "runs"});
   ASSERT_EQ(json["runs"].size(), 1u);
   const Json& run = json["runs"][0];
-  expect_keys(run,
-              {"scene", "primitives", "cores", "over", "measured", "largest_error", "checks", "predictions"});
+  expect_keys(run, {"scene", "primitives", "cores", "over", "measured", "largest_error", "checks",
+                    "predictions", "odprt"});
   EXPECT_EQ(run["over"], over);
   EXPECT_GT(run["measured"]["busy_seconds"], 0);
   EXPECT_GT(run["measured"]["take_seconds"], 0);
@@ -30,6 +30,10 @@ void expect_report(const Folder& folder, int most_ranks, const std::string& over
     EXPECT_GT(check["predicted"]["median"], 0);
     EXPECT_GT(check["measured"]["median"], 0);
   }
+  expect_keys(run["odprt"], {"size", "alone_seconds", "busy_seconds", "trace_share", "seconds_of_sent_ray",
+                             "end_seconds", "largest_error", "checks", "predictions"});
+  EXPECT_EQ(run["odprt"]["checks"].size(), 1u + 2u);
+  EXPECT_EQ(run["odprt"]["predictions"].size(), 2u * 8);
   EXPECT_EQ(run["predictions"].size(), 2u * 14);
   EXPECT_EQ(run["predictions"].back()["ranks"], 10000);
   EXPECT_NE(folder.get("report/ranks.svg").find("</svg>"), std::string::npos);
