@@ -24,11 +24,11 @@ void add_kinds(const Holder& holder, Json& arrays) {
 // The structs are taken apart into all their arrays, so that one that is added can't be forgotten.
 
 Json paint_arrays(const scene::Paint& paint) {
-  const auto& [colors, texcoords, coats, textures, pictures] = paint;
+  const auto& [colors, texcoords, tangents, coats, textures, pictures] = paint;
   std::uint64_t texels = 0;
   for (const auto& picture : pictures) texels += bytes_of(picture->texels);
   return {{"corner_colors", bytes_of(colors)},
-          {"texcoords", bytes_of(texcoords[0]) + bytes_of(texcoords[1])},
+          {"texcoords", bytes_of(texcoords[0]) + bytes_of(texcoords[1]) + bytes_of(tangents)},
           {"coats", bytes_of(coats)},
           {"textures", bytes_of(textures)},
           {"pictures", texels}};

@@ -29,16 +29,22 @@ layout::u32 how_minified(scene::Minify minify, bool alike) {
          (two_levels ? KDRAY_TEXTURE_MIP_LINEAR : 0u);
 }
 
-layout::u32 how_of(const scene::Texture& t, bool two_sets) {
+// What triangles have at their corners beside the first set of coordinates.
+struct Sets {
+  bool second, tangents;
+};
+
+layout::u32 how_of(const scene::Texture& t, const Sets& sets) {
   return static_cast<layout::u32>(t.wrap_across) | static_cast<layout::u32>(t.wrap_down) << 2 |
          (t.nearest ? KDRAY_TEXTURE_NEAREST : 0u) | (t.curved ? KDRAY_TEXTURE_CURVED : 0u) | t.set << 6 |
-         (two_sets ? 1u << 7 : 0u) | how_minified(t.minify, t.nearest);
+         (sets.second ? 1u << 7 : 0u) | (sets.tangents ? KDRAY_TEXTURE_TANGENTS : 0u) |
+         how_minified(t.minify, t.nearest);
 }
 
 layout::u32 how_of(const scene::Coat& c) {
   return (c.colored ? KDRAY_COAT_COLORED : 0u) | (c.mode == scene::Alpha::mask ? KDRAY_COAT_MASK : 0u) |
          (c.mode == scene::Alpha::blend ? KDRAY_COAT_BLEND : 0u) |
-         (c.metal_map != scene::kNone ? KDRAY_COAT_METAL : 0u);
+         (c.metal_map != scene::kNone ? KDRAY_COAT_METAL : 0u) | (c.tangents ? KDRAY_COAT_TANGENTS : 0u);
 }
 
 // What the coat's pictures say beside its base colour. Where ambient light is occluded, it is kept apart from
@@ -82,7 +88,7 @@ layout::Coat pack(const scene::Coat& c, const vec3& ambient_light) {
   return out;
 }
 
-Array<layout::Texture> pack_textures(const scene::Paint& paint, const TexelPlan& plan, bool two_sets) {
+Array<layout::Texture> pack_textures(const scene::Paint& paint, const TexelPlan& plan, const Sets& sets) {
   Array<layout::Texture> textures(paint.textures.size());
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const scene::Texture& from = paint.textures[i];
@@ -93,7 +99,7 @@ Array<layout::Texture> pack_textures(const scene::Paint& paint, const TexelPlan&
     t.first = static_cast<layout::u32>(chain.first);
     t.width = chain.size.width;
     t.height = chain.size.height;
-    t.how = how_of(from, two_sets);
+    t.how = how_of(from, sets);
     t.n_levels = static_cast<layout::u32>(chain.n_levels);
     textures[i] = t;
   }
@@ -117,9 +123,9 @@ Array<T> pack_corners(const scene::Geometry& geometry, const std::vector<const P
   return out;
 }
 
-bool uses_second_set(const scene::Paint& paint) {
-  return std::any_of(paint.textures.begin(), paint.textures.end(),
-                     [](const scene::Texture& t) { return t.set == 1; });
+Sets sets_of(const scene::Paint& paint) {
+  return {std::ranges::any_of(paint.textures, [](const scene::Texture& t) { return t.set == 1; }),
+          std::ranges::any_of(paint.coats, [](const scene::Coat& c) { return c.tangents != 0; })};
 }
 
 }  // namespace
@@ -136,9 +142,8 @@ void pack_paint(const scene::Scene& scene, const scene::Geometry& geometry, Flat
   flat.coats = pack_coats(scene);
   if (!paint.textures.empty()) {
     const TexelPlan plan = plan_texels(paint);
-    const bool two_sets = uses_second_set(paint);
     flat.texels = pack_texels(paint, plan);
-    flat.textures = pack_textures(paint, plan, two_sets);
+    flat.textures = pack_textures(paint, plan, sets_of(paint));
   }
   pack_corners_of(paint, scene, geometry, flat);
 }
@@ -148,7 +153,9 @@ void pack_corners_of(const scene::Paint& paint, const scene::Scene& mesh, const 
   const scene::Paint& own = mesh.paint;
   if (!paint.textures.empty()) {
     std::vector<const PageVector<layout::TexCoords>*> sets{&own.texcoords[0]};
-    if (uses_second_set(paint)) sets.push_back(&own.texcoords[1]);
+    const Sets has = sets_of(paint);
+    if (has.second) sets.push_back(&own.texcoords[1]);
+    if (has.tangents) sets.push_back(&own.tangents);
     flat.texcoords = pack_corners(geometry, sets, layout::TexCoords{});
   }
   const bool colored = std::any_of(paint.coats.begin(), paint.coats.end(),

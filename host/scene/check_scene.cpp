@@ -122,9 +122,9 @@ class Checker {
   void check_corners() const {
     const Paint& paint = scene_.paint;
     const std::size_t n = scene_.triangles.size();
-    require_internal(
-        paint.colors.size() <= n && paint.texcoords[0].size() <= n && paint.texcoords[1].size() <= n,
-        "colours or texture coordinates of more triangles than there are");
+    require_internal(paint.colors.size() <= n && paint.texcoords[0].size() <= n &&
+                         paint.texcoords[1].size() <= n && paint.tangents.size() <= n,
+                     "colours, texture coordinates or tangents of more triangles than there are");
   }
 
   void check_instances() const {

@@ -78,29 +78,6 @@ void count_sets(const JsonNode& primitive, Counts& sets, Counts& moved) {
         moved[name] += name.starts_with("TEXCOORD_") || name.starts_with("COLOR_");
 }
 
-// The member of that name, or an empty value.
-const json& member(const json& object, const char* name) {
-  static const json kNone = json::object();
-  const auto found = object.find(name);
-  return found == object.end() ? kNone : *found;
-}
-
-// Primitives with tangents of their own whose material bends normals. An index that is no material's is told
-// of by whoever reads that primitive.
-std::size_t count_tangents(const json& root) {
-  const json& materials = member(root, "materials");
-  std::size_t n = 0;
-  for (const json& mesh : member(root, "meshes"))
-    for (const json& primitive : member(mesh, "primitives")) {
-      const json& index = member(primitive, "material");
-      const bool is_index =
-          index.is_number_unsigned() && materials.is_array() && index.get<std::size_t>() < materials.size();
-      n += is_index && materials[index.get<std::size_t>()].contains("normalTexture") &&
-           member(primitive, "attributes").contains("TANGENT");
-    }
-  return n;
-}
-
 std::string counted(std::size_t n, const char* one, const char* several) {
   return std::to_string(n) + " " + (n == 1 ? one : several);
 }
@@ -115,7 +92,6 @@ std::vector<std::string> left_out_of(Document& document, bool at_rest) {
   Counts sets, moved;
   for (const JsonNode& mesh : document.entries("meshes"))
     for (const JsonNode& primitive : mesh["primitives"].elements()) count_sets(primitive, sets, moved);
-  sets["TANGENT"] = count_tangents(document.json());
   for (const auto& [name, n] : sets)
     if (n > 0)
       out.push_back(printable(name) + " of " + counted(n, "primitive", "primitives") + " is left out");

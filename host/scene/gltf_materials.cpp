@@ -236,9 +236,10 @@ void Materials::read_maps(const JsonNode& node, bool has_metal, Coat& coat, vec3
     coat.metal_map = map_of(*pbr, "metallicRoughnessTexture", false);
 }
 
-Material Materials::read(const JsonNode* node, bool colored) {
+Material Materials::read(const JsonNode* node, Corners at) {
   Surface s;
   std::function<Material(const Surface&)> terms = whitted;
+  const bool colored = at.colors;
   Coat coat{.colored = colored};
   if (node) {
     count_left_out(*node);
@@ -250,6 +251,7 @@ Material Materials::read(const JsonNode* node, bool colored) {
     read_alpha(*node, s);
     s.emission = emission_of(*node);
     if (!flat) read_maps(*node, !glossy, coat, s.emission);
+    coat.tangents = at.tangents && coat.normal_map != kNone;
     if (pbr && pbr->find("metallicRoughnessTexture") && coat.metal_map == kNone)
       s.metallic = 0, s.roughness = kUnknownRoughness;
     if (glossy) {
@@ -268,14 +270,13 @@ Material Materials::read(const JsonNode* node, bool colored) {
   return m;
 }
 
-std::uint32_t Materials::number_of(const JsonNode& primitive, bool colored) {
+std::uint32_t Materials::number_of(const JsonNode& primitive, Corners at) {
   const auto index = primitive.find("material");
-  const auto [it, added] = numbers_.try_emplace({index ? whole(*index) : kDefault, colored},
+  const JsonNode* const node = index ? &document_.entry("materials", *index) : nullptr;
+  at.tangents = at.tangents && node && node->find("normalTexture");
+  const auto [it, added] = numbers_.try_emplace({index ? whole(*index) : kDefault, at},
                                                 static_cast<std::uint32_t>(scene_.materials.size()));
-  if (added) {
-    const JsonNode* node = index ? &document_.entry("materials", *index) : nullptr;
-    scene_.materials.push_back(read(node, colored));
-  }
+  if (added) scene_.materials.push_back(read(node, at));
   return it->second;
 }
 

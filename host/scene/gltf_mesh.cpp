@@ -10,6 +10,7 @@
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_draco.h"
 #include "scene/settle_normals.h"
+#include "scene/smooth_tangents.h"
 
 namespace kdray::scene::gltf {
 
@@ -38,14 +39,6 @@ void for_each_triangle(std::uint64_t mode, std::span<const std::uint32_t> corner
       add(corners[i], corners[i + (turned ? 2 : 1)], corners[i + (turned ? 1 : 2)]);
     }
   }
-}
-
-// Reserves memory for `n` more elements. A bare reserve() would make a file of many small primitives copy all
-// of them for each.
-template <class Vector>
-void reserve_more(Vector& elements, std::size_t n) {
-  const std::size_t wanted = elements.size() + n;
-  if (wanted > elements.capacity()) elements.reserve(std::max(wanted, 2 * elements.capacity()));
 }
 
 // The matrix that moves normals: the inverse transpose, up to a positive factor. The cofactors are that even
@@ -132,57 +125,6 @@ bool MeshReader::add_normals(const JsonNode& primitive, std::size_t n_vertices,
   return true;
 }
 
-std::optional<JsonNode> MeshReader::colors_of(const JsonNode& attributes, std::size_t n_vertices) {
-  const auto index = attributes.find("COLOR_0");
-  if (!index) return std::nullopt;
-  const JsonNode& accessor = document_.entry("accessors", *index);
-  if (accessor_count(accessor) == n_vertices) return accessor;
-  count("primitives have colours that are not as many as their positions: they are left out");
-  return std::nullopt;
-}
-
-// The triangles, which are the scene's last ones, are named by their vertices within the primitive.
-void MeshReader::add_colors(const JsonNode& accessor,
-                            std::span<const std::array<std::uint32_t, 3>> triangles) {
-  const auto values = read_colors(document_, accessor);
-  auto& colors = into_->paint.colors;
-  reserve_more(colors, into_->triangles.size() - colors.size());
-  colors.resize(into_->triangles.size() - triangles.size(), kWhiteCorners);
-  for (const auto& corners : triangles) {
-    layout::CornerColors c{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto& from = values[corners[i]];
-      set_corner(c, i,
-                 {linear_unit(from[0]), linear_unit(from[1]), linear_unit(from[2]), linear_unit(from[3])});
-    }
-    colors.push_back(c);
-  }
-}
-
-void MeshReader::add_texcoords(const JsonNode& attributes,
-                               std::span<const std::array<std::uint32_t, 3>> triangles,
-                               std::size_t n_vertices) {
-  for (std::size_t set = 0; set < 2; ++set) {
-    const auto index = attributes.find("TEXCOORD_" + std::to_string(set));
-    if (!index) continue;
-    const JsonNode& accessor = document_.entry("accessors", *index);
-    if (accessor_count(accessor) != n_vertices) {
-      count("primitives have texture coordinates that are not as many as their positions: they are left out");
-      continue;
-    }
-    const auto values = read_pairs(document_, accessor);
-    auto& out = into_->paint.texcoords[set];
-    reserve_more(out, into_->triangles.size() - out.size());
-    out.resize(into_->triangles.size() - triangles.size());
-    for (const auto& corners : triangles) {
-      layout::TexCoords at{};
-      for (std::size_t i = 0; i < 3; ++i)
-        at.uv[i][0] = values[corners[i]][0], at.uv[i][1] = values[corners[i]][1];
-      out.push_back(at);
-    }
-  }
-}
-
 void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world,
                                const Deformation& deformation) {
   ++n_primitives_;
@@ -215,9 +157,11 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world,
   }
   const bool mirrored = glm::determinant(dmat3(matrices.of(0))) < 0;
   const auto colors = colors_of(attributes, n_vertices);
-  const std::uint32_t material = materials_.number_of(primitive, colors.has_value());
+  // By the specification tangents count only where there are normals.
+  const std::uint32_t material = materials_.number_of(primitive, {colors.has_value(), smooth});
   std::vector<std::array<std::uint32_t, 3>> picks;
-  const bool painted = scene_.materials[material].coat != kNone;
+  const std::uint32_t coat = scene_.materials[material].coat;
+  const bool painted = coat != kNone;
   reserve_more(into_->triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
   for_each_triangle(mode, corners, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (mirrored) std::swap(b, c);
@@ -231,6 +175,11 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world,
   if (!painted) return;
   add_texcoords(attributes, picks, n_vertices);
   if (colors) add_colors(*colors, picks);
+  if (!scene_.paint.coats[coat].tangents) return;
+  const auto tangents = tangents_of(attributes, n_vertices);
+  if (tangents) return add_tangents(*tangents, primitive, matrices, deformation, picks);
+  const Texture& normals = scene_.paint.textures[scene_.paint.coats[coat].normal_map];
+  smooth_tangents(*into_, into_->triangles.size() - picks.size(), normals.set);
 }
 
 void MeshReader::finish() {

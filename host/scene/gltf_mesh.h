@@ -5,6 +5,7 @@
 //         all measure.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -19,6 +20,14 @@
 #include "scene/scene.h"
 
 namespace kdray::scene::gltf {
+
+// Reserves memory for `n` more elements. A bare reserve() would make a file of many small primitives copy all
+// of them for each.
+template <class Vector>
+void reserve_more(Vector& elements, std::size_t n) {
+  const std::size_t wanted = elements.size() + n;
+  if (wanted > elements.capacity()) elements.reserve(std::max(wanted, 2 * elements.capacity()));
+}
 
 class MeshReader {
  public:
@@ -44,6 +53,9 @@ class MeshReader {
                    const Deformation& deformation);
   void add_texcoords(const JsonNode& attributes, std::span<const std::array<std::uint32_t, 3>> triangles,
                      std::size_t n_vertices);
+  std::optional<JsonNode> tangents_of(const JsonNode& attributes, std::size_t n_vertices);
+  void add_tangents(const JsonNode& accessor, const JsonNode& primitive, const VertexMatrices& matrices,
+                    const Deformation& deformation, std::span<const std::array<std::uint32_t, 3>> triangles);
   void add_colors(const JsonNode& accessor, std::span<const std::array<std::uint32_t, 3>> triangles);
   std::optional<JsonNode> colors_of(const JsonNode& attributes, std::size_t n_vertices);
   void check_size(const JsonNode& primitive) const;

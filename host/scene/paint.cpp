@@ -41,6 +41,7 @@ std::vector<std::uint32_t> Paint::append(const Paint& part, std::size_t before, 
   append_corners(colors, part.colors, before, n_triangles, kWhiteCorners);
   for (std::size_t set = 0; set < texcoords.size(); ++set)
     append_corners(texcoords[set], part.texcoords[set], before, n_triangles, layout::TexCoords{});
+  append_corners(tangents, part.tangents, before, n_triangles, layout::TexCoords{});
   std::vector<std::uint32_t> numbers;
   for (Coat coat : part.coats) {
     for (std::uint32_t* const map : {&coat.base, &coat.normal_map, &coat.emission_map, &coat.occlusion_map,

@@ -1,8 +1,9 @@
 // What    What paints surfaces beyond one material for a primitive: pictures, laid onto triangles by the
 //         coordinates at their corners, and colours at corners. A material that takes part has a coat, which
 //         says what the base colour multiplies.
-// Shape   colors and texcoords have an entry for each of the scene's first triangles, or none at all: a
-//         triangle behind their end is white, with coordinates 0. Pictures are shared, and never changed.
+// Shape   colors, texcoords and tangents have an entry for each of the scene's first triangles, or none at
+//         all: a triangle behind their end is white, with coordinates 0 and no tangents. Pictures are shared,
+//         and never changed.
 // Units   Colours at corners are linear, in 65535ths; coats' terms and factors are linear as well. A
 //         picture's bytes are as its file has them.
 #pragma once
@@ -81,6 +82,7 @@ struct Coat {
   float alpha = 1, cutoff = 0.5f;
   std::uint32_t base = 0xffffffffu;  // into the textures; none: white
   std::uint32_t colored = 0;         // 1: by the colours at corners
+  std::uint32_t tangents = 0;        // 1: those at corners say how the picture of normals lies
   Alpha mode = Alpha::opaque;
   // Further pictures, into the textures, or none.
   std::uint32_t normal_map = 0xffffffffu;
@@ -106,6 +108,7 @@ inline constexpr layout::CornerColors kWhiteCorners = {
 struct Paint {
   PageVector<layout::CornerColors> colors = {};
   std::array<PageVector<layout::TexCoords>, 2> texcoords = {};
+  PageVector<layout::TexCoords> tangents = {};  // as tangents.h packs them
   std::vector<Coat> coats = {};
   std::vector<Texture> textures = {};
   std::vector<std::shared_ptr<const Picture>> pictures = {};

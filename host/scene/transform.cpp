@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "scene/tangents.h"
+
 namespace kdray::scene {
 
 namespace {
@@ -39,8 +41,8 @@ void turn_round(Scene& scene) {
     std::swap(t.normal[1], t.normal[2]);
   }
   for (layout::CornerColors& colors : scene.paint.colors) std::swap(colors.c[1], colors.c[2]);
-  for (auto& set : scene.paint.texcoords)
-    for (layout::TexCoords& at : set) std::swap(at.uv[1], at.uv[2]);
+  for (auto* const set : {&scene.paint.texcoords[0], &scene.paint.texcoords[1], &scene.paint.tangents})
+    for (layout::TexCoords& at : *set) std::swap(at.uv[1], at.uv[2]);
 }
 
 }  // namespace
@@ -52,6 +54,7 @@ void apply_transform(const dmat4& m, Scene& scene) {
     const dmat3 of_normals = glm::transpose(glm::inverse(linear));
     for (vec3& n : scene.normals) n = vec3(glm::normalize(of_normals * dvec3(n)));
   }
+  move_tangents(linear, scene.paint.tangents);
   if (glm::determinant(linear) < 0) turn_round(scene);
   primitives::for_each_shape([&](auto kind) {
     auto& shapes = decltype(kind)::of(scene);

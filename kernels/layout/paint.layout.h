@@ -15,10 +15,12 @@
 #define KDRAY_WRAP_CLAMP 2u
 #define KDRAY_WRAP_ACROSS(how) ((how)&3u)
 #define KDRAY_WRAP_DOWN(how) ((how) >> 2 & 3u)
-#define KDRAY_TEXTURE_NEAREST 16u                        // one texel; else four, by how near they are
-#define KDRAY_TEXTURE_CURVED 32u                         // red, green and blue are codes of sRGB; else linear
-#define KDRAY_TEXTURE_SET(how) ((how) >> 6 & 1u)         // of the coordinates at a triangle's corners
-#define KDRAY_TEXTURE_SETS(how) (((how) >> 7 & 1u) + 1)  // that triangles have, one behind the other
+#define KDRAY_TEXTURE_NEAREST 16u                 // one texel; else four, by how near they are
+#define KDRAY_TEXTURE_CURVED 32u                  // red, green and blue are codes of sRGB; else linear
+#define KDRAY_TEXTURE_SET(how) ((how) >> 6 & 1u)  // of the coordinates at a triangle's corners
+// How many triangles have, one behind the other; the last one's may be tangents.
+#define KDRAY_TEXTURE_SETS(how) (((how) >> 7 & 1u) + ((how) >> 11 & 1u) + 1)
+#define KDRAY_TEXTURE_TANGENTS 2048u
 
 // The same where the picture is shown smaller than it is, and how its smaller forms take part.
 #define KDRAY_TEXTURE_MIN_NEAREST 256u
@@ -28,10 +30,15 @@
 #define KDRAY_MOST_PROBES 8u
 
 // Coat::how.
-#define KDRAY_COAT_COLORED 1u  // triangles have colours at their corners
-#define KDRAY_COAT_MASK 2u     // nothing is there where alpha is below the cutoff
-#define KDRAY_COAT_BLEND 4u    // the share 1 - alpha goes through
-#define KDRAY_COAT_METAL 8u    // its terms follow from how metallic and rough the place is (see below)
+#define KDRAY_COAT_COLORED 1u    // triangles have colours at their corners
+#define KDRAY_COAT_MASK 2u       // nothing is there where alpha is below the cutoff
+#define KDRAY_COAT_BLEND 4u      // the share 1 - alpha goes through
+#define KDRAY_COAT_METAL 8u      // its terms follow from how metallic and rough the place is (see below)
+#define KDRAY_COAT_TANGENTS 16u  // triangles have tangents at their corners, for the picture of normals
+
+// A corner's tangent: a unit vector on an octahedron that is laid flat, and to its second number is added
+// this, both negative where the picture is mirrored. 0, 0: none.
+#define KDRAY_TANGENT_OFFSET 2.0f
 
 // What a coat of metal takes for ambient light, and the strength of a smooth dielectric's highlight.
 #define KDRAY_METAL_AMBIENT 0.1f

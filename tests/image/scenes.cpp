@@ -7,6 +7,7 @@
 
 #include "conformance/all_kinds.h"
 #include "oracle/build_scene.h"
+#include "scene/smooth_tangents.h"
 #include "scene/transform.h"
 #include "support/scene_fields.h"
 
@@ -258,6 +259,8 @@ scene::Scene mapped() {
   }
   of(9).normal_map = fine;
   of(9).normal_scale = 0.5f;
+  of(9).tangents = 1;
+  scene::smooth_tangents(s, 0, 0);
   return s;
 }
 

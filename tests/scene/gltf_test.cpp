@@ -8,7 +8,9 @@
 #include "scene/gltf_samples.h"
 #include "scene/importers.h"
 #include "scene/instances.h"
+#include "scene/pictures.h"
 #include "scene/scratch.h"
+#include "scene/tangents.h"
 
 namespace kdray::scene {
 namespace {
@@ -412,21 +414,33 @@ TEST(Gltf, TellsOfWhatItLeavesOut) {
   EXPECT_EQ(read(sample).warnings, wanted);
 }
 
-TEST(Gltf, TellsOfTangentsWhereNormalsAreBent) {
+// Where nothing bends normals, tangents are not looked at, however wrong.
+TEST(Gltf, ReadsTangentsWhereNormalsAreBent) {
   GltfSample sample = square();
   sample.json["materials"] = {json::object()};
+  json& attributes = sample.primitive()["attributes"];
   sample.primitive()["material"] = 0;
-  sample.primitive()["attributes"]["TANGENT"] = 0;
+  attributes["NORMAL"] = sample.vectors({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  attributes["TANGENT"] = 0;
   EXPECT_TRUE(read(sample).warnings.empty());
   sample.json["materials"][0]["normalTexture"]["index"] = 0;
-  sample.json["textures"] = {json::object()};  // that names no picture
-  EXPECT_EQ(std::ranges::count(read(sample).warnings, "a.gltf: TANGENT of 1 primitive is left out"), 1);
-  json unused = sample.json["meshes"][0];
-  unused["primitives"][0]["material"] = 7;
-  sample.json["meshes"].push_back(unused);
-  unused["primitives"][0]["material"] = "none";
-  sample.json["meshes"].push_back(unused);
-  EXPECT_EQ(std::ranges::count(read(sample).warnings, "a.gltf: TANGENT of 1 primitive is left out"), 1);
+  sample.json["images"] = {{{"uri", "data:image/png;base64," + test::base64(test::four_colors())}}};
+  sample.json["textures"] = {{{"source", 0}}};
+  EXPECT_THROW(read(sample), Error);  // accessor 0 is one of positions
+  const int view = sample.view(test::bytes_of<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}));
+  attributes["TANGENT"] = sample.accessor(view, 5126, "VEC4", 4);
+  const Scene s = read(sample);
+  EXPECT_TRUE(s.warnings.empty());
+  ASSERT_EQ(s.paint.tangents.size(), 2u);
+  const Tangent t = unpacked_tangent(s.paint.tangents[1].uv[2]);
+  EXPECT_LT(glm::length(t.direction - dvec3(0, 1, 0)), 1e-6);
+  EXPECT_EQ(t.hand, -1);
+  EXPECT_EQ(s.paint.coats.at(s.materials.at(0).coat).tangents, 1u);
+  attributes["TANGENT"] = sample.accessor(view, 5126, "VEC4", 3);
+  const Scene few = read(sample);
+  ASSERT_EQ(few.warnings.size(), 1u);
+  EXPECT_NE(few.warnings[0].find("tangents that are not as many"), std::string::npos);
+  EXPECT_EQ(few.paint.tangents.size(), 2u);  // those of the coordinates, of which there are none
 }
 
 }  // namespace

@@ -1,0 +1,99 @@
+// MeshReader's part that reads what triangles have at their corners beside positions and normals: colours,
+// texture coordinates and tangents.
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "math/local_space.h"
+#include "scene/gltf_accessor.h"
+#include "scene/gltf_mesh.h"
+#include "scene/tangents.h"
+
+namespace kdray::scene::gltf {
+
+std::optional<JsonNode> MeshReader::colors_of(const JsonNode& attributes, std::size_t n_vertices) {
+  const auto index = attributes.find("COLOR_0");
+  if (!index) return std::nullopt;
+  const JsonNode& accessor = document_.entry("accessors", *index);
+  if (accessor_count(accessor) == n_vertices) return accessor;
+  count("primitives have colours that are not as many as their positions: they are left out");
+  return std::nullopt;
+}
+
+// The triangles, which are the scene's last ones, are named by their vertices within the primitive.
+void MeshReader::add_colors(const JsonNode& accessor,
+                            std::span<const std::array<std::uint32_t, 3>> triangles) {
+  const auto values = read_colors(document_, accessor);
+  auto& colors = into_->paint.colors;
+  reserve_more(colors, into_->triangles.size() - colors.size());
+  colors.resize(into_->triangles.size() - triangles.size(), kWhiteCorners);
+  for (const auto& corners : triangles) {
+    layout::CornerColors c{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& from = values[corners[i]];
+      set_corner(c, i,
+                 {linear_unit(from[0]), linear_unit(from[1]), linear_unit(from[2]), linear_unit(from[3])});
+    }
+    colors.push_back(c);
+  }
+}
+
+void MeshReader::add_texcoords(const JsonNode& attributes,
+                               std::span<const std::array<std::uint32_t, 3>> triangles,
+                               std::size_t n_vertices) {
+  for (std::size_t set = 0; set < 2; ++set) {
+    const auto index = attributes.find("TEXCOORD_" + std::to_string(set));
+    if (!index) continue;
+    const JsonNode& accessor = document_.entry("accessors", *index);
+    if (accessor_count(accessor) != n_vertices) {
+      count("primitives have texture coordinates that are not as many as their positions: they are left out");
+      continue;
+    }
+    const auto values = read_pairs(document_, accessor);
+    auto& out = into_->paint.texcoords[set];
+    reserve_more(out, into_->triangles.size() - out.size());
+    out.resize(into_->triangles.size() - triangles.size());
+    for (const auto& corners : triangles) {
+      layout::TexCoords at{};
+      for (std::size_t i = 0; i < 3; ++i)
+        at.uv[i][0] = values[corners[i]][0], at.uv[i][1] = values[corners[i]][1];
+      out.push_back(at);
+    }
+  }
+}
+
+std::optional<JsonNode> MeshReader::tangents_of(const JsonNode& attributes, std::size_t n_vertices) {
+  const auto index = attributes.find("TANGENT");
+  if (!index) return std::nullopt;
+  const JsonNode& accessor = document_.entry("accessors", *index);
+  if (accessor_count(accessor) == n_vertices) return accessor;
+  count("primitives have tangents that are not as many as their positions: they are left out");
+  return std::nullopt;
+}
+
+// They move as edges do. What mirrors turns the picture's handedness round.
+void MeshReader::add_tangents(const JsonNode& accessor, const JsonNode& primitive,
+                              const VertexMatrices& matrices, const Deformation& deformation,
+                              std::span<const std::array<std::uint32_t, 3>> triangles) {
+  const auto values = read_quads(document_, accessor);
+  RawVector<dvec3> ways(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) ways[i] = {values[i][0], values[i][1], values[i][2]};
+  morph(document_, primitive, "TANGENT", deformation.weights, ways);
+  std::vector<std::array<float, 2>> packed(ways.size());
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const dmat3 m(matrices.of(i));
+    const double side = glm::determinant(m) < 0 ? -1 : 1;
+    packed[i] = packed_tangent({safe_normalize(m * ways[i]), values[i][3] < 0 ? -side : side});
+  }
+  auto& out = into_->paint.tangents;
+  reserve_more(out, into_->triangles.size() - out.size());
+  out.resize(into_->triangles.size() - triangles.size());
+  for (const auto& corners : triangles) {
+    layout::TexCoords at{};
+    for (std::size_t i = 0; i < 3; ++i) std::ranges::copy(packed[corners[i]], at.uv[i]);
+    out.push_back(at);
+  }
+}
+
+}  // namespace kdray::scene::gltf
