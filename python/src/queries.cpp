@@ -29,7 +29,8 @@ Rays rays_of(const In& origins, const In& directions, const In& t_min, const In&
 nb::tuple arrays_of(AllHits&& hits) {
   return nb::make_tuple(owned(std::move(hits.splits)), owned(std::move(hits.t)),
                         owned(std::move(hits.geometry)), owned(std::move(hits.primitive)),
-                        owned(std::move(hits.u)), owned(std::move(hits.v)), owned(std::move(hits.more)));
+                        owned(std::move(hits.u)), owned(std::move(hits.v)), owned(std::move(hits.more)),
+                        owned(std::move(hits.instance)));
 }
 
 void add_ray_queries(SceneClass& scene) {
