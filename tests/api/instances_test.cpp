@@ -477,7 +477,9 @@ TEST_P(MadeInstances, CrossingsTellInstancesAndWhatIsInside) {
   scene.commit(options());
   const std::vector<double> from = {0.25, 0.125, 20}, down = {0, 0, -1};
   const AllHits all = scene.all({from, down});
-  EXPECT_EQ(all.t, (std::vector<double>{14.5, 15.5, 19, 21, 28, 30}));
+  const double expected[] = {14.5, 15.5, 19, 21, 28, 30};
+  ASSERT_EQ(all.t.size(), std::size(expected));
+  for (std::size_t i = 0; i < all.t.size(); ++i) EXPECT_NEAR(all.t[i], expected[i], 1e-5);
   EXPECT_EQ(all.geometry, (std::vector<std::uint32_t>{some, some, some, some, own, own}));
   EXPECT_EQ(all.instance, (std::vector<std::uint32_t>{1, 1, 0, 0, kNoInstance, kNoInstance}));
   const auto count = [&](std::uint32_t mask) {
