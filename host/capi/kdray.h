@@ -275,7 +275,8 @@ typedef struct kdray_all_hits_view {
   const double* t;
   const uint32_t *geometry, *primitive;
   const float *u, *v;
-  const uint8_t* more; /* of each ray, 1: it has more than max_hits */
+  const uint8_t* more;      /* of each ray, 1: it has more than max_hits */
+  const uint32_t* instance; /* of each hit, as kdray_hits has it */
 } kdray_all_hits_view;
 /* max_hits: of a ray, the first so many; 0: all. */
 KDRAY_API kdray_status kdray_all(const kdray_scene* scene, const kdray_rays* rays, uint32_t max_hits,

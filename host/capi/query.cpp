@@ -99,9 +99,9 @@ kdray_status kdray_all_hits_get(const kdray_all_hits* hits, kdray_all_hits_view*
     const AllHits& h = needed(hits, "hits")->hits;
     const std::size_t size = std::min(needed(view, "view")->size, sizeof *view);
     if (size < sizeof(std::size_t)) refuse("view: its size is not set");
-    const kdray_all_hits_view whole{view->size, h.more.size(),     h.splits.data(),
-                                    h.t.data(), h.geometry.data(), h.primitive.data(),
-                                    h.u.data(), h.v.data(),        h.more.data()};
+    const kdray_all_hits_view whole{view->size,        h.more.size(),      h.splits.data(), h.t.data(),
+                                    h.geometry.data(), h.primitive.data(), h.u.data(),      h.v.data(),
+                                    h.more.data(),     h.instance.data()};
     std::memcpy(view, &whole, size);
   });
 }

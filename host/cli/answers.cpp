@@ -29,16 +29,13 @@ static_assert(static_cast<std::int32_t>(kNoPrimitive) == -1);
 static_assert(static_cast<std::int32_t>(kNoInstance) == -1);
 
 // Scenes without instances have no such column.
-std::vector<Column> with_instances(std::vector<Column> columns, const std::vector<std::uint32_t>& instances) {
-  if (!instances.empty()) columns.push_back(signed_column("instance", instances));
+std::vector<Column> with_instances(std::vector<Column> columns, bool placed,
+                                   const std::vector<std::uint32_t>& instances) {
+  if (placed) columns.push_back(signed_column("instance", instances));
   return columns;
 }
 
 constexpr double kMiss = std::numeric_limits<double>::infinity();
-
-bool has_instances(const query::Asked& scene) {
-  return !scene.scene().flat.instances.empty();
-}
 
 template <class T, class Holds>
 std::uint64_t count_if(const std::vector<T>& values, const Holds& holds) {
@@ -50,10 +47,11 @@ std::uint64_t count_if(const std::vector<T>& values, const Holds& holds) {
 std::vector<Column> columns_of(std::span<const Hit> hits, const std::vector<std::uint32_t>& instances) {
   return with_instances({column("t", hits, &Hit::t), column("primitive", hits, &Hit::primitive),
                          column("u", hits, &Hit::u), column("v", hits, &Hit::v)},
-                        instances);
+                        !instances.empty(), instances);
 }
 
 void Answers::ask(const query::Asked& scene, const AskedRows& rows, std::size_t n) {
+  placed_ = !scene.scene().flat.instances.empty();
   switch (question_) {
     case Question::closest:
       return ask_closest(scene, rows.rays(n), n);
@@ -80,7 +78,7 @@ void Answers::ask(const query::Asked& scene, const AskedRows& rows, std::size_t 
 
 void Answers::ask_closest(const query::Asked& scene, const Rays& rays, std::size_t n) {
   t_.resize(n), primitive_.resize(n), u_.resize(n), v_.resize(n);
-  if (has_instances(scene)) instance_.resize(n);
+  if (placed_) instance_.resize(n);
   query::closest(scene, rays, {.t = t_, .primitive = primitive_, .u = u_, .v = v_, .instance = instance_},
                  {});
 }
@@ -93,13 +91,14 @@ void Answers::ask_any(const query::Asked& scene, const Rays& rays, std::size_t n
   std::transform(flags_.begin(), flags_.end(), t_.begin(),
                  [](std::uint8_t hit) { return hit ? 0.0 : kMiss; });
   primitive_.assign(n, kNoPrimitive), u_.assign(n, 0), v_.assign(n, 0);
-  if (has_instances(scene)) instance_.assign(n, kNoInstance);
+  if (placed_) instance_.assign(n, kNoInstance);
 }
 
 void Answers::ask_all(const query::Asked& scene, const Rays& rays, std::size_t) {
   AllHitsOptions options;
   options.max_hits = max_hits_;
   all_ = query::all(scene, rays, options);
+  if (placed_) instance_ = all_.instance;
 }
 
 void Answers::ask_closest_point(const query::Asked& scene, const Points& points, std::size_t n) {
@@ -116,15 +115,12 @@ std::vector<Column> Answers::columns() const {
     case Question::any:
       return with_instances({column_of("t", t_), signed_column("primitive", primitive_), column_of("u", u_),
                              column_of("v", v_)},
-                            instance_);
+                            placed_, instance_);
     case Question::all:
-      return {column_of("splits", all_.splits),
-              column_of("t", all_.t),
-              column_of("geometry", all_.geometry),
-              column_of("primitive", all_.primitive),
-              column_of("u", all_.u),
-              column_of("v", all_.v),
-              rays::flags("more", all_.more)};
+      return with_instances({column_of("splits", all_.splits), column_of("t", all_.t),
+                             column_of("geometry", all_.geometry), column_of("primitive", all_.primitive),
+                             column_of("u", all_.u), column_of("v", all_.v), rays::flags("more", all_.more)},
+                            placed_, instance_);
     case Question::count:
       return {column_of("count", counts_)};
     case Question::closest_point:

@@ -42,7 +42,8 @@ class Answers {
   std::vector<double> t_;  // or distances
   std::vector<std::array<double, 3>> point_;
   std::vector<std::uint32_t> geometry_, primitive_;  // a miss's primitive is -1 where that is signed
-  std::vector<std::uint32_t> instance_;              // in a scene that has instances
+  bool placed_ = false;                              // the scene has instances
+  std::vector<std::uint32_t> instance_;              // of each hit, where it has
   std::vector<float> u_, v_;
   std::vector<std::uint32_t> counts_;
   std::vector<std::uint8_t> flags_;

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "query/passes.h"
+#include "query/surface.h"
 
 namespace kdray::query {
 
@@ -33,6 +34,7 @@ class Collection {
     const std::size_t n = place(spans);
     if (n > 0) passes_.first_lists().pack(places_, n, chunk_);
     fill_in_later(spans);
+    name_places(passes_.target().scene.flat, {chunk_.instance, chunk_.instance ? n : 0});
     give_back();
     n_rays_ += rays.size();
   }
@@ -73,7 +75,8 @@ class Collection {
       array.resize(n);
       return array.data() + first;
     };
-    chunk_ = {grow(to_.t), grow(to_.primitive), grow(to_.u), grow(to_.v)};
+    chunk_ = {grow(to_.t), grow(to_.primitive), grow(to_.u), grow(to_.v),
+              passes_.has_instances() ? grow(to_.instance) : nullptr};
   }
 
   // Behind the hits of the first pass, which have left room for them.
@@ -113,7 +116,7 @@ void all_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions& o
   all.splits.resize(rays.size() + 1);
   all.splits[0] = 0;
   all.more.resize(rays.size());
-  all.t.clear(), all.primitive.clear(), all.u.clear(), all.v.clear();
+  all.t.clear(), all.primitive.clear(), all.u.clear(), all.v.clear(), all.instance.clear();
   if (rays.empty()) return;
   passes.begin(rays.size(), options);
   Collection collection(all, passes, options.max_hits);

@@ -1,10 +1,10 @@
 // What    All hits of rays from outside, or how many there are. Every crossing of a surface counts once, at
 //         edges and vertices too (kernels/intersect/crossing.clh): a ray from outside of a closed mesh to
 //         outside has an even number.
-// Shape   The hits of ray i are [splits[i], splits[i + 1]), sorted by t and, where that is equal, by
-//         primitive. A hit counts where t_min < t < t_max; one in the start point, at t = 0, where t_min is
-//         0. A ray has any number of hits: what goes beyond a list on the device is found in further passes,
-//         in bounded memory but for the answer's own.
+// Shape   The hits of ray i are [splits[i], splits[i + 1]), sorted by t and, where that is equal, by instance
+//         (what is in none first) and primitive. A hit counts where t_min < t < t_max; one in the start
+//         point, at t = 0, where t_min is 0. A ray has any number of hits: what goes beyond a list on the
+//         device is found in further passes, in bounded memory but for the answer's own.
 // Errors  ErrorCode::input for a ray that is not one (check_rays.h), unless such are to miss;
 //         ErrorCode::usage for the binary walk, which doesn't find all hits.
 #pragma once
@@ -35,6 +35,9 @@ struct LocalHits {
   RawVector<std::uint32_t> primitive;  // number in file order
   RawVector<float> u, v;               // as Hit's
   RawVector<std::uint8_t> more;        // of each ray, 1: it has more than max_hits
+  // The place in the scene's list of the instance that each hit lies in, or kNoInstance; empty where the
+  // scene has none.
+  RawVector<std::uint32_t> instance;
 };
 
 // Kernels and buffers for it (passes.h).

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/memory.h"
-#include "prepare/instanced.h"
 #include "query/all_hits.h"
 #include "query/grains.h"
 
@@ -62,12 +61,13 @@ class Answer {
     make_room(before + n);
     for_each_index(n_rays, [&](std::size_t i) {
       for (std::size_t k = found.splits[i]; k < found.splits[i + 1]; ++k) {
-        const GeometryTable::Place place = asked_->table.of(found.primitive[k]);
+        const GeometryTable::Place place = place_of(found, k);
         hits_.t[before + k] = local.world_t(i, found.t[k]);
         hits_.geometry[before + k] = place.geometry;
         hits_.primitive[before + k] = place.primitive;
         hits_.u[before + k] = found.u[k];
         hits_.v[before + k] = found.v[k];
+        hits_.instance[before + k] = instance_of(found, k);
       }
     });
   }
@@ -90,6 +90,20 @@ class Answer {
       array.resize(n);
     };
     grow(hits_.t), grow(hits_.geometry), grow(hits_.primitive), grow(hits_.u), grow(hits_.v);
+    grow(hits_.instance);
+  }
+
+  static std::uint32_t listed(const LocalHits& found, std::size_t k) {
+    return found.instance.empty() ? kNoInstance : found.instance[k];
+  }
+  GeometryTable::Place place_of(const LocalHits& found, std::size_t k) const {
+    const std::uint32_t instance = listed(found, k);
+    if (instance == kNoInstance) return asked_->table.of(found.primitive[k]);
+    return {asked_->table.of_instance(instance).geometry, found.primitive[k]};
+  }
+  std::uint32_t instance_of(const LocalHits& found, std::size_t k) const {
+    const std::uint32_t instance = listed(found, k);
+    return instance == kNoInstance ? instance : asked_->table.of_instance(instance).instance;
   }
 
   const Asked* asked_;
@@ -100,7 +114,6 @@ class Answer {
 }  // namespace
 
 QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, const QueryOptions& options) {
-  prepare::refuse_instances(asked.scene(), "counts of crossings");
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "counts");
   CollectedRays collected(asked, arrays);
@@ -118,7 +131,6 @@ QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, con
 
 // While a chunk is traced, the hits of the one before it are added to the answer.
 AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options) {
-  prepare::refuse_instances(asked.scene(), "all hits");
   const RayArrays arrays(rays);
   struct Chunk {
     Chunk(const Asked& asked, const RayArrays& rays) : rays(asked, rays) {}

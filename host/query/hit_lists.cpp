@@ -35,6 +35,7 @@ HitLists::HitLists(const Target& target, const Walk& walk, const LocalSpace& spa
       collect_(target.programs.kernel<kernels::CollectHits>(features_of(target, walk), walk.traversal)),
       pack_(target.programs.kernel<kernels::PackHits>(features_of(target, walk), walk.traversal)),
       masked_(walk.masked),
+      placed_(!target.scene.flat.instances.empty()),
       spare_(target.context),
       queue_(spare_.get()),
       scale_(static_cast<float>(space.scale)) {
@@ -55,12 +56,16 @@ void HitLists::reserve(std::size_t rays, std::size_t hits) {
   device::checked("finding hits", [&] {
     if (rays > spans_.size())
       spans_ = {target_.context, CL_MEM_READ_WRITE, std::bit_ceil(rays), "the rays' counts"};
-    if (hits > hits_.size())
-      hits_ = {target_.context, CL_MEM_READ_WRITE, std::bit_ceil(std::max(hits, kFewElements)),
-               "the rays' hits"};
+    if (hits > hits_.size()) {
+      const std::size_t n = std::bit_ceil(std::max(hits, kFewElements));
+      hits_ = {target_.context, CL_MEM_READ_WRITE, n, "the rays' hits"};
+      instances_ = {target_.context, CL_MEM_READ_WRITE, placed_ ? n : 1, "the hits' instances"};
+    }
     collect_.set(C::primitive_masks, target_.masks() != nullptr ? target_.masks : spans_.buffer());
     collect_.set(C::spans, spans_.buffer()).set(C::hits, hits_.buffer());
     pack_.set(P::spans, spans_.buffer()).set(P::hits, hits_.buffer());
+    collect_.set(C::hit_instances, instances_.buffer());
+    pack_.set(P::hit_instances, instances_.buffer());
   });
 }
 
@@ -168,6 +173,7 @@ void HitLists::pack_here(std::span<const std::uint32_t> places, const HitArrays&
       to.primitive[first + k] = number_of(target_.scene.flat, static_cast<std::uint32_t>(hits[k].primitive));
       to.u[first + k] = hits[k].u;
       to.v[first + k] = hits[k].v;
+      if (placed_) to.instance[first + k] = instances_.data()[i * capacity_ + k] - 1;
     }
   }
 }
@@ -183,11 +189,14 @@ void HitLists::pack(std::span<const std::uint32_t> places, std::size_t n, const 
     pack_.set(P::places, places_.take(target_, queue_, places, "the hits' places"));
     pack_.set(P::t, t_.place(context, to.t, n)).set(P::primitive, primitive_.place(context, to.primitive, n));
     pack_.set(P::u, u_.place(context, to.u, n)).set(P::v, v_.place(context, to.v, n));
+    // Without instances nothing is written there.
+    pack_.set(P::instance, placed_ ? instance_.place(context, to.instance, n) : instances_.buffer());
     pack_.launch(queue_, n_rays_, target_.work_group);
     t_.take(queue_, to.t, n);
     primitive_.take(queue_, to.primitive, n);
     u_.take(queue_, to.u, n);
     v_.take(queue_, to.v, n);
+    if (placed_) instance_.take(queue_, to.instance, n);
     queue_.finish();  // the arrays may go
     pack_.forget_launches();
   });

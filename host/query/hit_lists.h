@@ -23,6 +23,7 @@ struct HitArrays {
   float* t;
   std::uint32_t* primitive;
   float *u, *v;
+  std::uint32_t* instance;  // by index, or kNoInstance; null where the scene has none
 };
 
 class HitLists {
@@ -82,7 +83,7 @@ class HitLists {
   bool chunked_;
   wavefront::Stage<kernels::CollectHits> collect_;
   wavefront::Stage<kernels::PackHits> pack_;
-  bool masked_;
+  bool masked_, placed_;  // primitives have masks; there are instances
   device::SpareQueue spare_;
   cl::CommandQueue queue_;
   float scale_;                          // of the space that rays are given in
@@ -92,8 +93,9 @@ class HitLists {
   Given<layout::QuerySpan> after_;
   DeviceArray<layout::QuerySpan> spans_;
   DeviceArray<layout::QueryHit> hits_;
+  DeviceArray<std::uint32_t> instances_;  // of the hits
   Taken<float> t_, u_, v_;
-  Taken<std::uint32_t> primitive_;
+  Taken<std::uint32_t> primitive_, instance_;
   std::span<const Ray> given_;
   std::size_t n_rays_ = 0;
   std::uint32_t capacity_ = 0;

@@ -26,6 +26,7 @@ Traversal walk_for(const Target& target, Traversal asked) {
   if (asked == Traversal::binary)
     throw Error(ErrorCode::usage,
                 "all hits are found in the wide tree; ask for another traversal than binary");
+  if (!target.scene.flat.instances.empty()) return Traversal::wide;  // the only one that follows them
   return asked == Traversal::automatic && target.global ? Traversal::wide : asked;
 }
 
@@ -37,6 +38,7 @@ void Hits::copy(std::size_t first, std::size_t n, const HitArrays& to, std::size
   std::copy_n(primitive.begin() + from, n, to.primitive + at);
   std::copy_n(u.begin() + from, n, to.u + at);
   std::copy_n(v.begin() + from, n, to.v + at);
+  if (to.instance) std::copy_n(instance.begin() + from, n, to.instance + at);
 }
 
 Passes::Passes(const Target& target, Traversal traversal)
@@ -131,7 +133,7 @@ const Hits* Passes::packed(std::span<const QuerySpan> spans) {
     places.push_back(n);
     n += s.n_hits;
   }
-  Hits& hits = *later_hits_.emplace_back(std::make_unique<Hits>(n));
+  Hits& hits = *later_hits_.emplace_back(std::make_unique<Hits>(n, has_instances()));
   if (n > 0) later_->pack(places, n, hits.arrays());
   return &hits;
 }

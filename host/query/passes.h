@@ -22,12 +22,14 @@ namespace kdray::query {
 // Hits by themselves, as structures of arrays.
 struct Hits {
   RawVector<float> t, u, v;
-  RawVector<std::uint32_t> primitive;
+  RawVector<std::uint32_t> primitive, instance;
 
   Hits() = default;
-  explicit Hits(std::size_t n) : t(n), u(n), v(n), primitive(n) {}
+  Hits(std::size_t n, bool placed) : t(n), u(n), v(n), primitive(n), instance(placed ? n : 0) {}
   std::size_t size() const { return t.size(); }
-  HitArrays arrays() { return {t.data(), primitive.data(), u.data(), v.data()}; }
+  HitArrays arrays() {
+    return {t.data(), primitive.data(), u.data(), v.data(), instance.empty() ? nullptr : instance.data()};
+  }
 
   // The hits [first, first + n) to place `at` and behind.
   void copy(std::size_t first, std::size_t n, const HitArrays& to, std::size_t at) const;
@@ -44,6 +46,8 @@ class Passes {
   // How many of the rays that are left the next chunk has.
   std::size_t next_chunk(std::size_t left) const;
   HitLists& first_lists() { return first_; }
+  const Target& target() const { return target_; }
+  bool has_instances() const { return !target_.scene.flat.instances.empty(); }
   const NearRays& near_rays() const { return near_rays_; }  // of the chunk in work
 
   // The first pass of the next chunk: what it found of each ray. (Looked at just before they are traced, the

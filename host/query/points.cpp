@@ -145,7 +145,6 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
 
 QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out,
                    const PointOptions& options) {
-  prepare::refuse_instances(asked.scene(), "inside");
   check_out(out.size(), points.size(), "inside");
   return for_each_chunk(points, options,
                         [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {

@@ -178,7 +178,8 @@
   X(IN, QueryRay, rays)                    \
   X(IN, QuerySpan, after)                  \
   X(OUT, QuerySpan, spans)                 \
-  X(IO, QueryHit, hits)
+  X(IO, QueryHit, hits)                    \
+  X(IO, u32, hit_instances)
 
 #define KDRAY_PACK_HITS_ARGUMENTS(F, X) \
   F(VALUE, float4, space)               \
@@ -190,6 +191,8 @@
   X(IN, QuerySpan, spans)               \
   X(IN, u32, places)                    \
   X(IN, QueryHit, hits)                 \
+  X(IN, u32, hit_instances)             \
+  X(OUT, u32, instance)                 \
   X(OUT, float, t)                      \
   X(OUT, u32, primitive)                \
   X(OUT, float, u)                      \

@@ -158,7 +158,7 @@ KDRAY_ASSERT_SIZE(QueryHit, 16)
 // space) of primitive last_number.
 typedef struct QuerySpan {
   u32 n_hits;  // or KDRAY_SPAN_INVALID
-  u32 more;    // 1: there are others behind
+  u32 more;    // 0, or there are others behind: 1 + the last hit's instance, by index + 1
   float last_t;
   u32 last_number;
 } QuerySpan;

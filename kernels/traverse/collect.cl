@@ -37,7 +37,7 @@ __kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(in_primitive_masks);
   const RaySource source = ray_source(&scene, in_rays, in_ray_masks, 0, space, 0, any_length, 1);
-  const Lists lists = {io_hits, out_spans, goes_on ? in_after : 0, capacity};
+  const Lists lists = {io_hits, io_hit_instances, out_spans, goes_on ? in_after : 0, capacity};
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_WIDE
   if (item >= n_rays) return;
   RayIn in;
@@ -67,6 +67,9 @@ __kernel void pack_hits(KDRAY_PARAMETERS(KDRAY_PACK_HITS_ARGUMENTS)) {
   for (u32 k = 0; k < n; ++k) {
     out_t[first + k] = scale_t(hits[k].t, exponent);
     out_primitive[first + k] = primitive_number(&scene, (u32)hits[k].primitive);
+#if KDRAY_HAS_INSTANCES
+    out_instance[first + k] = in_hit_instances[(size_t)i * capacity + k] - 1;
+#endif
     out_u[first + k] = hits[k].u;
     out_v[first + k] = hits[k].v;
   }

@@ -45,12 +45,7 @@ class Scene:
         /,
     ) -> int: ...
     def add_instances(
-        self,
-        prototype: int,
-        transforms: NDArray[Any] | None,
-        materials: NDArray[Any] | None,
-        name: str,
-        mask: int,
+        self, prototype: int, transforms: NDArray[Any] | None, materials: NDArray[Any] | None, name: str, mask: int
     ) -> int: ...
     def update_transforms(self, id: int, transforms: NDArray[Any] | None) -> None: ...
     def update_vertices(self, id: int, vertices: NDArray[Any] | None, normals: NDArray[Any] | None) -> None: ...
@@ -129,7 +124,7 @@ class Scene:
         v: NDArray[Any] | None,
         normal: NDArray[Any] | None,
         point: NDArray[Any] | None,
-        instance: NDArray[Any] | None,
+        instance: NDArray[Any] | None = None,
     ) -> int: ...
     def any(
         self,

@@ -113,10 +113,18 @@ class AllHits:
     Rays are numbered in C order where they came in an array of more than one dimension.
     """
 
-    __slots__ = ("geometry", "more", "primitive", "splits", "t", "u", "v")
+    __slots__ = ("geometry", "instance", "more", "primitive", "splits", "t", "u", "v")
 
     def __init__(
-        self, splits: Array, t: Array, geometry: Array, primitive: Array, u: Array, v: Array, more: Array
+        self,
+        splits: Array,
+        t: Array,
+        geometry: Array,
+        primitive: Array,
+        u: Array,
+        v: Array,
+        more: Array,
+        instance: Array,
     ) -> None:
         self.splits = splits.view(np.int64)  #: int64, one more than rays
         self.t = t  #: float64
@@ -125,6 +133,7 @@ class AllHits:
         self.u = u  #: float32, as in `Hits`
         self.v = v  #: float32
         self.more = more.view(np.bool_)  #: bool for each ray: there are more than `max_hits`
+        self.instance = instance.view(np.int32)  #: int32, the number among the geometry's instances, or -1
 
     def __len__(self) -> int:
         return len(self.t)

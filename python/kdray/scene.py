@@ -113,8 +113,8 @@ class Scene:
         `vertices` (n, 3), `triangles` (m, 3) indices into them, `normals` (n, 3) for smooth shading. `uv` (n, 2) says
         where in its material's pictures each vertex lies: (0, 0) is a picture's upper left corner, (1, 1) its lower
         right one, and beyond them it is repeated. A ray sees the geometry where its mask and this one have a bit in
-        common. `material` is one of `add_material`. A `prototype` is seen by its instances alone (`add_instances`). Raises
-        InputError that names the element: an index out of range, a NaN.
+        common. `material` is one of `add_material`. A `prototype` is seen by its instances alone (`add_instances`).
+        Raises InputError that names the element: an index out of range, a NaN.
         """
         v, _ = _arrays.vectors(vertices, "vertices")
         n = None if normals is None else _arrays.vectors(normals, "normals")[0]
@@ -432,9 +432,10 @@ class Scene:
         """What each ray hits first.
 
         float64 rays are met in the scene's own frame, begun and answered in double (shapes are floats about the
-        scene's centre); results are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted (all but
-        `point`, and `instance` where the scene has instances, if you say nothing): fewer are faster; `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or
-        with `strict` an InputError that names the first.
+        scene's centre); results are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted
+        (all but `point`, and `instance` only where the scene has instances, if you say nothing): fewer are faster;
+        `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or with `strict` an
+        InputError that names the first.
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         usual = _USUAL_OF_INSTANCES if self._has_instances else _USUAL

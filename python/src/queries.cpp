@@ -29,7 +29,8 @@ Rays rays_of(const In& origins, const In& directions, const In& t_min, const In&
 nb::tuple arrays_of(AllHits&& hits) {
   return nb::make_tuple(owned(std::move(hits.splits)), owned(std::move(hits.t)),
                         owned(std::move(hits.geometry)), owned(std::move(hits.primitive)),
-                        owned(std::move(hits.u)), owned(std::move(hits.v)), owned(std::move(hits.more)));
+                        owned(std::move(hits.u)), owned(std::move(hits.v)), owned(std::move(hits.more)),
+                        owned(std::move(hits.instance)));
 }
 
 void add_ray_queries(SceneClass& scene) {
@@ -39,15 +40,14 @@ void add_ray_queries(SceneClass& scene) {
          const In& masks, bool strict, const Out& t, const Out& geometry, const Out& primitive, const Out& u,
          const Out& v, const Out& normal, const Out& point, const Out& instance) {
         const HitsOut out{values_out(t), words_out(geometry), words_out(primitive), values_out(u),
-                          values_out(v), points_out(normal),  points_out(point),
-                          words_out(instance)};
+                          values_out(v), points_out(normal),  points_out(point),    words_out(instance)};
         return s
             .closest(rays_of(origins, directions, t_min, t_max, masks), out, options_of<QueryOptions>(strict))
             .invalid;
       },
       Released(), "origins"_a, "directions"_a, "t_min"_a.none(), "t_max"_a.none(), "masks"_a.none(),
       "strict"_a, "t"_a.none(), "geometry"_a.none(), "primitive"_a.none(), "u"_a.none(), "v"_a.none(),
-      "normal"_a.none(), "point"_a.none(), "instance"_a.none());
+      "normal"_a.none(), "point"_a.none(), "instance"_a.none() = nb::none());
   scene.def(
       "any",
       [](const Scene& s, const In& origins, const In& directions, const In& t_min, const In& t_max,

@@ -45,7 +45,7 @@ void add_geometries(SceneClass& scene) {
   scene.def(
       "add_cones",
       [](Scene& s, const In& p0, const In& r0, const In& p1, const In& r1, const std::string& name,
-         std::uint32_t mask, std::uint32_t material) {
+         std::uint32_t mask, std::uint32_t material, bool prototype) {
         return s.add_cones({points_of(p0), points_of(p1), values_of(r0), values_of(r1)},
                            {name, mask, material, prototype});
       },
@@ -53,7 +53,7 @@ void add_geometries(SceneClass& scene) {
   scene.def(
       "add_discs",
       [](Scene& s, const In& centers, const In& normals, const In& radii, const std::string& name,
-         std::uint32_t mask, std::uint32_t material) {
+         std::uint32_t mask, std::uint32_t material, bool prototype) {
         return s.add_discs({points_of(centers), points_of(normals), values_of(radii)},
                            {name, mask, material, prototype});
       },
@@ -67,7 +67,9 @@ void add_geometries(SceneClass& scene) {
       Released(), "prototype"_a, "transforms"_a, "materials"_a.none(), "name"_a, "mask"_a);
   scene.def(
       "update_transforms",
-      [](Scene& s, GeometryId id, const In& transforms) { s.update_transforms(id, transforms_of(transforms)); },
+      [](Scene& s, GeometryId id, const In& transforms) {
+        s.update_transforms(id, transforms_of(transforms));
+      },
       Released(), "id"_a, "transforms"_a);
   scene.def(
       "update_vertices",

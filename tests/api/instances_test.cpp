@@ -12,6 +12,7 @@
 
 #include "kdray/kdray.h"
 #include "prepare/prepared.h"
+#include "scene/instances.h"
 #include "scene/scene.h"
 #include "support/device.h"
 #include "support/errors.h"
@@ -169,6 +170,52 @@ TEST_P(MadeInstances, TellGeometryInstanceAndPrimitive) {
   const auto extent = scene.extent();
   ASSERT_TRUE(extent);
   EXPECT_NEAR(extent->greatest[0], 21, 1e-3);
+}
+
+// In double: the cube's own normal by the inverse transpose, which docs/embed.md promises to c * 2^-22.
+TEST_P(MadeInstances, NormalsAreRightToTheConditionOfTheTransform) {
+  const Cube cube;
+  std::mt19937 bits(kSeed);
+  const auto in = [&](double lo, double hi) { return std::uniform_real_distribution<>(lo, hi)(bits); };
+  Scene scene;
+  const GeometryId box = scene.add_mesh({cube.vertices, cube.triangles}, {.prototype = true});
+  std::vector<scene::Instance> placed;
+  std::vector<Matrix> places;
+  while (placed.size() < 300) {
+    scene::Instance instance;
+    Matrix m{};
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        instance.linear[column][row] = m[static_cast<std::size_t>(4 * row + column)] = in(-1, 1);
+    instance.move.x = m[3] = 5.0 * static_cast<double>(placed.size());
+    if (scene::fault_of(instance) != nullptr) continue;
+    placed.push_back(instance);
+    places.push_back(m);
+  }
+  scene.add_instances(box, numbers(places));
+  scene.commit(options());
+  std::vector<double> from, to;
+  for (const scene::Instance& instance : placed) {
+    const dvec3 aim(in(-1, 1), in(-1, 1), in(-1, 1));
+    from.insert(from.end(), {instance.move.x + aim.x, aim.y, 9});
+    to.insert(to.end(), {-aim.x, -aim.y, -9});
+  }
+  const Answers a = asked(scene, from, to);
+  int n = 0;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (a.instance[i] != i) continue;  // a neighbour is in the way
+    const std::uint32_t* const t = &cube.triangles[3 * a.primitive[i]];
+    const auto corner = [&](int k) {
+      const float* const v = &cube.vertices[3 * t[k]];
+      return dvec3(v[0], v[1], v[2]);
+    };
+    const dvec3 own = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    const dvec3 expected = glm::normalize(glm::transpose(glm::inverse(placed[i].linear)) * own);
+    const dvec3 told(a.normal[i][0], a.normal[i][1], a.normal[i][2]);
+    EXPECT_LE(glm::length(told - expected), scene::condition_of(placed[i].linear) * 0x1p-22) << i;
+    ++n;
+  }
+  EXPECT_GT(n, 200);
 }
 
 TEST_P(MadeInstances, AreSeenByMaskAndWhereTheyAreEnabled) {
@@ -419,6 +466,36 @@ TEST_P(MadeInstances, RaysThatMeanNothingAreMissesOrErrors) {
   EXPECT_EQ(a.instance[0], 0u);
   for (std::size_t i = 1; i < 5; ++i) EXPECT_EQ(a.instance[i], kNoInstance) << i;
   EXPECT_EQ(a.instance[5], 1u) << "a double's ray from far off begins where it enters the scene";
+}
+
+TEST_P(MadeInstances, CrossingsTellInstancesAndWhatIsInside) {
+  const Cube cube;
+  Scene scene;
+  const GeometryId box = scene.add_mesh({cube.vertices, cube.triangles}, {.prototype = true});
+  const GeometryId own = scene.add_mesh({cube.at(0, 0, -9), cube.triangles}, {.mask = 4});
+  const GeometryId some = scene.add_instances(box, numbers({at(0, 0, 0), at(0, 0, 5, 0.5)}), {.mask = 2});
+  scene.commit(options());
+  const std::vector<double> from = {0.25, 0.125, 20}, down = {0, 0, -1};
+  const AllHits all = scene.all({from, down});
+  const double expected[] = {14.5, 15.5, 19, 21, 28, 30};
+  ASSERT_EQ(all.t.size(), std::size(expected));
+  for (std::size_t i = 0; i < all.t.size(); ++i) EXPECT_NEAR(all.t[i], expected[i], 1e-5);
+  EXPECT_EQ(all.geometry, (std::vector<std::uint32_t>{some, some, some, some, own, own}));
+  EXPECT_EQ(all.instance, (std::vector<std::uint32_t>{1, 1, 0, 0, kNoInstance, kNoInstance}));
+  const auto count = [&](std::uint32_t mask) {
+    std::vector<std::uint32_t> n(1);
+    const std::vector<std::uint32_t> masks = {mask};
+    scene.count({from, down, {}, {}, masks}, n);
+    return n[0];
+  };
+  EXPECT_EQ(count(6), 6u);
+  EXPECT_EQ(count(2), 4u);
+  EXPECT_EQ(count(4), 2u);
+  EXPECT_EQ(count(1), 0u);
+  const std::vector<double> points = {0.5, 0.25, 0.125, 0, 0, 5.25, 0, 0, 6, 0, 0, -9, 0, 0, -3};
+  std::vector<std::uint8_t> in(5);
+  scene.inside(points, in);
+  EXPECT_EQ(in, (std::vector<std::uint8_t>{1, 1, 0, 1, 0}));
 }
 
 // What can't follow instances yet says so.

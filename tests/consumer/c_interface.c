@@ -233,6 +233,8 @@ static void check_instances(void) {
   kdray_rays rays = {0};
   kdray_hits hits = {0};
   double t[2];
+  kdray_all_hits* all = NULL;
+  kdray_all_hits_view view = {0};
   uint32_t box, both = 99, geometry[2], instance[2];
   int refitted = 0;
   options.size = sizeof options, options.prototype = 1;
@@ -253,6 +255,11 @@ static void check_instances(void) {
   expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_OK, "closest");
   expect(t[0] == 4 && t[1] == 3 && geometry[0] == both && geometry[1] == both, "instances are hit");
   expect(instance[0] == 0 && instance[1] == 1, "they are told apart");
+  view.size = sizeof view;
+  expect(kdray_all(scene, &rays, 0, NULL, &all) == KDRAY_OK && kdray_all_hits_get(all, &view) == KDRAY_OK &&
+             view.splits[2] == 4 && view.instance[1] == 0 && view.instance[2] == 1,
+         "all hits of instances");
+  kdray_all_hits_free(all);
   expect(kdray_update_transforms(scene, both, doubles(places, 1)) == KDRAY_INPUT, "too few transforms");
   places[11] = 2;
   expect(kdray_update_transforms(scene, both, doubles(places, 2)) == KDRAY_OK, "other transforms");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "scene/instances.h"
 
@@ -152,6 +153,35 @@ std::string InstanceJudge::wrong(const Ray& ray, const Hit& hit, std::uint32_t i
   if (hit.t > latest)
     return fmt::format("primitive {} of instance {} at {} lies before that of {} at {}", by_number,
                        by_instance, latest, instance, hit.t);
+  return {};
+}
+
+std::string InstanceJudge::wrong(const Ray& ray, std::span<const Crossing> crossings) const {
+  for (std::size_t i = 1; i < crossings.size(); ++i) {
+    const Crossing &a = crossings[i - 1], &b = crossings[i];
+    // What is in no instance goes first.
+    const auto key = [](const Crossing& c) { return std::tuple(c.t, c.instance + 1, c.primitive); };
+    if (!(key(a) < key(b))) return fmt::format("hit {} comes before hit {}", i, i - 1);
+  }
+  std::vector<int> told(crossings.size(), 0);
+  std::string missing;
+  for_each_met(ray, [&](std::uint32_t i, std::uint32_t number, const Met& met) {
+    bool found = false;
+    for (std::size_t k = 0; k < crossings.size(); ++k) {
+      const Crossing& c = crossings[k];
+      if (c.instance != i || c.primitive != number || std::abs(met.t - c.t) > met.error) continue;
+      ++told[k];
+      found = true;
+    }
+    const bool counts = met.t - met.error > ray.t_min && met.t + met.error < ray.t_max;
+    if (met.certain && counts && !found)
+      missing = fmt::format("primitive {} of instance {} at {} is missing", number, i, met.t);
+  });
+  if (!missing.empty()) return missing;
+  for (std::size_t k = 0; k < crossings.size(); ++k)
+    if (told[k] == 0)
+      return fmt::format("primitive {} of instance {} isn't hit at {}", crossings[k].primitive,
+                         crossings[k].instance, crossings[k].t);
   return {};
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,13 @@ class InstanceJudge {
 
   // What is wrong with a hit, in words, or nothing. `instance`: its place in the scene's list, or kNone.
   std::string wrong(const Ray& ray, const Hit& hit, std::uint32_t instance) const;
+
+  struct Crossing {
+    double t;
+    std::uint32_t instance, primitive;
+  };
+  // The same of all hits of a ray.
+  std::string wrong(const Ray& ray, std::span<const Crossing> crossings) const;
 
  private:
   struct Triangle {

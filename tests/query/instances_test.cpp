@@ -2,11 +2,14 @@
 // with every form of vectors, and of equal hits the one that comes first.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <random>
 
+#include "query/all_hits.h"
 #include "query/device_scene.h"
 #include "query/instance_judge.h"
 #include "query/meshes.h"
@@ -195,6 +198,108 @@ void InstanceQueries::expect_right(const scene::Scene& s, unsigned seed) {
     for (std::size_t i = 0; i < rays.size(); ++i)
       ASSERT_EQ(any.hits[i].t == 0, first.hits[i].primitive >= 0) << "ray " << i << " of seed " << seed;
   }
+}
+
+// ---- All hits
+
+std::vector<InstanceJudge::Crossing> crossings_of(const query::LocalHits& all, std::size_t ray) {
+  std::vector<InstanceJudge::Crossing> of_ray;
+  for (std::size_t k = all.splits[ray]; k < all.splits[ray + 1]; ++k)
+    of_ray.push_back({all.t[k], all.instance[k], all.primitive[k]});
+  return of_ray;
+}
+
+// A ray from outside of everything to its outside crosses each instance of a closed mesh an even number of
+// times.
+bool crosses_evenly(const std::vector<InstanceJudge::Crossing>& crossings) {
+  std::map<std::uint32_t, int> n;
+  for (const auto& c : crossings)
+    if (c.instance != scene::kNone) ++n[c.instance];
+  return std::ranges::all_of(n, [](const auto& of_instance) { return of_instance.second % 2 == 0; });
+}
+
+class AllHitsOfInstances : public InstanceQueries {
+ protected:
+  void expect_right(const scene::Scene& s, unsigned seed, bool closed);
+};
+KDRAY_FOR_EACH_DEVICE(AllHitsOfInstances);
+
+void AllHitsOfInstances::expect_right(const scene::Scene& s, unsigned seed, bool closed) {
+  Random random(seed);
+  const std::vector<Ray> rays = rays_about(s, random, 3000);
+  DeviceScene asked(s, GetParam());
+  const query::LocalHits all = query::all_hits(asked.target(), rays);
+  ASSERT_EQ(all.instance.size(), all.t.size());
+  const query::Traced closest = traced(asked, rays, Traversal::wide);
+  const InstanceJudge judge(s);
+  const DBox box = s.bounds();
+  std::size_t n_wrong = 0, n_through = 0, first = 0, n_hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto crossings = crossings_of(all, i);
+    const std::string wrong = judge.wrong(rays[i], crossings);
+    if (!wrong.empty() && ++n_wrong < 5) ADD_FAILURE() << "seed " << seed << ", ray " << i << ": " << wrong;
+    const dvec3 o(rays[i].origin[0], rays[i].origin[1], rays[i].origin[2]);
+    const bool outside =
+        glm::any(glm::lessThan(o, box.lo - 1e-3)) || glm::any(glm::greaterThan(o, box.hi + 1e-3));
+    if (closed && outside && rays[i].t_min == 0 && std::isinf(rays[i].t_max)) {
+      ++n_through;
+      EXPECT_TRUE(crosses_evenly(crossings)) << "seed " << seed << ", ray " << i;
+    }
+    if (closest.hits[i].primitive < 0 || crossings.empty()) continue;
+    ++n_hits;
+    first += crossings[0].t == closest.hits[i].t && crossings[0].instance == closest.instances[i] &&
+             crossings[0].primitive == static_cast<std::uint32_t>(closest.hits[i].primitive);
+  }
+  EXPECT_EQ(n_wrong, 0u);
+  if (closed) {
+    EXPECT_GT(n_through, rays.size() / 4);
+  }
+  EXPECT_GE(first, n_hits * 99 / 100) << "of " << n_hits << " the closest hit comes first";
+  const std::vector<std::uint32_t> counts = query::count_hits(asked.target(), rays);
+  const query::LocalHits three = query::all_hits(asked.target(), rays, {.max_hits = 3});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(counts[i], all.splits[i + 1] - all.splits[i]) << i;
+    const auto whole = crossings_of(all, i), some = crossings_of(three, i);
+    ASSERT_EQ(some.size(), std::min<std::size_t>(3, whole.size())) << i;
+    for (std::size_t k = 0; k < some.size(); ++k)
+      ASSERT_TRUE(some[k].t == whole[k].t && some[k].instance == whole[k].instance) << i;
+  }
+}
+
+TEST_P(AllHitsOfInstances, TurnedAndScaled) {
+  for (unsigned seed = kSeed; seed < kSeed + 2; ++seed) {
+    Random random(seed);
+    expect_right(turned_and_scaled(random), seed, true);
+  }
+}
+TEST_P(AllHitsOfInstances, MirroredAndStretched) {
+  Random random(kSeed);
+  expect_right(mirrored_and_stretched(random), kSeed, true);
+}
+TEST_P(AllHitsOfInstances, AmongEmptyOnesAndFarAway) {
+  Random random(kSeed);
+  expect_right(among_empty_ones(random), kSeed, true);
+  expect_right(far_away(random), kSeed, true);
+}
+
+// A hundred in one place, whose hits of one t go over several passes, in the order of instances.
+TEST_P(AllHitsOfInstances, OfOneTComeInTheOrderOfInstances) {
+  Random random(kSeed);
+  scene::Scene s = empty_scene();
+  const std::uint32_t mesh = add_mesh(s, icosphere(1));
+  const dmat4 place = anywhere(random, {0.7, 0.9, -1.1}, 0.5);
+  for (int i = 0; i < 100; ++i) add(s, mesh, place);
+  DeviceScene asked(s, GetParam());
+  const std::vector<Ray> rays = rays_about(s, random, 400);
+  const query::LocalHits all = query::all_hits(asked.target(), rays);
+  std::size_t n_many = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto crossings = crossings_of(all, i);
+    ASSERT_EQ(crossings.size() % 100, 0u) << i;
+    n_many += crossings.size() >= 200;
+    for (std::size_t k = 0; k < crossings.size(); ++k) ASSERT_EQ(crossings[k].instance, k % 100) << i;
+  }
+  EXPECT_GT(n_many, rays.size() / 4);
 }
 
 TEST_P(InstanceQueries, TurnedAndScaled) {

@@ -67,13 +67,14 @@ struct QueryReport {
 };
 
 // All hits of rays: those of ray i are [splits[i], splits[i + 1]), sorted by t and, where that is equal, by
-// their order in the scene.
+// their order in the scene, in which instances come behind all else.
 struct AllHits {
   std::vector<std::uint64_t> splits;  // one more than rays
   std::vector<double> t;
   std::vector<std::uint32_t> geometry, primitive;
   std::vector<float> u, v;
-  std::vector<std::uint8_t> more;  // of each ray, 1: it has more than max_hits
+  std::vector<std::uint8_t> more;       // of each ray, 1: it has more than max_hits
+  std::vector<std::uint32_t> instance;  // as HitsOut
   QueryReport report;
 };
 
