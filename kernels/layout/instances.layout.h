@@ -30,7 +30,7 @@ typedef struct Instance {
   // What surfaces read besides.
   float to_world[3][3];  // by rows
   u32 material;          // of all its primitives, or KDRAY_MESH_MATERIAL: each has its own
-  u32 number;            // in the whole scene; set in ODPRT's parts alone (host/odprt/parts.cpp)
+  u32 number;            // its place in the scene's list; in ODPRT's parts among all that can be hit
   u32 pad[4];
 } Instance;
 KDRAY_ASSERT_SIZE(Instance, 128)

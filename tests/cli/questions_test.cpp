@@ -138,6 +138,43 @@ TEST(Questions, AllHitsAreAnNpz) {
   EXPECT_EQ(values_of<std::uint8_t>(files.at("more"), "'|b1'"), (std::vector<std::uint8_t>{1, 1, 0, 0, 0}));
 }
 
+// Two boxes side by side, kept as instances: the rays of Asking meet the second alone.
+TEST(Questions, HitsTellInstancesThatAreKept) {
+  KDRAY_NEED_DEVICE();
+  const Asking asking;
+  const fs::path scene =
+      asking.folder.put("s.json", R"({"objects": [{"type": "mesh", "file": "box.obj", "instances": [
+          {"translate": [7, 0, 0]}, {"translate": [0, 0, 0]}]}]})");
+  const auto run = [&](const fs::path& rays, std::vector<std::string> more) {
+    std::vector<std::string> all = {"trace",  scene, "--instances", "kept",
+                                    "--rays", rays,  "-o",          asking.folder / "h.npz"};
+    all.insert(all.end(), more.begin(), more.end());
+    return kdray(all);
+  };
+  const std::vector<std::int32_t> second = {1, 1, 1, -1, -1};
+  for (const fs::path& rays : {asking.floats, asking.doubles}) {
+    ASSERT_TRUE(succeeds(run(rays, {})));
+    const auto files = files_of_npz(asking.folder.get("h.npz"));
+    ASSERT_EQ(files.size(), 5u);
+    EXPECT_EQ(values_of<std::int32_t>(files.at("instance"), "'<i4'"), second);
+    EXPECT_EQ(values_of<std::int32_t>(files.at("primitive"), "'<i4'").at(0) / 2, 1);
+  }
+  for (const char* const walk : {"wide", "packet", "batch"}) {
+    ASSERT_TRUE(succeeds(run(asking.floats, {"--traversal", walk})));
+    const auto files = files_of_npz(asking.folder.get("h.npz"));
+    EXPECT_EQ(values_of<std::int32_t>(files.at("instance"), "'<i4'"), second) << walk;
+  }
+  ASSERT_TRUE(succeeds(run(asking.doubles, {"--all-hits"})));
+  const auto files = files_of_npz(asking.folder.get("h.npz"));
+  EXPECT_EQ(values_of<std::int32_t>(files.at("instance"), "'<i4'"), std::vector<std::int32_t>(5, 1));
+  const fs::path points =
+      asking.folder.put("p.npy", npy_of("<f8", std::vector<std::array<double, 3>>{{0.5, 0.5, 0.5}}));
+  std::vector<std::string> nearest = {"trace",           scene,  "--instances", "kept",
+                                      "--closest-point", points, "-o",          asking.folder / "n.npy"};
+  EXPECT_TRUE(fails_with(kdray(nearest), 2, "--instances flat"));
+  EXPECT_TRUE(fails_with(run(asking.floats, {"--traversal", "binary"}), 2, "--instances flat"));
+}
+
 TEST(Questions, AllHitsGoToStdoutAsDash) {
   KDRAY_NEED_DEVICE();
   const Asking asking;

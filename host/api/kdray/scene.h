@@ -83,8 +83,8 @@ class Scene {
   GeometryId add_cones(const Cones& cones, const GeometryOptions& options = {});
   GeometryId add_discs(const Discs& discs, const GeometryOptions& options = {});
 
-  // Instances of a geometry that was added as a prototype: together a geometry by themselves. A million of
-  // them take 0.3 kB each and no copy of the prototype (docs/embed.md).
+  // Instances of a geometry that was added as a prototype: together a geometry by themselves. Each takes
+  // less than a kilobyte, and no copy of the prototype (docs/embed.md).
   GeometryId add_instances(GeometryId prototype, const Transforms& transforms,
                            const InstanceOptions& options = {});
   // As many transforms as they were added with.
