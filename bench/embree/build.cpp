@@ -5,71 +5,12 @@
 
 #include "base/error.h"
 #include "bench/embree/api.h"
+#include "bench/embree/kinds.h"
 #include "bench/embree/scenes.h"
 
 namespace kdray::bench {
 
 namespace {
-
-// Embree reads vectors of 16 bytes, at the end too.
-constexpr std::size_t kPadding = 16 / sizeof(float);
-
-struct Buffers {
-  std::vector<float> vertices;  // of 3 (triangles) or 4 (with a radius) floats
-  std::size_t n_vertices = 0;
-  std::vector<float> normals;  // of 3
-  std::vector<std::uint32_t> indices;
-  std::vector<std::uint8_t> flags;
-};
-
-// The buffers of a kind. One that lacks them does not compile.
-Buffers buffers_of(primitives::TriangleKind, const scene::Scene& scene, const scene::Geometry& geometry) {
-  Buffers b;
-  if (geometry.triangles.empty()) return b;
-  b.vertices.reserve(3 * scene.vertices.size() + kPadding);
-  for (const dvec3& v : scene.vertices) {
-    const vec3 local(geometry.space.local(v));
-    b.vertices.insert(b.vertices.end(), {local.x, local.y, local.z});
-  }
-  b.indices.reserve(3 * geometry.triangles.size());
-  for (const std::uint32_t source : geometry.sources)
-    for (const std::uint32_t v : scene.triangles[source].vertex) b.indices.push_back(v);
-  b.n_vertices = scene.vertices.size();
-  b.vertices.resize(b.vertices.size() + kPadding);
-  return b;
-}
-
-void add_point(Buffers& b, const vec3& p, float radius) {
-  b.vertices.insert(b.vertices.end(), {p.x, p.y, p.z, radius});
-  ++b.n_vertices;
-}
-
-Buffers buffers_of(primitives::SphereKind, const scene::Scene&, const scene::Geometry& geometry) {
-  Buffers b;
-  for (const scene::SphereGeometry& s : geometry.spheres) add_point(b, s.center, s.radius);
-  return b;
-}
-
-Buffers buffers_of(primitives::ConeKind, const scene::Scene&, const scene::Geometry& geometry) {
-  Buffers b;
-  for (const scene::ConeGeometry& c : geometry.cones) {
-    b.indices.push_back(static_cast<std::uint32_t>(b.n_vertices));
-    b.flags.push_back(kOpenCone);
-    add_point(b, c.base, c.base_radius);
-    add_point(b, c.apex, c.apex_radius);
-  }
-  return b;
-}
-
-Buffers buffers_of(primitives::DiscKind, const scene::Scene&, const scene::Geometry& geometry) {
-  Buffers b;
-  for (const scene::DiscGeometry& d : geometry.discs) {
-    add_point(b, d.center, d.radius);
-    b.normals.insert(b.normals.end(), {d.normal.x, d.normal.y, d.normal.z});
-  }
-  if (!b.normals.empty()) b.normals.resize(b.normals.size() + kPadding);
-  return b;
-}
 
 class EmbreeBuild {
  public:

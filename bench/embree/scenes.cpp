@@ -1,56 +1,11 @@
 #include "bench/embree/scenes.h"
 
-#include <span>
-
 #include "base/error.h"
+#include "bench/embree/kinds.h"
 
 namespace kdray::bench {
 
 namespace {
-
-template <class T>
-T* new_buffer(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t stride, std::size_t n) {
-  void* const memory = rtcSetNewGeometryBuffer(g, type, 0, format, stride, n);
-  if (memory == nullptr) throw Error(ErrorCode::out_of_memory, "no memory for Embree's copy of the scene");
-  return static_cast<T*>(memory);
-}
-
-void fill(RTCGeometry g, std::span<const scene::TriangleGeometry> triangles) {
-  auto* point =
-      new_buffer<vec3>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(vec3), 3 * triangles.size());
-  auto* index = new_buffer<std::uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                          3 * sizeof(std::uint32_t), triangles.size());
-  for (const scene::TriangleGeometry& t : triangles)
-    for (int i = 0; i < 3; ++i) *point++ = scene::vertex(t, i);
-  for (std::uint32_t i = 0; i < 3 * triangles.size(); ++i) index[i] = i;
-}
-
-void fill(RTCGeometry g, const std::vector<scene::SphereGeometry>& spheres) {
-  auto* point =
-      new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), spheres.size());
-  for (const scene::SphereGeometry& s : spheres) *point++ = {s.center, s.radius};
-}
-
-void fill(RTCGeometry g, const std::vector<scene::ConeGeometry>& cones) {
-  auto* point = new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4),
-                                      2 * cones.size());
-  auto* index = new_buffer<std::uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, sizeof(std::uint32_t),
-                                          cones.size());
-  auto* flags = new_buffer<std::uint8_t>(g, RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, 1, cones.size());
-  for (std::uint32_t i = 0; i < cones.size(); ++i) {
-    point[2 * i] = {cones[i].base, cones[i].base_radius};
-    point[2 * i + 1] = {cones[i].apex, cones[i].apex_radius};
-    index[i] = 2 * i;
-    flags[i] = kOpenCone;
-  }
-}
-
-void fill(RTCGeometry g, const std::vector<scene::DiscGeometry>& discs) {
-  auto* point =
-      new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), discs.size());
-  auto* normal = new_buffer<vec3>(g, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, sizeof(vec3), discs.size());
-  for (const scene::DiscGeometry& d : discs) *point++ = {d.center, d.radius}, *normal++ = d.normal;
-}
 
 template <class Primitives>
 void attach(RTCDevice device, RTCScene into, unsigned id, RTCGeometryType type,

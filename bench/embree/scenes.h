@@ -1,8 +1,6 @@
 // What    A scene's primitives in Embree, as a fast scene and as a robust one, and the numbers that its hits
 //         stand for.
-// Shape   Triangles are triangles, spheres SPHERE_POINTs, cones CONE_LINEAR_CURVEs whose segments are flagged
-//         as having neighbours, which leaves the end caps off, discs ORIENTED_DISC_POINTs. Coordinates are
-//         those of kdray's tree (scene/geometry.h). A kind that has no type here does not compile.
+// Shape   Each kind's geometry is that of kinds.h. Coordinates are those of kdray's tree (scene/geometry.h).
 #pragma once
 
 #include <array>
@@ -17,22 +15,6 @@ namespace kdray::bench {
 
 // Throws ErrorCode::internal where Embree gives none.
 RTCDevice open_embree();
-
-// A curve's flags without end caps.
-inline constexpr std::uint8_t kOpenCone = RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
-
-constexpr RTCGeometryType embree_type(primitives::TriangleKind) {
-  return RTC_GEOMETRY_TYPE_TRIANGLE;
-}
-constexpr RTCGeometryType embree_type(primitives::SphereKind) {
-  return RTC_GEOMETRY_TYPE_SPHERE_POINT;
-}
-constexpr RTCGeometryType embree_type(primitives::ConeKind) {
-  return RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE;
-}
-constexpr RTCGeometryType embree_type(primitives::DiscKind) {
-  return RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT;
-}
 
 class EmbreeScenes {
  public:

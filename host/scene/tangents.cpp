@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "math/local_space.h"
+
 namespace kdray::scene {
 
 namespace {

@@ -16,16 +16,12 @@ namespace kdray::test {
 using Exact = mpf_class;
 void set_exact_precision();  // before the first is made
 
-Exact exact_distance(const dvec3& point, const layout::Triangle& triangle);
-Exact exact_distance(const dvec3& point, const layout::Sphere& sphere);
-Exact exact_distance(const dvec3& point, const layout::Cone& cone);
-Exact exact_distance(const dvec3& point, const layout::Disc& disc);
-
-// The same to 2^-60 of the largest coordinate, in long double: to find which primitives are worth an exact
-// answer.
-long double rough_distance(const dvec3& point, const layout::Triangle& triangle);
-long double rough_distance(const dvec3& point, const layout::Sphere& sphere);
-long double rough_distance(const dvec3& point, const layout::Cone& cone);
-long double rough_distance(const dvec3& point, const layout::Disc& disc);
+// For each kind. The rough ones are right to 2^-60 of the largest coordinate, in long double: to find which
+// primitives are worth an exact answer.
+#define KDRAY_DISTANCES_OF_KIND(NAME, name, names, Struct)              \
+  Exact exact_distance(const dvec3& point, const layout::Struct& name); \
+  long double rough_distance(const dvec3& point, const layout::Struct& name);
+KDRAY_KINDS(KDRAY_DISTANCES_OF_KIND)
+#undef KDRAY_DISTANCES_OF_KIND
 
 }  // namespace kdray::test

@@ -18,6 +18,7 @@
 #include "scene/mtl.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
+#include "support/seed.h"
 
 namespace kdray::scene {
 namespace {
@@ -37,7 +38,7 @@ void expect_safe(const Reader& reader, const std::string& text) {
 void mutate(const Reader& reader, const std::string& good, int n_rounds) {
   EXPECT_NO_THROW(check_scene(reader(good, "a")));
   for (std::size_t n = 0; n < good.size(); ++n) expect_safe(reader, good.substr(0, n));
-  const unsigned seed = 4711;
+  const unsigned seed = test::seed_or(4711);
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
   for (int round = 0; round < n_rounds; ++round) {
@@ -142,6 +143,24 @@ TEST(Mutations, OfPaintedGltf) {
   const int pairs = sample.view(test::bytes_of<float>({0, 0, 1, 0, 1, 1, 0, 1}));
   sample.primitive()["attributes"]["TEXCOORD_0"] = sample.accessor(pairs, 5126, "VEC2", 4);
   sample.primitive()["attributes"]["COLOR_0"] = 0;
+  mutate(read_gltf_at_rest, sample.text(), kRounds);
+}
+
+// With tangents of its own, and with tangents that are made.
+TEST(Mutations, OfGltfWithBentNormals) {
+  test::GltfSample sample = test::square();
+  auto& j = sample.json;
+  auto& attributes = sample.primitive()["attributes"];
+  j["images"] = {{{"uri", "data:image/png;base64," + test::base64(test::png(1, 1, 3, {128, 128, 255}))}}};
+  j["textures"] = {{{"source", 0}}};
+  j["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+  sample.primitive()["material"] = 0;
+  const int pairs = sample.view(test::bytes_of<float>({0, 0, 1, 0, 1, 1, 0, 1}));
+  attributes["TEXCOORD_0"] = sample.accessor(pairs, 5126, "VEC2", 4);
+  attributes["NORMAL"] = sample.vectors({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  mutate(read_gltf_at_rest, sample.text(), kRounds);
+  const int ways = sample.view(test::bytes_of<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}));
+  attributes["TANGENT"] = sample.accessor(ways, 5126, "VEC4", 4);
   mutate(read_gltf_at_rest, sample.text(), kRounds);
 }
 

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
+#include "support/seed.h"
 #ifdef KDRAY_WITH_JPEG
 #include <turbojpeg.h>
 #endif
@@ -132,7 +133,8 @@ void expect_safe(const std::string& bytes) {
   for (const std::string& w : warnings) EXPECT_EQ(w.find('\n'), std::string::npos) << w;
 }
 
-void mutate(const std::string& good, unsigned seed) {
+void mutate(const std::string& good, unsigned usual) {
+  const unsigned seed = test::seed_or(usual);
   SCOPED_TRACE(seed);
   for (std::size_t n = 0; n < good.size(); ++n) expect_safe(good.substr(0, n));
   std::mt19937 random(seed);

@@ -16,6 +16,7 @@
 #include "scene/pictures.h"
 #include "scene/scratch.h"
 #include "scene/sky_picture.h"
+#include "support/seed.h"
 
 namespace kdray::scene {
 namespace {
@@ -119,8 +120,31 @@ TEST(Radiance, SaysWhatIsWrong) {
   EXPECT_SAYS(refused("GIF89a"), "is neither EXR, Radiance HDR, PNG nor JPEG");
 }
 
+void expect_safe(const std::string& bytes) {
+  try {
+    std::vector<std::string> warnings;
+    const auto picture = decode_sky_picture(bytes, "p", warnings);
+    EXPECT_EQ(picture->rgb.size(), std::size_t{3} * picture->width * picture->height);
+    for (const float v : picture->rgb) EXPECT_TRUE(std::isfinite(v) && v >= 0);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::input) << e.what();
+    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+  }
+}
+
+void mutate(const std::string& good, std::mt19937& random) {
+  for (std::size_t n = 0; n < good.size(); ++n) expect_safe(good.substr(0, n));
+  for (int round = 0; round < 3000; ++round) {
+    std::string bad = good;
+    for (unsigned i = 0; i <= random() % 4; ++i) bad[random() % bad.size()] = static_cast<char>(random());
+    expect_safe(bad);
+  }
+}
+
 TEST(Radiance, BrokenFilesAreRefusedOrRead) {
-  std::mt19937 random(3);
+  const unsigned seed = test::seed_or(3);
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
   std::string good = kHead + "\n-Y 3 +X 20\n";
   for (int y = 0; y < 3; ++y) {
     std::vector<std::array<std::uint8_t, 4>> row(20, {9, 8, 7, 130});
@@ -128,23 +152,18 @@ TEST(Radiance, BrokenFilesAreRefusedOrRead) {
     good += coded_row(row, random);
   }
   EXPECT_EQ(decode(good)->width, 20u);
-  const auto expect_safe = [](const std::string& bytes) {
-    try {
-      std::vector<std::string> warnings;
-      const auto picture = decode_sky_picture(bytes, "p", warnings);
-      EXPECT_EQ(picture->rgb.size(), std::size_t{3} * picture->width * picture->height);
-      for (const float v : picture->rgb) EXPECT_TRUE(std::isfinite(v) && v >= 0);
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ErrorCode::input) << e.what();
-      EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
-    }
-  };
-  for (std::size_t n = 0; n < good.size(); ++n) expect_safe(good.substr(0, n));
-  for (int round = 0; round < 3000; ++round) {
-    std::string bad = good;
-    for (unsigned i = 0; i <= random() % 4; ++i) bad[random() % bad.size()] = static_cast<char>(random());
-    expect_safe(bad);
-  }
+  mutate(good, random);
+}
+
+TEST(SkyPicture, BrokenExrIsRefusedOrRead) {
+  const unsigned seed = test::seed_or(4);
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  film::Image image;
+  image.width = 9, image.height = 5;
+  for (int i = 0; i < 45; ++i)
+    image.pixels.emplace_back(static_cast<float>(random() % 9), 0.5f, static_cast<float>(i) / 7);
+  mutate(film::encode_exr(image, {}), random);
 }
 
 TEST(SkyPicture, PngIsMadeLinear) {

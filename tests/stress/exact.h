@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "layout/kinds.h"
 #include "layout/primitives.layout.h"
 #include "math/vec.h"
 
@@ -25,20 +26,20 @@ struct Exact3 {
 Exact3 exactly(const float (&v)[3]);
 
 // All t where the line meets the primitive as stored, negative ones too.
-std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Triangle& triangle);
-std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Sphere& sphere);
-std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Cone& cone);
-std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Disc& disc);
+#define KDRAY_ROOTS_OF_KIND(NAME, name, names, Struct) \
+  std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Struct& name);
+KDRAY_KINDS(KDRAY_ROOTS_OF_KIND)
+#undef KDRAY_ROOTS_OF_KIND
 // The same of the cone carried on at both ends, by this share of its height.
 std::vector<Exact> roots_past_the_ends(const Exact3& origin, const Exact3& direction,
                                        const layout::Cone& cone, double share);
 
 // The distance from the surface's plane, sphere or cone; of a sphere or cone with its sign: negative inside.
-// (A kind that lacks one does not compile, in the tests that ask all kinds.)
-double distance(const Exact3& point, const layout::Triangle& triangle);
-double distance(const Exact3& point, const layout::Sphere& sphere);
-double distance(const Exact3& point, const layout::Cone& cone);
-double distance(const Exact3& point, const layout::Disc& disc);
+// (A kind that lacks one does not link.)
+#define KDRAY_DISTANCE_OF_KIND(NAME, name, names, Struct) \
+  double distance(const Exact3& point, const layout::Struct& name);
+KDRAY_KINDS(KDRAY_DISTANCE_OF_KIND)
+#undef KDRAY_DISTANCE_OF_KIND
 
 // |approximate - exact| in units of the last place of a float of `scale`'s size.
 double ulps(double approximate, const Exact& exact, double scale);

@@ -1,0 +1,144 @@
+// What    What each kind of primitive is in Embree: its type, and its buffers, as a scene that is traced has
+//         them and as those that builds are measured by are filled beforehand.
+// Shape   Triangles are triangles, spheres SPHERE_POINTs, cones CONE_LINEAR_CURVEs whose segments are flagged
+//         as having neighbours, which leaves the end caps off, discs ORIENTED_DISC_POINTs. A kind that lacks
+//         something here does not compile.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "bench/embree/api.h"
+#include "scene/geometry.h"
+#include "scene/scene.h"
+
+namespace kdray::bench {
+
+// A curve's flags without end caps.
+inline constexpr std::uint8_t kOpenCone = RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
+
+constexpr RTCGeometryType embree_type(primitives::TriangleKind) {
+  return RTC_GEOMETRY_TYPE_TRIANGLE;
+}
+constexpr RTCGeometryType embree_type(primitives::SphereKind) {
+  return RTC_GEOMETRY_TYPE_SPHERE_POINT;
+}
+constexpr RTCGeometryType embree_type(primitives::ConeKind) {
+  return RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE;
+}
+constexpr RTCGeometryType embree_type(primitives::DiscKind) {
+  return RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT;
+}
+
+// ---- Of a scene that is traced
+
+template <class T>
+T* new_buffer(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t stride, std::size_t n) {
+  void* const memory = rtcSetNewGeometryBuffer(g, type, 0, format, stride, n);
+  if (memory == nullptr) throw Error(ErrorCode::out_of_memory, "no memory for Embree's copy of the scene");
+  return static_cast<T*>(memory);
+}
+
+inline void fill(RTCGeometry g, std::span<const scene::TriangleGeometry> triangles) {
+  auto* point =
+      new_buffer<vec3>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(vec3), 3 * triangles.size());
+  auto* index = new_buffer<std::uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                                          3 * sizeof(std::uint32_t), triangles.size());
+  for (const scene::TriangleGeometry& t : triangles)
+    for (int i = 0; i < 3; ++i) *point++ = scene::vertex(t, i);
+  for (std::uint32_t i = 0; i < 3 * triangles.size(); ++i) index[i] = i;
+}
+
+inline void fill(RTCGeometry g, const std::vector<scene::SphereGeometry>& spheres) {
+  auto* point =
+      new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), spheres.size());
+  for (const scene::SphereGeometry& s : spheres) *point++ = {s.center, s.radius};
+}
+
+inline void fill(RTCGeometry g, const std::vector<scene::ConeGeometry>& cones) {
+  auto* point = new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4),
+                                      2 * cones.size());
+  auto* index = new_buffer<std::uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, sizeof(std::uint32_t),
+                                          cones.size());
+  auto* flags = new_buffer<std::uint8_t>(g, RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, 1, cones.size());
+  for (std::uint32_t i = 0; i < cones.size(); ++i) {
+    point[2 * i] = {cones[i].base, cones[i].base_radius};
+    point[2 * i + 1] = {cones[i].apex, cones[i].apex_radius};
+    index[i] = 2 * i;
+    flags[i] = kOpenCone;
+  }
+}
+
+inline void fill(RTCGeometry g, const std::vector<scene::DiscGeometry>& discs) {
+  auto* point =
+      new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), discs.size());
+  auto* normal = new_buffer<vec3>(g, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, sizeof(vec3), discs.size());
+  for (const scene::DiscGeometry& d : discs) *point++ = {d.center, d.radius}, *normal++ = d.normal;
+}
+
+// ---- For builds
+
+// Embree reads vectors of 16 bytes, at the end too.
+inline constexpr std::size_t kPadding = 16 / sizeof(float);
+
+struct Buffers {
+  std::vector<float> vertices;  // of 3 (triangles) or 4 (with a radius) floats
+  std::size_t n_vertices = 0;
+  std::vector<float> normals;  // of 3
+  std::vector<std::uint32_t> indices;
+  std::vector<std::uint8_t> flags;
+};
+
+// The buffers of a kind. One that lacks them does not compile.
+inline Buffers buffers_of(primitives::TriangleKind, const scene::Scene& scene,
+                          const scene::Geometry& geometry) {
+  Buffers b;
+  if (geometry.triangles.empty()) return b;
+  b.vertices.reserve(3 * scene.vertices.size() + kPadding);
+  for (const dvec3& v : scene.vertices) {
+    const vec3 local(geometry.space.local(v));
+    b.vertices.insert(b.vertices.end(), {local.x, local.y, local.z});
+  }
+  b.indices.reserve(3 * geometry.triangles.size());
+  for (const std::uint32_t source : geometry.sources)
+    for (const std::uint32_t v : scene.triangles[source].vertex) b.indices.push_back(v);
+  b.n_vertices = scene.vertices.size();
+  b.vertices.resize(b.vertices.size() + kPadding);
+  return b;
+}
+
+inline void add_point(Buffers& b, const vec3& p, float radius) {
+  b.vertices.insert(b.vertices.end(), {p.x, p.y, p.z, radius});
+  ++b.n_vertices;
+}
+
+inline Buffers buffers_of(primitives::SphereKind, const scene::Scene&, const scene::Geometry& geometry) {
+  Buffers b;
+  for (const scene::SphereGeometry& s : geometry.spheres) add_point(b, s.center, s.radius);
+  return b;
+}
+
+inline Buffers buffers_of(primitives::ConeKind, const scene::Scene&, const scene::Geometry& geometry) {
+  Buffers b;
+  for (const scene::ConeGeometry& c : geometry.cones) {
+    b.indices.push_back(static_cast<std::uint32_t>(b.n_vertices));
+    b.flags.push_back(kOpenCone);
+    add_point(b, c.base, c.base_radius);
+    add_point(b, c.apex, c.apex_radius);
+  }
+  return b;
+}
+
+inline Buffers buffers_of(primitives::DiscKind, const scene::Scene&, const scene::Geometry& geometry) {
+  Buffers b;
+  for (const scene::DiscGeometry& d : geometry.discs) {
+    add_point(b, d.center, d.radius);
+    b.normals.insert(b.normals.end(), {d.normal.x, d.normal.y, d.normal.z});
+  }
+  if (!b.normals.empty()) b.normals.resize(b.normals.size() + kPadding);
+  return b;
+}
+
+}  // namespace kdray::bench
