@@ -76,8 +76,7 @@ Json json_of(const RanksPrediction& p) {
   return {{"link", p.link},         {"ranks", p.ranks},
           {"seconds", p.seconds},   {"efficiency", p.efficiency},
           {"messages", p.messages}, {"simulation_seconds", p.simulation_seconds},
-          {"work", p.work},
-          {"rays_sent", p.rays_sent}};
+          {"work", p.work},         {"rays_sent", p.rays_sent}};
 }
 
 template <class List>
@@ -133,7 +132,8 @@ std::string table_of(const RanksRun& run, const RanksOptions& options) {
   out += fmt::format("  heavier frames by {} ranks: seconds of a core, and the frame's seconds\n",
                      options.heavier_ranks);
   for (const RanksPrediction& p : run.heavier)
-    out += fmt::format("  {:>10.1f}{:>12.4f} s{:>7.1f}%  {}\n", p.work, p.seconds, 100 * p.efficiency, p.link);
+    out +=
+        fmt::format("  {:>10.1f}{:>12.4f} s{:>7.1f}%  {}\n", p.work, p.seconds, 100 * p.efficiency, p.link);
   if (run.odprt_checks.empty()) return out;
   const RanksMeasured& m = run.measured;
   out += fmt::format(
