@@ -76,15 +76,24 @@ RanksSetting setting_over(const RanksMeasured& measured, const AssumedLink& link
   return setting;
 }
 
-RanksPrediction predict(const RanksMeasured& measured, const AssumedLink& link, int ranks) {
+// Of a frame of `heavier` times as many samples; what rank 0 does beside the tiles stays.
+RanksPrediction predict(const RanksMeasured& measured, const AssumedLink& link, int ranks,
+                        double heavier = 1) {
   const Timer timer;
-  const SimulatedRanks simulated = simulate_pdprt(measured.frame, setting_over(measured, link, ranks));
+  ReplayedFrame frame = measured.frame;
+  for (auto* const list : {&frame.tile_seconds, &frame.by_entry})
+    for (double& seconds : *list) seconds *= heavier;
+  frame.guessed_waves *= heavier;
+  const SimulatedRanks simulated = simulate_pdprt(frame, setting_over(measured, link, ranks));
+  const double work = measured.busy * heavier;
   return {link.name,
           ranks,
           simulated.seconds,
-          measured.alone.median / (ranks * simulated.seconds),
+          (work + measured.alone.median - measured.busy) / (ranks * simulated.seconds),
           static_cast<double>(simulated.messages),
-          timer.seconds()};
+          timer.seconds(),
+          work,
+          0};
 }
 
 void predict_odprt(RanksRun& run, const PreparedScene& scene, const Scene& model,
@@ -92,6 +101,7 @@ void predict_odprt(RanksRun& run, const PreparedScene& scene, const Scene& model
   const RanksMeasured& m = run.measured;
   const LivedFrame lived = live(scene, model, options.asked.device, m.odprt_width, m.odprt_height,
                                 options.asked.depth, options.asked.tile, m.odprt);
+  run.odprt_rays = lived.lives.size();
   std::map<int, std::vector<const RealRanks*>> real;
   for (const RealRanks& r : m.real_odprt) real[r.ranks].push_back(&r);
   for (const int n : options.odprt_predicted) real[n];
@@ -103,7 +113,8 @@ void predict_odprt(RanksRun& run, const PreparedScene& scene, const Scene& model
       const Timer timer;
       const SimulatedOdprt s = simulate_odprt(lived, frame, m.odprt, setting_over(m, link, n));
       run.odprt_predictions.push_back({link.name, n, s.seconds, m.odprt_alone.median / (n * s.seconds),
-                                       static_cast<double>(s.messages), timer.seconds()});
+                                       static_cast<double>(s.messages), timer.seconds(), m.odprt.busy,
+                                       static_cast<double>(s.rays_sent)});
     }
   }
 }
@@ -178,6 +189,9 @@ std::vector<RanksRun> bench_ranks(Team& team, SceneShelf& shelf, bool over_mpi, 
     for (const RealRanks& real : run.measured.real) run.checks.push_back(check_of_pdprt(run.measured, real));
     for (const AssumedLink& link : options.links)
       for (const int ranks : options.predicted) run.predictions.push_back(predict(run.measured, link, ranks));
+    for (const AssumedLink& link : options.links)
+      for (const double heavier : options.heavier)
+        run.heavier.push_back(predict(run.measured, link, options.heavier_ranks, heavier));
     if (options.asked.odprt) predict_odprt(run, held.prepared, held.scene, options);
     done(run);
     runs.push_back(std::move(run));

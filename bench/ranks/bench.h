@@ -27,7 +27,10 @@ struct RanksOptions {
   std::vector<std::string> scenes = {};  // empty: balls
   RanksAsked asked = {};
   std::vector<int> predicted = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1000, 2000, 5000, 10000};
-  std::vector<int> odprt_predicted = {1, 2, 4, 8, 16, 32, 64, 128};
+  std::vector<int> odprt_predicted = {1, 2, 4, 8, 16, 32, 64, 128, 256};
+  // Frames of so many times as many samples as the measured one's, by so many ranks.
+  std::vector<double> heavier = {1, 10, 100, 1000, 10000};
+  int heavier_ranks = 1000;
   std::vector<AssumedLink> links = {{"10 GB/s, 10 us", 10e-6, 10e9}, {"1 Gbit/s, 50 us", 50e-6, 125e6}};
 };
 
@@ -50,6 +53,8 @@ struct RanksPrediction {
   double seconds = 0, efficiency = 0;  // of a core's time by itself
   double messages = 0;
   double simulation_seconds = 0;  // that it took
+  double work = 0;                // seconds of a core, of all tiles or rays
+  double rays_sent = 0;           // from rank to rank, in ODPRT
 };
 
 struct RanksRun {
@@ -59,7 +64,8 @@ struct RanksRun {
   bool over_mpi = false;
   RanksMeasured measured;
   std::vector<RanksCheck> checks, odprt_checks;
-  std::vector<RanksPrediction> predictions, odprt_predictions;
+  std::vector<RanksPrediction> predictions, odprt_predictions, heavier;
+  std::size_t odprt_rays = 0;  // of the frame
 
   static double largest_error(const std::vector<RanksCheck>& checks);  // without sign, of several ranks
 };

@@ -82,8 +82,8 @@ std::uint32_t tile_of(const LivedFrame& frame, std::size_t eye_ray) {
   return static_cast<std::uint32_t>(eye_ray / width / side * across + eye_ray % width / side);
 }
 
-// As odprt::share_by_part() does: the queue that most of a tile's rays enter first makes them, and tiles whose
-// rays enter none are anyone's; they go all over the picture. Returns who makes each tile.
+// As odprt::share_by_part() does: the queue that most of a tile's rays enter first makes them, and what has
+// rays that enter none is anyone's; tiles go all over the picture. Returns who makes each tile.
 std::vector<std::uint32_t> deal_out(const LivedFrame& frame, const Paths& paths, std::size_t n_queues,
                                     DividedFrame& divided) {
   const std::size_t n_pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);

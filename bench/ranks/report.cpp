@@ -75,7 +75,8 @@ Json json_of(const RanksCheck& c) {
 Json json_of(const RanksPrediction& p) {
   return {{"link", p.link},         {"ranks", p.ranks},
           {"seconds", p.seconds},   {"efficiency", p.efficiency},
-          {"messages", p.messages}, {"simulation_seconds", p.simulation_seconds}};
+          {"messages", p.messages}, {"simulation_seconds", p.simulation_seconds},
+          {"work", p.work},         {"rays_sent", p.rays_sent}};
 }
 
 template <class List>
@@ -128,6 +129,11 @@ std::string table_of(const RanksRun& run, const RanksOptions& options) {
   out += costs_line(run);
   out += checks_table(run.checks, false);
   out += predictions_table(run.predictions, RanksRun::largest_error(run.checks), options);
+  out += fmt::format("  heavier frames by {} ranks: seconds of a core, and the frame's seconds\n",
+                     options.heavier_ranks);
+  for (const RanksPrediction& p : run.heavier)
+    out +=
+        fmt::format("  {:>10.1f}{:>12.4f} s{:>7.1f}%  {}\n", p.work, p.seconds, 100 * p.efficiency, p.link);
   if (run.odprt_checks.empty()) return out;
   const RanksMeasured& m = run.measured;
   out += fmt::format(
@@ -160,11 +166,13 @@ Json json_of(const std::vector<RanksRun>& runs, const RanksOptions& options) {
                    {"measured", json_of(run.measured)},
                    {"largest_error", RanksRun::largest_error(run.checks)},
                    {"checks", list_of(run.checks)},
-                   {"predictions", list_of(run.predictions)}};
+                   {"predictions", list_of(run.predictions)},
+                   {"heavier", list_of(run.heavier)}};
     if (!run.odprt_checks.empty())
       of_run["odprt"] = {{"size", {run.measured.odprt_width, run.measured.odprt_height}},
                          {"alone_seconds", json_of(run.measured.odprt_alone)},
                          {"busy_seconds", run.measured.odprt.busy},
+                         {"rays", run.odprt_rays},
                          {"trace_share", run.measured.odprt.trace_share},
                          {"seconds_of_sent_ray", run.measured.odprt.of_sent_ray},
                          {"end_seconds", run.measured.odprt.end_seconds},

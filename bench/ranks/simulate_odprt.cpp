@@ -106,8 +106,7 @@ class OdprtSimulation {
  public:
   OdprtSimulation(const LivedFrame& lived, const DividedFrame& frame, const OdprtCosts& costs,
                   const RanksSetting& setting)
-      : lived_(lived),
-        frame_(frame),
+      : frame_(frame),
         costs_(costs),
         setting_(setting),
         look_(std::max(setting.look - kShorterNap, 1e-6)),
@@ -187,7 +186,6 @@ class OdprtSimulation {
   static constexpr double kMostSeconds = 1e4;
   using At = std::pair<double, int>;
 
-  const LivedFrame& lived_;
   const DividedFrame& frame_;
   const OdprtCosts& costs_;
   const RanksSetting& setting_;

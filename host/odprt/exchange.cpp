@@ -20,7 +20,7 @@ Exchange::Exchange(const Plan& plan, const RankTable& table, std::vector<std::si
       waiting_(outboxes.size(), 0),
       stuck_(outboxes.size(), 0),
       seen_version_(outboxes.size(), ~std::uint64_t{0}),
-      counts_(table.n_queues()) {}
+      counts_(table.n_queues(), table.own_first(), table.n_own()) {}
 
 bool Exchange::done() const {
   return table_.ranks ? finished_ : nothing_is_left();

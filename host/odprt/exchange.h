@@ -60,6 +60,13 @@ struct ExchangeCounts {
   std::vector<std::vector<std::uint64_t>> rays, shadow_rays;  // [from][to]
   explicit ExchangeCounts(std::size_t n)
       : rays(n, std::vector<std::uint64_t>(n)), shadow_rays(n, std::vector<std::uint64_t>(n)) {}
+  // What some of them have sent: the others' rows are empty. All rows of 2048 queues take 64 MiB.
+  ExchangeCounts(std::size_t n, std::size_t first, std::size_t n_own) : rays(n), shadow_rays(n) {
+    for (std::size_t from = first; from < first + n_own; ++from) {
+      rays[from].resize(n);
+      shadow_rays[from].resize(n);
+    }
+  }
 };
 
 class Exchange {

@@ -46,7 +46,7 @@ void take_films(Crew& crew, std::span<const layout::i64> of_others, const std::f
 void add_counts(const std::vector<std::vector<std::uint64_t>>& from,
                 std::vector<std::vector<std::uint64_t>>& to) {
   for (std::size_t i = 0; i < from.size(); ++i)
-    for (std::size_t k = 0; k < from.size(); ++k) to[i][k] += from[i][k];
+    for (std::size_t k = 0; k < from[i].size(); ++k) to[i][k] += from[i][k];
 }
 
 void add_band(const Crew& crew, const Exchange& exchange, Result& result) {

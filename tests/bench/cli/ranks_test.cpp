@@ -33,7 +33,8 @@ void expect_report(const Folder& folder, int most_ranks, const std::string& over
   expect_keys(run["odprt"], {"size", "alone_seconds", "busy_seconds", "trace_share", "seconds_of_sent_ray",
                              "end_seconds", "largest_error", "checks", "predictions"});
   EXPECT_EQ(run["odprt"]["checks"].size(), 1u + 2u);
-  EXPECT_EQ(run["odprt"]["predictions"].size(), 2u * 8);
+  EXPECT_EQ(run["odprt"]["predictions"].size(), 2u * 9);
+  EXPECT_EQ(run["heavier"].size(), 2u * 5);
   EXPECT_EQ(run["predictions"].size(), 2u * 14);
   EXPECT_EQ(run["predictions"].back()["ranks"], 10000);
   EXPECT_NE(folder.get("report/ranks.svg").find("</svg>"), std::string::npos);
