@@ -261,7 +261,7 @@ class Measuring {
       return (pixels + frame.tile_width - 1) / frame.tile_width;
     };
     frame.curve = wavefront::tile_curve(n_tiles(frame.width), 0, n_tiles(frame.height));
-    frame.tile_seconds = median_tiles();
+    frame.tile_seconds = least_of_tiles();
     frame.wave_seconds = measured_.busy / std::max(1.0, median(waves_));
     frame.waves_of_launch = kOfRanks.waves;
     frame.guessed_waves = 2.0 * asked_.tile * asked_.tile * asked_.samples / kRaysOfBatch;
@@ -301,16 +301,15 @@ class Measuring {
     return median(end_);
   }
 
-  // Each tile's median over the rounds; together they take as long as the queue was busy.
-  std::vector<double> median_tiles() const {
-    std::vector<double> medians(tiles_.front().size()), of_one(tiles_.size());
-    for (std::size_t i = 0; i < medians.size(); ++i) {
-      for (std::size_t round = 0; round < tiles_.size(); ++round) of_one[round] = tiles_[round][i];
-      medians[i] = median(of_one);
-    }
-    const double scale = measured_.busy / sum(medians);
-    for (double& seconds : medians) seconds *= scale;
-    return medians;
+  // Each tile's least over the rounds: somebody else who takes the core in the middle of one only adds, and
+  // a slice of time is a hundred tiles long. Together they take as long as the queue was busy.
+  std::vector<double> least_of_tiles() const {
+    std::vector<double> least = tiles_.front();
+    for (const std::vector<double>& round : tiles_)
+      for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], round[i]);
+    const double scale = measured_.busy / sum(least);
+    for (double& seconds : least) seconds *= scale;
+    return least;
   }
 
   Team& team_;
