@@ -70,6 +70,17 @@ TEST(Exr, AHeaderIsNotTrustedWithMemory) {
   EXPECT_TRUE(test::fails([&] { decode_exr(bytes, "a.exr"); }, "damaged"));
 }
 
+// A name of the file's own, in a message of one line.
+TEST(Exr, TellsOfChannelsInOneLine) {
+  std::string bytes = encode_exr(noise(8, 8, 6), {});
+  const std::string channels = "chlist";
+  const std::size_t at = bytes.find(channels) + channels.size() + 1 + 4;
+  ASSERT_EQ(bytes.substr(at, 2), std::string("B\0", 2));
+  bytes[at] = '\n';
+  EXPECT_TRUE(test::fails([&] { decode_exr(bytes, "a.exr"); },
+                          "a.exr: has no channels R, G and B or Y (it has ?, G, R)"));
+}
+
 TEST(Exr, RefusesWhatIsNone) {
   EXPECT_TRUE(test::fails([] { decode_exr("not a picture", "a.exr"); }, "is not an OpenEXR file"));
 }

@@ -16,8 +16,8 @@ namespace kdray::test {
 using Exact = mpf_class;
 void set_exact_precision();  // before the first is made
 
-// For each kind. The rough ones are right to 2^-60 of the largest coordinate, in long double: to find which
-// primitives are worth an exact answer.
+// Each kind has both. The rough ones are right to 2^-60 of the largest coordinate, in long double: to find
+// which primitives are worth an exact answer.
 #define KDRAY_DISTANCES_OF_KIND(NAME, name, names, Struct)              \
   Exact exact_distance(const dvec3& point, const layout::Struct& name); \
   long double rough_distance(const dvec3& point, const layout::Struct& name);
