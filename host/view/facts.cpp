@@ -146,9 +146,11 @@ std::string tell_picked(std::uint32_t number, const std::optional<Picked>& picke
                {"point", p.point},
                {"normal", p.normal},
                {"kind", p.kind},
-               {"primitive", p.primitive},
-               {"geometry", p.geometry},
-               {"name", p.geometry_name}});
+               {"primitive", p.primitive}});
+  if (p.instance)
+    json["instance"] = *p.instance;
+  else
+    json.update({{"geometry", p.geometry}, {"name", p.geometry_name}});
   const auto& materials = scene.settings().materials;
   if (!p.material || *p.material >= materials.size()) return text_of(json);
   const scene::Material& m = materials[*p.material];

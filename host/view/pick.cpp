@@ -1,11 +1,11 @@
 #include "view/pick.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "api/committed.h"
 #include "layout/kinds.h"
 #include "math/local_space.h"
-#include "prepare/instanced.h"
 #include "query/ask.h"
 
 namespace kdray::view {
@@ -19,10 +19,12 @@ Vec3 values_of(const dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-// The primitive of that number, of whichever kind.
+// The primitive of that number, of whichever kind. The scene's own come first, and then those of meshes with
+// instances, whose numbers are of the mesh.
 template <class Array>
-bool find(const Array& primitives, const char* kind, std::uint32_t number, Picked& picked) {
-  for (std::size_t i = 0; i < primitives.size(); ++i)
+bool find(const Array& primitives, std::uint64_t n_own, const char* kind, std::uint32_t number,
+          Picked& picked) {
+  for (std::size_t i = 0; i < std::min<std::uint64_t>(n_own, primitives.size()); ++i)
     if (primitives.data()[i].number == number) {
       picked.kind = kind;
       picked.material = primitives.data()[i].material;
@@ -54,24 +56,36 @@ Picker::Picker(const PreparedScene& scene, std::vector<GeometryName> geometries,
 Picker::~Picker() = default;
 
 std::optional<Picked> Picker::pick(const EyeRay& ray) {
-  prepare::refuse_instances(scene_.prepared(), "picking");
-  std::uint32_t number = kNoPrimitive;
+  std::uint32_t number = kNoPrimitive, instance = kNoInstance;
   Picked picked;
   const Rays rays{Points(ray.origin.data(), 1), Points(ray.direction.data(), 1)};
   const HitsOut out{.t = {&picked.distance, 1},
                     .primitive = {&number, 1},
                     .normal = {picked.normal.data(), 1},
-                    .point = {picked.point.data(), 1}};
+                    .point = {picked.point.data(), 1},
+                    .instance = {&instance, 1}};
   query::closest(asked_->asked(), rays, out, {});
   if (number == kNoPrimitive) return std::nullopt;
-  name(number, picked);
+  instance == kNoInstance ? name(number, picked) : name_instance(number, instance, picked);
   return picked;
+}
+
+// Primitives of meshes have no numbers of their own in the scene, so only an instance's own material is known.
+void Picker::name_instance(std::uint32_t number, std::uint32_t instance, Picked& picked) const {
+  picked.kind = "instance";
+  picked.primitive = number;
+  picked.instance = instance;
+  for (const layout::Instance& placed : scene_.prepared().flat.instances)
+    if (placed.number == instance && placed.material != KDRAY_MESH_MATERIAL)
+      picked.material = placed.material;
 }
 
 void Picker::name(std::uint32_t number, Picked& picked) const {
   const flatten::FlatScene& flat = scene_.prepared().flat;
-  bool found = find(flat.triangles, "triangle", number, picked);
-#define KDRAY_FIND(NAME, name, names, Struct) found = found || find(flat.names, #name, number, picked);
+  const prepare::Counts& own = scene_.prepared().counts;
+  bool found = find(flat.triangles, own.triangles, "triangle", number, picked);
+#define KDRAY_FIND(NAME, name, names, Struct) \
+  found = found || find(flat.names, own.names, #name, number, picked);
   KDRAY_SHAPES(KDRAY_FIND)
 #undef KDRAY_FIND
   picked.primitive = number;

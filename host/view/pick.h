@@ -27,6 +27,9 @@ struct Picked {
   double distance = 0;
   Vec3 point{}, normal{};
   std::uint32_t geometry = 0, primitive = 0;  // of the geometry, from 0
+  // Where it lies in an instance: its place in the scene's list. The primitive is its mesh's then, and no
+  // geometry is named.
+  std::optional<std::uint32_t> instance;
   std::string geometry_name, kind;
   std::optional<std::uint32_t> material;
 };
@@ -46,6 +49,7 @@ class Picker {
 
  private:
   void name(std::uint32_t number, Picked& picked) const;
+  void name_instance(std::uint32_t number, std::uint32_t instance, Picked& picked) const;
 
   PreparedScene scene_;
   std::vector<GeometryName> geometries_;

@@ -1,8 +1,9 @@
 // What    The extra channels of a picture (AOVs) from one eye ray per pixel, through its centre (or corner).
 // Shape   One work-item per sixteen pixels; out_channels[pixel*7]: depth, normal x y z, primitive number,
-//         cost, instance. Nothing hit: depth inf, normal 0, primitive -1, instance -1, as for the scene's own
-//         primitives. A failed walk: depth NaN, which the host takes for an error. The binary tree is walked,
-//         but where there are instances, which the wide form alone has; that walk has no cost.
+//         cost, the instance's place in the scene's list. Nothing hit: depth inf, normal 0, primitive -1,
+//         instance -1, as for the scene's own primitives. A failed walk: depth NaN, which the host takes for
+//         an error. The binary tree is walked, but where there are instances, which the wide form alone has;
+//         that walk has no cost.
 #include "layout/arguments.h"
 #include "layout/features.h"
 #include "layout/rays.layout.h"
@@ -107,6 +108,10 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
     store3(out + 1, (real3)(nx.lane[i], ny.lane[i], nz.lane[i]));
     out[4] = number.lane[i];
     out[5] = cost.lane[i];
-    out[6] = (float)instances[i] - 1.0f;
+#if KDRAY_HAS_INSTANCES  // those of empty meshes have a place in the list, and no index
+    out[6] = instances[i] ? (float)scene.instances[instances[i] - 1].number : -1.0f;
+#else
+    out[6] = -1.0f;
+#endif
   }
 }

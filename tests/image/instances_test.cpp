@@ -171,8 +171,13 @@ class CopiedNumbers {
   std::vector<std::uint32_t> first_;
 };
 
+// One of an empty mesh comes first: it can't be hit, but has a place in the list.
 TEST(Instances, HaveTheChannelsOfCopies) {
-  const scene::Scene model = instanced();
+  scene::Scene model = instanced();
+  scene::Instance empty = model.instances.front();
+  empty.mesh = static_cast<std::uint32_t>(model.meshes.size());
+  model.meshes.push_back(std::make_shared<const scene::Scene>());
+  model.instances.insert(model.instances.begin(), empty);
   const auto seen = [](const scene::Scene& m) {
     Renderer renderer(Scene{scene::Scene(m)}, {}, device_of());
     RenderOptions options = exact_options(kWidth, kHeight);

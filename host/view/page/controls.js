@@ -48,7 +48,9 @@ const brightest = (c) => Math.max(...c);
 
 export function showPicked(card, picked) {
   card.hidden = false;
-  card.querySelector('h2').textContent = picked.hit ? `${picked.kind} ${picked.primitive}` : 'nothing';
+  const isInstance = picked.instance !== undefined;
+  card.querySelector('h2').textContent =
+    picked.hit ? `${picked.kind} ${isInstance ? picked.instance : picked.primitive}` : 'nothing';
   const list = card.querySelector('dl');
   list.replaceChildren();
   const row = (name, ...values) => {
@@ -58,7 +60,8 @@ export function showPicked(card, picked) {
     list.append(dt, dd);
   };
   if (!picked.hit) return;
-  row('geometry', picked.name ? `${picked.geometry}, ${picked.name}` : String(picked.geometry));
+  if (isInstance) row('primitive', `${picked.primitive} of its mesh`);
+  else row('geometry', picked.name ? `${picked.geometry}, ${picked.name}` : String(picked.geometry));
   row('distance', six(picked.distance));
   row('point', picked.point.map(six).join(', '));
   row('normal', picked.normal.map((x) => x.toFixed(4)).join(', '));
