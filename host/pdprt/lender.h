@@ -1,8 +1,8 @@
-// What    The side of a list of tiles that lends: the bag, who has what of it, and what has come back. Of rank
-//         0, and of ranks that lend what they have borrowed (bags.h).
+// What    The side of a list of tiles that lends: the bag, who has what of it, and what has come back. It is
+//         that of rank 0, and of ranks that lend what they have borrowed (bags.h).
 // Shape   begin() or pass_on() tells those who borrow here; then step() answers them, and feeds this rank's
-//         own queues from the same bag, until is_done(): every tile's sums are where they belong. A rank gets a
-//         part of what is left, so that all come to their end together, but no less than it renders while a
+//         own queues from the same bag, until is_done(): every tile's sums are where they belong. A rank gets
+//         a part of what is left, so that all come to their end together, but no less than it renders while a
 //         message is on its way. A bag that is filled from another one is open until end(): who asks while
 //         there is nothing in it is answered when there is.
 // Errors  ErrorCode::internal: pieces that were damaged on their way, that nobody asked the rank for, or that

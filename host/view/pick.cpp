@@ -70,7 +70,8 @@ std::optional<Picked> Picker::pick(const EyeRay& ray) {
   return picked;
 }
 
-// Primitives of meshes have no numbers of their own in the scene, so only an instance's own material is known.
+// Primitives of meshes have no numbers of their own in the scene, so only an instance's own material is
+// known.
 void Picker::name_instance(std::uint32_t number, std::uint32_t instance, Picked& picked) const {
   picked.kind = "instance";
   picked.primitive = number;

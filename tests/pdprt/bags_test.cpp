@@ -1,5 +1,5 @@
-// Who lends to whom: every rank but the first borrows from one, which knows of it; nobody has many to answer; a
-// message passes two hands at most; and what is fed by way of each rank adds up.
+// Who lends to whom: every rank but the first borrows from one, which knows of it; nobody has many to answer;
+// a message passes two hands at most; and what is fed by way of each rank adds up.
 #include "pdprt/bags.h"
 
 #include <gtest/gtest.h>
