@@ -69,6 +69,8 @@ __kernel void pack_hits(KDRAY_PARAMETERS(KDRAY_PACK_HITS_ARGUMENTS)) {
     out_primitive[first + k] = primitive_number(&scene, (u32)hits[k].primitive);
 #if KDRAY_HAS_INSTANCES
     out_instance[first + k] = in_hit_instances[(size_t)i * capacity + k] - 1;
+#else
+    (void)in_hit_instances, (void)out_instance;
 #endif
     out_u[first + k] = hits[k].u;
     out_v[first + k] = hits[k].v;

@@ -40,6 +40,8 @@ __kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   RaySource source = ray_source(&scene, in_rays, in_ray_masks, out_hits, space, any_hit, any_length, as_refs);
 #if KDRAY_HAS_INSTANCES
   source.hit_instances = out_hit_instances;
+#else
+  (void)out_hit_instances;
 #endif
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
   if (item < n_rays)
