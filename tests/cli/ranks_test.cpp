@@ -310,7 +310,7 @@ TEST_F(MpirunTest, ASlowNetworkGivesTheSameBytes) {
     EXPECT_EQ(folder.get("a.png"), whole) << mode;
   }
   const Outcome refused = ranks(2, render(scene, size), {{"KDRAY_MPI_BANDWIDTH", "much"}});
-  EXPECT_EQ(refused.code, 1);
+  EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.err.find("KDRAY_MPI_BANDWIDTH"), std::string::npos) << refused.err;
 }
 
