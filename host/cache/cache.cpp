@@ -72,6 +72,7 @@ std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path&
       !all_as_they_were(found->settings.files, scene.parent_path()))
     return std::nullopt;
   for (FileRead& named : found->settings.files) named.path = scene.parent_path() / named.path;
+  found->settings.files.front().path = scene;  // it may have had another name
   found->settings.name = scene.string();
   found->settings.load_options = load;
   found->tree_options = tree;

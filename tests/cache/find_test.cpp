@@ -86,6 +86,16 @@ TEST_F(FindTest, MovedAndRenamedSceneIsFound) {
   EXPECT_FALSE(find(cache, folder / "there/b.obj", {})) << "the same bytes in another format";
 }
 
+// Whoever waits for the scene to change looks at the file that was asked for.
+TEST_F(FindTest, ARenamedSceneIsItsOwnFile) {
+  const auto file = folder.put("balls.nff", test::nff("balls", 1));
+  keep_it(file);
+  const auto copy = folder.put("copy.nff", test::nff("balls", 1));
+  const std::optional<prepare::Prepared> found = find(cache, copy, {});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->settings.files.front().path, copy);
+}
+
 TEST_F(FindTest, ChangedMaterialFileIsNoticed) {
   folder.put("m.mtl", kRed);
   const auto file = folder.put("square.obj", std::string("mtllib m.mtl\n") + kSquare + kFaces);
