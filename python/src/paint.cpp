@@ -43,15 +43,14 @@ void add_paint(SceneClass& scene) {
       "file"_a);
   // `pictures`: the material's own, its normals', its emission's, metal's and occlusion's; kNoPicture: none.
   // `factors`: metallic, roughness, occlusion.
-  scene.def("add_material",
-            [](Scene& s, const Color& emission, const Color& ambient, const Color& diffuse,
-               const Color& specular, const Color& reflect, const Color& transmit, float shine, float index,
-               const std::array<PictureId, 5>& pictures, const std::string& alpha,
-               const std::array<float, 3>& factors) {
-              return s.add_material({emission, ambient, diffuse, specular, reflect, transmit, shine, index,
-                                     pictures[0], pictures[1], pictures[2], alpha_of(alpha), pictures[3],
-                                     factors[0], factors[1], pictures[4], factors[2]});
-            });
+  scene.def("add_material", [](Scene& s, const Color& emission, const Color& ambient, const Color& diffuse,
+                               const Color& specular, const Color& reflect, const Color& transmit,
+                               float shine, float index, const std::array<PictureId, 5>& pictures,
+                               const std::string& alpha, const std::array<float, 3>& factors) {
+    return s.add_material({emission, ambient, diffuse, specular, reflect, transmit, shine, index, pictures[0],
+                           pictures[1], pictures[2], alpha_of(alpha), pictures[3], factors[0], factors[1],
+                           pictures[4], factors[2]});
+  });
 }
 
 }  // namespace kdray::python
