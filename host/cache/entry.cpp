@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/paged.h"
 #include "base/write_file.h"
 #include "cache/facts.h"
 #include "cache/mapped_file.h"
@@ -142,6 +143,8 @@ std::optional<prepare::Prepared> prepared_of(const Header& header, const MappedF
     if (sizes_fit) take(array, bytes_of(section, file.bytes()), file.memory);
   });
   if (!sizes_fit) return std::nullopt;
+  Array<layout::u32>& texels = prepared.flat.texels;
+  texels = {page_mapped(texels.owner(), texels.data(), texels.bytes()), texels.data(), texels.size()};
   return prepared;
 }
 

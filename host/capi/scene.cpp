@@ -110,6 +110,10 @@ uint32_t kdray_version(void) {
   return KDRAY_VERSION_NUMBER;
 }
 
+void kdray_set_texture_cache(uint64_t bytes) {
+  set_texture_cache(bytes);
+}
+
 kdray_status kdray_scene_new(kdray_scene** scene) {
   return guarded([&] { *needed(scene, "scene") = new kdray_scene; });
 }

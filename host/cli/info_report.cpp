@@ -26,7 +26,7 @@ void add_kinds(const Holder& holder, Json& arrays) {
 Json paint_arrays(const scene::Paint& paint) {
   const auto& [colors, texcoords, tangents, coats, textures, pictures] = paint;
   std::uint64_t texels = 0;
-  for (const auto& picture : pictures) texels += bytes_of(picture->texels);
+  for (const auto& picture : pictures) texels += picture->texels.bytes();
   return {{"corner_colors", bytes_of(colors)},
           {"texcoords", bytes_of(texcoords[0]) + bytes_of(texcoords[1]) + bytes_of(tangents)},
           {"coats", bytes_of(coats)},

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "api/statistics_json.h"
+#include "base/paged.h"
 #include "cli/output.h"
 
 namespace kdray::cli {
@@ -40,6 +41,8 @@ Json collect_stats(const std::string& command, const std::string& scene, const S
   for (const auto& [name, value] : renderer.items())
     if (!stats.contains(name)) stats[name] = value;
   stats["memory"]["process_peak_bytes"] = peak_memory();
+  if (const std::uint64_t in_files = paged_bytes().in_files; in_files > 0)
+    stats["memory"]["texture_file_bytes"] = in_files;
   return stats;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/error.h"
+#include "base/paged.h"
 
 namespace kdray::flatten {
 
@@ -57,7 +58,7 @@ TexelPlan plan_texels(const scene::Paint& paint) {
 }
 
 Array<layout::u32> pack_texels(const scene::Paint& paint, const TexelPlan& plan) {
-  Array<layout::u32> texels(plan.n_texels);
+  Array<layout::u32> texels = paged_array<layout::u32>(plan.n_texels);
   for (layout::u32 code = 0; code < KDRAY_TEXEL_CURVE; ++code)
     texels[code] = scene::linear_unit_of_srgb(code / 255.0);
   tbb::parallel_for(std::size_t{0}, plan.chains.size(), [&](std::size_t i) {

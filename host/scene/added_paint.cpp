@@ -41,7 +41,7 @@ std::shared_ptr<const Picture> picture_of(const Pixels& pixels) {
                        kMostTexels, kLongestSide));
   if (data == nullptr) refuse("picture: no data");
   const std::size_t row = row_bytes == 0 ? std::size_t{width} * channels : row_bytes;
-  Picture picture{"a picture", width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height)};
+  Picture picture = blank_picture("a picture", width, height);
   for (std::uint32_t y = 0; y < height; ++y)
     for (std::uint32_t x = 0; x < width; ++x)
       spread(data + y * row + std::size_t{x} * channels, channels,

@@ -36,8 +36,8 @@ bool is_grey(const Picture& p) {
 }
 
 std::shared_ptr<const Picture> normals_of_heights(const Picture& heights, double strength) {
-  Picture out{heights.name, heights.width, heights.height, {}};
-  out.texels.reserve(heights.texels.size());
+  Picture out = blank_picture(heights.name, heights.width, heights.height);
+  std::uint8_t* to = out.texels.data();
   const std::uint32_t w = heights.width, h = heights.height;
   for (std::uint32_t y = 0; y < h; ++y)
     for (std::uint32_t x = 0; x < w; ++x) {
@@ -48,16 +48,20 @@ std::shared_ptr<const Picture> normals_of_heights(const Picture& heights, double
       const double down = slope(texel(heights, x, (y + h - 1) % h), texel(heights, x, (y + 1) % h));
       const double length = std::sqrt(1 + across * across + down * down);
       // Green points up in the picture, against the way in which rows follow each other.
-      out.texels.insert(out.texels.end(), {byte_of_unit(-across / length), byte_of_unit(down / length),
-                                           byte_of_unit(1 / length), 255});
+      for (const std::uint8_t byte : {byte_of_unit(-across / length), byte_of_unit(down / length),
+                                      byte_of_unit(1 / length), std::uint8_t{255}})
+        *to++ = byte;
     }
   return std::make_shared<const Picture>(std::move(out));
 }
 
 std::shared_ptr<const Picture> with_alpha(const Picture* colors, const Picture& alpha) {
-  Picture out = colors ? *colors
-                       : Picture{alpha.name, alpha.width, alpha.height,
-                                 std::vector<std::uint8_t>(alpha.texels.size(), 255)};
+  const Picture& base = colors ? *colors : alpha;
+  Picture out = blank_picture(base.name, base.width, base.height);
+  if (colors)
+    std::copy(base.texels.begin(), base.texels.end(), out.texels.begin());
+  else
+    std::fill(out.texels.begin(), out.texels.end(), std::uint8_t{255});
   const std::size_t channel = has_alpha(alpha) ? 3 : 0;
   for (std::uint32_t y = 0; y < out.height; ++y)
     for (std::uint32_t x = 0; x < out.width; ++x) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/paged.h"
+
 namespace kdray::scene {
 
 namespace {
@@ -77,6 +79,10 @@ bool needs_footprints(const Texture& texture, const Picture& picture) {
 
 std::uint32_t linear_unit(double value) {
   return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535));
+}
+
+Picture blank_picture(const std::string& name, std::uint32_t width, std::uint32_t height) {
+  return {name, width, height, paged_array<std::uint8_t>(std::size_t{4} * width * height)};
 }
 
 // Source: IEC 61966-2-1.

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/array.h"
 #include "base/raw_vector.h"
 #include "layout/paint.layout.h"
 #include "math/vec.h"
@@ -24,8 +25,11 @@ namespace kdray::scene {
 struct Picture {
   std::string name;  // in messages
   std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> texels;  // red, green, blue, alpha, row by row from the top
+  Array<std::uint8_t> texels;  // red, green, blue, alpha, row by row from the top
 };
+
+// Its texels, which are yet to be set, may lie in a file (base/paged.h).
+Picture blank_picture(const std::string& name, std::uint32_t width, std::uint32_t height);
 
 enum class Wrap : std::uint32_t {
   repeat = KDRAY_WRAP_REPEAT,

@@ -37,10 +37,10 @@ std::uint8_t byte_of(std::uint32_t sample, int bits) {
 Picture decode_png(std::string_view bytes, const std::string& name) {
   if (bytes.size() >= 24) check_size(big_endian(bytes, 16), big_endian(bytes, 20), name);
   const film::PngPixels png = film::decode_png(bytes, name);
-  Picture picture{name, static_cast<std::uint32_t>(png.width), static_cast<std::uint32_t>(png.height), {}};
+  Picture picture =
+      blank_picture(name, static_cast<std::uint32_t>(png.width), static_cast<std::uint32_t>(png.height));
   const auto step = static_cast<std::size_t>(png.channels);
   const std::size_t n = std::size_t{picture.width} * picture.height;
-  picture.texels.resize(4 * n);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t c = 0; c < 4; ++c)
       picture.texels[4 * i + c] = c < step ? byte_of(png.samples[step * i + c], png.bits) : std::uint8_t{255};
@@ -49,7 +49,7 @@ Picture decode_png(std::string_view bytes, const std::string& name) {
 
 #ifdef KDRAY_WITH_JPEG
 // Programs that write CMYK store how much of each ink is missing.
-void rgb_from_cmyk(std::vector<std::uint8_t>& texels) {
+void rgb_from_cmyk(Array<std::uint8_t>& texels) {
   for (std::size_t i = 0; i + 3 < texels.size(); i += 4) {
     const std::uint32_t black = texels[i + 3];
     for (std::size_t c = 0; c < 3; ++c)
@@ -76,8 +76,8 @@ Picture decode_jpeg(std::string_view bytes, const std::string& name, std::vector
     throw input_error(name, 0, "is a damaged JPEG: its header promises more pixels than it holds",
                       "write it again");
   const bool inks = colors == TJCS_CMYK || colors == TJCS_YCCK;
-  Picture picture{name, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-  picture.texels.resize(std::size_t{4} * picture.width * picture.height);
+  Picture picture =
+      blank_picture(name, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
   if (tjDecompress2(jpeg.get(), data, bytes.size(), picture.texels.data(), width, 0, height,
                     inks ? TJPF_CMYK : TJPF_RGBA, TJFLAG_ACCURATEDCT) != 0) {
     if (tjGetErrorCode(jpeg.get()) != TJERR_WARNING) throw damaged();

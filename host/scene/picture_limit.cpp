@@ -41,7 +41,7 @@ std::shared_ptr<const Picture> reduced(const Picture& picture, bool curved, std:
                                        LevelSize size) {
   std::vector<std::uint32_t> words(size.texels());
   write_levels(picture, curved, level, 1, words);
-  Picture out{picture.name, size.width, size.height, std::vector<std::uint8_t>(4 * words.size())};
+  Picture out = blank_picture(picture.name, size.width, size.height);
   std::memcpy(out.texels.data(), words.data(), out.texels.size());
   return std::make_shared<const Picture>(std::move(out));
 }

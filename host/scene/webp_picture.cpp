@@ -30,8 +30,8 @@ Picture decode_webp(std::string_view bytes, const std::string& name,
   check_size(width, height, name);
   if (width * height > std::max(kMostPixelsOfSmall, kMostPixelsPerByte * bytes.size()))
     throw damaged("its header promises more pixels than it holds");
-  Picture picture{name, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-  picture.texels.resize(4 * width * height);
+  Picture picture =
+      blank_picture(name, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
   if (!WebPDecodeRGBAInto(data, bytes.size(), picture.texels.data(), picture.texels.size(), 4 * header.width))
     throw damaged("it ends too early, or its pixels make no sense");
   return picture;

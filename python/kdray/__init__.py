@@ -28,7 +28,7 @@ from .looks import Camera, Light, Material
 from .open3d import RaycastingScene
 from .picture import Picture
 from .rays import lidar_rays, pinhole_rays
-from .scene import Geometry, Scene, load
+from .scene import Geometry, Scene, load, set_texture_cache
 from .view import View
 
 try:
@@ -60,4 +60,5 @@ __all__ = [
     "lidar_rays",
     "load",
     "pinhole_rays",
+    "set_texture_cache",
 ]

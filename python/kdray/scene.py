@@ -714,6 +714,17 @@ def load(
     return scene
 
 
+def set_texture_cache(size: int) -> None:
+    """The most memory, in bytes, that this process takes for the texels of pictures that come from now on.
+
+    What is more lies in files without names, in ``$TMPDIR`` or else ``/var/tmp``, of which the system holds in memory
+    what is looked at: pictures are the same. By default it is half of the memory that is free.
+    """
+    if size < 0:
+        raise errors.UsageError(f"a texture cache of {size} bytes; it may have 0 or more")
+    _core.set_texture_cache(size)
+
+
 # ---- Small things
 
 

@@ -52,6 +52,7 @@ void add_devices(nb::module_& module) {
         keep_programs(options);
       },
       nb::call_guard<nb::gil_scoped_release>());
+  module.def("set_texture_cache", &set_texture_cache);
   module.def("program_folder", [] { return default_program_folder().string(); });
 }
 

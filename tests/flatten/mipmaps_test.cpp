@@ -17,10 +17,9 @@ using scene::level_sizes, scene::LevelSize, scene::write_levels;
 namespace {
 
 scene::Picture noise(std::uint32_t width, std::uint32_t height) {
-  scene::Picture picture{"noise", width, height, {}};
+  scene::Picture picture = scene::blank_picture("noise", width, height);
   std::mt19937 random(width * 1000 + height);
-  for (std::uint32_t i = 0; i < 4 * width * height; ++i)
-    picture.texels.push_back(static_cast<std::uint8_t>(random()));
+  for (std::uint8_t& byte : picture.texels) byte = static_cast<std::uint8_t>(random());
   return picture;
 }
 
@@ -98,8 +97,8 @@ TEST(Mipmaps, AreMeansOfWhatTheyCover) {
 }
 
 TEST(Mipmaps, BlackAndWhiteIsHalfTheLight) {
-  scene::Picture picture{"checker", 2, 2, {}};
-  for (const std::uint8_t v : {0, 255, 255, 0}) picture.texels.insert(picture.texels.end(), {v, v, v, v});
+  scene::Picture picture = scene::blank_picture("checker", 2, 2);
+  for (int i = 0; i < 16; ++i) picture.texels[i] = i / 4 == 1 || i / 4 == 2 ? 255 : 0;
   std::vector<std::uint32_t> words(5);
   write_levels(picture, true, 0, 2, words);
   EXPECT_EQ(words[4], 0x80bcbcbcu);  // 188 is half the light; alpha has no curve

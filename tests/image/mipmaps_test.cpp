@@ -20,11 +20,12 @@ constexpr double kFar = -4000;
 
 // Fields of a length of 1, black and white, 16 texels each.
 std::shared_ptr<const scene::Picture> chessboard() {
-  scene::Picture p{"chessboard", 32, 32, {}};
+  scene::Picture p = scene::blank_picture("chessboard", 32, 32);
+  std::uint8_t* to = p.texels.data();
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) {
       const auto v = static_cast<std::uint8_t>((x / 16 + y / 16) % 2 == 0 ? 255 : 0);
-      p.texels.insert(p.texels.end(), {v, v, v, 255});
+      for (const std::uint8_t byte : {v, v, v, std::uint8_t{255}}) *to++ = byte;
     }
   return std::make_shared<const scene::Picture>(std::move(p));
 }

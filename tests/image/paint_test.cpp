@@ -22,10 +22,9 @@ double curve(double c) {
 }
 
 std::shared_ptr<scene::Picture> noise() {
-  auto picture = std::make_shared<scene::Picture>(scene::Picture{"noise", kWidth, kHeight, {}});
+  auto picture = std::make_shared<scene::Picture>(scene::blank_picture("noise", kWidth, kHeight));
   std::mt19937 random(64);
-  for (std::uint32_t i = 0; i < 4 * kWidth * kHeight; ++i)
-    picture->texels.push_back(static_cast<std::uint8_t>(random()));
+  for (std::uint8_t& byte : picture->texels) byte = static_cast<std::uint8_t>(random());
   return picture;
 }
 

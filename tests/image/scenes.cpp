@@ -162,9 +162,8 @@ namespace {
 
 // Colours and alpha from 0 to 255 without any order.
 std::shared_ptr<const scene::Picture> noise(std::uint32_t width, std::uint32_t height, std::mt19937& random) {
-  scene::Picture p{"noise", width, height, {}};
-  for (std::uint32_t i = 0; i < 4 * width * height; ++i)
-    p.texels.push_back(static_cast<std::uint8_t>(random()));
+  scene::Picture p = scene::blank_picture("noise", width, height);
+  for (std::uint8_t& byte : p.texels) byte = static_cast<std::uint8_t>(random());
   return std::make_shared<const scene::Picture>(std::move(p));
 }
 

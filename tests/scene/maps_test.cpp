@@ -229,7 +229,7 @@ TEST(Maps, OfAProgram) {
   const std::uint8_t grey[] = {0, 255, 7, 7};  // two rows of two
   const auto picture =
       picture_of(Pixels{.data = grey, .width = 2, .height = 1, .channels = 2, .row_bytes = 4});
-  EXPECT_EQ(picture->texels, (std::vector<std::uint8_t>{0, 0, 0, 255, 7, 7, 7, 7}));
+  EXPECT_EQ(test::bytes_of(*picture), (std::vector<std::uint8_t>{0, 0, 0, 255, 7, 7, 7, 7}));
   Paint paint;
   paint.pictures = {picture};
   kdray::Material m{.diffuse = {0.5f, 0.5f, 0.5f}, .picture = 0, .alpha = AlphaMode::blend};
@@ -282,8 +282,9 @@ TEST(Maps, OfAProgramAreRefused) {
 }
 
 std::shared_ptr<const Picture> even(std::uint32_t width, std::uint32_t height, std::uint8_t value) {
-  return std::make_shared<const Picture>(
-      Picture{"even", width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, value)});
+  Picture picture = blank_picture("even", width, height);
+  std::fill(picture.texels.begin(), picture.texels.end(), value);
+  return std::make_shared<const Picture>(std::move(picture));
 }
 
 TEST(PictureLimit, HalvesTheLargestUntilAllFit) {
@@ -300,7 +301,7 @@ TEST(PictureLimit, HalvesTheLargestUntilAllFit) {
   EXPECT_EQ(limited.bytes, with - 4 * 64 * 64 + 1024);
   EXPECT_EQ(limited.bytes, picture_bytes(paint));
   EXPECT_EQ(paint.pictures[0]->width, 32u);
-  EXPECT_EQ(paint.pictures[0]->texels, std::vector<std::uint8_t>(32 * 32 * 4, 9));
+  EXPECT_EQ(test::bytes_of(*paint.pictures[0]), std::vector<std::uint8_t>(32 * 32 * 4, 9));
   EXPECT_EQ(paint.pictures[1]->width, 16u);
   EXPECT_EQ(limit_pictures(paint, 0).bytes, 8u);  // a texel each is the least
 }

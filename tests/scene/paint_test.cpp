@@ -184,7 +184,7 @@ TEST(Paint, OfGltfTexture) {
   EXPECT_EQ(s.materials[0].diffuse, vec3(0));
   const Texture& t = s.paint.textures.at(coat.base);
   EXPECT_EQ(t, (Texture{.picture = 0, .minify = Minify::linear_mipmap_linear}));
-  EXPECT_EQ(s.paint.pictures[0]->texels,
+  EXPECT_EQ(test::bytes_of(*s.paint.pictures[0]),
             (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}));
   ASSERT_EQ(s.paint.texcoords[0].size(), 2u);
   EXPECT_EQ(s.paint.texcoords[0][1].uv[2][1], 1);  // corner 3

@@ -69,25 +69,25 @@ std::string png_of(png_uint_32 width, png_uint_32 height, int bits, int color, c
 TEST(Picture, OfOnePixel) {
   const auto p = decode(test::png(1, 1, 4, {1, 2, 3, 4}));
   EXPECT_EQ(p->width, 1u);
-  EXPECT_EQ(p->texels, (Bytes{1, 2, 3, 4}));
+  EXPECT_EQ(test::bytes_of(*p), (Bytes{1, 2, 3, 4}));
 }
 
 TEST(Picture, OfSixteenBitsIsRounded) {
-  EXPECT_EQ(decode(test::png(1, 2, 3, {0, 65535, 128, 129, 32768, 386}, 16))->texels,
+  EXPECT_EQ(test::bytes_of(*decode(test::png(1, 2, 3, {0, 65535, 128, 129, 32768, 386}, 16))),
             (Bytes{0, 255, 0, 255, 1, 128, 2, 255}));
 }
 
 TEST(Picture, OfGreyWithAlpha) {
-  EXPECT_EQ(decode(png_of(2, 1, 8, PNG_COLOR_TYPE_GRAY_ALPHA, {9, 200, 8, 100}))->texels,
+  EXPECT_EQ(test::bytes_of(*decode(png_of(2, 1, 8, PNG_COLOR_TYPE_GRAY_ALPHA, {9, 200, 8, 100}))),
             (Bytes{9, 9, 9, 200, 8, 8, 8, 100}));
-  EXPECT_EQ(decode(png_of(3, 1, 1, PNG_COLOR_TYPE_GRAY, {0xa0}))->texels,
+  EXPECT_EQ(test::bytes_of(*decode(png_of(3, 1, 1, PNG_COLOR_TYPE_GRAY, {0xa0}))),
             (Bytes{255, 255, 255, 255, 0, 0, 0, 255, 255, 255, 255, 255}));
 }
 
 TEST(Picture, OfAPaletteWithAlpha) {
   const auto p = decode(png_of(4, 1, 2, PNG_COLOR_TYPE_PALETTE, {0x1b}, PNG_INTERLACE_NONE,
                                {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}}, {0, 128}));
-  EXPECT_EQ(p->texels, (Bytes{1, 2, 3, 0, 4, 5, 6, 128, 7, 8, 9, 255, 10, 11, 12, 255}));
+  EXPECT_EQ(test::bytes_of(*p), (Bytes{1, 2, 3, 0, 4, 5, 6, 128, 7, 8, 9, 255, 10, 11, 12, 255}));
 }
 
 TEST(Picture, InterlacedIsTheSame) {
@@ -96,7 +96,7 @@ TEST(Picture, InterlacedIsTheSame) {
   for (auto& b : rows) b = static_cast<std::uint8_t>(random());
   const auto plain = decode(png_of(13, 9, 8, PNG_COLOR_TYPE_RGB, rows));
   const auto interlaced = decode(png_of(13, 9, 8, PNG_COLOR_TYPE_RGB, rows, PNG_INTERLACE_ADAM7));
-  EXPECT_EQ(plain->texels, interlaced->texels);
+  EXPECT_EQ(test::bytes_of(*plain), test::bytes_of(*interlaced));
 }
 
 TEST(Picture, RefusesWhatIsNone) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "film/png.h"
+#include "scene/paint.h"
 
 namespace kdray::test {
 
@@ -18,6 +19,10 @@ inline std::string png(int width, int height, int channels, const std::vector<st
 // Two columns, two rows: red, green; blue, white.
 inline std::string four_colors() {
   return png(2, 2, 3, {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255});
+}
+
+inline std::vector<std::uint8_t> bytes_of(const scene::Picture& picture) {
+  return {picture.texels.begin(), picture.texels.end()};
 }
 
 }  // namespace kdray::test

@@ -75,7 +75,7 @@ TEST(WebpPicture, WithoutLossItIsTheSame) {
     const Picture picture = decoded(packed(pixels(opaque), kWidth, kHeight, -1));
     EXPECT_EQ(picture.width, std::uint32_t{kWidth});
     EXPECT_EQ(picture.height, std::uint32_t{kHeight});
-    EXPECT_EQ(picture.texels, pixels(opaque));
+    EXPECT_EQ(test::bytes_of(picture), pixels(opaque));
   }
 }
 
@@ -90,7 +90,7 @@ TEST(WebpPicture, IsATextureOfGltf) {
   const Scene s = read_gltf(square_with(bytes, webp_source()).text(), "a.gltf");
   EXPECT_TRUE(s.warnings.empty());
   ASSERT_EQ(s.paint.pictures.size(), 1u);
-  EXPECT_EQ(s.paint.pictures[0]->texels, pixels(true));
+  EXPECT_EQ(test::bytes_of(*s.paint.pictures[0]), pixels(true));
 }
 
 TEST(WebpPicture, DamagedOnesAreRefusedOrRead) {

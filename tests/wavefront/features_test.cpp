@@ -108,10 +108,10 @@ void add_triangles(scene::Scene& s, layout::Features mask, std::uint32_t first_n
 void add_coat(scene::Scene& s, layout::Features mask) {
   scene::Coat coat{.diffuse = std::exchange(s.materials[0].diffuse, vec3(0))};
   if (has(mask, kTextures)) {
-    auto picture = std::make_shared<scene::Picture>(scene::Picture{"p", 3, 2, {}});
+    auto picture = std::make_shared<scene::Picture>(scene::blank_picture("p", 3, 2));
+    std::uint8_t* to = picture->texels.data();
     for (int i = 0; i < 6; ++i)
-      picture->texels.insert(picture->texels.end(), {static_cast<std::uint8_t>(40 * i), 200, 90,
-                                                     static_cast<std::uint8_t>(i == 2 ? 0 : 255)});
+      for (const int byte : {40 * i, 200, 90, i == 2 ? 0 : 255}) *to++ = static_cast<std::uint8_t>(byte);
     s.paint.pictures = {picture};
     coat.base = s.paint.add(scene::Texture{});
     s.paint.texcoords[0].assign(s.triangles.size(), {{{0, 0}, {2, 0}, {1, 1.5f}}});
