@@ -77,7 +77,8 @@ class Opener {
   // The largest first. False: there were none.
   bool open_once() {
     std::vector<std::uint32_t> chosen = find_close();
-    std::ranges::stable_sort(chosen, std::greater<>(), [&](std::uint32_t i) { return pieces_[i].box.area(); });
+    std::ranges::stable_sort(chosen, std::greater<>(),
+                             [&](std::uint32_t i) { return pieces_[i].box.area(); });
     std::size_t n = pieces_.size();
     std::vector<char> opened(n, 0);
     for (const std::uint32_t i : chosen) {
@@ -88,7 +89,8 @@ class Opener {
     }
     if (n == pieces_.size()) return false;
     std::vector<Piece> after;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) opened[i] ? open(pieces_[i], after) : after.push_back(pieces_[i]);
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+      opened[i] ? open(pieces_[i], after) : after.push_back(pieces_[i]);
     pieces_ = std::move(after);
     return true;
   }

@@ -278,8 +278,7 @@ void Meshes::join(Prepared& made) const {
     const auto first = static_cast<layout::u32>(of_meshes.size());
     for (flatten::MeshPart& p : part.form.parts) p.root += first;
     of_meshes.resize(of_meshes.size() + part.wide.nodes.size());
-    copy_nodes({part.wide.nodes.data(), part.wide.nodes.size()}, shifts[i],
-               of_meshes.data() + first);
+    copy_nodes({part.wide.nodes.data(), part.wide.nodes.size()}, shifts[i], of_meshes.data() + first);
     meshes->meshes.push_back(std::move(part.form));
   }
   meshes->n_own_nodes = own.size();

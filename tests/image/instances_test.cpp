@@ -134,8 +134,9 @@ scene::Scene close_together() {
   add_smooth_ball(ball, {0, 0, 0}, 1, 60, oracle::mirror({0.8f, 0.6f, 0.5f}));
   const std::uint32_t mesh = add_mesh(s, ball);
   for (int i = 0; i < 9; ++i)
-    add_instance(s, mesh, translation({i % 3 * 0.6 - 0.6, i / 3 * 0.6 - 0.6, i * 0.05}) *
-                              rotation({0, 1, 0}, i) * scaling({i % 2 ? -0.5 : 0.5, 0.6, 0.4}));
+    add_instance(s, mesh,
+                 translation({i % 3 * 0.6 - 0.6, i / 3 * 0.6 - 0.6, i * 0.05}) * rotation({0, 1, 0}, i) *
+                     scaling({i % 2 ? -0.5 : 0.5, 0.6, 0.4}));
   return s;
 }
 
