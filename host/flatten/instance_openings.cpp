@@ -28,6 +28,12 @@ Box box_of(const layout::WideNode& node, std::size_t slot) {
   return box;
 }
 
+// The middle of a box, half as long along each axis.
+Box core_of(const Box& box) {
+  const vec3 quarter = box.extent() * 0.25f;
+  return {box.lo + quarter, box.hi - quarter};
+}
+
 // Pieces, and a tree over them to ask.
 class Neighbours {
  public:
@@ -37,21 +43,23 @@ class Neighbours {
     nodes_ = build_instance_tree(boxes).nodes;
   }
 
-  // Whether its box meets one of another instance.
-  bool near_another(const Piece& piece, layout::u32 root = 0) const {
+  // Whether a box of another instance reaches into the middle of its box.
+  bool near_another(const Piece& piece) const { return meets_another(core_of(piece.box), piece.instance, 0); }
+
+ private:
+  bool meets_another(const Box& core, std::uint32_t instance, layout::u32 root) const {
     const layout::WideNode& node = nodes_[root];
     for (std::size_t slot = 0; slot < kWidth; ++slot) {
       const Box box = box_of(node, slot);
-      if (box.empty() || !meet(piece.box, box)) continue;
+      if (box.empty() || !meet(core, box)) continue;
       const layout::u32 child = node.child[slot];
-      if (child & KDRAY_WIDE_LEAF ? pieces_[child & KDRAY_WIDE_FIRST_MASK].instance != piece.instance
-                                  : near_another(piece, child))
+      if (child & KDRAY_WIDE_LEAF ? pieces_[child & KDRAY_WIDE_FIRST_MASK].instance != instance
+                                  : meets_another(core, instance, child))
         return true;
     }
     return false;
   }
 
- private:
   std::span<const Piece> pieces_;
   std::vector<layout::WideNode> nodes_;
 };

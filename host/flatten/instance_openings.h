@@ -5,9 +5,9 @@
 // Shape   An opened instance keeps its place among the instances, by which rays and hits name it; no leaf has
 //         it. Its pieces lie behind all instances: the same but for the root, and `whole` is the instance.
 //         All of them have the ray with the same bits, so a primitive that lies in two is hit by both alike.
-//         Opened is what meets another instance's box, the largest first, as long as there are few leaves in
-//         all. What lies by itself stays whole, since a ray that enters several pieces is moved into the mesh
-//         for each.
+//         Opened is what another instance's box reaches into the middle of, the largest first, as long as
+//         there are few leaves in all. What lies by itself, or meets others at its ends, stays whole, since a
+//         ray that enters several pieces is moved into the mesh for each.
 // Errors  A piece's box holds what is hit in it for the reasons that an instance's does (instances.h), of
 //         the boxes in the mesh that are moved: those of the piece.
 // Source  Benthin, Woop, Wald, Afra, "Improved two-level BVHs using partial re-braiding", HPG 2017.

@@ -323,7 +323,7 @@ void refuse_instances(const Prepared& scene, const char* what) {
   if (!scene.flat.instances.empty())
     throw Error(ErrorCode::usage, fmt::format("the scene has {} instances of meshes, which {} can't follow; "
                                               "load it with --instances flat, or add copies",
-                                              scene.flat.instances.size(), what));
+                                              scene.counts.instances, what));
 }
 
 }  // namespace kdray::prepare
