@@ -11,8 +11,8 @@ Command add_bench(CLI::App& kdray) {
   const Command rays = add_bench_rays(*app), queries = add_bench_queries(*app),
                 frames = add_bench_frames(*app), build = add_bench_build(*app), depth = add_bench_depth(*app),
                 modes = add_bench_modes(*app), accuracy = add_bench_accuracy(*app),
-                ablation = add_bench_ablation(*app);
-  return {app, [rays, queries, frames, build, depth, modes, accuracy, ablation] {
+                ablation = add_bench_ablation(*app), instances = add_bench_instances(*app);
+  return {app, [rays, queries, frames, build, depth, modes, accuracy, ablation, instances] {
             if (rays.app->parsed()) return rays.run();
             if (queries.app->parsed()) return queries.run();
             if (frames.app->parsed()) return frames.run();
@@ -21,9 +21,10 @@ Command add_bench(CLI::App& kdray) {
             if (modes.app->parsed()) return modes.run();
             if (accuracy.app->parsed()) return accuracy.run();
             if (ablation.app->parsed()) return ablation.run();
+            if (instances.app->parsed()) return instances.run();
             throw Error(ErrorCode::usage,
                         "what to bench is missing: rays, queries, frames, build, depth, modes, accuracy, "
-                        "ablation; see 'kdray "
+                        "ablation, instances; see 'kdray "
                         "bench --help'");
           }};
 }

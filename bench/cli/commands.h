@@ -15,5 +15,6 @@ Command add_bench_depth(CLI::App& bench);
 Command add_bench_modes(CLI::App& bench);
 Command add_bench_accuracy(CLI::App& bench);
 Command add_bench_ablation(CLI::App& bench);
+Command add_bench_instances(CLI::App& bench);
 
 }  // namespace kdray::cli

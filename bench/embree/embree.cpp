@@ -135,8 +135,8 @@ class Tracer {
       const unsigned geometry = RTCHitN_geomID(hit, N, lane);
       if (geometry == RTC_INVALID_GEOMETRY_ID) return {kInfinity, -1, 0, 0};
       return {static_cast<float>(scenes_.space().world_length(t)),
-              scenes_.number_of(geometry, RTCHitN_primID(hit, N, lane)), RTCHitN_u(hit, N, lane),
-              RTCHitN_v(hit, N, lane)};
+              scenes_.number_of(RTCHitN_instID(hit, N, lane, 0), geometry, RTCHitN_primID(hit, N, lane)),
+              RTCHitN_u(hit, N, lane), RTCHitN_v(hit, N, lane)};
     }
   }
 

@@ -8,10 +8,13 @@ namespace kdray::bench {
 
 namespace {
 
-bool differ(const Hit& a, const Hit& b) {
+bool lie_apart(const Hit& a, const Hit& b) {
   if (std::isfinite(a.t) != std::isfinite(b.t)) return true;
-  if (!std::isfinite(a.t) || a.primitive == b.primitive) return false;
-  return std::abs(a.t - b.t) > 1e-4f * std::max(std::abs(a.t), std::abs(b.t));
+  return std::isfinite(a.t) && std::abs(a.t - b.t) > 1e-4f * std::max(std::abs(a.t), std::abs(b.t));
+}
+
+bool differ(const Hit& a, const Hit& b) {
+  return lie_apart(a, b) && (!std::isfinite(a.t) || !std::isfinite(b.t) || a.primitive != b.primitive);
 }
 
 template <class Differ>
@@ -21,6 +24,12 @@ std::size_t count(std::span<const Hit> a, std::span<const Hit> b, Differ&& diffe
   return n;
 }
 
+template <class Differ>
+double share(std::span<const Hit> a, std::span<const Hit> b, Differ&& differ) {
+  const std::size_t n = std::max(a.size(), b.size());
+  return n == 0 ? 0 : static_cast<double>(count(a, b, differ)) / static_cast<double>(n);
+}
+
 }  // namespace
 
 std::size_t count_not_identical(std::span<const Hit> a, std::span<const Hit> b) {
@@ -28,8 +37,11 @@ std::size_t count_not_identical(std::span<const Hit> a, std::span<const Hit> b) 
 }
 
 double differing_share(std::span<const Hit> a, std::span<const Hit> b) {
-  const std::size_t n = std::max(a.size(), b.size());
-  return n == 0 ? 0 : static_cast<double>(count(a, b, differ)) / static_cast<double>(n);
+  return share(a, b, differ);
+}
+
+double differing_distances(std::span<const Hit> a, std::span<const Hit> b) {
+  return share(a, b, lie_apart);
 }
 
 }  // namespace kdray::bench

@@ -15,4 +15,7 @@ std::size_t count_not_identical(std::span<const Hit> a, std::span<const Hit> b);
 // differ by more than 1e-4 of themselves: on a common edge both are right.
 double differing_share(std::span<const Hit> a, std::span<const Hit> b);
 
+// The same of scenes that number their primitives each in its own way: by distances alone.
+double differing_distances(std::span<const Hit> a, std::span<const Hit> b);
+
 }  // namespace kdray::bench

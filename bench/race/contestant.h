@@ -25,8 +25,9 @@ struct Variant {
 
 struct Contestant {
   Family family;
-  std::string mode;               // "packet", "16", "stream"
-  std::vector<Variant> variants;  // the best of them counts
+  std::string mode;                 // "packet", "16", "stream"
+  std::vector<Variant> variants;    // the best of them counts
+  std::vector<Hit> reference = {};  // that its hits are held against; empty: the race's
 };
 
 }  // namespace kdray::bench

@@ -20,6 +20,10 @@ void hold_against(std::span<const Hit> reference, const std::vector<Hit>& hits, 
     outcome.n_not_identical = std::max(outcome.n_not_identical, count_not_identical(reference, hits));
 }
 
+std::span<const Hit> reference_of(const Contestant& contestant, std::span<const Hit> of_race) {
+  return contestant.reference.empty() ? of_race : contestant.reference;
+}
+
 Runner warm_up(const RayClass& rays, std::span<const Hit> reference, const Contestant& contestant, int runs,
                Outcome& outcome) {
   Runner runner;
@@ -53,12 +57,13 @@ std::vector<Outcome> race(const RayClass& rays, std::span<const Hit> reference,
   std::vector<Runner> runners;
   for (const Contestant& c : contestants) {
     outcomes.push_back({.family = c.family, .mode = c.mode, .variant = {}, .seconds = {}});
-    runners.push_back(warm_up(rays, reference, c, std::min(rounds, kWarmUps), outcomes.back()));
+    runners.push_back(
+        warm_up(rays, reference_of(c, reference), c, std::min(rounds, kWarmUps), outcomes.back()));
   }
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < runners.size(); ++i) {
       const Traced traced = runners[i].variant->trace(rays);
-      hold_against(reference, traced.hits, outcomes[i]);
+      hold_against(reference_of(contestants[i], reference), traced.hits, outcomes[i]);
       runners[i].seconds.push_back(traced.seconds);
     }
   for (std::size_t i = 0; i < runners.size(); ++i) outcomes[i].seconds = spread_of(runners[i].seconds);

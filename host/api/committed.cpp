@@ -10,8 +10,8 @@ namespace {
 query::GeometryTable table_of_one(const prepare::Prepared& scene) {
   query::GeometryTable table;
   table.add(0, static_cast<std::uint32_t>(scene.counts.primitives), 0xffffffffu);
-  const auto& instances = scene.flat.instances;
-  if (!instances.empty()) table.add_instances(0, instances[instances.size() - 1].number + 1, 0xffffffffu);
+  if (const std::size_t n = scene.counts.instances; n > 0)
+    table.add_instances(0, scene.flat.instances[n - 1].number + 1, 0xffffffffu);
   return table;
 }
 

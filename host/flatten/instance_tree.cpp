@@ -29,7 +29,8 @@ struct Part {
 
 class Builder {
  public:
-  explicit Builder(std::span<const Box> boxes) : boxes_(boxes), order_(boxes.size()) {
+  Builder(std::span<const Box> boxes, std::span<const std::uint32_t> instances)
+      : boxes_(boxes), instances_(instances), order_(boxes.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
   }
 
@@ -42,6 +43,8 @@ class Builder {
   float middle(std::uint32_t i, int axis) const {
     return 0.5f * boxes_[i].lo[axis] + 0.5f * boxes_[i].hi[axis];
   }
+
+  std::uint32_t instance_of(std::uint32_t i) const { return instances_.empty() ? i : instances_[i]; }
 
   Part part_of(std::size_t first, std::size_t end) const {
     Part part{first, end, {}};
@@ -70,7 +73,7 @@ class Builder {
       boxes[i] = parts[i].box;
       below[i] = &needs[i];
       if (parts[i].size() == 1) {
-        children[i] = KDRAY_INSTANCE_LEAF | order_[parts[i].first];
+        children[i] = KDRAY_INSTANCE_LEAF | instance_of(order_[parts[i].first]);
       } else {
         children[i] = static_cast<layout::u32>(tree_.nodes.size());
         needs[i] = add_node(parts[i]);
@@ -143,14 +146,15 @@ class Builder {
   }
 
   std::span<const Box> boxes_;
+  std::span<const std::uint32_t> instances_;
   std::vector<std::uint32_t> order_;
   InstanceTree tree_;
 };
 
 }  // namespace
 
-InstanceTree build_instance_tree(std::span<const Box> boxes) {
-  return Builder(boxes).build();
+InstanceTree build_instance_tree(std::span<const Box> boxes, std::span<const std::uint32_t> instances) {
+  return Builder(boxes, instances).build();
 }
 
 layout::WideNode node_of(std::span<const Box> boxes, std::span<const layout::u32> children) {

@@ -1,8 +1,8 @@
 // What    A tree over instances: wide nodes whose children are nodes or instances
 //         (kernels/layout/instances.layout.h).
 // Shape   Boxes are parted by the surface-area heuristic over bins of their middles, the dearest part first,
-//         until a node has eight children; an instance is in one node alone, since walking a mesh twice costs
-//         more than boxes that overlap. Nodes are in depth-first order, the root first; the same on every
+//         until a node has eight children; a box is in one node alone, since walking a mesh twice costs more
+//         than boxes that overlap. Nodes are in depth-first order, the root first; the same on every
 //         machine.
 // Source  Wald, "On fast construction of SAH-based bounding volume hierarchies", RT 2007.
 #pragma once
@@ -21,8 +21,8 @@ struct InstanceTree {
   StackNeeds needs{};                   // what a walk stacks from the root on
 };
 
-// At least one box.
-InstanceTree build_instance_tree(std::span<const Box> boxes);
+// At least one box. `instances`: what each is the box of; none: the one of the same number.
+InstanceTree build_instance_tree(std::span<const Box> boxes, std::span<const std::uint32_t> instances = {});
 
 // A node of up to eight children whose boxes and words are given.
 layout::WideNode node_of(std::span<const Box> boxes, std::span<const layout::u32> children);

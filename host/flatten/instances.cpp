@@ -57,7 +57,7 @@ layout::Instance pack(const scene::Instance& from, const MeshForm& mesh, const P
   primitives::set(out.place, place);
   primitives::set(out.mesh_place, vec3(inverse * (dvec3(place) - placing.move)));
   out.reach = static_cast<float>(reach_of(mesh.bounds));
-  out.root = mesh.root;
+  out.root = mesh.parts[0].root;
   out.material = from.material;
   return out;
 }
@@ -88,9 +88,9 @@ Box widened(const DBox& box, const dvec3& by) {
   return out;
 }
 
-Box bounds_of(const MeshForm& mesh, const Placing& placing) {
+Box bounds_of(const MeshPart& of, const MeshForm& mesh, const Placing& placing) {
   DBox box;
-  for (const Box& part : mesh.parts) {
+  for (const Box& part : of.boxes) {
     const dvec3 middle = placing.point(middle_of(part));
     const dvec3 half = (dvec3(part.hi) - dvec3(part.lo)) * 0.5;
     const dvec3 reach = glm::abs(placing.linear[0]) * half.x + glm::abs(placing.linear[1]) * half.y +
@@ -122,7 +122,8 @@ PlacedInstances place_instances(std::span<const scene::Instance> instances, std:
       const MeshForm& mesh = meshes[instances[i].mesh];
       const Placing placing(instances[i], mesh.space, scene);
       placed.instances[i] = pack(instances[i], mesh, placing);
-      placed.bounds[i] = bounds_of(mesh, placing);
+      placed.instances[i].whole = static_cast<layout::u32>(i);
+      placed.bounds[i] = bounds_of(mesh.parts[0], mesh, placing);
       condition = std::max(condition, scene::condition_of(placing.linear));
       std::size_t first = unsound;
       if (!is_sound(placed.instances[i]))
@@ -141,6 +142,11 @@ PlacedInstances place_instances(std::span<const scene::Instance> instances, std:
   for (const Box& box : placed.bounds) placed.all.grow(box);
   placed.widen = widen;
   return placed;
+}
+
+Box bounds_of(const MeshPart& part, const scene::Instance& instance, const MeshForm& mesh,
+              const LocalSpace& scene) {
+  return bounds_of(part, mesh, Placing(instance, mesh.space, scene));
 }
 
 }  // namespace kdray::flatten

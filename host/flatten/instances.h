@@ -26,11 +26,17 @@
 
 namespace kdray::flatten {
 
+// A subtree of a mesh, near its root or the root itself.
+struct MeshPart {
+  std::vector<Box> boxes;          // that cover all of it, more tightly than one would
+  std::uint32_t root = 0;          // among the wide nodes
+  std::uint32_t first = 0, n = 0;  // of the mesh's parts, those that it can be opened into; none: it can't
+};
+
 struct MeshForm {
   LocalSpace space;
-  Box bounds;              // in it
-  std::vector<Box> parts;  // that cover all of it, more tightly
-  std::uint32_t root = 0;  // among the wide nodes
+  Box bounds;                   // in it
+  std::vector<MeshPart> parts;  // [0] is the whole mesh
 };
 
 struct PlacedInstances {
@@ -44,5 +50,9 @@ struct PlacedInstances {
 // beside the scene.
 PlacedInstances place_instances(std::span<const scene::Instance> instances, std::span<const MeshForm> meshes,
                                 const LocalSpace& scene);
+
+// In the scene's space, widened, of a part of an instance's mesh.
+Box bounds_of(const MeshPart& part, const scene::Instance& instance, const MeshForm& mesh,
+              const LocalSpace& scene);
 
 }  // namespace kdray::flatten

@@ -207,6 +207,7 @@ class Copying {
       some[i] = scene.instances[sizes_.instances[i]];
       some[i].root = roots_.at(some[i].root);
       some[i].number = sizes_.instances[i];
+      some[i].whole = static_cast<layout::u32>(i);
     }
     return some;
   }

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/timer.h"
+#include "flatten/instance_openings.h"
 #include "odprt/frame.h"
 #include "odprt/holding.h"
 #include "odprt/pilot.h"
@@ -44,7 +45,8 @@ DivideOptions options_for(const Provision& provision, const Request& request) {
 DividedScene::DividedScene(flatten::FlatScene flat, flatten::WideForm wide,
                            std::shared_ptr<transport::Together> all)
     : flat_(std::move(flat)), wide_(std::move(wide)), all_(std::move(all)) {
-  flat_.nodes = {};  // parts have no binary tree
+  flatten::close_instances(flat_, wide_);  // an instance is in one part
+  flat_.nodes = {};                        // parts have no binary tree
   flat_.refs = {};
 }
 

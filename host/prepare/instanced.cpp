@@ -12,8 +12,10 @@
 #include "base/error.h"
 #include "base/timer.h"
 #include "flatten/features.h"
+#include "flatten/instance_openings.h"
 #include "flatten/instance_tree.h"
 #include "flatten/instances.h"
+#include "flatten/mesh_parts.h"
 #include "flatten/paint.h"
 #include "flatten/sky.h"
 
@@ -135,28 +137,6 @@ struct Shift {
   }
 };
 
-// The boxes of the root's children and their children, which cover all of the mesh.
-std::vector<Box> parts_of(const WideForm& wide) {
-  const auto boxes_of = [&](const layout::WideNode& node) {
-    std::vector<std::pair<Box, layout::u32>> boxes;
-    for (std::size_t slot = 0; slot < 8; ++slot) {
-      Box box;
-      for (int k = 0; k < 3; ++k) box.lo[k] = node.bounds[k][0][slot], box.hi[k] = node.bounds[k][1][slot];
-      if (!box.empty()) boxes.emplace_back(box, node.child[slot]);
-    }
-    return boxes;
-  };
-  std::vector<Box> parts;
-  for (const auto& [box, child] : boxes_of(wide.nodes[0])) {
-    if (child & KDRAY_WIDE_LEAF) {
-      parts.push_back(box);
-      continue;
-    }
-    for (const auto& below : boxes_of(wide.nodes[child])) parts.push_back(below.first);
-  }
-  return parts;
-}
-
 // Nodes of the scene's own tree, whose children are named as they come to lie, and of all meshes, whose
 // children are named from `first` on.
 struct Trees {
@@ -209,18 +189,21 @@ void place(Prepared& made, const Hittable& hittable, const Trees& trees) {
   const PlacedMeshes& meshes = *made.placed_meshes;
   flatten::PlacedInstances placed =
       flatten::place_instances(hittable.instances, meshes.meshes, made.geometry.space);
-  const flatten::InstanceTree over = flatten::build_instance_tree(placed.bounds);
+  const flatten::InstanceLeaves leaves =
+      flatten::open_instances(placed, hittable.instances, meshes.meshes, made.geometry.space);
+  const flatten::InstanceTree over = flatten::build_instance_tree(leaves.boxes, leaves.instances);
   const bool empty = trees.own.empty();
   const std::size_t first_mesh = (empty ? 0 : 1 + trees.own.size()) + over.nodes.size();
   const Box boxes[] = {meshes.own_bounds, placed.all};
   made.wide.nodes = joined_nodes(trees, over, boxes);
   made.counts.instances = hittable.instances.size();
   made.counts.instanced = 0;
-  for (std::size_t i = 0; i < hittable.instances.size(); ++i) {
-    placed.instances[i].root += static_cast<layout::u32>(first_mesh);
-    placed.instances[i].number = hittable.places[i];
-    made.counts.instanced += meshes.sizes[hittable.instances[i].mesh];
+  for (layout::Instance& instance : placed.instances) {
+    instance.root += static_cast<layout::u32>(first_mesh);
+    instance.number = hittable.places[instance.whole];
   }
+  for (const scene::Instance& instance : hittable.instances)
+    made.counts.instanced += meshes.sizes[instance.mesh];
   const int of_over = *std::max_element(over.needs.begin(), over.needs.end());
   // In a mesh a batch goes on with the same stack, behind an entry that leads out.
   made.wide.stack_size = std::max(meshes.own_stack, of_over) + (empty ? 0 : 1) + 1 + meshes.mesh_stack;
@@ -265,7 +248,7 @@ void Meshes::join(Prepared& made) const {
     part.flat = flatten::flatten(*scene_.meshes[i], mesh.geometry, mesh.tree, false);
     flatten::pack_corners_of(scene_.paint, *scene_.meshes[i], mesh.geometry, part.flat);
     part.wide = flatten::make_wide(mesh.tree, part.flat, made.wide.block);
-    part.form = {mesh.geometry.space, mesh.tree.bounds, parts_of(part.wide), 0};
+    part.form = {mesh.geometry.space, mesh.tree.bounds, flatten::parts_of(part.wide)};
     made.features |= flatten::features_of_mesh(scene_, *scene_.meshes[i], mesh.geometry);
     meshes->mesh_stack = std::max(meshes->mesh_stack, part.wide.stack_size);
     made.geometry.dropped_degenerate += mesh.geometry.dropped_degenerate;
@@ -292,10 +275,10 @@ void Meshes::join(Prepared& made) const {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part& part = parts[i];
     shifts[i].nodes = of_meshes.size();
-    part.form.root = static_cast<layout::u32>(of_meshes.size());
+    const auto first = static_cast<layout::u32>(of_meshes.size());
+    for (flatten::MeshPart& p : part.form.parts) p.root += first;
     of_meshes.resize(of_meshes.size() + part.wide.nodes.size());
-    copy_nodes({part.wide.nodes.data(), part.wide.nodes.size()}, shifts[i],
-               of_meshes.data() + part.form.root);
+    copy_nodes({part.wide.nodes.data(), part.wide.nodes.size()}, shifts[i], of_meshes.data() + first);
     meshes->meshes.push_back(std::move(part.form));
   }
   meshes->n_own_nodes = own.size();
@@ -340,7 +323,7 @@ void refuse_instances(const Prepared& scene, const char* what) {
   if (!scene.flat.instances.empty())
     throw Error(ErrorCode::usage, fmt::format("the scene has {} instances of meshes, which {} can't follow; "
                                               "load it with --instances flat, or add copies",
-                                              scene.flat.instances.size(), what));
+                                              scene.counts.instances, what));
 }
 
 }  // namespace kdray::prepare

@@ -7,7 +7,9 @@
 //         `place` is about the middle of the instance, as floats; `mesh_place` is where that lies in the
 //         mesh. So what is near the instance keeps its bits, wherever in the scene it is. A child of a wide
 //         node that is an instance is KDRAY_WIDE_LEAF | KDRAY_KIND_INSTANCE << KDRAY_WIDE_KIND_SHIFT | its
-//         index. Rays and hits name an instance by index + 1; 0 is the scene itself.
+//         index. Rays and hits name an instance by index + 1; 0 is the scene itself. Behind all instances lie
+//         pieces of some (host/flatten/instance_openings.h), the same but for `root`, which is a node below
+//         the mesh's: leaves of the tree over instances that have their hits under the whole one's name.
 // Errors  All are rounded once from double. host/flatten/instances.h has the bounds that follow.
 #ifndef KDRAY_LAYOUT_INSTANCES_H
 #define KDRAY_LAYOUT_INSTANCES_H
@@ -31,7 +33,8 @@ typedef struct Instance {
   float to_world[3][3];  // by rows
   u32 material;          // of all its primitives, or KDRAY_MESH_MATERIAL: each has its own
   u32 number;            // its place in the scene's list; in ODPRT's parts among all that can be hit
-  u32 pad[4];
+  u32 whole;             // its index; a piece's: that of the instance
+  u32 pad[3];
 } Instance;
 KDRAY_ASSERT_SIZE(Instance, 128)
 KDRAY_ASSERT_OFFSET(Instance, to_world, 68)

@@ -13,9 +13,10 @@ namespace kdray::test {
 namespace {
 
 const std::vector<std::string> kCommands = {
-    "render",       "view",        "trace",       "info",        "devices",        "doctor",
-    "generate",     "compare",     "verify",      "tune",        "warm-up",        "bench rays",
-    "bench frames", "bench build", "bench depth", "bench modes", "bench accuracy", "bench ablation"};
+    "render",      "view",           "trace",          "info",           "devices",
+    "doctor",      "generate",       "compare",        "verify",         "tune",
+    "warm-up",     "bench rays",     "bench frames",   "bench build",    "bench depth",
+    "bench modes", "bench accuracy", "bench ablation", "bench instances"};
 
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file);

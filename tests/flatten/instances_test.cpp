@@ -58,11 +58,11 @@ vec3 by_rows(const float (&rows)[3][3], const vec3& v, const vec3& w) {
 struct Case {
   LocalSpace mesh_space{{0.3, -0.2, 5}, 0x1p9}, scene_space{{10, 20, -5}, 0x1p-1};
   scene::Instance instance;
-  MeshForm mesh{mesh_space, Box{vec3(-700, -1500, 3), vec3(900, -100, 1800)}, {}, 0};
+  MeshForm mesh{mesh_space, Box{vec3(-700, -1500, 3), vec3(900, -100, 1800)}, {}};
   PlacedInstances placed;
 
   explicit Case(Random& random) : instance(any_instance(random)) {
-    mesh.parts = {mesh.bounds};
+    mesh.parts = {{{mesh.bounds}}};
     placed = place_instances(std::span(&instance, 1), std::span(&mesh, 1), scene_space);
   }
   // From the mesh's space to the scene's, without rounding to float.
@@ -132,7 +132,7 @@ TEST(Instances, BoxesHoldWhatIsHit) {
 }
 
 TEST(Instances, WideningFollowsTheCondition) {
-  MeshForm mesh{{}, Box{vec3(-1000), vec3(1000)}, {Box{vec3(-1000), vec3(1000)}}, 0};
+  MeshForm mesh{{}, Box{vec3(-1000), vec3(1000)}, {{{Box{vec3(-1000), vec3(1000)}}}}};
   const auto widen_of = [&](const dmat4& m) {
     const scene::Instance instance = scene::instance_of(m, 0);
     return place_instances(std::span(&instance, 1), std::span(&mesh, 1), {}).widen;

@@ -127,6 +127,37 @@ TEST(Instances, InOnePlaceTheFirstIsSeen) {
   }
 }
 
+// So close, and of so many triangles, that they are opened: by walks, by parts, and against copies.
+scene::Scene close_together() {
+  scene::Scene s = lone({});
+  scene::Scene ball;
+  add_smooth_ball(ball, {0, 0, 0}, 1, 60, oracle::mirror({0.8f, 0.6f, 0.5f}));
+  const std::uint32_t mesh = add_mesh(s, ball);
+  for (int i = 0; i < 9; ++i)
+    add_instance(s, mesh,
+                 translation({i % 3 * 0.6 - 0.6, i / 3 * 0.6 - 0.6, i * 0.05}) * rotation({0, 1, 0}, i) *
+                     scaling({i % 2 ? -0.5 : 0.5, 0.6, 0.4}));
+  return s;
+}
+
+TEST(Instances, CloseTogetherLookTheSameToAllWalksAndInParts) {
+  const scene::Scene model = close_together();
+  const Scene scene{scene::Scene(model)};
+  const Picture first = rendered(model);
+  ASSERT_GT(mean_luminance(first), 0.05);
+  EXPECT_LT(between(first, rendered(with_copies(model))).pixels, kWidth * kHeight / 200);
+  for (const Traversal traversal : {Traversal::wide, Traversal::packet, Traversal::batch})
+    EXPECT_TRUE(same_bits(first.rgb, rendered(model, traversal).rgb)) << static_cast<int>(traversal);
+  for (const int queues : {1, 3}) {
+    DeviceOptions device;
+    device.queues = queues;
+    Renderer renderer(scene, {.binary_form = false}, device_of(device));
+    RenderOptions options = exact_options(kWidth, kHeight, 5);
+    options.mode = Mode::odprt;
+    EXPECT_TRUE(same_bits(first.rgb, renderer.render(options).rgb)) << queues << " queues";
+  }
+}
+
 // A mirror image has its front where the original has it: glass bends light the same way.
 TEST(Instances, MirroredTwiceIsTheSame) {
   const scene::Scene once = lone({{dmat4(1), scene::kNone}});

@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "flatten/instance_openings.h"
 #include "image/scenes.h"
 #include "odprt/division.h"
 #include "odprt/kinds.h"
@@ -49,9 +50,15 @@ auto primitives_of(const flatten::FlatScene& scene, const flatten::WideForm& for
   return found;
 }
 
+// As what is divided is: an instance that has been opened is whole again.
+prepare::Prepared closed(prepare::Prepared scene) {
+  flatten::close_instances(scene.flat, scene.wide);
+  return scene;
+}
+
 class InstancedParts : public testing::Test {
  protected:
-  const prepare::Prepared scene = prepare::prepare(instanced(), TreeOptions());
+  const prepare::Prepared scene = closed(prepare::prepare(instanced(), TreeOptions()));
   const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 48);
 
   std::vector<double> costs() const {
@@ -68,6 +75,7 @@ TEST_F(InstancedParts, HoldEachInstanceOnceWithItsWholeMesh) {
     for (const odprt::Part& part : division.parts) {
       std::uint32_t next = 0;
       for (const layout::Instance& instance : part.flat.instances) {
+        EXPECT_EQ(&part.flat.instances[instance.whole], &instance);
         ++times[instance.number];
         EXPECT_GE(instance.number, next) << "the order of the whole";
         next = instance.number + 1;

@@ -128,6 +128,18 @@ scene::Scene among_empty_ones(Random& random) {
   return s;
 }
 
+// Of meshes large enough, and so close together, that instances are opened (flatten/instance_openings.h).
+scene::Scene close_together(Random& random) {
+  scene::Scene s = with_ground(-1);
+  const std::uint32_t meshes[] = {add_mesh(s, icosphere(4)), add_mesh(s, torus(48, 40))};
+  for (std::uint32_t i = 0; i < 7; ++i)
+    add(s, meshes[i % 2], anywhere(random, {random.in(0.5, 1), 0.8, i % 3 == 0 ? -0.7 : 0.7}, 0.5));
+  return s;
+}
+bool are_opened(DeviceScene& scene) {
+  return scene.prepared().flat.instances.size() > scene.prepared().counts.instances;
+}
+
 // ---- Rays
 
 // Sixteen of a kind and single ones, from outside and inside; along axes, and to corners and centres.
@@ -173,6 +185,7 @@ class InstanceQueries : public EachDevice {
     return query::trace(scene.target(), rays, {.any_hit = any_hit, .traversal = walk});
   }
   void expect_right(const scene::Scene& s, unsigned seed);
+  void expect_same_with_every_form(const scene::Scene& s);
 };
 KDRAY_FOR_EACH_DEVICE(InstanceQueries);
 
@@ -282,6 +295,11 @@ TEST_P(AllHitsOfInstances, AmongEmptyOnesAndFarAway) {
   expect_right(far_away(random), kSeed, true);
 }
 
+TEST_P(AllHitsOfInstances, CloseTogether) {
+  Random random(kSeed);
+  expect_right(close_together(random), kSeed, true);
+}
+
 // A hundred in one place, whose hits of one t go over several passes, in the order of instances.
 TEST_P(AllHitsOfInstances, OfOneTComeInTheOrderOfInstances) {
   Random random(kSeed);
@@ -314,6 +332,15 @@ TEST_P(InstanceQueries, MirroredAndStretched) {
     expect_right(mirrored_and_stretched(random), seed);
   }
 }
+TEST_P(InstanceQueries, CloseTogether) {
+  for (unsigned seed = kSeed; seed < kSeed + 2; ++seed) {
+    Random random(seed);
+    const scene::Scene s = close_together(random);
+    DeviceScene asked(s, GetParam());
+    EXPECT_TRUE(are_opened(asked));
+    expect_right(s, seed);
+  }
+}
 TEST_P(InstanceQueries, OneAlone) {
   Random random(kSeed);
   expect_right(one_alone(random), kSeed);
@@ -328,9 +355,8 @@ TEST_P(InstanceQueries, AmongEmptyOnes) {
 }
 
 // Triangles and spheres, by packets and batches, which the automatic walk has both.
-TEST_P(InstanceQueries, AreTheSameBitsWithEveryFormOfVectors) {
+void InstanceQueries::expect_same_with_every_form(const scene::Scene& s) {
   Random random(kSeed);
-  const scene::Scene s = mirrored_and_stretched(random);
   const std::vector<Ray> rays = rays_about(s, random, 6000);
   DeviceScene best(s, GetParam());
   const query::Traced first = traced(best, rays, Traversal::automatic);
@@ -344,6 +370,12 @@ TEST_P(InstanceQueries, AreTheSameBitsWithEveryFormOfVectors) {
     }
     EXPECT_TRUE(same(first, traced(*asked, rays, Traversal::automatic))) << form;
   }
+}
+
+TEST_P(InstanceQueries, AreTheSameBitsWithEveryFormOfVectors) {
+  Random random(kSeed);
+  expect_same_with_every_form(mirrored_and_stretched(random));
+  expect_same_with_every_form(close_together(random));
 }
 
 // The judge itself: what is told of another ray, or of another instance, or a little farther off, is wrong.

@@ -7,9 +7,12 @@
 #include <numeric>
 
 #include "bench/race/compare_hits.h"
+#include "bench/workload/flock.h"
 #include "cli/program.h"
 #include "conformance/all_kinds.h"
 #include "generate/built_in.h"
+#include "generate/displaced_sphere.h"
+#include "scene/instances.h"
 
 namespace kdray::bench {
 namespace {
@@ -37,6 +40,32 @@ void expect_to_see_the_same(scene::Scene model) {
         // The fast mode loses rays at edges and corners.
         EXPECT_LE(differing_share(wanted, traced.hits), 5e-3)
             << c.name << " " << contestant.mode << " " << v.name;
+      }
+  }
+}
+
+// Instances, against kdray's, and against Embree's own of the copies.
+TEST(EmbreeScenes, SeeInstances) {
+  if (embree_version().empty()) GTEST_SKIP() << "built without Embree";
+  KDRAY_NEED_DEVICE();
+  scene::Scene model = flock_of(generate::displaced_sphere(20), 3, 0.6);
+  const Scene kept{scene::Scene(model)};
+  scene::flatten_instances(model);
+  const Scene flat(std::move(model));
+  Renderer renderer(kept, {.binary_form = false}), of_copies(flat);
+  const auto scenes = make_embree_scenes(kept.model());
+  for (const RayClass& c : classes_of(flat.model(), of_copies)) {
+    const std::vector<Hit> wanted = renderer.trace(c.rays, c.any_hit, 1, Traversal::wide);
+    EXPECT_LE(differing_distances(wanted, of_copies.trace(c.rays, c.any_hit, 1, Traversal::wide)), 1e-2);
+    for (const Contestant& contestant : embree_contestants(scenes, 2))
+      for (const Variant& v : contestant.variants) {
+        const std::vector<Hit> hits = v.trace(c).hits;
+        ASSERT_EQ(hits.size(), c.rays.size());
+        EXPECT_LE(differing_share(wanted, hits), 5e-3) << c.name << " " << contestant.mode << " " << v.name;
+        if (c.any_hit) continue;
+        std::size_t n_same = 0;
+        for (std::size_t i = 0; i < hits.size(); ++i) n_same += hits[i].primitive == wanted[i].primitive;
+        EXPECT_GE(n_same, hits.size() * 97 / 100) << c.name << " " << contestant.mode;
       }
   }
 }

@@ -44,6 +44,21 @@ TEST(CompareHits, AnotherPrimitiveAtTheSameDistanceIsACommonEdge) {
   EXPECT_EQ(share(kHit, neighbour), 1);
 }
 
+// Of scenes whose numbers mean different things: the same number tells nothing.
+TEST(CompareHits, ByDistancesAlone) {
+  Hit other = kHit;
+  other.primitive = 8;
+  const auto apart = [](const Hit& a, const Hit& b) {
+    return differing_distances(std::vector{a}, std::vector{b});
+  };
+  EXPECT_EQ(apart(kHit, other), 0);
+  EXPECT_EQ(apart(kHit, kMiss), 1);
+  other = kHit;
+  other.t = 2.001f;
+  EXPECT_EQ(share(kHit, other), 0);
+  EXPECT_EQ(apart(kHit, other), 1);
+}
+
 TEST(CompareHits, IsAShareOfAllRays) {
   const std::vector<Hit> a = {kHit, kHit, kMiss, kMiss}, b = {kHit, kMiss, kMiss, kMiss};
   EXPECT_EQ(differing_share(a, b), 0.25);

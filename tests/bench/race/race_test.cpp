@@ -58,6 +58,19 @@ TEST(Race, ComparesHits) {
   EXPECT_EQ(outcomes[1].differing_share, 0.5);
 }
 
+// One that has hits of its own to be held against, as another scene's has.
+TEST(Race, ComparesHitsWithTheContestantsOwnReference) {
+  std::vector<Hit> other = kReference;
+  other[1] = {5, 3, 0, 0};
+  Recorder r;
+  Contestant own = r.contestant(Family::kdray, "a", {{"", 1.0}}, other);
+  own.reference = other;
+  const std::vector<Outcome> outcomes = race({"", false, std::vector<Ray>(2)}, kReference,
+                                             {own, r.contestant(Family::kdray, "b", {{"", 1.0}}, other)}, 1);
+  EXPECT_EQ(outcomes[0].n_not_identical, 0u);
+  EXPECT_EQ(outcomes[1].n_not_identical, 1u);
+}
+
 TEST(Race, FindsTheBest) {
   Recorder r;
   const std::vector<Outcome> outcomes = race(
