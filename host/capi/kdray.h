@@ -67,8 +67,8 @@ KDRAY_API const char* kdray_last_error(void);
 /* 10000 * major + 100 * minor + patch, of the library that is loaded. */
 KDRAY_API uint32_t kdray_version(void);
 
-/* The most memory, in bytes, that this process takes for the texels of pictures that come from now on; what is
-   more lies in nameless files ($TMPDIR or /var/tmp). By default half of the memory that is free. */
+/* The most memory, in bytes, that this process takes for the texels of pictures that come from now on; what
+   is more lies in nameless files ($TMPDIR or /var/tmp). By default half of the memory that is free. */
 KDRAY_API void kdray_set_texture_cache(uint64_t bytes);
 
 /* ---- Scenes */

@@ -74,9 +74,11 @@ void add_load_options(CLI::App& app, LoadOptions& load) {
   add_text(app, "--texture-memory", "BYTES",
            "The most that pictures on surfaces may take, as in 500M: larger ones are made smaller",
            [&load](const std::string& text) { load.texture_bytes = parse_bytes("--texture-memory", text); });
-  add_text(app, "--texture-cache", "BYTES",
-           "The most memory for pictures on surfaces, as in 2G; the rest is in a file (default: half of what is free)",
-           [](const std::string& text) { set_texture_cache(parse_bytes("--texture-cache", text)); });
+  add_text(
+      app, "--texture-cache", "BYTES",
+      "The most memory for pictures on surfaces, as in 2G; the rest is in files (default: half of what is "
+      "free)",
+      [](const std::string& text) { set_texture_cache(parse_bytes("--texture-cache", text)); });
   add_text(app, "--instances", "HOW",
            "What shows many times: auto (held once where copies would be over a million primitives), flat "
            "(copied) "

@@ -1,8 +1,8 @@
 // Memory beyond its budget lies in files, of which the process holds little, and which nobody else sees.
 #include "base/paged.h"
 
-#include <gtest/gtest.h>
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -140,7 +140,8 @@ TEST_F(Paged, LetsGoOfMappedFilesToo) {
   ASSERT_NE(memory, MAP_FAILED);
   bool gone = false;
   {
-    const std::shared_ptr<void> paged = page_mapped({memory, [&](void* p) {
+    const std::shared_ptr<void> paged = page_mapped({memory,
+                                                     [&](void* p) {
                                                        gone = true;
                                                        ::munmap(p, n);
                                                      }},

@@ -1,4 +1,5 @@
-// Pictures that lie in files look as they do in memory, in every mode, from the file and from the scene cache.
+// Pictures that lie in files look as they do in memory, in every mode, from the scene's file and from the
+// scene cache.
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -16,8 +17,8 @@ constexpr const char* kFloor = R"({
   "lights": [{"type": "point", "position": [3, 5, 4]}],
   "render": {"size": [96, 64]},
   "objects": [
-    {"type": "triangles", "vertices": [[-5, 0, -20], [5, 0, -20], [5, 0, 3], [-5, 0, 3]], "faces": [[0, 3, 2], [0, 2, 1]],
-     "uv": [[0, 0], [3, 0], [3, 7], [0, 7]], "material": {"color": [1, 1, 1], "picture": "p.png"}}]})";
+    {"type": "triangles", "vertices": [[-5, 0, -20], [5, 0, -20], [5, 0, 3], [-5, 0, 3]], 
+     "faces": [[0, 3, 2], [0, 2, 1]], "uv": [[0, 0], [3, 0], [3, 7], [0, 7]], "material": {"color": [1, 1, 1], "picture": "p.png"}}]})";
 
 std::string noise() {
   std::mt19937 random(11);
@@ -37,7 +38,8 @@ TEST(TextureCache, FilesGiveTheSamePicture) {
   folder.put("p.png", noise());
   const auto scene = folder.put("floor.json", kFloor);
   const auto rendered = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> words = {"render", scene, "-q", "-o", folder / "a.exr", "--stats", folder / "s.json"};
+    std::vector<std::string> words = {"render",         scene, "-q", "-o", folder / "a.exr", "--stats",
+                                      folder / "s.json"};
     words.insert(words.end(), options.begin(), options.end());
     EXPECT_TRUE(succeeds(kdray(words)));
     return folder.get("a.exr");

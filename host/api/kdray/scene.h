@@ -33,10 +33,10 @@ struct Prepared;
 class PreparedScene;
 struct Picture;
 
-// The most memory, in bytes, that this process takes for the texels of pictures that come from now on: what is
-// more lies in files without names, in $TMPDIR or else /var/tmp, of which the system holds in memory what is
-// looked at (docs/design/textures.md). The picture is the same. Where none is set: half of the memory that is
-// free. Loading or committing then throws ErrorCode::input when there is no room for a file.
+// The most memory, in bytes, that this process takes for the texels of pictures that come from now on. What
+// is more lies in files without names, in $TMPDIR or else /var/tmp, of which the system holds in memory what
+// is looked at (docs/design/textures.md). The picture is the same. Where none is set: half of the memory that
+// is free. Loading or committing then throws ErrorCode::input when there is no room for a file.
 void set_texture_cache(std::uint64_t bytes);
 
 struct CommitOptions {
