@@ -18,7 +18,8 @@ constexpr const char* kFloor = R"({
   "render": {"size": [96, 64]},
   "objects": [
     {"type": "triangles", "vertices": [[-5, 0, -20], [5, 0, -20], [5, 0, 3], [-5, 0, 3]], 
-     "faces": [[0, 3, 2], [0, 2, 1]], "uv": [[0, 0], [3, 0], [3, 7], [0, 7]], "material": {"color": [1, 1, 1], "picture": "p.png"}}]})";
+     "faces": [[0, 3, 2], [0, 2, 1]], "uv": [[0, 0], [3, 0], [3, 7], [0, 7]],
+     "material": {"color": [1, 1, 1], "picture": "p.png"}}]})";
 
 std::string noise() {
   std::mt19937 random(11);
