@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "flatten/instance_tree.h"
+#include "flatten/leaf_block.h"
 
 namespace kdray::flatten {
 
@@ -20,12 +21,6 @@ struct Piece {
 
 bool meet(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.lo, b.hi)) && glm::all(glm::lessThanEqual(b.lo, a.hi));
-}
-
-Box box_of(const layout::WideNode& node, std::size_t slot) {
-  Box box;
-  for (int k = 0; k < 3; ++k) box.lo[k] = node.bounds[k][0][slot], box.hi[k] = node.bounds[k][1][slot];
-  return box;
 }
 
 // The middle of a box, half as long along each axis.
@@ -49,8 +44,8 @@ class Neighbours {
  private:
   bool meets_another(const Box& core, std::uint32_t instance, layout::u32 root) const {
     const layout::WideNode& node = nodes_[root];
-    for (std::size_t slot = 0; slot < kWidth; ++slot) {
-      const Box box = box_of(node, slot);
+    for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+      const Box box = bounds_of_child(node, slot);
       if (box.empty() || !meet(core, box)) continue;
       const layout::u32 child = node.child[slot];
       if (child & KDRAY_WIDE_LEAF ? pieces_[child & KDRAY_WIDE_FIRST_MASK].instance != instance
@@ -139,16 +134,12 @@ struct OverInstances {
   std::vector<Box> boxes;  // of each instance, whatever it has been opened into
 };
 
-bool is_leaf_of_instance(layout::u32 child) {
-  return (child & ~KDRAY_WIDE_FIRST_MASK) == KDRAY_INSTANCE_LEAF;
-}
-
 // Whether there is something else than instances below a node.
 bool has_primitives(const WideForm& wide, layout::u32 root) {
   const layout::WideNode& node = wide.nodes[root];
-  for (std::size_t slot = 0; slot < kWidth; ++slot) {
+  for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
     const layout::u32 child = node.child[slot];
-    if (box_of(node, slot).empty() || is_leaf_of_instance(child)) continue;
+    if (bounds_of_child(node, slot).empty() || is_instance(child)) continue;
     if ((child & KDRAY_WIDE_LEAF) || has_primitives(wide, child)) return true;
   }
   return false;
@@ -160,13 +151,13 @@ StackNeeds visit(const FlatScene& flat, const WideForm& wide, layout::u32 root, 
   std::array<StackNeeds, kWidth> needs{};
   std::array<const StackNeeds*, kWidth> below{};
   std::uint32_t n = 0;
-  for (std::size_t slot = 0; slot < kWidth; ++slot) {
+  for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
     below[slot] = &needs[slot];
-    const Box box = box_of(node, slot);
+    const Box box = bounds_of_child(node, slot);
     if (box.empty()) continue;
     ++n;
     const layout::u32 child = node.child[slot];
-    if (is_leaf_of_instance(child))
+    if (is_instance(child))
       over.boxes[flat.instances[child & KDRAY_WIDE_FIRST_MASK].whole].grow(box);
     else
       needs[slot] = visit(flat, wide, child, over);

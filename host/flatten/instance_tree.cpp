@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "flatten/leaf_block.h"
 #include "flatten/orders.h"
 #include "layout/instances.layout.h"
 
@@ -160,12 +161,8 @@ InstanceTree build_instance_tree(std::span<const Box> boxes, std::span<const std
 layout::WideNode node_of(std::span<const Box> boxes, std::span<const layout::u32> children) {
   layout::WideNode node{};
   const Box none;  // lo = inf, hi = -inf
-  for (std::size_t slot = 0; slot < kWidth; ++slot) {
-    const Box& box = slot < boxes.size() ? boxes[slot] : none;
-    for (int axis = 0; axis < 3; ++axis) {
-      node.bounds[axis][0][slot] = box.lo[axis];
-      node.bounds[axis][1][slot] = box.hi[axis];
-    }
+  for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+    set_bounds(node, slot, slot < boxes.size() ? boxes[slot] : none);
     node.child[slot] = slot < children.size() ? children[slot] : 0;
   }
   layout::u32 as_they_come = 0;

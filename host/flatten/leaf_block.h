@@ -5,6 +5,7 @@
 
 #include "flatten/openings.h"
 #include "flatten/wide.h"
+#include "layout/instances.layout.h"
 #include "layout/tree.layout.h"
 #include "math/box.h"
 
@@ -12,6 +13,10 @@ namespace kdray::flatten {
 
 inline bool is_leaf(layout::u32 child) {
   return (child & KDRAY_WIDE_LEAF) != 0;
+}
+
+inline bool is_instance(layout::u32 child) {
+  return (child & ~KDRAY_WIDE_FIRST_MASK) == KDRAY_INSTANCE_LEAF;
 }
 
 // Whether a child is a leaf of that kind's primitives.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "flatten/openings.h"
+#include "flatten/leaf_block.h"
 #include "layout/wide.layout.h"
 
 namespace kdray::flatten {
@@ -19,9 +19,8 @@ struct Child {
 std::vector<Child> children_of(const WideForm& mesh, layout::u32 root) {
   const layout::WideNode& node = mesh.nodes[root];
   std::vector<Child> children;
-  for (std::size_t slot = 0; slot < kWidth; ++slot) {
-    Box box;
-    for (int k = 0; k < 3; ++k) box.lo[k] = node.bounds[k][0][slot], box.hi[k] = node.bounds[k][1][slot];
+  for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+    const Box box = bounds_of_child(node, slot);
     if (!box.empty()) children.push_back({box, node.child[slot]});
   }
   return children;
@@ -32,7 +31,7 @@ std::vector<Child> children_of(const WideForm& mesh, layout::u32 root) {
 std::vector<Box> boxes_below(const WideForm& mesh, layout::u32 root) {
   std::vector<Box> boxes;
   for (const Child& child : children_of(mesh, root)) {
-    if (child.word & KDRAY_WIDE_LEAF) {
+    if (is_leaf(child.word)) {
       boxes.push_back(child.box);
       continue;
     }
@@ -42,7 +41,7 @@ std::vector<Box> boxes_below(const WideForm& mesh, layout::u32 root) {
 }
 
 bool all_nodes(const std::vector<Child>& children) {
-  return std::ranges::none_of(children, [](const Child& c) { return (c.word & KDRAY_WIDE_LEAF) != 0; });
+  return std::ranges::none_of(children, [](const Child& c) { return is_leaf(c.word); });
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "flatten/collapse.h"
+#include "flatten/leaf_block.h"
 #include "flatten/triangle_block.h"
 #include "primitives/shapes.h"
 
@@ -121,11 +122,7 @@ class Writer {
                   std::size_t index) const {
     layout::WideNode& out = form_.nodes[index];
     for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
-      const Box box = slot < node.n ? tree_.contents[node.item[slot]] : Box();
-      for (int axis = 0; axis < 3; ++axis) {
-        out.bounds[axis][0][slot] = box.lo[axis];
-        out.bounds[axis][1][slot] = box.hi[axis];
-      }
+      set_bounds(out, slot, slot < node.n ? tree_.contents[node.item[slot]] : Box());
       out.order[slot] = node.order[slot];
       out.child[slot] = slot < node.n ? child_word(node.child[slot], node.item[slot], places, cuts) : 0;
     }

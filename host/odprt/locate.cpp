@@ -23,7 +23,7 @@ void Locator::look_below(std::size_t opened, const vec3& point, Nearest& nearest
   for (std::uint32_t slot = 0; slot < 8 && nearest.distance > 0; ++slot) {
     const std::int32_t below = node.below[slot];
     if (below == Opened::kEmpty) continue;
-    const float distance = distance_to(child_bounds(form_.nodes[node.node], slot), point);
+    const float distance = distance_to(bounds_of_child(form_.nodes[node.node], slot), point);
     if (distance >= nearest.distance) continue;
     if (below >= 0)
       look_below(static_cast<std::size_t>(below), point, nearest);

@@ -75,7 +75,7 @@ class PartWalk {
 };
 
 bool is_empty(const layout::WideNode& node, std::uint32_t slot) {
-  return child_bounds(node, slot).empty();
+  return bounds_of_child(node, slot).empty();
 }
 
 // First pass: how much there is, and who holds which primitives.
@@ -214,11 +214,7 @@ class Copying {
 
  private:
   static void clear_slot(layout::WideNode& node, std::uint32_t slot) {
-    const Box none;
-    for (int axis = 0; axis < 3; ++axis) {
-      node.bounds[axis][0][slot] = none.lo[axis];
-      node.bounds[axis][1][slot] = none.hi[axis];
-    }
+    flatten::set_bounds(node, slot, {});
     node.child[slot] = 0;
   }
 
@@ -376,7 +372,8 @@ Below below_of(const flatten::WideForm& form, const Cut& cut, std::span<const st
   const Opened& opened = cut.top[static_cast<std::size_t>(below)];
   for (std::uint32_t slot = 0; slot < 8; ++slot)
     if (opened.below[slot] != Opened::kEmpty)
-      all.add(below_of(form, cut, part_of, opened.below[slot], child_bounds(form.nodes[opened.node], slot)));
+      all.add(
+          below_of(form, cut, part_of, opened.below[slot], bounds_of_child(form.nodes[opened.node], slot)));
   return all;
 }
 
@@ -414,7 +411,8 @@ class Directory {
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
       const std::int32_t below = opened.below[slot];
       if (below == Opened::kEmpty) continue;
-      const Below all = below_of(form_, cut_, part_of_, below, child_bounds(form_.nodes[opened.node], slot));
+      const Below all =
+          below_of(form_, cut_, part_of_, below, bounds_of_child(form_.nodes[opened.node], slot));
       if (all.several) {
         add_largest(static_cast<std::size_t>(below));
       } else if (all.part != kEveryPart) {
@@ -429,8 +427,8 @@ class Directory {
     const Opened& opened = cut_.top[static_cast<std::size_t>(below)];
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
       if (opened.below[slot] == Opened::kEmpty) continue;
-      const Below child =
-          below_of(form_, cut_, part_of_, opened.below[slot], child_bounds(form_.nodes[opened.node], slot));
+      const Below child = below_of(form_, cut_, part_of_, opened.below[slot],
+                                   bounds_of_child(form_.nodes[opened.node], slot));
       if (child.part != kEveryPart) add(opened.below[slot], child, cells);
     }
     end(first, cells);
@@ -440,7 +438,7 @@ class Directory {
   void add_subtree(layout::u32 root, const Below& all, Cells& cells) {
     const std::size_t first = begin(all.bounds, all.part, cells);
     for (std::uint32_t slot = 0; slot < 8 && !(root & KDRAY_WIDE_LEAF); ++slot) {
-      const Box bounds = child_bounds(form_.nodes[root], slot);
+      const Box bounds = bounds_of_child(form_.nodes[root], slot);
       if (!bounds.empty()) cells.push_back(cell_of(all.part, bounds));
     }
     end(first, cells);

@@ -48,7 +48,7 @@ class Loads {
     for (std::size_t i = nodes_.size(); i-- > 0;)
       for (std::uint32_t slot = 0; slot < 8; ++slot) {
         const layout::u32 child = form_.nodes[i].child[slot];
-        const Box bounds = child_bounds(form_.nodes[i], slot);
+        const Box bounds = bounds_of_child(form_.nodes[i], slot);
         if (bounds.empty()) continue;
         if (!(child & KDRAY_WIDE_LEAF))
           nodes_[i].add(nodes_[child]);
@@ -78,7 +78,7 @@ class Loads {
   Load of_instance(layout::u32 leaf, const Box& bounds) const {
     const layout::u32 root = scene_.instances[leaf & KDRAY_WIDE_FIRST_MASK].root;
     Box of_mesh;
-    for (std::uint32_t slot = 0; slot < 8; ++slot) of_mesh.grow(child_bounds(form_.nodes[root], slot));
+    for (std::uint32_t slot = 0; slot < 8; ++slot) of_mesh.grow(bounds_of_child(form_.nodes[root], slot));
     const Load& mesh = nodes_[root];
     const auto area = static_cast<double>(of_mesh.area());
     const double within = area > 0 ? mesh.cost / area : 0;
@@ -90,7 +90,7 @@ class Loads {
   Load own(const layout::WideNode& node) const {
     Load load{0, sizeof(layout::WideNode)};
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
-      const Box bounds = child_bounds(node, slot);
+      const Box bounds = bounds_of_child(node, slot);
       if (bounds.empty() || is_instance(node.child[slot])) continue;
       if (node.child[slot] & KDRAY_WIDE_LEAF)
         load.add(of_leaf(node.child[slot], bounds));
@@ -144,7 +144,7 @@ class Cutter {
     cut_.top.back().below.fill(Opened::kEmpty);
     for (std::uint32_t k = 8; k-- > 0;) {
       const std::uint32_t slot = node.order[0] >> (3 * k) & 7u;
-      const Box bounds = child_bounds(node, slot);
+      const Box bounds = bounds_of_child(node, slot);
       if (bounds.empty()) continue;
       const Place child = subtrees_.insert(place, {subtree(node.child[slot], bounds), parent, slot});
       if (!(node.child[slot] & KDRAY_WIDE_LEAF)) open_.emplace(child->subtree.cost, child);
@@ -181,15 +181,6 @@ std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf) {
   std::uint32_t n = 1;
   for (; !(block[words - 1] & KDRAY_WIDE_LAST); block += words) ++n;
   return n;
-}
-
-Box child_bounds(const layout::WideNode& node, std::uint32_t slot) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = node.bounds[axis][0][slot];
-    box.hi[axis] = node.bounds[axis][1][slot];
-  }
-  return box;
 }
 
 Cut cut(const flatten::FlatScene& scene, const flatten::WideForm& form, std::size_t n) {

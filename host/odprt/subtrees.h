@@ -11,11 +11,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "flatten/leaf_block.h"
 #include "flatten/wide.h"
-#include "layout/instances.layout.h"
 #include "math/box.h"
 
 namespace kdray::odprt {
+
+using flatten::bounds_of_child, flatten::is_instance;
 
 struct Subtree {
   Box bounds;               // of its contents
@@ -48,15 +50,6 @@ struct Cut {
 // Cuts the form into at least `n` subtrees, if the tree has as many that can be told apart.
 Cut cut(const flatten::FlatScene& scene, const flatten::WideForm& form, std::size_t n);
 
-// Whether a leaf is an instance of a mesh.
-inline bool is_instance(layout::u32 leaf) {
-  return (leaf & ~KDRAY_WIDE_FIRST_MASK) == KDRAY_INSTANCE_LEAF;
-}
-
 // The number of blocks of a leaf; an instance counts as one.
 std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf);
-
-// Bounds of a node's child.
-Box child_bounds(const layout::WideNode& node, std::uint32_t slot);
-
 }  // namespace kdray::odprt

@@ -24,7 +24,7 @@ void collect(const flatten::FlatScene& scene, const flatten::WideForm& form, lay
              std::vector<std::pair<std::uint32_t, std::uint32_t>>& found) {
   if (!(child & KDRAY_WIDE_LEAF)) {
     for (std::uint32_t slot = 0; slot < 8; ++slot)
-      if (!odprt::child_bounds(form.nodes[child], slot).empty())
+      if (!odprt::bounds_of_child(form.nodes[child], slot).empty())
         collect(scene, form, form.nodes[child].child[slot], found);
     return;
   }

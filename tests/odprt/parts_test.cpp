@@ -54,7 +54,7 @@ std::vector<Box> boxes_below(const flatten::WideForm& form, const odprt::Subtree
   if (subtree.child & KDRAY_WIDE_LEAF) return {subtree.bounds};
   std::vector<Box> boxes;
   for (std::uint32_t slot = 0; slot < 8; ++slot) {
-    const Box box = odprt::child_bounds(form.nodes[subtree.child], slot);
+    const Box box = odprt::bounds_of_child(form.nodes[subtree.child], slot);
     if (!box.empty()) boxes.push_back(box);
   }
   return boxes;
@@ -69,7 +69,7 @@ std::vector<Leaf> leaves_of(const flatten::FlatScene& scene, const flatten::Wide
     const layout::WideNode& node = form.nodes[stack.back()];
     stack.pop_back();
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
-      const Box box = odprt::child_bounds(node, slot);
+      const Box box = odprt::bounds_of_child(node, slot);
       if (box.empty()) continue;
       if (node.child[slot] & KDRAY_WIDE_LEAF)
         leaves.push_back(leaf_of(scene, form, node.child[slot], box));
@@ -99,7 +99,7 @@ std::size_t leaves_below(const flatten::WideForm& form, layout::u32 child) {
   if (child & KDRAY_WIDE_LEAF) return 1;
   std::size_t n = 0;
   for (std::uint32_t slot = 0; slot < 8; ++slot)
-    if (!odprt::child_bounds(form.nodes[child], slot).empty())
+    if (!odprt::bounds_of_child(form.nodes[child], slot).empty())
       n += leaves_below(form, form.nodes[child].child[slot]);
   return n;
 }

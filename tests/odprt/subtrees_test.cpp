@@ -22,14 +22,14 @@ void count_leaves(const flatten::WideForm& form, layout::u32 child, std::map<lay
   }
   const layout::WideNode& node = form.nodes[child];
   for (std::uint32_t slot = 0; slot < 8; ++slot)
-    if (!odprt::child_bounds(node, slot).empty()) count_leaves(form, node.child[slot], leaves);
+    if (!odprt::bounds_of_child(node, slot).empty()) count_leaves(form, node.child[slot], leaves);
 }
 
 std::map<layout::u32, int> all_leaves(const flatten::WideForm& form) {
   std::map<layout::u32, int> leaves;
   for (const layout::WideNode& node : form.nodes)
     for (std::uint32_t slot = 0; slot < 8; ++slot)
-      if (!odprt::child_bounds(node, slot).empty() && (node.child[slot] & KDRAY_WIDE_LEAF))
+      if (!odprt::bounds_of_child(node, slot).empty() && (node.child[slot] & KDRAY_WIDE_LEAF))
         ++leaves[node.child[slot]];
   return leaves;
 }
@@ -38,7 +38,7 @@ double cost_of_whole(const flatten::WideForm& form) {
   double cost = 0;
   for (const layout::WideNode& node : form.nodes)
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
-      const Box box = odprt::child_bounds(node, slot);
+      const Box box = odprt::bounds_of_child(node, slot);
       if (box.empty()) continue;
       const bool leaf = node.child[slot] & KDRAY_WIDE_LEAF;
       cost +=
@@ -65,7 +65,7 @@ TEST(Subtrees, TheTopNamesEachOnce) {
       for (std::uint32_t slot = 0; slot < 8; ++slot) {
         const std::int32_t below = top.below[slot];
         const layout::WideNode& node = scene.wide.nodes[top.node];
-        EXPECT_EQ(below == Opened::kEmpty, odprt::child_bounds(node, slot).empty()) << name;
+        EXPECT_EQ(below == Opened::kEmpty, odprt::bounds_of_child(node, slot).empty()) << name;
         if (below == Opened::kEmpty) continue;
         if (below >= 0) {
           ++opened[static_cast<std::size_t>(below)];
@@ -93,7 +93,8 @@ TEST(Subtrees, CostsAddUpToTheWhole) {
       for (std::size_t k = 0; k < cut.top.size(); ++k)
         for (std::uint32_t slot = 0; slot < 8; ++slot)
           if (cut.top[k].below[slot] == static_cast<std::int32_t>(i))
-            cost += static_cast<double>(odprt::child_bounds(scene.wide.nodes[cut.top[k].node], slot).area());
+            cost +=
+                static_cast<double>(odprt::bounds_of_child(scene.wide.nodes[cut.top[k].node], slot).area());
     EXPECT_NEAR(cost, cost_of_whole(scene.wide), 1e-9 * cost_of_whole(scene.wide)) << name;
   }
 }
