@@ -1,8 +1,8 @@
 // What    What each kind of primitive is in Embree: its type, and its buffers, as a scene that is traced has
 //         them and as those that builds are measured by are filled beforehand.
 // Shape   Triangles are triangles, spheres SPHERE_POINTs, cones CONE_LINEAR_CURVEs whose segments are flagged
-//         as having neighbours, which leaves the end caps off, discs ORIENTED_DISC_POINTs. A kind that lacks
-//         something here does not compile.
+//         as having neighbours, which leaves the end caps off, discs ORIENTED_DISC_POINTs. It has no tori: a
+//         scene with them is refused. A kind that lacks something here does not compile.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,15 @@ constexpr RTCGeometryType embree_type(primitives::ConeKind) {
 }
 constexpr RTCGeometryType embree_type(primitives::DiscKind) {
   return RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT;
+}
+
+// Never made: see refuse_tori.
+constexpr RTCGeometryType embree_type(primitives::TorusKind) {
+  return RTC_GEOMETRY_TYPE_USER;
+}
+
+[[noreturn]] inline void refuse_tori() {
+  throw Error(ErrorCode::input, "Embree has no tori: leave them out of a scene that it is to trace");
 }
 
 // ---- Of a scene that is traced
@@ -76,6 +85,10 @@ inline void fill(RTCGeometry g, const std::vector<scene::DiscGeometry>& discs) {
       new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), discs.size());
   auto* normal = new_buffer<vec3>(g, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, sizeof(vec3), discs.size());
   for (const scene::DiscGeometry& d : discs) *point++ = {d.center, d.radius}, *normal++ = d.normal;
+}
+
+inline void fill(RTCGeometry, const std::vector<scene::TorusGeometry>& tori) {
+  if (!tori.empty()) refuse_tori();
 }
 
 // ---- For builds
@@ -139,6 +152,11 @@ inline Buffers buffers_of(primitives::DiscKind, const scene::Scene&, const scene
   }
   if (!b.normals.empty()) b.normals.resize(b.normals.size() + kPadding);
   return b;
+}
+
+inline Buffers buffers_of(primitives::TorusKind, const scene::Scene&, const scene::Geometry& geometry) {
+  if (!geometry.tori.empty()) refuse_tori();
+  return {};
 }
 
 }  // namespace kdray::bench

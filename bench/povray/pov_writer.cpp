@@ -87,6 +87,14 @@ void write_shape(std::ostream& out, const scene::Disc& d) {
   fmt::print(out, "disc {{ {},{},{:.9g} {} }}\n", vector(d.center), vector(d.normal), d.radius,
              material(d.material));
 }
+// POV-Ray's tori lie about the y axis: the matrix' rows are where x, y, z and the origin go.
+void write_shape(std::ostream& out, const scene::Torus& t) {
+  const dvec3 axis = glm::normalize(t.axis), other = std::abs(axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  const dvec3 u = glm::normalize(glm::cross(axis, other)), v = glm::cross(u, axis);
+  fmt::print(out, "torus {{ {:.9g},{:.9g} matrix <", t.major_radius, t.minor_radius);
+  for (const dvec3& row : {u, axis, v}) fmt::print(out, "{:.9g},{:.9g},{:.9g},", row.x, row.y, row.z);
+  fmt::print(out, "{:.9g},{:.9g},{:.9g}> {} }}\n", t.center.x, t.center.y, t.center.z, material(t.material));
+}
 
 // A mesh for each material: a texture per triangle would cost POV-Ray memory, and interiors are a mesh's own.
 void write_meshes(std::ostream& out, const scene::Scene& scene) {

@@ -28,6 +28,13 @@ dvec3 normal_of(const scene::Scene&, const scene::Disc& d, const dvec3&) {
   return d.normal;
 }
 
+// Away from the nearest place of its circle.
+dvec3 normal_of(const scene::Scene&, const scene::Torus& t, const dvec3& point) {
+  const dvec3 axis = glm::normalize(t.axis), from = point - t.center;
+  const dvec3 across = from - glm::dot(from, axis) * axis;
+  return from - across * (t.major_radius / glm::length(across));
+}
+
 }  // namespace
 
 Surfaces::Surfaces(const scene::Scene& scene) : scene_(scene), entries_(scene.primitive_count()) {

@@ -19,3 +19,4 @@
 #include "primitives/disc.h"
 #include "primitives/kinds.h"
 #include "primitives/sphere.h"
+#include "primitives/torus.h"

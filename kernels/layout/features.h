@@ -71,7 +71,7 @@
 #endif
 #define KDRAY_HAS_KIND(NAME) ((KDRAY_FEATURES & KDRAY_FEATURE_KIND(NAME)) != 0)
 // Kinds whose test asks for the square of the direction.
-#define KDRAY_HAS_CURVED (KDRAY_HAS_KIND(SPHERE) || KDRAY_HAS_KIND(CONE))
+#define KDRAY_HAS_CURVED (KDRAY_HAS_KIND(SPHERE) || KDRAY_HAS_KIND(CONE) || KDRAY_HAS_KIND(TORUS))
 #define KDRAY_HAS_STITCHES ((KDRAY_FEATURES & KDRAY_FEATURE_STITCHES) != 0)
 #define KDRAY_HAS_SMOOTH (KDRAY_HAS_STITCHES || (KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
 #define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
@@ -129,6 +129,11 @@
 #define KDRAY_IF_DISC(...) __VA_ARGS__
 #else
 #define KDRAY_IF_DISC(...)
+#endif
+#if KDRAY_HAS_KIND(TORUS)
+#define KDRAY_IF_TORUS(...) __VA_ARGS__
+#else
+#define KDRAY_IF_TORUS(...)
 #endif
 #else
 namespace kdray::layout {

@@ -11,7 +11,8 @@
 #define KDRAY_SHAPES_WITH(F, X)         \
   F(X, SPHERE, sphere, spheres, Sphere) \
   F(X, CONE, cone, cones, Cone)         \
-  F(X, DISC, disc, discs, Disc)
+  F(X, DISC, disc, discs, Disc)         \
+  F(X, TORUS, torus, tori, Torus)
 
 #define KDRAY_KINDS_WITH(F, X)                  \
   F(X, TRIANGLE, triangle, triangles, Triangle) \
@@ -26,6 +27,7 @@
 #define KDRAY_KIND_SPHERE 1u
 #define KDRAY_KIND_CONE 2u
 #define KDRAY_KIND_DISC 3u
+#define KDRAY_KIND_TORUS 4u
 
 #define KDRAY_COUNT_KIND(NAME, name, names, Struct) +1
 #define KDRAY_N_KINDS (0u KDRAY_KINDS(KDRAY_COUNT_KIND))

@@ -60,5 +60,18 @@ typedef struct Disc {
 } Disc;
 KDRAY_ASSERT_SIZE(Disc, 48)
 KDRAY_ASSERT_OFFSET(Disc, number, 28)
+
+// The points at minor_radius from a circle of major_radius about the centre, across the axis.
+typedef struct Torus {
+  float center[3];
+  float major_radius;
+  float axis[3];  // unit but for rounding
+  float minor_radius;
+  u32 number;
+  u32 material;
+  u32 pad[2];
+} Torus;
+KDRAY_ASSERT_SIZE(Torus, 48)
+KDRAY_ASSERT_OFFSET(Torus, minor_radius, 28)
 KDRAY_LAYOUT_END
 #endif

@@ -65,6 +65,17 @@
 #define KDRAY_ROW_DISC_INDEX 7
 #define KDRAY_DISC_ROWS 8
 
+#define KDRAY_ROW_TORUS_X 0  // the centre
+#define KDRAY_ROW_TORUS_Y 1
+#define KDRAY_ROW_TORUS_Z 2
+#define KDRAY_ROW_TORUS_AXIS_X 3
+#define KDRAY_ROW_TORUS_AXIS_Y 4
+#define KDRAY_ROW_TORUS_AXIS_Z 5
+#define KDRAY_ROW_TORUS_MAJOR 6
+#define KDRAY_ROW_TORUS_MINOR 7
+#define KDRAY_ROW_TORUS_INDEX 8
+#define KDRAY_TORUS_ROWS 9
+
 #define KDRAY_CHECK_ROWS(NAME, name, names, Struct) \
   typedef char kdray_last_row_of_##name[KDRAY_ROW_##NAME##_INDEX == KDRAY_##NAME##_ROWS - 1 ? 1 : -1];
 KDRAY_KINDS(KDRAY_CHECK_ROWS)

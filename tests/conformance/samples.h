@@ -179,4 +179,39 @@ struct Samples<primitives::DiscKind> {
   }
 };
 
+template <>
+struct Samples<primitives::TorusKind> {
+  static constexpr std::uint64_t kKnownSelfHits = 0;
+  static constexpr bool kIsSureOfTargets = true;
+
+  // From one whose hole is all but closed to a thin ring.
+  static void add(scene::Scene& s, std::uint32_t material, Draw& random) {
+    const dvec3 center = random.in_cube(1);
+    const double major = 0.5 * random.size(), share = random.below(4) == 0 ? 0.99 : random.between(0.02, 0.7);
+    const dvec3 axis = random.between(0.1, 3) * random.axis_or_any();
+    s.tori.push_back({center, axis, major, share * major, material, next_number(s)});
+  }
+  static RealPoint point(const scene::TorusGeometry& t, Draw& random) {
+    const RealPoint center(t.center), axis = glm::normalize(RealPoint(t.axis));
+    const RealPoint middle = on_circle(center, axis, t.major_radius, random);
+    const RealPoint tangent = glm::normalize(glm::cross(axis, middle - center));
+    return on_circle(middle, tangent, t.minor_radius, random);
+  }
+  // On the outer or the inner equator, or on top, where a plane touches along a circle; along that circle or
+  // around the tube.
+  static Place place(const scene::Scene& s, std::size_t i, Draw& random) {
+    const scene::Torus& t = s.tori[i];
+    const dvec3 axis = glm::normalize(t.axis);
+    const auto [u, v] = across(RealPoint(axis));
+    const dvec3 out(u), along(v);
+    const Place places[] = {{t.center + (t.major_radius + t.minor_radius) * out, along},
+                            {t.center + (t.major_radius + t.minor_radius) * out, axis},
+                            {t.center + (t.major_radius - t.minor_radius) * out, along},
+                            {t.center + (t.major_radius - t.minor_radius) * out, axis},
+                            {t.center + t.major_radius * out + t.minor_radius * axis, along},
+                            {t.center + t.major_radius * out + t.minor_radius * axis, out}};
+    return places[random.below(6)];
+  }
+};
+
 }  // namespace kdray::test

@@ -46,6 +46,10 @@ scene::Disc as_told(const layout::Disc& d) {
   return {vector(d.center), vector(d.normal), d.radius, d.material, d.number};
 }
 
+scene::Torus as_told(const layout::Torus& t) {
+  return {vector(t.center), vector(t.axis), t.major_radius, t.minor_radius, t.material, t.number};
+}
+
 void add_materials(const flatten::FlatScene& flat, scene::Scene& out) {
   out.ambient = vec3(0);  // it is in what a material shows without light
   for (const layout::Material& m : flat.materials)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "oracle/polynomial.h"
+
 namespace kdray::oracle {
 namespace {
 
@@ -22,6 +24,8 @@ int roots(double a, double b, double c, double t[2]) {
   if (t[0] > t[1]) std::swap(t[0], t[1]);
   return 2;
 }
+
+using RealVec = glm::vec<3, long double>;
 
 bool within(double t, const Ray& ray) {
   return t >= ray.t_min && t <= ray.t_max;
@@ -68,6 +72,20 @@ void World::add(const scene::Disc& d, std::uint32_t source, DBox& box) {
   shapes_.push_back({Kind::disc, source, static_cast<int>(d.number), d.center, {}, {}, d.radius, 0, normal});
 }
 
+void World::add(const scene::Torus& t, std::uint32_t source, DBox& box) {
+  const double size = t.major_radius + t.minor_radius;
+  box.grow(t.center - size), box.grow(t.center + size);
+  shapes_.push_back({Kind::torus,
+                     source,
+                     static_cast<int>(t.number),
+                     t.center,
+                     {},
+                     {},
+                     t.major_radius,
+                     t.minor_radius,
+                     glm::normalize(t.axis)});
+}
+
 Hit World::closest(const Ray& ray, double grow) const {
   Hit best;
   Ray rest = ray;  // as far as the nearest hit yet
@@ -97,6 +115,8 @@ Hit World::intersect(const Shape& shape, const Ray& ray, double grow) const {
       return intersect_cone(shape, ray, grow);
     case Kind::disc:
       return intersect_disc(shape, ray, grow);
+    case Kind::torus:
+      return intersect_torus(shape, ray, grow);
   }
   return {};
 }
@@ -177,6 +197,28 @@ Hit World::intersect_disc(const Shape& s, const Ray& ray, double grow) const {
   return {t, s.number, std::min(away / s.r0, 1.0), 0};
 }
 
+// About the point of the line that is nearest to the centre.
+Hit World::intersect_torus(const Shape& s, const Ray& ray, double grow) const {
+  const long double major = s.r0, minor = s.r1 + grow;
+  if (minor <= 0) return {};
+  const RealVec d(ray.direction), n = glm::normalize(RealVec(s.normal)),
+                                  f = RealVec(ray.origin) - RealVec(s.a);
+  const long double a = glm::dot(d, d), middle = -glm::dot(f, d) / a;
+  const RealVec g = f + middle * d;
+  const auto quartic = torus_quartic<long double>(glm::dot(g, g), glm::dot(g, d), a, glm::dot(g, n),
+                                                  glm::dot(d, n), major, minor);
+  const long double reach = 2 * (major + minor) / std::sqrt(a);
+  std::vector<long double> all = roots_of<long double>(quartic, -reach, reach, 80);
+  // The origin lies on the surface itself.
+  const auto nearest = std::ranges::min_element(all, {}, [&](long double t) { return std::abs(middle + t); });
+  if (ray.self == s.number && nearest != all.end() &&
+      std::abs(middle + *nearest) * std::sqrt(a) < 1e-6L * major)
+    all.erase(nearest);
+  for (const long double t : all)
+    if (const double at = static_cast<double>(middle + t); within(at, ray)) return {at, s.number};
+  return {};
+}
+
 Surface World::surface(const Ray& ray, const Hit& hit) const {
   const auto found = std::lower_bound(shapes_.begin(), shapes_.end(), hit.primitive,
                                       [](const Shape& s, int number) { return s.number < number; });
@@ -190,6 +232,13 @@ Surface World::surface(const Ray& ray, const Hit& hit) const {
       out.material = scene_.spheres[found->source].material;
       out.outward = glm::normalize(out.point - found->a);
       break;
+    case Kind::torus: {
+      out.material = scene_.tori[found->source].material;
+      const dvec3 o = out.point - found->a;
+      const double along = glm::dot(o, found->normal);
+      out.outward = glm::normalize(o - found->r0 * glm::normalize(o - along * found->normal));
+      break;
+    }
     case Kind::disc:
       out.material = scene_.discs[found->source].material;
       out.outward = found->normal;

@@ -62,20 +62,22 @@ class World {
     Kind kind;
     std::uint32_t source;  // index into the scene's array of that kind
     int number;
-    dvec3 a, b, c;    // triangle: corners; sphere, disc: centre; cone: base, apex
-    double r0, r1;    // sphere, disc: radius; cone: radii
-    dvec3 normal{0};  // triangle: its length is twice the area; disc
+    dvec3 a, b, c;    // triangle: corners; sphere, disc, torus: centre; cone: base, apex
+    double r0, r1;    // sphere, disc: radius; cone: radii; torus: major, minor
+    dvec3 normal{0};  // triangle: its length is twice the area; disc; torus: axis
   };
 
   void add(const scene::Triangle& t, std::uint32_t source, DBox& box);
   void add(const scene::Sphere& s, std::uint32_t source, DBox& box);
   void add(const scene::Cone& c, std::uint32_t source, DBox& box);
   void add(const scene::Disc& d, std::uint32_t source, DBox& box);
+  void add(const scene::Torus& t, std::uint32_t source, DBox& box);
   Hit intersect(const Shape& shape, const Ray& ray, double grow) const;
   Hit intersect_triangle(const Shape& s, const Ray& ray, double grow) const;
   Hit intersect_sphere(const Shape& s, const Ray& ray, double grow) const;
   Hit intersect_cone(const Shape& s, const Ray& ray, double grow) const;
   Hit intersect_disc(const Shape& s, const Ray& ray, double grow) const;
+  Hit intersect_torus(const Shape& s, const Ray& ray, double grow) const;
   void triangle_surface(const Shape& shape, const Hit& hit, Surface& out) const;
 
   const scene::Scene& scene_;

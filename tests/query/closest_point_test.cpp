@@ -63,6 +63,7 @@ TEST_P(ClosestPoints, OfShapesAreExact) {
   expect_exact("spheres", spheres(200), GetParam(), kPoints);
   expect_exact("cones", cones(200), GetParam(), kPoints);
   expect_exact("discs", discs(200), GetParam(), kPoints);
+  expect_exact("tori", tori(200), GetParam(), kPoints);
   expect_exact("all kinds", all_kinds(), GetParam(), kPoints);
 }
 

@@ -136,6 +136,17 @@ scene::Scene discs(int n) {
   return s;
 }
 
+scene::Scene tori(int n) {
+  Random random(kClosestSeed);
+  scene::Scene s = empty_scene();
+  for (int i = 0; i < n; ++i) {
+    const double major = std::pow(10.0, random.between(-2.5, -0.3));
+    s.tori.push_back({random.in_cube(1), random.direction(), major, random.between(0.01, 0.95) * major, 0,
+                      s.primitive_count()});
+  }
+  return s;
+}
+
 scene::Scene all_kinds() {
   scene::Scene s = soup(60, 1);
   const auto take = [&s](const auto& from, auto& to) {
@@ -147,6 +158,7 @@ scene::Scene all_kinds() {
   take(spheres(40).spheres, s.spheres);
   take(cones(40).cones, s.cones);
   take(discs(40).discs, s.discs);
+  take(tori(40).tori, s.tori);
   return s;
 }
 
@@ -187,6 +199,13 @@ dvec3 place_of(const layout::Cone& c, Random& random) {
 dvec3 place_of(const layout::Disc& d, Random& random) {
   const double share = random.below(3) == 0 ? 1 : random.between(0, 1);
   return vec(d.center) + share * d.radius * across(vec(d.normal), random);
+}
+
+dvec3 place_of(const layout::Torus& t, Random& random) {
+  const dvec3 axis = vec(t.axis), out = across(axis, random);
+  const double angle = random.below(3) == 0 ? 0 : random.between(0, 6.2831853);
+  return vec(t.center) + (t.major_radius + t.minor_radius * std::cos(angle)) * out +
+         t.minor_radius * std::sin(angle) * axis;
 }
 
 std::vector<dvec3> places_on(const DeviceScene& asked, std::size_t n, Random& random) {

@@ -32,6 +32,7 @@ scene::Scene ball(int n);
 scene::Scene spheres(int n);
 scene::Scene cones(int n);
 scene::Scene discs(int n);
+scene::Scene tori(int n);
 scene::Scene all_kinds();
 
 // Triangles alone are moved.

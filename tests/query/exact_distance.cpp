@@ -101,6 +101,13 @@ N distance(const dvec3& point, const layout::Disc& d) {
   return root(N(from.height * from.height + out * out));
 }
 
+template <class N>
+N distance(const dvec3& point, const layout::Torus& t) {
+  const FromAxis<N> from = from_axis(vec<N>(point), vec<N>(t.center), vec<N>(t.axis));
+  const N out = from.away - N(t.major_radius);
+  return size_of(N(root(N(from.height * from.height + out * out)) - N(t.minor_radius)));
+}
+
 // The segment that makes the cone when it is turned about the axis.
 template <class N>
 N distance(const dvec3& point, const layout::Cone& c) {

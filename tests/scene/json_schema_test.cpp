@@ -57,6 +57,7 @@ json example(const json& root, const json& rule, const std::string& key) {
   if (key == "materials") return json::object({{"m", example_object(root, definition(root, "material"))}});
   if (key == "at" || key == "apex") return {1, 2, 9};
   if (key == "max") return {4, 5, 9};
+  if (key == "minor_radius") return 0.25;  // less than the major one
   if (key == "matrix") return {1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1};
   if (rule.contains("$ref")) {
     const std::string ref = rule["$ref"];

@@ -163,7 +163,7 @@ TEST(Json, NamesThePathOfWhatIsNoScene) {
             "s.json: /objects/0/radius: expected a number above 0.0, found 0");
   EXPECT_EQ(refused_object(R"({"type": "cube"})"),
             "s.json: /objects/0/type: expected one of mesh, triangles, box, cylinder, plane, sphere, cone, "
-            "disc, found \"cube\"");
+            "disc, torus, found \"cube\"");
   EXPECT_EQ(refused(R"({"materials": {"a/b": {"index": 0}}})"),
             "s.json: /materials/a~1b/index: expected a number above 0.0, found 0");
   EXPECT_EQ(refused(R"({"materials": {"red": {}}, "objects": [

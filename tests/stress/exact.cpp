@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "oracle/polynomial.h"
+
 namespace kdray::stress {
 
 namespace {
@@ -91,6 +93,20 @@ std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Disc& d
   return {Exact(dot(minus(exactly(disc.center), o), n) / along)};
 }
 
+// About the place that is nearest to the centre.
+std::vector<Exact> roots(const Exact3& o, const Exact3& d, const layout::Torus& torus) {
+  const Exact3 f = minus(o, exactly(torus.center)), n = exactly(torus.axis);
+  const Exact a = dot(d, d), middle = -dot(f, d) / a, length = sqrt(dot(n, n));
+  const Exact3 g = {f.x + middle * d.x, f.y + middle * d.y, f.z + middle * d.z};
+  const Exact major(torus.major_radius), minor(torus.minor_radius);
+  const auto quartic = oracle::torus_quartic<Exact>(dot(g, g), dot(g, d), a, dot(g, n) / length,
+                                                    dot(d, n) / length, major, minor);
+  const Exact reach = 2 * (major + minor) / sqrt(a);
+  std::vector<Exact> all = oracle::roots_of<Exact>(quartic, -reach, reach, 100);
+  for (Exact& t : all) t += middle;
+  return all;
+}
+
 double distance(const Exact3& p, const layout::Triangle& triangle) {
   const Exact3 a = exactly(triangle.v[0]);
   const Exact3 n = cross(minus(exactly(triangle.v[1]), a), minus(exactly(triangle.v[2]), a));
@@ -114,6 +130,13 @@ double distance(const Exact3& p, const layout::Cone& cone) {
 double distance(const Exact3& p, const layout::Disc& disc) {
   const Exact3 n = exactly(disc.normal);
   return std::abs(Exact(dot(minus(p, exactly(disc.center)), n) / sqrt(dot(n, n))).get_d());
+}
+
+double distance(const Exact3& p, const layout::Torus& torus) {
+  const Exact3 f = minus(p, exactly(torus.center)), n = exactly(torus.axis);
+  const Exact z = dot(f, n) / sqrt(dot(n, n)), across2 = dot(f, f) - z * z;
+  const Exact out = (sgn(across2) > 0 ? Exact(sqrt(across2)) : Exact(0)) - torus.major_radius;
+  return Exact(sqrt(Exact(out * out + z * z)) - torus.minor_radius).get_d();
 }
 
 double ulp(double scale) {

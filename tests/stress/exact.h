@@ -34,8 +34,8 @@ KDRAY_KINDS(KDRAY_ROOTS_OF_KIND)
 std::vector<Exact> roots_past_the_ends(const Exact3& origin, const Exact3& direction,
                                        const layout::Cone& cone, double share);
 
-// The distance from the surface's plane, sphere or cone; of a sphere or cone with its sign: negative inside.
-// (A kind that lacks one does not link.)
+// The distance from the surface's plane, sphere, cone or torus; of the last three with its sign: negative
+// inside. (A kind that lacks one does not link.)
 #define KDRAY_DISTANCE_OF_KIND(NAME, name, names, Struct) \
   double distance(const Exact3& point, const layout::Struct& name);
 KDRAY_KINDS(KDRAY_DISTANCE_OF_KIND)

@@ -153,6 +153,21 @@ scene::Scene discs(std::uint64_t seed) {
   return s;
 }
 
+// From one whose hole is all but closed to thin rings.
+scene::Scene tori(std::uint64_t seed) {
+  scene::Scene s = with_material();
+  for (int i = 0; i < kPrimitives; ++i) {
+    Random random(seed, static_cast<std::uint64_t>(i));
+    const double major = static_cast<float>(random.log_uniform(1e-4, 1e4));
+    const double minor = i % 3 == 0 ? 0.999 * major : major / random.log_uniform(1.1, 1e3);
+    const dvec3 center(vec3(random.log_uniform(1e-4, 1e6) * random.direction()));
+    dvec3 axis = random.direction();
+    if (i % 4 == 0) axis = dvec3(0), axis[static_cast<int>(random.below(3))] = random.sign();
+    s.tori.push_back({center, axis, major, minor, 0, s.primitive_count()});
+  }
+  return s;
+}
+
 // ---- What the kinds differ in. A kind that lacks one of these does not compile.
 
 // The scenes of a kind; `share` of all rays.
@@ -174,6 +189,10 @@ std::vector<Family> families_of(primitives::ConeKind) {
 }
 std::vector<Family> families_of(primitives::DiscKind) {
   return {{"discs, radius 1e-4 to 1e4, to 1e6 off", discs, 0.1}};
+}
+
+std::vector<Family> families_of(primitives::TorusKind) {
+  return {{"tori, radius 1e-4 to 1e4, to 1e6 off", tori, 0.03}};
 }
 
 dvec3 point3(const float (&v)[3]) {
@@ -200,6 +219,15 @@ Spot spot_on(const layout::Disc& d, Random& random) {
   return {point3(d.center) + d.radius * std::sqrt(random.uniform()) * tangent_to(n, random), n, d.radius};
 }
 
+Spot spot_on(const layout::Torus& t, Random& random) {
+  const dvec3 axis = glm::normalize(point3(t.axis)), out = tangent_to(axis, random);
+  const double angle = 6.283185307179586 * random.uniform();
+  const dvec3 n = std::cos(angle) * out + std::sin(angle) * axis;
+  return {
+      point3(t.center) + static_cast<double>(t.major_radius) * out + static_cast<double>(t.minor_radius) * n,
+      n, t.minor_radius};
+}
+
 std::string described(const layout::Triangle& t) {
   std::string all = "triangle";
   for (const auto& v : t.v)
@@ -219,6 +247,11 @@ std::string described(const layout::Disc& d) {
                      d.center[2], d.normal[0], d.normal[1], d.normal[2], d.radius);
 }
 
+std::string described(const layout::Torus& t) {
+  return fmt::format("torus {:a} {:a} {:a} axis {:a} {:a} {:a} radii {:a} {:a}", t.center[0], t.center[1],
+                     t.center[2], t.axis[0], t.axis[1], t.axis[2], t.major_radius, t.minor_radius);
+}
+
 double largest_coordinate(const layout::Triangle& t) {
   double m = 0;
   for (const auto& v : t.v)
@@ -236,6 +269,11 @@ double largest_coordinate(const layout::Cone& c) {
 double largest_coordinate(const layout::Disc& d) {
   const dvec3 c = glm::abs(point3(d.center));
   return std::max({c.x, c.y, c.z}) + d.radius;
+}
+
+double largest_coordinate(const layout::Torus& t) {
+  const dvec3 c = glm::abs(point3(t.center));
+  return std::max({c.x, c.y, c.z}) + t.major_radius + t.minor_radius;
 }
 
 enum class Verdict { right, wrong, excepted };
@@ -294,6 +332,16 @@ bool is_at_an_end(const Exact3& o, const Exact3& d, const layout::Cone& cone, fl
 }
 bool is_at_an_end(const Exact3&, const Exact3&, const layout::Sphere&, float) {
   return false;
+}
+
+// It may meet itself again from outside as well, across its hole or along its inner side.
+Verdict judge(const layout::Torus& surface, const Ray& ray, const Hit& hit, const Departure& departure) {
+  if (ends_at_the_surface(surface, ray, departure)) return Verdict::excepted;
+  const Exact3 o = exactly(ray.origin), d = exactly(ray.direction);
+  if (departure.inwards != (distance(o, surface) < 0))
+    return may_come_out_again(departure) ? Verdict::excepted : Verdict::wrong;
+  if (is_on_the_way(o, d, surface, hit.t)) return Verdict::right;
+  return 64 * departure.step > departure.radius ? Verdict::excepted : Verdict::wrong;
 }
 
 template <class Curved>
@@ -395,6 +443,10 @@ class Case {
   static float radius_at(const layout::Triangle&, const Spawned&) { return kInfinity; }
   static float radius_at(const layout::Disc&, const Spawned&) { return kInfinity; }
   static float radius_at(const layout::Sphere& s, const Spawned&) { return s.radius; }
+  // What is thin of a torus is its tube, or its hole.
+  static float radius_at(const layout::Torus& t, const Spawned&) {
+    return std::min(t.minor_radius, t.major_radius - t.minor_radius);
+  }
   static float radius_at(const layout::Cone& c, const Spawned& s) {
     const double along = glm::dot(point3(s.point) - point3(c.base), point3(c.axis));
     return static_cast<float>(c.base_radius + c.slope * std::clamp<double>(along, 0, c.height));

@@ -18,6 +18,8 @@ scene::Scene small_scene() {
   s.cones.push_back(
       {.base = {0, 0, 0}, .apex = {0, 0, 2}, .base_radius = 0.25, .apex_radius = 0.125, .number = 2});
   s.discs.push_back({.center = {3, 0, 0}, .normal = {0, 0, 2}, .radius = 0.75, .number = 3});
+  s.tori.push_back(
+      {.center = {1, 0, 0}, .axis = {0, 0, 3}, .major_radius = 0.5, .minor_radius = 0.125, .number = 4});
   s.materials.emplace_back().diffuse = {0.5f, 0.25f, 0};
   s.lights.emplace_back().position = {1, 2, 3};
   s.camera = {.from = {0, -5, 2}, .at = {0, 0, 1}, .up = {0, 0, 1}};
@@ -30,8 +32,9 @@ TEST(Povray, FileHoldsTheScene) {
   const std::string text = out.str();
   for (const char* const part :
        {"max_trace_level 5", "sphere { <0,0,1>,0.5", "cone { <0,0,0>,0.25,<0,0,2>,0.125 open",
-        "disc { <3,0,0>,<0,0,2>,0.75", "triangle {<-1,-1,0>,<1,-1,0>,<0,1,0>}", "light_source { <1,2,3>",
-        "rgbf <1,0.5,0,0>", "diffuse 0.5", "right <-2,0,0>"})
+        "disc { <3,0,0>,<0,0,2>,0.75", "torus { 0.5,0.125 matrix <0,1,0,0,0,1,1,0,0,1,0,0> ",
+        "triangle {<-1,-1,0>,<1,-1,0>,<0,1,0>}", "light_source { <1,2,3>", "rgbf <1,0.5,0,0>", "diffuse 0.5",
+        "right <-2,0,0>"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
 }
 
