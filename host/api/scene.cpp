@@ -279,6 +279,9 @@ GeometryId Scene::add_cones(const Cones& cones, const GeometryOptions& options) 
 GeometryId Scene::add_discs(const Discs& discs, const GeometryOptions& options) {
   return impl_->add(scene::make_added(discs), options);
 }
+GeometryId Scene::add_tori(const Tori& tori, const GeometryOptions& options) {
+  return impl_->add(scene::make_added(tori), options);
+}
 
 GeometryId Scene::add_instances(GeometryId prototype, const Transforms& transforms,
                                 const InstanceOptions& options) {

@@ -103,6 +103,10 @@ KDRAY_API kdray_status kdray_add_cones(kdray_scene* scene, kdray_in bases, kdray
                                        const kdray_geometry_options* options, uint32_t* id);
 KDRAY_API kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdray_in normals, kdray_in radii,
                                        const kdray_geometry_options* options, uint32_t* id);
+/* Rings about `axes`, of any length but 0: 0 < minor < major <= 4096 minor. */
+KDRAY_API kdray_status kdray_add_tori(kdray_scene* scene, kdray_in centers, kdray_in axes,
+                                      kdray_in major_radii, kdray_in minor_radii,
+                                      const kdray_geometry_options* options, uint32_t* id);
 
 #define KDRAY_NO_INSTANCE 0xffffffffu
 #define KDRAY_OWN_MATERIAL 0xffffffffu

@@ -159,6 +159,14 @@ kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdray_in norm
     put(id, needed(scene, "scene")->scene.add_discs(discs, options_of(options)));
   });
 }
+kdray_status kdray_add_tori(kdray_scene* scene, kdray_in centers, kdray_in axes, kdray_in major_radii,
+                            kdray_in minor_radii, const kdray_geometry_options* options, uint32_t* id) {
+  return guarded([&] {
+    const Tori tori{view_of<Points>(centers, "centers"), view_of<Points>(axes, "axes"),
+                    view_of<Values>(major_radii, "major_radii"), view_of<Values>(minor_radii, "minor_radii")};
+    put(id, needed(scene, "scene")->scene.add_tori(tori, options_of(options)));
+  });
+}
 
 kdray_status kdray_add_instances(kdray_scene* scene, uint32_t prototype, kdray_in transforms,
                                  const kdray_instance_options* options, uint32_t* id) {

@@ -180,6 +180,21 @@ AddedGeometry make_added(const kdray::Discs& discs) {
   return geometry;
 }
 
+AddedGeometry make_added(const kdray::Tori& tori) {
+  const std::size_t n = tori.centers.size();
+  check_rows(tori.axes, "axes", n);
+  check_values(tori.major_radii, "major_radii", n);
+  check_values(tori.minor_radii, "minor_radii", n);
+  AddedGeometry geometry;
+  geometry.tori = make_shapes<Torus>(n, "tori", [&](std::size_t i) {
+    return Torus{.center = vector(tori.centers[i]),
+                 .axis = vector(tori.axes[i]),
+                 .major_radius = value_for(tori.major_radii, i),
+                 .minor_radius = value_for(tori.minor_radii, i)};
+  });
+  return geometry;
+}
+
 void move_vertices(AddedGeometry& geometry, const Points& vertices, const Points& normals) {
   if (geometry.triangles.empty() && geometry.vertices.empty())
     throw Error(ErrorCode::usage, "only meshes have vertices that can be moved");

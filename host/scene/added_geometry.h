@@ -45,6 +45,7 @@ AddedGeometry make_added(const Mesh& mesh);
 AddedGeometry make_added(const Spheres& spheres);
 AddedGeometry make_added(const Cones& cones);
 AddedGeometry make_added(const Discs& discs);
+AddedGeometry make_added(const Tori& tori);
 
 // New places for the vertices of a mesh, as many as it has; `normals` as in Mesh. Leaves `geometry` as it was
 // when it throws. ErrorCode::usage where the geometry is no mesh.

@@ -1,4 +1,4 @@
-"""kdray: exact and fast ray queries over triangles, spheres, cones and discs, and Whitted pictures.
+"""kdray: exact and fast ray queries over triangles, spheres, cones, discs and tori, and Whitted pictures.
 
 >>> import kdray
 >>> scene = kdray.Scene()

@@ -44,6 +44,18 @@ class Scene:
         arg6: bool,
         /,
     ) -> int: ...
+    def add_tori(
+        self,
+        arg0: NDArray[Any] | None,
+        arg1: NDArray[Any] | None,
+        arg2: NDArray[Any] | None,
+        arg3: NDArray[Any] | None,
+        arg4: str,
+        arg5: int,
+        arg6: int,
+        arg7: bool,
+        /,
+    ) -> int: ...
     def add_instances(
         self, prototype: int, transforms: NDArray[Any] | None, materials: NDArray[Any] | None, name: str, mask: int
     ) -> int: ...

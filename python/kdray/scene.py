@@ -57,9 +57,9 @@ class _Added:
 class Scene:
     """Geometries by id, and what can be asked of them.
 
-    ``Scene(device="auto")`` is empty; `kdray.load` reads a file. Add meshes, spheres, cones and discs, in whatever
-    units they are (float64 vertices keep what float32 would lose: the scene is moved to its own centre first), then
-    ask. The first question after a change builds the tree; `commit` does so at a time of your choosing.
+    ``Scene(device="auto")`` is empty; `kdray.load` reads a file. Add meshes, spheres, cones, discs and tori, in
+    whatever units they are (float64 vertices keep what float32 would lose: the scene is moved to its own centre
+    first), then ask. The first question after a change builds the tree; `commit` does so at a time of your choosing.
 
     Any number of threads may ask one scene at once; one thread at a time may change it. Questions let go of the GIL,
     and Ctrl-C ends them.
@@ -167,6 +167,27 @@ class Scene:
         arrays = (_points(centers, "centers"), _points(normals, "normals"), _scalars(radii, "radii"))
         return self._add("add_discs", arrays, name, mask, material, prototype)
 
+    def add_tori(
+        self,
+        centers: ArrayLike,
+        axes: ArrayLike,
+        major_radii: ArrayLike,
+        minor_radii: ArrayLike,
+        *,
+        mask: int = -1,
+        name: str | None = None,
+        material: int | None = None,
+        prototype: bool = False,
+    ) -> int:
+        """Adds exact ring tori: `centers` (n, 3), `axes` (n, 3) of any length, both radii (n,) or one for all.
+
+        A torus is what lies `minor_radii` off a circle of `major_radii` about its centre, across its axis, with
+        0 < minor < major <= 4096 minor.
+        """
+        points = (_points(centers, "centers"), _points(axes, "axes"))
+        arrays = (*points, _scalars(major_radii, "major_radii"), _scalars(minor_radii, "minor_radii"))
+        return self._add("add_tori", arrays, name, mask, material, prototype)
+
     def _add(
         self,
         method: str,
@@ -261,7 +282,7 @@ class Scene:
 
     @property
     def primitives(self) -> int:
-        """How many triangles, spheres, cones and discs are enabled."""
+        """How many triangles, spheres, cones, discs and tori are enabled."""
         return int(self._core.primitives())
 
     @property

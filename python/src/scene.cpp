@@ -59,6 +59,14 @@ void add_geometries(SceneClass& scene) {
       },
       Released());
   scene.def(
+      "add_tori",
+      [](Scene& s, const In& centers, const In& axes, const In& major, const In& minor,
+         const std::string& name, std::uint32_t mask, std::uint32_t material, bool prototype) {
+        return s.add_tori({points_of(centers), points_of(axes), values_of(major), values_of(minor)},
+                          {name, mask, material, prototype});
+      },
+      Released());
+  scene.def(
       "add_instances",
       [](Scene& s, GeometryId prototype, const In& transforms, const In& materials, const std::string& name,
          std::uint32_t mask) {

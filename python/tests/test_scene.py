@@ -25,10 +25,26 @@ def test_every_kind_of_shape():
         scene.add_spheres([[0, 0, -4]], 1),
         scene.add_cones([0.1, 0, -8], 1, [0.1, 9, -8], 1),
         scene.add_discs([0, 0, -12], [0, 0, 1], 1),
+        scene.add_tori([1, 0, -20], [0, 0, 1], 1, 0.5),
     ]
     hits = scene.all_hits(*DOWN)
-    assert ids == [0, 1, 2, 3] and hits.geometry.tolist() == [0, 1, 1, 2, 2, 3]
-    assert scene.primitives == 4 and [g.name for g in scene.geometries] == ["triangle", "", "", ""]
+    assert ids == [0, 1, 2, 3, 4] and hits.geometry.tolist() == [0, 1, 1, 2, 2, 3, 4, 4]
+    assert scene.primitives == 5 and [g.name for g in scene.geometries] == ["triangle", "", "", "", ""]
+
+
+def test_tori_have_an_outside_and_a_hole():
+    scene = kdray.Scene()
+    rings = scene.add_tori([[0, 0, 0], [9, 0, 0]], [[0, 0, 2]] * 2, 2, [0.5, 0.25], name="rings")
+    assert scene.info(rings).primitives == 2
+    assert scene.count_hits([[20, 0, 0], [0, 0, 5]], [[-1, 0, 0], [0, 0, -1]]).tolist() == [8, 0]
+    hit = scene.closest_hit([0, 2.3, 5], [0, 0, -1])
+    np.testing.assert_allclose([hit.t, *hit.normal.ravel()], [4.6, 0, 0.6, 0.8], atol=1e-5)
+    copied = pickle.loads(pickle.dumps(scene))
+    np.testing.assert_array_equal(copied.closest_hit([0, 2.3, 5], [0, 0, -1]).t, hit.t)
+    for major, minor, message in [(1, 1, "less than its major_radius"), (5000, 1, "at most 4096"), (1, 0, "above 0")]:
+        with pytest.raises(kdray.InputError, match=rf"tori\[0\].*{message}"):
+            scene.add_tori([0, 0, 0], [0, 0, 1], major, minor)
+    assert [g.id for g in scene.geometries] == [rings]
 
 
 @pytest.mark.parametrize("dtype", [np.int32, np.uint32, np.int64, np.uint64, np.int16, np.uint8])

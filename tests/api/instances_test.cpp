@@ -421,22 +421,27 @@ TEST_P(MadeInstances, OfAPrototypeWhoseVerticesMoveAreBuilt) {
 // Prototypes of every kind, in a scene of nothing else; one that is empty, and none.
 TEST_P(MadeInstances, OfEveryKindAndOfNothing) {
   Scene scene;
-  const std::vector<double> origin = {0, 0, 0}, up = {0, 0, 1}, one = {1};
+  const std::vector<double> origin = {0, 0, 0}, up = {0, 0, 1}, one = {1}, quarter = {0.25};
   const GeometryId ball = scene.add_spheres({origin, one}, {.prototype = true}),
                    disc = scene.add_discs({origin, up, one}, {.prototype = true}),
                    rod = scene.add_cones({origin, up, one, one}, {.prototype = true}),
+                   ring = scene.add_tori({origin, up, one, quarter}, {.prototype = true}),
                    nothing = scene.add_spheres({{}, one}, {.prototype = true});
   scene.add_instances(nothing, numbers({kHere, kHere}));
   Matrix egg = at(0, 0, 0);
   egg[10] = 3;  // an ellipsoid, three times as high
+  Matrix high = at(30, 0, 0);
+  high[10] = 2;
   const GeometryId eggs = scene.add_instances(ball, numbers({egg})),
                    discs = scene.add_instances(disc, numbers({at(10, 0, 0)})),
                    rods = scene.add_instances(rod, numbers({at(20, 0, 0)})),
+                   rings = scene.add_instances(ring, numbers({high})),
                    none = scene.add_instances(ball, std::vector<double>());
   scene.commit(options());
-  const Answers a =
-      asked(scene, {0, 0, 9, 10, 0.5, 9, 25, 0, 0.5, 0.6, 0, 9}, {0, 0, -1, 0, 0, -1, -1, 0, 0, 0, 0, -1});
-  EXPECT_EQ(a.geometry, (std::vector<std::uint32_t>{eggs, discs, rods, eggs}));
+  const Answers a = asked(scene, {0, 0, 9, 10, 0.5, 9, 25, 0, 0.5, 0.6, 0, 9, 31.15, 0, 9, 30, 0, 9},
+                          {0, 0, -1, 0, 0, -1, -1, 0, 0, 0, 0, -1, 0, 0, -1, 0, 0, -1});
+  EXPECT_EQ(a.geometry, (std::vector<std::uint32_t>{eggs, discs, rods, eggs, rings, kNoGeometry}))
+      << "the last goes through the hole";
   EXPECT_NEAR(a.t[0], 6, 1e-6);
   EXPECT_NEAR(a.t[1], 9, 1e-6);
   EXPECT_NEAR(a.t[2], 4, 1e-6);
@@ -445,6 +450,10 @@ TEST_P(MadeInstances, OfEveryKindAndOfNothing) {
   const double length = std::hypot(1.2, 4.8 / 9);
   EXPECT_NEAR(a.normal[3][0], 1.2 / length, 1e-5);
   EXPECT_NEAR(a.normal[3][2], 4.8 / 9 / length, 1e-5);
+  // The tube's circle is 0.15^2 + 0.2^2 = 0.25^2 there, and twice as high: the gradient is (0.15, 0, 0.2/2).
+  EXPECT_NEAR(a.t[4], 9 - 2 * 0.2, 1e-5);
+  EXPECT_NEAR(a.normal[4][0], 0.15 / std::hypot(0.15, 0.1), 1e-5);
+  EXPECT_NEAR(a.normal[4][2], 0.1 / std::hypot(0.15, 0.1), 1e-5);
   EXPECT_EQ(scene.info(none).instances, 0u);
 }
 

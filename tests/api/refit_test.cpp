@@ -218,13 +218,15 @@ struct Twins {
   void both(const auto& change) { change(fitted), change(built); }
 };
 
-// Spheres, cones and discs that do not move, about and among the meshes; the outermost keep the space.
+// Spheres, cones, discs and tori that do not move, about and among the meshes; the outermost keep the space.
 void add_shapes(Scene& scene) {
   scene.add_spheres(
       {std::vector<double>{3, 3, 3, -3, -3, -3, 0.2, 0.1, 0}, std::vector<double>{0.5, 0.5, 0.9}});
   scene.add_cones({std::vector<double>{-1, 0, 0}, std::vector<double>{1, 0.3, 0}, std::vector<double>{0.4},
                    std::vector<double>{0.1}});
   scene.add_discs({std::vector<double>{0, 0, 1.2}, std::vector<double>{0, 0.1, 1}, std::vector<double>{0.7}});
+  scene.add_tori({std::vector<double>{0, -0.2, 0}, std::vector<double>{0.2, 1, 0.1}, std::vector<double>{1.1},
+                  std::vector<double>{0.15}});
 }
 
 TEST_P(Refit, AnswersAreThoseOfABuiltTree) {
@@ -264,7 +266,7 @@ TEST_P(Refit, AnswersAreThoseOfAnotherSceneInTheSameSpace) {
     scene->add_mesh({scene == &moved ? mesh.vertices : vertices, mesh.triangles});
     scene->commit(always());
   }
-  moved.update_vertices(3, vertices);
+  moved.update_vertices(4, vertices);
   EXPECT_TRUE(moved.commit(always()).refitted);
   EXPECT_EQ(moved.prepared().prepared().geometry.space, made.prepared().prepared().geometry.space);
   Asking(3000, vertices).expect_same(moved, made);

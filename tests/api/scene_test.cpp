@@ -65,6 +65,16 @@ TEST(SceneOfArrays, NamesTheArrayAndTheElementThatAreWrong) {
       },
       "material 1", ErrorCode::usage));
   EXPECT_TRUE(fails([&] { scene.remove(0); }, "no geometry 0", ErrorCode::usage));
+  const std::vector<double> axes = {0, 0, 1, 0, 1, 0}, up = {0, 0, 1}, one = {1}, thin = {0.1, 0}, none;
+  EXPECT_TRUE(fails([&] { scene.add_tori({centers, up, one, one}); }, "axes: 1 of them for 2"));
+  EXPECT_TRUE(fails([&] { scene.add_tori({centers, axes, none, one}); }, "major_radii: 0 of"));
+  EXPECT_TRUE(fails(
+      [&] {
+        scene.add_tori({centers, axes, one, std::vector<double>(3, 0.1)});
+      },
+      "minor_radii: 3 of"));
+  EXPECT_TRUE(fails([&] { scene.add_tori({centers, axes, one, thin}); }, "tori[1]: a torus needs"));
+  EXPECT_TRUE(fails([&] { scene.add_tori({centers, axes, one, one}); }, "tori[0]: the minor_radius"));
   EXPECT_TRUE(scene.geometries().empty()) << "what was refused has left nothing behind";
 }
 
@@ -91,6 +101,47 @@ TEST_P(MadeScene, TellsGeometryPrimitiveAndNormal) {
   EXPECT_EQ(a.normal[2], (std::array<double, 3>{0, 0, 0}));
   EXPECT_EQ(scene.info(box).name, "box");
   EXPECT_EQ(scene.info(box).primitives, 12u);
+}
+
+// In the plane of its circle it is crossed four times; what is told of it is what a file's is.
+TEST_P(MadeScene, ToriAreThoseOfTheSameSceneFromAFile) {
+  const std::vector<double> centers = {0, 0, 0, 20, 1, -2}, axes = {0, 0, 2, 1, 2, 3}, minor = {0.5, 1.25};
+  Scene file = Scene::from_memory(R"({"objects": [
+    {"type": "torus", "center": [0, 0, 0], "axis": [0, 0, 2], "major_radius": 4, "minor_radius": 0.5},
+    {"type": "torus", "center": [20, 1, -2], "axis": [1, 2, 3], "major_radius": 4, "minor_radius": 1.25}]})",
+                                  "rings.json");
+  Scene made;
+  const GeometryId rings = made.add_tori({centers, axes, std::vector<double>{4}, minor});
+  EXPECT_EQ(made.info(rings).primitives, 2u);
+  file.commit(options()), made.commit(options());
+  std::vector<double> from = {9, 0, 0, 4, 0, 5, 0, 0, 5, 9, 0, 0},
+                      to = {-1, 0, 0, 0, 0, -1, 0, 0, -1, 1, 0.1, 0};
+  for (int i = 0; i < 500; ++i) {
+    from.insert(from.end(), {20 + 5 * std::sin(2.1 * i), 1 + 5 * std::sin(1.3 * i), 9});
+    to.insert(to.end(), {2 * std::sin(0.7 * i), 2 * std::sin(1.1 * i), -8});
+  }
+  const std::size_t n = from.size() / 3;
+  Answers a(n), b(n);
+  std::vector<std::uint32_t> crossed(n);
+  made.closest({from, to}, a.out());
+  file.closest({from, to}, b.out());
+  made.count({from, to}, crossed);
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.primitive, b.primitive);
+  EXPECT_EQ(a.normal, b.normal);
+  EXPECT_EQ(crossed[0], 4u);
+  EXPECT_NEAR(a.t[0], 4.5, 1e-5);
+  EXPECT_NEAR(a.normal[0][0], 1, 1e-6);
+  EXPECT_EQ(crossed[1], 2u);
+  EXPECT_NEAR(a.t[1], 4.5, 1e-5);
+  EXPECT_NEAR(a.normal[1][2], 1, 1e-6);
+  EXPECT_EQ(crossed[2], 0u);
+  std::size_t n_of_second = 0;
+  for (std::size_t i = 4; i < n; ++i) {
+    EXPECT_EQ(crossed[i] % 2, 0u) << "ray " << i;
+    n_of_second += a.primitive[i] == 1;
+  }
+  EXPECT_GT(n_of_second, 100u);
 }
 
 TEST_P(MadeScene, AsksNothingBeforeItIsCommitted) {

@@ -271,6 +271,36 @@ static void check_instances(void) {
   kdray_scene_free(scene);
 }
 
+/* A ring, met four times in the plane of its circle, and not at all through its hole. */
+static void check_tori(void) {
+  const double center[3] = {0, 0, 0}, axis[3] = {0, 0, 3}, major = 4, minor = 0.5;
+  const double origins[6] = {9, 0, 0, 0, 0, 5}, directions[6] = {-1, 0, 0, 0, 0, -1};
+  kdray_in one = doubles(center, 1), about = doubles(axis, 1), none = {0};
+  kdray_scene* scene = NULL;
+  kdray_rays rays = {0};
+  kdray_hits hits = {0};
+  double t[2];
+  uint32_t ring = 9, counts[2];
+  expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
+  expect(kdray_add_tori(scene, one, about, doubles(&minor, 1), doubles(&major, 1), NULL, NULL) == KDRAY_INPUT,
+         "a tube wider than its circle");
+  expect(strstr(kdray_last_error(), "tori[0]") != NULL, "the torus is named");
+  expect(kdray_add_tori(scene, one, none, doubles(&major, 1), doubles(&minor, 1), NULL, NULL) == KDRAY_INPUT,
+         "no axes");
+  expect(strstr(kdray_last_error(), "axes") != NULL, "the array of axes is named");
+  expect(kdray_add_tori(scene, one, about, doubles(&major, 1), doubles(&minor, 1), NULL, &ring) == KDRAY_OK &&
+             ring == 0,
+         "a torus");
+  expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit");
+  rays.size = sizeof rays, rays.origins = doubles(origins, 2), rays.directions = doubles(directions, 2);
+  hits.size = sizeof hits, hits.t.data = t, hits.t.count = 2, hits.t.type = KDRAY_FLOAT64;
+  expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_OK, "closest");
+  expect(fabs(t[0] - 4.5) < 1e-5 && isinf(t[1]), "a ring is hit, and its hole isn't");
+  expect(kdray_count(scene, &rays, (kdray_out){counts, 2, 0, KDRAY_UINT32}, NULL) == KDRAY_OK, "counts");
+  expect(counts[0] == 4 && counts[1] == 0, "a ring is crossed four times");
+  kdray_scene_free(scene);
+}
+
 static void check_cancel_and_picture(const kdray_scene* scene) {
   static float rgb[3 * 16 * 16];
   kdray_picture_options picture = {0};
@@ -332,6 +362,7 @@ int main(void) {
   check_paint();
   check_metal();
   check_instances();
+  check_tori();
   check_refit(scene, box);
   expect(kdray_keep_programs() == KDRAY_OK, "programs are kept");
   kdray_scene_free(scene);

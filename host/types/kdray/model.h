@@ -69,6 +69,12 @@ struct Discs {
   Values radii;             // above 0; one for each, or one for all
 };
 
+// Rings: what lies `minor_radii` off a circle of `major_radii` about the centre, across the axis.
+struct Tori {
+  Points centers, axes;             // of any length but 0
+  Values major_radii, minor_radii;  // one for each, or one for all: 0 < minor < major <= 4096 minor
+};
+
 struct GeometryOptions {
   std::string name = {};
   // A ray meets the geometry where its own mask and this one have a bit in common.
