@@ -1,5 +1,5 @@
 // What    What is certain about rays and tori, in double. The turns of the distance along a line are found as
-//         the kernels find them (kernels/intersect/torus.clh).
+//         the kernels find them (kernels/intersect/torus_turns.clh).
 
 #include <algorithm>
 #include <cmath>
@@ -64,8 +64,8 @@ class Along {
     const double ee = glm::dot(moving_, moving_), nearest = -glm::dot(across_, moving_) / ee;
     const dvec3 c = across_ + nearest * moving_;
     const double cc = glm::dot(c, c), away = std::cbrt(major_ * cc * ee / square_);
-    const double half = std::sqrt((away * away - cc) / ee);
-    const bool whole = !(half > 0);  // convex all along
+    const double half = std::sqrt(std::max(0.0, away * away - cc) / ee), least = major_ * ee / square_;
+    const bool whole = !(cc < least * least);  // convex all along
     const double first = whole ? hi_ : std::clamp(nearest - half, lo_, hi_);
     const double second = whole ? hi_ : std::clamp(nearest + half, lo_, hi_);
     const auto falls = [&](double t) { return slope(t) < 0; };

@@ -105,5 +105,19 @@ TYPED_TEST(ExactOf, KnowsWhatARayHasLeft) {
   EXPECT_LE(wrongly, 0.02 * met);
 }
 
+// Across the hole a ray may meet the torus that it has left, through the axis itself too; nearer by it may
+// not.
+TEST(ExactOfATorus, ItIsMetAgainAcrossItsHole) {
+  const scene::TorusGeometry torus{{0, 0, 0}, {0, 0, 1}, 1, 0.25f, 0};
+  for (const double aside : {0.0, 1e-12, 0.01}) {
+    const primitives::Line across{{0.75 - 1e-6, 0, 0}, {-1, aside, 0}};
+    EXPECT_FALSE(meets_again(across, torus, 1.5, {-1, 0, 0})) << aside;
+    EXPECT_TRUE(meets_again(across, torus, 1e-3, {-1, 0, 0})) << aside;
+  }
+  const primitives::Line within{{1.25 - 1e-6, 0, 0}, {-1, 0, 0}};
+  EXPECT_FALSE(meets_again(within, torus, 0.5, {-1, 0, 0}));
+  EXPECT_TRUE(meets_again(within, torus, 1e-3, {-1, 0, 0}));
+}
+
 }  // namespace
 }  // namespace kdray::test
