@@ -59,10 +59,10 @@ function(kdray_compile_quickly target)
 endfunction()
 
 # kdray_test(NAME SOURCES ... LIBS ... [LABELS ...] [APART ...])
-#   One test executable per room, each of its cases a CTest test labelled as given. Its files are joined as a room's are, but for
+#   One test executable per room, each of its suites a CTest test labelled as given. Its files are joined as a room's are, but for
 #   those named APART, whose names others have as well.
 function(kdray_test name)
-  cmake_parse_arguments(T "" "TIMEOUT" "SOURCES;LIBS;LABELS;APART" ${ARGN})
+  cmake_parse_arguments(T "" "" "SOURCES;LIBS;LABELS;APART" ${ARGN})
   add_executable(${name}_test ${T_SOURCES})
   set_target_properties(${name}_test PROPERTIES CXX_EXTENSIONS OFF
                         UNITY_BUILD ${KDRAY_JOIN} UNITY_BUILD_BATCH_SIZE 6)
@@ -76,12 +76,8 @@ function(kdray_test name)
   if(KDRAY_PRECOMPILE)
     target_precompile_headers(${name}_test REUSE_FROM kdray_test_headers)
   endif()
-  if(NOT T_TIMEOUT)
-    set(T_TIMEOUT 300)
-  endif()
-  gtest_discover_tests(${name}_test TEST_PREFIX "${name}/" DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${T_TIMEOUT})
-  # gtest_discover_tests takes a list of labels apart, so they are set when ctest reads the discovered cases.
-  set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
-  file(WRITE ${labels_file} "if(${name}_test_TESTS)\n  set_tests_properties(\${${name}_test_TESTS} PROPERTIES LABELS \"${T_LABELS}\")\nendif()\n")
-  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels_file})
+  set(suites ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
+  file(GENERATE OUTPUT ${suites} CONTENT
+       "include(${PROJECT_SOURCE_DIR}/cmake/add_suites.cmake)\nkdray_add_suites(${name} $<TARGET_FILE:${name}_test> \"${T_LABELS}\")\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${suites})
 endfunction()

@@ -6,6 +6,7 @@
 #include "flatten/frame.h"
 #include "layout/features.h"
 #include "scene/added_geometry.h"
+#include "scene/frame.h"
 
 namespace kdray::api {
 
@@ -47,7 +48,9 @@ layout::Frame frame_of(const prepare::Prepared& scene, const RenderOptions& o) {
 
 Job make_job(State& state, const RenderOptions& options, timeline::Timeline* timeline) {
   const prepare::Prepared& scene = state.scene;
-  RenderOptions o = flatten::resolved(options, scene.settings.settings);
+  // Another camera than the scene's has no aspect ratio.
+  RenderOptions o = flatten::resolved(
+      options, options.camera ? scene.settings.settings : scene::settings_of(scene.settings));
   o.progress = progress_of(o);
   check_division(o);
   check_channels(o, scene);

@@ -33,8 +33,9 @@ scene::View view_of(const View& view) {
   return v;
 }
 
-double aspect_of(const scene::RenderSettings& settings, int width, int height) {
-  return width > 0 && height > 0 ? static_cast<double>(width) / height : scene::aspect_of(settings);
+double aspect_of(const scene::Scene& scene, int width, int height) {
+  return width > 0 && height > 0 ? static_cast<double>(width) / height
+                                 : scene::aspect_of(scene::settings_of(scene));
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ PreparedScene PreparedScene::seen(const View& view, int width, int height) const
   std::optional<vec3> background;
   if (view.background) background = vec3((*view.background)[0], (*view.background)[1], (*view.background)[2]);
   return PreparedScene(
-      prepare::seen(*prepared_, view_of(view), background, aspect_of(settings().settings, width, height)));
+      prepare::seen(*prepared_, view_of(view), background, aspect_of(settings(), width, height)));
 }
 PreparedScene PreparedScene::coverage() const {
   return PreparedScene(prepare::coverage_of(*prepared_));

@@ -10,11 +10,12 @@
 
 #include <sys/types.h>
 
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "base/timer.h"
 
 namespace kdray {
 
@@ -30,12 +31,15 @@ struct ChildOptions {
   std::filesystem::path program;
   std::vector<std::string> arguments = {};
   std::map<std::string, std::string> environment = {};  // set on top of this process' own
-  double limit_seconds = 15;                            // from the start on
+  // From the start on. Time in which the machine's cores were all taken by others doesn't count: what a busy
+  // machine keeps waiting doesn't hang. But kMostPatience times as long ends it in any case.
+  double limit_seconds = 15;
 };
 
 class Child {
  public:
   static constexpr int kReport = 3;  // the descriptor that the child reports on
+  static constexpr double kMostPatience = 8;
 
   explicit Child(const ChildOptions& options);  // starts it
   ~Child();                                     // kills it, if need be; leaves no zombie
@@ -49,12 +53,14 @@ class Child {
   bool start(const ChildOptions& options, int report);
   void read_report(int milliseconds);
   bool has_ended();
+  bool is_late() const;
   void kill_group() const;
   void reap();
 
   pid_t process_ = -1;  // -1: there is none, or none any more
   int report_ = -1;
-  std::chrono::steady_clock::time_point deadline_;
+  double limit_, idle_at_start_;  // seconds
+  Timer since_start_;
   ChildEnd end_;
 };
 

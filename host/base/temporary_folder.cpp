@@ -41,7 +41,10 @@ void sweep(const fs::path& where, const std::string& prefix) {
 std::unique_ptr<Temporary> make_temporary_folder(const std::string& prefix) {
   std::error_code error;
   const fs::path where = fs::temp_directory_path(error);
-  if (error) return nullptr;
+  return error ? nullptr : make_temporary_folder(prefix, where);
+}
+
+std::unique_ptr<Temporary> make_temporary_folder(const std::string& prefix, const fs::path& where) {
   sweep(where, prefix);
   auto folder = std::make_unique<Temporary>(
       where / fmt::format("{}{}-{:08x}", prefix, ::getpid(), std::random_device()()));

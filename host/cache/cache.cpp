@@ -82,9 +82,9 @@ std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path&
 
 bool keep(const CacheOptions& cache, const prepare::Prepared& prepared) {
   const std::vector<FileRead>& files = prepared.settings.files;
-  const bool worth_it =
-      prepared.seconds.total() >= cache.min_seconds && entry_bytes(prepared) <= cache.max_bytes / 4;
-  if (cache.folder.empty() || files.empty() || !files.front().content || !worth_it) return false;
+  if (cache.folder.empty() || files.empty() || !files.front().content) return false;
+  const std::uint64_t bytes = entry_bytes(prepared);
+  if (bytes < cache.min_bytes || bytes > cache.max_bytes / 4) return false;
   const fs::path scene = files.front().path;
   const Hash key =
       key_of(scene, *files.front().content, prepared.tree_options, prepared.settings.load_options);

@@ -16,8 +16,8 @@ namespace kdray::cache {
 std::optional<prepare::Prepared> find(const CacheOptions& cache, const std::filesystem::path& scene,
                                       const TreeOptions& tree, const LoadOptions& load = {});
 
-// Whether the scene was kept. It isn't where it doesn't come from a file, was made too fast to be worth it,
-// or is too large.
+// Whether the scene was kept. It isn't where it doesn't come from a file, is too small to be worth it, or is
+// too large.
 bool keep(const CacheOptions& cache, const prepare::Prepared& prepared);
 
 }  // namespace kdray::cache

@@ -32,8 +32,8 @@ Json of(const std::optional<T>& value) {
 
 Json of(const std::optional<scene::Camera>& camera) {
   if (!camera) return nullptr;
-  const auto& [eye, at, up, fov, hither, ortho_width, aperture, focus] = *camera;
-  return {of(eye), of(at), of(up), fov, hither, ortho_width, aperture, focus};
+  const auto& [eye, at, up, fov, hither, ortho_width, aperture, focus, aspect] = *camera;
+  return {of(eye), of(at), of(up), fov, hither, ortho_width, aperture, focus, aspect};
 }
 
 void get(const Json& from, std::optional<scene::Camera>& camera) {
@@ -47,6 +47,7 @@ void get(const Json& from, std::optional<scene::Camera>& camera) {
   from.at(5).get_to(c.ortho_width);
   from.at(6).get_to(c.aperture);
   from.at(7).get_to(c.focus);
+  from.at(8).get_to(c.aspect);
 }
 
 Json of(const std::vector<scene::Camera>& cameras) {

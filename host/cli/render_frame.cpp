@@ -17,6 +17,7 @@
 #include "cli/ranks.h"
 #include "cli/stats.h"
 #include "cli/summary.h"
+#include "scene/frame.h"
 #include "scene/scene.h"
 
 namespace kdray::cli {
@@ -65,8 +66,8 @@ void tell_of_options_without_effect(const RenderArgs& o) {
 // As the renderer will resolve it (RenderOptions::width).
 void check_memory(const RenderArgs& o, const scene::RenderSettings& asked) {
   const RenderOptions& render = o.render;
-  const int width = render.width > 0 ? render.width : asked.width.value_or(1024);
-  const int height = render.height > 0 ? render.height : asked.height.value_or(1024);
+  const int width = render.width > 0 ? render.width : asked.width.value_or(scene::kDefaultSide);
+  const int height = render.height > 0 ? render.height : asked.height.value_or(scene::kDefaultSide);
   PictureNeeds picture{.width = static_cast<std::uint64_t>(width),
                        .height = static_cast<std::uint64_t>(height)};
   for (const std::string& name : render.channels) picture.n_channels += name == "normal" ? 3 : 1;
@@ -139,7 +140,7 @@ FrameMaker::FrameMaker(RenderArgs& o) {
       [&](const scene::Scene& asked) {
         check_view_of(o, asked);
         if (leads()) check_files(o, files_, asked);
-        check_memory(o, asked.settings);
+        check_memory(o, scene::settings_of(asked));
       },
       o.hooks, OpeningByRanks{.in_shares = holds_shares(o), .before_lookup = wait_for_scene});
   if (scene_->cache() != "off") tell_of_scene(*scene_);

@@ -48,6 +48,18 @@ struct Traced {
   std::uint64_t n_found = 0;
 };
 
+// On several queues the first one alone would be asked, which has a part of a device.
+void check_device(const DeviceOptions& device) {
+  const char* const option = device.queues > 1                              ? "--queues"
+                             : device.device.find(',') != std::string::npos ? "--device"
+                                                                            : nullptr;
+  if (option == nullptr) return;
+  throw Error(ErrorCode::usage,
+              std::string(option) +
+                  ": trace asks one queue of one device, which takes all of its cores; leave " +
+                  (device.queues > 1 ? "it out" : "the others out"));
+}
+
 void check_files(const TraceArgs& o, const Asked& asked, RunFiles& files) {
   check_scene_input(o.scene);
   files.read("SCENE", o.scene.file);
@@ -132,6 +144,7 @@ Json answers_told(const TraceArgs& o, const Asked& asked, std::size_t n_rows, st
 int run(const TraceArgs& o) {
   const Timer total;
   const Asked asked = asked_by(o.question);
+  check_device(o.device);
   static_cast<void>(format_of(o.output, asked.question));
   RunFiles files;
   check_files(o, asked, files);

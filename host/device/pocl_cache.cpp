@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "base/cache_folder.h"
 #include "base/temporary_folder.h"
@@ -38,14 +40,25 @@ fs::path kdrays_own() {
   return folder.empty() ? folder : folder / "pocl";
 }
 
+// Where a folder that goes with the process may be made, the best first.
+std::vector<fs::path> temporary_places() {
+  std::vector<fs::path> places;
+  std::error_code error;
+  if (const fs::path usual = fs::temp_directory_path(error); !error) places.push_back(usual);
+  if (const char* const runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime)
+    places.push_back(runtime);
+  places.push_back("/dev/shm");
+  return places;
+}
+
 // Removed at the end. PoCL's own clean-up comes before that, since it begins to work after this is made.
 fs::path make_temporary() {
-  std::error_code error;
-  const fs::path where = fs::temp_directory_path(error);
-  if (error || !why_no_cache(where).empty()) return {};
   static std::unique_ptr<Temporary> folder;
-  folder = make_temporary_folder(kTemporary);
-  return folder ? folder->path() : fs::path();
+  for (const fs::path& where : temporary_places()) {
+    if (why_no_cache(where).empty()) folder = make_temporary_folder(kTemporary, where);
+    if (folder) return folder->path();
+  }
+  return {};
 }
 
 PoclCache choose() {
@@ -60,15 +73,27 @@ PoclCache choose() {
   }
   if (other.empty()) {
     cache.unusable = fmt::format(
-        "PoCL has no folder to compile in: '{}': {}, and no other has {} MiB of room; free some space, or "
-        "set "
-        "POCL_CACHE_DIR to a folder of yours",
+        "PoCL has no folder to compile in: '{}': {}, and no other will do (kdray's cache, TMPDIR, "
+        "XDG_RUNTIME_DIR, "
+        "/dev/shm); set POCL_CACHE_DIR to a folder that can be written, has {} MiB of room and may hold "
+        "programs",
         cache.preferred.string(), cache.why_not, kLeastRoom >> 20);
   } else {
     cache.folder = other;
     ::setenv("POCL_CACHE_DIR", other.c_str(), 1);
   }
   return cache;
+}
+
+// Whether what is in the file may be executed. A file system mounted with noexec refuses that, and PoCL,
+// whose kernels are shared libraries there, ends the process when it is refused.
+bool is_executable(int descriptor) {
+  constexpr std::size_t kBytes = 1;
+  if (::ftruncate(descriptor, kBytes) != 0) return false;
+  void* const mapped = ::mmap(nullptr, kBytes, PROT_READ | PROT_EXEC, MAP_PRIVATE, descriptor, 0);
+  if (mapped == MAP_FAILED) return false;
+  ::munmap(mapped, kBytes);
+  return true;
 }
 
 }  // namespace
@@ -84,9 +109,11 @@ std::string why_no_cache(const fs::path& folder) {
   if (descriptor < 0) return fmt::format("it is not writable ({})", std::strerror(errno));
   struct statvfs system {};
   const bool known = ::fstatvfs(descriptor, &system) == 0;
+  const bool executable = is_executable(descriptor);
   ::close(descriptor);
   ::unlink(trial.c_str());
   if (known && std::uint64_t{system.f_bavail} * system.f_frsize < kLeastRoom) return "its disk is full";
+  if (!executable) return "nothing in it may be executed (a file system mounted with noexec?)";
   return "";
 }
 

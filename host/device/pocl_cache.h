@@ -1,8 +1,11 @@
-// What    The folder that PoCL compiles in: one that can be written and has room, before PoCL looks for it.
-// Why     Without such a folder PoCL offers no device at all, or fails while it compiles, or LLVM ends the
-//         process. No home, or one that is read-only or full, is common: containers, services, batch systems.
-// Shape   PoCL's own choice where it will do; else in kdray's cache folder; else a temporary folder, which
-//         goes with the process, so that the next one compiles anew.
+// What    The folder that PoCL compiles in: one that can be written, has room and may hold programs, before
+//         PoCL looks for it.
+// Why     Without such a folder PoCL offers no device at all, or fails while it compiles, or it or LLVM ends
+//         the process. No home, or one that is read-only, full or mounted with noexec, is common: containers,
+//         services, batch systems, clusters.
+// Shape   PoCL's own choice where it will do; else in kdray's cache folder; else a temporary folder (in
+//         TMPDIR, XDG_RUNTIME_DIR or /dev/shm), which goes with the process, so that the next one compiles
+//         anew.
 // Threads The first call sets an environment variable (POCL_CACHE_DIR), and comes before OpenCL's first.
 #pragma once
 

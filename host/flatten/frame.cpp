@@ -6,12 +6,13 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/frame.h"
 
 namespace kdray::flatten {
 
 namespace {
 
-constexpr int kDefaultSize = 1024, kDefaultDepth = 5, kMaxDepth = 64, kMaxSamples = 65536, kMaxSide = 65536;
+constexpr int kDefaultDepth = 5, kMaxDepth = 64, kMaxSamples = 65536, kMaxSide = 65536;
 
 int pick(int option, const std::optional<int>& setting, int fallback) {
   return option > 0 ? option : setting.value_or(fallback);
@@ -59,8 +60,8 @@ void set_lens(layout::Frame& f, const scene::Camera& camera, const LocalSpace& s
 
 RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings& settings) {
   RenderOptions o = options;
-  o.width = pick(o.width, settings.width, kDefaultSize);
-  o.height = pick(o.height, settings.height, kDefaultSize);
+  o.width = pick(o.width, settings.width, scene::kDefaultSide);
+  o.height = pick(o.height, settings.height, scene::kDefaultSide);
   o.depth = pick(o.depth, settings.depth, kDefaultDepth);
   o.samples = o.adaptive_target > 0 ? 1 : pick(o.samples, settings.samples, 1);
   if (!(o.min_weight >= 0)) o.min_weight = settings.min_weight.value_or(kDefaultMinWeight);

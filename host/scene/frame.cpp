@@ -116,6 +116,18 @@ DBox worth_showing(Scene& scene, const Framed& framed) {
 
 }  // namespace
 
+RenderSettings settings_of(const Scene& scene) {
+  RenderSettings settings = scene.settings;
+  const double aspect = scene.camera ? scene.camera->aspect : 0;
+  if (settings.width || settings.height || !(aspect > 0)) return settings;
+  const auto side = [](double share) {
+    return static_cast<int>(std::lround(kDefaultSide * std::clamp(share, 1.0 / kDefaultSide, 1.0)));
+  };
+  settings.width = side(aspect);
+  settings.height = side(1 / aspect);
+  return settings;
+}
+
 double aspect_of(const RenderSettings& settings) {
   if (!settings.width || !settings.height) return 1;
   return static_cast<double>(*settings.width) / *settings.height;

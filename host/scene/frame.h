@@ -26,6 +26,13 @@ void frame_scene(Scene& scene, const Framed& framed);
 std::size_t step_of_samples(std::size_t n_primitives);
 std::vector<dvec3> sampled_middles(const Scene& scene);
 
+// The longer side of a picture that nobody gives a size.
+inline constexpr int kDefaultSide = 1024;
+
+// The scene's settings; where they have no size and the camera has an aspect ratio, with the size of that
+// ratio whose longer side has kDefaultSide pixels.
+RenderSettings settings_of(const Scene& scene);
+
 // Width by height of the picture that the scene asks for.
 double aspect_of(const RenderSettings& settings);
 

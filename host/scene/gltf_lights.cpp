@@ -12,6 +12,12 @@ namespace {
 
 constexpr double kHalfPi = 1.5707963267948966;
 
+// Of a picture's sides; 0 where they make no picture.
+double ratio_or_none(double width, double height) {
+  const double ratio = width / height;
+  return ratio > 0 && std::isfinite(ratio) ? ratio : 0;
+}
+
 vec3 color_of(const JsonNode& light) {
   vec3 color(1);
   if (const auto node = light.find("color")) color = node->color();
@@ -88,10 +94,13 @@ std::optional<Camera> read_camera(const JsonNode& camera, const dmat4& to_world,
   Camera out;
   const bool parallel = camera["type"].string() == "orthographic";
   const JsonNode lens = camera[parallel ? "orthographic" : "perspective"];
-  if (parallel)
+  if (parallel) {
     out.ortho_width = 2 * std::abs(number_or(lens, "xmag", 0));
-  else
+    out.aspect = ratio_or_none(out.ortho_width, 2 * std::abs(number_or(lens, "ymag", 0)));
+  } else {
     out.vertical_fov = lens["yfov"].number();
+    out.aspect = ratio_or_none(number_or(lens, "aspectRatio", 0), 1);
+  }
   out.hither = std::max(0.0, number_or(lens, "znear", 0));
   out.from = dvec3(to_world[3]);
   out.at = out.from + direction_or(-dvec3(to_world[2]), dvec3(0, 0, -1));

@@ -75,6 +75,7 @@ struct Camera {
       0;                // > 0: orthographic, parallel rays from the plane through `from`; the picture's width
   double aperture = 0;  // > 0: the diameter of a thin lens; what is not in its focus is blurred
   double focus = 0;     // distance along the view direction of what is in focus; 0: that of `at`
+  double aspect = 0;    // width by height of the picture that it is made for; 0: any
 };
 
 // What frame_scene() made up where the file has nothing, so that another view can be made up as well

@@ -4,6 +4,7 @@
 
 #include "film/queue_colors.h"
 #include "prepare/prepared.h"
+#include "scene/frame.h"
 #include "scene/scene.h"
 
 namespace kdray::view {
@@ -98,7 +99,7 @@ std::string tell_scene(std::span<const Source> sources, std::size_t number, cons
                        const Settings& settings, bool again) {
   const scene::Scene& scene = stage.scene().settings();
   const RenderOptions& given = settings.render;
-  const scene::RenderSettings& asked = scene.settings;
+  const scene::RenderSettings asked = scene::settings_of(scene);
   Json json = {{"type", "scene"}, {"scene", number}, {"again", again}};
   for (const Source& source : sources) json["names"].push_back(source.name);
   const int width = given.width > 0 ? given.width : asked.width.value_or(0);

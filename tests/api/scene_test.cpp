@@ -274,7 +274,7 @@ TEST_P(MadeScene, ASceneFromAFileTakesMore) {
 TEST_P(MadeScene, AChangedSceneIsNotKeptAsItsFile) {
   const test::Folder folder;
   const auto file = folder.put("triangle.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n");
-  const SceneCache cache({.folder = folder / "cache", .min_seconds = 0});
+  const SceneCache cache({.folder = folder / "cache", .min_bytes = 0});
   Scene scene = Scene::load(file);
   scene.commit(options());
   EXPECT_TRUE(cache.keep(scene.prepared()));

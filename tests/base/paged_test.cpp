@@ -8,13 +8,13 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <filesystem>
 #include <limits>
 #include <thread>
 #include <vector>
 
 #include "base/error.h"
+#include "support/patience.h"
 
 namespace kdray {
 namespace {
@@ -41,13 +41,9 @@ bool holds(const Array<std::uint64_t>& a, std::uint64_t seed) {
   return true;
 }
 
-// Within ten seconds; it takes some ms.
+// They are written by a thread of their own.
 bool comes_below(std::uint64_t bytes) {
-  for (int i = 0; i < 1000; ++i) {
-    if (paged_bytes().in_memory <= bytes) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return false;
+  return test::comes_true([&] { return paged_bytes().in_memory <= bytes; });
 }
 
 TEST_F(Paged, WhatFitsIsPlain) {

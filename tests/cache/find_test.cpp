@@ -2,7 +2,9 @@
 // at once.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <thread>
+#include <vector>
 
 #include "cache/cache.h"
 #include "cache/entry.h"
@@ -189,13 +191,14 @@ TEST_F(FindTest, WithoutAFolderThereIsNoCache) {
 
 TEST_F(FindTest, WhatIsNotWorthItIsNotKept) {
   const prepare::Prepared made = test::prepared_from(folder.put("balls.nff", test::nff("balls", 1)));
-  CacheOptions slow = cache, small = cache;
-  slow.min_seconds = 1000;
-  EXPECT_FALSE(keep(slow, made)) << "made too fast";
+  CacheOptions large = cache, small = cache;
+  large.min_bytes = entry_bytes(made) + 1;
+  EXPECT_FALSE(keep(large, made)) << "too small";
   small.max_bytes = 4 * entry_bytes(made) - 1;
   EXPECT_FALSE(keep(small, made)) << "over a quarter of the bound";
   EXPECT_FALSE(exists(cache.folder));
   small.max_bytes += 1;
+  small.min_bytes = entry_bytes(made);
   EXPECT_TRUE(keep(small, made));
   prepare::Prepared from_nowhere = made;
   from_nowhere.settings.files.clear();
@@ -209,9 +212,11 @@ TEST_F(FindTest, TheFolderStaysWithinItsBound) {
                                test::nff("balls", 1) + "s 0 0 " + std::to_string(i) + " 1\n"));
   cache.max_bytes = 4 * entry_bytes(test::prepared_from(files[0])) + 4096;
   for (const auto& file : files) {
+    // File times may be coarse: what is there becomes older by a second.
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "cache"))
+      last_write_time(entry, last_write_time(entry) - std::chrono::seconds(1));
     keep_it(file);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // file times may be coarse
-    find(cache, files[0], {});                                   // used again and again: it stays
+    find(cache, files[0], {});  // used again and again: it stays
   }
   EXPECT_EQ(n_kept(), 4u);
   EXPECT_TRUE(find(cache, files[0], {}));

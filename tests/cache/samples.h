@@ -25,7 +25,7 @@ inline prepare::Prepared prepared_from(const std::filesystem::path& file, const 
 
 // Everything is kept, however fast it was made.
 inline CacheOptions all_kept_in(const std::filesystem::path& folder) {
-  return {.folder = folder, .max_bytes = std::uint64_t{1} << 30, .min_seconds = 0};
+  return {.folder = folder, .max_bytes = std::uint64_t{1} << 30, .min_bytes = 0};
 }
 
 template <class Values>

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "cli/scenes.h"
 #include "support/folder.h"
 
 namespace kdray::test {
@@ -99,13 +100,52 @@ TEST(DevicesCommand, PoclHasADeviceWithoutAHome) {
   }
 }
 
+// Runs kdray where nothing in these folders may be executed: in a mount namespace of its own.
+Outcome without_execution_in(const std::vector<std::string>& folders,
+                             const std::vector<std::string>& arguments,
+                             const std::map<std::string, std::string>& environment) {
+  std::string script;
+  for (const std::string& folder : folders) script += "mount -t tmpfs -o noexec tmpfs '" + folder + "' && ";
+  std::vector<std::string> all = {"-rm", "sh", "-c", script + "exec \"$@\"", "sh", KDRAY_PROGRAM};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return kdray(all, {.program = "/usr/bin/unshare", .environment = environment});
+}
+
+bool can_mount() {
+  const Folder folder;
+  return without_execution_in({folder.path()}, {"--version"}, {}).code == 0;
+}
+
 TEST(DevicesCommand, WhereNothingCanBeWrittenThatIsWhatIsSaid) {
-  if (!has_pocl()) GTEST_SKIP() << "no PoCL";
+  if (!has_pocl() || !can_mount()) GTEST_SKIP() << "no PoCL, or no file system can be mounted";
   std::map<std::string, std::string> environment = kNoHome;
   environment["TMPDIR"] = "/proc";
-  const Outcome run = kdray({"devices"}, {.environment = environment});
-  EXPECT_NE(run.code, 0);
+  environment["XDG_RUNTIME_DIR"] = "/proc/none";
+  const Outcome run = without_execution_in({"/dev/shm"}, {"devices"}, environment);
+  EXPECT_EQ(run.code, 3);
   EXPECT_NE(run.err.find("PoCL has no folder to compile in"), std::string::npos) << run.err;
+}
+
+// As on many clusters, whose homes are mounted with noexec.
+TEST(DevicesCommand, KernelsAreCompiledWhereTheyMayBeExecuted) {
+  if (!has_pocl() || !can_mount()) GTEST_SKIP() << "no PoCL, or no file system can be mounted";
+  const Folder folder, runtime;
+  for (const char* const name : {"home", "temporary"}) fs::create_directory(folder / name);
+  const std::vector<std::string> closed = {folder / "home", folder / "temporary", "/dev/shm"};
+  const std::vector<std::string> render = {
+      "render", folder.put("ball.nff", kSphereOnSquare), "--size", "8x8", "-o", folder / "a.png"};
+  std::map<std::string, std::string> environment = {
+      {"HOME", closed[0]}, {"XDG_CACHE_HOME", closed[0]}, {"TMPDIR", closed[1]}};
+  environment["XDG_RUNTIME_DIR"] = runtime.path();
+  EXPECT_TRUE(succeeds(without_execution_in(closed, render, environment)));
+  EXPECT_TRUE(fs::exists(folder / "a.png"));
+  EXPECT_EQ(runtime.n_entries(), 0u) << "what was temporary stayed";
+  const Outcome doctor = without_execution_in(closed, {"doctor"}, environment);
+  EXPECT_NE(doctor.out.find("noexec"), std::string::npos) << doctor.out;
+  environment["XDG_RUNTIME_DIR"] = closed[1];
+  const Outcome refused = without_execution_in(closed, render, environment);
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("noexec"), std::string::npos) << refused.err;
 }
 
 TEST(DoctorCommand, TellsOfAKernelCacheThatCannotBeWritten) {

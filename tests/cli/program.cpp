@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "support/patience.h"
+
 namespace kdray::test {
 
 namespace {
@@ -69,8 +71,8 @@ void wait_for(pid_t child, const RunOptions& options, Outcome& run) {
   bool killed = false, signalled = options.signal == 0;
   while (::wait4(child, &status, WNOHANG, &usage) == 0) {
     run.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (run.seconds > options.signal_seconds && !signalled) ::kill(child, options.signal), signalled = true;
-    if (run.seconds > options.limit_seconds && !killed) ::kill(child, SIGKILL), killed = true;
+    if (!signalled && options.signal_when()) ::kill(child, options.signal), signalled = true;
+    if (run.seconds > kPatience && !killed) ::kill(child, SIGKILL), killed = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   run.exited = WIFEXITED(status);

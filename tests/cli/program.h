@@ -1,11 +1,12 @@
 // What    Runs the built kdray as a user would, in a process of its own, and tells what came of it.
-// Shape   No shell is involved. A run that takes too long is killed, and then neither exited nor has a
+// Shape   No shell is involved. A run that outlasts kPatience is killed, and then neither exited nor has a
 //         code.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,7 +14,7 @@
 namespace kdray::test {
 
 struct Outcome {
-  bool exited = false;  // false: killed, by a signal of its own or for taking too long
+  bool exited = false;  // false: killed, by a signal of its own or since it hung
   int code = -1;
   int signal = 0;
   std::string out, err;
@@ -27,10 +28,9 @@ struct RunOptions {
   std::map<std::string, std::string> environment = {};  // set on top of the test's own
   std::filesystem::path stdin_file = {};                // empty: nothing
   std::filesystem::path stdout_file = {};               // instead of Outcome::out
-  double limit_seconds = 60;
-  std::size_t limit_address_space = 0;  // bytes; 0: none
-  int signal = 0;                       // sent after `signal_seconds`; 0: none
-  double signal_seconds = 0;
+  std::size_t limit_address_space = 0;                  // bytes; 0: none
+  int signal = 0;                                       // sent as soon as `signal_when` says so; 0: none
+  std::function<bool()> signal_when = {};
 };
 
 Outcome kdray(const std::vector<std::string>& arguments, const RunOptions& options = {});

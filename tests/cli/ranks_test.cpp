@@ -55,7 +55,6 @@ struct MpirunTest : testing::Test {
     options.environment = mpirun_environment();
     options.environment["KDRAY_MPI_PLUGIN"] = KDRAY_MPI_PLUGIN;
     options.environment.merge(environment);
-    options.limit_seconds = 240;
     return kdray(mpirun_arguments(n, KDRAY_PROGRAM, arguments), options);
   }
 
@@ -291,7 +290,7 @@ TEST_F(MpirunTest, WhateverRankIsKilledTheNextRunGoesOn) {
         run.kill(SIGKILL);
       else
         ::kill(ranks[static_cast<std::size_t>(victim)], SIGKILL);
-      EXPECT_TRUE(run.wait(10)) << "it hangs";
+      EXPECT_TRUE(run.wait()) << "it hangs";
     }
     EXPECT_EQ(together(pick(1, 4), scene, kept), whole);
   }

@@ -34,7 +34,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::string& l
 Running::~Running() {
   if (process_ <= 0 || has_ended()) return;
   kill(SIGKILL);
-  wait(5);
+  wait();
 }
 
 Running::Running(Running&& other) noexcept

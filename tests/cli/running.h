@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "support/patience.h"
+
 namespace kdray::test {
 
 class Running {
@@ -22,7 +24,7 @@ class Running {
   void kill(int signal) const;
   bool has_ended();
   // False: it hadn't ended by then.
-  bool wait(double seconds);
+  bool wait(double seconds = kPatience);
 
   int code() const { return code_; }      // -1: none
   int signal() const { return signal_; }  // 0: none

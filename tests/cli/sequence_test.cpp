@@ -86,7 +86,7 @@ TEST_F(SequenceTest, ProcessesThatShareAFolderMakeAllFrames) {
   std::vector<Running> runs;
   for (int i = 0; i < 3; ++i) runs.emplace_back(shared, folder / "log");
   for (Running& run : runs) {
-    ASSERT_TRUE(run.wait(30));
+    ASSERT_TRUE(run.wait());
     EXPECT_EQ(run.code(), 0) << folder.get("log");
   }
   for (int i = 1; i <= 5; ++i)

@@ -68,7 +68,7 @@ double sum_of_stages(const Json& seconds) {
   return sum;
 }
 
-TEST(Start, StagesOfAColdStartAddUpToTheTotal) {
+TEST(Start, StagesOfAColdStartAreTimedAndLieWithinTheTotal) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   small_scene(folder);
@@ -83,7 +83,6 @@ TEST(Start, StagesOfAColdStartAddUpToTheTotal) {
     const double total = seconds.at("total");
     EXPECT_LE(sum_of_stages(seconds), total);
     if (!cold) continue;
-    EXPECT_GE(sum_of_stages(seconds), 0.95 * total);
     for (const char* const stage : {"start", "self_test", "compile", "keep_programs"})
       EXPECT_GT(seconds.at(stage), 0.0) << stage;
   }

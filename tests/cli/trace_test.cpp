@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/timer.h"
 #include "cli/npy_files.h"
 #include "cli/program.h"
 #include "cli/scenes.h"
@@ -116,8 +117,10 @@ TEST(TraceCommand, SignalsEndItAndLeaveNothing) {
   const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
   const fs::path rays = folder.put("r.npy", rays_npy(kRays));
   for (const int signal : {SIGQUIT, SIGINT}) {
+    // It is compiling or tracing by then; the same is to come of it at any moment.
+    const Timer begun;
     const Outcome run = kdray({"trace", scene, "--rays", rays, "-o", folder / "h.npy", "--repeat", "1000000"},
-                              {.limit_seconds = 20, .signal = signal, .signal_seconds = 4});
+                              {.signal = signal, .signal_when = [&] { return begun.seconds() > 4; }});
     EXPECT_FALSE(run.exited);
     EXPECT_EQ(run.signal, signal);
     EXPECT_EQ(folder.n_entries(), 2u);
@@ -150,6 +153,20 @@ TEST(TraceCommand, RaysThatAreNoneAreRefused) {
   const fs::path rays = folder.put("r.npy", rays_npy({{0, 0, NAN, 0, 0, 0, -1, kInfinity}}));
   EXPECT_TRUE(fails_with(kdray({"trace", scene, "--rays", rays, "-o", folder / "h.npy"}), 1,
                          rays.string() + ": ray 0"));
+  EXPECT_FALSE(fs::exists(folder / "h.npy"));
+}
+
+// The first of several queues would have the answers to itself, with a part of the device.
+TEST(TraceCommand, OneQueueOfOneDeviceIsAsked) {
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const fs::path rays = folder.put("r.npy", rays_npy(kRays));
+  const auto refuses = [&](const char* option, const char* value) {
+    return fails_with(kdray({"trace", scene, "--rays", rays, "-o", folder / "h.npy", option, value}), 2,
+                      option);
+  };
+  EXPECT_TRUE(refuses("--queues", "2"));
+  EXPECT_TRUE(refuses("--device", "0,1"));
   EXPECT_FALSE(fs::exists(folder / "h.npy"));
 }
 

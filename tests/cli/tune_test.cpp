@@ -19,7 +19,7 @@ std::vector<std::string> words(std::vector<std::string> first, const std::vector
 // The budget is so small that only what needs no compiler is worth its race.
 Outcome tune(const Folder& folder, const std::vector<std::string>& more) {
   return kdray(words({"tune", folder / "balls.nff", "--size", "64x64", "--budget", "3"}, more),
-               {.environment = {{"KDRAY_TUNE_FILE", folder / "tune.json"}}, .limit_seconds = 120});
+               {.environment = {{"KDRAY_TUNE_FILE", folder / "tune.json"}}});
 }
 
 Outcome render(const Folder& folder, const std::vector<std::string>& more) {

@@ -13,8 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr double kLimit = 600;  // seconds: a dozen programs, on a busy machine
-
 std::size_t n_programs(const fs::path& folder) {
   std::size_t n = 0;
   for (const auto& entry : fs::directory_iterator(folder)) n += entry.path().extension() == ".program";
@@ -64,7 +62,7 @@ class WarmUp : public testing::Test {
     EXPECT_GT(programs_used.at("spare").size(), 0u);
     EXPECT_NE(run.err.find("kept from another scene"), std::string::npos) << run.err;
     EXPECT_EQ(n_programs(programs()), n);
-    ASSERT_TRUE(succeeds(kdray(cold, {.limit_seconds = kLimit})));
+    ASSERT_TRUE(succeeds(kdray(cold)));
     EXPECT_EQ(folder_.get("warm" + output), folder_.get("cold" + output));
   }
 
@@ -82,7 +80,7 @@ void put_rays(const fs::path& file) {
 
 TEST_F(WarmUp, ServesWhatComesAfterIt) {
   KDRAY_NEED_DEVICE();
-  const Outcome first = kdray({"warm-up", "--cache", folder_ / "cache"}, {.limit_seconds = kLimit});
+  const Outcome first = kdray({"warm-up", "--cache", folder_ / "cache"});
   ASSERT_TRUE(succeeds(first));
   EXPECT_TRUE(first.out.empty());
   const std::size_t n = n_times(first.err, "compiled in ") - 1;  // the last line is the sum
@@ -91,7 +89,7 @@ TEST_F(WarmUp, ServesWhatComesAfterIt) {
       << first.err;
   EXPECT_GE(n_programs(programs()), n);
 
-  const Outcome second = kdray({"warm-up", "--cache", folder_ / "cache"}, {.limit_seconds = kLimit});
+  const Outcome second = kdray({"warm-up", "--cache", folder_ / "cache"});
   ASSERT_TRUE(succeeds(second));
   EXPECT_NE(second.err.find("0 of " + std::to_string(n) + " compiled"), std::string::npos) << second.err;
   EXPECT_EQ(n_times(second.err, "is there"), n) << second.err;
@@ -117,7 +115,7 @@ TEST_F(WarmUp, ServesTheScheduleOfGpusToo) {
   const std::vector<std::string> common = {"--schedule", "global", "--cache", folder_ / "cache"};
   std::vector<std::string> arguments = {"warm-up", "-q"};
   arguments.insert(arguments.end(), common.begin(), common.end());
-  ASSERT_TRUE(succeeds(kdray(arguments, {.limit_seconds = kLimit})));
+  ASSERT_TRUE(succeeds(kdray(arguments)));
   folder_.put("rich.json", kRich);
   arguments = {"render", folder_ / "rich.json", "--size",  "40x30",
                "-o",     folder_ / "a.png",     "--stats", folder_ / "s.json"};

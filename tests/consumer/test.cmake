@@ -16,6 +16,6 @@ if(TARGET kdray_c AND NOT KDRAY_SANITIZE AND NOT KDRAY_SANITIZE_THREADS)
                    -DBOX=${CMAKE_CURRENT_LIST_DIR}/box.obj
                    -P ${CMAKE_CURRENT_LIST_DIR}/run.cmake)
   # No device, no picture: the program says so.
-  set_tests_properties(consumer/installed_package PROPERTIES LABELS "slow;device" TIMEOUT 300
+  set_tests_properties(consumer/installed_package PROPERTIES LABELS "slow;device"
                        SKIP_REGULAR_EXPRESSION "no OpenCL device: skipped")
 endif()

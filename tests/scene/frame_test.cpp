@@ -53,6 +53,24 @@ TEST(FrameScene, ShowsTheWholeBoxAndFillsThePicture) {
   }
 }
 
+TEST(FrameScene, AnUnsizedPictureHasTheAspectRatioOfItsCamera) {
+  const auto size = [](double aspect, std::optional<int> width = {}) {
+    Scene s;
+    s.camera.emplace().aspect = aspect;
+    s.settings.width = width;
+    const RenderSettings settings = settings_of(s);
+    return std::pair(settings.width, settings.height);
+  };
+  using Sides = std::pair<std::optional<int>, std::optional<int>>;
+  EXPECT_EQ(size(0), Sides());
+  EXPECT_EQ(size(16.0 / 9), Sides(1024, 576));
+  EXPECT_EQ(size(0.5), Sides(512, 1024));
+  EXPECT_EQ(size(1), Sides(1024, 1024));
+  EXPECT_EQ(size(1e300), Sides(1024, 1));
+  EXPECT_EQ(size(1e-300), Sides(1, 1024));
+  EXPECT_EQ(size(2, 640), Sides(640, std::nullopt)) << "the file's own size counts";
+}
+
 TEST(FrameScene, LightsSidesTheCameraSees) {
   Scene s = box_of(dvec3(-1), dvec3(1));
   frame_scene(s);

@@ -334,15 +334,17 @@ TEST(Gltf, ReadsTheFirstPerspectiveCamera) {
   EXPECT_NEAR(s.camera->at.z, 1, 1e-12);  // turned about y: it looks along +z
   EXPECT_EQ(s.camera->vertical_fov, 0.5);
   EXPECT_EQ(s.camera->hither, 0.25);
+  EXPECT_EQ(s.camera->aspect, 0) << "the file names none";
   ASSERT_EQ(s.warnings.size(), 1u);
   EXPECT_SAYS(s.warnings[0], "a camera is left out: 'xmag' is 0");
 }
 
 TEST(Gltf, ReadsAllCamerasInTheOrderOfTheirNodes) {
   GltfSample sample = square();
-  sample.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}}}},
-                            {{"type", "orthographic"},
-                             {"orthographic", {{"xmag", 2.5}, {"ymag", 1}, {"znear", 0.5}, {"zfar", 9}}}}};
+  sample.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"aspectRatio", 1.75}}}},
+      {{"type", "orthographic"},
+       {"orthographic", {{"xmag", 2.5}, {"ymag", 1}, {"znear", 0.5}, {"zfar", 9}}}}};
   sample.json["nodes"] = {
       {{"mesh", 0}, {"children", {1, 2}}}, {{"camera", 1}, {"translation", {0, 0, 7}}}, {{"camera", 0}}};
   const Scene s = read(sample);
@@ -352,6 +354,8 @@ TEST(Gltf, ReadsAllCamerasInTheOrderOfTheirNodes) {
   EXPECT_EQ(s.camera->from, dvec3(0, 0, 7));
   EXPECT_EQ(s.cameras[1].ortho_width, 0);
   EXPECT_EQ(s.cameras[1].vertical_fov, 0.5);
+  EXPECT_EQ(s.cameras[0].aspect, 2.5);
+  EXPECT_EQ(s.cameras[1].aspect, 1.75);
   EXPECT_TRUE(s.warnings.empty());
 }
 

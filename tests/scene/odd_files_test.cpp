@@ -1,6 +1,6 @@
 // What    Every file of the "odd" test data, against the list of what should become of it (odd_files.txt):
-//         the number of triangles, or the one line with which it is refused. No file may take long or much
-//         memory.
+//         the number of triangles, or the one line with which it is refused. No file may take much
+//         memory, or hang.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -12,14 +12,12 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/timer.h"
 #include "scene/load.h"
 #include "support/data.h"
 
 namespace kdray::scene {
 namespace {
 
-constexpr double kMostSeconds = 10;
 constexpr long kMostKilobytes = 1 << 20;
 
 std::map<std::string, std::string> read_list() {
@@ -45,9 +43,7 @@ std::string outcome(const std::string& file) {
 }
 
 void expect_outcome(const std::string& file, const std::string& expected) {
-  const Timer timer;
   const std::string got = outcome(file);
-  EXPECT_LT(timer.seconds(), kMostSeconds) << file;
   EXPECT_EQ(got.find('\n'), std::string::npos) << "not one line: " << got;
   if (!expected.starts_with("error ")) {
     EXPECT_EQ(got, expected) << file;

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -157,6 +156,7 @@ TEST(Triangulate, GivesAnswersForWhatIsNoSimplePolygon) {
   }
 }
 
+// A second; quadratic work would take longer than CTest waits.
 TEST(Triangulate, DoesNotHangOnHugePolygons) {
   std::vector<dvec3> star, mess;
   std::mt19937 random(1);
@@ -166,11 +166,8 @@ TEST(Triangulate, DoesNotHangOnHugePolygons) {
     star.push_back({r * std::cos(phi), r * std::sin(phi), 0});
     if (i < 20'000) mess.push_back({random() % 1000 * 1.0, random() % 1000 * 1.0, 0});
   }
-  const auto start = std::chrono::steady_clock::now();
   EXPECT_NO_FATAL_FAILURE(expect_cover(star));
   EXPECT_EQ(triangulate(mess).size(), mess.size() - 2);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  EXPECT_LT(seconds.count(), 60) << "a few seconds on any machine; the limit only tells a hang";
 }
 
 // Long ears side by side: all corners of a comb lie between any two x of one of its ears, or between any two

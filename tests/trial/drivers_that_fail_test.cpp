@@ -106,28 +106,21 @@ TEST_F(DriversThatFail, ALibraryThatHasChangedIsAskedAnew) {
 
 TEST_F(DriversThatFail, DoctorTriesAnewAndNamesThem) {
   ASSERT_TRUE(succeeds(run({"devices"}, "crash-build")));
-  const RunOptions patient = {.environment = {{"FAKE_DRIVER", "abort-build"}, {"KDRAY_TRIAL_SECONDS", "60"}},
-                              .limit_seconds = 200};
-  const Outcome doctor = run({"doctor"}, patient);
+  const Outcome doctor = run({"doctor"}, "abort-build");
   ASSERT_TRUE(succeeds(doctor)) << "the other devices are all right";
   EXPECT_NE(doctor.out.find(fmt::format("{}: crashes (SIGABRT) in the self-test", kName)), std::string::npos)
       << doctor.out;
   EXPECT_NE(doctor.out.find("the test picture and rays are right"), std::string::npos) << doctor.out;
   EXPECT_NE(run({"devices"}, "").out.find("crashes (SIGABRT)"), std::string::npos) << "a new verdict";
-  const Outcome list = run(
-      {"doctor"},
-      {.environment = {{"FAKE_DRIVER", "crash-list"}, {"KDRAY_TRIAL_SECONDS", "60"}}, .limit_seconds = 200});
+  const Outcome list = run({"doctor"}, "crash-list");
   EXPECT_TRUE(succeeds(list));
   EXPECT_NE(list.out.find("(SIGSEGV) when it is asked for its devices"), std::string::npos) << list.out;
 }
 
 TEST_F(DriversThatFail, NothingNeedsToBeRemembered) {
   for (const char* const cache : {"", "/proc/none"}) {
-    const RunOptions options = {.environment = {{"FAKE_DRIVER", "crash-build"},
-                                                {"KDRAY_CACHE_DIR", cache},
-                                                {"KDRAY_TRIAL_SECONDS", "60"}},
-                                .limit_seconds = 200};
-    const Outcome run_without = run(render(), options);
+    const Outcome run_without =
+        run(render(), {.environment = {{"FAKE_DRIVER", "crash-build"}, {"KDRAY_CACHE_DIR", cache}}});
     EXPECT_TRUE(succeeds(run_without));
     EXPECT_NE(run_without.err.find("crashes (SIGSEGV)"), std::string::npos) << run_without.err;
   }
@@ -156,10 +149,10 @@ TEST_F(DriversThatFail, SeveralProcessesAtOnce) {
 }
 
 TEST_F(DriversThatFail, CtrlCEndsTheTrialToo) {
-  const Outcome stopped =
-      run({"devices"}, {.environment = {{"FAKE_DRIVER", "hang-build"}, {"KDRAY_TRIAL_SECONDS", "50"}},
-                        .signal = SIGINT,
-                        .signal_seconds = 2});
+  const std::map<std::string, std::string> patient = {{"FAKE_DRIVER", "hang-build"},
+                                                      {"KDRAY_TRIAL_SECONDS", fmt::format("{}", kPatience)}};
+  const Outcome stopped = run(
+      {"devices"}, {.environment = patient, .signal = SIGINT, .signal_when = [&] { return n_builds() > 0; }});
   EXPECT_EQ(stopped.signal, SIGINT);
   EXPECT_TRUE(all_have_ended());
   EXPECT_NE(run({"devices"}, "crash-build").out.find("crashes"), std::string::npos) << "that was no verdict";
@@ -178,7 +171,9 @@ TEST_F(DriversThatFail, TheOnlyOneIsSurvivedTheSecondTime) {
 TEST_F(DriversThatFail, TheOnlyOneThatHangsIsToldAfterCtrlC) {
   leave_fake_alone();
   const Outcome stopped =
-      run(render(), {.environment = {{"FAKE_DRIVER", "hang-build"}}, .signal = SIGINT, .signal_seconds = 2});
+      run(render(), {.environment = {{"FAKE_DRIVER", "hang-build"}}, .signal = SIGINT, .signal_when = [&] {
+                       return n_builds() > 0;
+                     }});
   EXPECT_EQ(stopped.signal, SIGINT);
   EXPECT_TRUE(fails_with(run(render(), "hang-build"), 3, "takes longer than 5 s for the self-test"));
 }

@@ -4,23 +4,24 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/program.h"
 #include "support/folder.h"
+#include "support/patience.h"
 #include "trial/drivers.h"
 
 namespace kdray::test {
 
 constexpr const char* kName = "Fake device";
-constexpr double kLimit = 5;  // seconds of a trial, in place of the usual 15
+// Seconds of a trial, in place of the usual 15: of a driver that hangs, and of others, which a busy machine
+// may keep waiting.
+constexpr double kLimit = 5;
 
 // Whether a process is there and no zombie.
 inline bool lives(int process) {
@@ -49,10 +50,12 @@ class DriversThatFail : public testing::Test {
   }
 
   Outcome run(const std::vector<std::string>& arguments, RunOptions options) const {
+    const auto wrong = options.environment.find("FAKE_DRIVER");
+    const bool hangs = wrong != options.environment.end() && wrong->second.starts_with("hang");
     std::map<std::string, std::string> environment = {
         {"OCL_ICD_VENDORS", (folder_ / "vendors").string()},
         {"KDRAY_CACHE_DIR", (folder_ / "cache").string()},
-        {"KDRAY_TRIAL_SECONDS", fmt::format("{}", kLimit)},
+        {"KDRAY_TRIAL_SECONDS", fmt::format("{}", hangs ? kLimit : kPatience)},
         {"FAKE_DRIVER_LOG", (folder_ / "log").string()},
         {"ASAN_OPTIONS", "handle_segv=0:handle_abort=0"}};  // crashes are to be crashes
     for (const auto& [name, value] : options.environment) environment[name] = value;
@@ -85,9 +88,8 @@ class DriversThatFail : public testing::Test {
   testing::AssertionResult all_have_ended() const {
     for (const char* const where : {"load", "list", "build"})
       for (const int process : processes_asked(where)) {
-        for (int i = 0; i < 500 && lives(process); ++i)
-          std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        if (lives(process)) return testing::AssertionFailure() << process << " lives";
+        if (!comes_true([&] { return !lives(process); }))
+          return testing::AssertionFailure() << process << " lives";
       }
     return testing::AssertionSuccess();
   }
@@ -99,7 +101,6 @@ class DriversThatFail : public testing::Test {
     ASSERT_TRUE(succeeds(first));
     const std::string line = fmt::format("not usable: {} {}", kName, why);
     EXPECT_NE(first.out.find(line), std::string::npos) << first.out;
-    EXPECT_LT(first.seconds, kLimit + 10);
     const std::size_t builds = n_builds();
     EXPECT_NE(run({"devices"}, wrong).out.find(line), std::string::npos) << "not remembered";
     const Outcome picture = run(render(), wrong);

@@ -13,6 +13,8 @@ import subprocess
 import tempfile
 import time
 
+from page_client import PATIENCE
+
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
@@ -84,7 +86,7 @@ class Browser:
         text, self.buffer = self.buffer.split(b"\0", 1)
         return json.loads(text)
 
-    def call(self, method, limit=60, **parameters):
+    def call(self, method, limit=PATIENCE, **parameters):
         self.number += 1
         message = {"id": self.number, "method": method, "params": parameters}
         if self.session:
@@ -129,7 +131,7 @@ class Browser:
             "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
         )
 
-    def ask(self, expression, limit=60):
+    def ask(self, expression, limit=PATIENCE):
         """The value of an expression in the page; promises are waited for."""
         result = self.call(
             "Runtime.evaluate", limit=limit, expression=expression, returnByValue=True, awaitPromise=True
@@ -138,7 +140,7 @@ class Browser:
             raise RuntimeError(result["exceptionDetails"].get("exception", {}).get("description", "it threw"))
         return result["result"].get("value")
 
-    def wait(self, expression, limit=60):
+    def wait(self, expression, limit=PATIENCE):
         end = time.monotonic() + limit
         while not (value := self.ask_a_page_that_may_go(expression)):
             if time.monotonic() > end:
@@ -186,11 +188,12 @@ class Browser:
     def wheel(self, x, y, by):
         self.mouse("mouseWheel", x, y, deltaX=0, deltaY=by)
 
-    def key(self, code, text, hold=0.0):
+    def key(self, code, text, until=None):
+        """Presses a key, holds it until an expression of the page is true, if there is one, and lets it go."""
         for kind in ("keyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, code=code, key=text, text=text if kind == "keyDown" and len(text) == 1 else "")
-            if kind == "keyDown" and hold:
-                time.sleep(hold)
+            if kind == "keyDown" and until:
+                self.wait(until)
 
     def screenshot(self, file):
         data = self.call("Page.captureScreenshot", format="png")["data"]

@@ -66,9 +66,9 @@ std::string Client::read_all(double seconds) {
   return read_until(std::string_view("\0no such text\0", 14), seconds);
 }
 
-bool Client::is_closed(double seconds) {
+bool Client::is_closed() {
   char block[65536];
-  for (const double end = now() + seconds; now() < end;) {
+  for (const double end = now() + kPatience; now() < end;) {
     if (!wait(end - now())) return false;
     if (::recv(socket_, block, sizeof block, 0) <= 0) return true;
   }

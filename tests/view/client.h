@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "support/patience.h"
+
 namespace kdray::test {
 
 class Client {
@@ -19,10 +21,10 @@ class Client {
   // False: the other side has gone.
   bool send(std::string_view bytes);
   // All that comes until the other side closes, or for so long.
-  std::string read_all(double seconds = 5);
+  std::string read_all(double seconds = kPatience);
   // Until `text` has come, too; what came.
-  std::string read_until(std::string_view text, double seconds = 5);
-  bool is_closed(double seconds);  // within that time
+  std::string read_until(std::string_view text, double seconds = kPatience);
+  bool is_closed();  // by the other side, now or before patience ends
   // Asks for a WebSocket, and waits for the answer.
   bool upgrade(const struct Head& head);
 

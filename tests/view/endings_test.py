@@ -3,7 +3,7 @@
 
     endings_test.py KDRAY SCENE [ROUNDS]
 
-Ctrl-C, SIGTERM, SIGHUP, a terminal that is closed, a pipe that is closed and the last page that goes end it soon; how
+Ctrl-C, SIGTERM, SIGHUP, a terminal that is closed, a pipe that is closed and the last page that goes end it; how
 soon is printed. It never leaves a process behind, and its exit status says what ended it. The moments are random; the
 seed is printed.
 """
@@ -20,13 +20,11 @@ import threading
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from page_client import PageClient  # noqa: E402
+from page_client import PATIENCE, PageClient  # noqa: E402
 
 kdray, scene = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 ROUNDS = int(sys.argv[3]) if len(sys.argv) > 3 else 4
 LINGER = 0.2
-# Launches that are under way, what is compiled, and other programs of the machine: none of it takes so long.
-SOON = 10
 
 
 class Server:
@@ -99,47 +97,47 @@ class Busy(threading.Thread):
             pass
 
 
-def ended(server, within, expected, what):
+def ended(server, expected, what):
     begun = time.monotonic()
     try:
-        server.process.wait(within)
+        server.process.wait(PATIENCE)
     except subprocess.TimeoutExpired:
         stacks = subprocess.run(["cat", f"/proc/{server.process.pid}/status"], capture_output=True, text=True).stdout
-        raise AssertionError(f"{what}: it is still there after {within} s\n{stacks}") from None
+        raise AssertionError(f"{what}: it is still there after {PATIENCE} s\n{stacks}") from None
     seconds = time.monotonic() - begun
     assert server.process.returncode in expected, f"{what}: status {server.process.returncode}"
     assert not server.left_behind(), f"{what}: left behind: {server.left_behind()}"
     return seconds
 
 
-def signalled(number, within):
+def signalled(number):
     def end(server, pages):
         server.process.send_signal(number)
-        return ended(server, within, (-number,), number.name)
+        return ended(server, (-number,), number.name)
 
     return end
 
 
 def pipe_closed(server, pages):
     server.process.stdin.close()
-    return ended(server, SOON, (0,), "a pipe that is closed")
+    return ended(server, (0,), "a pipe that is closed")
 
 
 def terminal_closed(server, pages):
     os.close(server.terminal)
     server.terminal = None
-    return ended(server, SOON, (0, -signal.SIGHUP), "a terminal that is closed")
+    return ended(server, (0, -signal.SIGHUP), "a terminal that is closed")
 
 
 def pages_closed(server, pages):
     for page in pages:
         page.close()
-    return ended(server, SOON, (0,), "pages that are closed")
+    return ended(server, (0,), "pages that are closed")
 
 
 # Each with whether kdray is at a terminal.
 ENDS = (
-    (signalled(signal.SIGINT, SOON), False), (signalled(signal.SIGTERM, SOON), False), (signalled(signal.SIGHUP, SOON), False),
+    (signalled(signal.SIGINT), False), (signalled(signal.SIGTERM), False), (signalled(signal.SIGHUP), False),
     (pipe_closed, False), (terminal_closed, True), (pages_closed, False),
 )  # fmt: skip
 
@@ -161,7 +159,7 @@ def main():
                 name = end.__qualname__ if end.__name__ != "end" else f"signal {-server.process.returncode}"
                 slowest[name] = max(slowest.get(name, 0), seconds)
                 for page in busy:
-                    page.join(SOON)
+                    page.join(PATIENCE)
                     assert not page.is_alive(), "a page that was not told"
             finally:
                 server.kill()

@@ -45,7 +45,7 @@ def odd_sight(random):
 def answer_to(page, number):
     """How a look ended: "final" or "moving", or what is wrong with it."""
     while True:
-        message = page.hear(120)
+        message = page.hear()
         if message["type"] == "problem":
             return message["text"]
         if message["type"] == "frame" and message["look"] == number and message["kind"] in ("final", "moving"):
@@ -69,7 +69,7 @@ def main():
             x, y = odd.random(), odd.random()
             page.send({"type": "pick", "number": i, "x": x, "y": y, "sight": odd_sight(odd)})
             while True:
-                message = page.hear(120)
+                message = page.hear()
                 if message["type"] == "picked" or message.get("about") == "pick":
                     break
             assert viewer.process.poll() is None

@@ -20,7 +20,7 @@ import urllib.error
 import urllib.request
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from page_client import PageClient  # noqa: E402
+from page_client import PATIENCE, PageClient  # noqa: E402
 
 kdray, scene = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 
@@ -44,12 +44,12 @@ class Served:
 
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)
-        self.said += self.process.communicate(timeout=10)[1]
+        self.said += self.process.communicate(timeout=PATIENCE)[1]
 
 
 def status(address, host):
     try:
-        with urllib.request.urlopen(urllib.request.Request(address, headers={"Host": host}), timeout=10) as answer:
+        with urllib.request.urlopen(urllib.request.Request(address, headers={"Host": host}), timeout=PATIENCE) as answer:
             return answer.status
     except urllib.error.HTTPError as error:
         return error.code
@@ -63,7 +63,7 @@ def opens(folder):
                        f'cat "$1" >>"{told}.new"\nmv "{told}.new" "{told}"\n')  # fmt: skip
     browser.chmod(0o755)
     with Served("--open", PATH=f"{folder}:{os.environ['PATH']}") as served:
-        end = time.monotonic() + 20
+        end = time.monotonic() + PATIENCE
         while not told.exists() and time.monotonic() < end:
             time.sleep(0.05)
         mode, file, text = told.read_text().split("\n", 2)
@@ -110,7 +110,7 @@ def binds():
         print("ok  --bind ::1")
     for options, why in ((("--bind", "example.org"), "in numbers"), (("--bind", "192.0.2.1"), "can't listen"),
                          (("--port", "0"), "--port"), (("--open", "--no-open"), "--open")):  # fmt: skip
-        done = subprocess.run([kdray, "view", scene, *options], capture_output=True, text=True, timeout=20)
+        done = subprocess.run([kdray, "view", scene, *options], capture_output=True, text=True, timeout=PATIENCE)
         assert done.returncode in (1, 2) and why in done.stderr and done.stderr.count("\n") == 1, done.stderr
     print("ok  what is refused")
 

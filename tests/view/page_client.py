@@ -8,6 +8,8 @@ import struct
 import time
 import urllib.parse
 
+PATIENCE = 600  # seconds: nothing is expected of how long anything takes, but what hangs has to end as a failure
+
 SIGHT = {
     "scene": 0, "camera": {"from": [2.1, 1.3, 1.7], "at": [0, 0, 0], "up": [0, 0, 1], "fov": 45, "ortho": 0},
     "width": 640, "height": 480, "depth": 5, "samples": "adaptive", "weight": -1, "headlight": 0, "channel": "",
@@ -20,7 +22,7 @@ class PageClient:
 
     def __init__(self, address):
         url = urllib.parse.urlsplit(address)
-        self.socket = socket.create_connection((url.hostname, url.port), 10)
+        self.socket = socket.create_connection((url.hostname, url.port), PATIENCE)
         host = url.netloc
         self.socket.sendall(
             f"GET /socket HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: Upgrade\r\n"
@@ -28,7 +30,7 @@ class PageClient:
         )
         self.buffer = b""
         while b"\r\n\r\n" not in self.buffer:
-            self._fill(10)
+            self._fill(PATIENCE)
         head, self.buffer = self.buffer.split(b"\r\n\r\n", 1)
         assert head.startswith(b"HTTP/1.1 101"), head
         self.number = 0
@@ -52,7 +54,7 @@ class PageClient:
             raise ConnectionError("kdray has closed the connection")
         self.buffer += data
 
-    def hear(self, limit=30):
+    def hear(self, limit=PATIENCE):
         """The next message, of a frame its head; frames are acknowledged."""
         end = time.monotonic() + limit
         while True:
@@ -73,7 +75,7 @@ class PageClient:
                 continue
             self._fill(max(0.0, end - time.monotonic()))
 
-    def hear_until(self, kind, limit=60):
+    def hear_until(self, kind, limit=PATIENCE):
         """A message of this type, or a frame of this kind."""
         end = time.monotonic() + limit
         while True:

@@ -62,7 +62,8 @@ def hands(b, folder):
     assert distance(camera(b)) < 0.9 * distance(before), "the wheel zooms"
 
     before = camera(b)
-    b.key("KeyS", "s", hold=0.4)
+    gone = "Math.hypot(...kdray.state.camera.from.map((x, k) => x - " + str(before["from"]) + "[k]))"
+    b.key("KeyS", "s", until=f"{gone} > {0.02 * distance(before)}")
     seen.add(check_picture(b, folder, "fly"))
     assert math.dist(camera(b)["from"], before["from"]) > 0.02 * distance(before), "S flies back"
 

@@ -5,7 +5,8 @@ import shlex
 import subprocess
 import time
 
-LIMIT = 150  # seconds: of a machine that many share, where kernels have to be compiled too
+from page_client import PATIENCE
+
 
 
 class Viewer:
@@ -19,7 +20,7 @@ class Viewer:
         self.address = self.process.stdout.readline().strip()
         assert self.address.startswith("http://127.0.0.1:"), self.process.stderr.read()
 
-    def ends(self, within=60):
+    def ends(self, within=PATIENCE):
         """How long it takes to end, which is told and not judged: the machine may be busy."""
         begun = time.monotonic()
         self.process.wait(within)
@@ -31,7 +32,7 @@ class Viewer:
         self.process.communicate()
 
 
-def rest(browser, limit=LIMIT):
+def rest(browser, limit=PATIENCE):
     """Waits for the final picture; the command that renders it."""
     time.sleep(0.1)
     browser.wait("kdray.state.final && !kdray.state.changed && !kdray.state.moving && !kdray.state.resizing", limit)
@@ -49,7 +50,7 @@ def camera(browser):
     return browser.ask("kdray.state.camera")
 
 
-def compare(kdray, browser, folder, name, limit=LIMIT):
+def compare(kdray, browser, folder, name, limit=PATIENCE):
     """The page's PNG, which must be the file that its command makes; and compare must agree."""
     command = shlex.split(rest(browser, limit))
     assert command[0] == "kdray", command

@@ -79,8 +79,8 @@ class SceneCache {
   std::optional<PreparedScene> find(const std::filesystem::path& file, const TreeOptions& tree = {},
                                     const LoadOptions& load = {}) const;
 
-  // Whether it was kept: not a scene that comes from no file, is larger than a quarter of max_bytes, or took
-  // less than min_seconds. Throws ErrorCode::input when the folder can't be written.
+  // Whether it was kept: not a scene that comes from no file, takes more than a quarter of max_bytes, or less
+  // than min_bytes. Throws ErrorCode::input when the folder can't be written.
   bool keep(const PreparedScene& scene) const;
 
  private:

@@ -58,7 +58,9 @@ struct TreeOptions {
 struct CacheOptions {
   std::filesystem::path folder = {};  // made when something is to be kept; empty: there is no cache
   std::uint64_t max_bytes = std::uint64_t{4} << 30;  // of all scenes; the least recently used go first
-  double min_seconds = 0.05;                         // what took less to load and build is not kept
+  // What takes less is not kept: it is read and built about as fast as it would be found. (A bound on time
+  // would keep a scene in one run and not in the next.)
+  std::uint64_t min_bytes = std::uint64_t{2} << 20;
 };
 
 // How a device's work is cut into launches (docs/devices.md). A choice changes time, never the picture or a
@@ -81,7 +83,8 @@ struct DeviceOptions {
   // "auto", "cpu", "gpu", a number from `kdray devices`, or a part of a name; several with commas between
   // them
   std::string device = "auto";
-  int queues = 1;         // one per sub-device of equal size when > 1; dealt out over several devices
+  int queues = 1;         // one per sub-device of equal size when > 1; dealt out over several devices.
+                          // Queries ask the first one alone: leave it 1 for them.
   int work_group = 0;     // local size of the per-ray kernels; 0: chosen for the device
   int compute_units = 0;  // that many of the device's, as a sub-device; 0: all of them
   Schedule schedule = Schedule::automatic;
@@ -152,7 +155,7 @@ struct LedgerOptions {
 };
 
 struct RenderOptions {
-  int width = 0, height = 0;  // 0: what the scene asks for, or 1024x1024
+  int width = 0, height = 0;  // 0: what the scene or its camera asks for, or 1024x1024
   int depth = 0;              // 0: what the scene asks for, or 5; the eye ray is depth 1
   double min_weight = -1;     // < 0: what the scene asks for, or kDefaultMinWeight; 0: no cut
   int samples = 0;            // per pixel, stratified; 0: what the scene asks for, or 1
