@@ -126,8 +126,10 @@ TEST(VerifyCommand, WritesAPictureOfItsSize) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   const fs::path picture = folder / "where.png";
-  ASSERT_TRUE(succeeds(verify(folder.put("open.obj", std::string(kCorners) + kFiveSides),
-                              {"-o", picture, "--size", "400x300"})));
+  const Outcome run = verify(folder.put("open.obj", std::string(kCorners) + kFiveSides),
+                             {"-o", picture, "--size", "400x300"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_NE(run.err.find("where.png; red: open edges\n"), std::string::npos) << run.err;
   const film::Image image = film::read_picture(picture, {});
   EXPECT_EQ(image.width, 400);
   EXPECT_EQ(image.height, 300);
