@@ -61,7 +61,7 @@ TEST(BenchAblation, WritesTableFiguresAndPlot) {
   // What a rule leaves out is there without it.
   EXPECT_GT(row(found, "shadow rays to lights behind")["rays"]["shadow"], found["rows"][0]["rays"]["shadow"]);
   EXPECT_EQ(row(found, "no cones")["kind"], "specialisation");
-  EXPECT_NE(folder.get("report/ablation.svg").find(">no cones<"), std::string::npos);
+  expect_plot(run, folder, "report/ablation.svg", ">no cones<");
 }
 
 TEST(BenchAblation, RefusesWhatItDoesNotKnow) {

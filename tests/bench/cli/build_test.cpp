@@ -60,7 +60,7 @@ TEST(BenchBuild, WritesTableFiguresAndPlot) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"fast", "balanced", "best", "perfect", "boxed", "spatial median",
                                              "object median"}));
-  EXPECT_NE(folder.get("report/build.svg").find(">object median<"), std::string::npos);
+  expect_plot(run, folder, "report/build.svg", ">object median<");
 }
 
 TEST(BenchBuild, HasEmbreeWhereItIs) {
@@ -104,7 +104,7 @@ TEST(BenchBuild, GrowthTellsTimeAndMemoryForEachSize) {
     EXPECT_GE(b["duplication"], 1.0);
     expect_keys(b, {"peak_bytes"});
   }
-  EXPECT_NE(folder.get("growth.svg").find(">balanced<"), std::string::npos);
+  expect_plot(run, folder, "growth.svg", ">balanced<");
 }
 
 TEST(BenchBuild, HostileMeshesAreHeldAgainstAPlainOne) {
@@ -126,7 +126,7 @@ TEST(BenchBuild, HostileMeshesAreHeldAgainstAPlainOne) {
     expect_keys(m, {"what", "cpu_times_plain", "plain_duplication", "wide_bytes", "plain_wide_bytes",
                     "tight_cost", "plain_tight_cost", "largest_leaf", "max_depth"});
   }
-  EXPECT_NE(folder.get("hostile.svg").find(">fan<"), std::string::npos);
+  expect_plot(run, folder, "hostile.svg", ">fan<");
 }
 
 TEST(BenchDepth, WritesTableFiguresAndPlot) {
@@ -150,7 +150,7 @@ TEST(BenchDepth, WritesTableFiguresAndPlot) {
   }
   EXPECT_EQ(depths[0]["tree"]["max_depth"], 0);
   EXPECT_GT(depths[0]["tree"]["sah_cost"], depths.back()["tree"]["sah_cost"]);
-  EXPECT_NE(folder.get("depth.svg").find(">balls<"), std::string::npos);
+  expect_plot(run, folder, "depth.svg", ">balls<");
 }
 
 TEST(BenchBuild, RefusesWhatItDoesNotKnow) {

@@ -46,7 +46,7 @@ TEST(BenchInstances, WritesTableFiguresAndPlot) {
     expect_keys(c["times_copies"], {"kdray", "fast", "robust"});
     EXPECT_GT(c["times_copies"]["kdray"], 0);
   }
-  EXPECT_NE(folder.get("report/instances.svg").find("kdray, instances"), std::string::npos);
+  expect_plot(run, folder, "report/instances.svg", "kdray, instances");
 }
 
 TEST(BenchInstances, RefusesWhatItDoesNotKnow) {

@@ -37,7 +37,7 @@ TEST(BenchModes, WritesTablesFiguresAndPlots) {
   for (const Json& row : bench_run["rows"])
     expect_keys(row, {"scheme", "queues", "sub_devices", "shares_cores", "failure", "seconds", "rounds",
                       "speed_up", "idle_share", "busy_seconds", "rays_exchanged", "bytes_exchanged",
-                      "geometry_bytes", "geometry_share", "work_bytes", "differing_pixels"});
+                      "geometry_bytes", "geometry_share", "work_bytes", "timeline", "differing_pixels"});
   const Json& model = bench_run["model"];
   expect_keys(model,
               {"simulation", "rays_per_sample", "tile", "odprt_overhead", "rays", "checks", "predictions"});
@@ -54,7 +54,7 @@ TEST(BenchModes, WritesTablesFiguresAndPlots) {
   }
   EXPECT_TRUE(to_the_end);
   for (const char* const plot : {"modes.svg", "modes_time.svg", "modes_model.svg"})
-    EXPECT_NE(folder.get(std::string("report/") + plot).find("</svg>"), std::string::npos) << plot;
+    expect_plot(run, folder, std::string("report/") + plot, "</svg>");
 }
 
 TEST(BenchModes, MeasuresOnlyWhenTold) {

@@ -45,7 +45,7 @@ TEST(BenchQueriesCommand, WritesTableFiguresAndPlot) {
         cell["batch"] == 100 && (cell["question"] == "closest" || cell["question"] == "any");
     EXPECT_EQ(!cell["on_device"].is_null(), is_whole) << cell.dump();
   }
-  EXPECT_NE(folder.get("report/queries.svg").find("small: closest"), std::string::npos);
+  expect_plot(run, folder, "report/queries.svg", "small: closest");
 }
 
 TEST(BenchQueriesCommand, LeavesEmbreeOutWhenTold) {
