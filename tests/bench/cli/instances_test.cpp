@@ -52,7 +52,8 @@ TEST(BenchInstances, WritesTableFiguresAndPlot) {
 TEST(BenchInstances, RefusesWhatItDoesNotKnow) {
   EXPECT_TRUE(fails_with(kdray({"bench", "instances", "--traversals", "binary"}), 2, "--traversals"));
   EXPECT_TRUE(fails_with(kdray({"bench", "instances", "--apart", "0"}), 2, "--apart"));
-  EXPECT_TRUE(fails_with(kdray({"bench", "instances", "shells", "--rays", "9"}), 1, "no triangles"));
+  EXPECT_TRUE(
+      fails_with(kdray({"bench", "instances", "shells", "--rays", "9", "--no-embree"}), 1, "no triangles"));
 }
 
 }  // namespace
