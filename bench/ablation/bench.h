@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/ablation/ablations.h"
+#include "bench/measure/json.h"
 #include "bench/measure/spread.h"
 
 namespace kdray::bench {
@@ -47,5 +48,10 @@ std::vector<AblationRun> bench_ablation(const AblationOptions& options,
 
 // Rows that claim to be exact and are not.
 std::size_t count_inexact(std::span<const AblationRun> runs);
+
+// The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
+
+std::string table_of(const AblationRun& run);
+Json json_of(std::span<const AblationRun> runs, const AblationOptions& options);
 
 }  // namespace kdray::bench

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bench/accuracy/settings.h"
+#include "bench/measure/json.h"
 #include "bench/measure/spread.h"
 #include "film/compare.h"
 
@@ -79,5 +80,13 @@ std::size_t count_unlike_base(std::span<const AccuracyRun> runs);
 
 // The fastest point of RMSE up to `error`; null where there is none.
 const AccuracyPoint* fastest_within(std::span<const AccuracyPoint> points, double error);
+
+// The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
+
+std::string table_of(const AccuracyRun& run);
+Json json_of(std::span<const AccuracyRun> runs, const AccuracyOptions& options);
+
+// The file of a picture: "balls_16_samples_depth_16_base.png".
+std::string picture_name(const std::string& scene, const std::string& name);
 
 }  // namespace kdray::bench

@@ -1,4 +1,4 @@
-#include "bench/accuracy/report.h"
+#include "bench/accuracy/bench.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,6 @@
 namespace kdray::bench {
 
 namespace {
-
-constexpr int kKdrayFront = 0, kPovrayFront = 1;
 
 const char* precision_name(bool in_double) {
   return in_double ? "double" : "float";
@@ -54,6 +52,7 @@ Json json_of(const film::Difference& d) {
 Json point_json(const AccuracyRun& run, const AccuracyPoint& p) {
   return {{"group", p.group},
           {"name", p.name},
+          {"label", p.label},
           {"seconds", json_of(p.seconds)},
           {"error", json_of(p.error)},
           {"on_front", p.on_front},
@@ -113,39 +112,6 @@ Json answers_json(const AccuracyRun& run) {
   return {{"share_of_base", a.share_of_base ? Json(*a.share_of_base) : Json()},
           {"povray", a.povray != nullptr ? Json(a.povray->name) : Json()},
           {"times_povray", a.povray != nullptr ? Json(a.times_povray) : Json()}};
-}
-
-std::string color_of_group(const std::string& group) {
-  static const std::vector<std::pair<const char*, const char*>> kColors = {{"samples at depth 16", "#c4504f"},
-                                                                           {"samples at depth 5", "#f28e4e"},
-                                                                           {"adaptive", "#2f8f8b"},
-                                                                           {"base, in double", "#d977b1"},
-                                                                           {"drafts", "#f2c14e"},
-                                                                           {"base, other depth", "#5fb37a"},
-                                                                           {"base, other least", "#9a6fb0"},
-                                                                           {"base, lights", "#8c6d46"},
-                                                                           {kPovray, "#4e9bd4"}};
-  for (const auto& [start, color] : kColors)
-    if (group.rfind(start, 0) == 0) return color;
-  return "#9a9a9a";
-}
-
-std::size_t series_of(ScatterPlot& plot, const AccuracyPoint& point) {
-  const std::string& group = point.group;
-  const auto at = std::find_if(plot.series.begin(), plot.series.end(),
-                               [&](const ScatterSeries& s) { return s.name == group; });
-  if (at != plot.series.end()) return static_cast<std::size_t>(at - plot.series.begin());
-  plot.series.push_back({group, color_of_group(group), group == kPovray ? kPovrayFront : kKdrayFront});
-  return plot.series.size() - 1;
-}
-
-void add_points(ScatterPlot& plot, ScatterPanel& panel, std::span<const AccuracyPoint> points) {
-  for (const AccuracyPoint& p : points) {
-    const std::size_t s = series_of(plot, p);
-    panel.points.resize(std::max(panel.points.size(), s + 1));
-    panel.points[s].push_back(
-        {1e3 * p.seconds.median, p.error.rmse, p.label, p.on_front, keeps_the_picture(p.group)});
-  }
 }
 
 }  // namespace
@@ -211,29 +177,6 @@ Json json_of(std::span<const AccuracyRun> runs, const AccuracyOptions& options) 
     json["runs"].push_back(std::move(made));
   }
   return json;
-}
-
-ScatterPlot plot_of(std::span<const AccuracyRun> runs, const AccuracyOptions& options) {
-  ScatterPlot plot{
-      "Time against error",
-      fmt::format("{}x{} pixels; {}; medians of {} rounds; spp: samples per pixel; down and left is better",
-                  options.width, options.height, runs.empty() ? "" : runs.front().device, options.repeat),
-      "milliseconds for a frame",
-      "RMSE in linear light (1 is white)",
-      {},
-      {{"kdray's best: no setting is faster and nearer", "#333333"}},
-      {}};
-  bool with_povray = false;
-  for (const AccuracyRun& run : runs) {
-    ScatterPanel panel{
-        short_name(run.scene), {}, run.reference_error, "what the reference itself may be off"};
-    add_points(plot, panel, run.points);
-    if (run.povray) add_points(plot, panel, run.povray->points);
-    with_povray |= run.povray.has_value();
-    plot.panels.push_back(std::move(panel));
-  }
-  if (with_povray) plot.fronts.emplace_back("POV-Ray's best", "#4e9bd4");
-  return plot;
 }
 
 }  // namespace kdray::bench

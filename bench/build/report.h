@@ -1,6 +1,5 @@
-// What    The results of the benches that build trees, for people (a table), for programs (JSON) and for the
-//         eye (a plot).
-// Units   Seconds; milliseconds in tables and plots. Every key of the JSON is in docs/bench.md.
+// What    The results of the benches that build trees, for people (a table) and for programs (JSON).
+// Units   Seconds; milliseconds in tables. Every key of the JSON is in docs/bench.md.
 #pragma once
 
 #include "bench/build/bench.h"
@@ -8,32 +7,23 @@
 #include "bench/build/growth.h"
 #include "bench/build/hostile.h"
 #include "bench/measure/json.h"
-#include "bench/plot/plot.h"
-#include "bench/plot/xy_plot.h"
 
 namespace kdray::bench {
 
 Json json_of(const BuildSpreads& seconds);
 Json json_of(const TreeFacts& tree);
 
-// The colour in plots of the i-th series, which is a builder's or a scene's; Embree is grey.
-std::string color_of(std::size_t i, const std::string& name);
-
 std::string table_of(const BuildRun& run);
 Json json_of(std::span<const BuildRun> runs, const BuildOptions& options);
-XyPlot plot_of(std::span<const BuildRun> runs, const BuildOptions& options);
 
 std::string table_of(const GrowthResult& result);
 Json json_of(std::span<const GrowthResult> results, const GrowthOptions& options);
-XyPlot plot_of(std::span<const GrowthResult> results, const GrowthOptions& options);
 
 std::string table_of(const DepthRun& run);
 Json json_of(std::span<const DepthRun> runs, const DepthOptions& options);
-XyPlot plot_of(std::span<const DepthRun> runs, const DepthOptions& options);
 
 std::string hostile_heading();
 std::string table_of(const HostileResult& result);
 Json json_of(std::span<const HostileResult> results, const HostileOptions& options);
-Plot plot_of(std::span<const HostileResult> results, const HostileOptions& options);
 
 }  // namespace kdray::bench

@@ -113,26 +113,4 @@ Json json_of(std::span<const BuildRun> runs, const BuildOptions& options) {
   return json;
 }
 
-XyPlot plot_of(std::span<const BuildRun> runs, const BuildOptions& options) {
-  XyPlot plot{"Build time against trace time",
-              fmt::format("{}; medians of {} interleaved rounds; nearer to the corner is better",
-                          runs.empty() ? "" : runs.front().device, options.repeat),
-              {},
-              false,
-              {}};
-  if (runs.empty()) return plot;
-  for (const BuilderResult& b : runs.front().builders)
-    plot.series.push_back({b.builder, color_of(plot.series.size(), b.builder)});
-  for (const BuildRun& run : runs) {
-    XyPanel panel{short_name(run.scene),
-                  {"milliseconds to build and flatten", true},
-                  {"ms for 3 x 1M rays", false},
-                  {}};
-    for (const BuilderResult& b : run.builders)
-      panel.points.push_back({{1e3 * b.seconds.total.median, 1e3 * b.trace_seconds(), b.builder}});
-    plot.panels.push_back(std::move(panel));
-  }
-  return plot;
-}
-
 }  // namespace kdray::bench

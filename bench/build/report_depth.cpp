@@ -26,10 +26,6 @@ Json json_of(const DepthRun& run) {
   return json;
 }
 
-std::size_t bytes_of(const TreeFacts& tree) {
-  return tree.binary_bytes + tree.wide_bytes;
-}
-
 }  // namespace
 
 std::string table_of(const DepthRun& run) {
@@ -59,35 +55,6 @@ Json json_of(std::span<const DepthRun> runs, const DepthOptions& options) {
       {"repeat", options.repeat}, {"not_identical", count_not_identical(runs)}, {"runs", Json::array()}};
   for (const DepthRun& run : runs) json["runs"].push_back(json_of(run));
   return json;
-}
-
-XyPlot plot_of(std::span<const DepthRun> runs, const DepthOptions& options) {
-  XyPlot plot{
-      "Trees by their maximum depth",
-      fmt::format("{}; built {}; medians of {} rounds; the labels mark the usual depth",
-                  runs.empty() ? "" : runs.front().device, prepare::name_of(options.quality), options.repeat),
-      {},
-      true,
-      {{"Build", {"maximum depth", false}, {"milliseconds to build and flatten", true}, {}},
-       {"Trace", {"maximum depth", false}, {"milliseconds for 3 x 1M rays", true}, {}},
-       {"Memory", {"maximum depth", false}, {"MB, binary and wide tree", true}, {}},
-       {"Cost", {"maximum depth", false}, {"expected cost (SAH)", true}, {}}}};
-  for (const DepthRun& run : runs) {
-    plot.series.push_back({short_name(run.scene), color_of(plot.series.size(), "")});
-    for (XyPanel& p : plot.panels) p.points.emplace_back();
-    for (const DepthRow& row : run.rows) {
-      const double depth = row.max_depth;
-      const std::string label = row.max_depth == run.usual_depth ? fmt::format("{}", depth) : "";
-      const auto put = [&](std::size_t panel, double value) {
-        plot.panels[panel].points.back().push_back({depth, value, label});
-      };
-      put(0, 1e3 * row.seconds.total.median);
-      if (row.trace_seconds) put(1, 1e3 * row.trace_seconds->median);
-      put(2, static_cast<double>(bytes_of(row.tree)) * 1e-6);
-      put(3, row.tree.sah_cost);
-    }
-  }
-  return plot;
 }
 
 }  // namespace kdray::bench

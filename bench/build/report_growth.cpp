@@ -64,27 +64,4 @@ Json json_of(std::span<const GrowthResult> results, const GrowthOptions& options
   return json;
 }
 
-XyPlot plot_of(std::span<const GrowthResult> results, const GrowthOptions& options) {
-  XyPlot plot{"Building, by size",
-              fmt::format("displaced spheres; medians of {} interleaved rounds", options.repeat),
-              {},
-              true,
-              {{"Time", {"triangles", true}, {"nanoseconds for each triangle", false}, {}},
-               {"Memory", {"triangles", true}, {"peak bytes for each triangle", false}, {}}}};
-  std::map<std::string, std::size_t> series;
-  for (const GrowthResult& r : results)
-    for (const GrowthRow& row : r.rows) {
-      const auto [found, is_new] = series.emplace(row.builder, series.size());
-      if (is_new) {
-        plot.series.push_back({row.builder, color_of(found->second, row.builder)});
-        for (XyPanel& p : plot.panels) p.points.emplace_back();
-      }
-      const auto n = static_cast<double>(r.n_triangles);
-      plot.panels[0].points[found->second].push_back({n, nanoseconds_each(r, row)});
-      if (row.peak_bytes)
-        plot.panels[1].points[found->second].push_back({n, static_cast<double>(*row.peak_bytes) / n});
-    }
-  return plot;
-}
-
 }  // namespace kdray::bench

@@ -18,10 +18,6 @@ double cpu_times_plain(const HostileResult& r) {
   return r.seconds.cpu.median / r.plain_seconds.cpu.median;
 }
 
-Spread scaled(const Spread& s, double factor) {
-  return {s.median * factor, s.min * factor, s.max * factor};
-}
-
 }  // namespace
 
 std::string hostile_heading() {
@@ -60,24 +56,6 @@ Json json_of(std::span<const HostileResult> results, const HostileOptions& optio
                               {"largest_leaf", r.largest_leaf},
                               {"max_depth", r.max_depth}});
   return json;
-}
-
-Plot plot_of(std::span<const HostileResult> results, const HostileOptions& options) {
-  Plot plot{"Building over hostile meshes",
-            fmt::format("{} triangles; beside a displaced sphere of as many in the same rounds; median of {}",
-                        options.triangles, options.repeat),
-            "of a plain mesh",
-            {{"wall time", "#c4504f"}, {"references for each triangle", "#4e9bd4"}},
-            {}};
-  Panel panel{"", {}, {}};
-  for (const HostileResult& r : results) {
-    panel.groups.push_back(r.mesh);
-    const double references = r.duplication / r.plain_duplication;
-    panel.bars.push_back({scaled(r.seconds.total, 1 / r.plain_seconds.total.median),
-                          Spread{references, references, references}});
-  }
-  plot.panels.push_back(std::move(panel));
-  return plot;
 }
 
 }  // namespace kdray::bench

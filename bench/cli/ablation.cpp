@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "bench/ablation/report.h"
+#include "bench/ablation/bench.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
@@ -29,7 +29,7 @@ int run(const AblationCommand& c) {
   const auto runs = bench::bench_ablation(
       c.options, [](const bench::AblationRun& run) { print_table(bench::table_of(run)); },
       [](const std::string& what) { say(what); });
-  write_report(c.report, "ablation", bench::json_of(runs, c.options), bench::plot_of(runs, c.options));
+  write_report(c.report, "ablation", bench::json_of(runs, c.options));
   if (const std::size_t n = bench::count_inexact(runs); n > 0)
     throw Error(ErrorCode::internal, fmt::format("{} pictures changed where none may", n));
   return 0;

@@ -8,9 +8,9 @@
 
 #include <memory>
 
+#include "bench/accuracy/bench.h"
 #include "bench/accuracy/exact.h"
 #include "bench/accuracy/reference.h"
-#include "bench/accuracy/report.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
@@ -53,8 +53,7 @@ int run(const AccuracyCommand& c) {
       .done =
           [&](std::span<const bench::AccuracyRun> runs) {
             print_table(bench::table_of(runs.back()));
-            write_report(c.report, kName, bench::json_of(runs, c.options),
-                         to_svg(bench::plot_of(runs, c.options)));
+            write_report(c.report, kName, bench::json_of(runs, c.options));
           },
       .working = [](const std::string& what) { say(what); },
       .picture =

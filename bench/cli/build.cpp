@@ -39,7 +39,7 @@ int run_build(const BuildCommand& c) {
   if (c.options.embree) say_without_embree();
   const auto runs = bench::bench_build(
       c.options, [](const bench::BuildRun& run) { print_table(bench::table_of(run)); }, tell);
-  write_report(c.report, "build", bench::json_of(runs, c.options), to_svg(bench::plot_of(runs, c.options)));
+  write_report(c.report, "build", bench::json_of(runs, c.options));
   if (const std::size_t n = bench::count_not_identical(runs); n > 0)
     throw Error(ErrorCode::internal, fmt::format("{} hits are not those over the balanced tree", n));
   return 0;
@@ -55,8 +55,7 @@ int run_growth(const BuildCommand& c) {
   if (options.embree) say_without_embree();
   const auto results = bench::bench_growth(
       options, [](const bench::GrowthResult& r) { print_table(bench::table_of(r)); }, tell);
-  write_report(c.report, "growth", bench::json_of(results, options),
-               to_svg(bench::plot_of(results, options)));
+  write_report(c.report, "growth", bench::json_of(results, options));
   return 0;
 }
 
@@ -69,7 +68,7 @@ int run_hostile(const BuildCommand& c) {
   print_table(bench::hostile_heading());
   const auto results = bench::bench_hostile(
       options, [](const bench::HostileResult& r) { print_table(bench::table_of(r)); }, tell);
-  write_report(c.report, "hostile", bench::json_of(results, options), bench::plot_of(results, options));
+  write_report(c.report, "hostile", bench::json_of(results, options));
   return 0;
 }
 

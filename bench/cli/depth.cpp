@@ -27,7 +27,7 @@ int run(const DepthCommand& c) {
   const auto runs = bench::bench_depth(
       c.options, [](const bench::DepthRun& run) { print_table(bench::table_of(run)); },
       [](const std::string& what) { say(what); });
-  write_report(c.report, "depth", bench::json_of(runs, c.options), to_svg(bench::plot_of(runs, c.options)));
+  write_report(c.report, "depth", bench::json_of(runs, c.options));
   if (const std::size_t n = bench::count_not_identical(runs); n > 0)
     throw Error(ErrorCode::internal, fmt::format("{} hits are not those over the tree of usual depth", n));
   return 0;

@@ -7,7 +7,7 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
-#include "bench/frames/report.h"
+#include "bench/frames/bench.h"
 #include "bench/povray/povray.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -29,7 +29,7 @@ int run(const FramesCommand& c) {
   const auto frames = bench::bench_frames(
       c.options, [](const bench::FrameResult& frame) { print_table(bench::table_of(frame)); },
       [](const std::string& what) { say(what); });
-  write_report(c.report, "frames", bench::json_of(frames, c.options), bench::plot_of(frames, c.options));
+  write_report(c.report, "frames", bench::json_of(frames, c.options));
   return 0;
 }
 

@@ -3,7 +3,7 @@
 //         DIR/instances.json and a plot beside it.
 // Errors  Hits that differ between kdray's traversals of one form: exit code 1, after everything has been
 //         written.
-#include "bench/instances/report.h"
+#include "bench/instances/bench.h"
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ int run(const InstancesCommand& c) {
   const auto runs = bench::bench_instances(
       c.options, [](const bench::InstancesRun& run) { print_table(bench::table_of(run)); },
       [](const std::string& what) { say(what); });
-  write_report(c.report, "instances", bench::json_of(runs, c.options), bench::plot_of(runs, c.options));
+  write_report(c.report, "instances", bench::json_of(runs, c.options));
   if (const std::size_t n = bench::count_not_identical(runs); n > 0)
     throw Error(ErrorCode::internal, fmt::format("{} hits of kdray's traversals are not identical", n));
   return 0;

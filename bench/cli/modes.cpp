@@ -1,5 +1,5 @@
 // What    kdray bench modes: one core alone, PDPRT and ODPRT on growing numbers of queues, and a model of
-//         many more.
+//         many more; with --ranks by ranks, of this process or of several that mpirun has started.
 // Shape   Tables go to stderr, each as soon as its scene is done, then the means over all scenes; with
 //         --report DIR the figures go to DIR/modes.json and plots beside it.
 // Errors  Pictures that are not the same bits: exit code 1, after everything has been written. A mode that
@@ -9,28 +9,31 @@
 #include <algorithm>
 #include <memory>
 
-#include "base/write_file.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
-#include "bench/cli/modes_ranks.h"
 #include "bench/cli/report_files.h"
-#include "bench/modes/report.h"
-#include "bench/modes/timeline.h"
+#include "bench/modes/bench.h"
+#include "bench/ranks/bench.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/parse.h"
+#include "cli/rank_cores.h"
+#include "kdray/error.h"
+#include "transport/launcher.h"
+#include "transport/mpi.h"
 
 namespace kdray::cli {
 
 namespace {
 
-constexpr int kQueuesMax = 1024;
+constexpr int kQueuesMax = 1024, kSamplesMax = 1024;
 
 struct ModesCommand {
   bench::ModesOptions options;
   std::string report;
   bool ranks = false;
-  RanksCommand of_ranks;
+  int samples = 1;        // with ranks
+  double delay_ms = 2.5;  // too
 };
 
 // "1,2,4": each once, in order.
@@ -46,23 +49,69 @@ std::vector<int> parse_queues(const std::string& text) {
   return queues;
 }
 
-void write_plot(const std::string& folder, const std::string& name, const std::string& svg) {
-  if (!folder.empty()) write_file(std::filesystem::path(folder) / name, svg);
+bench::RanksOptions options_of_ranks(const ModesCommand& c, int most_ranks) {
+  const bench::ModesOptions& o = c.options;
+  bench::RanksOptions options;
+  options.scenes = o.scenes;
+  options.ranks.clear();
+  for (const int ranks : o.queues)
+    if (ranks <= most_ranks) options.ranks.push_back(ranks);
+  options.delays = {0};
+  if (c.delay_ms > 0) options.delays.push_back(1e-3 * c.delay_ms);
+  options.width = o.width, options.height = o.height, options.depth = o.depth, options.repeat = o.repeat;
+  options.samples = c.samples;
+  options.device = o.device;
+  return options;
+}
+
+void add_ranks(CLI::App& app, ModesCommand& c) {
+  app.add_flag(
+      "--ranks", c.ranks,
+      "Ranks instead of queues, and what the network costs; under mpirun they go over MPI, else they are "
+      "threads");
+  add_int(app, "--samples", "Samples for each pixel, with --ranks (default 1)", 1, kSamplesMax, c.samples);
+  add_real(app, "--delay", "MS",
+           "Milliseconds that messages are held back in half of the runs of ranks "
+           "(default 2.5; 0: none)",
+           0, 1000, c.delay_ms);
+}
+
+int run_ranks(const ModesCommand& c) {
+  const transport::Launched launched = transport::launched();
+  const bool over_mpi = launched.ranks > 1;
+  const int n_threads = c.options.queues.back();
+  const bench::RanksOptions asked = options_of_ranks(c, over_mpi ? launched.ranks : n_threads);
+  if (launched.rank == 0) prepare_report(c.report, "ranks");
+  std::vector<bench::RanksRun> runs;
+  bench::SceneShelf shelf;
+  bench::run_team(over_mpi ? transport::open_mpi(launched.ranks) : nullptr, n_threads,
+                  [&](bench::Team& team) {
+                    if (over_mpi) {
+                      transport::Ranks all(team.group(team.size()));
+                      share_cores(all);
+                    }
+                    auto of_member = bench::bench_ranks(
+                        team, shelf, over_mpi, asked,
+                        [&](const bench::RanksRun& run) { print_table(bench::table_of(run, asked)); },
+                        [](const std::string& what) { say(what); });
+                    if (team.leads()) runs = std::move(of_member);
+                  });
+  if (launched.rank != 0) return 0;
+  write_report(c.report, "ranks", bench::json_of(runs, asked));
+  if (bench::count_differing_pictures(runs) > 0)
+    throw Error(ErrorCode::internal, "some ranks' pictures are not the bits of one core's");
+  return 0;
 }
 
 int run(const ModesCommand& c) {
   require_scenes(c.options.scenes);
-  if (c.ranks) return run_ranks_bench(c.of_ranks, c.options, c.report);
+  if (c.ranks) return run_ranks(c);
   prepare_report(c.report, "modes");
   const auto runs = bench::bench_modes(
       c.options, [&](const bench::ModesRun& run) { print_table(bench::table_of(run, c.options)); },
       [](const std::string& what) { say(what); });
   print_table(bench::summary_of(runs));
-  write_report(c.report, "modes", bench::json_of(runs, c.options), to_svg(bench::plot_of(runs, c.options)));
-  write_plot(c.report, "modes_time.svg", to_svg(bench::time_plot_of(runs, c.options)));
-  if (const std::string svg = bench::timeline_svg(runs, c.options); !svg.empty())
-    write_plot(c.report, "modes_timeline.svg", svg);
-  if (c.options.model) write_plot(c.report, "modes_model.svg", to_svg(bench::model_plot_of(runs, c.options)));
+  write_report(c.report, "modes", bench::json_of(runs, c.options));
   if (const std::size_t n = bench::count_differing_pixels(runs); n > 0)
     throw Error(ErrorCode::internal, fmt::format("{} pixels are not the bits of the first picture", n));
   return 0;
@@ -89,7 +138,7 @@ Command add_bench_modes(CLI::App& bench) {
           o.model_options.sample);
   app->add_flag_callback(
       "--no-model", [&o] { o.model = false; }, "Measure only");
-  add_ranks(*app, c->ranks, c->of_ranks);
+  add_ranks(*app, *c);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};
 }

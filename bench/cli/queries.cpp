@@ -8,7 +8,7 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
-#include "bench/queries/report.h"
+#include "bench/queries/bench.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/parse.h"
@@ -29,8 +29,7 @@ int run(const QueriesCommand& c) {
   const auto runs = bench::bench_queries(
       c.options, [](const bench::QueriesRun& run) { print_table(bench::table_of(run)); },
       [](const std::string& what) { say(what); });
-  write_report(c.report, "queries", bench::json_of(runs, c.options),
-               bench::to_svg(bench::plot_of(runs, c.options)));
+  write_report(c.report, "queries", bench::json_of(runs, c.options));
   return 0;
 }
 

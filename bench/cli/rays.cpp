@@ -12,7 +12,7 @@
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
 #include "bench/race/kdray_contestants.h"
-#include "bench/rays/report.h"
+#include "bench/rays/bench.h"
 #include "bench/workload/rays.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -36,7 +36,7 @@ int run(const RaysCommand& c) {
   const auto runs = bench::bench_rays(
       c.options, [](const bench::RaysRun& run) { print_table(bench::table_of(run)); },
       [](const std::string& what) { say(what); });
-  write_report(c.report, "rays", bench::json_of(runs, c.options), bench::plot_of(runs, c.options));
+  write_report(c.report, "rays", bench::json_of(runs, c.options));
   if (const std::size_t n = bench::count_not_identical(runs); n > 0)
     throw Error(ErrorCode::internal,
                 fmt::format("{} hits of kdray's traversals are not identical to the binary one's", n));

@@ -4,11 +4,31 @@
 
 #include "base/write_file.h"
 #include "bench/embree/embree.h"
+#include "bench/measure/run_program.h"
 #include "cli/message.h"
 #include "generate/built_in.h"
 #include "kdray/error.h"
 
 namespace kdray::cli {
+
+namespace {
+
+constexpr int kHasSaidWhy = 3;  // exit code of the script
+
+void draw(const std::string& report) {
+  std::error_code none;
+  const auto script =
+      std::filesystem::read_symlink("/proc/self/exe", none).replace_filename("kdray-bench-plot");
+  if (!std::filesystem::exists(script))
+    return say("no plot: " + script.string() + " is missing; install it anew beside kdray-bench");
+  const int code = bench::run_program({"python3", script.string(), report});
+  if (code == bench::kNotRun)
+    say("no plot: there is no python3; the figures are in " + report);
+  else if (code != 0 && code != kHasSaidWhy)
+    say("no plot: " + script.string() + " failed; the figures are in " + report);
+}
+
+}  // namespace
 
 void prepare_report(const std::string& folder, const std::string& name) {
   if (folder.empty()) return;
@@ -20,17 +40,11 @@ void prepare_report(const std::string& folder, const std::string& name) {
     check_writable(std::filesystem::path(folder) / (name + ending));
 }
 
-void write_report(const std::string& folder, const std::string& name, const bench::Json& json,
-                  const std::string& svg) {
+void write_report(const std::string& folder, const std::string& name, const bench::Json& json) {
   if (folder.empty()) return;
-  const std::filesystem::path base = std::filesystem::path(folder) / name;
-  write_file(base.string() + ".json", json.dump(2, ' ', false, bench::Json::error_handler_t::replace) + "\n");
-  write_file(base.string() + ".svg", svg);
-}
-
-void write_report(const std::string& folder, const std::string& name, const bench::Json& json,
-                  const bench::Plot& plot) {
-  write_report(folder, name, json, bench::to_svg(plot));
+  const std::string file = (std::filesystem::path(folder) / (name + ".json")).string();
+  write_file(file, json.dump(2, ' ', false, bench::Json::error_handler_t::replace) + "\n");
+  draw(file);
 }
 
 void print_table(const std::string& table) {
@@ -42,7 +56,9 @@ void say_without_embree() {
 }
 
 void add_report(CLI::App& app, std::string& report) {
-  app.add_option("--report", report, "A folder for the figures (JSON) and a plot (SVG)")->type_name("DIR");
+  app.add_option("--report", report,
+                 "A folder for the figures (JSON) and a plot (SVG, with python3-matplotlib)")
+      ->type_name("DIR");
 }
 
 void add_scenes(CLI::App& app, std::vector<std::string>& scenes, const std::string& default_scenes) {

@@ -1,5 +1,5 @@
 // What    What every `kdray bench` command does: scenes as arguments, tables to stderr, a folder for figures
-//         and a plot.
+//         and their plot, which the script kdray-bench-plot beside the program draws (bench/plot).
 // Errors  ErrorCode::input for a folder that can't be made or written, before anything is measured.
 #pragma once
 
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "bench/measure/json.h"
-#include "bench/plot/plot.h"
 
 namespace kdray::cli {
 
@@ -21,10 +20,8 @@ void require_scenes(const std::vector<std::string>& scenes);
 
 // A folder for the report, made before anything is measured; nothing where there is to be none.
 void prepare_report(const std::string& folder, const std::string& name);
-void write_report(const std::string& folder, const std::string& name, const bench::Json& json,
-                  const std::string& svg);
-void write_report(const std::string& folder, const std::string& name, const bench::Json& json,
-                  const bench::Plot& plot);
+// Where no plot can be drawn, a line says why; the figures are there all the same.
+void write_report(const std::string& folder, const std::string& name, const bench::Json& json);
 
 void print_table(const std::string& table);
 void say_without_embree();

@@ -7,9 +7,11 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "bench/measure/json.h"
 #include "bench/measure/spread.h"
 #include "bench/workload/kinds.h"
 
@@ -40,5 +42,10 @@ struct FrameResult {
 std::vector<FrameResult> bench_frames(const FramesOptions& options,
                                       const std::function<void(const FrameResult&)>& done,
                                       const std::function<void(const std::string&)>& working);
+
+// The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
+
+std::string table_of(const FrameResult& frame);
+Json json_of(std::span<const FrameResult> frames, const FramesOptions& options);
 
 }  // namespace kdray::bench

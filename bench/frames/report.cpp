@@ -1,18 +1,12 @@
 #include <fmt/format.h>
 
 #include "bench/embree/embree.h"
-#include "bench/frames/report.h"
+#include "bench/frames/bench.h"
 #include "bench/measure/short_name.h"
 
 namespace kdray::bench {
 
 namespace {
-
-// What POV-Ray would need to trace as many rays as kdray did for the same picture.
-std::optional<Spread> povray_rate(const FrameResult& f) {
-  if (!f.povray_seconds) return std::nullopt;
-  return mrays_per_s(f.n_rays(), *f.povray_seconds);
-}
 
 std::optional<Spread> embree_rate(const FrameResult& f) {
   if (!f.embree_seconds) return std::nullopt;
@@ -74,33 +68,6 @@ Json json_of(std::span<const FrameResult> frames, const FramesOptions& options) 
                {"frames", Json::array()}};
   for (const FrameResult& f : frames) json["frames"].push_back(json_of(f));
   return json;
-}
-
-Plot plot_of(std::span<const FrameResult> frames, const FramesOptions& options) {
-  Plot plot{"Whole frames",
-            fmt::format("{}x{}, depth {}; {}; median of {} rounds, whiskers from the slowest to the fastest",
-                        options.width, options.height, options.depth,
-                        frames.empty() ? "" : frames.front().device, options.repeat),
-            "Mrays/s",
-            {{"kdray, all rays of the frame", "#c4504f"}},
-            {}};
-  bool with_embree = false, with_povray = false;
-  for (const FrameResult& f : frames) {
-    with_embree |= f.embree_seconds.has_value();
-    with_povray |= f.povray_seconds.has_value();
-  }
-  if (with_embree) plot.series.push_back({"Embree, the primary rays alone", "#b3b3b3"});
-  if (with_povray) plot.series.push_back({"POV-Ray: kdray's rays in its time", "#4e9bd4"});
-  Panel panel{"", {}, {}};
-  for (const FrameResult& f : frames) {
-    panel.groups.push_back(short_name(f.scene));
-    auto& bars = panel.bars.emplace_back();
-    bars.push_back(mrays_per_s(f.n_rays(), f.seconds));
-    if (with_embree) bars.push_back(embree_rate(f));
-    if (with_povray) bars.push_back(povray_rate(f));
-  }
-  plot.panels.push_back(std::move(panel));
-  return plot;
 }
 
 }  // namespace kdray::bench

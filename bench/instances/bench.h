@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/measure/json.h"
 #include "bench/race/race.h"
 
 namespace kdray::bench {
@@ -62,5 +63,10 @@ std::size_t count_not_identical(std::span<const InstancesRun> runs);
 
 // The times of the family's fastest with instances over the fastest with copies; 0 where there is none.
 double times_copies(const InstancesClass& c, Family family);
+
+// The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
+
+std::string table_of(const InstancesRun& run);
+Json json_of(std::span<const InstancesRun> runs, const InstancesOptions& options);
 
 }  // namespace kdray::bench

@@ -1,4 +1,4 @@
-#include "bench/instances/report.h"
+#include "bench/instances/bench.h"
 
 #include <fmt/format.h>
 
@@ -103,38 +103,6 @@ Json json_of(const InstancesRun& run) {
   return json;
 }
 
-// The fastest of a family in one of the forms.
-std::optional<Spread> best_rate(const InstancesClass& c, Family family, Outcome Pair::*form) {
-  const Outcome* best = nullptr;
-  for (const Pair& p : c.pairs) {
-    const Outcome& o = p.*form;
-    if (o.family == family && (best == nullptr || o.seconds.median < best->seconds.median)) best = &o;
-  }
-  return best ? std::optional(mrays_per_s(c.n_rays, best->seconds)) : std::nullopt;
-}
-
-struct PlotSeries {
-  Series look;
-  Family family;
-  Outcome Pair::*form;
-};
-
-const std::vector<PlotSeries>& plot_series() {
-  static const std::vector<PlotSeries> series = {
-      {{"Embree robust, copies", "#b3b3b3"}, Family::embree_robust, &Pair::copies},
-      {{"Embree robust, instances", "#7a7a7a"}, Family::embree_robust, &Pair::instances},
-      {{"kdray, copies", "#f2c14e"}, Family::kdray, &Pair::copies},
-      {{"kdray, instances", "#c4504f"}, Family::kdray, &Pair::instances}};
-  return series;
-}
-
-bool appears(const PlotSeries& series, std::span<const InstancesRun> runs) {
-  for (const InstancesRun& run : runs)
-    for (const InstancesClass& c : run.classes)
-      if (best_rate(c, series.family, series.form)) return true;
-  return false;
-}
-
 }  // namespace
 
 std::string table_of(const InstancesRun& run) {
@@ -158,28 +126,6 @@ Json json_of(std::span<const InstancesRun> runs, const InstancesOptions& options
                {"runs", Json::array()}};
   for (const InstancesRun& run : runs) json["runs"].push_back(json_of(run));
   return json;
-}
-
-Plot plot_of(std::span<const InstancesRun> runs, const InstancesOptions& options) {
-  const std::string device = runs.empty() ? "" : runs.front().device;
-  Plot plot{"Rays among instances and among copies",
-            fmt::format("{}; the fastest of each, median of {} interleaved rounds", device, options.repeat),
-            "Mrays/s",
-            {},
-            {}};
-  std::vector<PlotSeries> used;
-  for (const PlotSeries& s : plot_series())
-    if (appears(s, runs)) used.push_back(s), plot.series.push_back(s.look);
-  for (const InstancesRun& run : runs) {
-    Panel panel{heading(run), {}, {}};
-    for (const InstancesClass& c : run.classes) {
-      panel.groups.push_back(c.name);
-      auto& bars = panel.bars.emplace_back();
-      for (const PlotSeries& s : used) bars.push_back(best_rate(c, s.family, s.form));
-    }
-    plot.panels.push_back(std::move(panel));
-  }
-  return plot;
 }
 
 }  // namespace kdray::bench

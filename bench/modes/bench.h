@@ -10,9 +10,11 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "bench/measure/json.h"
 #include "bench/measure/spread.h"
 #include "bench/modes/model.h"
 #include "kdray/kdray.h"
@@ -87,5 +89,24 @@ std::size_t differing_pixels(const Picture& a, const Picture& b);
 // that have both on so many queues; nothing where none has.
 std::optional<double> odprt_over_pdprt(std::span<const ModesRun> runs, const std::string& balance,
                                        int queues);
+
+// The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
+
+// How much faster the thesis found PDPRT than ODPRT.
+inline constexpr double kThesisLeast = 0.55, kThesisMost = 0.64;
+
+// What was predicted beside what was measured: seconds, where every queue has a core; of ODPRT rays that were
+// sent, always.
+struct Check {
+  std::string scheme, what;
+  int queues = 1;
+  double predicted = 0, measured = 0;
+  double error() const { return predicted / measured - 1; }
+};
+std::vector<Check> checks_of(const ModesRun& run);
+
+std::string table_of(const ModesRun& run, const ModesOptions& options);
+std::string summary_of(std::span<const ModesRun> runs);
+Json json_of(std::span<const ModesRun> runs, const ModesOptions& options);
 
 }  // namespace kdray::bench

@@ -6,24 +6,13 @@
 #include <set>
 
 #include "bench/measure/short_name.h"
-#include "bench/modes/report.h"
+#include "bench/modes/bench.h"
 
 namespace kdray::bench {
 
 namespace {
 
 const std::vector<std::string> kBalances = {"odprt sah", "odprt pilot", "odprt dynamic"};
-const std::vector<std::string> kPredicted = {"pdprt contiguous", "pdprt interleaved", "pdprt bag",
-                                             "odprt sah", "odprt pilot"};
-
-const char* color_of(const std::string& scheme) {
-  static const std::map<std::string, const char*> kColors = {
-      {"pdprt contiguous", "#9cc9ea"}, {"pdprt interleaved", "#4e9bd4"}, {"pdprt bag", "#1f5f91"},
-      {"odprt sah", "#f2b8a0"},        {"odprt pilot", "#e0703f"},       {"odprt dynamic", "#a33b1b"}};
-  const auto found = kColors.find(scheme);
-  return found == kColors.end() ? "#7a7a7a" : found->second;
-}
-
 // A column, or a dash where there is nothing to tell.
 std::string cell(const std::optional<double>& value, double factor, int decimals, int width) {
   if (!value) return fmt::format("{:>{}}", "-", width);
@@ -128,6 +117,7 @@ Json json_of(const ModesRun& run, const ModesRow& row) {
           {"geometry_bytes", json_of(row.geometry_bytes)},
           {"geometry_share", json_of(row.geometry_share)},
           {"work_bytes", json_of(row.work_bytes)},
+          {"timeline", row.timeline.empty() ? Json() : Json::parse(row.timeline)},
           {"differing_pixels", row.differing_pixels}};
 }
 
@@ -193,11 +183,6 @@ std::vector<int> queues_of(std::span<const ModesRun> runs) {
   for (const ModesRun& run : runs)
     for (const ModesRow& row : run.rows) queues.insert(row.queues);
   return {queues.begin(), queues.end()};
-}
-
-std::string subtitle(std::span<const ModesRun> runs, const ModesOptions& options) {
-  return fmt::format("{}x{}, depth {}; {}; medians of {} rounds", options.width, options.height,
-                     options.depth, runs.empty() ? "" : runs.front().device, options.repeat);
 }
 
 }  // namespace
@@ -277,87 +262,6 @@ Json json_of(std::span<const ModesRun> runs, const ModesOptions& options) {
         json["odprt_over_pdprt"].push_back({{"balance", balance}, {"queues", queues}, {"ratio", *ratio}});
   for (const ModesRun& run : runs) json["runs"].push_back(json_of(run));
   return json;
-}
-
-XyPlot plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
-  XyPlot plot{"PDPRT and ODPRT: speed-up over one core alone", subtitle(runs, options), {}, true, {}};
-  for (const Scheme& scheme : schemes()) plot.series.push_back({scheme.name, color_of(scheme.name)});
-  for (const ModesRun& run : runs) {
-    XyPanel panel{fmt::format("{}, {} cores", short_name(run.scene), run.cores),
-                  {"queues", false},
-                  {"times one core's speed", false},
-                  {}};
-    for (const Scheme& scheme : schemes()) {
-      auto& points = panel.points.emplace_back();
-      for (const ModesRow& row : run.rows)
-        if (const auto speed_up = run.speed_up(row); speed_up && row.scheme == scheme.name)
-          points.push_back({static_cast<double>(row.queues), *speed_up});
-    }
-    plot.panels.push_back(std::move(panel));
-  }
-  return plot;
-}
-
-XyPlot model_plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
-  const ModelOptions& m = options.model_options;
-  XyPlot plot{"Simulation: efficiency of one core to a queue",
-              fmt::format("predicted for links of {:g} GB/s and {:g} us; black and grey: measured, where "
-                          "queues don't share cores",
-                          m.gigabytes_per_second, m.latency_us),
-              {},
-              true,
-              {}};
-  for (const std::string& scheme : kPredicted)
-    plot.series.push_back({scheme + ", simulated", color_of(scheme)});
-  plot.series.push_back({"pdprt bag, measured", "#333333"});
-  plot.series.push_back({"odprt pilot, measured", "#999999"});
-  for (const ModesRun& run : runs) {
-    if (!run.model) continue;
-    XyPanel panel{short_name(run.scene), {"queues", true}, {"efficiency, %", false}, {}};
-    for (const std::string& scheme : kPredicted) {
-      auto& points = panel.points.emplace_back();
-      for (const Prediction& p : run.model->predictions)
-        if (p.scheme == scheme) points.push_back({static_cast<double>(p.queues), 100 * p.efficiency});
-    }
-    for (const char* const scheme : {"pdprt bag", "odprt pilot"}) {
-      auto& points = panel.points.emplace_back();
-      for (const ModesRow& row : run.rows)
-        if (const auto speed_up = run.speed_up(row);
-            speed_up && row.scheme == scheme && row.queues <= run.cores)
-          points.push_back({static_cast<double>(row.queues), 100 * *speed_up / row.queues});
-    }
-    plot.panels.push_back(std::move(panel));
-  }
-  return plot;
-}
-
-Plot time_plot_of(std::span<const ModesRun> runs, const ModesOptions& options) {
-  Plot plot{
-      "Where ODPRT's time goes (balance pilot)",
-      subtitle(runs, options) + "; the bars of a scene add up to ODPRT's time over PDPRT's",
-      "of PDPRT's time",
-      {{"busy, as PDPRT's queues are", "#1f5f91"}, {"busy beyond that", "#e0703f"}, {"idle", "#b3b3b3"}},
-      {}};
-  for (const int queues : queues_of(runs)) {
-    Panel panel{fmt::format("{} queue{}", queues, queues == 1 ? "" : "s"), {}, {}};
-    bool shared = false;
-    for (const ModesRun& run : runs) {
-      const ModesRow *odprt = run.find("odprt pilot", queues), *pdprt = run.find("pdprt bag", queues);
-      if (odprt == nullptr || pdprt == nullptr || !odprt->busy_seconds || !pdprt->busy_seconds) continue;
-      const double whole = queues * pdprt->seconds.median;
-      const auto bar = [&](double seconds) {
-        return Spread{seconds / whole, seconds / whole, seconds / whole};
-      };
-      panel.groups.push_back(short_name(run.scene));
-      panel.bars.push_back({bar(std::min(*pdprt->busy_seconds, *odprt->busy_seconds)),
-                            bar(std::max(0.0, *odprt->busy_seconds - *pdprt->busy_seconds)),
-                            bar(std::max(0.0, queues * odprt->seconds.median - *odprt->busy_seconds))});
-      shared |= odprt->shares_cores();
-    }
-    if (shared) panel.title += ", several share a core";
-    if (!panel.groups.empty()) plot.panels.push_back(std::move(panel));
-  }
-  return plot;
 }
 
 }  // namespace kdray::bench

@@ -55,21 +55,21 @@ std::uint32_t finder(std::span<const Visit> path) {
   return path.empty() ? kDirectory : path.back().owner;
 }
 
-}  // namespace
-
+// The queue that a ray enters first; kDirectory: none.
 std::uint32_t first_owner(std::span<const Visit> path) {
   const auto first =
       std::find_if(path.begin(), path.end(), [](const Visit& v) { return v.owner != kDirectory; });
   return first != path.end() ? first->owner : kDirectory;
 }
 
+}  // namespace
+
 Traffic make_traffic(std::span<const LifeRay> lives, const Paths& paths, std::uint32_t n_queues,
-                     const Rates& rates, double rays_per_journey, std::span<const std::uint32_t> makers) {
+                     const Rates& rates, double rays_per_journey) {
   // Where an eye ray is made: by the queue that it enters first, if any.
   const auto maker = [&](std::uint32_t i) {
     const std::uint32_t first = first_owner(paths.of(i));
-    if (first != kDirectory) return first;
-    return makers.empty() ? i % n_queues : makers[i];
+    return first != kDirectory ? first : i % n_queues;
   };
   Traffic traffic;
   traffic.rays_per_journey = rays_per_journey;

@@ -1,7 +1,7 @@
 // What    The journeys of a sample's rays from queue to queue, for events.h, by the rules of ODPRT
 //         (kernels/odprt).
-// Shape   Eye rays begin with the queue that they enter first, or on queues in turn, others where their
-//         parent ended. A ray asks the queues whose cells it enters, in the order in which it first does,
+// Shape   Eye rays begin with the queue that they enter first, or, where they enter none, on queues in turn;
+//         others where their parent ended. A ray asks the queues whose cells it enters, in the order in which it first does,
 //         each once: for all that it holds on the ray's way (that ODPRT traces a ray where it is made, before
 //         another is asked, is left out: there it meets little). A shadow ray ends with the first that finds
 //         something in its way; another ray asks all that it enters before its hit, then goes back to the one
@@ -22,12 +22,8 @@ struct Rates {
   double seconds_of_shade = 0;  // of a hit
 };
 
-// The queue that a ray enters first; kDirectory: none.
-std::uint32_t first_owner(std::span<const Visit> path);
-
-// `paths` are those of the lives, by queues. `makers`: where eye rays begin that enter none, by their place
-// among the lives; empty: on queues in turn.
+// `paths` are those of the lives, by queues.
 Traffic make_traffic(std::span<const LifeRay> lives, const Paths& paths, std::uint32_t n_queues,
-                     const Rates& rates, double rays_per_journey, std::span<const std::uint32_t> makers = {});
+                     const Rates& rates, double rays_per_journey);
 
 }  // namespace kdray::bench

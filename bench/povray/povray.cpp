@@ -1,55 +1,21 @@
 #include "bench/povray/povray.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <charconv>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
 #include "base/error.h"
+#include "bench/measure/run_program.h"
 #include "bench/povray/pov_writer.h"
 #include "film/read.h"
-
-extern char** environ;
 
 namespace kdray::bench {
 
 namespace {
-
-// Runs a program from the path, what it says going to `log`. Its exit code, or -1 when it can't be run.
-int run(std::vector<std::string> arguments, const std::filesystem::path& log) {
-  std::vector<char*> words;
-  for (std::string& argument : arguments) words.push_back(argument.data());
-  words.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&files, 2, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawnattr_t
-      attributes;  // the signals that this process blocks (base/signals.h) are for the child to take
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  pid_t child = -1;
-  const int fault = ::posix_spawnp(&child, words[0], &files, &attributes, words.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  if (fault != 0) return -1;
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
 
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -73,7 +39,7 @@ std::filesystem::path new_folder() {
 }  // namespace
 
 bool has_povray() {
-  static const bool there = run({"povray", "--version"}, "/dev/null") == 0;
+  static const bool there = run_program({"povray", "--version"}, "/dev/null") == 0;
   return there;
 }
 
@@ -122,7 +88,7 @@ double Povray::run_with(int threads, const std::vector<std::string>& flags) cons
                                         "-D",
                                         fmt::format("+WT{}", threads)};
   arguments.insert(arguments.end(), flags.begin(), flags.end());
-  const int code = run(arguments, log);
+  const int code = run_program(arguments, log);
   const std::string output = text_of(log);
   const double seconds = trace_time_in(output);
   if (code != 0 || seconds < 0) throw Error(ErrorCode::internal, "povray failed: " + last_line(output));

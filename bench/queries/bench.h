@@ -9,9 +9,11 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "bench/measure/json.h"
 #include "bench/measure/spread.h"
 #include "bench/race/asker.h"
 
@@ -57,5 +59,10 @@ struct QueriesRun {
 std::vector<QueriesRun> bench_queries(const QueriesOptions& options,
                                       const std::function<void(const QueriesRun&)>& done,
                                       const std::function<void(const std::string&)>& working);
+
+// The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
+
+std::string table_of(const QueriesRun& run);
+Json json_of(std::span<const QueriesRun> runs, const QueriesOptions& options);
 
 }  // namespace kdray::bench

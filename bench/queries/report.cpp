@@ -1,4 +1,4 @@
-#include "bench/queries/report.h"
+#include "bench/queries/bench.h"
 
 #include <fmt/format.h>
 
@@ -101,26 +101,6 @@ bool has_embree(std::span<const QueriesRun> runs) {
                      [](const QueriesRun& run) { return find(run.first_answers, "robust") != nullptr; });
 }
 
-double plotted(const CellResult& cell, bool as_ratio) {
-  if (as_ratio) return Ratio(cell.sides, "robust").wall;
-  return static_cast<double>(cell.batch) / find(cell.sides, "kdray")->wall.median * 1e-6;
-}
-
-// A question about a scene: a line for each set.
-XyPanel panel_of(const QueriesRun& run, const std::string& question, const XyPlot& plot, bool as_ratio) {
-  XyPanel panel{short_name(run.scene) + ": " + question,
-                {"rays in a call", true},
-                {as_ratio ? "times as fast" : "M/s", true},
-                {}};
-  for (const Series& series : plot.series) {
-    auto& points = panel.points.emplace_back();
-    for (const CellResult& c : run.cells)
-      if (c.question == question && c.set == series.name)
-        points.push_back({static_cast<double>(c.batch), plotted(c, as_ratio)});
-  }
-  return panel;
-}
-
 }  // namespace
 
 std::string table_of(const QueriesRun& run) {
@@ -144,27 +124,6 @@ Json json_of(std::span<const QueriesRun> runs, const QueriesOptions& options) {
                {"runs", Json::array()}};
   for (const QueriesRun& run : runs) json["runs"].push_back(json_of(run));
   return json;
-}
-
-XyPlot plot_of(std::span<const QueriesRun> runs, const QueriesOptions& options) {
-  const bool as_ratio = has_embree(runs);
-  XyPlot plot;
-  plot.title = as_ratio
-                   ? "Queries from arrays: kdray's speed over that of Embree " + embree_version() + ", robust"
-                   : "Queries from arrays: rays or points in a second";
-  plot.subtitle = fmt::format("{}; median of {} interleaved rounds", runs.empty() ? "" : runs.front().device,
-                              options.repeat);
-  plot.series = {{"coherent", "#4e9bd4"}, {"diffuse", "#5fb37a"}, {"random", "#c4504f"}};
-  for (const QueriesRun& run : runs)
-    for (const std::string_view question : question_names()) {
-      XyPanel panel = panel_of(run, std::string(question), plot, as_ratio);
-      const auto is_shown = [](const Point& p) { return p.y > 0; };
-      if (std::any_of(panel.points.begin(), panel.points.end(), [&](const auto& points) {
-            return std::any_of(points.begin(), points.end(), is_shown);
-          }))
-        plot.panels.push_back(std::move(panel));
-    }
-  return plot;
 }
 
 }  // namespace kdray::bench

@@ -1,13 +1,16 @@
 #include "bench/ranks/bench.h"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
+#include "api/hooks.h"
+#include "api/statistics_json.h"
 #include "base/median.h"
-#include "base/timer.h"
 #include "generate/built_in.h"
+#include "transport/ranks.h"
 
 namespace kdray::bench {
 
@@ -15,108 +18,146 @@ namespace {
 
 const std::vector<std::string> kScenes = {"balls"};
 
-// What of a round's simulation is held against what was measured.
-struct Predicted {
-  double seconds = 0, messages = 0, bytes = 0, busy = 0, rays = 0;
+// What kdray gives several ranks of one core each (api/scheduler.cpp): one core alone is to be like them.
+constexpr Tuning kOfRanks{.slices = 1, .waves = 128};
+
+// OpenCL is opened by one thread at a time.
+Renderer open(const PreparedScene& scene, const RanksOptions& o, std::shared_ptr<transport::Ranks> ranks) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  api::Hooks hooks;
+  hooks.ranks = std::move(ranks);
+  Renderer renderer = api::make_renderer(scene, {.device = o.device, .queues = 1, .compute_units = 1}, hooks);
+  renderer.tune(kOfRanks);
+  return renderer;
+}
+
+RenderOptions frame_of(const RanksOptions& options, Mode mode) {
+  RenderOptions o;
+  o.width = options.width, o.height = options.height, o.depth = options.depth, o.samples = options.samples;
+  o.mode = mode;
+  return o;
+}
+
+// This member as one of so many ranks, or as nobody.
+class Place {
+ public:
+  Place(Team& team, const PreparedScene& scene, const RanksOptions& options, int n, double delay)
+      : row_{.ranks = n, .delay = delay} {
+    auto transport = team.group(n, delay);
+    if (!transport) return;
+    ranks_ = std::make_shared<transport::Ranks>(std::move(transport));
+    renderer_.emplace(open(scene, options, ranks_));
+  }
+
+  void render(const RenderOptions& options, bool counts, const Picture& reference) {
+    if (!renderer_) return;
+    const transport::Counters before = ranks_->counters();
+    const Picture picture = renderer_->render(options);
+    const transport::Counters& after = ranks_->counters();
+    if (!ranks_->leads()) return;
+    if (picture.rgb != reference.rgb) ++row_.differing_pictures;
+    if (!counts) return;
+    row_.rounds.push_back(renderer_->statistics().seconds.render);
+    const nlohmann::json facts = api::statistics_json(renderer_->statistics());
+    const nlohmann::json& mode = facts.at("mode");
+    double busy = 0;
+    for (const auto& queue : mode.at("per_queue")) busy += queue.at("busy_seconds").get<double>();
+    busy_.push_back(busy);
+    const auto sent = mode.find("exchange");
+    rays_.push_back(sent == mode.end() ? 0 : sent->at("rays_total").get<double>());
+    messages_.push_back(static_cast<double>(after.sent + after.received - before.sent - before.received));
+    bytes_.push_back(static_cast<double>(after.bytes_sent + after.bytes_received - before.bytes_sent -
+                                         before.bytes_received));
+  }
+
+  // For member 0.
+  RanksRow row() const {
+    RanksRow row = row_;
+    row.seconds = spread_of(row.rounds);
+    row.busy = median(busy_), row.rays_sent = median(rays_);
+    row.messages = median(messages_), row.bytes = median(bytes_);
+    return row;
+  }
+
+ private:
+  RanksRow row_;
+  std::shared_ptr<transport::Ranks> ranks_;
+  std::optional<Renderer> renderer_;
+  std::vector<double> messages_, bytes_, busy_, rays_;
 };
 
-// `simulate` predicts a round of this machine: what it was slower than usual, and the ranks' setting.
-RanksCheck check_of(const RanksMeasured& measured, const RealRanks& real,
-                    const std::function<Predicted(double slower, const RanksSetting&)>& simulate) {
-  std::vector<double> seconds, ratios;
-  std::vector<Predicted> all;
-  for (std::size_t i = 0; i < real.rounds.size(); ++i) {
-    const RanksRound& round = measured.rounds[i];
-    RanksSetting setting = setting_of(measured.messages, round.at_once, real.ranks, real.delay);
-    setting.seed = i + 1;
-    all.push_back(simulate(round.alone / measured.alone.median, setting));
-    seconds.push_back(all.back().seconds), ratios.push_back(all.back().seconds / real.rounds[i]);
+// One of the two modes: a core alone, and all numbers of ranks.
+class Measured {
+ public:
+  Measured(Team& team, const PreparedScene& scene, const RanksOptions& options, Mode mode)
+      : team_(team),
+        name_(mode == Mode::pdprt ? "pdprt" : "odprt"),
+        frame_(frame_of(options, mode)),
+        alone_(open(scene, options, nullptr)) {
+    for (const int n : options.ranks)
+      for (const double delay : options.delays)
+        if (n <= team.size() && (n > 1 || delay == 0)) places_.emplace_back(team, scene, options, n, delay);
   }
-  const auto median_of = [&](double Predicted::*what) {
-    std::vector<double> values;
-    for (const Predicted& p : all) values.push_back(p.*what);
-    return median(values);
-  };
-  RanksCheck check{real.ranks, real.delay, spread_of(seconds), spread_of(real.rounds), spread_of(ratios)};
-  check.busy_predicted = median_of(&Predicted::busy), check.busy = real.busy;
-  check.messages_predicted = median_of(&Predicted::messages), check.messages = real.messages;
-  check.bytes_predicted = median_of(&Predicted::bytes), check.bytes = real.bytes;
-  check.rays_predicted = median_of(&Predicted::rays), check.rays = real.rays_sent;
-  return check;
-}
 
-RanksCheck check_of_pdprt(const RanksMeasured& measured, const RealRanks& real) {
-  return check_of(measured, real, [&](double slower, const RanksSetting& setting) {
-    const SimulatedRanks s = simulate_pdprt(measured.frame.times(slower), setting);
-    return Predicted{s.seconds, static_cast<double>(s.messages), static_cast<double>(s.bytes), s.busy, 0};
-  });
-}
+  // All members' frames at once, of those that are among the first n; the seconds of each, to member 0.
+  std::vector<double> render_at_once(int n) {
+    team_.meet();
+    if (team_.number() < n) alone_.render(frame_);
+    std::vector<double> seconds = team_.gather(team_.number() < n ? alone_.statistics().seconds.render : 0);
+    if (!seconds.empty()) seconds.resize(static_cast<std::size_t>(n));
+    return seconds;
+  }
 
-// The frame is as slow as the machine by its setting's speed.
-RanksCheck check_of_odprt(const RanksMeasured& measured, const RealRanks& real, const LivedFrame& lived,
-                          const DividedFrame& frame) {
-  return check_of(measured, real, [&](double slower, RanksSetting setting) {
-    setting.speed = [speed = setting.speed, slower](std::size_t n) { return speed(n) / slower; };
-    const SimulatedOdprt s = simulate_odprt(lived, frame, measured.odprt, setting);
-    return Predicted{s.seconds, static_cast<double>(s.messages), static_cast<double>(s.bytes), s.busy,
-                     static_cast<double>(s.rays_sent)};
-  });
-}
-
-RanksSetting setting_over(const RanksMeasured& measured, const AssumedLink& link, int ranks) {
-  RanksSetting setting;
-  setting.ranks = ranks;
-  setting.messages = measured.messages;
-  setting.messages.latency = link.latency, setting.messages.bandwidth = link.bandwidth;
-  setting.moved_by_looks = false;
-  // A rank that has a core for itself is not kept from looking by others of this machine.
-  for (const RanksRound& round : measured.rounds)
-    if (const auto one = round.at_once.find(1); one != round.at_once.end())
-      setting.look = std::min(&round == &measured.rounds.front() ? 1.0 : setting.look, one->second.look);
-  return setting;
-}
-
-// Of a frame of `heavier` times as many samples; what rank 0 does beside the tiles stays.
-RanksPrediction predict(const RanksMeasured& measured, const AssumedLink& link, int ranks,
-                        double heavier = 1) {
-  const Timer timer;
-  ReplayedFrame frame = measured.frame;
-  for (auto* const list : {&frame.tile_seconds, &frame.by_entry})
-    for (double& seconds : *list) seconds *= heavier;
-  frame.guessed_waves *= heavier;
-  const SimulatedRanks simulated = simulate_pdprt(frame, setting_over(measured, link, ranks));
-  const double work = measured.busy * heavier;
-  return {link.name,
-          ranks,
-          simulated.seconds,
-          (work + measured.alone.median - measured.busy) / (ranks * simulated.seconds),
-          static_cast<double>(simulated.messages),
-          timer.seconds(),
-          work,
-          0};
-}
-
-void predict_odprt(RanksRun& run, const PreparedScene& scene, const Scene& model,
-                   const RanksOptions& options) {
-  const RanksMeasured& m = run.measured;
-  const LivedFrame lived = live(scene, model, options.asked.device, m.odprt_width, m.odprt_height,
-                                options.asked.depth, options.asked.tile, m.odprt);
-  run.odprt_rays = lived.lives.size();
-  std::map<int, std::vector<const RealRanks*>> real;
-  for (const RealRanks& r : m.real_odprt) real[r.ranks].push_back(&r);
-  for (const int n : options.odprt_predicted) real[n];
-  for (const auto& [n, checked] : real) {
-    const DividedFrame frame = divide(lived, scene, n);
-    for (const RealRanks* const r : checked) run.odprt_checks.push_back(check_of_odprt(m, *r, lived, frame));
-    if (std::ranges::find(options.odprt_predicted, n) == options.odprt_predicted.end()) continue;
-    for (const AssumedLink& link : options.links) {
-      const Timer timer;
-      const SimulatedOdprt s = simulate_odprt(lived, frame, m.odprt, setting_over(m, link, n));
-      run.odprt_predictions.push_back({link.name, n, s.seconds, m.odprt_alone.median / (n * s.seconds),
-                                       static_cast<double>(s.messages), timer.seconds(), m.odprt.busy,
-                                       static_cast<double>(s.rays_sent)});
+  void round(bool counts) {
+    team_.meet();
+    if (team_.leads()) {
+      reference_ = alone_.render(frame_);
+      if (counts) seconds_.push_back(alone_.statistics().seconds.render);
+    }
+    for (Place& place : places_) {
+      team_.meet();
+      place.render(frame_, counts, reference_);
     }
   }
+
+  // For member 0.
+  RanksMode result() const {
+    RanksMode mode{name_, spread_of(seconds_)};
+    for (const Place& place : places_) mode.rows.push_back(place.row());
+    return mode;
+  }
+  std::string device() const { return api::statistics_json(alone_.statistics()).at("device").at("name"); }
+
+ private:
+  Team& team_;
+  std::string name_;
+  RenderOptions frame_;
+  Renderer alone_;
+  std::vector<Place> places_;
+  Picture reference_;
+  std::vector<double> seconds_;
+};
+
+void measure(RanksRun& run, Team& team, const PreparedScene& scene, const RanksOptions& options) {
+  run.messages = ping_pong(team);
+  std::vector<Measured> modes;
+  for (const Mode mode : {Mode::pdprt, Mode::odprt}) modes.emplace_back(team, scene, options, mode);
+  std::map<int, std::vector<double>> at_once;
+  for (int round = -1; round < options.repeat; ++round) {
+    for (const int n : options.ranks) {
+      if (n > team.size()) continue;
+      const std::vector<double> seconds = modes.front().render_at_once(n);
+      if (team.leads() && round >= 0) at_once[n].push_back(sum(seconds) / n);
+    }
+    for (Measured& mode : modes) mode.round(round >= 0);
+    team.meet();
+  }
+  if (!team.leads()) return;
+  for (const Measured& mode : modes) run.modes.push_back(mode.result());
+  run.device = modes.front().device();
+  for (const auto& [n, seconds] : at_once)
+    run.at_once[n] = std::min(1.0, run.modes.front().alone.median / median(seconds));
 }
 
 }  // namespace
@@ -139,71 +180,30 @@ const SceneShelf::Held& SceneShelf::get(const std::string& name) {
   return *held;
 }
 
-// One rank is what the model was fitted to.
-double RanksRun::largest_error(const std::vector<RanksCheck>& checks) {
-  double most = 0;
-  for (const RanksCheck& check : checks)
-    if (check.ranks > 1) most = std::max(most, std::abs(check.error()));
-  return most;
-}
-
-SharedCores::Speed speed_of(const std::map<int, AtOnce>& at_once) {
-  std::map<double, double> together = {{0, 0}, {1, 1}};
-  for (const auto& [n, measured] : at_once) together[n] = n * measured.speed;
-  return [together](std::size_t at_work) {
-    const auto n = static_cast<double>(std::max<std::size_t>(at_work, 1));
-    const auto above = together.lower_bound(n);
-    if (above == together.end()) return together.rbegin()->second / n;
-    const auto below = above->first == n ? above : std::prev(above);
-    const double part = above == below ? 0 : (n - below->first) / (above->first - below->first);
-    return (below->second + part * (above->second - below->second)) / n;
-  };
-}
-
-RanksSetting setting_of(const MessageCosts& messages, const std::map<int, AtOnce>& at_once, int ranks,
-                        double delay) {
-  RanksSetting setting;
-  setting.ranks = ranks;
-  setting.delay = delay;
-  setting.messages = messages;
-  setting.speed = speed_of(at_once);
-  if (const auto found = at_once.find(ranks); found != at_once.end()) setting.look = found->second.look;
-  return setting;
-}
-
 std::vector<RanksRun> bench_ranks(Team& team, SceneShelf& shelf, bool over_mpi, const RanksOptions& options,
                                   const std::function<void(const RanksRun&)>& done,
                                   const std::function<void(const std::string&)>& working) {
   std::vector<RanksRun> runs;
   for (const std::string& name : options.scenes.empty() ? kScenes : options.scenes) {
     if (team.leads()) working(name);
-    RanksRun run;
-    run.scene = name;
     const SceneShelf::Held& held = shelf.get(name);
-    run.n_primitives = held.scene.primitives();
-    run.over_mpi = over_mpi;
+    RanksRun run;
+    run.scene = name, run.n_primitives = held.scene.primitives(), run.over_mpi = over_mpi;
     run.cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    run.measured = measure_ranks(team, held.prepared, options.asked);
+    measure(run, team, held.prepared, options);
     team.meet();
     if (!team.leads()) continue;
-    for (const RealRanks& real : run.measured.real) run.checks.push_back(check_of_pdprt(run.measured, real));
-    for (const AssumedLink& link : options.links)
-      for (const int ranks : options.predicted) run.predictions.push_back(predict(run.measured, link, ranks));
-    for (const AssumedLink& link : options.links)
-      for (const double heavier : options.heavier)
-        run.heavier.push_back(predict(run.measured, link, options.heavier_ranks, heavier));
-    if (options.asked.odprt) predict_odprt(run, held.prepared, held.scene, options);
     done(run);
     runs.push_back(std::move(run));
   }
   return runs;
 }
 
-std::size_t count_differing_pixels(const std::vector<RanksRun>& runs) {
+std::size_t count_differing_pictures(const std::vector<RanksRun>& runs) {
   std::size_t n = 0;
   for (const RanksRun& run : runs)
-    for (const auto* const real : {&run.measured.real, &run.measured.real_odprt})
-      for (const RealRanks& ranks : *real) n += ranks.differing_pixels;
+    for (const RanksMode& mode : run.modes)
+      for (const RanksRow& row : mode.rows) n += row.differing_pictures;
   return n;
 }
 

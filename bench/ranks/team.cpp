@@ -123,12 +123,6 @@ std::vector<double> Team::gather(double own) {
   return values;
 }
 
-double Team::told(double by_the_first) {
-  if (!leads()) return transport::head_of<double>(wait_for(kGo));
-  for (int to = 1; to < size(); ++to) transport_->send(to, kGo, bytes_of(by_the_first));
-  return by_the_first;
-}
-
 void Team::abort(int exit_code) {
   transport_->abort(exit_code);
   std::_Exit(exit_code);

@@ -34,11 +34,6 @@ class Team {
 
   // What each member has given, to member 0; nothing to the others.
   std::vector<double> gather(double own);
-  // Member 0's, to all.
-  double told(double by_the_first);
-
-  // Moves on what is on its way, as a rank's look does, while this member is in no group.
-  void look();
 
   // All members call it last.
   void leave();
@@ -48,6 +43,7 @@ class Team {
 
  private:
   friend class GroupMember;
+  void look();  // moves on what is on its way
   std::optional<transport::Message> next_of_group(std::uint32_t group);
   transport::Message wait_for(transport::Tag tag);
 

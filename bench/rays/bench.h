@@ -5,9 +5,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "bench/measure/json.h"
 #include "bench/race/race.h"
 #include "bench/workload/kinds.h"
 
@@ -45,5 +47,10 @@ std::vector<RaysRun> bench_rays(const RaysOptions& options, const std::function<
 
 // kdray's hits that were not those of its binary traversal, over all runs.
 std::size_t count_not_identical(std::span<const RaysRun> runs);
+
+// The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
+
+std::string table_of(const RaysRun& run);
+Json json_of(std::span<const RaysRun> runs, const RaysOptions& options);
 
 }  // namespace kdray::bench

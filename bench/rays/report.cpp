@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "bench/embree/embree.h"
-#include "bench/rays/report.h"
+#include "bench/rays/bench.h"
 
 namespace kdray::bench {
 
@@ -149,36 +149,6 @@ Json json_of(const RaysRun& run) {
   return json;
 }
 
-struct PlotSeries {
-  Series look;
-  Family family;
-  std::string mode;  // empty: the best of the family
-};
-
-const std::vector<PlotSeries>& plot_series() {
-  static const std::vector<PlotSeries> series = {
-      {{"Embree fast, best", "#b3b3b3"}, Family::embree_fast, ""},
-      {{"Embree robust, best", "#7a7a7a"}, Family::embree_robust, ""},
-      {{"kdray binary", "#f2c14e"}, Family::kdray, "binary"},
-      {{"kdray wide", "#f28e4e"}, Family::kdray, "wide"},
-      {{"kdray packet", "#4e9bd4"}, Family::kdray, "packet"},
-      {{"kdray batch", "#5fb37a"}, Family::kdray, "batch"},
-      {{"kdray auto", "#c4504f"}, Family::kdray, "auto"}};
-  return series;
-}
-
-const Outcome* shown(const PlotSeries& series, const ClassResult& c) {
-  return series.mode.empty() ? best_of(c.outcomes, series.family)
-                             : find(c.outcomes, series.family, series.mode);
-}
-
-bool appears(const PlotSeries& series, std::span<const RaysRun> runs) {
-  for (const RaysRun& run : runs)
-    for (const ClassResult& c : run.classes)
-      if (shown(series, c) != nullptr) return true;
-  return false;
-}
-
 }  // namespace
 
 std::string table_of(const RaysRun& run) {
@@ -195,33 +165,6 @@ Json json_of(std::span<const RaysRun> runs, const RaysOptions& options) {
                {"runs", Json::array()}};
   for (const RaysRun& run : runs) json["runs"].push_back(json_of(run));
   return json;
-}
-
-Plot plot_of(std::span<const RaysRun> runs, const RaysOptions& options) {
-  const std::string device = runs.empty() ? "" : runs.front().device;
-  const std::string embree = version_of_embree(options);
-  Plot plot{embree.empty() ? "Rays: kdray's traversals" : "Rays: kdray's traversals and Embree " + embree,
-            fmt::format("{}; median of {} interleaved rounds, whiskers from the slowest to the fastest",
-                        device, options.repeat),
-            "Mrays/s",
-            {},
-            {}};
-  std::vector<PlotSeries> used;
-  for (const PlotSeries& s : plot_series())
-    if (appears(s, runs)) used.push_back(s), plot.series.push_back(s.look);
-  for (const RaysRun& run : runs) {
-    Panel panel{heading(run), {}, {}};
-    for (const ClassResult& c : run.classes) {
-      panel.groups.push_back(c.name);
-      auto& bars = panel.bars.emplace_back();
-      for (const PlotSeries& s : used) {
-        const Outcome* const o = shown(s, c);
-        bars.push_back(o ? std::optional(mrays_per_s(c.n_rays, o->seconds)) : std::nullopt);
-      }
-    }
-    plot.panels.push_back(std::move(panel));
-  }
-  return plot;
 }
 
 }  // namespace kdray::bench

@@ -44,8 +44,8 @@ void check_options(const VerifyArgs& o, RunFiles& files) {
   files.write_picture("--output", o.output, {}, o.write);
   files.write("--stats", o.stats);
   if (o.width < verify::kLeastWidth || o.height < verify::kLeastHeight)
-    throw Error(ErrorCode::usage, fmt::format("--size {}x{}: the picture and its legend need {}x{} at least",
-                                              o.width, o.height, verify::kLeastWidth, verify::kLeastHeight));
+    throw Error(ErrorCode::usage, fmt::format("--size {}x{}: the picture needs {}x{} at least", o.width,
+                                              o.height, verify::kLeastWidth, verify::kLeastHeight));
 }
 
 Json stats_of(const VerifyArgs& o, const verify::Findings& found, double load, double total) {
@@ -69,7 +69,8 @@ void tell(const VerifyArgs& o, const verify::Findings& found, double load, doubl
       seconds_in_words(load), seconds_in_words(s.build), seconds_in_words(s.mesh),
       seconds_in_words(s.duplicates), seconds_in_words(s.probes), seconds_in_words(s.film),
       seconds_in_words(total));
-  if (!o.output.empty()) text += fmt::format("       picture           {}\n", o.output);
+  if (const std::string colors = verify::colors_of(found); !o.output.empty())
+    text += fmt::format("       picture           {}{}{}\n", o.output, colors.empty() ? "" : "; ", colors);
   std::fputs(text.c_str(), stderr);
 }
 

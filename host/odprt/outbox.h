@@ -28,8 +28,6 @@ struct OutboxShape {
 class Outbox {
  public:
   Outbox(const device::Context& context, const OutboxShape& shape);
-  // Without buffers, for queues that only pretend (bench/ranks).
-  explicit Outbox(const OutboxShape& shape) : shape_(shape), n_(2 * shape.n_streams()) {}
 
   const OutboxShape& shape() const { return shape_; }
   const cl::Buffer& rays() const { return rays_; }

@@ -11,7 +11,7 @@ class Simulated final : public Transport {
   Simulated(int rank, int ranks, Network& network) : Transport(rank, ranks), network_(network) {}
 
   std::size_t bytes_waiting() const override { return 0; }
-  double now() const override { return network_.free_at(rank()); }
+  double now() const override { return network_.now(); }
   [[noreturn]] void abort(int) override { throw std::runtime_error("a simulated rank has ended all"); }
 
  private:
@@ -31,36 +31,19 @@ class Simulated final : public Transport {
 Network::Network(int ranks, const Link& link, std::uint64_t seed)
     : link_(link),
       random_(seed),
-      sends_from_(static_cast<std::size_t>(ranks)),
-      receives_from_(static_cast<std::size_t>(ranks)),
-      occupied_until_(static_cast<std::size_t>(ranks)),
+      free_at_(static_cast<std::size_t>(ranks)),
       inboxes_(static_cast<std::size_t>(ranks)) {
   for (int rank = 0; rank < ranks; ++rank) ranks_.push_back(std::make_unique<Simulated>(rank, ranks, *this));
 }
 
-void Network::occupy(int rank, double seconds) {
-  occupied_until_[static_cast<std::size_t>(rank)] = free_at(rank) + seconds;
-}
-
-double Network::free_at(int rank) const {
-  return std::max(now_, occupied_until_[static_cast<std::size_t>(rank)]);
-}
-
 void Network::post(int from, int to, Tag tag, Bytes bytes) {
-  const double takes = static_cast<double>(bytes.size()) / link_.bandwidth;
-  double& sends_from = sends_from_[static_cast<std::size_t>(from)];
-  sends_from = std::max(sends_from, free_at(from)) + takes;
+  double& free_at = free_at_[static_cast<std::size_t>(from)];
+  free_at = std::max(free_at, now_) + static_cast<double>(bytes.size()) / link_.bandwidth;
   // The generator's bits are the same everywhere; a distribution of the library's need not be.
   const double part = static_cast<double>(random_() >> 11) * 0x1p-53;
-  double travels = to == from ? 0 : link_.latency * (1 + link_.jitter * part);
-  if (link_.of_bytes && to != from) travels += link_.of_bytes(bytes.size());
-  double arrives = sends_from + travels;
-  if (link_.comes_in_turn && to != from) {
-    double& receives_from = receives_from_[static_cast<std::size_t>(to)];
-    arrives = receives_from = std::max(receives_from, arrives - takes) + takes;
-  }
+  const double travels = to == from ? 0 : link_.latency * (1 + link_.jitter * part);
   on_their_way_.push(
-      {arrives, n_posted_++, to, std::make_shared<Message>(Message{from, tag, std::move(bytes)})});
+      {free_at + travels, n_posted_++, to, std::make_shared<Message>(Message{from, tag, std::move(bytes)})});
 }
 
 double Network::next_arrival() const {
@@ -72,7 +55,6 @@ void Network::advance(double to) {
   for (; !on_their_way_.empty() && on_their_way_.top().arrives <= now_; on_their_way_.pop()) {
     const OnItsWay& next = on_their_way_.top();
     inboxes_[static_cast<std::size_t>(next.to)].push(std::move(*next.message));
-    reached_.push_back(next.to);
   }
 }
 

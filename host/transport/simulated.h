@@ -3,18 +3,15 @@
 // Shape   A Network has the clock and all that is on its way; whoever drives it moves the clock on to the
 //         next message or to a moment of its own, and lets ranks act. A rank's messages leave one after the
 //         other, each for its length at the bandwidth; then it travels for the latency and up to `jitter`
-//         times that more, so that a later one may overtake it. A rank may be ahead of the clock: what it
-//         sends while it is occupied leaves when it has come so far.
+//         times that more, so that a later one may overtake it.
 // Threads One.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <queue>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "transport/transport.h"
@@ -25,8 +22,6 @@ struct Link {
   double latency = 50e-6;                                      // seconds, one way
   double jitter = 0;                                           // times the latency
   double bandwidth = std::numeric_limits<double>::infinity();  // bytes a second, of what a rank sends
-  bool comes_in_turn = false;  // what comes to a rank takes its time at the bandwidth there, too
-  std::function<double(std::size_t)> of_bytes = {};  // seconds that a message of so many takes longer
 };
 
 class Network {
@@ -36,13 +31,6 @@ class Network {
   Transport& rank(int number) { return *ranks_[static_cast<std::size_t>(number)]; }
   int ranks() const { return static_cast<int>(ranks_.size()); }
   double now() const { return now_; }
-
-  // The rank is at work for so long, after what it is at work with already.
-  void occupy(int rank, double seconds);
-  double free_at(int rank) const;  // now, or when it has done what it is occupied with
-
-  // The ranks that something has come to since they were last asked for, each as often as something has.
-  std::vector<int> take_reached() { return std::exchange(reached_, {}); }
 
   // When the next message comes to where it goes; infinity: none is on its way.
   double next_arrival() const;
@@ -68,9 +56,7 @@ class Network {
   double now_ = 0;
   std::uint64_t n_posted_ = 0;
   std::priority_queue<OnItsWay, std::vector<OnItsWay>, std::greater<>> on_their_way_;
-  std::vector<double> sends_from_, receives_from_;  // when a rank's link is free, each way
-  std::vector<double> occupied_until_;
-  std::vector<int> reached_;
+  std::vector<double> free_at_;  // when a rank's link is
   std::vector<std::queue<Message>> inboxes_;
   std::vector<std::unique_ptr<Transport>> ranks_;
 };

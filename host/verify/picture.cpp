@@ -1,7 +1,5 @@
 #include "verify/picture.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "verify/letters.h"
 #include "verify/tracer.h"
 
 namespace kdray::verify {
@@ -17,31 +14,10 @@ namespace kdray::verify {
 namespace {
 
 // Colours are linear light.
-constexpr vec3 kPaper{0.91f, 0.91f, 0.9f}, kInk{0.02f, 0.02f, 0.02f};
+constexpr vec3 kPaper{0.91f, 0.91f, 0.9f};
 constexpr vec3 kOpen{0.8f, 0.0f, 0.0f}, kCrowded{0.0f, 0.12f, 0.85f}, kFlipped{0.95f, 0.3f, 0.0f},
     kDoubled{0.55f, 0.0f, 0.6f}, kOverlapping{0.0f, 0.35f, 0.12f}, kDefect{0.0f, 0.0f, 0.0f};
 constexpr float kThrough = 0.35f;  // how much is seen of what lies behind something
-
-struct Entry {
-  vec3 color;
-  std::string text;
-};
-
-std::vector<Entry> legend_of(const Findings& f) {
-  std::vector<Entry> legend;
-  const auto add = [&](std::uint64_t n, const vec3& color, const char* what) {
-    if (n > 0) legend.push_back({color, fmt::format("{} {}", n, what)});
-  };
-  add(f.topology.open.size(), kOpen, "open edges");
-  add(f.topology.crowded.size(), kCrowded, "edges of three or more faces");
-  add(f.topology.flipped.size(), kFlipped, "flipped faces");
-  if (f.topology.flipped.empty()) add(f.topology.turned.size(), kFlipped, "edges where the side turns");
-  add(f.duplicates.doubled.size(), kDoubled, "faces there twice");
-  add(f.duplicates.overlapping.size(), kOverlapping, "overlapping pairs");
-  add(f.probes.defects(), kDefect, "faults of kdray");
-  if (legend.empty()) legend.push_back({kPaper, "nothing found"});
-  return legend;
-}
 
 // The faces to fill, by the primitive's number.
 std::vector<const vec3*> fills_of(const Findings& f, std::size_t n_primitives) {
@@ -236,40 +212,37 @@ void mark_findings(const Findings& f, const std::vector<const vec3*>& fills, Pan
   panel.finish();
 }
 
-void draw_legend(const std::vector<Entry>& legend, int top, int factor, film::Image& image) {
-  const int row = (kLetterHeight + 3) * factor;
-  for (std::size_t i = 0; i < legend.size(); ++i) {
-    const int x = static_cast<int>(i) % 2 * (image.width / 2) + 4 * factor;
-    const int y = top + static_cast<int>(i) / 2 * row;
-    for (int v = y; v < std::min(y + 7 * factor, image.height); ++v)
-      for (int u = x; u < x + 10 * factor; ++u)
-        image.pixels[static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width) +
-                     static_cast<std::size_t>(u)] = legend[i].color;
-    draw_text(image, x + 14 * factor, y, factor, legend[i].text, kInk);
-  }
-}
-
 }  // namespace
 
 film::Image draw(const Findings& found, const prepare::Prepared& scene, Tracer& tracer, int width,
                  int height) {
   film::Image image{width, height, {}};
   image.pixels.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kPaper);
-  const std::vector<Entry> legend = legend_of(found);
-  const int factor = std::max(1, height / 300), row = (kLetterHeight + 3) * factor;
-  const int rows = (static_cast<int>(legend.size()) + 1) / 2;
-  const int panel_height = height - rows * row - row / 2, panel_width = width / 2 - 2;
-
   const std::vector<const vec3*> fills = fills_of(found, scene.counts.primitives);
   int x = 0;
-  for (const View& view : views_of(scene, panel_height)) {
-    Panel panel(image, x, panel_width, panel_height, view);
+  for (const View& view : views_of(scene, height)) {
+    Panel panel(image, x, width / 2 - 2, height, view);
     panel.shade(tracer, fills);
     mark_findings(found, fills, panel);
     x += width / 2 + 2;
   }
-  draw_legend(legend, panel_height + row / 2, factor, image);
   return image;
+}
+
+std::string colors_of(const Findings& f) {
+  std::string words;
+  const auto add = [&](bool found, const char* what) {
+    if (found) words += (words.empty() ? "" : ", ") + std::string(what);
+  };
+  const Topology& t = f.topology;
+  add(!t.open.empty(), "red: open edges");
+  add(!t.crowded.empty(), "blue: edges of three or more faces");
+  add(!t.flipped.empty(), "orange: flipped faces");
+  add(t.flipped.empty() && !t.turned.empty(), "orange: edges where the side turns");
+  add(!f.duplicates.doubled.empty(), "purple: faces there twice");
+  add(!f.duplicates.overlapping.empty(), "green: overlapping pairs");
+  add(f.probes.defects() > 0, "black: faults of kdray");
+  return words;
 }
 
 }  // namespace kdray::verify

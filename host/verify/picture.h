@@ -1,8 +1,10 @@
 // What    A picture of where the findings are: the scene in faint grey, from its own camera and from the
-//         opposite side, the findings in colour, and a legend with their numbers.
+//         opposite side, the findings in colour.
 // Shape   What lies behind something shines through, weaker: no finding is hidden. Faces are filled and,
 //         small as they may be, marked by a dot; edges are lines; rays that kdray traced wrongly are crosses.
 #pragma once
+
+#include <string>
 
 #include "film/image.h"
 #include "prepare/prepared.h"
@@ -12,9 +14,12 @@ namespace kdray::verify {
 
 class Tracer;
 
-inline constexpr int kLeastWidth = 320, kLeastHeight = 200;  // of a picture with a legend that can be read
+inline constexpr int kLeastWidth = 320, kLeastHeight = 200;  // of a picture on which something can be seen
 
 film::Image draw(const Findings& found, const prepare::Prepared& scene, Tracer& tracer, int width,
                  int height);
+
+// Which colours the picture has and what they mark: "red: open edges, blue: ..."; empty where there are none.
+std::string colors_of(const Findings& found);
 
 }  // namespace kdray::verify

@@ -18,7 +18,8 @@ constexpr const char* kFiveSides = "f 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n
 constexpr const char* kBottom = "f 1 4 3 2\n";
 
 std::string cube() {
-  return std::string(kCorners) + kFiveSides + kBottom;
+  std::string text = kCorners;
+  return text.append(kFiveSides).append(kBottom);
 }
 
 Outcome verify(const fs::path& scene, std::vector<std::string> more = {}) {
@@ -126,8 +127,10 @@ TEST(VerifyCommand, WritesAPictureOfItsSize) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   const fs::path picture = folder / "where.png";
-  ASSERT_TRUE(succeeds(verify(folder.put("open.obj", std::string(kCorners) + kFiveSides),
-                              {"-o", picture, "--size", "400x300"})));
+  const Outcome run = verify(folder.put("open.obj", std::string(kCorners) + kFiveSides),
+                             {"-o", picture, "--size", "400x300"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_NE(run.err.find("where.png; red: open edges\n"), std::string::npos) << run.err;
   const film::Image image = film::read_picture(picture, {});
   EXPECT_EQ(image.width, 400);
   EXPECT_EQ(image.height, 300);

@@ -99,37 +99,6 @@ TEST(SimulatedTest, TimesAreThoseOfTheLink) {
   EXPECT_NEAR(network.next_arrival(), 1.75, 1e-12);
 }
 
-TEST(SimulatedTest, WhoIsOccupiedSendsLater) {
-  Network network(2, {.latency = 1, .bandwidth = 100}, 1);
-  network.occupy(0, 2);
-  network.occupy(0, 3);
-  EXPECT_DOUBLE_EQ(network.rank(0).now(), 5);
-  EXPECT_DOUBLE_EQ(network.rank(1).now(), 0);
-  network.rank(0).send(1, 5, Bytes(100, 'a'));
-  EXPECT_DOUBLE_EQ(network.next_arrival(), 7);
-  network.advance(6);
-  EXPECT_DOUBLE_EQ(network.rank(0).now(), 6);
-  EXPECT_TRUE(network.take_reached().empty());
-  network.advance(7);
-  EXPECT_EQ(network.take_reached(), std::vector{1});
-  EXPECT_TRUE(network.take_reached().empty());
-}
-
-// Two senders at once: the second's bytes come when the first's are there. Long ones take longer.
-TEST(SimulatedTest, WhatComesInTurn) {
-  Network network(3, {.latency = 1, .bandwidth = 100, .comes_in_turn = true}, 1);
-  for (const int from : {0, 1}) network.rank(from).send(2, 5, Bytes(50, 'a'));
-  EXPECT_DOUBLE_EQ(network.next_arrival(), 1.5);
-  network.advance(1.5);
-  EXPECT_DOUBLE_EQ(network.next_arrival(), 2.0);
-  Network of_bytes(2, {.latency = 1, .of_bytes = [](std::size_t n) { return n > 10 ? 3.0 : 0.0; }}, 1);
-  of_bytes.rank(0).send(1, 5, Bytes(11, 'a'));
-  of_bytes.rank(0).send(1, 6, Bytes(10, 'b'));
-  EXPECT_DOUBLE_EQ(of_bytes.next_arrival(), 1);
-  of_bytes.advance(1);
-  EXPECT_DOUBLE_EQ(of_bytes.next_arrival(), 4);
-}
-
 // What comes in which order, and when.
 std::vector<std::tuple<double, int, int>> arrivals(std::uint64_t seed) {
   Network network(2, {.latency = 1e-3, .jitter = 5, .bandwidth = 1e9}, seed);

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "bench/accuracy/answers.h"
-#include "bench/accuracy/report.h"
+#include "bench/accuracy/bench.h"
 #include "bench/accuracy/settings.h"
 #include "bench/accuracy/shown.h"
 
@@ -254,16 +254,6 @@ TEST(AccuracyReport, NamesPicturesSoThatEveryFileSystemTakesThem) {
   EXPECT_EQ(picture_name("../a scene.nff", "1 sample, depth 5 (defaults)"),
             "a_scene_1_sample_depth_5_defaults.png");
   EXPECT_EQ(picture_name("balls", "POV-Ray +AM2 +A0.1"), "balls_POV-Ray_+AM2_+A0.1.png");
-}
-
-TEST(AccuracyReport, PlotsEveryPointOnce) {
-  const std::vector<AccuracyRun> runs = {small_run()};
-  const ScatterPlot plot = plot_of(runs, AccuracyOptions{});
-  std::size_t n = 0;
-  for (const auto& points : plot.panels.at(0).points) n += points.size();
-  EXPECT_EQ(n, 5u);
-  EXPECT_EQ(plot.fronts.size(), 2u);
-  EXPECT_EQ(plot.series.size(), 3u);
 }
 
 }  // namespace

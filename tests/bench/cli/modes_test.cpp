@@ -20,8 +20,7 @@ TEST(BenchModes, WritesTablesFiguresAndPlots) {
   const auto scene = folder.put("small.nff", kSphereOnSquare);
   const Outcome run =
       kdray({"bench", "modes", scene.string(), "--size", "48x32", "--depth", "3", "--repeat", "1", "--queues",
-             "1,3", "--sample", "64", "--report", (folder / "report").string()},
-            {.limit_seconds = 280});
+             "1,3", "--sample", "64", "--report", (folder / "report").string()});
   ASSERT_TRUE(succeeds(run));
   EXPECT_NE(run.err.find("simulation, not measured"), std::string::npos) << run.err;
   const Json json = Json::parse(folder.get("report/modes.json"));
@@ -37,7 +36,7 @@ TEST(BenchModes, WritesTablesFiguresAndPlots) {
   for (const Json& row : bench_run["rows"])
     expect_keys(row, {"scheme", "queues", "sub_devices", "shares_cores", "failure", "seconds", "rounds",
                       "speed_up", "idle_share", "busy_seconds", "rays_exchanged", "bytes_exchanged",
-                      "geometry_bytes", "geometry_share", "work_bytes", "differing_pixels"});
+                      "geometry_bytes", "geometry_share", "work_bytes", "timeline", "differing_pixels"});
   const Json& model = bench_run["model"];
   expect_keys(model,
               {"simulation", "rays_per_sample", "tile", "odprt_overhead", "rays", "checks", "predictions"});
@@ -54,7 +53,7 @@ TEST(BenchModes, WritesTablesFiguresAndPlots) {
   }
   EXPECT_TRUE(to_the_end);
   for (const char* const plot : {"modes.svg", "modes_time.svg", "modes_model.svg"})
-    EXPECT_NE(folder.get(std::string("report/") + plot).find("</svg>"), std::string::npos) << plot;
+    expect_plot(run, folder, std::string("report/") + plot, "</svg>");
 }
 
 TEST(BenchModes, MeasuresOnlyWhenTold) {
@@ -62,8 +61,7 @@ TEST(BenchModes, MeasuresOnlyWhenTold) {
   const Folder folder;
   const auto scene = folder.put("small.nff", kSphereOnSquare);
   ASSERT_TRUE(succeeds(kdray({"bench", "modes", scene.string(), "--size", "16x16", "--repeat", "1",
-                              "--queues", "1", "--no-model", "--report", folder.path().string()},
-                             {.limit_seconds = 280})));
+                              "--queues", "1", "--no-model", "--report", folder.path().string()})));
   EXPECT_TRUE(Json::parse(folder.get("modes.json"))["runs"][0]["model"].is_null());
 }
 

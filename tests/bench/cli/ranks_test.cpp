@@ -14,30 +14,31 @@ namespace {
 
 using Json = nlohmann::json;
 
-void expect_report(const Folder& folder, int most_ranks, const std::string& over) {
+void expect_report(const Outcome& bench, const Folder& folder, int most_ranks, const std::string& over) {
   const Json json = Json::parse(folder.get("report/ranks.json"));
-  expect_keys(json, {"command", "size", "depth", "samples", "repeat", "links", "runs"});
+  expect_keys(json, {"command", "size", "depth", "samples", "repeat", "runs"});
   ASSERT_EQ(json["runs"].size(), 1u);
   const Json& run = json["runs"][0];
-  expect_keys(run, {"scene", "primitives", "cores", "over", "measured", "largest_error", "checks",
-                    "predictions", "odprt"});
+  expect_keys(run, {"scene", "device", "primitives", "cores", "over", "network", "at_once", "modes"});
   EXPECT_EQ(run["over"], over);
-  EXPECT_GT(run["measured"]["busy_seconds"], 0);
-  EXPECT_GT(run["measured"]["take_seconds"], 0);
-  ASSERT_EQ(run["checks"].size(), 1u + 2u);
-  for (const Json& check : run["checks"]) {
-    EXPECT_LE(check["ranks"], most_ranks);
-    EXPECT_GT(check["predicted"]["median"], 0);
-    EXPECT_GT(check["measured"]["median"], 0);
+  EXPECT_GT(run["network"]["take_seconds"], 0);
+  EXPECT_EQ(run["at_once"].size(), 2u);
+  ASSERT_EQ(run["modes"].size(), 2u);
+  for (const Json& mode : run["modes"]) {
+    expect_keys(mode, {"mode", "alone_seconds", "rows"});
+    ASSERT_EQ(mode["rows"].size(), 1u + 2u) << "several ranks with a delay and without";
+    for (const Json& row : mode["rows"]) {
+      expect_keys(row, {"ranks", "delay_seconds", "seconds", "rounds", "speed_up", "share_of_cores",
+                        "busy_seconds", "messages", "bytes", "rays_sent", "differing_pictures"});
+      EXPECT_LE(row["ranks"], most_ranks);
+      EXPECT_EQ(row["rounds"].size(), 1u);
+      EXPECT_GT(row["busy_seconds"], 0);
+      EXPECT_EQ(row["messages"] > 0, row["ranks"] > 1);
+      EXPECT_EQ(row["differing_pictures"], 0);
+    }
   }
-  expect_keys(run["odprt"], {"size", "alone_seconds", "busy_seconds", "trace_share", "seconds_of_sent_ray",
-                             "end_seconds", "largest_error", "checks", "predictions"});
-  EXPECT_EQ(run["odprt"]["checks"].size(), 1u + 2u);
-  EXPECT_EQ(run["odprt"]["predictions"].size(), 2u * 9);
-  EXPECT_EQ(run["heavier"].size(), 2u * 5);
-  EXPECT_EQ(run["predictions"].size(), 2u * 14);
-  EXPECT_EQ(run["predictions"].back()["ranks"], 10000);
-  EXPECT_NE(folder.get("report/ranks.svg").find("</svg>"), std::string::npos);
+  EXPECT_GT(run["modes"][1]["rows"][2]["rays_sent"], 0) << "ODPRT by two ranks";
+  expect_plot(bench, folder, "report/ranks.svg", "ODPRT");
 }
 
 std::vector<std::string> command(const Folder& folder, const std::filesystem::path& scene) {
@@ -49,10 +50,10 @@ TEST(BenchRanks, ByThreads) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   const auto scene = folder.put("small.nff", kSphereOnSquare);
-  const Outcome run = kdray(command(folder, scene), {.limit_seconds = 280});
+  const Outcome run = kdray(command(folder, scene));
   ASSERT_TRUE(succeeds(run));
-  EXPECT_NE(run.err.find("a core to each rank, simulated"), std::string::npos) << run.err;
-  expect_report(folder, 2, "threads");
+  EXPECT_NE(run.err.find("at once, each by itself: 1 of speed"), std::string::npos) << run.err;
+  expect_report(run, folder, 2, "threads");
 }
 
 TEST(BenchRanks, ByProcessesOfMpirun) {
@@ -63,10 +64,9 @@ TEST(BenchRanks, ByProcessesOfMpirun) {
   RunOptions options;
   options.program = mpirun();
   options.environment = mpirun_environment();
-  options.limit_seconds = 280;
   const Outcome run = kdray(mpirun_arguments(2, KDRAY_PROGRAM, command(folder, scene)), options);
   ASSERT_TRUE(succeeds(run));
-  expect_report(folder, 2, "MPI");
+  expect_report(run, folder, 2, "MPI");
 }
 
 }  // namespace

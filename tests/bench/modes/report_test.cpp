@@ -2,7 +2,7 @@
 //         that rows that failed are told and left out.
 #include <gtest/gtest.h>
 
-#include "bench/modes/report.h"
+#include "bench/modes/bench.h"
 
 namespace kdray::bench {
 namespace {
@@ -73,18 +73,6 @@ TEST(ModesReport, ChecksTheModelWhereQueuesHaveCores) {
   ASSERT_EQ(checks.size(), 1u);
   EXPECT_EQ(checks[0].queues, 2);
   EXPECT_DOUBLE_EQ(checks[0].error(), 0.25);
-}
-
-TEST(ModesReport, TimeGoesIntoBarsThatAddUp) {
-  ModesRun made = run(2);
-  made.rows[1].busy_seconds = 6;   // of 8
-  made.rows[2].busy_seconds = 10;  // of 16
-  const Plot plot = time_plot_of(std::vector<ModesRun>{made}, {});
-  ASSERT_EQ(plot.panels.size(), 1u);
-  const auto& bars = plot.panels[0].bars[0];
-  EXPECT_DOUBLE_EQ(bars[0]->median, 6.0 / 8);
-  EXPECT_DOUBLE_EQ(bars[1]->median, 4.0 / 8);
-  EXPECT_DOUBLE_EQ(bars[2]->median, 6.0 / 8);
 }
 
 }  // namespace

@@ -56,17 +56,6 @@ TEST(TrafficOfRays, OneThatMeetsNothingEndsWhereItBegins) {
   expect_hops(way({{kDirectory, 2}}, false), {{0, 2}});
 }
 
-TEST(TrafficOfRays, EyeRaysThatEnterNothingBeginWhereTheyAreMade) {
-  Paths paths;
-  paths.visits = {{kDirectory, 1}, {7, 1}};
-  paths.first = {0, 1, 2};
-  const std::vector<LifeRay> lives(2);
-  const std::vector<std::uint32_t> makers = {5, 4};
-  const Traffic traffic = make_traffic(lives, paths, 9, kRates, 1, makers);
-  EXPECT_EQ(traffic.journeys[0].hops.front().queue, 5u);
-  EXPECT_EQ(traffic.journeys[1].hops.front().queue, 7u);
-}
-
 TEST(TrafficOfRays, WhatAllHoldIsShadedWhereTheRayIs) {
   expect_hops(way({{kDirectory, 2}}, true), {{0, 102}});
   expect_hops(way({{3, 1}, {kDirectory, 2}}, true), {{0, 0}, {3, 103}});
