@@ -303,8 +303,9 @@ def _floats(values: ArrayLike, name: str, wide: int) -> tuple[Array, tuple[int, 
         raise InputError(f"{name}: numbers are wanted, not {array.dtype}")
     if array.ndim < 2 or array.shape[-1] != wide:
         raise InputError(f"{name}: the shape is to be (..., {wide}) of two dimensions or more, not {array.shape}")
-    keep = real and array.dtype in (np.float32, np.float64)
-    return array.reshape(-1, wide) if keep else array.astype(np.float32).reshape(-1, wide), array.shape[:-1]
+    if not (real and array.dtype.kind == "f"):
+        array = array.astype(np.float32)
+    return array.reshape(-1, wide), array.shape[:-1]
 
 
 def _ray_arrays(
