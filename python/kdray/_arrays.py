@@ -173,11 +173,13 @@ class RayArrays:
             self.t_max, shapes["t_max"] = scalars(t_max, "t_max")
         if mask is not None:
             self.masks, shapes["mask"] = masks(mask)
-        self.shape = _common(shapes)
+        wide = {shape for shape in shapes.values() if shape}
+        self.shape = _common(shapes) if len(wide) > 1 else wide.pop() if wide else ()
         self.n = math.prod(self.shape)
-        for name, shape in shapes.items():
-            attribute = "masks" if name == "mask" else name
-            setattr(self, attribute, _spread(getattr(self, attribute), shape, self.shape))
+        if wide:
+            for name, shape in shapes.items():
+                attribute = "masks" if name == "mask" else name
+                setattr(self, attribute, _spread(getattr(self, attribute), shape, self.shape))
         if self.n == 0:  # an empty array can't stand for "the same for all"
             self.origins = self.directions = np.empty((0, 3), self.dtype)
             self.t_min = self.t_max = self.masks = None
