@@ -32,6 +32,7 @@ DeviceInfo opened(const DeviceInfo& listed, const DeviceOptions& options) {
 }  // namespace
 
 std::vector<DeviceInfo> devices(const DeviceOptions& options) {
+  device::refuse_after_fork();
   for (const std::string& why : api::leave_out_drivers(options))
     if (options.left_out) options.left_out(why);
   std::vector<DeviceInfo> infos;

@@ -20,10 +20,11 @@ namespace {
 // There is one cache for all who name this folder, so that what any of them has built is kept.
 std::shared_ptr<device::ProgramCache> cache_in(const std::filesystem::path& folder) {
   static std::mutex mutex;
-  static std::map<std::filesystem::path, std::shared_ptr<device::ProgramCache>> caches;
+  // Never destroyed, on purpose: they hold OpenCL's programs (device/context.h).
+  static auto* const caches = new std::map<std::filesystem::path, std::shared_ptr<device::ProgramCache>>;
   if (folder.empty()) return nullptr;
   const std::lock_guard lock(mutex);
-  std::shared_ptr<device::ProgramCache>& cache = caches[folder];
+  std::shared_ptr<device::ProgramCache>& cache = (*caches)[folder];
   if (!cache) cache = std::make_shared<device::ProgramCache>(folder);
   return cache;
 }
@@ -69,6 +70,7 @@ void tell_of_drivers(const DeviceOptions& o) {
 
 OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults_asked) {
   check(o);
+  device::refuse_after_fork();
   const device::Faults faults(faults_asked);
   OpenedDevices opened;
   device::OpenOptions options;
@@ -107,7 +109,15 @@ fs::path default_program_folder() {
   return std::getenv("KDRAY_CACHE_DIR") ? scenes / "programs" : scenes.parent_path() / "programs";
 }
 
+void require_device(const DeviceOptions& options) {
+  api::check(options);
+  device::refuse_after_fork();
+  api::tell_of_drivers(options);
+  device::require_devices(options.device);
+}
+
 void keep_programs(const DeviceOptions& options) {
+  if (device::is_forked_off()) return;  // nothing was built here
   if (const auto cache = api::cache_in(options.programs)) cache->keep();
 }
 

@@ -146,13 +146,17 @@ Renderer::Renderer(const PreparedScene& scene, const DeviceOptions& device)
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
-Renderer::~Renderer() = default;
+Renderer::~Renderer() {
+  if (device::is_forked_off()) static_cast<void>(impl_.release());  // it holds OpenCL's objects
+}
 
 Picture Renderer::render(const RenderOptions& options) {
+  device::refuse_after_fork();
   return impl_->render(options);
 }
 std::vector<Hit> Renderer::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal traversal,
                                  Precision precision, std::vector<std::uint32_t>* instances) {
+  device::refuse_after_fork();
   return impl_->trace(rays, any_hit, repeat, traversal, precision, instances);
 }
 void Renderer::look(const PreparedScene& seen) {

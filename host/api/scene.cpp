@@ -72,7 +72,8 @@ struct Scene::Impl {
   PreparedScene build(const CommitOptions& options);
   void settle(const CommitReport& report);
   query::GeometryTable table() const;
-  std::shared_ptr<api::Committed> asked();
+  std::shared_ptr<api::Committed> last();   // that was committed
+  std::shared_ptr<api::Committed> asked();  // of the device, too
 };
 
 namespace {
@@ -233,11 +234,15 @@ query::GeometryTable Scene::Impl::table() const {
   return table;
 }
 
-std::shared_ptr<api::Committed> Scene::Impl::asked() {
+std::shared_ptr<api::Committed> Scene::Impl::last() {
   const std::lock_guard lock(mutex);
   if (!committed)
     throw Error(ErrorCode::usage, "the scene has to be committed before anything is asked of it");
   return committed;
+}
+std::shared_ptr<api::Committed> Scene::Impl::asked() {
+  device::refuse_after_fork();
+  return last();
 }
 
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
@@ -390,7 +395,7 @@ std::uint32_t Scene::primitives() const {
   return impl_->table().size();
 }
 std::optional<Extent> Scene::extent() const {
-  const auto committed = impl_->asked();
+  const auto committed = impl_->last();
   const auto& geometry = committed->scene().prepared().geometry;
   if (geometry.bounds.empty()) return std::nullopt;
   const dvec3 lo = geometry.space.world(dvec3(geometry.bounds.lo)),
@@ -466,14 +471,18 @@ CommitReport Scene::commit(const CommitOptions& options) {
   CommitReport report;
   std::optional<PreparedScene> ready = impl_->refit(options, report);
   if (!ready) ready = impl_->build(options);
-  const auto committed = std::make_shared<api::Committed>(*ready, impl_->table(), options.device);
+  const std::shared_ptr<api::Committed> committed(new api::Committed(*ready, impl_->table(), options.device),
+                                                  [](api::Committed* made) {
+                                                    if (!device::is_forked_off())
+                                                      delete made;  // it holds OpenCL's objects
+                                                  });
   impl_->settle(report);
   const std::lock_guard lock(impl_->mutex);
   impl_->committed = committed;
   return report;
 }
 PreparedScene Scene::prepared() const {
-  return impl_->asked()->scene();
+  return impl_->last()->scene();
 }
 
 Picture Scene::render(const RenderOptions& options) const {

@@ -1,7 +1,9 @@
 #include "base/temporary.h"
 
+#include <unistd.h>
+
+#include <map>
 #include <mutex>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -13,7 +15,7 @@ namespace {
 
 struct Known {
   std::mutex mutex;
-  std::set<fs::path> paths;
+  std::map<fs::path, pid_t> paths;  // by whose process
 };
 
 // Never destroyed: static objects may own temporaries.
@@ -29,13 +31,13 @@ void remove_whole(const fs::path& path) {
 
 }  // namespace
 
-Temporary::Temporary(fs::path path) : path_(std::move(path)) {
+Temporary::Temporary(fs::path path) : path_(std::move(path)), process_(::getpid()) {
   const std::lock_guard lock(known().mutex);
-  known().paths.insert(path_);
+  known().paths.emplace(path_, process_);
 }
 
 Temporary::~Temporary() {
-  if (path_.empty()) return;
+  if (path_.empty() || process_ != ::getpid()) return;
   const std::lock_guard lock(known().mutex);
   remove_whole(path_);
   known().paths.erase(path_);
@@ -50,7 +52,8 @@ void Temporary::forget() {
 // The lock is never given back: nothing new may be made between this and the end.
 void remove_temporaries() {
   known().mutex.lock();
-  for (const fs::path& path : known().paths) remove_whole(path);
+  for (const auto& [path, process] : known().paths)
+    if (process == ::getpid()) remove_whole(path);
 }
 
 }  // namespace kdray

@@ -4,6 +4,8 @@
 //         process.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 
 namespace kdray {
@@ -13,7 +15,7 @@ class Temporary {
   // Of a name that nothing has yet: to be made after this, so that there is no moment at which it is not
   // known.
   explicit Temporary(std::filesystem::path path);
-  // Removes it, a folder with all that is in it.
+  // Removes it, a folder with all that is in it; but not in a process that was forked off since.
   ~Temporary();
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
@@ -24,9 +26,10 @@ class Temporary {
 
  private:
   std::filesystem::path path_;
+  pid_t process_;
 };
 
-// Removes all that there are. For the end of the process only: see Threads.
+// Removes all that this process has made. For the end of the process only: see Threads.
 void remove_temporaries();
 
 }  // namespace kdray

@@ -78,7 +78,10 @@ Rows<N, Types...> rows_of(Rows<N, Types...>*, const Given& given, const char* na
   if (given.data == nullptr) refuse(std::string(name) + ": the data is NULL");
   const bool known = ([&] {
     if (given.type != kTypeOf<std::remove_const_t<Types>>) return false;
-    rows = Rows<N, Types...>(static_cast<Types*>(given.data), given.count, given.stride);
+    const std::size_t stride = given.stride == 0                ? N * sizeof(Types)
+                               : given.stride == KDRAY_SAME_ROW ? 0
+                                                                : given.stride;
+    rows = Rows<N, Types...>(static_cast<Types*>(given.data), given.count, stride);
     return true;
   }() || ...);
   if (!known) refuse(std::string(name) + ": kdray takes no array of type " + std::to_string(given.type));

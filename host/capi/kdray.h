@@ -3,7 +3,8 @@
  * Shape   C99. Handles are opaque. A struct begins with its size, so that it can grow: set all of it to 0,
  *         then `size` to sizeof it; what is left 0 or NULL has the default that is named beside it. Arrays
  *         are views of the program's memory: a first element, a count of rows, the bytes from one row to
- *         the next (0: none between them) and a type. count = 0 leaves an array out.
+ *         the next (0: the rows lie one after the other; KDRAY_SAME_ROW: all are the first one) and a type.
+ *         count = 0 leaves an array out.
  * Errors  Every function that can fail returns a status, and kdray_last_error() has the message of the
  *         thread's last failure. A call that fails has changed nothing of the scene; answers may be half
  *         written.
@@ -45,12 +46,15 @@ typedef enum kdray_type {
   KDRAY_UINT8 = 7
 } kdray_type;
 
+/* As the stride of what is read: one row, as often as `count` says. */
+#define KDRAY_SAME_ROW ((size_t)-1)
+
 /* What is read, and what is written. */
 typedef struct kdray_in {
   const void* data;
   size_t count;
-  size_t stride;
-  int32_t type; /* kdray_type */
+  size_t stride; /* in bytes; 0: the rows lie one after the other */
+  int32_t type;  /* kdray_type */
 } kdray_in;
 typedef struct kdray_out {
   void* data;

@@ -54,9 +54,14 @@ Rays AskedRows::rays(std::size_t n) const {
   if (n == 0) return {};
   if (const auto* const floats = std::get_if<std::vector<Ray>>(&rows_))
     return Rays::of(std::span(*floats).first(n));
-  const double* const first = std::get<Rows<double, 8>>(rows_).front().data();
+  const auto& rows = std::get<Rows<double, 8>>(rows_);
+  const std::span<const double> values(rows.front().data(), 8 * rows.size());
   constexpr std::size_t kStride = 8 * sizeof(double);
-  return {{first, n, kStride}, {first + 4, n, kStride}, {first + 3, n, kStride}, {first + 7, n, kStride}, {}};
+  return {{values, n, kStride},
+          {values.subspan(4), n, kStride},
+          {values.subspan(3), n, kStride},
+          {values.subspan(7), n, kStride},
+          {}};
 }
 
 Points AskedRows::points(std::size_t n) const {

@@ -279,6 +279,10 @@ std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& 
   return contexts;
 }
 
+void require_devices(const std::string& specs) {
+  for (const std::string& spec : split(specs)) choose_device(spec);
+}
+
 std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units) {
   OpenOptions options;
   options.n_queues = n_queues;

@@ -103,4 +103,7 @@ struct OpenOptions {
 std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& options);
 std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units = 0);
 
+// Throws ErrorCode::no_device where one of `specs` names no usable device; opens none.
+void require_devices(const std::string& specs);
+
 }  // namespace kdray::device

@@ -1,8 +1,10 @@
 #include "device/platform.h"
 
 #include <fmt/format.h>
+#include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 
 #include "device/opencl_error.h"
@@ -11,6 +13,14 @@
 namespace kdray::device {
 
 namespace {
+
+std::atomic<bool> forked_off{false};
+
+// To be called before OpenCL's first call.
+void watch_for_forks() {
+  static const int watching = ::pthread_atfork(nullptr, nullptr, [] { forked_off = true; });
+  static_cast<void>(watching);
+}
 
 std::string trimmed(std::string text) {
   while (!text.empty() && (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back()))))
@@ -105,7 +115,22 @@ std::vector<FoundDevice> devices_by_preference(const std::string& spec) {
   return devices;
 }
 
+bool is_forked_off() {
+  return forked_off;
+}
+
+void refuse_after_fork() {
+  if (is_forked_off())
+    throw Error(
+        ErrorCode::no_device,
+        "this process was forked off after its parent had begun to use OpenCL, which does not outlive a "
+        "fork: start it by spawn instead (Python: multiprocessing.get_context(\"spawn\")), or fork "
+        "before the first commit, question or list of devices");
+}
+
 std::vector<FoundDevice> find_devices() {
+  refuse_after_fork();
+  watch_for_forks();
   pocl_cache();  // before OpenCL's first call
   std::vector<FoundDevice> found;
   std::vector<cl::Platform> platforms;

@@ -1,4 +1,7 @@
 // What    The OpenCL devices of this machine, and the choice of one by what the user said.
+// Forks   PoCL starts its threads when it is first asked for its devices. A process that is forked off later
+//         has none of them, and neither the old contexts nor new ones ever finish a command there. So a child
+//         of that kind is noticed, refused what takes OpenCL, and leaves alone what its parent had opened.
 #pragma once
 
 #include <string>
@@ -14,6 +17,12 @@ struct FoundDevice {
   cl::Platform platform;
   cl::Device device;
 };
+
+// Whether this process was forked off after its parent had asked OpenCL for devices.
+bool is_forked_off();
+// Throws ErrorCode::no_device, and what to do, where it was. Takes no lock: a thread that the fork left behind
+// may have held any.
+void refuse_after_fork();
 
 // Every device of every platform, in the platforms' order; empty where there is none.
 std::vector<FoundDevice> find_devices();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+
 #include "base/error.h"
 #include "scene/picture.h"
 #include "scene/picture_coat.h"
@@ -41,6 +43,8 @@ std::shared_ptr<const Picture> picture_of(const Pixels& pixels) {
                        kMostTexels, kLongestSide));
   if (data == nullptr) refuse("picture: no data");
   const std::size_t row = row_bytes == 0 ? std::size_t{width} * channels : row_bytes;
+  if (height > 1 && row > static_cast<std::size_t>(PTRDIFF_MAX) / height)
+    refuse(fmt::format("picture: {} rows, {} bytes apart, reach beyond any memory", height, row));
   Picture picture = blank_picture("a picture", width, height);
   for (std::uint32_t y = 0; y < height; ++y)
     for (std::uint32_t x = 0; x < width; ++x)

@@ -1,7 +1,8 @@
 """Rows of whatever was given: the arrays that kdray._core reads in place.
 
 A row's values lie side by side, in native byte order, as float32 or float64 (or integers, for
-indices). What is like that already is not copied, whatever lies between two rows.
+indices). What is like that already is not copied, whatever lies between two rows: nothing, other
+values, or less than a row, as in what `np.broadcast_to` gives, where all rows are one.
 """
 
 from __future__ import annotations
@@ -21,9 +22,8 @@ Shape = tuple[int, ...]
 
 
 def as_array(values: ArrayLike, name: str) -> Array:
-    """`values` as an array of NumPy's, without a copy where it has memory of its own."""
-    if isinstance(values, np.ndarray):
-        return values
+    """`values` as a plain array of NumPy's, without a copy where it has memory of its own."""
+    _refuse_masked(values, name)
     if hasattr(values, "__dlpack__") and not hasattr(values, "__array__"):
         try:
             return np.from_dlpack(values)
@@ -33,6 +33,13 @@ def as_array(values: ArrayLike, name: str) -> Array:
         return np.asarray(values)
     except (TypeError, ValueError) as why:
         raise errors.InputError(f"{name}: not an array: {why}") from why
+
+
+def _refuse_masked(values: ArrayLike, name: str) -> None:
+    """What is masked has a value all the same, which isn't meant."""
+    parts = values if isinstance(values, (list, tuple)) else (values,)
+    if any(isinstance(part, np.ma.MaskedArray) and np.ma.is_masked(part) for part in parts):
+        raise errors.InputError(f"{name}: elements of it are masked; leave them out (compressed) or fill them (filled)")
 
 
 def _floats(array: Array, name: str) -> Floats:
@@ -49,8 +56,9 @@ def _floats(array: Array, name: str) -> Floats:
 
 def _side_by_side(rows: Array) -> Array:
     last = rows.ndim - 1
-    good = rows.strides[0] >= 0 and (last == 0 or rows.shape[last] == 1 or rows.strides[last] == rows.itemsize)
-    return rows if good else np.ascontiguousarray(rows)
+    good = rows.flags.aligned and rows.strides[0] >= 0 and rows.strides[0] % rows.itemsize == 0
+    good = good and (last == 0 or rows.strides[last] == rows.itemsize)
+    return rows if good else rows.copy()
 
 
 def vectors(values: ArrayLike, name: str) -> tuple[Floats, Shape]:
@@ -91,9 +99,7 @@ def transforms(values: ArrayLike, name: str = "transforms") -> Floats:
         if wrong.size:
             raise errors.InputError(f"{name}[{wrong[0]}]: the last row is not 0 0 0 1")
         array = array[:, :3]
-    rows = np.lib.stride_tricks.as_strided(array, (len(array), 12), (array.strides[0], array.itemsize))
-    as_it_lies = array.strides[1:] == (4 * array.itemsize, array.itemsize) and array.strides[0] >= 0
-    return rows if as_it_lies else np.ascontiguousarray(array).reshape(-1, 12)
+    return _side_by_side(array.reshape(-1, 12))
 
 
 def triangles(values: ArrayLike, name: str = "triangles") -> Array:
@@ -156,22 +162,24 @@ class RayArrays:
     ) -> None:
         self.origins, o_shape = vectors(origins, "origins")
         self.directions, d_shape = vectors(directions, "directions")
-        shapes = [("origins", o_shape), ("directions", d_shape)]
+        shapes = {"origins": o_shape, "directions": d_shape}
         self.dtype = max(self.origins.dtype, self.directions.dtype)  # float32 or float64
         self.t_min: Floats | None = None
         self.t_max: Floats | None = None
         self.masks: Array | None = None
         if not (isinstance(t_min, (int, float)) and t_min == 0):
-            self.t_min, shape = scalars(t_min, "t_min")
-            shapes.append(("t_min", shape))
+            self.t_min, shapes["t_min"] = scalars(t_min, "t_min")
         if not (isinstance(t_max, float) and t_max == np.inf):
-            self.t_max, shape = scalars(t_max, "t_max")
-            shapes.append(("t_max", shape))
+            self.t_max, shapes["t_max"] = scalars(t_max, "t_max")
         if mask is not None:
-            self.masks, shape = masks(mask)
-            shapes.append(("mask", shape))
-        self.shape = _common(shapes)
+            self.masks, shapes["mask"] = masks(mask)
+        wide = {shape for shape in shapes.values() if shape}
+        self.shape = _common(shapes) if len(wide) > 1 else wide.pop() if wide else ()
         self.n = math.prod(self.shape)
+        if wide:
+            for name, shape in shapes.items():
+                attribute = "masks" if name == "mask" else name
+                setattr(self, attribute, _spread(getattr(self, attribute), shape, self.shape))
         if self.n == 0:  # an empty array can't stand for "the same for all"
             self.origins = self.directions = np.empty((0, 3), self.dtype)
             self.t_min = self.t_max = self.masks = None
@@ -197,10 +205,22 @@ class RayArrays:
         return part
 
 
-def _common(shapes: list[tuple[str, Shape]]) -> Shape:
-    """The shape that all have, but for those of one element, which stand for all rays."""
-    several = [(name, shape) for name, shape in shapes if any(extent != 1 for extent in shape)]
-    for name, shape in several[1:]:
-        if shape != several[0][1]:
-            raise errors.InputError(f"{name} has shape {shape} where {several[0][0]} has {several[0][1]}")
-    return several[0][1] if several else max((shape for _, shape in shapes), key=len)
+def _common(shapes: dict[str, Shape]) -> Shape:
+    """The shape of all together, as NumPy broadcasts."""
+    before: dict[str, Shape] = {}
+    for name, shape in shapes.items():
+        try:
+            np.broadcast_shapes(*before.values(), shape)
+        except ValueError:
+            widest = max(before, key=lambda other: math.prod(before[other]))
+            raise errors.InputError(f"{name} has shape {shape} where {widest} has {before[widest]}") from None
+        before[name] = shape
+    return np.broadcast_shapes(*before.values())
+
+
+def _spread(rows: Array, shape: Shape, common: Shape) -> Array:
+    """A row for each ray, of rows of another shape; one that is the same for all stays alone."""
+    if len(rows) == 1 or shape == common:
+        return rows
+    wide = rows.shape[1:]
+    return _side_by_side(np.broadcast_to(rows.reshape(*shape, *wide), (*common, *wide)).reshape(-1, *wide))

@@ -21,6 +21,18 @@ _CAST = ("t_hit", "geometry_ids", "primitive_ids", "primitive_uvs", "primitive_n
 _NEAREST = ("points", "geometry_ids", "primitive_ids", "primitive_uvs", "primitive_normals")
 
 
+class Answer(np.ndarray[Any, np.dtype[Any]]):
+    """An array with the two methods by which the answers of Open3D, which are tensors, become arrays."""
+
+    def cpu(self) -> Answer:
+        """Itself."""
+        return self
+
+    def numpy(self) -> Array:
+        """The plain array, of the same memory."""
+        return self.view(np.ndarray)
+
+
 class RaycastingScene:
     """What ``open3d.t.geometry.RaycastingScene`` (0.20) can be asked, by the same names, answered by kdray.
 
@@ -29,12 +41,13 @@ class RaycastingScene:
     >>> scene.add_triangles([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
     0
     >>> scene.cast_rays([[1, 1, 5, 0, 0, -2]])["t_hit"]
-    array([2.5], dtype=float32)
+    Answer([2.5], dtype=float32)
 
     Rays are one array (..., 6) of float32, origin and direction side by side, with one dimension or more before the
     6; points are (..., 3). They are read where they lie. NumPy's arrays, lists and whatever has `__array__` or
-    `__dlpack__` are answered with NumPy's arrays, Open3D's tensors with tensors on their device; Open3D needn't be
-    installed. `nthreads` has no effect: `device` traces, with all its cores.
+    `__dlpack__` are answered with NumPy's arrays, which have the methods `numpy` and `cpu` of Open3D's tensors;
+    tensors are answered with tensors on their device. Open3D needn't be installed. `nthreads` has no effect: `device`
+    traces, with all its cores.
 
     Where it differs from Open3D, on purpose:
 
@@ -53,7 +66,7 @@ class RaycastingScene:
 
     def __init__(self, nthreads: int = 0, device: Any = "auto") -> None:
         """`device`: as for `kdray.Scene`; one of Open3D's is "auto" if it is a CPU and else "gpu"."""
-        if not isinstance(device, str):
+        if not isinstance(device, (str, int)):
             device = "auto" if str(device).upper().startswith("CPU") else "gpu"
         self._scene = Scene(device=device)
         self._normals: dict[int, tuple[Array, Array]] = {}  # by geometry: vertices, and its triangles' normals
@@ -290,7 +303,7 @@ def _own(values: ArrayLike, name: str) -> Array:
 def _like(given: Any, values: Array) -> Any:
     """An answer of the kind of what was given."""
     if not _is_tensor(given):
-        return values
+        return values.view(Answer)
     tensor: Any = sys.modules["open3d"].core.Tensor
     return tensor.from_numpy(np.require(values, requirements=("C", "W"))).to(given.device)
 
@@ -303,8 +316,9 @@ def _floats(values: ArrayLike, name: str, wide: int) -> tuple[Array, tuple[int, 
         raise InputError(f"{name}: numbers are wanted, not {array.dtype}")
     if array.ndim < 2 or array.shape[-1] != wide:
         raise InputError(f"{name}: the shape is to be (..., {wide}) of two dimensions or more, not {array.shape}")
-    keep = real and array.dtype in (np.float32, np.float64)
-    return array.reshape(-1, wide) if keep else array.astype(np.float32).reshape(-1, wide), array.shape[:-1]
+    if not (real and array.dtype.kind == "f"):
+        array = array.astype(np.float32)
+    return array.reshape(-1, wide), array.shape[:-1]
 
 
 def _ray_arrays(

@@ -65,19 +65,25 @@ class Scene:
     and Ctrl-C ends them.
 
     Shapes: rays are two arrays of shape (..., 3) of float32 or float64, in any layout; results have the shape (...).
-    What has a single row (one origin, one t_min) is the same for all rays. Hits lie where ``t_min < t < t_max``, and t
+    Origins, directions, t_min, t_max and masks are broadcast against each other as NumPy does: (5, 1, 3) and (1, 4, 3)
+    are rays of shape (5, 4), and what has a single row is the same for all. Masked arrays are an InputError where an
+    element is masked. Hits lie where ``t_min < t < t_max``, and t
     counts in multiples of the direction. (Of hits in the start point itself, t = 0, `count_hits` and `all_hits` know
     where t_min is 0.)
 
     A scene can be copied and pickled; it then holds its arrays, or the name of the file that it was read from.
+
+    OpenCL does not outlive a fork: once a process has committed, asked or listed devices, what it forks off is
+    answered with a NoDeviceError. Start such processes by ``multiprocessing.get_context("spawn")``.
     """
 
-    def __init__(self, *, device: str = "auto", compute_units: int = 0) -> None:
+    def __init__(self, *, device: str | int = "auto", compute_units: int = 0) -> None:
         """`device`: "auto", "cpu", "gpu", a number of `kdray.devices()` or a part of a name.
 
-        `compute_units`: only so many of the device's cores; 0 is all.
+        `compute_units`: only so many of the device's cores; 0 is all. Raises NoDeviceError where there is no such
+        device. (Where there is none at all, the first commit does.)
         """
-        self._start(_core.Scene(), device, compute_units)
+        self._start(_core.Scene(), _device(device), compute_units)
 
     def _start(self, core: Any, device: str, compute_units: int) -> None:
         self._core = core
@@ -430,6 +436,7 @@ class Scene:
 
     def _ready(self) -> Any:
         if self._changed or not self._committed:
+            _core.refuse_after_fork()  # before the lock, which may be held by a thread that a fork left behind
             with self._lock:
                 if self._changed or not self._committed:
                     self._commit()
@@ -719,7 +726,7 @@ def load(
     smooth: float | None = None,
     time: float | None = None,
     animation: str | int = "",
-    device: str = "auto",
+    device: str | int = "auto",
 ) -> Scene:
     """A scene from a file: .obj, .ply, .stl, .gltf, .glb, .nff, kdray's .json, also .gz and .xz of these.
 
@@ -728,9 +735,10 @@ def load(
     `animation` with this name or number, or "all"; without it nodes are at rest. Raises InputError with file,
     line, what is wrong and what to do.
     """
+    chosen = _device(device)
     scene = Scene.__new__(Scene)
     file = (os.path.abspath(os.fspath(path)), smooth, time, str(animation))
-    scene._start(_core.Scene.load(*file), device, 0)
+    scene._start(_core.Scene.load(*file), chosen, 0)
     scene._file = file
     return scene
 
@@ -747,6 +755,15 @@ def set_texture_cache(size: int) -> None:
 
 
 # ---- Small things
+
+
+def _device(wanted: str | int) -> str:
+    """As kdray._core takes it; one that isn't what most machines have is looked for now."""
+    name = str(wanted)
+    if name.lower() not in ("auto", "", "cpu"):  # those take what is there, and OpenCL is not begun with for them
+        _drivers.choose()
+        _core.require_device(name)
+    return name
 
 
 def _points(values: ArrayLike, name: str) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import os
 import threading
 import weakref
 from typing import Any
@@ -27,12 +28,13 @@ class View:
         self._scene, self._core, self.size = scene, core, size
         self.address: str = core.address()
         self._over = threading.Event()
+        self._process = os.getpid()
         self._finalizer = weakref.finalize(self, _closed, core, self._over)  # at the interpreter's end, too
 
     @property
     def closed(self) -> bool:
-        """Whether the page is served no longer."""
-        return self._over.is_set()
+        """Whether the page is served no longer, or by the process that this one was forked off."""
+        return self._over.is_set() or self._process != os.getpid()
 
     def update(self) -> View:
         """Shows the scene as it is now; the camera stays where it is."""
@@ -48,7 +50,7 @@ class View:
     def wait(self) -> None:
         """For scripts, which would end otherwise: returns when the page is closed; Ctrl-C closes it."""
         try:
-            while not self._over.wait(0.2):
+            while not self.closed and not self._over.wait(0.2):
                 pass
         finally:
             self.close()

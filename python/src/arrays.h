@@ -1,6 +1,7 @@
 // What    NumPy's arrays as kdray's views, and kdray's results as NumPy's arrays; neither is copied.
 // Shape   python/kdray/_arrays.py has made rows of whatever the user gave: n x N or n, float32 or float64 (or
-//         integers), native byte order, values of a row side by side. None is an empty view.
+//         integers), native byte order, values of a row side by side, a stride that is no less than 0 and a
+//         multiple of a value; 0: all rows are the first one. None is an empty view.
 // Errors  kdray::Error, ErrorCode::internal, for an array that is none of these.
 #pragma once
 

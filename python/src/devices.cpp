@@ -2,6 +2,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "device/platform.h"
+#include "interrupt.h"
 #include "parts.h"
 
 namespace kdray::python {
@@ -34,7 +36,7 @@ void add_devices(nb::module_& module) {
     std::vector<DeviceInfo> found;
     std::vector<std::string> left_out;
     {
-      const nb::gil_scoped_release released;
+      const WithoutGil released;
       DeviceOptions options;
       options.programs = default_program_folder();
       options.left_out = [&](const std::string& why) { left_out.push_back(why); };
@@ -51,7 +53,17 @@ void add_devices(nb::module_& module) {
         options.programs = default_program_folder();
         keep_programs(options);
       },
-      nb::call_guard<nb::gil_scoped_release>());
+      Released());
+  module.def(
+      "require_device",
+      [](const std::string& device) {
+        DeviceOptions options;
+        options.device = device;
+        options.programs = default_program_folder();
+        require_device(options);
+      },
+      Released());
+  module.def("refuse_after_fork", &device::refuse_after_fork);
   module.def("set_texture_cache", &set_texture_cache);
   module.def("program_folder", [] { return default_program_folder().string(); });
 }

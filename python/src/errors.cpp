@@ -1,5 +1,6 @@
 #include "errors.h"
 
+#include "interrupt.h"
 #include "kdray/error.h"
 
 namespace kdray::python {
@@ -35,6 +36,7 @@ void add_errors(nb::module_&) {
       std::rethrow_exception(thrown);
     } catch (const Error& error) {
       if (PyErr_Occurred()) return;  // Ctrl-C: KeyboardInterrupt is on its way already
+      if (is_left_by_interpreter()) return PyErr_SetNone(PyExc_SystemExit);
       const nb::object type = nb::module_::import_("kdray.errors").attr(class_of(error.code()));
       PyErr_SetString(type.ptr(), error.what());
     }

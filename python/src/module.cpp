@@ -3,11 +3,13 @@
 #include <nanobind/nanobind.h>
 
 #include "errors.h"
+#include "interrupt.h"
 #include "parts.h"
 
 NB_MODULE(_core, module) {
   using namespace kdray::python;
   add_errors(module);
+  add_interrupts(module);
   const SceneClass scene = add_scene(module);
   add_queries(scene);
   add_pictures(module, scene);

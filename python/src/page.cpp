@@ -3,11 +3,14 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <unistd.h>
+
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
 
+#include "interrupt.h"
 #include "parts.h"
 #include "view/server.h"
 #include "view/show.h"
@@ -18,7 +21,6 @@ namespace {
 
 namespace nb = nanobind;
 using namespace nb::literals;
-using Released = nb::call_guard<nb::gil_scoped_release>;
 // These are: from, at, up, fov, ortho_width, hither, aperture, focus.
 using CameraNumbers = std::array<double, 14>;
 
@@ -53,17 +55,18 @@ class Page {
  public:
   Page(const Scene& scene, const std::string& name, const std::optional<CameraNumbers>& camera,
        const std::string& device, int compute_units, int port, bool framed)
-      : scene_(opened(scene)) {
-    server_.emplace(view::ServerOptions{.port = port, .framed = framed});
-    address_ = server_->address();
+      : scene_(opened(scene)),
+        served_(std::make_unique<Served>(view::ServerOptions{.port = port, .framed = framed})),
+        address_(served_->server.address()) {
     view::Settings settings;
     settings.view = view_of(camera);
     settings.device.device = device;
     settings.device.compute_units = compute_units;
     settings.device.programs = default_program_folder();
     settings.device.remember_programs = true;
-    show_.emplace(std::vector<view::Source>{{name, "", [this] { return scene_now(); }}}, settings, scene_);
-    thread_ = std::thread([this] { server_->run(*show_); });
+    served_->show.emplace(std::vector<view::Source>{{name, "", [this] { return scene_now(); }}}, settings,
+                          scene_);
+    served_->thread = std::thread([s = served_.get()] { s->server.run(*s->show); });
   }
   ~Page() { close(); }
   Page(const Page&) = delete;
@@ -78,30 +81,36 @@ class Page {
       scene_ = std::move(now);
     }
     const std::lock_guard lock(closing_);
-    if (show_) show_->open_again(0);
+    if (served_) served_->show->open_again(0);
   }
 
   void close() {
+    if (::getpid() != process_) return static_cast<void>(served_.release());  // the threads are the parent's
     const std::lock_guard lock(closing_);
-    if (!server_) return;
-    server_->stop();
-    thread_.join();
-    show_.reset();  // before the server: it holds visitors
-    server_.reset();
+    if (!served_) return;
+    served_->server.stop();
+    served_->thread.join();
+    served_.reset();
   }
 
  private:
+  struct Served {
+    explicit Served(const view::ServerOptions& options) : server(options) {}
+    view::Server server;
+    std::optional<view::Show> show;  // ends before the server: it holds visitors
+    std::thread thread;
+  };
+
   view::Opened scene_now() {
     const std::lock_guard lock(mutex_);
     return scene_;
   }
 
   std::mutex mutex_, closing_;
-  view::Opened scene_;  // by `mutex_`
+  view::Opened scene_;              // by `mutex_`
+  std::unique_ptr<Served> served_;  // null: closed
   std::string address_;
-  std::optional<view::Server> server_;  // none: closed
-  std::optional<view::Show> show_;
-  std::thread thread_;
+  pid_t process_ = ::getpid();
 };
 
 }  // namespace

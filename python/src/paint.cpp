@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 
 #include "arrays.h"
+#include "interrupt.h"
 #include "parts.h"
 
 namespace kdray::python {
@@ -11,7 +12,6 @@ namespace {
 
 namespace nb = nanobind;
 using namespace nb::literals;
-using Released = nb::call_guard<nb::gil_scoped_release>;
 
 // python/kdray/_pixels.py has seen to the type, and to it that only rows may lie apart.
 Pixels pixels_of(const In::value_type& array) {

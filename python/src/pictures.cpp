@@ -28,8 +28,7 @@ using Progress = std::function<void(double)>;
 using CameraNumbers = std::array<double, 14>;
 
 Camera camera_of(const CameraNumbers& n) {
-  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n[10], n[11],
-          n[12],               n[13]};
+  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n[10], n[11], n[12], n[13]};
 }
 
 // Calls Python's function, whose exceptions end the picture.
@@ -111,7 +110,7 @@ void add_pictures(nb::module_& module, SceneClass scene) {
           RenderOptions o = options_of(width, height, samples, depth, min_weight, adaptive, mode, precision);
           if (camera) o.camera = camera_of(*camera);
           o.channels = channels;
-          const nb::gil_scoped_release released;
+          const WithoutGil released;
           o.progress = told(progress);
           picture = s.render(o);
         }

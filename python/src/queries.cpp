@@ -12,7 +12,6 @@ namespace {
 
 namespace nb = nanobind;
 using namespace nb::literals;
-using Released = nb::call_guard<nb::gil_scoped_release>;
 
 template <class Options>
 Options options_of(bool strict) {
@@ -76,7 +75,7 @@ void add_ray_queries(SceneClass& scene) {
          const In& masks, bool strict, std::uint32_t max_hits) {
         AllHits hits;
         {
-          const nb::gil_scoped_release released;
+          const WithoutGil released;
           AllHitsOptions options{options_of<QueryOptions>(strict)};
           options.max_hits = max_hits;
           hits = s.all(rays_of(origins, directions, t_min, t_max, masks), options);

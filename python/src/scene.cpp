@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "arrays.h"
+#include "interrupt.h"
 #include "parts.h"
 
 namespace kdray::python {
@@ -15,7 +16,6 @@ namespace {
 
 namespace nb = nanobind;
 using namespace nb::literals;
-using Released = nb::call_guard<nb::gil_scoped_release>;
 
 BuildQuality quality_of(const std::string& name) {
   if (name == "fast") return BuildQuality::fast;

@@ -69,7 +69,7 @@ def assert_alike(mine, expected, **close):
         for name in expected:
             assert_alike(mine[name], expected[name], **close)
         return
-    expected = expected.numpy()
+    mine, expected = mine.cpu().numpy(), expected.numpy()
     assert type(mine) is np.ndarray and mine.dtype == expected.dtype and mine.shape == expected.shape
     if expected.dtype.kind == "f":
         np.testing.assert_allclose(mine, expected, **close)
@@ -232,6 +232,18 @@ assert "open3d" not in sys.modules
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
+
+
+def test_answers_become_arrays_as_tensors_do(scene, some_rays, some_points):
+    rays = RaycastingScene.create_rays_pinhole(60, [0, 0, 0], [0, 0, 5], [0, 1, 0], 8, 6)
+    answers = [rays, scene.compute_occupancy(some_points), scene.test_occlusions(rays.numpy())]
+    answers += [*scene.cast_rays(rays).values(), *scene.list_intersections(some_rays.tolist()).values()]
+    answers += [*scene.compute_closest_points(some_points).values(), scene.compute_distance(some_points)]
+    for answer in answers:
+        plain = answer.cpu().numpy()
+        assert type(plain) is np.ndarray and np.shares_memory(plain, answer)
+        assert isinstance(answer, np.ndarray) and isinstance(answer[:1], type(answer))
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(answer)).numpy(), plain)
 
 
 def test_a_miss_is_told_by_infinity_and_the_invalid_id(scene):

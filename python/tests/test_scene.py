@@ -146,10 +146,7 @@ def test_files_that_are_wrong(tmp_path):
         kdray.load(bad)
 
 
-def test_a_device_that_is_not_there():
-    scene = kdray.Scene(device="no such device")
-    with pytest.raises(kdray.NoDeviceError):
-        scene.any_hit(*DOWN)
+def test_a_quality_that_is_not_there():
     with pytest.raises(kdray.UsageError, match="quality"):
         kdray.Scene().commit("perfect")
 

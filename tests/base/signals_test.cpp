@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "base/error.h"
@@ -75,6 +76,17 @@ TEST(Signals, WhatIsCompleteStaysAndFoldersGo) {
   EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
   EXPECT_EQ(folder.n_entries(), 1u);
   EXPECT_TRUE(std::filesystem::exists(folder / "whole"));
+}
+
+TEST(Signals, WhatIsAParentsStaysWhenItsForkEnds) {
+  const Folder folder;
+  std::optional<Temporary> parents(std::in_place, folder / "parents");
+  std::filesystem::create_directory(parents->path());
+  EXPECT_EQ(status_of([&] { parents.reset(); }), 0);
+  EXPECT_EQ(status_of([] { remove_temporaries(); }), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "parents"));
+  parents.reset();
+  EXPECT_FALSE(std::filesystem::exists(folder / "parents"));
 }
 
 TEST(Signals, OneThatIsIgnoredStaysIgnored) {

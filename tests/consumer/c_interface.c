@@ -89,6 +89,14 @@ static void check_answers(const kdray_scene* scene, uint32_t box) {
                  KDRAY_OK &&
              distance == -0.125,
          "signed distance");
+  rays.origins = doubles(origins, 2), rays.origins.stride = KDRAY_SAME_ROW;
+  expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_OK && t[0] == 2 && t[1] == 2, "one row for all");
+  rays.origins.stride = (size_t)-24;
+  expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_INPUT, "rows before the first");
+  rays.origins = doubles(origins, 2);
+  hits.t.stride = KDRAY_SAME_ROW;
+  expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_INPUT, "answers that overlap");
+  hits.t.stride = 0;
   hits.t.count = 1;
   expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_INPUT, "too few places");
 }

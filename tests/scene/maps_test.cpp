@@ -267,6 +267,7 @@ TEST(Maps, OfAProgramAreRefused) {
   refuses([&] { picture_of(Pixels{&byte, 0, 1, 1}); }, "no pixels");
   refuses([&] { picture_of(Pixels{&byte, 1u << 20, 1u << 20, 1}); }, "textures have");
   refuses([&] { picture_of(Pixels{nullptr, 1, 1, 1}); }, "no data");
+  refuses([&] { picture_of(Pixels{&byte, 1, 2, 1, static_cast<std::size_t>(-1)}); }, "beyond any memory");
   Paint paint;
   refuses([&] { painted_material({.picture = 3}, paint); }, "there is no picture 3");
   refuses([&] { painted_material({.alpha = AlphaMode::mask}, paint); }, "no picture whose alpha");

@@ -159,6 +159,10 @@ struct OpenSeconds {
   double start = 0, self_test = 0;  // as in Statistics::Seconds
 };
 
+// Throws ErrorCode::no_device where DeviceOptions::device names none that there is. Opens nothing, and tries
+// nothing, so a device that it finds may still be refused.
+void require_device(const DeviceOptions& device);
+
 // Opens the device that a Renderer of these options will use, which takes a while and can be done beside the
 // loading of a scene, by another thread. It stays open until the process ends. Throws what the Renderer
 // would.

@@ -1,10 +1,12 @@
 // What    Views of a program's own arrays, by which it hands vertices, indices, rays and points to kdray and
 //         gets results back, without a copy of its own: float or double, 32 or 64 bits, whatever lies between
 //         two of them.
-// Shape   A view is a first element, a number of rows, the bytes from one row to the next (0: none between
-//         them) and which type the values are of. N values make a row.
-// Errors  ErrorCode::input for values that make no whole number of rows, and for rows to be written that
-//         overlap. Whoever takes a view checks its size and its values.
+// Shape   A view is a first element, a number of rows, the bytes from one row to the next and which type the
+//         values are of. N values make a row. Rows without a stride lie one after the other; a stride of 0
+//         means that all of them are the first one.
+// Errors  ErrorCode::input for values that make no whole number of rows, for rows to be written that overlap,
+//         for a null pointer, and for rows that reach beyond the memory that was given (a range), or beyond
+//         all that there can be (a pointer). Whoever takes a view checks its size and its values.
 // Threads A view refers to memory that the caller keeps, and leaves alone, as long as a call lasts.
 #pragma once
 
@@ -31,14 +33,20 @@ class Rows {
   Rows() = default;
 
   // clang-format off
+  // n rows, one after the other.
   template <class T>
     requires(std::is_same_v<T, Types> || ...) || (std::is_same_v<const T, Types> || ...)
-  Rows(T* first, std::size_t n, std::size_t stride_bytes = 0)
-      : first_(as_held(first)), n_(n), stride_(stride_bytes == 0 ? N * sizeof(T) : stride_bytes) {
-    if ((!std::is_const_v<Types> && ...) && n > 1 && stride_ < N * sizeof(T))
-      throw Error(ErrorCode::input, "rows of " + std::to_string(N * sizeof(T)) +
-                                        " bytes that are to be written lie " + std::to_string(stride_) +
-                                        " bytes apart");
+  Rows(T* first, std::size_t n) : Rows(first, n, kBytes<T>) {}
+
+  template <class T>
+    requires(std::is_same_v<T, Types> || ...) || (std::is_same_v<const T, Types> || ...)
+  Rows(T* first, std::size_t n, std::size_t stride_bytes)
+      : first_(as_held(first)), n_(n), stride_(stride_bytes) {
+    if (n == 0) return;
+    if (first == nullptr) refuse<T>("have no memory: their pointer is null");
+    if (is_beyond<T>(PTRDIFF_MAX)) refuse<T>("reach beyond any memory");
+    if ((!std::is_const_v<Types> && ...) && n > 1 && stride_ < kBytes<T>)
+      refuse<T>("are to be written and overlap");
   }
   // clang-format on
 
@@ -46,6 +54,13 @@ class Rows {
   template <class Range>
   requires requires(const Range& r) { std::data(r), std::size(r); }
   Rows(Range&& range) : Rows(of_range(std::data(range), std::size(range))) {}
+
+  // n rows that lie within this memory, the first at its begin.
+  template <class T>
+  Rows(std::span<T> memory, std::size_t n, std::size_t stride_bytes) : Rows(memory.data(), n, stride_bytes) {
+    if (n > 0 && is_beyond<T>(memory.size_bytes()))
+      refuse<T>("reach beyond the " + std::to_string(memory.size_bytes()) + " bytes that there are");
+  }
 
   std::size_t size() const { return n_; }
   bool empty() const { return n_ == 0; }
@@ -88,6 +103,20 @@ class Rows {
   }
 
  private:
+  template <class T>
+  static constexpr std::size_t kBytes = N * sizeof(T);  // of a row
+
+  // Whether the last row ends beyond so many bytes; there are rows.
+  template <class T>
+  bool is_beyond(std::size_t bytes) const {
+    return bytes < kBytes<T> || (n_ > 1 && stride_ > (bytes - kBytes<T>) / (n_ - 1));
+  }
+  template <class T>
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw Error(ErrorCode::input, std::to_string(n_) + " rows of " + std::to_string(kBytes<T>) + " bytes, " +
+                                      std::to_string(stride_) + " bytes apart, " + why);
+  }
+
   template <class T>
   static auto as_held(T* first) {
     if constexpr ((std::is_same_v<T, Types> || ...))
