@@ -58,8 +58,9 @@ layout::Cone pack(const ConeGeometry& c);
 Box bounds_of(const layout::Cone& c);
 std::array<float, KDRAY_CONE_ROWS - 1> rows_of(const layout::Cone& c);
 
-// For queries: the unit normal at a point on it, in the scene's own space.
+// For queries: the unit normal at a point on it, and where a line crosses it, in the scene's own space.
 dvec3 normal_at(const layout::Cone& c, const dvec3& point);
+Crossings crossings(const Line& line, const layout::Cone& c);
 
 // For `kdray verify`.
 constexpr bool has_outline(const ConeGeometry&) {

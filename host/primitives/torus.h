@@ -63,8 +63,9 @@ layout::Torus pack(const TorusGeometry& t);
 Box bounds_of(const layout::Torus& t);
 std::array<float, KDRAY_TORUS_ROWS - 1> rows_of(const layout::Torus& t);
 
-// For queries: the unit normal at a point on it, in the scene's own space.
+// For queries: the unit normal at a point on it, and where a line crosses it, in the scene's own space.
 dvec3 normal_at(const layout::Torus& t, const dvec3& point);
+Crossings crossings(const Line& line, const layout::Torus& t);
 
 // For `kdray verify`.
 constexpr bool has_outline(const TorusGeometry&) {

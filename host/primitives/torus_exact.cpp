@@ -126,4 +126,20 @@ bool meets_again(const Line& line, const TorusGeometry& t, double at, const dvec
   return at < 0.5 * exit;
 }
 
+// Down through the surface before each valley that is below it, and up behind it. Where the line has one
+// valley, the hill and the other lie at its end.
+Crossings crossings(const Line& line, const layout::Torus& t) {
+  const auto vector = [](const float(&v)[3]) { return vec3(v[0], v[1], v[2]); };
+  const Along along(line, {vector(t.center), vector(t.axis), t.major_radius, t.minor_radius, 0});
+  const double minor = t.minor_radius;
+  const auto is_below = [&](double at) { return along.height(at) < minor; };
+  Crossings found;
+  if (!(along.lo() < along.hi())) return found;
+  const double turns[] = {along.lo(), along.left(), along.hill(), along.right(), along.hi()};
+  for (int i = 0; i < 4; ++i)
+    if (is_below(turns[i]) != is_below(turns[i + 1]))
+      found.add(along.crossing(turns[i], turns[i + 1], is_below(turns[i]) ? 1 : -1, minor));
+  return found;
+}
+
 }  // namespace kdray::primitives
