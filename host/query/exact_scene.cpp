@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "kdray/model.h"
 #include "primitives/shapes.h"
@@ -25,20 +26,62 @@ bool is_instance(std::uint32_t child) {
   return flatten::leaf_kind(child) == KDRAY_KIND_INSTANCE;
 }
 
-// Slots of a node whose boxes hold the place, widened by `margin`.
-std::uint32_t holding(const WideNode& node, const dvec3& place, double margin) {
-  std::uint32_t slots = 0;
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    bool in = true;
-    for (int k = 0; k < 3; ++k)
-      in &= node.bounds[k][0][i] - margin <= place[k] && place[k] <= node.bounds[k][1][i] + margin;
-    slots |= std::uint32_t{in} << i;
-  }
+// Half of the slots of a node at once. Boxes are widened by far more than floats lose.
+using Slots = float __attribute__((vector_size(16)));
+using SlotsChosen = int __attribute__((vector_size(16)));
+
+Slots slots_at(const float* values) {
+  Slots slots;
+  std::memcpy(&slots, values, sizeof slots);
   return slots;
+}
+Slots lesser(const Slots& a, const Slots& b) {
+  return a < b ? a : b;
+}
+Slots greater(const Slots& a, const Slots& b) {
+  return a > b ? a : b;
+}
+
+// Of all slots: chosen_of(first) tells which of [first, first + 4).
+template <class ChosenOf>
+std::uint32_t choose_slots(const ChosenOf& chosen_of) {
+  std::uint32_t bits = 0;
+  for (int first = 0; first < 8; first += 4) {
+    const SlotsChosen chosen = chosen_of(first);
+    for (int i = 0; i < 4; ++i) bits |= static_cast<std::uint32_t>(chosen[i] & 1) << (first + i);
+  }
+  return bits;
+}
+
+// By how much the boxes of places of floats are widened: so that rounding `place` to floats doesn't count.
+float widened(double margin, const dvec3& place) {
+  return static_cast<float>(margin + 0x1p-19 * largest_component(place));
+}
+
+// Slots of a node whose boxes hold the place, widened by `margin`.
+std::uint32_t holding(const WideNode& node, const dvec3& place, float margin) {
+  const vec3 at(place);
+  return choose_slots([&](int first) {
+    SlotsChosen held = ~SlotsChosen{};
+    for (int k = 0; k < 3; ++k)
+      held &= (slots_at(node.bounds[k][0] + first) <= at[k] + margin) &
+              (slots_at(node.bounds[k][1] + first) >= at[k] - margin);
+    return held;
+  });
+}
+
+// The corners of a triangle whose words begin at `rows`, `block` apart.
+struct TriangleCorners {
+  float v[3][3];
+};
+TriangleCorners corners_at(const layout::u32* rows, std::size_t block) {
+  TriangleCorners corners;
+  for (std::size_t i = 0; i < 9; ++i) corners.v[i / 3][i % 3] = std::bit_cast<float>(rows[i * block]);
+  return corners;
 }
 
 // A triangle may be within `within` of the place.
-bool may_be_near(const layout::Triangle& triangle, const dvec3& place, double within) {
+bool may_be_near(const TriangleCorners& triangle, const dvec3& place, double within) {
   dvec3 corner[3];
   for (int i = 0; i < 3; ++i) corner[i] = dvec3(triangle.v[i][0], triangle.v[i][1], triangle.v[i][2]) - place;
   const dvec3 lo = glm::min(corner[0], glm::min(corner[1], corner[2])),
@@ -78,32 +121,33 @@ double distance_to_plane(const Line& line, const layout::Triangle& triangle, dou
 
 // A half-line on its way through a tree: the scene's own, or that of an instance's mesh.
 struct ExactScene::Walk {
-  Walk(const dvec3& origin, const dvec3& direction, double margin, std::vector<ExactHit>& hits)
-      : line(origin, direction), margin(margin), hits(&hits) {
-    for (int k = 0; k < 3; ++k) inverse[k] = line.direction()[k] == 0 ? 0x1p900 : 1 / line.direction()[k];
+  Walk(const dvec3& from, const dvec3& direction, double margin, std::vector<ExactHit>& hits)
+      : line(from, direction), origin(from), margin(widened(margin, from)), hits(&hits) {
+    constexpr float kMost = 0x1p100f;
+    for (int k = 0; k < 3; ++k)
+      inverse[k] = static_cast<float>(std::clamp(1 / direction[k], double{-kMost}, double{kMost}));
   }
 
   ExactLine line;
-  dvec3 inverse;
-  double margin;  // by which boxes are widened
+  vec3 origin, inverse;
+  float margin;  // by which boxes are widened
   std::vector<ExactHit>* hits;
   std::uint32_t instance = kNoInstance;
   int exponent = 0;  // t is 2^exponent times the scene's
 
   // The slots of a node whose boxes it meets.
   std::uint32_t slots_of(const WideNode& node) const {
-    std::uint32_t slots = 0;
-    for (std::uint32_t i = 0; i < 8; ++i) {
-      double enter = 0, leave = HUGE_VAL;
+    return choose_slots([&](int first) {
+      const auto lo = [&](int k) { return slots_at(node.bounds[k][0] + first); };
+      Slots enter{}, leave = Slots{} + HUGE_VALF;
       for (int k = 0; k < 3; ++k) {
-        const double a = (node.bounds[k][0][i] - margin - line.origin()[k]) * inverse[k];
-        const double b = (node.bounds[k][1][i] + margin - line.origin()[k]) * inverse[k];
-        enter = std::max(enter, std::min(a, b));
-        leave = std::min(leave, std::max(a, b));
+        const Slots a = (lo(k) - (origin[k] + margin)) * inverse[k],
+                    b = (slots_at(node.bounds[k][1] + first) - (origin[k] - margin)) * inverse[k];
+        enter = greater(enter, lesser(a, b));
+        leave = lesser(leave, greater(a, b));
       }
-      slots |= std::uint32_t{enter <= leave && node.bounds[0][0][i] <= node.bounds[0][1][i]} << i;
-    }
-    return slots;
+      return (enter <= leave) & (lo(0) <= slots_at(node.bounds[0][1] + first));
+    });
   }
 
   void add(double t, double u, double v, std::uint32_t ref) const {
@@ -118,18 +162,19 @@ ExactScene::ExactScene(const prepare::Prepared& scene)
       reach_(world_max(scene.geometry.bounds)),
       margin_(scene.wide.widen * (kConesBeyondBoxes + kFloatsUnsure) * 2 * reach_) {}
 
-// Calls visit(kind, index) for each primitive until one call answers true; whether one did.
+// Calls visit(kind, index, its words) for each primitive until one call answers true; whether one did.
 template <class Visit>
 bool ExactScene::visit_leaf(std::uint32_t leaf, const Visit& visit) const {
   return primitives::with_kind(flatten::leaf_kind(leaf), [&](auto kind) {
     using Kind = decltype(kind);
-    const auto block = static_cast<std::size_t>(scene_->wide.block);
-    const layout::u32* indices = Kind::blocks_of(scene_->wide).data() +
-                                 ((leaf & KDRAY_WIDE_FIRST_MASK) * Kind::kRows + Kind::kRows - 1) * block;
-    for (;; indices += Kind::kRows * block)
+    const std::size_t block = block_size();
+    const layout::u32* rows = Kind::blocks_of(scene_->wide).data() +
+                              (leaf & KDRAY_WIDE_FIRST_MASK) * std::size_t{Kind::kRows} * block;
+    for (;; rows += Kind::kRows * block)
       for (std::size_t i = 0; i < block; ++i) {
-        if (visit(kind, indices[i] & ~KDRAY_WIDE_LAST)) return true;
-        if (indices[i] & KDRAY_WIDE_LAST) return false;
+        const layout::u32 index = rows[(Kind::kRows - 1) * block + i];
+        if (visit(kind, index & ~KDRAY_WIDE_LAST, rows + i)) return true;
+        if (index & KDRAY_WIDE_LAST) return false;
       }
   });
 }
@@ -142,17 +187,17 @@ bool ExactScene::is_near(const dvec3& place) const {
 
 bool ExactScene::is_near(std::uint32_t index, const dvec3& place, double margin, double within) const {
   const WideNode& node = scene_->wide.nodes[index];
-  for (std::uint32_t slots = holding(node, place, margin); slots != 0; slots &= slots - 1) {
+  for (std::uint32_t slots = holding(node, place, widened(margin, place)); slots != 0; slots &= slots - 1) {
     const std::uint32_t child = node.child[std::countr_zero(slots)];
     if (!(child & KDRAY_WIDE_LEAF)) {
       if (is_near(child, place, margin, within)) return true;
     } else if (is_instance(child)) {
       if (is_near_instance(scene_->flat.instances[child & KDRAY_WIDE_FIRST_MASK], place)) return true;
-    } else if (visit_leaf(child, [&](auto kind, std::uint32_t i) {
+    } else if (visit_leaf(child, [&](auto kind, std::uint32_t, const layout::u32* rows) {
                  if constexpr (decltype(kind)::kIsShape)
                    return true;
                  else
-                   return may_be_near(scene_->flat.triangles[i], place, within);
+                   return may_be_near(corners_at(rows, block_size()), place, within);
                })) {
       return true;
     }
@@ -195,14 +240,14 @@ void ExactScene::cross(std::uint32_t index, const Walk& walk) const {
       inside.exponent = line.exponent;
       cross(instance.root, inside);
     } else {
-      visit_leaf(child, [&](auto kind, std::uint32_t i) {
+      visit_leaf(child, [&](auto kind, std::uint32_t i, const layout::u32* rows) {
         using Kind = decltype(kind);
-        const auto& primitive = Kind::of(scene_->flat)[i];
         const std::uint32_t ref = Kind::kNumber << KDRAY_REF_KIND_SHIFT | i;
         if constexpr (Kind::kIsShape) {
-          for (const auto& at : primitives::crossings({walk.line.origin(), walk.line.direction()}, primitive))
+          for (const auto& at :
+               primitives::crossings({walk.line.origin(), walk.line.direction()}, Kind::of(scene_->flat)[i]))
             walk.add(at.t, at.u, 0, ref);
-        } else if (const auto at = walk.line.crossing(primitive.v)) {
+        } else if (const auto at = walk.line.crossing(corners_at(rows, block_size()).v)) {
           walk.add(at->t, at->u, at->v, ref);
         }
         return false;
@@ -238,6 +283,12 @@ double ExactScene::distance(const dvec3& origin, const dvec3& direction, std::ui
     return std::ldexp(there, -line.exponent);
   }
   return distance_in_mesh({origin, direction}, ref, t);
+}
+
+void ExactScene::prefetch(std::uint32_t ref) const {
+  primitives::with_kind(ref >> KDRAY_REF_KIND_SHIFT, [&](auto kind) {
+    __builtin_prefetch(&decltype(kind)::of(scene_->flat)[ref & KDRAY_REF_INDEX_MASK]);
+  });
 }
 
 double ExactScene::distance_in_mesh(const Line& line, std::uint32_t ref, double t) const {

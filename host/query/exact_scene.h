@@ -43,6 +43,8 @@ class ExactScene {
   // primitive, or runs along it.
   double distance(const dvec3& origin, const dvec3& direction, std::uint32_t ref, std::uint32_t instance,
                   double t) const;
+  // A hit's distance is soon asked for: its primitive is fetched from memory meanwhile.
+  void prefetch(std::uint32_t ref) const;
 
  private:
   struct Walk;
@@ -50,6 +52,7 @@ class ExactScene {
   bool is_near_instance(const layout::Instance& instance, const dvec3& place) const;
   void cross(std::uint32_t node, const Walk& walk) const;
   double distance_in_mesh(const primitives::Line& line, std::uint32_t ref, double t) const;
+  std::size_t block_size() const { return static_cast<std::size_t>(scene_->wide.block); }
   template <class Visit>
   bool visit_leaf(std::uint32_t leaf, const Visit& visit) const;
 

@@ -80,8 +80,10 @@ double LocalFrame::distance_ahead(const dvec3& origin, const dvec3& direction) c
   return enter <= leave + 0x1p-48 * std::abs(leave) ? enter : HUGE_VAL;
 }
 
-std::optional<LocalLine> LocalFrame::line(const dvec3& world_origin, const dvec3& world_direction,
-                                          bool in_double) const {
+// A call for each ray would take a fifth of the time of any-hit queries.
+[[gnu::always_inline]] inline std::optional<LocalLine> LocalFrame::begin_line(const dvec3& world_origin,
+                                                                              const dvec3& world_direction,
+                                                                              bool in_double) const {
   const double largest = largest_component(world_direction);
   const int length = is_ordinary_length(largest) ? 0 : std::ilogb(largest);
   const dvec3 direction =
@@ -102,10 +104,14 @@ std::optional<LocalLine> LocalFrame::line(const dvec3& world_origin, const dvec3
   return LocalLine{origin, direction, ahead, exponent_ - length};
 }
 
+std::optional<LocalLine> LocalFrame::line(const dvec3& origin, const dvec3& direction, bool in_double) const {
+  return begin_line(origin, direction, in_double);
+}
+
 LocalRay LocalFrame::begin(const dvec3& origin, const dvec3& direction, double t_min, double t_max,
                            bool in_double) const {
   LocalRay out{kNoRay, 0, exponent_};
-  const std::optional<LocalLine> line = this->line(origin, direction, in_double);
+  const std::optional<LocalLine> line = begin_line(origin, direction, in_double);
   if (!line) return out;
   out.exponent = line->exponent;
   for (int k = 0; k < 3; ++k) {

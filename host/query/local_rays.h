@@ -88,6 +88,7 @@ class LocalFrame {
 
  private:
   double distance_ahead(const dvec3& origin, const dvec3& direction) const;
+  std::optional<LocalLine> begin_line(const dvec3& origin, const dvec3& direction, bool in_double) const;
 
   LocalSpace space_;
   dvec3 lo_, hi_;  // the bounds, a little wider

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/timer.h"
 #include "prepare/instanced.h"
 #include "query/all_hits.h"
 #include "query/closest_point.h"
@@ -17,16 +18,19 @@ namespace kdray::query {
 
 namespace {
 
-constexpr std::size_t kPointsAtOnce = std::size_t{1} << 18;
+// Points of a chunk, and of the first one. A point that is as far from everything may take milliseconds: chunks
+// become larger as long as one takes less than kAimed seconds, so that cancelling has not to wait for more.
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 18, kFirstPoints = std::size_t{1} << 12;
+constexpr double kAimed = 0.25;
 
 // Chunks of points as they can be asked for: those that are not finite are put at the origin, and remembered.
 class PointChunks {
  public:
   PointChunks(const Points& points, const PointOptions& options) : points_(points), options_(&options) {}
 
-  std::span<const dvec3> take(std::size_t first) {
+  std::span<const dvec3> take(std::size_t first, std::size_t most) {
     throw_if_cancelled(options_->cancel);
-    const std::size_t n = std::min(kPointsAtOnce, points_.size() - first);
+    const std::size_t n = std::min(most, points_.size() - first);
     first_ = first;
     taken_.resize(n);
     invalid_.clear();
@@ -140,8 +144,16 @@ class Nearest {
 template <class Take>
 QueryReport for_each_chunk(const Points& points, const PointOptions& options, const Take& take) {
   PointChunks chunks(points, options);
-  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce)
-    take(first, chunks.take(first), chunks);
+  std::size_t at_once = kFirstPoints;
+  for (std::size_t first = 0; first < points.size();) {
+    const std::span<const dvec3> some = chunks.take(first, at_once);
+    const Timer timer;
+    take(first, some, chunks);
+    first += some.size();
+    const double fit = kAimed / std::max(timer.seconds(), 1e-6) * static_cast<double>(some.size());
+    at_once =
+        std::clamp(static_cast<std::size_t>(fit), std::size_t{64}, std::min(8 * at_once, kPointsAtOnce));
+  }
   return {chunks.n_invalid()};
 }
 

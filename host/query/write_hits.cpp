@@ -113,6 +113,8 @@ void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, con
 
 // Of hits that are named by references.
 void HitWriter::find_distances(const Some& some, std::span<double> t) const {
+  for (const QueryHit& hit : some.hits)
+    if (!missed(hit)) exact_->prefetch(static_cast<std::uint32_t>(hit.primitive));
   for (std::size_t i = 0; i < some.hits.size(); ++i) {
     const QueryHit& hit = some.hits[i];
     t[i] = missed(hit) ? HUGE_VAL

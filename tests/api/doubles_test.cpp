@@ -378,6 +378,20 @@ TEST_P(Doubles, ACallOfManyHitsLooksForCancellationBetweenLaunches) {
   }
 }
 
+TEST_P(Doubles, CallsOfPointsLookForCancellationToo) {
+  const Mesh mesh = cube();
+  const Scene scene = scene_of(mesh.vertices, mesh.triangles);
+  const std::vector<float> points(3 * 100'000, 0.25f);
+  std::vector<float> distance(100'000);
+  int looked = 0;
+  const Cancel cancel([&] { return ++looked > 2; });
+  PointOptions options;
+  options.cancel = cancel;
+  EXPECT_TRUE(fails([&] { scene.closest_points(points, {.distance = distance}, options); }, "cancelled",
+                    ErrorCode::cancelled));
+  EXPECT_EQ(looked, 3);
+}
+
 TEST_P(Doubles, AnAnswerTooLargeForMemoryIsRefusedWithTheNumberOfHits) {
   const Sheets sheets(100, 5000);
   const Scene scene = scene_of(sheets.vertices, sheets.triangles);

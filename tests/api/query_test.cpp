@@ -393,7 +393,7 @@ TEST_P(Query, PointsThatAreNotFiniteAreRefusedOrCounted) {
   options.radius = 5;
   EXPECT_EQ(scene.signed_distance(points, distance, options).invalid, 1u);
   EXPECT_EQ(distance[0], -1);
-  EXPECT_TRUE(std::isinf(distance[1]));
+  EXPECT_TRUE(std::isnan(distance[1]));
   EXPECT_EQ(distance[2], kInfinity) << "beyond the radius";
   std::vector<std::uint8_t> inside(3);
   scene.inside(points, inside, options);

@@ -97,7 +97,7 @@ struct ClosestPointsOut {
 struct PointOptions {
   double radius = std::numeric_limits<double>::infinity();  // how far to look
   // A point that is not finite: an error that names it, or one that has nothing near it, and is inside of
-  // nothing.
+  // nothing; its signed distance is infinity, or NaN where it has NaN.
   InvalidRays invalid = InvalidRays::error;
   std::optional<Cancel> cancel = {};
 };
