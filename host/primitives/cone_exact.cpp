@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -82,6 +83,16 @@ Crossings crossings(const Line& line, const layout::Cone& c) {
     if (at >= 0 && at <= height) found.add(middle + t, at / height);
   }
   return found;
+}
+
+// In the half-plane of the point, where the surface is a line from the base to the apex.
+double distance_to(const layout::Cone& c, const dvec3& point) {
+  const dvec3 unit(c.axis[0], c.axis[1], c.axis[2]);
+  const dvec3 from = point - dvec3(c.base[0], c.base[1], c.base[2]);
+  const double s = glm::dot(from, unit), out = glm::length(from - s * unit) - c.base_radius;
+  const double slope = c.slope,
+               along = std::clamp((s + slope * out) / (1 + slope * slope), 0.0, double{c.height});
+  return std::hypot(s - along, out - slope * along);
 }
 
 }  // namespace kdray::primitives

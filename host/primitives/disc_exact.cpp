@@ -51,4 +51,11 @@ Crossings crossings(const Line& line, const layout::Disc& d) {
   return found;
 }
 
+double distance_to(const layout::Disc& d, const dvec3& point) {
+  const dvec3 n = glm::normalize(dvec3(d.normal[0], d.normal[1], d.normal[2]));
+  const dvec3 from = point - dvec3(d.center[0], d.center[1], d.center[2]);
+  const double above = glm::dot(from, n), beyond = glm::length(from - above * n) - d.radius;
+  return std::hypot(above, std::max(beyond, 0.0));
+}
+
 }  // namespace kdray::primitives

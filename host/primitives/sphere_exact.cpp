@@ -84,4 +84,8 @@ Crossings crossings(const Line& line, const layout::Sphere& s) {
   return found;
 }
 
+double distance_to(const layout::Sphere& s, const dvec3& point) {
+  return std::abs(glm::distance(point, dvec3(s.center[0], s.center[1], s.center[2])) - s.radius);
+}
+
 }  // namespace kdray::primitives

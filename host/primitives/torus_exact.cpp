@@ -142,4 +142,11 @@ Crossings crossings(const Line& line, const layout::Torus& t) {
   return found;
 }
 
+double distance_to(const layout::Torus& t, const dvec3& point) {
+  const dvec3 axis = glm::normalize(dvec3(t.axis[0], t.axis[1], t.axis[2]));
+  const dvec3 from = point - dvec3(t.center[0], t.center[1], t.center[2]);
+  const double z = glm::dot(from, axis), out = glm::length(from - z * axis) - t.major_radius;
+  return std::abs(std::hypot(out, z) - t.minor_radius);
+}
+
 }  // namespace kdray::primitives

@@ -11,33 +11,19 @@
 #include "query/all_hits.h"
 #include "query/exact_rays.h"
 #include "query/grains.h"
+#include "query/pace.h"
 #include "query/surface.h"
 
 namespace kdray::query {
 
 namespace {
 
-// Rays whose hits are held at a time, beside the answer; so many hits that a chunk is tried to have; and more
-// than that by which it has too many, unless it is a single ray's.
+// Rays of a chunk at most, and of the first one; the hits that a chunk is tried to have, since they are held beside
+// the answer; and how many are too many for it, unless they are a single ray's.
 constexpr std::size_t kCollected = std::size_t{1} << 16, kFirstRays = std::size_t{1} << 10;
 constexpr std::size_t kHitsAtOnce = std::size_t{1} << 22, kTooMany = 4 * kHitsAtOnce;
 // An answer so small is made without a look at how much memory is free.
 constexpr std::uint64_t kSmallAnswer = std::uint64_t{1} << 26;
-
-// How many rays to take next, by the hits that the last ones had: what is done between two looks for
-// cancellation, and what is held beside the answer, has its bounds.
-class Pace {
- public:
-  std::size_t rays() const { return rays_; }
-  void had(std::size_t n_rays, std::size_t n_hits) {
-    const std::size_t fit = kHitsAtOnce * n_rays / std::max<std::size_t>(n_hits, 1);
-    rays_ = std::clamp<std::size_t>(std::min(fit, 8 * n_rays), 1, kCollected);
-  }
-  void had_too_many() { rays_ = std::max<std::size_t>(rays_ / 8, 1); }
-
- private:
-  std::size_t rays_ = kFirstRays;
-};
 
 // The rays of a chunk in the scene's own space, and their masks where primitives have some.
 class CollectedRays {
@@ -192,13 +178,16 @@ QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, con
   CollectedRays collected(asked, arrays);
   const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
   std::vector<std::uint32_t> counts;
-  for (std::size_t first = 0; first < arrays.size(); first += kCollected) {
-    const std::span<const Ray> taken = collected.take(first, kCollected, options);
+  Pace pace(kFirstRays, kCollected);
+  for (std::size_t first = 0; first < arrays.size();) {
+    const std::span<const Ray> taken = collected.take(first, pace.take(), options);
     counts.resize(taken.size());
     count_hits(*passes, taken, {.masks = collected.masks(), .cancel = options.cancel}, counts);
     if (arrays.in_double()) ExactRays(asked, arrays).count(first, counts, options.cancel);
     if (!out.empty())
       out.fill(first, counts.size(), [&](std::size_t ray) { return std::array{counts[ray - first]}; });
+    first += taken.size();
+    pace.done(taken.size());
   }
   return {collected.local().n_invalid()};
 }
@@ -218,21 +207,21 @@ AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options)
   Answer answer(asked, arrays.size(), options.max_bytes);
   const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
   tbb::task_group adding;
-  Pace pace;
+  Pace pace(kFirstRays, kCollected);
   try {
     for (std::size_t first = 0, turn = 0; first < arrays.size();) {
       Chunk& chunk = chunks[turn];
-      const std::span<const Ray> taken = chunk.rays.take(first, pace.rays(), options);
+      const std::span<const Ray> taken = chunk.rays.take(first, pace.take(), options);
       const CollectOptions collect{.max_hits = options.max_hits,
                                    .masks = chunk.rays.masks(),
                                    .as_refs = exact,
                                    .cancel = options.cancel,
                                    .at_once = taken.size() > 1 ? kTooMany : SIZE_MAX};
       if (!all_hits(*passes, taken, collect, chunk.found)) {
-        pace.had_too_many();
+        pace.done(taken.size(), taken.size() / 8);
         continue;
       }
-      pace.had(taken.size(), chunk.found.t.size());
+      pace.done(taken.size(), kHitsAtOnce * taken.size() / std::max<std::size_t>(chunk.found.t.size(), 1));
       if (exact) chunk.exact = in_double.settle(first, chunk.found, options.max_hits, options.cancel);
       adding.wait();
       const auto add = [&answer, &chunk, exact] {

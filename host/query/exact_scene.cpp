@@ -21,6 +21,8 @@ using primitives::Line;
 constexpr double kConesBeyondBoxes = 0x1p-19;
 constexpr double kRounding = 0x1p-12;      // between a place and its floats, in a scene of 2^11
 constexpr double kFloatsUnsure = 0x1p-19;  // of the reach
+// The same within a scene's bounds, whose reach is below 2^12 from either end, vertices that move included.
+constexpr double kNear = 0x1p13 * kFloatsUnsure + kRounding;
 
 bool is_instance(std::uint32_t child) {
   return flatten::leaf_kind(child) == KDRAY_KIND_INSTANCE;
@@ -80,16 +82,26 @@ TriangleCorners corners_at(const layout::u32* rows, std::size_t block) {
   return corners;
 }
 
-// A triangle may be within `within` of the place.
-bool may_be_near(const TriangleCorners& triangle, const dvec3& place, double within) {
-  dvec3 corner[3];
-  for (int i = 0; i < 3; ++i) corner[i] = dvec3(triangle.v[i][0], triangle.v[i][1], triangle.v[i][2]) - place;
-  const dvec3 lo = glm::min(corner[0], glm::min(corner[1], corner[2])),
-              hi = glm::max(corner[0], glm::max(corner[1], corner[2]));
-  if (glm::any(glm::greaterThan(lo, dvec3(within))) || glm::any(glm::lessThan(hi, dvec3(-within))))
+// The square of the distance from 0 to the line from a that goes as far as e.
+double square_to_edge(const dvec3& a, const dvec3& e) {
+  const dvec3 p = a + std::clamp(-glm::dot(a, e) / glm::dot(e, e), 0.0, 1.0) * e;
+  return glm::dot(p, p);
+}
+
+bool is_within(double distance, const TriangleCorners& triangle, const dvec3& place) {
+  const auto corner = [&](int i) {
+    return dvec3(triangle.v[i][0], triangle.v[i][1], triangle.v[i][2]) - place;
+  };
+  const dvec3 a = corner(0), b = corner(1), c = corner(2);
+  const dvec3 lo = glm::min(a, glm::min(b, c)), hi = glm::max(a, glm::max(b, c));
+  if (glm::any(glm::greaterThan(lo, dvec3(distance))) || glm::any(glm::lessThan(hi, dvec3(-distance))))
     return false;
-  const dvec3 n = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-  return !(std::abs(glm::dot(n, corner[0])) > within * glm::length(n));
+  const dvec3 ab = b - a, bc = c - b, ca = a - c, n = glm::cross(ab, c - a);
+  if (std::abs(glm::dot(a, n)) > distance * glm::length(n)) return false;
+  if (std::min({square_to_edge(a, ab), square_to_edge(b, bc), square_to_edge(c, ca)}) <= distance * distance)
+    return true;
+  return glm::dot(glm::cross(a, ab), n) >= 0 && glm::dot(glm::cross(b, bc), n) >= 0 &&
+         glm::dot(glm::cross(c, ca), n) >= 0;
 }
 
 // A line in an instance's mesh's space, where t is 2^exponent times what it is in the scene's.
@@ -159,8 +171,8 @@ struct ExactScene::Walk {
 
 ExactScene::ExactScene(const prepare::Prepared& scene)
     : scene_(&scene),
-      reach_(world_max(scene.geometry.bounds)),
-      margin_(scene.wide.widen * (kConesBeyondBoxes + kFloatsUnsure) * 2 * reach_) {}
+      margin_(scene.wide.widen * (kConesBeyondBoxes + kFloatsUnsure) * 2 * world_max(scene.geometry.bounds)) {
+}
 
 // Calls visit(kind, index, its words) for each primitive until one call answers true; whether one did.
 template <class Visit>
@@ -181,8 +193,7 @@ bool ExactScene::visit_leaf(std::uint32_t leaf, const Visit& visit) const {
 
 bool ExactScene::is_near(const dvec3& place) const {
   if (scene_->wide.nodes.size() == 0) return false;
-  const double within = kFloatsUnsure * (largest_component(place) + reach_) + kRounding;
-  return is_near(0, place, margin_ + within, within);
+  return is_near(0, place, margin_ + kNear, kNear);
 }
 
 bool ExactScene::is_near(std::uint32_t index, const dvec3& place, double margin, double within) const {
@@ -193,11 +204,12 @@ bool ExactScene::is_near(std::uint32_t index, const dvec3& place, double margin,
       if (is_near(child, place, margin, within)) return true;
     } else if (is_instance(child)) {
       if (is_near_instance(scene_->flat.instances[child & KDRAY_WIDE_FIRST_MASK], place)) return true;
-    } else if (visit_leaf(child, [&](auto kind, std::uint32_t, const layout::u32* rows) {
-                 if constexpr (decltype(kind)::kIsShape)
-                   return true;
+    } else if (visit_leaf(child, [&](auto kind, std::uint32_t i, const layout::u32* rows) {
+                 using Kind = decltype(kind);
+                 if constexpr (Kind::kIsShape)
+                   return primitives::distance_to(Kind::of(scene_->flat)[i], place) <= within;
                  else
-                   return may_be_near(corners_at(rows, block_size()), place, within);
+                   return is_within(within, corners_at(rows, block_size()), place);
                })) {
       return true;
     }

@@ -30,7 +30,8 @@ class ExactScene {
  public:
   explicit ExactScene(const prepare::Prepared& scene);
 
-  // Whether a surface may lie so near that floats can't tell which side of it the place is on.
+  // Whether a surface lies so near that floats can't tell which side of it the place is on. It depends on the
+  // primitives alone, not on the tree. The place lies within the scene's bounds.
   bool is_near(const dvec3& place) const;
 
   // All that the line crosses at t >= 0, sorted, in place of what `hits` held. The direction's largest
@@ -57,7 +58,6 @@ class ExactScene {
   bool visit_leaf(std::uint32_t leaf, const Visit& visit) const;
 
   const prepare::Prepared* scene_;
-  double reach_;   // the largest coordinate of the bounds
   double margin_;  // by which boxes are widened for rays
 };
 

@@ -7,21 +7,19 @@
 #include <limits>
 
 #include "base/error.h"
-#include "base/timer.h"
 #include "prepare/instanced.h"
 #include "query/all_hits.h"
 #include "query/closest_point.h"
 #include "query/exact_scene.h"
 #include "query/grains.h"
+#include "query/pace.h"
 
 namespace kdray::query {
 
 namespace {
 
-// Points of a chunk, and of the first one. A point that is as far from everything may take milliseconds: chunks
-// become larger as long as one takes less than kAimed seconds, so that cancelling has not to wait for more.
+// Points of a chunk at most, and of the first one.
 constexpr std::size_t kPointsAtOnce = std::size_t{1} << 18, kFirstPoints = std::size_t{1} << 12;
-constexpr double kAimed = 0.25;
 
 // Chunks of points as they can be asked for: those that are not finite are put at the origin, and remembered.
 class PointChunks {
@@ -144,15 +142,12 @@ class Nearest {
 template <class Take>
 QueryReport for_each_chunk(const Points& points, const PointOptions& options, const Take& take) {
   PointChunks chunks(points, options);
-  std::size_t at_once = kFirstPoints;
+  Pace pace(kFirstPoints, kPointsAtOnce);
   for (std::size_t first = 0; first < points.size();) {
-    const std::span<const dvec3> some = chunks.take(first, at_once);
-    const Timer timer;
+    const std::span<const dvec3> some = chunks.take(first, pace.take());
     take(first, some, chunks);
     first += some.size();
-    const double fit = kAimed / std::max(timer.seconds(), 1e-6) * static_cast<double>(some.size());
-    at_once =
-        std::clamp(static_cast<std::size_t>(fit), std::size_t{64}, std::min(8 * at_once, kPointsAtOnce));
+    pace.done(some.size());
   }
   return {chunks.n_invalid()};
 }
