@@ -25,7 +25,7 @@ class Pace {
   void done(std::size_t n, std::size_t fit) {
     constexpr double kAimed = 0.25;
     const double in_time = kAimed / std::max(timer_.seconds(), 1e-6) * static_cast<double>(n);
-    next_ = std::min({static_cast<std::size_t>(std::min(in_time, 1e9)), fit, 8 * n, most_});
+    next_ = std::min({static_cast<std::size_t>(std::min(in_time, 1e9)), fit, 64 * n, most_});
     next_ = std::max<std::size_t>(next_, 1);
   }
   void done(std::size_t n) { done(n, most_); }
