@@ -259,7 +259,8 @@ typedef struct kdray_query_options {
   uint64_t* n_invalid;        /* NULL, or told how many meant nothing */
 } kdray_query_options;
 
-/* Of each ray what it hits first. */
+/* Of each ray what it hits first. Which primitive that is is decided in floats; for rays of doubles t and the point
+ * are found in double from the primitive that was hit. */
 typedef struct kdray_hits {
   size_t size;
   kdray_out t;                   /* floats of either kind; infinity: a miss */
@@ -274,7 +275,8 @@ KDRAY_API kdray_status kdray_closest(const kdray_scene* scene, const kdray_rays*
 /* hit: uint8, 1 or 0. */
 KDRAY_API kdray_status kdray_any(const kdray_scene* scene, const kdray_rays* rays, kdray_out hit,
                                  const kdray_query_options* options);
-/* counts: uint32. Every crossing once, at edges and vertices too. */
+/* counts: uint32. Every crossing once, at edges and vertices too. Where a ray of doubles begins near a surface, these
+ * doubles decide whether it lies ahead. */
 KDRAY_API kdray_status kdray_count(const kdray_scene* scene, const kdray_rays* rays, kdray_out counts,
                                    const kdray_query_options* options);
 
@@ -290,7 +292,8 @@ typedef struct kdray_all_hits_view {
   const uint8_t* more;      /* of each ray, 1: it has more than max_hits */
   const uint32_t* instance; /* of each hit, as kdray_hits has it */
 } kdray_all_hits_view;
-/* max_hits: of a ray, the first so many; 0: all. */
+/* max_hits: of a ray, the first so many; 0: all. KDRAY_OUT_OF_MEMORY where they don't fit into what is free: the
+ * message says how many there are. */
 KDRAY_API kdray_status kdray_all(const kdray_scene* scene, const kdray_rays* rays, uint32_t max_hits,
                                  const kdray_query_options* options, kdray_all_hits** hits);
 KDRAY_API kdray_status kdray_all_hits_get(const kdray_all_hits* hits, kdray_all_hits_view* view);
@@ -306,10 +309,11 @@ typedef struct kdray_closest_points_out {
 KDRAY_API kdray_status kdray_closest_points(const kdray_scene* scene, kdray_in points,
                                             const kdray_closest_points_out* out,
                                             const kdray_query_options* options);
-/* inside: uint8. */
+/* inside: uint8. Points of doubles are decided by these doubles, against triangles exactly (which are floats about
+ * the scene's centre). 0 for a point that is not finite. */
 KDRAY_API kdray_status kdray_inside(const kdray_scene* scene, kdray_in points, kdray_out inside,
                                     const kdray_query_options* options);
-/* distance: floats, negative inside. */
+/* distance: floats, negative inside. Of an infinite point infinity, of one with NaN NaN. */
 KDRAY_API kdray_status kdray_signed_distance(const kdray_scene* scene, kdray_in points, kdray_out distance,
                                              const kdray_query_options* options);
 

@@ -58,8 +58,11 @@ layout::Cone pack(const ConeGeometry& c);
 Box bounds_of(const layout::Cone& c);
 std::array<float, KDRAY_CONE_ROWS - 1> rows_of(const layout::Cone& c);
 
-// For queries: the unit normal at a point on it, in the scene's own space.
+// For queries: the unit normal at a point on it, where a line crosses it, and how far a point is from it, in the
+// scene's own space.
 dvec3 normal_at(const layout::Cone& c, const dvec3& point);
+Crossings crossings(const Line& line, const layout::Cone& c);
+double distance_to(const layout::Cone& c, const dvec3& point);
 
 // For `kdray verify`.
 constexpr bool has_outline(const ConeGeometry&) {

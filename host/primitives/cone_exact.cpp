@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "primitives/cone.h"
 
@@ -53,6 +55,44 @@ dvec3 outward(const dvec3& point, const ConeGeometry& cone) {
 
 bool meets_again(const Line& line, const ConeGeometry& c, double t, const dvec3& side) {
   return hits_again(along(line, c), t, glm::dot(side, outward(line.origin, c)) > 0);
+}
+
+// About the place of the line that is nearest to the middle of the axis, so that no term is larger than the
+// cone makes it. (0 <= s <= height keeps the other nappe out too: its radius is negative.)
+Crossings crossings(const Line& line, const layout::Cone& c) {
+  const dvec3 unit(c.axis[0], c.axis[1], c.axis[2]);
+  const dvec3 from = line.origin - dvec3(c.base[0], c.base[1], c.base[2]);
+  const double height = c.height, slope = c.slope;
+  const double middle =
+      -glm::dot(from - 0.5 * height * unit, line.direction) / glm::dot(line.direction, line.direction);
+  const dvec3 g = from + middle * line.direction;
+  const double s = glm::dot(g, unit), ds = glm::dot(line.direction, unit);
+  const dvec3 across = g - s * unit, moving = line.direction - ds * unit;
+  const double radius = c.base_radius + slope * s, growing = slope * ds;
+  const double length = glm::length(moving), far = glm::length(across);
+  const double a = (length - growing) * (length + growing), b = glm::dot(across, moving) - radius * growing,
+               q = (far - radius) * (far + radius);
+  Crossings found;
+  const double root = std::sqrt(b * b - a * q);
+  if (!(root > 0)) return found;
+  const double sum = -(b + std::copysign(root, b));
+  double roots[2] = {q / sum, sum / a};
+  if (roots[0] > roots[1]) std::swap(roots[0], roots[1]);
+  for (const double t : roots) {
+    const double at = s + t * ds;
+    if (at >= 0 && at <= height) found.add(middle + t, at / height);
+  }
+  return found;
+}
+
+// In the half-plane of the point, where the surface is a line from the base to the apex.
+double distance_to(const layout::Cone& c, const dvec3& point) {
+  const dvec3 unit(c.axis[0], c.axis[1], c.axis[2]);
+  const dvec3 from = point - dvec3(c.base[0], c.base[1], c.base[2]);
+  const double s = glm::dot(from, unit), out = glm::length(from - s * unit) - c.base_radius;
+  const double slope = c.slope,
+               along = std::clamp((s + slope * out) / (1 + slope * slope), 0.0, double{c.height});
+  return std::hypot(s - along, out - slope * along);
 }
 
 }  // namespace kdray::primitives

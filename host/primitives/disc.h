@@ -57,8 +57,11 @@ layout::Disc pack(const DiscGeometry& d);
 Box bounds_of(const layout::Disc& d);
 std::array<float, KDRAY_DISC_ROWS - 1> rows_of(const layout::Disc& d);
 
-// For queries: the unit normal at a point on it, in the scene's own space.
+// For queries: the unit normal at a point on it, where a line crosses it, and how far a point is from it, in the
+// scene's own space.
 dvec3 normal_at(const layout::Disc& d, const dvec3& point);
+Crossings crossings(const Line& line, const layout::Disc& d);
+double distance_to(const layout::Disc& d, const dvec3& point);
 
 // For `kdray verify`.
 constexpr bool has_outline(const DiscGeometry&) {

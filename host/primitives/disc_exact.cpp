@@ -40,4 +40,22 @@ bool meets_again(const Line& line, const DiscGeometry& d, double, const dvec3&) 
   return side * way >= 0;
 }
 
+Crossings crossings(const Line& line, const layout::Disc& d) {
+  const dvec3 n(d.normal[0], d.normal[1], d.normal[2]);
+  const dvec3 way = dvec3(d.center[0], d.center[1], d.center[2]) - line.origin;
+  Crossings found;
+  if (sure_sign(n, line.direction) == 0) return found;
+  const double t = glm::dot(n, way) / glm::dot(n, line.direction),
+               away = glm::length(t * line.direction - way);
+  if (away <= d.radius) found.add(t, away / d.radius);
+  return found;
+}
+
+double distance_to(const layout::Disc& d, const dvec3& point) {
+  const dvec3 n = glm::normalize(dvec3(d.normal[0], d.normal[1], d.normal[2]));
+  const dvec3 from = point - dvec3(d.center[0], d.center[1], d.center[2]);
+  const double above = glm::dot(from, n), beyond = glm::length(from - above * n) - d.radius;
+  return std::hypot(above, std::max(beyond, 0.0));
+}
+
 }  // namespace kdray::primitives

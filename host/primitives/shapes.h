@@ -9,7 +9,8 @@
 //           prove that the surface does not meet the closed region;
 //         - for the kernels: pack (all but number and material), bounds_of (generous ones of layout::S) and
 //           rows_of (its rows in a block but for the index);
-//         - for queries: normal_at (of layout::S, at a point on it);
+//         - for queries: normal_at (of layout::S, at a point on it), crossings (of a line with it, in
+//           double), distance_to (of a point, in double);
 //         - for `kdray verify`: place_on (somewhere on it, or within its outline, for a share of 0 to 1 and
 //           any unit direction), sure_target (the t of a hit that is certain by more than a margin),
 //           meets_again (whether a hit at t is surely none of a ray that has just left it towards `side`).

@@ -54,8 +54,11 @@ layout::Sphere pack(const SphereGeometry& s);
 Box bounds_of(const layout::Sphere& s);
 std::array<float, KDRAY_SPHERE_ROWS - 1> rows_of(const layout::Sphere& s);
 
-// For queries: the unit normal at a point on it, in the scene's own space.
+// For queries: the unit normal at a point on it, where a line crosses it, and how far a point is from it, in the
+// scene's own space.
 dvec3 normal_at(const layout::Sphere& s, const dvec3& point);
+Crossings crossings(const Line& line, const layout::Sphere& s);
+double distance_to(const layout::Sphere& s, const dvec3& point);
 
 // For `kdray verify`.
 constexpr bool has_outline(const SphereGeometry&) {

@@ -63,8 +63,11 @@ layout::Torus pack(const TorusGeometry& t);
 Box bounds_of(const layout::Torus& t);
 std::array<float, KDRAY_TORUS_ROWS - 1> rows_of(const layout::Torus& t);
 
-// For queries: the unit normal at a point on it, in the scene's own space.
+// For queries: the unit normal at a point on it, where a line crosses it, and how far a point is from it, in the
+// scene's own space.
 dvec3 normal_at(const layout::Torus& t, const dvec3& point);
+Crossings crossings(const Line& line, const layout::Torus& t);
+double distance_to(const layout::Torus& t, const dvec3& point);
 
 // For `kdray verify`.
 constexpr bool has_outline(const TorusGeometry&) {

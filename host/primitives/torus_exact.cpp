@@ -126,4 +126,27 @@ bool meets_again(const Line& line, const TorusGeometry& t, double at, const dvec
   return at < 0.5 * exit;
 }
 
+// Down through the surface before each valley that is below it, and up behind it. Where the line has one
+// valley, the hill and the other lie at its end.
+Crossings crossings(const Line& line, const layout::Torus& t) {
+  const auto vector = [](const float(&v)[3]) { return vec3(v[0], v[1], v[2]); };
+  const Along along(line, {vector(t.center), vector(t.axis), t.major_radius, t.minor_radius, 0});
+  const double minor = t.minor_radius;
+  const auto is_below = [&](double at) { return along.height(at) < minor; };
+  Crossings found;
+  if (!(along.lo() < along.hi())) return found;
+  const double turns[] = {along.lo(), along.left(), along.hill(), along.right(), along.hi()};
+  for (int i = 0; i < 4; ++i)
+    if (is_below(turns[i]) != is_below(turns[i + 1]))
+      found.add(along.crossing(turns[i], turns[i + 1], is_below(turns[i]) ? 1 : -1, minor));
+  return found;
+}
+
+double distance_to(const layout::Torus& t, const dvec3& point) {
+  const dvec3 axis = glm::normalize(dvec3(t.axis[0], t.axis[1], t.axis[2]));
+  const dvec3 from = point - dvec3(t.center[0], t.center[1], t.center[2]);
+  const double z = glm::dot(from, axis), out = glm::length(from - z * axis) - t.major_radius;
+  return std::abs(std::hypot(out, z) - t.minor_radius);
+}
+
 }  // namespace kdray::primitives

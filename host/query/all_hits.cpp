@@ -20,23 +20,35 @@ std::span<const std::uint32_t> masks_of(const CollectOptions& options, std::size
 // Adds chunk by chunk to the answer.
 class Collection {
  public:
-  Collection(LocalHits& to, Passes& passes, std::uint32_t max_hits)
-      : to_(to), passes_(passes), max_hits_(max_hits) {}
+  Collection(LocalHits& to, Passes& passes, const CollectOptions& options)
+      : to_(to),
+        passes_(passes),
+        max_hits_(options.max_hits),
+        as_refs_(options.as_refs),
+        at_once_(options.at_once) {}
 
-  void add(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
+  // False, and nothing was added: there are more than `at_once_` hits.
+  bool add(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
     const std::span<const QuerySpan> spans = passes_.first(rays, masks);
     later_.clear();
-    passes_.others(spans, true, [&](const Passes::More& more) { later_.push_back(more); });
+    std::size_t n_later = 0;
+    const bool all = passes_.others(spans, true, [&](const Passes::More& more) {
+      later_.push_back(more);
+      n_later += more.n;
+      return to_.t.size() + n_later <= at_once_;
+    });
+    if (!all) return false;
     // A ray's passes stay in their order.
     const auto by_ray = [](const Passes::More& a, const Passes::More& b) { return a.ray < b.ray; };
     if (!std::is_sorted(later_.begin(), later_.end(), by_ray))
       std::stable_sort(later_.begin(), later_.end(), by_ray);
     const std::size_t n = place(spans);
-    if (n > 0) passes_.first_lists().pack(places_, n, chunk_);
+    if (n > 0) passes_.first_lists().pack(places_, n, as_refs_, chunk_);
     fill_in_later(spans);
-    name_places(passes_.target().scene.flat, {chunk_.instance, chunk_.instance ? n : 0});
+    if (!as_refs_) name_places(passes_.target().scene.flat, {chunk_.instance, chunk_.instance ? n : 0});
     give_back();
     n_rays_ += rays.size();
+    return true;
   }
 
  private:
@@ -104,6 +116,8 @@ class Collection {
   LocalHits& to_;
   Passes& passes_;
   std::uint32_t max_hits_;
+  bool as_refs_;
+  std::size_t at_once_;
   std::size_t n_rays_ = 0;             // before the chunk
   HitArrays chunk_{};                  // the chunk's in the answer
   std::vector<std::uint32_t> places_;  // of the chunk's rays
@@ -112,18 +126,19 @@ class Collection {
 
 }  // namespace
 
-void all_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions& options, LocalHits& all) {
+bool all_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions& options, LocalHits& all) {
   all.splits.resize(rays.size() + 1);
   all.splits[0] = 0;
   all.more.resize(rays.size());
   all.t.clear(), all.primitive.clear(), all.u.clear(), all.v.clear(), all.instance.clear();
-  if (rays.empty()) return;
+  if (rays.empty()) return true;
   passes.begin(rays.size(), options);
-  Collection collection(all, passes, options.max_hits);
+  Collection collection(all, passes, options);
   for (std::size_t first = 0, n = 0; first < rays.size(); first += n) {
     n = passes.next_chunk(rays.size() - first);
-    collection.add(rays.subspan(first, n), masks_of(options, first, n));
+    if (!collection.add(rays.subspan(first, n), masks_of(options, first, n))) return false;
   }
+  return true;
 }
 
 void all_hits(const Target& target, std::span<const Ray> rays, const CollectOptions& options,
@@ -147,7 +162,10 @@ void count_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions&
     const std::span<const QuerySpan> spans =
         passes.first(rays.subspan(first, n), masks_of(options, first, n));
     for (std::size_t i = 0; i < n; ++i) counts[first + i] = std::min(spans[i].n_hits, options.max_hits);
-    passes.others(spans, false, [&](const Passes::More& more) { counts[first + more.ray] += more.n; });
+    passes.others(spans, false, [&](const Passes::More& more) {
+      counts[first + more.ray] += more.n;
+      return true;
+    });
   }
 }
 

@@ -14,11 +14,6 @@
 
 namespace kdray::query {
 
-void throw_if_cancelled(const QueryOptions& options) {
-  if (options.cancel && options.cancel->is_cancelled())
-    throw Error(ErrorCode::cancelled, "the query was cancelled");
-}
-
 void check_invalid(const LocalRays& rays, const QueryOptions& options) {
   if (options.invalid == InvalidRays::error && rays.first_invalid())
     throw Error(ErrorCode::input, *rays.first_invalid());
@@ -60,7 +55,7 @@ class ChunkTracer {
     chunks_[0].emplace(asked_, rays_);
     const std::size_t at_once = chunk_for(rays_.size(), chunks_[0]->session->chunk());
     for (std::size_t first = 0, turn = 0; first < rays_.size(); first += at_once, turn ^= 1) {
-      throw_if_cancelled(options);
+      throw_if_cancelled(options.cancel);
       if (!chunks_[turn]) chunks_[turn].emplace(asked_, rays_);
       finish(*chunks_[turn]);
       start(*chunks_[turn], first, std::min(at_once, rays_.size() - first), options);

@@ -23,9 +23,8 @@ struct Asked {
   const prepare::Prepared& scene() const { return target.scene; }
 };
 
-// What every query looks at on its way: ErrorCode::cancelled; ErrorCode::input for the first ray that means
-// nothing, where such are errors, and for an array of answers of another size.
-void throw_if_cancelled(const QueryOptions& options);
+// What every query looks at on its way: ErrorCode::input for the first ray that means nothing, where such are
+// errors, and for an array of answers of another size.
 void check_invalid(const LocalRays& rays, const QueryOptions& options);
 void check_out(std::size_t size, std::size_t n, const char* name);
 

@@ -31,6 +31,8 @@ class GeometryTable {
 
   Place of(std::uint32_t number) const;
   InstancePlace of_instance(std::uint32_t instance) const;  // by its place in the scene's list
+  std::uint32_t mask_of(std::uint32_t number) const { return holder(geometries_, number).mask; }
+  std::uint32_t mask_of_instance(std::uint32_t instance) const { return holder(instances_, instance).mask; }
   // The geometry that all numbers are of; none: there are several, or none at all, or instances.
   std::optional<GeometryId> only() const;
   std::uint32_t size() const { return next_; }  // numbers in all

@@ -162,7 +162,7 @@ int length_exponent(const Ray& ray) {
 }  // namespace
 
 // What pack_hits does, on the host.
-void HitLists::pack_here(std::span<const std::uint32_t> places, const HitArrays& to) {
+void HitLists::pack_here(std::span<const std::uint32_t> places, bool as_refs, const HitArrays& to) {
   const int space = static_cast<int>(std::bit_cast<std::uint32_t>(scale_) >> 23) - 127;
   for (std::size_t i = 0; i < n_rays_; ++i) {
     const int exponent = -(any_length_ ? length_exponent(given_[i]) : 0) - space;
@@ -170,7 +170,8 @@ void HitLists::pack_here(std::span<const std::uint32_t> places, const HitArrays&
     const std::uint32_t n = spans_.data()[i].n_hits, first = places[i];
     for (std::uint32_t k = 0; k < n; ++k) {
       to.t[first + k] = scale_t(hits[k].t, exponent);
-      to.primitive[first + k] = number_of(target_.scene.flat, static_cast<std::uint32_t>(hits[k].primitive));
+      const auto ref = static_cast<std::uint32_t>(hits[k].primitive);
+      to.primitive[first + k] = as_refs ? ref : number_of(target_.scene.flat, ref);
       to.u[first + k] = hits[k].u;
       to.v[first + k] = hits[k].v;
       if (placed_) to.instance[first + k] = instances_.data()[i * capacity_ + k] - 1;
@@ -178,13 +179,13 @@ void HitLists::pack_here(std::span<const std::uint32_t> places, const HitArrays&
   }
 }
 
-void HitLists::pack(std::span<const std::uint32_t> places, std::size_t n, const HitArrays& to) {
+void HitLists::pack(std::span<const std::uint32_t> places, std::size_t n, bool as_refs, const HitArrays& to) {
   using P = kernels::PackHits;
   const device::Context& context = target_.context;
-  if (n <= kFewHits && n_rays_ <= kFewHits && hits_.is_in_place()) return pack_here(places, to);
+  if (n <= kFewHits && n_rays_ <= kFewHits && hits_.is_in_place()) return pack_here(places, as_refs, to);
   device::checked("packing hits", [&] {
     pack_.set(P::n_rays, static_cast<cl_uint>(n_rays_)).set(P::capacity, capacity_);
-    pack_.set(P::any_length, cl_uint{any_length_});
+    pack_.set(P::any_length, cl_uint{any_length_}).set(P::as_refs, cl_uint{as_refs});
     pack_.set(P::rays, n_rays_ > kFewElements ? rays_.large : rays_.kept.buffer());
     pack_.set(P::places, places_.take(target_, queue_, places, "the hits' places"));
     pack_.set(P::t, t_.place(context, to.t, n)).set(P::primitive, primitive_.place(context, to.primitive, n));

@@ -54,8 +54,9 @@ class HitLists {
   std::span<const layout::QuerySpan> find(const RaysGiven& given, bool any_length,
                                           std::span<const layout::QuerySpan> after, std::uint32_t capacity);
 
-  // The hits of ray i that were found last to places[i] and behind, `n` places in all.
-  void pack(std::span<const std::uint32_t> places, std::size_t n, const HitArrays& to);
+  // The hits of ray i that were found last to places[i] and behind, `n` places in all. Primitives are named by
+  // their numbers, or with `as_refs` by reference.
+  void pack(std::span<const std::uint32_t> places, std::size_t n, bool as_refs, const HitArrays& to);
 
  private:
   // An array of the caller's, for kernels to read: a small one is copied to memory that is kept, a large one
@@ -67,7 +68,7 @@ class HitLists {
     const cl::Buffer& take(const Target& target, cl::CommandQueue& queue, std::span<const T> values,
                            const char* what);
   };
-  void pack_here(std::span<const std::uint32_t> places, const HitArrays& to);
+  void pack_here(std::span<const std::uint32_t> places, bool as_refs, const HitArrays& to);
 
   // Packed hits on their way to the caller's memory: the same.
   template <class T>

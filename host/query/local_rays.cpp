@@ -80,36 +80,50 @@ double LocalFrame::distance_ahead(const dvec3& origin, const dvec3& direction) c
   return enter <= leave + 0x1p-48 * std::abs(leave) ? enter : HUGE_VAL;
 }
 
-LocalRay LocalFrame::begin(const dvec3& world_origin, const dvec3& world_direction, double t_min,
-                           double t_max, bool in_double) const {
-  LocalRay out{kNoRay, 0, exponent_};
+// A call for each ray would take a fifth of the time of any-hit queries.
+[[gnu::always_inline]] inline std::optional<LocalLine> LocalFrame::begin_line(const dvec3& world_origin,
+                                                                              const dvec3& world_direction,
+                                                                              bool in_double) const {
   const double largest = largest_component(world_direction);
   const int length = is_ordinary_length(largest) ? 0 : std::ilogb(largest);
   const dvec3 direction =
       length == 0 ? world_direction
                   : dvec3(std::scalbn(world_direction.x, -length), std::scalbn(world_direction.y, -length),
                           std::scalbn(world_direction.z, -length));
-  out.exponent = exponent_ - length;
   // In local lengths from here on. The origin is the sum of two doubles, since the difference is rounded.
   dvec3 origin = world_origin - space_.center;
   const dvec3 back = world_origin - origin, rest = (world_origin - (origin + back)) - (space_.center - back);
   origin *= space_.scale;
-  double ahead = 0;  // in multiples of the local direction
+  double ahead = 0;
   if (!(largest_component(origin) <= (in_double ? near_ : kFar))) {
     ahead = distance_ahead(origin, direction);
-    if (!std::isfinite(ahead)) return out;
+    if (!std::isfinite(ahead)) return std::nullopt;
     for (int k = 0; k < 3; ++k) origin[k] = std::fma(ahead, direction[k], origin[k]) + rest[k] * space_.scale;
-    if (!(largest_component(origin) <= kFar)) return out;
+    if (!(largest_component(origin) <= kFar)) return std::nullopt;
   }
+  return LocalLine{origin, direction, ahead, exponent_ - length};
+}
+
+std::optional<LocalLine> LocalFrame::line(const dvec3& origin, const dvec3& direction, bool in_double) const {
+  return begin_line(origin, direction, in_double);
+}
+
+LocalRay LocalFrame::begin(const dvec3& origin, const dvec3& direction, double t_min, double t_max,
+                           bool in_double) const {
+  LocalRay out{kNoRay, 0, exponent_};
+  const std::optional<LocalLine> line = begin_line(origin, direction, in_double);
+  if (!line) return out;
+  out.exponent = line->exponent;
   for (int k = 0; k < 3; ++k) {
-    out.ray.origin[k] = static_cast<float>(origin[k]);
-    out.ray.direction[k] = static_cast<float>(direction[k]);
+    out.ray.origin[k] = static_cast<float>(line->origin[k]);
+    out.ray.direction[k] = static_cast<float>(line->direction[k]);
   }
   // Finite, as every ray's: beyond float's range nothing lies between it and the scene.
   constexpr double kMost = std::numeric_limits<float>::max();
-  out.ray.t_min = static_cast<float>(std::clamp(std::scalbn(t_min, -out.exponent) - ahead, -kMost, kMost));
-  out.ray.t_max = static_cast<float>(std::scalbn(t_max, -out.exponent) - ahead);
-  out.ahead = std::scalbn(ahead, out.exponent);
+  out.ray.t_min =
+      static_cast<float>(std::clamp(std::scalbn(t_min, -out.exponent) - line->ahead, -kMost, kMost));
+  out.ray.t_max = static_cast<float>(std::scalbn(t_max, -out.exponent) - line->ahead);
+  out.ahead = std::scalbn(line->ahead, out.exponent);
   return out;
 }
 
@@ -147,13 +161,14 @@ void LocalRays::fill_any(std::size_t first, std::size_t n, layout::QueryRay* out
 }
 
 void LocalRays::note_invalid(std::size_t first, std::size_t n) {
-  for (std::size_t i = first; i < first + n; ++i) {
+  for (std::size_t i = std::max(first, looked_at_); i < first + n; ++i) {
     const char* const fault =
         fault_of(rays_->origin(i), rays_->direction(i), rays_->t_min(i), rays_->t_max(i));
     if (fault == nullptr) continue;
     ++n_invalid_;
     if (!first_invalid_) first_invalid_ = fmt::format("ray {}: {}; take it out or repair it", i, fault);
   }
+  looked_at_ = std::max(looked_at_, first + n);
 }
 
 }  // namespace kdray::query

@@ -62,10 +62,19 @@ struct LocalRay {
   int exponent;
 };
 
+// The same in doubles: t = ldexp(ahead + local t, exponent).
+struct LocalLine {
+  dvec3 origin, direction;
+  double ahead;  // in multiples of the local direction
+  int exponent;
+};
+
 class LocalFrame {
  public:
   explicit LocalFrame(const scene::Geometry& geometry);  // its space and bounds
 
+  // None where it passes the bounds by, or stays too far from them for floats.
+  std::optional<LocalLine> line(const dvec3& origin, const dvec3& direction, bool in_double) const;
   LocalRay begin(const dvec3& origin, const dvec3& direction, double t_min, double t_max,
                  bool in_double) const;
   // The exponent of rays that need no more: those of ordinary length that are not moved.
@@ -79,6 +88,7 @@ class LocalFrame {
 
  private:
   double distance_ahead(const dvec3& origin, const dvec3& direction) const;
+  std::optional<LocalLine> begin_line(const dvec3& origin, const dvec3& direction, bool in_double) const;
 
   LocalSpace space_;
   dvec3 lo_, hi_;  // the bounds, a little wider
@@ -92,7 +102,8 @@ class LocalRays {
  public:
   LocalRays(const RayArrays& rays, const LocalFrame& frame) : rays_(&rays), frame_(&frame) {}
 
-  // Fills out[0, n) with rays [first, first + n). One whose mask has no bit meets nothing.
+  // Fills out[0, n) with rays [first, first + n), which may be asked for again. One whose mask has no bit meets
+  // nothing.
   void fill(std::size_t first, std::size_t n, layout::QueryRay* out);
 
   // Of ray i of the chunk that was filled last.
@@ -116,7 +127,8 @@ class LocalRays {
 
   const RayArrays* rays_;
   const LocalFrame* frame_;
-  std::vector<Moved> moved_;  // empty: all rays of the chunk are as far ahead and as long as usual
+  std::vector<Moved> moved_;   // empty: all rays of the chunk are as far ahead and as long as usual
+  std::size_t looked_at_ = 0;  // rays before this one have been counted where they are invalid
   std::uint64_t n_invalid_ = 0;
   std::optional<std::string> first_invalid_;
 };

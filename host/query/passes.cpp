@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "query/grains.h"
 
 namespace kdray::query {
 
@@ -52,12 +53,15 @@ bool Passes::settle() noexcept {
   // What was kept of the last call's rays is not.
   rays_ = {};
   masks_ = {};
+  cancel_.reset();
   const bool first = first_.settle(), later = !later_ || later_->settle();
   return first && later;
 }
 
 void Passes::begin(std::size_t n_rays, const CollectOptions& options) {
   faulty_miss_ = options.faulty_miss;
+  as_refs_ = options.as_refs;
+  cancel_ = options.cancel;
   max_hits_ = options.max_hits;
   capacity_ = std::clamp(options.max_hits, 1u, kLeastFirst);
   room_ = std::min(n_rays * capacity_, launch_hits(target_));
@@ -69,6 +73,7 @@ std::size_t Passes::next_chunk(std::size_t left) const {
 }
 
 std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
+  throw_if_cancelled(cancel_);
   seen_ = look_at(rays);
   if (!faulty_miss_) refuse_faulty(rays, seen_, n_taken_);
   n_taken_ += rays.size();
@@ -87,7 +92,7 @@ std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<co
   return spans;
 }
 
-void Passes::others(std::span<const QuerySpan> spans, bool want_hits, const Found& found) {
+bool Passes::others(std::span<const QuerySpan> spans, bool want_hits, const Found& found) {
   later_hits_.clear();
   std::vector<Rest> rest;
   for (std::uint32_t i = 0; i < spans.size(); ++i)
@@ -96,12 +101,15 @@ void Passes::others(std::span<const QuerySpan> spans, bool want_hits, const Foun
   while (!rest.empty()) {
     std::vector<Rest> still;
     for (std::size_t first = 0; first < rest.size(); first += most)
-      pass(std::span(rest).subspan(first, std::min(rest.size() - first, most)), want_hits, found, still);
+      if (!pass(std::span(rest).subspan(first, std::min(rest.size() - first, most)), want_hits, found, still))
+        return false;
     rest.swap(still);
   }
+  return true;
 }
 
-void Passes::pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still) {
+bool Passes::pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still) {
+  throw_if_cancelled(cancel_);
   const std::size_t room = launch_hits(target_);
   if (!later_)
     later_ =
@@ -120,10 +128,11 @@ void Passes::pass(std::span<const Rest> rest, bool want_hits, const Found& found
   const Hits* const hits = want_hits ? packed(spans) : nullptr;
   for (std::size_t k = 0, at = 0; k < rest.size(); at += spans[k++].n_hits) {
     const std::uint32_t n = std::min(spans[k].n_hits, max_hits_ - rest[k].n_hits);
-    found({rest[k].ray, hits, at, n, spans[k].more != 0 || n < spans[k].n_hits});
+    if (!found({rest[k].ray, hits, at, n, spans[k].more != 0 || n < spans[k].n_hits})) return false;
     if (spans[k].more != 0 && rest[k].n_hits + n < max_hits_)
       still.push_back({rest[k].ray, rest[k].n_hits + n, spans[k]});
   }
+  return true;
 }
 
 const Hits* Passes::packed(std::span<const QuerySpan> spans) {
@@ -134,7 +143,7 @@ const Hits* Passes::packed(std::span<const QuerySpan> spans) {
     n += s.n_hits;
   }
   Hits& hits = *later_hits_.emplace_back(std::make_unique<Hits>(n, has_instances()));
-  if (n > 0) later_->pack(places, n, hits.arrays());
+  if (n > 0) later_->pack(places, n, as_refs_, hits.arrays());
   return &hits;
 }
 

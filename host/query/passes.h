@@ -62,18 +62,18 @@ class Passes {
     std::uint32_t n;
     bool others;
   };
-  using Found = std::function<void(const More&)>;
+  using Found = std::function<bool(const More&)>;  // whether to go on
 
   // Finds all that the chunk's rays have beyond the first pass, but no more than max_hits of a ray. `spans`
-  // is what first() returned. Hits are valid until the next call.
-  void others(std::span<const layout::QuerySpan> spans, bool want_hits, const Found& found);
+  // is what first() returned. Hits are valid until the next call. Whether it went on to the end.
+  bool others(std::span<const layout::QuerySpan> spans, bool want_hits, const Found& found);
 
  private:
   struct Rest {
     std::uint32_t ray, n_hits;
     layout::QuerySpan span;
   };
-  void pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still);
+  bool pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still);
   const Hits* packed(std::span<const layout::QuerySpan> spans);
 
   const Target& target_;
@@ -84,7 +84,8 @@ class Passes {
   std::unique_ptr<HitLists> later_;
   std::vector<std::unique_ptr<Hits>> later_hits_;  // of the chunk, a pass each
   // What the call asks for.
-  bool faulty_miss_ = false;
+  bool faulty_miss_ = false, as_refs_ = false;
+  std::optional<Cancel> cancel_;
   std::uint32_t max_hits_ = 0, capacity_ = 0;
   std::size_t room_ = 0;     // for hits in a launch
   std::size_t n_taken_ = 0;  // rays of the chunks so far

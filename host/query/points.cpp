@@ -3,29 +3,33 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "prepare/instanced.h"
 #include "query/all_hits.h"
 #include "query/closest_point.h"
+#include "query/exact_scene.h"
 #include "query/grains.h"
+#include "query/pace.h"
 
 namespace kdray::query {
 
 namespace {
 
-constexpr std::size_t kPointsAtOnce = std::size_t{1} << 18;
+// Points of a chunk at most, and of the first one.
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 18, kFirstPoints = std::size_t{1} << 12;
 
 // Chunks of points as they can be asked for: those that are not finite are put at the origin, and remembered.
 class PointChunks {
  public:
   PointChunks(const Points& points, const PointOptions& options) : points_(points), options_(&options) {}
 
-  std::span<const dvec3> take(std::size_t first) {
-    if (options_->cancel && options_->cancel->is_cancelled())
-      throw Error(ErrorCode::cancelled, "the query was cancelled");
-    const std::size_t n = std::min(kPointsAtOnce, points_.size() - first);
+  std::span<const dvec3> take(std::size_t first, std::size_t most) {
+    throw_if_cancelled(options_->cancel);
+    const std::size_t n = std::min(most, points_.size() - first);
+    first_ = first;
     taken_.resize(n);
     invalid_.clear();
     for_each_index(n, [&](std::size_t i) {
@@ -39,6 +43,12 @@ class PointChunks {
 
   bool is_invalid(std::size_t i) const {
     return !invalid_.empty() && std::binary_search(invalid_.begin(), invalid_.end(), i);
+  }
+  // Of the chunk's point i, which is invalid.
+  double signed_distance(std::size_t i) const {
+    const auto p = points_[first_ + i];
+    const bool is_number = std::none_of(p.begin(), p.end(), [](double x) { return std::isnan(x); });
+    return is_number ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
   }
   std::uint64_t n_invalid() const { return n_invalid_; }
 
@@ -55,27 +65,56 @@ class PointChunks {
   Points points_;
   const PointOptions* options_;
   std::vector<dvec3> taken_;
-  std::vector<std::size_t> invalid_;  // of the chunk in work, in order
+  std::size_t first_ = 0;             // of the chunk in work
+  std::vector<std::size_t> invalid_;  // of it, in order
   std::uint64_t n_invalid_ = 0;
 };
 
-// How many surfaces each point has above it: an odd number inside of closed ones. Any direction serves, since
-// every crossing counts once; this one lies in no plane that models are likely to have faces in, which would
-// cost time. Masks are for rays: points see every geometry.
-std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const dvec3> points) {
+// The way in which surfaces are counted. Any direction serves, since every crossing counts once; this one lies
+// in no plane that models are likely to have faces in, which would cost time.
+constexpr float kUp[3] = {0.1803f, 0.2741f, 1};
+
+// How many surfaces each point has above it. Masks are for rays: points see every geometry.
+std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const dvec3> points,
+                                           const PointOptions& options) {
   std::vector<Ray> rays(points.size());
   for_each_index(points.size(), [&](std::size_t i) {
     const dvec3 local = asked.frame.space().local(points[i]);
     const bool outside = asked.frame.is_outside(local);
     const vec3 at = outside ? vec3(0) : vec3(local);
     const float end = std::numeric_limits<float>::infinity();
-    rays[i] = {{at.x, at.y, at.z}, 0, {0.1803f, 0.2741f, 1}, outside ? -end : end};
+    rays[i] = {{at.x, at.y, at.z}, 0, {kUp[0], kUp[1], kUp[2]}, outside ? -end : end};
   });
   std::vector<std::uint32_t> counts(points.size());
   AllSessions& all = asked.sessions;
   const bool masked = asked.target.masks() != nullptr;
-  count_hits(*(masked ? all.of_all : all.crossings).borrow(), rays, {}, counts);
+  count_hits(*(masked ? all.of_all : all.crossings).borrow(), rays, {.cancel = options.cancel}, counts);
   return counts;
+}
+
+// Whether each point has an odd number of surfaces above it: it is inside of closed ones. Points of doubles
+// so near to a surface that floats can't tell are looked at in double.
+std::vector<std::uint8_t> are_inside(const Asked& asked, std::span<const dvec3> points, bool in_double,
+                                     const PointOptions& options) {
+  const std::vector<std::uint32_t> counts = crossings_above(asked, points, options);
+  std::vector<std::uint8_t> inside(points.size());
+  for_each_index(points.size(), [&](std::size_t i) { inside[i] = counts[i] % 2; });
+  if (!in_double) return inside;
+  const ExactScene exact(asked.scene());
+  for_each_slow_grain(points.size(), options.cancel, [&](std::size_t begin, std::size_t end) {
+    std::vector<ExactHit> hits;
+    for (std::size_t i = begin; i < end; ++i) {
+      const dvec3 place = asked.frame.space().local(points[i]);
+      if (asked.frame.is_outside(place) || !exact.is_near(place)) continue;
+      exact.cross(place, dvec3(kUp[0], kUp[1], kUp[2]), hits);
+      inside[i] = hits.size() % 2;
+    }
+  });
+  return inside;
+}
+
+bool are_doubles(const Points& points) {
+  return !points.empty() && points.first_of<const double>() != nullptr;
 }
 
 // What lies nearest to points: asked for when it is made, so that the device works at it meanwhile.
@@ -103,8 +142,13 @@ class Nearest {
 template <class Take>
 QueryReport for_each_chunk(const Points& points, const PointOptions& options, const Take& take) {
   PointChunks chunks(points, options);
-  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce)
-    take(first, chunks.take(first), chunks);
+  Pace pace(kFirstPoints, kPointsAtOnce);
+  for (std::size_t first = 0; first < points.size();) {
+    const std::span<const dvec3> some = chunks.take(first, pace.take());
+    take(first, some, chunks);
+    first += some.size();
+    pace.done(some.size());
+  }
   return {chunks.n_invalid()};
 }
 
@@ -146,15 +190,14 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
 QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out,
                    const PointOptions& options) {
   check_out(out.size(), points.size(), "inside");
-  return for_each_chunk(points, options,
-                        [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-                          const std::vector<std::uint32_t> counts = crossings_above(asked, some);
-                          if (out.empty()) return;
-                          out.fill(first, some.size(), [&](std::size_t i) {
-                            const bool in = counts[i - first] % 2 == 1 && !chunks.is_invalid(i - first);
-                            return std::array{static_cast<std::uint8_t>(in)};
-                          });
-                        });
+  return for_each_chunk(
+      points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+        const std::vector<std::uint8_t> found = are_inside(asked, some, are_doubles(points), options);
+        if (out.empty()) return;
+        out.fill(first, some.size(), [&](std::size_t i) {
+          return std::array{std::uint8_t(chunks.is_invalid(i - first) ? 0 : found[i - first])};
+        });
+      });
 }
 
 QueryReport signed_distance(const Asked& asked, const Points& points, const ValuesOut& out,
@@ -164,13 +207,13 @@ QueryReport signed_distance(const Asked& asked, const Points& points, const Valu
   return for_each_chunk(
       points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
         Nearest nearest(asked, some, options.radius);
-        const std::vector<std::uint32_t> counts = crossings_above(asked, some);
+        const std::vector<std::uint8_t> inside = are_inside(asked, some, are_doubles(points), options);
         const std::vector<ClosestPoint>& found = nearest.wait();
         if (out.empty()) return;
         out.fill(first, some.size(), [&](std::size_t i) {
-          const double distance = chunks.is_invalid(i - first) ? std::numeric_limits<double>::infinity()
-                                                               : found[i - first].distance;
-          return std::array{counts[i - first] % 2 == 1 ? -distance : distance};
+          const std::size_t at = i - first;
+          if (chunks.is_invalid(at)) return std::array{chunks.signed_distance(at)};
+          return std::array{inside[at] ? -found[at].distance : found[at].distance};
         });
       });
 }

@@ -18,38 +18,44 @@ using dvec2 = glm::dvec2;
 
 namespace exact {
 
-// A number as the exact sum of doubles that don't overlap, smallest first.
+// A number as the exact sum of doubles that don't overlap, smallest first; zeros are left out. It has room for
+// as many as are added.
+template <int kRoom>
 class Expansion {
  public:
   void add(double value) {
+    int kept = 0;
     for (int i = 0; i < size_; ++i) {
       const double sum = value + part_[i];
       const double back = sum - value;
-      part_[i] = (value - (sum - back)) + (part_[i] - back);
+      const double rest = (value - (sum - back)) + (part_[i] - back);
+      if (rest != 0) part_[kept++] = rest;
       value = sum;
     }
-    part_[size_++] = value;
+    if (value != 0) part_[kept++] = value;
+    size_ = kept;
   }
   void add_product(double a, double b) {
     const double high = a * b;
     add(std::fma(a, b, -high));
     add(high);
   }
-  int sign() const {
-    for (int i = size_ - 1; i >= 0; --i) {
-      if (part_[i] != 0) return part_[i] > 0 ? 1 : -1;
-    }
-    return 0;
+  template <int kOther>
+  void add_product(const Expansion<kOther>& a, double b) {
+    for (const double part : a) add_product(part, b);
   }
+  int sign() const { return size_ == 0 ? 0 : (part_[size_ - 1] > 0 ? 1 : -1); }
+  const double* begin() const { return part_.data(); }
+  const double* end() const { return part_.data() + size_; }
 
  private:
-  std::array<double, 12> part_;
+  std::array<double, kRoom> part_;
   int size_ = 0;
 };
 
 inline int orient_sign(const dvec2& a, const dvec2& b, const dvec2& c) {
   // (b - a) x (c - a) multiplied out, so that no difference is rounded.
-  Expansion sum;
+  Expansion<12> sum;
   sum.add_product(b.x, c.y);
   sum.add_product(-b.x, a.y);
   sum.add_product(-a.x, c.y);

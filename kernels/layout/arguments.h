@@ -186,6 +186,7 @@
   X(VALUE, u32, n_rays)                 \
   X(VALUE, u32, capacity)               \
   X(VALUE, u32, any_length)             \
+  X(VALUE, u32, as_refs)                \
   KDRAY_TRACED_ARRAYS(X)                \
   X(IN, QueryRay, rays)                 \
   X(IN, QuerySpan, spans)               \

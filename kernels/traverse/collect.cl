@@ -1,6 +1,7 @@
 // What    collect_hits: all hits of query rays: a list for each, sorted, of as many as fit, and whether there
 //         are more. pack_hits: the lists moved together as structures of arrays, those of ray i to places[i],
-//         with primitives' numbers for references and t in multiples of the direction as it was given.
+//         with primitives' numbers for references (not with as_refs) and t in multiples of the direction as it
+//         was given.
 //         `space`: the scene's centre and scale (host/math/local_space.h).
 // Shape   The wide walk has one ray to a work-item, the others KDRAY_CHUNK rays; pack_hits has one.
 // Cost    collect_hits reads 32 B of the ray and the tree, writes 16 B and 16 B for each hit.
@@ -66,7 +67,8 @@ __kernel void pack_hits(KDRAY_PARAMETERS(KDRAY_PACK_HITS_ARGUMENTS)) {
   const u32 n = in_spans[i].n_hits, first = in_places[i];
   for (u32 k = 0; k < n; ++k) {
     out_t[first + k] = scale_t(hits[k].t, exponent);
-    out_primitive[first + k] = primitive_number(&scene, (u32)hits[k].primitive);
+    const u32 ref = (u32)hits[k].primitive;
+    out_primitive[first + k] = as_refs ? ref : primitive_number(&scene, ref);
 #if KDRAY_HAS_INSTANCES
     out_instance[first + k] = in_hit_instances[(size_t)i * capacity + k] - 1;
 #else

@@ -459,8 +459,9 @@ class Scene:
     ) -> Hits:
         """What each ray hits first.
 
-        float64 rays are met in the scene's own frame, begun and answered in double (shapes are floats about the
-        scene's centre); results are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted
+        Which surface a ray hits first is decided in floats; of float64 rays `t` and `point` are found in double from
+        the surface that was hit (shapes are floats about the scene's centre, whatever they were given as); results
+        are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted
         (all but `point`, and `instance` only where the scene has instances, if you say nothing): fewer are faster;
         `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or with `strict` an
         InputError that names the first.
@@ -510,7 +511,9 @@ class Scene:
     ) -> npt.NDArray[np.uint32]:
         """How many surfaces each ray crosses (uint32), each once, through edges and vertices too.
 
-        A ray from outside of a closed mesh to its outside has an even count, always.
+        A ray from outside of a closed mesh to its outside has an even count, always. Whether a float64 ray begins
+        before or behind a surface is decided by its doubles, for triangles exactly (corners are floats about the
+        scene's centre).
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         return self._ask_each(self._ready().count, rays, np.uint32, out, strict, progress, "count_hits")
@@ -526,7 +529,11 @@ class Scene:
         max_hits: int | None = None,
         strict: bool = False,
     ) -> AllHits:
-        """Every crossing of every ray, sorted by t, or the first `max_hits` of each ray."""
+        """Every crossing of every ray, sorted by t, or the first `max_hits` of each ray.
+
+        What `count_hits` says of float64 rays holds here; their t is found in double. Hits that don't fit into memory
+        are refused (OutOfMemoryError) with their number; Ctrl-C ends the call.
+        """
         most = 0xFFFFFFFF if max_hits is None else max_hits
         if not 0 <= most <= 0xFFFFFFFF:
             raise errors.UsageError(f"max_hits: {max_hits} is out of range")
@@ -574,7 +581,11 @@ class Scene:
         *,
         strict: bool = False,
     ) -> npt.NDArray[Any]:
-        """The distance to the nearest surface, negative inside of closed ones; of the points' type."""
+        """The distance to the nearest surface, negative inside of closed ones; of the points' type.
+
+        The sign is that of `contains`. A point with NaN has the distance nan, an infinite one inf; inside, what has
+        nothing within `radius` has -inf.
+        """
         rows, shape = _arrays.vectors(points, "points")
         result = result_of(out, shape, *(FLOATS if out is not None else (rows.dtype.type,)), "out")
         self._ready().signed_distance(rows, radius, strict, as_rows(result))
@@ -583,7 +594,13 @@ class Scene:
     def contains(
         self, points: ArrayLike, out: npt.NDArray[np.bool_] | None = None, *, strict: bool = False
     ) -> npt.NDArray[np.bool_]:
-        """Whether each point lies inside: of an odd number of closed surfaces. Exact, without a vote."""
+        """Whether each point lies inside: of an odd number of closed surfaces.
+
+        float64 points are decided by their doubles, without a vote: exactly against triangles, whose corners are
+        floats about the scene's centre (in a scene of 200 km they lie up to 4 mm beside what was given). float32
+        points are rounded to floats there, and may be wrong within 2^-18 of the scene's size of a surface. A point
+        that is not finite lies outside.
+        """
         rows, shape = _arrays.vectors(points, "points")
         result = result_of(out, shape, np.bool_, "out")
         self._ready().inside(rows, strict, as_rows(result).view(np.uint8))

@@ -218,7 +218,22 @@ def test_rays_that_mean_nothing(ball):
     assert ball.count_hits(o, d).tolist() == [2, 0, 0, 0]
     with pytest.raises(kdray.InputError, match="ray 1"):
         ball.closest_hit(o, d, strict=True)
-    assert ball.contains([[0, 0, np.nan]]).tolist() == [False]
+    nowhere = [[0, 0, np.nan], [np.inf, 0, 0], [0, -np.inf, 0]]
+    assert ball.contains(nowhere).tolist() == [False, False, False]
+    np.testing.assert_array_equal(ball.signed_distance(nowhere), [np.nan, np.inf, np.inf])
+
+
+def test_doubles_are_on_the_side_that_they_say():
+    scene = kdray.Scene()
+    corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)])
+    faces = [[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4]]
+    faces += [[2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5]]
+    scene.add_mesh(corners, faces)
+    points = np.array([[1 + 3e-8, 0.3, 0.2], [1 - 3e-8, 0.3, 0.2]])
+    assert scene.contains(points).tolist() == [False, True]
+    np.testing.assert_allclose(scene.signed_distance(points), [3e-8, -3e-8], atol=1e-15)
+    assert scene.count_hits([0.1, 0.2, 1 - 1e-8], [1, 0.01, 0]) == 1
+    assert scene.closest_hit([0.1, 0.2, 0.3], [1, 0.1, 0.05]).t == pytest.approx(0.9, abs=1e-15)
 
 
 def test_an_empty_scene_has_nothing_to_hit():

@@ -239,6 +239,26 @@ def test_ctrl_c_ends_a_long_call(question):
     assert "KeyboardInterrupt" in errors and program.returncode != 0
 
 
+# A ray hits a thousand of these triangles.
+SOUP = LONG.replace("scene.add_spheres(rng.normal(size=(20000, 3)), 0.02)", """
+scene.add_mesh(rng.uniform(-1, 1, (90000, 3)), np.arange(90000).reshape(-1, 3))
+""")
+
+
+def test_ctrl_c_ends_a_call_of_very_many_hits():
+    program = subprocess.Popen(
+        [sys.executable, "-c", SOUP.format(question="all_hits(0.1 * o[:40000], d[:40000], max_hits=300)")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert program.stdout.readline() == "asking\n"
+    time.sleep(1)
+    program.send_signal(signal.SIGINT)
+    _, errors = program.communicate(timeout=60)
+    assert "KeyboardInterrupt" in errors and program.returncode != 0
+
+
 def test_bounds_are_of_what_is_there(ball_mesh):
     vertices, triangles = ball_mesh
     scene = kdray.Scene()

@@ -172,7 +172,9 @@ TEST_P(Batches, FloatsAreTakenAsDoublesAreAndGivenInAnyForm) {
   scene.closest({origins, directions, t_min, t_max},
                 {.t = double_t, .primitive = {apart.data(), n, 8}, .u = double_u});
   for (std::size_t i = 0; i < n; ++i) {
-    ASSERT_EQ(t[i], static_cast<float>(double_t[i])) << "seed " << kSeed << ", ray " << i;
+    // They meet the same; t of doubles is found in double.
+    ASSERT_EQ(std::isinf(t[i]), std::isinf(double_t[i])) << "seed " << kSeed << ", ray " << i;
+    ASSERT_TRUE(std::isinf(t[i]) || std::abs(t[i] - double_t[i]) <= 1e-5 * double_t[i] + 1e-6) << "ray " << i;
     ASSERT_EQ(primitive[i], apart[2 * i]) << i;
     ASSERT_EQ(u[i], double_u[i]) << i;
   }

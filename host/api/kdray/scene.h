@@ -142,24 +142,27 @@ class Scene {
   // walk ask for CommitOptions::tree.binary_form.
   Picture render(const RenderOptions& options = {}) const;
 
-  // What each ray hits first.
+  // What each ray hits first. Which primitive that is is decided in floats; for rays of doubles t and the point
+  // are found in double from the primitive that was hit. Primitives are floats about the scene's centre.
   QueryReport closest(const Rays& rays, const HitsOut& out, const QueryOptions& options = {}) const;
   // 1 for each ray that hits anything between t_min and t_max, else 0.
   QueryReport any(const Rays& rays, const BytesOut& out, const QueryOptions& options = {}) const;
   // How many surfaces each ray crosses, and all of these crossings. Each counts once, at edges and vertices
   // too: a ray that begins and ends outside of a closed mesh crosses it an even number of times. A hit in the
-  // start point (t = 0) counts when t_min is 0 and is left out when t_min is above it.
+  // start point (t = 0) counts when t_min is 0 and is left out when t_min is above it. Whether a crossing lies
+  // before or behind the start of a ray of doubles is decided by these doubles, for triangles exactly.
   QueryReport count(const Rays& rays, const WordsOut& out, const QueryOptions& options = {}) const;
   AllHits all(const Rays& rays, const AllHitsOptions& options = {}) const;
 
   // The point of the scene that is nearest to each of these.
   QueryReport closest_points(const Points& points, const ClosestPointsOut& out,
                              const PointOptions& options = {}) const;
-  // 1 for each point that lies inside of closed surfaces: of an odd number of them. Points are rounded to
-  // floats of the scene's own space.
+  // 1 for each point that lies inside of closed surfaces: of an odd number of them. Points of doubles are
+  // decided by these doubles, against triangles exactly, which are floats about the scene's centre; points of
+  // floats are rounded to floats there. 0 for a point that is not finite.
   QueryReport inside(const Points& points, const BytesOut& out, const PointOptions& options = {}) const;
-  // The distance to the nearest surface, negative inside; infinity, or minus infinity, where nothing lies
-  // within the radius.
+  // The distance to the nearest surface, negative where inside() says 1; infinity, or minus infinity, where
+  // nothing lies within the radius. Of an infinite point infinity, of one with NaN NaN (InvalidRays::miss).
   QueryReport signed_distance(const Points& points, const ValuesOut& out,
                               const PointOptions& options = {}) const;
 

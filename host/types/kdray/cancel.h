@@ -1,7 +1,7 @@
 // What    Tells a query or a picture to end: from any thread, or by a question that it asks now and then.
 // Errors  The call that is told so throws ErrorCode::cancelled when the launch in work has ended: mostly
-//         within a tenth of a second, later where rays have very many hits each. The scene is as it was;
-//         answers may be half written.
+//         within a tenth of a second, however many hits rays have. The scene is as it was; answers may be half
+//         written.
 #pragma once
 
 #include <atomic>

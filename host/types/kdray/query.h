@@ -80,6 +80,9 @@ struct AllHits {
 
 struct AllHitsOptions : QueryOptions {
   std::uint32_t max_hits = 0xffffffffu;  // of a ray: the first so many
+  // That all hits of all rays may take: where they take more, ErrorCode::out_of_memory, which says how many
+  // there were by then. 0: what memory is free.
+  std::uint64_t max_bytes = 0;
 };
 
 // Of each point what lies nearest to it; of several at one distance the one that comes first in the scene.
@@ -94,7 +97,7 @@ struct ClosestPointsOut {
 struct PointOptions {
   double radius = std::numeric_limits<double>::infinity();  // how far to look
   // A point that is not finite: an error that names it, or one that has nothing near it, and is inside of
-  // nothing.
+  // nothing; its signed distance is infinity, or NaN where it has NaN.
   InvalidRays invalid = InvalidRays::error;
   std::optional<Cancel> cancel = {};
 };
