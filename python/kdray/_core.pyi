@@ -6,7 +6,9 @@ from numpy.typing import NDArray
 class Scene:
     def __init__(self) -> None: ...
     @staticmethod
-    def load(file: str, smooth_degrees: float | None, time: float | None = None, animation: str = "") -> Scene: ...
+    def load(
+        file: str, smooth_degrees: float | None, time: float | None = None, animation: str = "", asset_root: str = ""
+    ) -> Scene: ...
     def add_mesh(
         self,
         vertices: NDArray[Any] | None,
