@@ -84,6 +84,9 @@ void add_load_options(CLI::App& app, LoadOptions& load) {
            "(copied) "
            "or kept (held once)",
            [&load](const std::string& text) { load.instances = instances_named(text); });
+  add_text(app, "--asset-root", "DIR",
+           "A folder below which the scene may name pictures and buffers that are not beside it or below it",
+           [&load](const std::string& text) { load.asset_root = text; });
 }
 
 void check_load_options(const LoadOptions& load) {

@@ -22,7 +22,7 @@ struct SceneInput {
 // SCENE, --scene-format, and how it is loaded
 void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help);
 
-// --smooth --time --animation --texture-memory --texture-cache --instances
+// --smooth --time --animation --texture-memory --texture-cache --instances --asset-root
 void add_load_options(CLI::App& app, LoadOptions& load);
 
 // Before anything else is done with it.

@@ -15,6 +15,7 @@
 #include "distribute/wire.h"
 #include "scene/files_read.h"
 #include "scene/frame.h"
+#include "scene/load.h"
 #include "scene/ply_rows.h"
 #include "scene/settle_normals.h"
 
@@ -92,8 +93,8 @@ class PlyReader {
   void describe_settings(const LoadOptions& options, std::vector<scene::FileRead> files) {
     const std::uint32_t n = rows_.n_vertices() > 0 ? 1 : 0;
     scene::ply::Mesh mesh(n);
-    mesh.vertices().assign(n, dvec3(0));
-    if (rows_.columns().has_colors) mesh.colors().resize(n);
+    mesh.vertices().places.assign(n, dvec3(0));
+    if (rows_.columns().has_colors) mesh.vertices().colors.resize(n);
     scene::Scene empty = mesh.finish(file_);
     empty.name = file_;
     empty.load_options = options;
@@ -110,9 +111,7 @@ class PlyReader {
     Vertices vertices = holders_->fetch(wanted);
     if (faces.empty()) return;
     scene::ply::Mesh mesh(static_cast<std::uint32_t>(wanted.size()));
-    mesh.vertices() = std::move(vertices.places);
-    mesh.normals() = std::move(vertices.normals);
-    mesh.colors() = std::move(vertices.colors);
+    mesh.vertices() = std::move(vertices);
     mesh.set_color_unit(rows_.columns().color_unit);
     for (const Corners& c : faces)
       mesh.add_triangle(place_in(wanted, c[0]), place_in(wanted, c[1]), place_in(wanted, c[2]));
@@ -142,7 +141,7 @@ class PlyReader {
     for (const std::string& what : rows_.left_out()) warnings.push_back(file_ + ": " + what);
     if (rows_.has_more())
       warnings.push_back(file_ + ": more data after the last element of the header are left out");
-    if (rows_.n_faces() == 0) warnings.push_back(file_ + ": no faces");
+    if (rows_.n_faces() == 0) warnings.push_back(scene::nothing_to_see(file_));
     if (facts_.shaded_flat > 0) warnings.push_back(scene::flat_warning(file_, facts_.shaded_flat));
   }
 

@@ -76,9 +76,7 @@ void add_mesh(const aiMesh& mesh, const std::string& file, Scene& scene) {
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
   const auto first_normal = static_cast<std::uint32_t>(scene.normals.size());
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-    const dvec3 v = to_vector(mesh.mVertices[i]);
-    if (!is_finite(v)) throw input_error(file, 0, "a position is not finite", "export the mesh again");
-    scene.vertices.push_back(v);
+    scene.vertices.push_back(to_vector(mesh.mVertices[i]));
     if (mesh.HasNormals()) scene.normals.push_back(direction_of(to_vector(mesh.mNormals[i])));
   }
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
@@ -120,7 +118,7 @@ Scene read_assimp(std::string_view text, const std::filesystem::path& path) {
   }
   if (scene.materials.empty()) scene.materials.push_back(mesh_material());
   for (unsigned i = 0; i < read->mNumMeshes; ++i) add_mesh(*read->mMeshes[i], file, scene);
-  if (scene.triangles.empty()) scene.warnings.push_back(file + ": no faces");
+  settle_vertices(scene, [&](std::size_t i) { return file + ": vertex " + std::to_string(i); });
   settle_normals(scene, file);
   return scene;
 }

@@ -35,11 +35,11 @@ class Reader {
     visited_.assign(document_.entries("nodes").size(), false);
     read_nodes();
     read_uses();
+    for (const std::string& what : document_.warnings()) meshes_.warn(what);
     for (const std::string& what : pose_.warnings()) meshes_.warn(what);
     for (const std::string& what : left_out_of(document_, at_rest_)) meshes_.warn(what);
     if (n_hidden_ > 0)
       meshes_.warn(std::to_string(n_hidden_) + " hidden nodes (KHR_node_visibility) are left out");
-    if (scene_.triangles.empty() && scene_.instances.empty()) meshes_.warn("no triangles");
     meshes_.finish();
     expose(scene_);
     if (!scene_.cameras.empty()) scene_.camera = scene_.cameras.front();

@@ -228,10 +228,10 @@ std::uint64_t accessor_count(const JsonNode& accessor) {
   return count;
 }
 
-RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor) {
+RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor, NotFinite other) {
   expect_type(accessor, "VEC3");
   auto out = read_elements<Vectors>(document, accessor, component_of(accessor["componentType"]));
-  for (std::size_t i = 0; i < out.size(); ++i) {
+  for (std::size_t i = 0; i < out.size() && other == NotFinite::refused; ++i) {
     if (!is_finite(out[i])) throw accessor.error("element " + std::to_string(i) + " is not finite");
   }
   return out;
@@ -240,16 +240,17 @@ RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor) {
 namespace {
 
 template <class Elements>
-void check_finite(const JsonNode& accessor, const Elements& elements) {
+void check_finite(const JsonNode& accessor, const Elements& elements, NotFinite other) {
+  if (other == NotFinite::nan) return;
   for (std::size_t i = 0; i < elements.size(); ++i)
     for (const auto part : elements[i])
       if (!std::isfinite(part)) throw accessor.error("element " + std::to_string(i) + " is not finite");
 }
 
 template <std::size_t n_parts>
-auto read_doubles(Document& document, const JsonNode& accessor) {
+auto read_doubles(Document& document, const JsonNode& accessor, NotFinite other = NotFinite::refused) {
   auto out = read_elements<Doubles<n_parts>>(document, accessor, component_of(accessor["componentType"]));
-  check_finite(accessor, out);
+  check_finite(accessor, out, other);
   return out;
 }
 
@@ -263,9 +264,9 @@ RawVector<double> read_scalars(Document& document, const JsonNode& accessor) {
   return out;
 }
 
-RawVector<std::array<double, 4>> read_quads(Document& document, const JsonNode& accessor) {
+RawVector<std::array<double, 4>> read_quads(Document& document, const JsonNode& accessor, NotFinite other) {
   expect_type(accessor, "VEC4");
-  return read_doubles<4>(document, accessor);
+  return read_doubles<4>(document, accessor, other);
 }
 
 // Only of floats: columns of smaller components would be padded.
@@ -281,14 +282,14 @@ RawVector<dmat4> read_matrices(Document& document, const JsonNode& accessor) {
   return out;
 }
 
-RawVector<std::array<float, 2>> read_pairs(Document& document, const JsonNode& accessor) {
+RawVector<std::array<float, 2>> read_pairs(Document& document, const JsonNode& accessor, NotFinite other) {
   expect_type(accessor, "VEC2");
   auto out = read_elements<Floats<2, 2>>(document, accessor, component_of(accessor["componentType"]));
-  check_finite(accessor, out);
+  check_finite(accessor, out, other);
   return out;
 }
 
-RawVector<std::array<float, 4>> read_colors(Document& document, const JsonNode& accessor) {
+RawVector<std::array<float, 4>> read_colors(Document& document, const JsonNode& accessor, NotFinite other) {
   const Component component = component_of(accessor["componentType"]);
   RawVector<std::array<float, 4>> out;
   if (accessor["type"].string() == "VEC4") {
@@ -298,7 +299,7 @@ RawVector<std::array<float, 4>> read_colors(Document& document, const JsonNode& 
     out = read_elements<Floats<3, 4>>(document, accessor, component);
     for (auto& color : out) color[3] = 1;
   }
-  check_finite(accessor, out);
+  check_finite(accessor, out, other);
   return out;
 }
 

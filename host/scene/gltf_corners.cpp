@@ -2,6 +2,7 @@
 // texture coordinates and tangents.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -12,19 +13,31 @@
 
 namespace kdray::scene::gltf {
 
-std::optional<JsonNode> MeshReader::colors_of(const JsonNode& attributes, std::size_t n_vertices) {
+// Whether corners can have them; else they are left out of this primitive.
+template <class Elements>
+bool MeshReader::are_good(const Elements& values, const char* what, std::size_t n_vertices) {
+  const auto finite = [](const auto& element) {
+    return std::ranges::all_of(element, [](auto part) { return std::isfinite(part); });
+  };
+  const bool as_many = values.size() == n_vertices;
+  if (as_many && std::ranges::all_of(values, finite)) return true;
+  count(std::string("primitives have ") + what + " that are not " +
+        (as_many ? "finite" : "as many as their positions") + ": they are left out");
+  return false;
+}
+
+std::optional<RawVector<std::array<float, 4>>> MeshReader::colors_of(const JsonNode& attributes,
+                                                                     std::size_t n_vertices) {
   const auto index = attributes.find("COLOR_0");
   if (!index) return std::nullopt;
-  const JsonNode& accessor = document_.entry("accessors", *index);
-  if (accessor_count(accessor) == n_vertices) return accessor;
-  count("primitives have colours that are not as many as their positions: they are left out");
-  return std::nullopt;
+  auto values = read_colors(document_, document_.entry("accessors", *index), NotFinite::nan);
+  if (!are_good(values, "colours", n_vertices)) return std::nullopt;
+  return values;
 }
 
 // The triangles, which are the scene's last ones, are named by their vertices within the primitive.
-void MeshReader::add_colors(const JsonNode& accessor,
+void MeshReader::add_colors(const RawVector<std::array<float, 4>>& values,
                             std::span<const std::array<std::uint32_t, 3>> triangles) {
-  const auto values = read_colors(document_, accessor);
   auto& colors = into_->paint.colors;
   reserve_more(colors, into_->triangles.size() - colors.size());
   colors.resize(into_->triangles.size() - triangles.size(), kWhiteCorners);
@@ -45,12 +58,8 @@ void MeshReader::add_texcoords(const JsonNode& attributes,
   for (std::size_t set = 0; set < 2; ++set) {
     const auto index = attributes.find("TEXCOORD_" + std::to_string(set));
     if (!index) continue;
-    const JsonNode& accessor = document_.entry("accessors", *index);
-    if (accessor_count(accessor) != n_vertices) {
-      count("primitives have texture coordinates that are not as many as their positions: they are left out");
-      continue;
-    }
-    const auto values = read_pairs(document_, accessor);
+    const auto values = read_pairs(document_, document_.entry("accessors", *index), NotFinite::nan);
+    if (!are_good(values, "texture coordinates", n_vertices)) continue;
     auto& out = into_->paint.texcoords[set];
     reserve_more(out, into_->triangles.size() - out.size());
     out.resize(into_->triangles.size() - triangles.size());
@@ -63,20 +72,19 @@ void MeshReader::add_texcoords(const JsonNode& attributes,
   }
 }
 
-std::optional<JsonNode> MeshReader::tangents_of(const JsonNode& attributes, std::size_t n_vertices) {
+std::optional<RawVector<std::array<double, 4>>> MeshReader::tangents_of(const JsonNode& attributes,
+                                                                        std::size_t n_vertices) {
   const auto index = attributes.find("TANGENT");
   if (!index) return std::nullopt;
-  const JsonNode& accessor = document_.entry("accessors", *index);
-  if (accessor_count(accessor) == n_vertices) return accessor;
-  count("primitives have tangents that are not as many as their positions: they are left out");
-  return std::nullopt;
+  auto values = read_quads(document_, document_.entry("accessors", *index), NotFinite::nan);
+  if (!are_good(values, "tangents", n_vertices)) return std::nullopt;
+  return values;
 }
 
 // They move as edges do. What mirrors turns the picture's handedness round.
-void MeshReader::add_tangents(const JsonNode& accessor, const JsonNode& primitive,
+void MeshReader::add_tangents(const RawVector<std::array<double, 4>>& values, const JsonNode& primitive,
                               const VertexMatrices& matrices, const Deformation& deformation,
                               std::span<const std::array<std::uint32_t, 3>> triangles) {
-  const auto values = read_quads(document_, accessor);
   RawVector<dvec3> ways(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) ways[i] = {values[i][0], values[i][1], values[i][2]};
   morph(document_, primitive, "TANGENT", deformation.weights, ways);

@@ -76,7 +76,7 @@ void morph(Document& document, const JsonNode& primitive, std::string_view attri
     ++i;
     const auto index = target.find(attribute);
     if (!index || weight == 0) continue;
-    const auto offsets = read_vectors(document, document.entry("accessors", *index));
+    const auto offsets = read_vectors(document, document.entry("accessors", *index), NotFinite::nan);
     if (offsets.size() != values.size())
       throw target.error(std::to_string(offsets.size()) + " offsets for " + std::to_string(values.size()) +
                          " vertices");

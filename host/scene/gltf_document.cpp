@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <system_error>
 
 #include "base/error.h"
 #include "scene/files_read.h"
+#include "scene/find_file.h"
 #include "scene/gltf_draco.h"
 #include "scene/gltf_meshopt.h"
 #include "scene/gltf_uri.h"
@@ -34,24 +34,12 @@ std::uint32_t load_u32(std::string_view text, std::size_t at) {
 constexpr std::uint64_t kMostUnpackedPerByte = 64;
 constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 28;
 
-// Extensions that a file may require and that are read, or change nothing but pictures, names and surfaces.
-bool can_do_with(std::string_view name) {
-  constexpr std::array<std::string_view, 9> kKnown = {
-      "KHR_lights_punctual", "EXT_mesh_gpu_instancing", "KHR_node_visibility", "KHR_mesh_quantization",
-      "EXT_texture_webp",    "EXT_texture_avif",        "MSFT_texture_dds",    "KHR_xmp",
-      "KHR_xmp_json_ld"};
-  if (name == "KHR_draco_mesh_compression") return has_draco();
-  if (name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression") return has_meshopt();
-  return name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
-         std::ranges::find(kKnown, name) != kKnown.end();
-}
-
-// The Debian package that kdray was built without; empty: no package helps.
+// The Debian package that kdray was built without, where shapes can't be had without it; empty: nothing is
+// missing.
 std::string package_for(std::string_view extension) {
-  if (extension == "KHR_draco_mesh_compression") return "libdraco-dev";
-  if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression")
-    return "libmeshoptimizer-dev";
-  return "";
+  if (extension == "KHR_draco_mesh_compression" && !has_draco()) return "libdraco-dev";
+  const bool meshopt = extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression";
+  return meshopt && !has_meshopt() ? "libmeshoptimizer-dev" : "";
 }
 
 }  // namespace
@@ -91,12 +79,13 @@ void Document::split_glb() {
   if (text_.size() < kGlbHeader + kChunkHeader) throw fault("too short for a GLB file");
   const std::uint32_t version = load_u32(text_, 4);
   if (version != 2) throw fault("a GLB file of version " + std::to_string(version) + ", not 2");
-  if (load_u32(text_, 8) > text_.size()) {
-    throw fault("the GLB header says " + std::to_string(load_u32(text_, 8)) + " bytes, but the file has " +
+  const std::size_t length = load_u32(text_, 8);
+  if (length < kGlbHeader + kChunkHeader || length > text_.size()) {
+    throw fault("the GLB header says " + std::to_string(length) + " bytes, but the file has " +
                 std::to_string(text_.size()));
   }
   std::size_t at = kGlbHeader;
-  for (int i = 0; text_.size() - at >= kChunkHeader; ++i) {
+  for (int i = 0; at < length && text_.size() - at >= kChunkHeader; ++i) {
     const std::size_t size = load_u32(text_, at);
     const std::uint32_t type = load_u32(text_, at + 4);
     at += kChunkHeader;
@@ -109,6 +98,9 @@ void Document::split_glb() {
     if (type == kBinaryChunk && !binary_chunk_) binary_chunk_ = text_.substr(at, size);
     at += size;  // the padding is counted in
   }
+  if (length < text_.size() && at < text_.size())
+    warnings_.push_back(std::to_string(text_.size() - at) + " bytes behind the " + std::to_string(length) +
+                        " that the GLB header says are left out");
 }
 
 void Document::check_asset() {
@@ -122,16 +114,14 @@ void Document::check_asset() {
   if (least && least->string() != "2.0") throw least->error("needs glTF " + printable(least->string()));
 }
 
-void Document::check_extensions() {
+// A file that requires what is not read is read without it, and left_out_of() says so: only where its shapes
+// are packed by what this kdray can't unpack there is nothing to show.
+void Document::check_extensions() const {
   const auto required = root().find("extensionsRequired");
   if (!required) return;
   for (const JsonNode& node : required->elements()) {
-    const std::string name = node.string();
-    if (can_do_with(name)) continue;
-    const std::string package = package_for(name);
-    if (package.empty())
-      throw node.error("the file needs the extension " + printable(name) + ", which is not read",
-                       "export it without that extension");
+    const std::string name = node.string(), package = package_for(name);
+    if (package.empty()) continue;
     throw node.error("the file needs the extension " + name + ", which this kdray was built without",
                      "build it with " + package + " installed, or export the file without mesh compression");
   }
@@ -226,15 +216,19 @@ std::string Document::read_uri(const JsonNode& node) const {
     if (!bytes) throw node.error("not a data: URI in base64");
     return std::move(*bytes);
   }
-  const std::optional<std::filesystem::path> name = relative_path_of(uri);
-  if (!name) throw node.error("'" + printable(uri) + "' is not a file beside the scene, or below");
-  const std::filesystem::path buffer = path_.parent_path() / *name;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(buffer, ignored)) {
-    FilesRead::add_missing(buffer);
-    throw node.error("there is no file '" + printable(uri) + "' beside the scene", "put it there");
+  const std::vector<std::filesystem::path> names = paths_of(uri);
+  if (names.empty()) throw node.error(outside(uri));
+  bool leads_out = false;
+  for (const std::filesystem::path& name : names) {
+    if (!may_name(path_.parent_path(), name)) {
+      leads_out = true;
+      continue;
+    }
+    const std::filesystem::path found = find_file(path_.parent_path() / name);
+    if (!found.empty()) return read_file(found);
   }
-  return read_file(buffer);
+  if (leads_out) throw node.error(outside(uri), kAllowAFolder);
+  throw node.error("there is no file '" + printable(uri) + "' beside the scene", "put it there");
 }
 
 std::uint64_t whole(const JsonNode& node) {

@@ -1,7 +1,7 @@
 // What    A glTF 2.0 file taken apart: its JSON, whose arrays are at hand as nodes, and its buffers, which
 //         are read when they are first asked for.
 // Shape   .gltf or .glb, told by the first bytes. Buffers may be in the GLB itself, in data: URIs, or in
-//         files beside the scene or below.
+//         files that the scene may name (find_file.h).
 // Errors  kdray::Error: the JSON's line for what is not JSON, the value's path ("/accessors/3/count")
 //         otherwise.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021.
@@ -38,6 +38,7 @@ class Document {
   const nlohmann::json& json() const { return json_; }
   const std::string& file() const { return file_; }
   std::size_t file_size() const { return text_.size(); }
+  const std::vector<std::string>& warnings() const { return warnings_; }  // of the file as a whole
   // What was read so far: the file, buffers beside it, and what came of packed ones.
   std::uint64_t bytes_read() const { return bytes_read_ + bytes_unpacked_; }
 
@@ -45,7 +46,7 @@ class Document {
   const JsonNode& entry(const std::string& array, const JsonNode& index);
   const std::vector<JsonNode>& entries(const std::string& array);
 
-  // The bytes that a "uri" stands for: data, or a file beside the scene or below.
+  // The bytes that a "uri" stands for: data, or a file.
   std::string read_uri(const JsonNode& uri) const;
   // The bytes of a bufferView, all of which are there; those of a packed one are unpacked.
   std::string_view view_bytes(const JsonNode& view);
@@ -60,13 +61,14 @@ class Document {
  private:
   void split_glb();
   void check_asset();
-  void check_extensions();
+  void check_extensions() const;
   void note_files() const;
   std::string_view slice(const JsonNode& view);
   std::string_view buffer_bytes(const JsonNode& index);
   bool has_bytes(const JsonNode& buffer_index);
 
   std::string_view text_;
+  std::vector<std::string> warnings_;
   std::string_view json_text_;
   std::optional<std::string_view> binary_chunk_;
   std::filesystem::path path_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "scene/text_scanner.h"
 
@@ -86,9 +87,15 @@ std::string counted(std::size_t n, const char* one, const char* several) {
 
 std::vector<std::string> left_out_of(Document& document, bool at_rest) {
   std::vector<std::string> out;
-  for (const auto& [name, n] : extensions_in(document.json()))
+  Counts used = extensions_in(document.json());
+  std::set<std::string> required;
+  if (const auto names = document.root().find("extensionsRequired"))
+    for (const JsonNode& name : names->elements()) required.insert(name.string());
+  for (const std::string& name : required) used.try_emplace(name);
+  for (const auto& [name, n] : used)
     if (!is_known(name))
-      out.push_back(printable(name) + " of " + counted(n, "object", "objects") + " is left out");
+      out.push_back(printable(name) + (n > 0 ? " of " + counted(n, "object", "objects") : "") +
+                    " is left out" + (required.contains(name) ? ", though the file requires it" : ""));
   Counts sets, moved;
   for (const JsonNode& mesh : document.entries("meshes"))
     for (const JsonNode& primitive : mesh["primitives"].elements()) count_sets(primitive, sets, moved);

@@ -63,7 +63,7 @@ Scene MeshReader::alone(const JsonNode& mesh) {
   into_ = &scene;
   add(mesh, dmat4(1));
   into_ = &scene_;
-  settle_normals(scene, document_.file());
+  settle(scene);
   scene_.warnings.insert(scene_.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   scene.warnings.clear();
   return scene;
@@ -94,14 +94,17 @@ void MeshReader::check_size(const JsonNode& primitive) const {
 void MeshReader::add_vertices(const JsonNode& primitive, const VertexMatrices& matrices,
                               const Deformation& deformation) {
   const JsonNode& accessor = document_.entry("accessors", primitive["attributes"]["POSITION"]);
-  auto positions = read_vectors(document_, accessor);
+  auto positions = read_vectors(document_, accessor, NotFinite::nan);
   morph(document_, primitive, "POSITION", deformation.weights, positions);
   reserve_more(into_->vertices, positions.size());
   const dmat4 to_world = matrices.of(0);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const dmat4 m = matrices.are_all_one() ? to_world : matrices.of(i);
     const dvec3 moved = dvec3(m * glm::dvec4(positions[i], 1));
-    if (!is_finite(moved)) throw accessor.error("a node's transform makes a position infinite");
+    if (!is_finite(moved)) {
+      if (is_finite(positions[i])) throw accessor.error("a node's transform makes a position infinite");
+      if (bad_vertex_.empty()) bad_vertex_ = accessor.place() + ": element " + std::to_string(i);
+    }
     into_->vertices.push_back(moved);
   }
 }
@@ -115,7 +118,7 @@ bool MeshReader::add_normals(const JsonNode& primitive, std::size_t n_vertices,
     count("primitives have normals that are not as many as their positions: they are left out");
     return false;
   }
-  auto normals = read_vectors(document_, accessor);
+  auto normals = read_vectors(document_, accessor, NotFinite::nan);  // those have no direction
   morph(document_, primitive, "NORMAL", deformation.weights, normals);
   const dmat3 to_normal = normal_matrix(dmat3(matrices.of(0)));
   for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -186,7 +189,13 @@ void MeshReader::finish() {
   materials_.warn();
   for (const auto& [what, n] : counted_) left_out_.insert(std::to_string(n) + " " + what);
   for (const std::string& what : left_out_) scene_.warnings.push_back(document_.file() + ": " + what);
-  settle_normals(scene_, document_.file());
+  settle(scene_);
+}
+
+void MeshReader::settle(Scene& scene) {
+  settle_vertices(scene, [&](std::size_t) { return bad_vertex_; });
+  bad_vertex_.clear();
+  settle_normals(scene, document_.file());
 }
 
 }  // namespace kdray::scene::gltf

@@ -53,11 +53,18 @@ class MeshReader {
                    const Deformation& deformation);
   void add_texcoords(const JsonNode& attributes, std::span<const std::array<std::uint32_t, 3>> triangles,
                      std::size_t n_vertices);
-  std::optional<JsonNode> tangents_of(const JsonNode& attributes, std::size_t n_vertices);
-  void add_tangents(const JsonNode& accessor, const JsonNode& primitive, const VertexMatrices& matrices,
-                    const Deformation& deformation, std::span<const std::array<std::uint32_t, 3>> triangles);
-  void add_colors(const JsonNode& accessor, std::span<const std::array<std::uint32_t, 3>> triangles);
-  std::optional<JsonNode> colors_of(const JsonNode& attributes, std::size_t n_vertices);
+  std::optional<RawVector<std::array<double, 4>>> tangents_of(const JsonNode& attributes,
+                                                              std::size_t n_vertices);
+  void add_tangents(const RawVector<std::array<double, 4>>& values, const JsonNode& primitive,
+                    const VertexMatrices& matrices, const Deformation& deformation,
+                    std::span<const std::array<std::uint32_t, 3>> triangles);
+  void add_colors(const RawVector<std::array<float, 4>>& values,
+                  std::span<const std::array<std::uint32_t, 3>> triangles);
+  std::optional<RawVector<std::array<float, 4>>> colors_of(const JsonNode& attributes,
+                                                           std::size_t n_vertices);
+  template <class Elements>
+  bool are_good(const Elements& values, const char* what, std::size_t n_vertices);
+  void settle(Scene& scene);
   void check_size(const JsonNode& primitive) const;
 
   Document& document_;
@@ -65,6 +72,7 @@ class MeshReader {
   Scene* into_;   // that triangles are added to
   Materials materials_;
   std::size_t n_primitives_ = 0;
+  std::string bad_vertex_;  // where the first one stands that is not finite
   std::set<std::string> left_out_;
   std::map<std::string, std::size_t> counted_;
 };

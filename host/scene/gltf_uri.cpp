@@ -1,7 +1,10 @@
 #include "scene/gltf_uri.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+
+#include "scene/find_file.h"
 
 namespace kdray::scene::gltf {
 
@@ -69,14 +72,18 @@ std::string percent_decoded(std::string_view text) {
   return out;
 }
 
-std::optional<std::filesystem::path> relative_path_of(std::string_view uri) {
+std::vector<std::filesystem::path> paths_of(std::string_view uri) {
+  std::vector<std::filesystem::path> paths;
   const std::size_t colon = uri.find(':');
-  if (colon != std::string_view::npos && uri.find('/') > colon) return std::nullopt;
-  const std::string name = percent_decoded(uri);
-  if (name.empty() || name.find('\0') != std::string::npos) return std::nullopt;
-  const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
-  if (path.is_absolute() || path.begin()->string() == "..") return std::nullopt;
-  return path;
+  if (colon != std::string_view::npos && uri.find_first_of("/\\") > colon) return paths;
+  const std::string_view bare = uri.substr(0, uri.find_first_of("?#"));
+  for (const std::string& name : {percent_decoded(uri), slashed(percent_decoded(uri)), percent_decoded(bare),
+                                  slashed(percent_decoded(bare))}) {
+    const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+    const bool usable = !name.empty() && name.find('\0') == std::string::npos;
+    if (usable && std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
+  }
+  return paths;
 }
 
 }  // namespace kdray::scene::gltf

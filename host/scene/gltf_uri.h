@@ -1,10 +1,11 @@
-// What    The URIs of glTF buffers: bytes in base64, and names of files below the scene's folder.
+// What    The URIs of glTF buffers and pictures: bytes in base64, and names of files.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kdray::scene::gltf {
 
@@ -14,8 +15,8 @@ std::optional<std::string> decode_data_uri(std::string_view uri);
 // The text with each "%20" replaced by the character that it stands for.
 std::string percent_decoded(std::string_view text);
 
-// The path a relative URI names, percent-decoded; nothing for absolute paths, other schemes (http:), and what
-// leads out of the folder.
-std::optional<std::filesystem::path> relative_path_of(std::string_view uri);
+// The paths that a URI may mean, percent-decoded: as it stands, with backslashes as slashes, and without the
+// query or fragment that web servers' files have behind their names. None for other schemes (http:).
+std::vector<std::filesystem::path> paths_of(std::string_view uri);
 
 }  // namespace kdray::scene::gltf

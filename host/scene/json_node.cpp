@@ -32,9 +32,13 @@ std::string short_message(const char* what) {
 // A key given twice is nearly always a mistake, and JSON readers disagree on which counts.
 class DuplicateKeys {
  public:
-  explicit DuplicateKeys(const std::string& file) : file_(file) {}
+  // `depth` becomes that of the value in work.
+  DuplicateKeys(const std::string& file, int& depth) : file_(file), depth_(depth) {}
 
-  bool operator()(int, json::parse_event_t event, const json& value) {
+  bool operator()(int depth, json::parse_event_t event, const json& value) {
+    const bool opens =
+        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    depth_ = depth + (opens ? 1 : 0);
     if (event == json::parse_event_t::object_start) {
       open_.emplace_back();
     } else if (event == json::parse_event_t::object_end) {
@@ -51,6 +55,7 @@ class DuplicateKeys {
 
  private:
   const std::string& file_;
+  int& depth_;
   std::vector<std::set<std::string>> open_;
 };
 
@@ -103,12 +108,31 @@ bool read_vector(const json& value, dvec3& out) {
 
 }  // namespace
 
+namespace {
+
+// Whether one begins where the parser stopped, which is at its first or second character.
+bool is_comment(std::string_view text, std::size_t at) {
+  for (std::size_t first = at > 0 ? at - 1 : 0; first <= at && first < text.size(); ++first) {
+    const std::string_view two = text.substr(first, 2);
+    if (two == "//" || two == "/*") return true;
+  }
+  return at < text.size() && text[at] == '#';
+}
+
+}  // namespace
+
 json parse_json(std::string_view text, const std::string& file) {
+  int depth = 0;
   try {
-    return json::parse(text.begin(), text.end(), DuplicateKeys(file));
+    return json::parse(text.begin(), text.end(), DuplicateKeys(file, depth));
   } catch (const json::parse_error& e) {
-    throw input_error(file, line_at(text, e.byte > 0 ? e.byte - 1 : 0),
-                      "not JSON: " + short_message(e.what()));
+    const std::size_t at = e.byte > 0 ? e.byte - 1 : 0, line = line_at(text, at);
+    if (at >= text.size() && depth > 0)
+      throw input_error(file, line,
+                        "not JSON: the text ends inside of " + std::to_string(depth) + " open brackets",
+                        "it is cut short, or nested without an end: fetch or write it again");
+    throw input_error(file, line, "not JSON: " + short_message(e.what()),
+                      is_comment(text, at) ? "JSON has no comments: take them out" : "");
   } catch (const json::exception& e) {  // a number beyond double's range
     throw input_error(file, 0, std::string("not usable JSON: ") + e.what());
   }
@@ -120,9 +144,12 @@ JsonNode JsonNode::child(const json& value, std::string_view key) const {
   return node;
 }
 
+std::string JsonNode::place() const {
+  return *file_ + ": " + (path_.empty() ? "the scene" : path_);
+}
+
 Error JsonNode::error(const std::string& what, const std::string& remedy) const {
-  const std::string place = path_.empty() ? "the scene" : path_;
-  return input_error(*file_, 0, place + ": " + what, remedy);
+  return input_error(place(), 0, what, remedy);
 }
 
 Error JsonNode::expected(const std::string& what) const {

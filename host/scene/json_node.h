@@ -59,6 +59,7 @@ class JsonNode {
   // The same for all nodes of one value.
   const void* id() const { return value_; }
 
+  std::string place() const;  // as errors name it: "file: /path/of/the/value"
   [[nodiscard]] Error error(const std::string& what, const std::string& remedy = "") const;
   [[nodiscard]] Error expected(const std::string& what) const;
 

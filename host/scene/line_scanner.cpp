@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "scene/plain_number.h"
-#include "scene/text_scanner.h"
 
 namespace kdray::scene {
 
@@ -27,21 +26,25 @@ LineScanner::LineScanner(std::string_view text, std::string file) : file_(std::m
   end_ = at_ + text.size();
 }
 
-// Whether a backslash and a line end stand at `p`.
-bool LineScanner::at_join(const char* p) const {
-  return *p == '\\' && p + 1 != end_ && is_end(p[1]);
+// Where a backslash and a line end that stand at `p` end, with what blanks are between; null: they don't.
+const char* LineScanner::end_of_join(const char* p) const {
+  if (*p != '\\') return nullptr;
+  do ++p;
+  while (p != end_ && is_blank(*p));
+  if (p == end_ || !is_end(*p)) return nullptr;
+  return *p == '\r' && p + 1 != end_ && p[1] == '\n' ? p + 2 : p + 1;
 }
 
 bool LineScanner::ends_word(const char* p) const {
-  return p == end_ || is_blank(*p) || is_end(*p) || at_join(p);
+  return p == end_ || is_blank(*p) || is_end(*p) || end_of_join(p);
 }
 
 void LineScanner::skip_space() {
   while (at_ != end_) {
     if (is_blank(*at_)) {
       ++at_;
-    } else if (*at_ == '\\' && at_join(at_)) {
-      at_ += at_[1] == '\r' && at_ + 2 != end_ && at_[2] == '\n' ? 3 : 2;
+    } else if (const char* const joined = end_of_join(at_)) {
+      at_ = joined;
       ++line_;
     } else {
       return;
@@ -52,7 +55,7 @@ void LineScanner::skip_space() {
 bool LineScanner::next_line() {
   if (started_) {
     while (at_ != end_ && !is_end(*at_)) {
-      if (at_join(at_)) {
+      if (end_of_join(at_)) {
         skip_space();
       } else {
         ++at_;
@@ -93,14 +96,24 @@ std::string_view LineScanner::plain_whole(std::int64_t& value) {
 
 std::string_view LineScanner::rest() {
   skip_space();
+  joined_.clear();
   const char* first = at_;
-  while (at_ != end_ && !is_end(*at_)) ++at_;
-  const char* last = at_;
-  while (last != first && is_blank(last[-1])) --last;
-  return {first, static_cast<std::size_t>(last - first)};
+  while (at_ != end_ && !is_end(*at_)) {
+    if (!end_of_join(at_)) {
+      ++at_;
+    } else {
+      joined_.append(first, at_).append(" ");
+      skip_space();
+      first = at_;
+    }
+  }
+  std::string_view found(first, static_cast<std::size_t>(at_ - first));
+  if (!joined_.empty()) found = joined_.append(found);
+  while (!found.empty() && is_blank(found.back())) found.remove_suffix(1);
+  return found;
 }
 
-bool LineScanner::try_number(std::string_view what, double& value) {
+bool LineScanner::try_number(std::string_view what, double& value, NotFinite other) {
   skip_space();
   double plain = 0;
   if (const char* last = read_plain_number(at_, end_, plain); last && ends_word(last)) {
@@ -110,15 +123,17 @@ bool LineScanner::try_number(std::string_view what, double& value) {
   }
   const std::string_view found = word();
   if (found.empty()) return false;
-  if (!read_number(found.data(), found.data() + found.size(), value)) {
+  const auto read = other == NotFinite::nan ? read_number_or_nan : read_number;
+  if (!read(found.data(), found.data() + found.size(), value)) {
     throw error("expected " + std::string(what) + " (a finite number), found '" + printable(found) + "'");
   }
   return true;
 }
 
-double LineScanner::number(std::string_view what) {
+double LineScanner::number(std::string_view what, NotFinite other) {
   double value = 0;
-  if (!try_number(what, value)) throw error("expected " + std::string(what) + ", but the line ends here");
+  if (!try_number(what, value, other))
+    throw error("expected " + std::string(what) + ", but the line ends here");
   return value;
 }
 

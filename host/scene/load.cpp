@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <system_error>
 
 #include "base/error.h"
 #include "scene/check_scene.h"
+#include "scene/find_file.h"
 #include "scene/frame.h"
 #include "scene/import.h"
 #include "scene/importers.h"
@@ -83,6 +85,8 @@ Scene import_text(std::string_view text, const std::filesystem::path& file, cons
   Scene scene = read_by_ending(text, file, format_of(file), options);
   scene.name = file.string();
   if (scene.cameras.empty() && scene.camera) scene.cameras = {*scene.camera};
+  if (scene.primitive_count() == 0 && scene.instances.empty())
+    scene.warnings.push_back(nothing_to_see(scene.name));
   check_scene(scene);
   return scene;
 }
@@ -101,6 +105,9 @@ void check(const LoadOptions& options) {
     throw Error(ErrorCode::usage, "the time of an animation is not finite");
   if (!options.time && !options.animation.empty())
     throw Error(ErrorCode::usage, "an animation is seen at a time; say which");
+  std::error_code ignored;
+  if (!options.asset_root.empty() && !std::filesystem::is_directory(options.asset_root, ignored))
+    throw Error(ErrorCode::usage, "the asset root '" + options.asset_root.string() + "' is no folder");
   if (!options.smooth_degrees) return;
   const double degrees = *options.smooth_degrees;
   if (!(degrees >= 0 && degrees <= 180))
@@ -139,11 +146,16 @@ Scene finished(Scene&& scene, const std::filesystem::path& file, const LoadOptio
 
 }  // namespace
 
+std::string nothing_to_see(const std::string& name) {
+  return name + ": there are no surfaces in it: nothing of it will be seen";
+}
+
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   check(options);
   FilesRead files;
   check_ending(file, format_of(file));
   const Instancing instancing(options.instances);
+  const AssetRoot assets(options.asset_root);
   Scene scene = finished(import_text(read_file(file), file, options), file, options);
   scene.files = files.take();
   return scene;
@@ -153,6 +165,7 @@ Scene load_from_memory(std::string bytes, const std::filesystem::path& name, con
   check(options);
   FilesRead files;
   const Instancing instancing(options.instances);
+  const AssetRoot assets(options.asset_root);
   check_ending(name, format_of(name));
   Scene scene = finished(import_text(unpacked(std::move(bytes), name), name, options), name, options);
   scene.files = files.take();

@@ -19,4 +19,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
 // names.
 Scene load_from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options = {});
 
+// What a scene without primitives, or an empty file in it, says.
+std::string nothing_to_see(const std::string& name);
+
 }  // namespace kdray::scene

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include "scene/files_read.h"
+#include "scene/find_file.h"
+#include "scene/left_out.h"
 #include "scene/line_scanner.h"
+#include "scene/lower.h"
 #include "scene/text_scanner.h"
 
 namespace kdray::scene {
@@ -19,35 +23,59 @@ class MtlReader {
 
   void read() {
     while (in_.next_line()) {
-      const std::string_view keyword = in_.word();
-      if (keyword.empty()) continue;
+      const std::string_view word = in_.word(), keyword = standard_spelling(word);
+      if (word.empty()) continue;
       if (keyword == "newmtl") {
         materials_.emplace_back();
-        materials_.back().name = in_.rest();
+        materials_.back().name = unquoted(in_.rest());
         current_ = true;
-      } else if (current_) {
+      } else if (current_ && !keyword.empty()) {
         read_statement(keyword, materials_.back());
+      } else if (current_) {
+        left_out_.add("lines that are no MTL statements are left out", in_.line());
+        if (same_word(word.substr(0, 4), "map_")) note_picture(in_.rest());
+      } else {
+        left_out_.add("statements before the first 'newmtl' are left out", in_.line());
       }
     }
+    left_out_.warn(in_.file(), warnings_);
   }
 
  private:
+  // Exporters write keywords in capitals of all kinds. Empty: there is no such keyword.
+  static std::string_view standard_spelling(std::string_view keyword) {
+    static constexpr std::array<std::string_view, 39> kKeywords = {
+        "newmtl", "Kd",     "Ks",       "Ke",       "Tf",     "Kt",        "Ns",     "Ni",
+        "d",      "Tr",     "illum",    "map_Kd",   "map_Ks", "map_Ke",    "map_d",  "norm",
+        "map_Kn", "bump",   "map_Bump", "map_Ns",   "map_Tr", "disp",      "refl",   "decal",
+        "map_Pr", "map_Pm", "map_Ps",   "map_refl", "Pr",     "Pm",        "Ps",     "Pc",
+        "Pcr",    "aniso",  "anisor",   "Ka",       "map_Ka", "sharpness", "map_aat"};
+    const auto* const found =
+        std::ranges::find_if(kKeywords, [&](std::string_view known) { return same_word(known, keyword); });
+    return found == kKeywords.end() ? "" : *found;
+  }
+
   void read_statement(std::string_view keyword, MtlMaterial& m) {
     if (keyword == "Kd") return read_color(keyword, m.kd);
     if (keyword == "Ks") return read_color(keyword, m.ks);
     if (keyword == "Ke") return read_color(keyword, m.ke);
     if (keyword == "Tf" || keyword == "Kt") return read_filter(keyword, m);
-    if (keyword == "Ns") m.ns = std::max(0.0f, number(keyword));
-    if (keyword == "Ni") m.ni = number(keyword);
-    if (keyword == "d") m.dissolve = read_dissolve();
-    if (keyword == "Tr") m.tr = std::clamp(number(keyword), 0.0f, 1.0f);
-    if (keyword == "illum") m.illum = static_cast<int>(std::clamp(number(keyword), 0.0f, 10.0f));
+    if (keyword == "Ns") return read_number_of(keyword, 0, 1e30f, m.ns);
+    if (keyword == "Ni") return read_number_of(keyword, -1e30f, 1e30f, m.ni);
+    if (keyword == "d") return read_dissolve(m);
+    if (keyword == "Tr") return read_number_of(keyword, 0, 1, m.tr);
+    if (keyword == "illum") return read_number_of(keyword, 0, 10, m.illum);
     if (names_picture(keyword)) {
       const std::string_view rest = in_.rest();
       note_picture(rest);
-      if (std::optional<MtlPicture>* const map = map_named(keyword, m)) *map = picture_of(keyword, rest, m);
+      if (std::optional<MtlPicture>* const map = map_named(keyword, m)) {
+        *map = picture_of(keyword, rest, m);
+      } else if (!means_nothing(keyword)) {
+        note_left_out(keyword, rest, m);
+      }
+    } else if (!means_nothing(keyword)) {
+      note_left_out(keyword, in_.word(), m);
     }
-    if (means_nothing(keyword)) note_left_out(keyword, m);
   }
 
   static std::optional<MtlPicture>* map_named(std::string_view keyword, MtlMaterial& m) {
@@ -56,7 +84,7 @@ class MtlReader {
     if (keyword == "map_Ke") return &m.map_ke;
     if (keyword == "map_d") return &m.map_d;
     if (keyword == "norm" || keyword == "map_Kn") return &m.normals;
-    if (keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump") return &m.relief;
+    if (keyword == "bump" || keyword == "map_Bump") return &m.relief;
     return nullptr;
   }
 
@@ -68,7 +96,7 @@ class MtlReader {
   // Options come before the name, and the name may hold spaces: it is the line from one of its words on.
   void note_picture(std::string_view rest) {
     while (!rest.empty()) {
-      FilesRead::add_named(in_.file(), rest);
+      FilesRead::add_named(in_.file(), unquoted(rest));
       const std::size_t gap = rest.find_first_of(" \t");
       if (gap == std::string_view::npos) return;
       rest.remove_prefix(std::min(rest.find_first_not_of(" \t", gap), rest.size()));
@@ -136,17 +164,15 @@ class MtlReader {
     if (shows && std::ranges::find(m.left_out, what) == m.left_out.end()) m.left_out.push_back(what);
   }
 
-  // What would change how the surface looks: further pictures, and terms of physically based shading.
+  // Ambient light follows from the diffuse colour (whitted_from_mtl.h); the others are of how a picture is
+  // filtered.
   static bool means_nothing(std::string_view keyword) {
-    constexpr std::string_view kLeftOut[] = {"map_Ns", "map_Tr", "disp",     "refl",  "decal", "map_Pr",
-                                             "map_Pm", "map_Ps", "map_refl", "Pr",    "Pm",    "Ps",
-                                             "Pc",     "Pcr",    "aniso",    "anisor"};
-    return std::ranges::find(kLeftOut, keyword) != std::end(kLeftOut);
+    return keyword == "Ka" || keyword == "map_Ka" || keyword == "sharpness" || keyword == "map_aat";
   }
 
-  // A factor of 0 is how exporters say that there is none.
-  void note_left_out(std::string_view keyword, MtlMaterial& m) {
-    const std::string_view first = in_.word();
+  // What would change how the surface looks: further pictures, and terms of physically based shading. A factor
+  // of 0 is how exporters say that there is none.
+  static void note_left_out(std::string_view keyword, std::string_view first, MtlMaterial& m) {
     double value = 1;
     const bool is_number = read_number(first.data(), first.data() + first.size(), value);
     if ((is_number && value == 0 && keyword != "Pr") ||
@@ -155,52 +181,66 @@ class MtlReader {
     m.left_out.emplace_back(keyword);
   }
 
-  // Brought into float's range, which is all that materials have.
-  float number(std::string_view what) {
-    constexpr double kMost = 1e30;
-    return static_cast<float>(std::clamp(in_.number(what), -kMost, kMost));
+  void note_no_number(std::string_view keyword) {
+    left_out_.add("values of '" + std::string(keyword) + "' are not finite numbers: its default holds",
+                  in_.line());
+  }
+
+  // The next word, brought into a range; what is no finite number leaves `out` alone.
+  template <class T>
+  void read_number_of(std::string_view keyword, float least, float most, T& out) {
+    const std::string_view word = in_.word();
+    double value = 0;
+    if (!read_number(word.data(), word.data() + word.size(), value)) return note_no_number(keyword);
+    const float number = static_cast<float>(std::clamp<double>(value, least, most));
+    if constexpr (std::is_same_v<T, std::optional<int>>) {
+      out = static_cast<int>(number);
+    } else {
+      out = number;
+    }
   }
 
   // d FACTOR, or d -halo FACTOR for what fades towards its edges (taken as even).
-  float read_dissolve() {
-    const std::string_view first = in_.word();
-    if (first == "-halo") return std::clamp(number("d"), 0.0f, 1.0f);
+  void read_dissolve(MtlMaterial& m) {
+    std::string_view word = in_.word();
+    if (word == "-halo") word = in_.word();
     double value = 0;
-    if (!read_number(first.data(), first.data() + first.size(), value)) {
-      throw in_.error("expected d (a finite number), found '" + printable(first) + "'");
-    }
-    return static_cast<float>(std::clamp(value, 0.0, 1.0));
+    if (!read_number(word.data(), word.data() + word.size(), value)) return note_no_number("d");
+    m.dissolve = static_cast<float>(std::clamp(value, 0.0, 1.0));
   }
 
   // Three numbers, or one for a grey. Spectral files and CIE colours are left out, with a warning.
   void read_color(std::string_view keyword, vec3& color) {
     const std::string_view first = in_.word();
-    if (first == "spectral" || first == "xyz") {
-      warnings_.push_back(in_.file() + ":" + std::to_string(in_.line()) + ": '" + std::string(keyword) + " " +
-                          std::string(first) + "' is left out: colours are red, green and blue here");
-      return;
+    if (first == "spectral" || first == "xyz")
+      return left_out_.add("values '" + std::string(keyword) + " " + std::string(first) +
+                               "' are left out: colours are red, green and blue here",
+                           in_.line());
+    const std::string_view second = in_.word(), third = in_.word();
+    const auto read = [](std::string_view word, double& value) {
+      return read_number(word.data(), word.data() + word.size(), value);
+    };
+    dvec3 rgb(0);
+    if (!read(first, rgb.x)) return note_no_number(keyword);
+    if (second.empty()) {
+      rgb = dvec3(rgb.x);
+    } else if (!read(second, rgb.y) || !read(third, rgb.z)) {
+      return note_no_number(keyword);
     }
-    double r = 0;
-    if (!read_number(first.data(), first.data() + first.size(), r)) {
-      throw in_.error("expected " + std::string(keyword) + " (a finite number), found '" + printable(first) +
-                      "'");
-    }
-    double g = r;
-    double b = r;
-    if (in_.try_number(keyword, g)) b = in_.number(keyword);
     constexpr double kMost = 1e30;
-    color = vec3(glm::clamp(dvec3(r, g, b), dvec3(0), dvec3(kMost)));
+    color = vec3(glm::clamp(rgb, dvec3(0), dvec3(kMost)));
   }
 
   void read_filter(std::string_view keyword, MtlMaterial& m) {
-    vec3 filter(1);
+    vec3 filter(-1);
     read_color(keyword, filter);
-    m.tf = glm::min(filter, vec3(1));
+    if (filter.x >= 0) m.tf = glm::min(filter, vec3(1));
   }
 
   LineScanner in_;
   std::vector<MtlMaterial>& materials_;
   std::vector<std::string>& warnings_;
+  LeftOut left_out_;
   bool current_ = false;
 };
 

@@ -1,7 +1,7 @@
 // What    The materials of an MTL file, as the file says them.
-// Errors  kdray::Error with the file and line: what is not a finite number where one is wanted. What is only
-//         out of range (a negative colour) is brought into range; unknown statements are skipped, as every
-//         exporter has its own.
+// Errors  kdray::Error for UTF-16 alone. What is no finite number where one is wanted leaves the default, what
+//         is out of range (a negative colour) is brought into range; unknown statements are left out, as every
+//         exporter has its own: one warning of each kind.
 // Source  Alias Wavefront, "MTL material format", Appendix B2 of the Advanced Visualizer manual.
 #pragma once
 

@@ -2,22 +2,28 @@
 //         its MTL files. Groups mean nothing to a Whitted ray tracer and are skipped; points, lines and
 //         free-form surfaces are left out with a warning.
 // Shape   Materials are looked up after the last line, so `mtllib` may stand anywhere. Texture coordinates
-//         are read where the file has MTL files, and kept where one of those names a picture.
+//         are read where the file has MTL files, and kept where one of those names a picture. A file whose
+//         faces come before their vertices is read twice: its points, then the rest.
 // Errors  File and line of the word at fault. A normal that doesn't exist makes its face flat (a warning); a
-//         vertex that doesn't exist refuses the file.
+//         vertex that doesn't exist refuses the file: others may then be another's, too.
 // Source  Alias Wavefront, "Object files", Appendix B1 of the Advanced Visualizer manual. Numbers are read
 //         exactly rounded, which the usual OBJ libraries don't do.
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/error.h"
 #include "scene/add_polygon.h"
+#include "scene/find_file.h"
 #include "scene/importers.h"
+#include "scene/left_out.h"
 #include "scene/line_scanner.h"
+#include "scene/lower.h"
 #include "scene/obj_materials.h"
 #include "scene/plain_number.h"
 #include "scene/reserve_ahead.h"
@@ -28,52 +34,89 @@ namespace kdray::scene {
 
 namespace {
 
-// Something left out: how often, and where first.
-struct LeftOut {
-  std::size_t count = 0;
-  std::uint32_t line = 0;
-  void add(std::uint32_t at) {
-    if (count++ == 0) line = at;
-  }
-};
-
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::filesystem::path& file)
-      : in_(text, file.string()),
-        materials_(file, scene_),
-        reads_texcoords_(text.find("mtllib") != std::string_view::npos) {}
+      : text_(text), in_(text, file.string()), materials_(file, scene_) {
+    reads_texcoords_ =
+        text.find("tllib") != std::string_view::npos || text.find("TLLIB") != std::string_view::npos;
+  }
 
-  Scene read() {
-    while (in_.next_line()) {
-      const std::string_view keyword = in_.word();
-      if (keyword.empty()) continue;
-      ++n_statements_;
-      read_statement(keyword);
-    }
-    if (n_statements_ > 0 && unknown_.count == n_statements_) {
-      throw input_error(in_.file(), unknown_.line, "not an OBJ file: no line of it is an OBJ statement");
-    }
-    paint_corners();
-    materials_.finish(!scene_.paint.colors.empty());
-    if (scene_.paint.textures.empty()) scene_.paint.texcoords[0] = {};
-    settle_normals(scene_, in_.file());
-    warn_of_what_is_left_out();
-    return std::move(scene_);
+  // Nothing: a face names what comes only after it.
+  std::optional<Scene> read_in_order() {
+    read_lines();
+    return looks_ahead_ ? std::nullopt : std::optional(finish());
+  }
+
+  Scene read_points_first() {
+    pass_ = Pass::points;
+    read_lines();
+    pass_ = Pass::rest;
+    n_vertices_ = n_normals_ = n_texcoords_ = 0;
+    in_ = LineScanner(text_, in_.file());
+    read_lines();
+    return finish();
   }
 
  private:
-  void read_statement(std::string_view keyword) {
-    if (keyword == "v") return read_vertex();
-    if (keyword == "vn") return read_normal();
-    if (keyword == "vt") return reads_texcoords_ ? read_texcoords() : void();
-    if (keyword == "f" || keyword == "fo") return read_face();
-    if (keyword == "usemtl") return materials_.use(in_.rest());
-    if (keyword == "mtllib") return materials_.add_library(in_.rest(), in_.line());
-    if (keyword == "p" || keyword == "l") return points_and_lines_.add(in_.line());
-    if (keyword == "curv" || keyword == "curv2" || keyword == "surf") return free_forms_.add(in_.line());
-    if (means_nothing_here(keyword)) return;
-    unknown_.add(in_.line());
+  enum class Pass { all, points, rest };
+
+  void read_lines() {
+    std::string spelled;
+    while (!looks_ahead_ && in_.next_line()) {
+      std::string_view keyword = in_.word();
+      if (std::ranges::any_of(keyword, [](char c) { return c != lower(c); }))
+        keyword = spelled = lower(keyword);
+      if (keyword.empty() || read_point(keyword) || pass_ == Pass::points) continue;
+      ++n_statements_;
+      if (!read_statement(keyword)) left_out_.add(kNoStatement, in_.line());
+    }
+  }
+
+  Scene finish() {
+    if (n_statements_ > 0 && scene_.vertices.empty() && left_out_.count(kNoStatement) == n_statements_)
+      throw input_error(in_.file(), 0, "not an OBJ file: no line of it is an OBJ statement");
+    paint_corners();
+    materials_.finish(!scene_.paint.colors.empty());
+    if (scene_.paint.textures.empty()) scene_.paint.texcoords[0] = {};
+    settle_vertices(scene_, [&](std::size_t) { return in_.file() + ":" + std::to_string(bad_vertex_line_); });
+    settle_normals(scene_, in_.file());
+    left_out_.warn(in_.file(), scene_.warnings);
+    return std::move(scene_);
+  }
+
+  // Of points alone, which the second pass counts.
+  bool read_point(std::string_view keyword) {
+    const bool known = keyword == "v" || keyword == "vn" || keyword == "vt";
+    if (!known) return false;
+    if (keyword == "v") {
+      ++n_vertices_;
+      if (pass_ != Pass::rest) read_vertex();
+    } else if (keyword == "vn") {
+      ++n_normals_;
+      if (pass_ != Pass::rest) read_normal();
+    } else if (reads_texcoords_) {
+      ++n_texcoords_;
+      if (pass_ != Pass::rest) read_texcoords();
+    }
+    return true;
+  }
+
+  bool read_statement(std::string_view keyword) {
+    if (keyword == "f" || keyword == "fo") {
+      read_face();
+    } else if (keyword == "usemtl") {
+      materials_.use(unquoted(in_.rest()));
+    } else if (keyword == "mtllib") {
+      materials_.add_library(in_.rest(), in_.line());
+    } else if (keyword == "p" || keyword == "l") {
+      left_out_.add("points and lines are left out: they have no surface", in_.line());
+    } else if (keyword == "curv" || keyword == "curv2" || keyword == "surf") {
+      left_out_.add("free-form curves and surfaces are left out: only polygons are read", in_.line());
+    } else {
+      return means_nothing_here(keyword);
+    }
+    return true;
   }
 
   static bool means_nothing_here(std::string_view keyword) {
@@ -89,15 +132,16 @@ class ObjReader {
   }
 
   dvec3 three_numbers(std::string_view what) {
-    const double x = in_.number(what);
-    const double y = in_.number(what);
-    const double z = in_.number(what);
+    const double x = in_.number(what, NotFinite::nan);
+    const double y = in_.number(what, NotFinite::nan);
+    const double z = in_.number(what, NotFinite::nan);
     return {x, y, z};
   }
 
   void read_vertex() {
     vertex_reserve_.reserve(scene_.vertices, in_.bytes_left());
     scene_.vertices.push_back(three_numbers("a vertex of three numbers"));
+    if (bad_vertex_line_ == 0 && !is_finite(scene_.vertices.back())) bad_vertex_line_ = in_.line();
     read_color();
   }
 
@@ -107,10 +151,14 @@ class ObjReader {
     std::size_t n = 0;
     for (double value = 0; n < 4; ++n) {
       const std::string_view word = in_.word();
-      if (word.empty() || !scene::read_number(word.data(), word.data() + word.size(), value)) break;
+      if (word.empty()) break;
+      if (!read_number(word.data(), word.data() + word.size(), value))
+        return left_out_.add("vertices have no finite numbers after their position: these are left out",
+                             in_.line());
       numbers[n] = static_cast<float>(std::clamp(value, 0.0, 255.0));
     }
-    if (n == 2) odd_colors_.add(in_.line());
+    if (n == 2)
+      left_out_.add("vertices have two numbers after their position, which are left out", in_.line());
     if (n < 3) return;
     const std::array<float, 3> color{numbers[n - 3], numbers[n - 2], numbers[n - 1]};
     colors_.resize(scene_.vertices.size() - 1, {1, 1, 1});  // those of vertices that have none
@@ -138,8 +186,12 @@ class ObjReader {
   // v goes upwards in the file, downwards in textures.
   void read_texcoords() {
     double u = 0, v = 0;
-    u = in_.number("a texture coordinate");
-    in_.try_number("a texture coordinate", v);
+    u = in_.number("a texture coordinate", NotFinite::nan);
+    in_.try_number("a texture coordinate", v, NotFinite::nan);
+    if (!std::isfinite(u + v)) {
+      u = v = 0;
+      left_out_.add("texture coordinates are not finite: they are taken for 0", in_.line());
+    }
     const auto narrow = [](double value) { return static_cast<float>(std::clamp(value, -1e6, 1e6)); };
     texcoord_reserve_.reserve(texcoords_, in_.bytes_left());
     texcoords_.push_back({narrow(u), narrow(1 - v)});
@@ -187,24 +239,32 @@ class ObjReader {
     return value;
   }
 
-  std::uint32_t vertex_number(std::int64_t value, std::string_view word) const {
-    const auto n = static_cast<std::int64_t>(scene_.vertices.size());
-    const std::int64_t index = value < 0 ? n + value : value - 1;
+  // The place in an array of which `before` entries stand before this line, and which has `n`. Nothing: there
+  // is none, or it comes later, and then the file is to be read otherwise.
+  std::optional<std::size_t> place_of(std::int64_t value, std::size_t before, std::size_t n) {
+    const auto counted = static_cast<std::int64_t>(before);
+    const std::int64_t index = value < 0 ? counted + value : value - 1;
+    if (value > counted && pass_ == Pass::all) looks_ahead_ = true;
+    if (value == 0 || index < 0 || static_cast<std::size_t>(index) >= n) return std::nullopt;
+    return static_cast<std::size_t>(index);
+  }
+
+  std::uint32_t vertex_number(std::int64_t value, std::string_view word) {
+    const auto place = place_of(value, n_vertices_, scene_.vertices.size());
+    if (place) return static_cast<std::uint32_t>(*place);
+    if (looks_ahead_) return 0;
     if (value == 0)
       throw in_.error("there is no vertex 0 in '" + printable(word) + "'", "vertices count from 1");
-    if (index < 0 || index >= n) {
-      throw in_.error("there is no vertex " + std::to_string(value) + " before this line (there are " +
-                      std::to_string(n) + ")");
-    }
-    return static_cast<std::uint32_t>(index);
+    throw in_.error("there is no vertex " + std::to_string(value) + " (the file has " +
+                    std::to_string(scene_.vertices.size()) +
+                    (value < 0 ? ", of which " + std::to_string(n_vertices_) + " before this line)" : ")"));
   }
 
   std::uint32_t normal_number(std::string_view digits, std::string_view word) {
-    const std::int64_t value = whole_number(digits, word);
-    const auto n = static_cast<std::int64_t>(scene_.normals.size());
-    const std::int64_t index = value < 0 ? n + value : value - 1;
-    if (value != 0 && index >= 0 && index < n) return static_cast<std::uint32_t>(index);
-    missing_normals_.add(in_.line());
+    const auto place = place_of(whole_number(digits, word), n_normals_, scene_.normals.size());
+    if (place) return static_cast<std::uint32_t>(*place);
+    if (!looks_ahead_)
+      left_out_.add("corners name a normal that does not exist: those faces are shaded flat", in_.line());
     return kNone;
   }
 
@@ -214,11 +274,10 @@ class ObjReader {
       return kNoTexcoord;
     const std::size_t end = std::min(word.find('/', first + 1), word.size());
     const std::int64_t value = whole_number(word.substr(first + 1, end - first - 1), word);
-    const auto n = static_cast<std::int64_t>(texcoords_.size());
-    const std::int64_t index = value < 0 ? n + value : value - 1;
     has_texcoords_ = true;
-    if (value != 0 && index >= 0 && index < n) return texcoords_[static_cast<std::size_t>(index)];
-    missing_texcoords_.add(in_.line());
+    if (const auto place = place_of(value, n_texcoords_, texcoords_.size())) return texcoords_[*place];
+    if (!looks_ahead_)
+      left_out_.add("corners name a texture coordinate that does not exist: it is taken for 0", in_.line());
     return kNoTexcoord;
   }
 
@@ -229,7 +288,8 @@ class ObjReader {
     has_texcoords_ = false;
     while (read_corner()) {
     }
-    if (corners_.size() < 3) return small_faces_.add(in_.line());
+    if (looks_ahead_) return;
+    if (corners_.size() < 3) return left_out_.add("faces with fewer than 3 corners are left out", in_.line());
     bool smooth = true;
     for (const std::uint32_t n : normals_) smooth = smooth && n != kNone;
     if (!smooth) normals_.clear();
@@ -238,22 +298,9 @@ class ObjReader {
     add_polygon(scene_, corners_, normals_, materials_.current(), corner_texcoords_);
   }
 
-  void warn(const LeftOut& what, const std::string& text) {
-    if (what.count == 0) return;
-    scene_.warnings.push_back(in_.file() + ":" + std::to_string(what.line) + ": " +
-                              std::to_string(what.count) + " " + text + " (the first is in this line)");
-  }
-  void warn_of_what_is_left_out() {
-    warn(small_faces_, "faces with fewer than 3 corners are left out");
-    warn(missing_normals_, "corners name a normal that does not exist: those faces are shaded flat");
-    warn(points_and_lines_, "points and lines are left out: they have no surface");
-    warn(missing_texcoords_, "corners name a texture coordinate that does not exist: it is taken for 0");
-    warn(odd_colors_, "vertices have two numbers after their position, which are left out");
-    warn(free_forms_, "free-form curves and surfaces are left out: only polygons are read");
-    warn(unknown_, "lines that are no OBJ statements are left out");
-    if (scene_.triangles.empty()) scene_.warnings.push_back(in_.file() + ": no faces");
-  }
+  static constexpr std::string_view kNoStatement = "lines that are no OBJ statements are left out";
 
+  std::string_view text_;
   LineScanner in_;
   Scene scene_;
   ObjMaterials materials_;
@@ -266,15 +313,19 @@ class ObjReader {
   bool has_texcoords_ = false;  // of the face in work
   RawVector<std::array<float, 2>> texcoords_;
   std::vector<std::array<float, 3>> colors_;  // of the first vertices, as they stand in the file
-  LeftOut small_faces_, missing_normals_, points_and_lines_, free_forms_, unknown_, missing_texcoords_,
-      odd_colors_;
-  std::size_t n_statements_ = 0;
+  LeftOut left_out_;
+  std::uint32_t bad_vertex_line_ = 0;  // the first that is not finite
+  std::size_t n_statements_ = 0;       // other than points
+  Pass pass_ = Pass::all;
+  bool looks_ahead_ = false;
+  std::size_t n_vertices_ = 0, n_normals_ = 0, n_texcoords_ = 0;  // before this line
 };
 
 }  // namespace
 
 Scene read_obj(std::string_view text, const std::filesystem::path& file) {
-  return ObjReader(text, file).read();
+  if (auto scene = ObjReader(text, file).read_in_order()) return std::move(*scene);
+  return ObjReader(text, file).read_points_first();
 }
 
 }  // namespace kdray::scene

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <map>
-#include <system_error>
 
 #include "base/error.h"
 #include "scene/derived_pictures.h"
-#include "scene/files_read.h"
+#include "scene/find_file.h"
+#include "scene/lower.h"
 #include "scene/mesh_material.h"
 #include "scene/picture.h"
 #include "scene/read_file.h"
@@ -19,19 +19,18 @@ namespace {
 
 constexpr std::size_t kLargestMtl = std::size_t{1} << 28;
 
-bool is_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored);
-}
-
-// File names, separated by white space; a backslash before a space makes it part of the name.
+// File names, separated by white space; a backslash before a space, or quotes around the name, make it part
+// of the name.
 std::vector<std::string> split(std::string_view names) {
   std::vector<std::string> out(1);
+  bool quoted = false;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const bool joins = names[i] == '\\' && i + 1 < names.size() && names[i + 1] == ' ';
     if (joins) {
       out.back() += names[++i];
-    } else if (names[i] != ' ' && names[i] != '\t') {
+    } else if (names[i] == '"') {
+      quoted = !quoted;
+    } else if (quoted || (names[i] != ' ' && names[i] != '\t')) {
       out.back() += names[i];
     } else if (!out.back().empty()) {
       out.emplace_back();
@@ -39,11 +38,6 @@ std::vector<std::string> split(std::string_view names) {
   }
   if (out.back().empty()) out.pop_back();
   return out;
-}
-
-std::string slashed(std::string path) {
-  std::ranges::replace(path, '\\', '/');
-  return path;
 }
 
 // Black beside a picture is how exporters say that the picture alone counts.
@@ -56,20 +50,44 @@ bool says_something(const Coat& c) {
          c.colored != 0;
 }
 
+// Materials by their names. One that none has is that of the only one, if so, that differs in capitals alone.
+class Library {
+ public:
+  explicit Library(const std::vector<MtlMaterial>& materials) {
+    for (const MtlMaterial& m : materials) {
+      const bool is_new = exact_.try_emplace(m.name, &m).second;  // of several with one name, the first
+      const auto [alike, is_only] = alike_.try_emplace(lower(m.name), &m);
+      if (is_new && !is_only) alike->second = nullptr;
+    }
+  }
+
+  const MtlMaterial* find(const std::string& name) const {
+    if (const auto found = exact_.find(name); found != exact_.end()) return found->second;
+    const auto found = alike_.find(lower(name));
+    return found == alike_.end() ? nullptr : found->second;
+  }
+
+ private:
+  std::unordered_map<std::string_view, const MtlMaterial*> exact_;
+  std::unordered_map<std::string, const MtlMaterial*> alike_;
+};
+
 }  // namespace
 
-// A name as it is given, beside the OBJ file or below.
+// A name as it is given, or without its quotes, from the OBJ file's folder on.
 std::filesystem::path ObjMaterials::find(const std::string& name) const {
-  if (name.empty() || std::filesystem::path(name).is_absolute()) return "";
-  const std::filesystem::path path = file_.parent_path() / name;
-  if (is_file(path)) return path;
-  FilesRead::add_missing(path);
+  for (const std::string_view given : {std::string_view(name), unquoted(name)}) {
+    const std::filesystem::path path(given), folder = file_.parent_path();
+    if (path.empty() || (path.is_absolute() && !may_name(folder, path))) continue;
+    if (const auto found = find_file(folder / path); !found.empty()) return found;
+    if (given == unquoted(name)) break;
+  }
   return "";
 }
 
 // The last part of a path: exporters write the paths of their own machine.
 std::filesystem::path ObjMaterials::find_last_part(const std::string& name) const {
-  return find(std::filesystem::path(name).filename().string());
+  return find(std::filesystem::path(unquoted(name)).filename().string());
 }
 
 bool ObjMaterials::read_library(const std::filesystem::path& path) {
@@ -116,7 +134,8 @@ std::optional<std::uint32_t> ObjMaterials::picture_of(const std::string& name) {
   if (path.empty()) path = find_last_part(given);
   try {
     if (path.empty())
-      throw input_error(file_.string(), 0, "no picture '" + printable(name) + "'", "put it beside the scene");
+      throw input_error(file_.string(), 0, "no picture '" + printable(name) + "'",
+                        std::string("put it beside the scene; ") + kAllowAFolder);
     it->second = scene_.paint.add(decode_picture(read_file(path), path.string(), scene_.warnings));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::input) throw;
@@ -213,14 +232,12 @@ Material ObjMaterials::material_of(const MtlMaterial* mtl, bool colored) {
 }
 
 void ObjMaterials::finish(bool colored) {
-  std::unordered_map<std::string_view, const MtlMaterial*> library;  // of several with one name, the first
-  for (const MtlMaterial& m : library_) library.try_emplace(m.name, &m);
+  const Library library(library_);
   std::size_t n_missing = 0;
   std::string first_missing;
   std::map<std::string, std::size_t> left_out;  // materials, by the statement
   for (const std::string& name : names_) {
-    const auto found = library.find(name);
-    const MtlMaterial* mtl = found == library.end() ? nullptr : found->second;
+    const MtlMaterial* mtl = library.find(name);
     scene_.materials.push_back(material_of(mtl, colored));
     if (mtl)
       for (const std::string& what : mtl->left_out) ++left_out[what];

@@ -1,7 +1,6 @@
 // What    The materials of an OBJ file: numbers for the names that `usemtl` gives, and at the end what the
 //         MTL files say about them.
-// Errors  A damaged MTL file refuses the scene; a missing one, or a missing material, is a warning and the
-//         default material.
+// Errors  A missing MTL file, or a missing material, is a warning and the default material.
 #pragma once
 
 #include <cstdint>

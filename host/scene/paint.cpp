@@ -78,7 +78,8 @@ bool needs_footprints(const Texture& texture, const Picture& picture) {
 }
 
 std::uint32_t linear_unit(double value) {
-  return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535));
+  if (!(value > 0)) return 0;
+  return static_cast<std::uint32_t>(std::lround(std::min(value, 1.0) * 65535));
 }
 
 Picture blank_picture(const std::string& name, std::uint32_t width, std::uint32_t height) {

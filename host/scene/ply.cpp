@@ -1,6 +1,6 @@
 // What    PLY: polygons (element face) and triangle strips (element tristrips) over the element vertex,
-//         with vertex normals and colours; ascii and binary, either byte order. Other elements and
-//         properties are skipped.
+//         with vertex normals, colours of vertices or faces, and pictures by texture coordinates of either;
+//         ascii and binary, either byte order. Other elements and properties are skipped.
 // Errors  ascii: file and line; binary: file, element, row and byte.
 // Source  G. Turk, "The PLY Polygon File Format", 1994. Tristrips as the Stanford scanning repository writes
 //         them.
@@ -19,6 +19,7 @@
 #include "scene/ply_left_out.h"
 #include "scene/ply_mesh.h"
 #include "scene/ply_source.h"
+#include "scene/ply_textures.h"
 
 namespace kdray::scene {
 
@@ -40,7 +41,7 @@ class BodyReader {
       read_element(element);
     }
     const bool at_end = source_.at_end();
-    for (const std::string& what : left_out_of(header_)) mesh_.warn(what);
+    for (const std::string& what : left_out_of(header_, file_)) mesh_.warn(what);
     if (source_.has_extra_values())
       mesh_.warn("values at the end of a line that the header doesn't know are left out");
     if (!at_end) mesh_.warn("more data after the last element of the header are left out");
@@ -71,8 +72,8 @@ class BodyReader {
 
   void read_element(const Element& element) {
     if (element.name == "vertex") return read_vertices(element);
-    if (element.name == "face") return read_lists(element, &Mesh::add_face);
-    if (element.name == "tristrips") return read_lists(element, &Mesh::add_strip);
+    if (element.name == "face") return read_faces(element);
+    if (element.name == "tristrips") return read_strips(element);
     for (std::uint64_t row = 0; row < element.count; ++row) {
       source_.begin_row(element, row);
       for (const Property& p : element.properties) skip(p);
@@ -85,20 +86,21 @@ class BodyReader {
   }
 
   void read_vertices(const Element& element) {
-    const VertexColumns columns = find_columns(element, file_);
-    auto& vertices = mesh_.vertices();
-    auto& normals = mesh_.normals();
-    vertices.resize(element.count);
-    auto& colors = mesh_.colors();
-    if (columns.has_normals) normals.resize(element.count);
-    if (columns.has_colors) colors.assign(element.count, {0, 0, 0, static_cast<float>(columns.color_unit)});
-    mesh_.set_color_unit(columns.color_unit);
+    const VertexColumns columns = find_columns(header_, element, file_);
+    VertexArrays& out = mesh_.vertices();
+    out.places.resize(element.count);
+    if (columns.has_normals) out.normals.resize(element.count);
+    if (columns.has_colors) {
+      out.colors.assign(element.count, {0, 0, 0, static_cast<float>(columns.color_unit)});
+      mesh_.set_color_unit(columns.color_unit);
+    }
+    if (columns.has_texcoords) out.texcoords.resize(element.count);
     if constexpr (Source::kBinary) {
-      if (!element.has_lists()) return read_columns(source_, element, columns, vertices, normals, colors);
+      if (!element.has_lists()) return void(read_columns(source_, element, columns, out));
     }
     for (std::uint64_t row = 0; row < element.count; ++row) {
       source_.begin_row(element, row);
-      std::array<double, 10> value{};
+      std::array<double, kColumns> value{};
       value[9] = columns.color_unit;
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
         const int column = columns.of_property[i];
@@ -108,41 +110,104 @@ class BodyReader {
           value[static_cast<std::size_t>(column)] = source_.number(element.properties[i].type);
         }
       }
-      vertices[row] = {value[0], value[1], value[2]};
-      if (columns.has_normals) normals[row] = {value[3], value[4], value[5]};
-      if (columns.has_colors)
-        for (std::size_t c = 0; c < 4; ++c) colors[row][c] = static_cast<float>(value[6 + c]);
+      const auto narrow = [&](std::size_t i) { return static_cast<float>(value[i]); };
+      out.places[row] = {value[0], value[1], value[2]};
+      if (columns.has_normals) out.normals[row] = {value[3], value[4], value[5]};
+      if (columns.has_colors) out.colors[row] = {narrow(6), narrow(7), narrow(8), narrow(9)};
+      if (columns.has_texcoords) out.texcoords[row] = {narrow(10), narrow(11)};
     }
   }
 
-  // Rows of which one list names the corners of a face or a strip.
-  void read_lists(const Element& element, bool (Mesh::*add)(std::span<const std::int64_t>)) {
+  const Property& corners_of(const Element& element) const {
     const Property* indices = element.find("vertex_indices");
     if (!indices) indices = element.find("vertex_index");
     if (!indices || !indices->is_list) throw header_error(element, "has no list 'vertex_indices'");
     if (!is_integer(indices->type)) throw header_error(element, "has 'vertex_indices' of no integer type");
-    std::uint64_t row = 0;
-    if constexpr (Source::kBinary) {
-      if (element.name == "face") row = read_triangles(source_, element, mesh_);
-    }
-    if (element.name == "face") {
-      constexpr std::uint64_t kLeastValues = 4;  // of a face that makes a triangle
-      auto& triangles = mesh_.triangles();
-      triangles.reserve(triangles.size() + std::min(element.count - row, source_.capacity() / kLeastValues));
-    }
-    std::vector<std::int64_t> corners;
-    for (; row < element.count; ++row) {
+    return *indices;
+  }
+
+  void read_corners(const Property& p) {
+    corners_.resize(source_.list_length(p.count_type, p.type));
+    for (std::int64_t& c : corners_) c = source_.integer(p.type);
+  }
+
+  void read_strips(const Element& element) {
+    const Property& indices = corners_of(element);
+    for (std::uint64_t row = 0; row < element.count; ++row) {
       source_.begin_row(element, row);
       for (const Property& p : element.properties) {
-        if (&p != indices) {
+        if (&p != &indices) {
           skip(p);
           continue;
         }
-        corners.resize(source_.list_length(p.count_type, p.type));
-        for (std::int64_t& c : corners) c = source_.integer(p.type);
-        if (!(mesh_.*add)(corners)) throw bad_corner(corners);
+        read_corners(p);
+        if (!mesh_.add_strip(corners_)) throw bad_corner(corners_);
       }
     }
+  }
+
+  void read_faces(const Element& element) {
+    const Property& indices = corners_of(element);
+    const FaceColumns columns = find_face_columns(header_, element);
+    if (columns.color[0]) mesh_.set_color_unit(columns.color_unit);
+    std::uint64_t row = 0;
+    if constexpr (Source::kBinary) row = read_triangles(source_, element, mesh_);
+    constexpr std::uint64_t kLeastValues = 4;  // of a face that makes a triangle
+    auto& triangles = mesh_.triangles();
+    triangles.reserve(triangles.size() + std::min(element.count - row, source_.capacity() / kLeastValues));
+    for (; row < element.count; ++row) {
+      source_.begin_row(element, row);
+      read_face(element, indices, columns);
+    }
+    if (n_odd_texcoords_ > 0)
+      mesh_.warn("the texture coordinates of " + std::to_string(n_odd_texcoords_) +
+                 " faces are not two for each corner: they are left out");
+    if (n_odd_textures_ > 0)
+      mesh_.warn("the texnumber of " + std::to_string(n_odd_textures_) +
+                 " faces is that of no TextureFile: the first is taken");
+  }
+
+  void read_face(const Element& element, const Property& indices, const FaceColumns& columns) {
+    VertexColor color{0, 0, 0, static_cast<float>(columns.color_unit)};
+    std::int64_t texture = 0;
+    texcoords_.clear();
+    bool odd = false;
+    for (const Property& p : element.properties) {
+      const auto part = std::ranges::find(columns.color, &p) - columns.color.begin();
+      if (&p == &indices) {
+        read_corners(p);
+      } else if (&p == columns.texcoords) {
+        odd = !read_texcoords(p);
+      } else if (&p == columns.texture) {
+        texture = source_.integer(p.type);
+      } else if (part < 4) {
+        color[static_cast<std::size_t>(part)] = static_cast<float>(source_.number(p.type));
+      } else {
+        skip(p);
+      }
+    }
+    if (odd || (!texcoords_.empty() && texcoords_.size() != corners_.size())) {
+      ++n_odd_texcoords_;
+      texcoords_.clear();
+    }
+    const std::size_t first = mesh_.triangles().size();
+    if (!mesh_.add_face(corners_, texcoords_)) throw bad_corner(corners_);
+    if (columns.color[0]) mesh_.paint_face(first, color);
+    if (!columns.texture) return;
+    const bool known = texture >= 0 && static_cast<std::uint64_t>(texture) < header_.textures.size();
+    n_odd_textures_ += !known;
+    mesh_.set_texture(first, known ? static_cast<std::uint32_t>(texture) : 0);
+  }
+
+  // False: a number is left over.
+  bool read_texcoords(const Property& p) {
+    const std::uint64_t n = source_.list_length(p.count_type, p.type);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      const auto value = static_cast<float>(source_.number(p.type));
+      if (i % 2 == 0) texcoords_.push_back({});
+      texcoords_.back()[i % 2] = value;
+    }
+    return n % 2 == 0;
   }
 
   [[nodiscard]] Error bad_corner(const std::vector<std::int64_t>& corners) const {
@@ -158,12 +223,17 @@ class BodyReader {
   Source& source_;
   const std::string& file_;
   Mesh mesh_;
+  std::vector<std::int64_t> corners_;  // of the row in work
+  std::vector<TexCoord> texcoords_;
+  std::size_t n_odd_texcoords_ = 0, n_odd_textures_ = 0;
 };
 
 template <class Source>
 Scene read_body(std::string_view text, const Header& header, const std::string& file) {
   Source source(text, header, file);
-  return BodyReader<Source>(header, source, file).read();
+  Scene scene = BodyReader<Source>(header, source, file).read();
+  lay_on_textures(scene, header, file);
+  return scene;
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ double AsciiSource::number(Type) {
     return value;
   }
   const std::string_view word = token();
-  if (!read_number(word.data(), word.data() + word.size(), value)) {
-    throw error("expected a finite number, found '" + printable(word) + "'");
+  if (!read_number_or_nan(word.data(), word.data() + word.size(), value)) {
+    throw error("expected a number, found '" + printable(word) + "'");
   }
   return value;
 }

@@ -25,54 +25,35 @@ bool convert(const unsigned char* bytes, std::size_t stride, std::uint64_t n, Ou
   return bad == 0;
 }
 
-// Goes through the rows of a block value by value, which throws at the one that is not finite. A double that
-// is too large for a normal's float gets through: settle_normals() sees to it.
-template <bool swap>
-void refuse(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
-            std::uint64_t first, std::uint64_t n) {
-  for (std::uint64_t row = first; row < first + n; ++row) {
-    source.begin_row(element, row);
-    for (std::size_t i = 0; i < element.properties.size(); ++i) {
-      const Type type = element.properties[i].type;
-      if (columns.of_property[i] < 0) {
-        source.skip(type);
-      } else {
-        source.number(type);
-      }
-    }
-  }
-}
-
 }  // namespace
 
 template <bool swap>
-void read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
-                  RawVector<dvec3>& vertices, RawVector<vec3>& normals, RawVector<VertexColor>& colors) {
+bool read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
+                  VertexArrays& out) {
   const std::size_t stride = BinarySource<swap>::least_size(element);
+  bool good = true;
   for (std::uint64_t row = 0; row < element.count; row += kBlock) {
     const std::uint64_t n = std::min(kBlock, element.count - row);
     std::size_t offset = 0;
-    bool good = true;
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const Type type = element.properties[i].type;
       const unsigned char* bytes = source.at() + offset;
       const int column = columns.of_property[i];
       offset += size_of(type);
       if (column < 0) continue;
+      const auto at = static_cast<std::size_t>(column);
       const bool finite = with_type(type, [&](auto t) {
         using T = decltype(t);
-        if (column < 3) return convert<T, swap>(bytes, stride, n, &vertices[row][column], 3);
-        if (column < 6) return convert<T, swap>(bytes, stride, n, &normals[row][column - 3], 3);
-        return convert<T, swap>(bytes, stride, n, &colors[row][static_cast<std::size_t>(column) - 6], 4);
+        if (at < 3) return convert<T, swap>(bytes, stride, n, &out.places[row][column], 3);
+        if (at < 6) return convert<T, swap>(bytes, stride, n, &out.normals[row][column - 3], 3);
+        if (at < 10) return convert<T, swap>(bytes, stride, n, &out.colors[row][at - 6], 4);
+        return convert<T, swap>(bytes, stride, n, &out.texcoords[row][at - 10], 2);
       });
       good = good && finite;
     }
-    if (good) {
-      source.advance(n * stride);
-    } else {
-      refuse(source, element, columns, row, n);
-    }
+    source.advance(n * stride);
   }
+  return good;
 }
 
 template <bool swap>
@@ -100,10 +81,8 @@ std::uint64_t read_triangles(BinarySource<swap>& source, const Element& element,
   return row;
 }
 
-template void read_columns(BinarySource<false>&, const Element&, const VertexColumns&, RawVector<dvec3>&,
-                           RawVector<vec3>&, RawVector<VertexColor>&);
-template void read_columns(BinarySource<true>&, const Element&, const VertexColumns&, RawVector<dvec3>&,
-                           RawVector<vec3>&, RawVector<VertexColor>&);
+template bool read_columns(BinarySource<false>&, const Element&, const VertexColumns&, VertexArrays&);
+template bool read_columns(BinarySource<true>&, const Element&, const VertexColumns&, VertexArrays&);
 template std::uint64_t read_triangles(BinarySource<false>&, const Element&, Mesh&);
 template std::uint64_t read_triangles(BinarySource<true>&, const Element&, Mesh&);
 

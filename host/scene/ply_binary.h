@@ -14,11 +14,11 @@
 
 namespace kdray::scene::ply {
 
-// Fills `vertices` (and `normals` and `colors`), which have element.count entries, for which the source has
-// the bytes.
+// Fills the arrays that there are columns for, which have element.count entries, for which the source has the
+// bytes. False: some value is not finite.
 template <bool swap>
-void read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
-                  RawVector<dvec3>& vertices, RawVector<vec3>& normals, RawVector<VertexColor>& colors);
+bool read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
+                  VertexArrays& out);
 
 // Reads rows as long as they are good triangles, and says how many those were.
 template <bool swap>

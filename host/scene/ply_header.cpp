@@ -8,6 +8,8 @@
 
 #include "base/error.h"
 #include "scene/files_read.h"
+#include "scene/find_file.h"
+#include "scene/lower.h"
 #include "scene/text_scanner.h"
 
 namespace kdray::scene::ply {
@@ -68,8 +70,11 @@ class HeaderReader {
 
   // MeshLab's way to name a texture.
   void read_comment() {
-    if (word() == "TextureFile")
-      FilesRead::add_named(file_, rest_.substr(std::min(rest_.find_first_not_of(" \t"), rest_.size())));
+    if (!same_word(word(), "TextureFile")) return;
+    std::string_view name = rest_.substr(std::min(rest_.find_first_not_of(" \t"), rest_.size()));
+    name = unquoted(name.substr(0, name.find_last_not_of(" \t") + 1));
+    FilesRead::add_named(file_, name);
+    if (!name.empty() && name.find('\0') == std::string_view::npos) header_.textures.emplace_back(name);
   }
 
   void read_format() {
@@ -117,7 +122,7 @@ class HeaderReader {
     p.name = word();
     if (p.name.empty()) throw error("a property without a name");
     Element& element = header_.elements.back();
-    if (element.find(p.name)) throw error("a second property '" + printable(p.name) + "'");
+    if (element.find(p.name)) p.name += " (its second)";
     element.properties.push_back(std::move(p));
   }
 

@@ -24,7 +24,7 @@ constexpr bool is_integer(Type type) {
 }
 
 struct Property {
-  std::string name;
+  std::string name;       // of a second one of this name with a note that nobody asks for
   Type type = Type::f32;  // of a list: of its entries
   bool is_list = false;
   Type count_type = Type::u8;
@@ -43,7 +43,8 @@ struct Element {
 struct Header {
   Format format = Format::ascii;
   std::vector<Element> elements;
-  std::size_t body = 0;  // offset of the first byte after the header
+  std::vector<std::string> textures;  // pictures, as `comment TextureFile` names them
+  std::size_t body = 0;               // offset of the first byte after the header
   std::uint32_t body_line = 1;
 };
 

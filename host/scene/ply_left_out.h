@@ -8,6 +8,6 @@
 
 namespace kdray::scene::ply {
 
-std::vector<std::string> left_out_of(const Header& header);
+std::vector<std::string> left_out_of(const Header& header, const std::string& file);
 
 }  // namespace kdray::scene::ply

@@ -57,16 +57,11 @@ bool corners_of(const unsigned char* at, std::uint64_t stride, std::uint64_t n, 
 template <bool swap>
 bool columns_of(const std::string& bytes, const Element& element, std::uint64_t n,
                 const VertexColumns& columns, Vertices& out) {
-  const Header from_here{.format = Format::little_endian, .elements = {}, .body = 0, .body_line = 1};
+  const Header from_here{.format = Format::little_endian, .elements = {}, .textures = {}};
   BinarySource<swap> source(bytes, from_here, "");
   Element rows = element;
   rows.count = n;
-  try {
-    read_columns(source, rows, columns, out.places, out.normals, out.colors);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
+  return read_columns(source, rows, columns, out);
 }
 
 }  // namespace
@@ -99,11 +94,11 @@ bool Rows::place(const Element& element, std::uint64_t& at) {
   const Place place{&element, at, element.count, stride_of(element)};
   if (is_vertex) {
     vertices_ = place;
-    columns_ = find_columns(element, file_);
+    columns_ = find_columns(header_, element, file_);
   } else if (is_face) {
     faces_ = place;
     corners_ = list_of_corners(element);
-    if (!corners_) return false;
+    if (!corners_ || find_face_columns(header_, element).any()) return false;
     for (const Property* p = element.properties.data(); p != corners_; ++p) corners_at_ += size_of(p->type);
   }
   at += place.n * place.stride;
@@ -111,7 +106,7 @@ bool Rows::place(const Element& element, std::uint64_t& at) {
 }
 
 bool Rows::place_elements(std::uint64_t file_bytes) {
-  if (header_.format == Format::ascii) return false;
+  if (header_.format == Format::ascii || !header_.textures.empty()) return false;
   std::uint64_t at = header_.body;
   for (const Element& element : header_.elements) {
     if (element.count == 0 || element.properties.empty()) continue;
@@ -145,7 +140,7 @@ bool Rows::read_vertices(const RowRange& range, Vertices& out) {
   if (columns_.has_colors) out.colors.assign(range.n, {0, 0, 0, opaque});
   return for_each_piece(
       vertices_, range, [&](std::uint64_t first, std::uint64_t n, const std::string& bytes) {
-        Vertices piece{RawVector<dvec3>(n), RawVector<vec3>(columns_.has_normals ? n : 0), {}};
+        Vertices piece{RawVector<dvec3>(n), RawVector<vec3>(columns_.has_normals ? n : 0), {}, {}};
         if (columns_.has_colors) piece.colors.assign(n, {0, 0, 0, opaque});
         const bool little = header_.format == Format::little_endian;
         const Element& element = *vertices_.element;

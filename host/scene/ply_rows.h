@@ -1,6 +1,6 @@
 // What    Rows of a binary PLY file, wherever they are: what several processes read a part of each.
-// Shape   For files whose rows are all as long as the header says: vertices without lists, faces that are all
-//         triangles. open() tells what it is not for, and rows that are no good say so; then the whole file
+// Shape   For files whose rows are all as long as the header says, without pictures or colours of faces:
+//         vertices without lists, faces that are all triangles. open() tells what it is not for, and rows that are no good say so; then the whole file
 //         is read as by read_ply(), which copes with it or says what is wrong.
 // Memory  A piece of the file of some MiB, and what is returned.
 #pragma once
@@ -23,11 +23,7 @@ struct RowRange {
   std::uint64_t first = 0, n = 0;
 };
 
-struct Vertices {
-  RawVector<dvec3> places;
-  RawVector<vec3> normals;        // or none
-  RawVector<VertexColor> colors;  // or none
-};
+using Vertices = VertexArrays;  // without texture coordinates
 using Corners = std::array<std::uint32_t, 3>;
 
 class Rows {
@@ -39,7 +35,7 @@ class Rows {
   std::uint64_t n_faces() const { return faces_.n; }
   const VertexColumns& columns() const { return columns_; }
   bool has_more() const { return has_more_; }  // behind the last element of the header
-  std::vector<std::string> left_out() const { return left_out_of(header_); }
+  std::vector<std::string> left_out() const { return left_out_of(header_, file_); }
   // A hash of the header and the file's size, for ranks to agree on.
   std::uint64_t fingerprint() const { return fingerprint_; }
 

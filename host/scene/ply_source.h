@@ -1,6 +1,6 @@
 // What    Where the values of a PLY file's rows come from: text (AsciiSource) or bytes (BinarySource). Both
 //         have the same functions, and ply.cpp reads rows from either.
-// Shape   number, integer and skip take the next value; list_length the next list's length, checked against
+// Shape   number, integer and skip take the next value, of which a number may be infinite or NaN; list_length the next list's length, checked against
 //         what is left of the file, so that nothing is allocated for entries that aren't there.
 // Errors  ascii: "file:line: ..."; binary: "file: element 'face' 17, byte 4711: ...".
 #pragma once
@@ -110,9 +110,7 @@ class BinarySource {
 
   double number(Type type) {
     const unsigned char* bytes = take(size_of(type));
-    const double value = with_type(type, [&](auto t) { return double(load<decltype(t), swap>(bytes)); });
-    if (!std::isfinite(value)) throw error("a value is not finite");
-    return value;
+    return with_type(type, [&](auto t) { return double(load<decltype(t), swap>(bytes)); });
   }
   std::int64_t integer(Type type) {
     const unsigned char* bytes = take(size_of(type));

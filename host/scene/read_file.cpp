@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/files_read.h"
+#include "scene/lower.h"
 
 namespace kdray::scene {
 
@@ -21,19 +22,25 @@ constexpr std::size_t kChunk = std::size_t{1} << 18;
 // The window an .xz file may ask for before its first byte is unpacked; `xz -9` needs 65 MiB.
 constexpr std::uint64_t kXzMemory = std::uint64_t{256} << 20;
 
-std::string lower(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
 std::string ending_of(const std::filesystem::path& file) {
   return lower(file.extension().string());
 }
 
 Error damaged(const std::string& file, const std::string& how) {
   return input_error(file, 0, "damaged: " + how, "fetch or pack it again");
+}
+
+// What servers and version control give in place of a file, under its name.
+void refuse_stand_in(std::string_view bytes, const std::string& file) {
+  constexpr std::size_t kFirst = 256;  // bytes: what is there is told by the first of them
+  std::string start = lower(bytes.substr(0, kFirst));
+  if (start.starts_with("version https://git-lfs"))
+    throw input_error(file, 0, "is a Git LFS pointer, not the file that it stands for",
+                      "run 'git lfs pull' where it comes from, or download the file itself");
+  start.erase(0, std::min(start.find_first_not_of(" \t\r\n\xef\xbb\xbf"), start.size()));
+  if (start.starts_with("<!doctype html") || start.starts_with("<html"))
+    throw input_error(file, 0, "is a web page (HTML), not the file that its name says",
+                      "download the file itself, not the page that shows it");
 }
 
 // Bytes as they come out of a decompressor. std::string grows geometrically, so the copies stay linear in the
@@ -178,10 +185,13 @@ std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) 
 }
 
 std::string unpacked(std::string bytes, const std::filesystem::path& file, std::size_t max_bytes) {
+  refuse_stand_in(bytes, file.string());
   const std::string ending = ending_of(file);
-  if (ending == ".gz") return gunzip(bytes, file.string(), max_bytes);
-  if (ending == ".xz") return unxz(bytes, file.string(), max_bytes);
-  return bytes;
+  if (ending != ".gz" && ending != ".xz") return bytes;
+  std::string all =
+      ending == ".gz" ? gunzip(bytes, file.string(), max_bytes) : unxz(bytes, file.string(), max_bytes);
+  refuse_stand_in(all, file.string());
+  return all;
 }
 
 std::string format_of(const std::filesystem::path& file) {

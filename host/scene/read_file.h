@@ -1,6 +1,6 @@
 // What    A whole file in memory, decompressed when its name ends in .gz or .xz.
 // Errors  kdray::Error, ErrorCode::input: missing, a folder, unreadable, damaged, or larger than `kMaxBytes`
-//         unpacked.
+//         unpacked; a Git LFS pointer or a web page in place of the file.
 #pragma once
 
 #include <cstddef>

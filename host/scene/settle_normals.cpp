@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/first_fault.h"
+
 namespace kdray::scene {
 
 namespace {
@@ -50,6 +52,27 @@ std::size_t settle_normals(Scene& scene, const std::string& file) {
   }
   if (n_flat > 0) scene.warnings.push_back(flat_warning(file, n_flat));
   return n_flat;
+}
+
+void settle_vertices(Scene& scene, const std::function<std::string(std::size_t)>& place_of) {
+  const auto good = [&](std::size_t i) { return is_finite(scene.vertices[i]); };
+  const std::size_t first = first_fault(scene.vertices.size(), good);
+  if (first == scene.vertices.size()) return;
+  std::size_t n_triangles = 0, n_vertices = 0;
+  for (Triangle& t : scene.triangles) {
+    const auto bad = std::ranges::find_if(t.vertex, [&](std::uint32_t v) { return !good(v); });
+    if (bad == t.vertex.end()) continue;
+    t.vertex.fill(*bad);
+    ++n_triangles;
+  }
+  for (dvec3& v : scene.vertices) {
+    if (is_finite(v)) continue;
+    v = dvec3(0);
+    ++n_vertices;
+  }
+  scene.warnings.push_back(place_of(first) + ": " + std::to_string(n_vertices) +
+                           " vertices are not finite (this is the first): the " +
+                           std::to_string(n_triangles) + " triangles that use them are left out");
 }
 
 std::string flat_warning(const std::string& file, std::size_t n_flat) {

@@ -55,7 +55,7 @@ double length2_of_edge(const layout::Triangle& t, std::size_t k) {
   return sum;
 }
 
-void lower(std::uint32_t& shared, std::uint32_t to) {
+void lower_to(std::uint32_t& shared, std::uint32_t to) {
   const std::atomic_ref value(shared);
   std::uint32_t old = value.load();
   while (to < old && !value.compare_exchange_weak(old, to)) {
@@ -124,7 +124,7 @@ void StitchSides::meet(const layout::Triangle& t, std::uint32_t place) {
     if (!shared[k] || !shared[(k + 1) % 3]) continue;
     const auto [first, last] = std::equal_range(sides_.begin(), sides_.end(), Edge(t, k), ByEdge());
     for (auto side = first; side != last; ++side)
-      lower(neighbours_[static_cast<std::size_t>(side - sides_.begin())], place);
+      lower_to(neighbours_[static_cast<std::size_t>(side - sides_.begin())], place);
   }
 }
 

@@ -2,8 +2,10 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
+#include "scene/lower.h"
 #include "scene/plain_number.h"
 
 namespace kdray::scene {
@@ -33,6 +35,20 @@ bool read_number(const char* first, const char* last, double& value) {
   if (stop != last || code == std::errc::invalid_argument) return false;
   if (code == std::errc::result_out_of_range) return read_extreme(first, last, value);
   return std::isfinite(value);
+}
+
+bool read_number_or_nan(const char* first, const char* last, double& value) {
+  if (read_number(first, last, value)) return true;
+  std::string word = lower(std::string_view(first, static_cast<std::size_t>(last - first)));
+  if (word.starts_with('-') || word.starts_with('+')) word.erase(0, 1);
+  double number = 0;
+  const auto [stop, code] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool too_large = code == std::errc::result_out_of_range && stop == word.data() + word.size();
+  if (!too_large && word != "nan" && word != "inf" && word != "infinity" && !word.starts_with("nan(") &&
+      !word.starts_with("1.#"))
+    return false;
+  value = std::numeric_limits<double>::quiet_NaN();
+  return true;
 }
 
 std::string printable(std::string_view token) {
@@ -97,23 +113,24 @@ bool TextScanner::at_number() {
   return at_ != end_ && starts_number(*at_);
 }
 
-double TextScanner::number(std::string_view what) {
+double TextScanner::number(std::string_view what, NotFinite other) {
   skip_space();
   double value = 0;
   const char* last = read_plain_number(at_, end_, value);
   if (last == nullptr || !ends_token(last)) {
     last = token_end();
-    if (!read_number(at_, last, value)) throw expected(what);
+    const auto read = other == NotFinite::nan ? read_number_or_nan : read_number;
+    if (!read(at_, last, value)) throw expected(what);
   }
   at_ = last;
   last_line_ = line_;
   return value;
 }
 
-dvec3 TextScanner::vector(std::string_view what) {
-  const double x = number(what);
-  const double y = number(what);
-  const double z = number(what);
+dvec3 TextScanner::vector(std::string_view what, NotFinite other) {
+  const double x = number(what, other);
+  const double y = number(what, other);
+  const double z = number(what, other);
   return {x, y, z};
 }
 

@@ -2,7 +2,8 @@
 // Shape   Tokens are separated by white space (new lines included); '#' starts a comment to the end of its
 //         line. Lines end in \n, \r\n or \r; the first is line 1.
 // Errors  Everything that is not a finite number where one is wanted is refused: "file:line: expected WHAT,
-//         found 'TOKEN'". A number too small for a double is 0.
+//         found 'TOKEN'". A number too small for a double is 0. Where NotFinite says so, what stands for a
+//         number that is not finite is NaN.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +15,9 @@
 #include "math/vec.h"
 
 namespace kdray::scene {
+
+// What becomes of a number that is not finite ("nan", "-inf", "1.#IND", "1e999"): it is refused, or NaN.
+enum class NotFinite { refused, nan };
 
 class TextScanner {
  public:
@@ -29,9 +33,9 @@ class TextScanner {
   // Whether the next token starts like a number (a digit, a sign or a point).
   bool at_number();
 
-  double number(std::string_view what);
-  dvec3 vector(std::string_view what);          // three numbers
-  std::uint32_t count(std::string_view what);   // a whole number, 0 to 2^32 - 1
+  double number(std::string_view what, NotFinite other = NotFinite::refused);
+  dvec3 vector(std::string_view what, NotFinite other = NotFinite::refused);  // three numbers
+  std::uint32_t count(std::string_view what);                                 // a whole number, 0 to 2^32 - 1
   std::uint32_t line() const { return line_; }  // of the token last taken or peeked
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
   const std::string& file() const { return file_; }
@@ -54,6 +58,9 @@ class TextScanner {
 
 // Whether all of [first, last) is one finite number, correctly rounded into `value`.
 bool read_number(const char* first, const char* last, double& value);
+
+// The same, but true with NaN where the word stands for a number that is not finite.
+bool read_number_or_nan(const char* first, const char* last, double& value);
 
 // A token as it may be shown in a message: control characters as '?', at most 40 characters.
 std::string printable(std::string_view token);

@@ -194,6 +194,11 @@ std::vector<Triple> triangulate(std::span<const dvec3> corners, bool* finished) 
   if (finished) *finished = true;
   const auto n = static_cast<std::uint32_t>(corners.size());
   if (n < 3) return {};
+  const auto bad = std::ranges::find_if(corners, [](const dvec3& c) { return !is_finite(c); });
+  if (bad != corners.end()) {
+    const auto corner = static_cast<std::uint32_t>(bad - corners.begin());
+    return std::vector<Triple>(n - 2, {corner, corner, corner});
+  }
   if (n == 3) return {{0, 1, 2}};
   std::vector<dvec2> flat = project(corners);
   if (flat.empty() || fan_fits(flat)) return fan(n);

@@ -4,7 +4,8 @@
 //         corner. Corners on a straight line become corners of real triangles, not of flat ones, so that
 //         neighbours share whole edges.
 // Cost    About n log n, whatever the polygon's shape.
-// Errors  None: a polygon that is not simple or has no area still gives n - 2 triangles. One of over some ten
+// Errors  None: a polygon that is not simple or has no area still gives n - 2 triangles; one with a corner
+//         that is not finite gives them of that corner alone (settle_normals.h). One of over some ten
 //         thousand corners that crosses itself all over is cut for a few seconds; its rest becomes a fan, and
 //         `finished` false.
 #pragma once

@@ -82,6 +82,7 @@ std::string command_for(const Sight& sight, const Settings& settings, const std:
   if (!settings.load.animation.empty()) text += " --animation " + quoted(settings.load.animation);
   if (settings.load.texture_bytes > 0)
     text += fmt::format(" --texture-memory {}", settings.load.texture_bytes);
+  if (!settings.load.asset_root.empty()) text += " --asset-root " + quoted(settings.load.asset_root.string());
   return text + view_options(view_of(sight, settings)) + picture_options(options) +
          division_options(options, queues_of(sight, settings));
 }

@@ -88,7 +88,7 @@ class Scene:
     def _start(self, core: Any, device: str, compute_units: int) -> None:
         self._core = core
         self._device, self._compute_units = device, compute_units
-        self._file: tuple[str, float | None, float | None, str] | None = None
+        self._file: tuple[str, float | None, float | None, str, str] | None = None
         self._added: dict[int, _Added] = {}  # by id
         self._materials: list[Material] = []
         self._has_first_material = False
@@ -743,18 +743,21 @@ def load(
     smooth: float | None = None,
     time: float | None = None,
     animation: str | int = "",
+    asset_root: str | os.PathLike[str] = "",
     device: str | int = "auto",
 ) -> Scene:
     """A scene from a file: .obj, .ply, .stl, .gltf, .glb, .nff, kdray's .json, also .gz and .xz of these.
 
     What is in it is geometry 0. `smooth`: triangles without normals get some where the surface turns by no more
     than so many degrees. `time`: the second of a glTF file's animation that is seen, of the first or of the
-    `animation` with this name or number, or "all"; without it nodes are at rest. Raises InputError with file,
-    line, what is wrong and what to do.
+    `animation` with this name or number, or "all"; without it nodes are at rest. `asset_root`: a folder below which
+    the file may name pictures and buffers that are not beside it or below it. Raises InputError with file, line, what
+    is wrong and what to do.
     """
     chosen = _device(device)
     scene = Scene.__new__(Scene)
-    file = (os.path.abspath(os.fspath(path)), smooth, time, str(animation))
+    root = os.fspath(asset_root)
+    file = (os.path.abspath(os.fspath(path)), smooth, time, str(animation), root and os.path.abspath(root))
     scene._start(_core.Scene.load(*file), chosen, 0)
     scene._file = file
     return scene

@@ -149,10 +149,14 @@ SceneClass add_scene(nb::module_& module) {
   scene.def_static(
       "load",
       [](const std::string& file, std::optional<double> smooth_degrees, std::optional<double> time,
-         const std::string& animation) {
-        return Scene::load(file, {smooth_degrees, time, animation});
+         const std::string& animation, const std::string& asset_root) {
+        return Scene::load(file, {.smooth_degrees = smooth_degrees,
+                                  .time = time,
+                                  .animation = animation,
+                                  .asset_root = asset_root});
       },
-      Released(), "file"_a, "smooth_degrees"_a.none(), "time"_a.none() = nb::none(), "animation"_a = "");
+      Released(), "file"_a, "smooth_degrees"_a.none(), "time"_a.none() = nb::none(), "animation"_a = "",
+      "asset_root"_a = "");
   add_geometries(scene);
   add_looks(scene);
   add_paint(scene);

@@ -2,6 +2,7 @@
 
 import copy
 import gc
+import json
 import os
 import pickle
 import signal
@@ -135,6 +136,31 @@ def test_files_are_geometry_0_and_are_copied_by_name(tmp_path):
     scene.remove(0)
     for made in [scene, *copies_of(scene)]:
         assert made.all_hits(*DOWN).geometry.tolist() == [1, 1]
+
+
+def test_files_may_name_what_is_below_the_asset_root(tmp_path):
+    for folder in ("scenes", "parts"):
+        (tmp_path / folder).mkdir()
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+    (tmp_path / "parts" / "a.bin").write_bytes(corners.tobytes())
+    gltf = {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "../parts/a.bin"}],
+    }
+    file = tmp_path / "scenes" / "a.gltf"
+    file.write_text(json.dumps(gltf))
+    with pytest.raises(kdray.InputError, match="is not a file beside the scene, or below"):
+        kdray.load(file)
+    scene = kdray.load(file, asset_root=tmp_path / "parts")
+    assert scene.primitives == 1
+    assert pickle.loads(pickle.dumps(scene)).primitives == 1
+    with pytest.raises(kdray.UsageError, match="is no folder"):
+        kdray.load(file, asset_root=tmp_path / "nothing")
 
 
 def test_files_that_are_wrong(tmp_path):

@@ -25,8 +25,9 @@ TEST(Key, ChangesWithAllThatShapesTheScene) {
       in_hex(key_of("a.ply", content, {.binary_form = false}, {})),
       in_hex(key_of("a.ply", content, {}, {.smooth_degrees = 0})),
       in_hex(key_of("a.ply", content, {}, {.smooth_degrees = 30})),
+      in_hex(key_of("a.ply", content, {}, {.asset_root = "a"})),
   };
-  EXPECT_EQ(keys.size(), 15u);
+  EXPECT_EQ(keys.size(), 16u);
 }
 
 TEST(Key, IsThatOfTheContentWhereverItLies) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scene/check_scene.h"
+#include "scene/find_file.h"
 #include "scene/gltf_samples.h"
 #include "scene/importers.h"
 #include "scene/instances.h"
@@ -264,9 +265,6 @@ TEST(Gltf, RefusesWithThePlace) {
               "/accessors/0: a node's transform makes a position infinite");
   sample.primitive()["indices"] = sample.indices<std::uint16_t>({0, 1, 4});
   EXPECT_SAYS(refused(sample), "/accessors/2: index 2 names vertex 4 of 4");
-  sample = square();
-  sample.primitive()["attributes"]["POSITION"] = sample.vectors({0, 0, 0, 1, NAN, 0, 1, 1, 0, 0, 1, 0});
-  EXPECT_SAYS(refused(sample), "/accessors/2: element 1 is not finite");
 }
 
 // Which nodes are shown is then the viewer's choice: those that are in no other one, each once.
@@ -297,12 +295,86 @@ TEST(Gltf, LeavesHiddenNodesOut) {
   EXPECT_SAYS(s.warnings[0], "1 hidden nodes (KHR_node_visibility) are left out");
 }
 
-TEST(Gltf, RefusesWhatItCannotDoWithout) {
+TEST(Gltf, TellsOfWhatItRequiresAndIsLeftOut) {
   GltfSample sample = square();
-  sample.json["extensionsRequired"] = {"KHR_materials_unlit", "EXT_other_shapes"};
-  EXPECT_SAYS(refused(sample), "needs the extension EXT_other_shapes, which is not read; export it without");
+  sample.json["extensionsRequired"] = {"KHR_materials_unlit", "EXT_other_shapes", "KHR_animation_pointer"};
+  sample.json["nodes"][0]["extensions"]["EXT_other_shapes"] = json::object();
+  const Scene s = read(sample);
+  EXPECT_EQ(s.triangles.size(), 2u);
+  ASSERT_EQ(s.warnings.size(), 2u);
+  EXPECT_EQ(s.warnings[0], "a.gltf: EXT_other_shapes of 1 object is left out, though the file requires it");
+  EXPECT_EQ(s.warnings[1], "a.gltf: KHR_animation_pointer is left out, though the file requires it");
   sample.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_lights_punctual", "KHR_mesh_quantization"};
-  EXPECT_EQ(read(sample).triangles.size(), 2u);
+  sample.json["nodes"][0].erase("extensions");
+  EXPECT_TRUE(read(sample).warnings.empty());
+}
+
+TEST(Gltf, LeavesOutWhatIsNotFinite) {
+  GltfSample sample = square();
+  auto& attributes = sample.primitive()["attributes"];
+  const std::vector<float> ups = {0, 0, 1, 0, NAN, 1, 0, 0, 1, 0, 0, 1};
+  attributes["NORMAL"] = sample.vectors(ups);
+  const Scene normals = read(sample);
+  EXPECT_EQ(normals.triangles[0].normal[0], kNone);
+  EXPECT_NE(normals.triangles[1].normal[0], kNone);
+  ASSERT_EQ(normals.warnings.size(), 1u);
+  EXPECT_SAYS(normals.warnings[0], "1 triangles have a corner normal without a direction");
+  attributes["COLOR_0"] = sample.vectors(ups);
+  const Scene colors = read(sample);
+  EXPECT_TRUE(colors.paint.colors.empty());
+  ASSERT_EQ(colors.warnings.size(), 2u);
+  EXPECT_SAYS(colors.warnings[0], "1 primitives have colours that are not finite: they are left out");
+  sample = square();
+  sample.primitive()["attributes"]["POSITION"] = sample.vectors({0, 0, 0, 1, NAN, 0, 1, 1, 0, 0, 1, 0});
+  const Scene s = read(sample);
+  EXPECT_EQ(s.triangles[0].vertex, (std::array<std::uint32_t, 3>{1, 1, 1}));
+  EXPECT_EQ(s.triangles[1].vertex, (std::array<std::uint32_t, 3>{0, 2, 3}));
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_SAYS(
+      s.warnings[0],
+      "a.gltf: /accessors/2: element 1: 1 vertices are not finite (this is the first): the 1 triangles");
+}
+
+TEST(Gltf, ReadsBuffersWhoseUrisAreWrittenOtherwise) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder / "Parts");
+  std::filesystem::create_directories(folder / "in");
+  folder.write("Parts/A b.bin", bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}));
+  folder.write("secret.bin", bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}));
+  GltfSample sample = square();
+  auto& uri = sample.json["buffers"][0]["uri"];
+  for (const std::string name :
+       {"Parts\\A b.bin", "parts/a%20B.BIN", "Parts/A%20b.bin?v=3", "parts%5Ca b.bin#x"}) {
+    uri = name;
+    EXPECT_EQ(read(sample.text(), folder / "a.gltf").triangles.size(), 2u) << name;
+  }
+  const std::string absolute = (folder / "Parts/A b.bin").string();
+  for (const std::string& name :
+       {std::string("../Parts/A b.bin"), std::string("..\\parts\\a b.bin"), absolute}) {
+    uri = name;
+    EXPECT_SAYS(refused(sample.text(), folder / "in/a.gltf"),
+                "is not a file beside the scene, or below; --asset-root DIR allows what is below DIR");
+    const AssetRoot root(folder / "Parts");
+    EXPECT_EQ(read(sample.text(), folder / "in/a.gltf").triangles.size(), 2u) << name;
+  }
+  // A link out of the root is no way out of it.
+  const AssetRoot root(folder / "Parts");
+  std::filesystem::create_symlink(folder / "secret.bin", folder / "Parts/link.bin");
+  for (const std::string name : {"../Parts/link.bin", "../secret.bin", "../Parts/../secret.bin"}) {
+    uri = name;
+    EXPECT_SAYS(refused(sample.text(), folder / "in/a.gltf"), "is not a file beside the scene") << name;
+  }
+}
+
+TEST(Gltf, ReadsGlbThatGoesOnBehindItsLength) {
+  const std::string glb = square().glb(bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}));
+  for (const std::string& more : {std::string("x"), std::string(64, '\0'), std::string(20, '\xff')}) {
+    const Scene s = read(glb + more, "a.glb");
+    EXPECT_EQ(s.triangles.size(), 2u);
+    ASSERT_EQ(s.warnings.size(), 1u);
+    EXPECT_SAYS(s.warnings[0], "a.glb: " + std::to_string(more.size()) + " bytes behind the " +
+                                   std::to_string(glb.size()) + " that the GLB header says");
+  }
 }
 
 // A file of a few kilobytes can ask for any number of copies.

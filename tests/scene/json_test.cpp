@@ -145,6 +145,15 @@ TEST(Json, NamesTheLineOfWhatIsNotJson) {
   EXPECT_NE(refused("{\"ambient\": 1e999}").find("1e999"), std::string::npos);
   EXPECT_NE(refused("{\"a\xff\": 1}").find("not JSON"), std::string::npos);
   refused(std::string(1'000'000, '['));
+  EXPECT_EQ(refused("{\"objects\":\n" + std::string(5000, '[')),
+            "s.json:2: not JSON: the text ends inside of 5001 open brackets; it is cut short, or nested "
+            "without an end: "
+            "fetch or write it again");
+  for (const std::string comment : {"// a", "/* a */", "# a"}) {
+    const std::string message = refused("{\"objects\": [] " + comment + "\n}");
+    EXPECT_NE(message.find("; JSON has no comments: take them out"), std::string::npos) << message;
+  }
+  EXPECT_EQ(refused("{\"objects\": [}").find("comments"), std::string::npos);
 }
 
 TEST(Json, NamesThePathOfWhatIsNoScene) {

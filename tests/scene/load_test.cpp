@@ -27,7 +27,62 @@ TEST(Load, TakesASceneOfNothing) {
     EXPECT_EQ(s.primitive_count(), 0u);
     EXPECT_EQ(s.background, vec3(1, 0, 0));
     EXPECT_TRUE(s.camera);
+    EXPECT_EQ(s.warnings,
+              std::vector<std::string>{s.name + ": there are no surfaces in it: nothing of it will be seen"});
   }
+  const Scene none = load(folder.write("a.stl", "solid\nendsolid\n"));
+  ASSERT_EQ(none.warnings.size(), 1u);
+  EXPECT_EQ(none.warnings[0], none.name + ": there are no surfaces in it: nothing of it will be seen");
+}
+
+// A file that a JSON scene names is read as one that is loaded, by the same folders.
+TEST(Load, ReadsPicturesBelowTheAssetRoot) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder / "scenes");
+  std::filesystem::create_directories(folder / "textures");
+  folder.write("textures/a.png", "no picture");
+  folder.write(
+      "scenes/a.ply",
+      "ply\nformat ascii 1.0\ncomment TextureFile ../textures/a.png\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float u\nproperty float v\nelement face 1\nproperty list "
+      "uchar int "
+      "vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 0 0\n0 1 0 0 0\n3 0 1 2\n");
+  folder.write("scenes/a.json", R"({"objects": [{"type": "mesh", "file": "a.ply"}]})");
+  for (const char* name : {"scenes/a.ply", "scenes/a.json"}) {
+    const Scene without = load(folder / name),
+                with = load(folder / name, {.asset_root = folder / "textures"});
+    ASSERT_EQ(without.warnings.size(), 1u);
+    EXPECT_NE(without.warnings[0].find("no picture '../textures/a.png'"), std::string::npos)
+        << without.warnings[0];
+    ASSERT_EQ(with.warnings.size(), 1u);
+    EXPECT_NE(with.warnings[0].find("is neither PNG, JPEG nor WebP"), std::string::npos) << with.warnings[0];
+  }
+  EXPECT_THROW(load(folder / "scenes/a.ply", {.asset_root = folder / "none"}), Error);
+}
+
+// Under any name, and packed.
+TEST(Load, SaysWhatStandsInPlaceOfAFile) {
+  const ScratchFolder folder;
+  const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+  for (const std::string name : {"a.glb", "a.obj", "a.stl", "a.ply.gz", "a.json", "a.nff"}) {
+    const std::string file = (folder / name).string();
+    EXPECT_EQ(refusal([&] { load(folder.write(name, pointer)); }),
+              file +
+                  ": is a Git LFS pointer, not the file that it stands for; run 'git lfs pull' where it "
+                  "comes from, or "
+                  "download the file itself");
+    for (const std::string page : {"<!DOCTYPE html><p>", "\xef\xbb\xbf \n<HTML lang='en'>"})
+      EXPECT_EQ(refusal([&] { load(folder.write(name, page)); }),
+                file +
+                    ": is a web page (HTML), not the file that its name says; download the file itself, not "
+                    "the page "
+                    "that shows it");
+  }
+  folder.write("p.png", pointer);
+  folder.write("a.mtl", "newmtl a\nmap_Kd p.png\n");
+  const Scene s = load(folder.write("b.obj", "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_NE(s.warnings[0].find("p.png: is a Git LFS pointer"), std::string::npos) << s.warnings[0];
 }
 
 TEST(Load, SaysWhichFormatsThereAre) {

@@ -27,10 +27,6 @@ Material whitted(const std::string& statements) {
   return m;
 }
 
-std::string refused(const std::string& text) {
-  return test::refusal([&] { read(text); });
-}
-
 #define EXPECT_SAYS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
 void expect_near(const vec3& a, const vec3& b) {
@@ -72,11 +68,39 @@ TEST(Mtl, ReadsItsStatements) {
   EXPECT_FALSE(m[1].illum.has_value());
 }
 
-TEST(Mtl, RefusesWithTheLine) {
-  EXPECT_SAYS(refused("newmtl a\nKd 1 x 1\n"), "a.mtl:2: expected Kd (a finite number), found 'x'");
-  EXPECT_SAYS(refused("newmtl a\nKd 1 1\n"), "a.mtl:2: expected Kd, but the line ends here");
-  EXPECT_SAYS(refused("newmtl a\nNs inf\n"), "a.mtl:2: expected Ns (a finite number), found 'inf'");
-  EXPECT_SAYS(refused("newmtl a\nd\n"), "a.mtl:2: expected d");
+TEST(Mtl, TakesTheDefaultForWhatIsNoNumber) {
+  std::vector<MtlMaterial> m;
+  std::vector<std::string> warnings;
+  read_mtl("newmtl a\nKd 1 x 1\nKs 1 1\nNs inf\nd\nTr nan\nillum two\nTf 1 nan 1\nnewmtl b\nKd\nKe 0.5\n",
+           "a.mtl", m, warnings);
+  const MtlMaterial plain;
+  EXPECT_EQ(m[0].kd, plain.kd);
+  EXPECT_EQ(m[0].ks, plain.ks);
+  EXPECT_EQ(m[0].ns, plain.ns);
+  EXPECT_FALSE(m[0].dissolve || m[0].tr || m[0].illum || m[0].tf);
+  EXPECT_EQ(m[1].ke, vec3(0.5f));
+  ASSERT_EQ(warnings.size(), 7u);
+  EXPECT_SAYS(warnings[0], "a.mtl:2: 2 values of 'Kd' are not finite numbers: its default holds (the first");
+  EXPECT_SAYS(warnings[1], "a.mtl:3: 1 values of 'Ks'");
+}
+
+TEST(Mtl, ReadsKeywordsInAnyCapitalsAndTellsOfOthers) {
+  std::vector<MtlMaterial> m;
+  std::vector<std::string> warnings;
+  read_mtl(
+      "Kd 0 0 0\nNEWMTL a\nkd 1 0 0\nMAP_KD a.png\nMap_Bump 'b c.png'\nMAP_NS n.png\nTR 0.5\nka 1 1 1\n"
+      "map_ao o.png\nnonsense\nnonsense\n",
+      "a.mtl", m, warnings);
+  ASSERT_EQ(m.size(), 1u);
+  EXPECT_EQ(m[0].name, "a");
+  EXPECT_EQ(m[0].kd, vec3(1, 0, 0));
+  EXPECT_EQ(m[0].tr, 0.5f);
+  ASSERT_TRUE(m[0].map_kd && m[0].relief);
+  EXPECT_EQ(m[0].map_kd->file, "a.png");
+  EXPECT_EQ(m[0].left_out, (std::vector<std::string>{"map_Ns"}));
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_SAYS(warnings[0], "a.mtl:1: 1 statements before the first 'newmtl' are left out");
+  EXPECT_SAYS(warnings[1], "a.mtl:9: 3 lines that are no MTL statements are left out");
 }
 
 TEST(Mtl, LeavesOutOtherColourSystems) {
@@ -84,7 +108,7 @@ TEST(Mtl, LeavesOutOtherColourSystems) {
   std::vector<std::string> warnings;
   read_mtl("newmtl a\nKd spectral x.rfl\nKs xyz 1 1 1\n", "a.mtl", materials, warnings);
   ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_SAYS(warnings[0], "a.mtl:2: 'Kd spectral' is left out");
+  EXPECT_SAYS(warnings[0], "a.mtl:2: 1 values 'Kd spectral' are left out");
   EXPECT_EQ(materials[0].ks, vec3(0));
 }
 

@@ -102,6 +102,53 @@ TEST(Mutations, OfStl) {
   mutate(read_stl, binary, kRounds);
 }
 
+TEST(Mutations, OfColouredStl) {
+  std::string binary(std::string("COLOR=\xff\x80\x01\xff", 10) + std::string(70, 'b'));
+  binary += test::bytes_of<std::uint32_t>({0});  // the size tells
+  for (int i = 0; i < 2; ++i)
+    binary += test::bytes_of<float>({0, 0, 1, 0, 0, 0, 1, 0, NAN, 0, 1, 0}) + "a\xff";
+  mutate(read_stl, binary, kRounds);
+  mutate(
+      read_stl,
+      "solid facet normal\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\nvertex 1 0 0\nvertex 0 1 0\nend "
+      "loop\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nend solid\n",
+      kRounds);
+}
+
+// Faces first, lines that go on, numbers that are none.
+TEST(Mutations, OfOddObj) {
+  mutate(read_obj,
+         "f 1/1/1 2/2/1 3/3/1\nMTLLIB \"a b.mtl\" \\ \n c\nv 0 0 nan\nv 1 0 0\nv 1 1 inf 1 0 nan\nvt nan "
+         "0\nvt 0\nvt 1 1\nvn 0 0 nan\n"
+         "usemtl \\\n'A'\nf 1 2 \\ \n3 2\nf -3 -2 -1\n",
+         kRounds);
+}
+
+TEST(Mutations, OfPaintedPly) {
+  const test::ScratchFolder folder;
+  folder.write("a", test::four_colors());
+  const Reader beside = [&](std::string_view text, const std::filesystem::path&) {
+    return read_ply(text, folder / "s");
+  };
+  const std::string place = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string comments = "comment TextureFile a\ncomment TextureFile b\n";
+  const std::string face =
+      "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nproperty "
+      "int texnumber\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  mutate(beside,
+         "ply\nformat ascii 1.0\n" + comments + place + face +
+             "0 0 nan\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 6 0 0 1 0 nan 1 1 9 9 9\n4 0 1 2 3 8 0 0 1 0 1 1 0 1 0 1 "
+             "2 3\n",
+         kRounds);
+  std::string data = "ply\nformat binary_little_endian 1.0\n" + comments + place +
+                     "property float s\nproperty float t\nproperty float r\nproperty float g\nproperty float "
+                     "b\nelement face 1\nproperty list "
+                     "uchar int vertex_indices\nend_header\n";
+  for (float i = 0; i < 4; ++i) data += test::bytes_of<float>({i, i * i, 1, i, NAN, 0.5f, 1, i});
+  data += "\4" + test::bytes_of<std::int32_t>({0, 1, 2, 3});
+  mutate(beside, data, kRounds);
+}
+
 TEST(Mutations, OfObj) {
   mutate(read_obj,
          "mtllib a.mtl\nv 0 0 0\nv 1 0 0 \\\n\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvn 0 0 1\nusemtl a b\nf 1 2 3\nf "

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -9,12 +10,14 @@
 
 #include "scene/check_scene.h"
 #include "scene/importers.h"
+#include "scene/pictures.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {
 namespace {
 
 using test::refusal;
+using test::ScratchFolder;
 
 Scene read(const std::string& text) {
   Scene scene = read_ply(text, "a.ply");
@@ -169,9 +172,10 @@ TEST(Ply, WarnsOfWhatItLeavesOut) {
       kEnd;
   const Scene s = read(header + "0 0 0 1\n1 0 0 1\n1 1 0 1\n2 0 1\n0\n3 0 1 2\nmore\n");
   EXPECT_EQ(s.triangles.size(), 1u);
-  ASSERT_EQ(s.warnings.size(), 2u);
-  EXPECT_SAYS(s.warnings[0], "more data after the last element");
-  EXPECT_SAYS(s.warnings[1], "2 faces with fewer than 3 corners");
+  ASSERT_EQ(s.warnings.size(), 3u);
+  EXPECT_SAYS(s.warnings[0], "1 property of 'vertex' is left out: red");
+  EXPECT_SAYS(s.warnings[1], "more data after the last element");
+  EXPECT_SAYS(s.warnings[2], "2 faces with fewer than 3 corners");
 }
 
 // The line end of the first line decides where binary data begin: a line feed may be data.
@@ -218,8 +222,8 @@ TEST(Ply, RefusesDataWithTheirPlace) {
               "a.ply:15: element 'face' 1: there is no vertex 4 (the file has 4)");
   EXPECT_SAYS(refused(header + kSquare + "3 0 1 -2\n3 0 2 3\n"),
               "a.ply:14: element 'face' 0: there is no vertex -2");
-  EXPECT_SAYS(refused(header + "0 0 0\n1 nan 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"),
-              "a.ply:11: element 'vertex' 1: expected a finite number");
+  EXPECT_SAYS(refused(header + "0 0 0\n1 x 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"),
+              "a.ply:11: element 'vertex' 1: expected a number, found 'x'");
   EXPECT_SAYS(refused(header + kSquare + "3 0 1 2\n3 0 2"),
               "a list of 3 entries, but the file ends before that");
   EXPECT_SAYS(refused(header + kSquare + "-3 0 1 2\n3 0 2 3"),
@@ -227,12 +231,6 @@ TEST(Ply, RefusesDataWithTheirPlace) {
   EXPECT_SAYS(refused(header + kSquare + "1e9 0 1 2\n3 0 2 3"), "expected a whole number, found '1e9'");
 
   const std::string binary = binary_header(false, kVertex + kFaces);
-  Bytes bad;
-  bad.all<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, std::numeric_limits<float>::infinity(), 0});
-  bad.add<std::uint8_t>(0).add<std::uint8_t>(0);
-  EXPECT_SAYS(
-      refused(binary + bad.str()),
-      "a.ply: element 'vertex' 3, byte " + std::to_string(binary.size() + 40) + ": a value is not finite");
   Bytes far;
   far.all<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
   far.add<std::uint8_t>(3).all<std::int32_t>({0, 1, 2}).add<std::uint8_t>(3).all<std::int32_t>({0, 1, -1});
@@ -269,6 +267,160 @@ TEST(Ply, TellsOfWhatItLeavesOut) {
             (std::vector<std::string>{"a.ply: 2 properties of 'vertex' are left out: confidence, quality",
                                       "a.ply: 2 rows of element 'edge' are left out",
                                       "a.ply: 1 property of 'face' is left out: flags"}));
+}
+
+std::string text_header(const std::string& comments, const std::string& of_vertex,
+                        const std::string& of_face) {
+  return kAscii + comments + kVertex + of_vertex + kFaces + of_face + kEnd;
+}
+std::string binary_header_of(const std::string& comments, const std::string& of_vertex,
+                             const std::string& of_face) {
+  return binary_header(false, comments + kVertex + of_vertex + kFaces + of_face);
+}
+
+TEST(Ply, LeavesOutWhatIsNotFinite) {
+  const std::string numbers = "0 0 0 0 0 1\n1 0 0 nan 0 1\n1 1 0 0 0 1\nnan 1 0 0 0 1\n";
+  const std::string normals = "property float nx\nproperty float ny\nproperty float nz\n";
+  const Scene text = read(text_header("", normals, "") + numbers + "3 0 1 2\n4 0 1 2 3\n");
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  Bytes bytes;
+  bytes.all<float>({0, 0, 0, 0, 0, 1, 1, 0, 0, kNan, 0, 1, 1, 1, 0, 0, 0, 1, kNan, 1, 0, 0, 0, 1});
+  bytes.add<std::uint8_t>(3).all<std::int32_t>({0, 1, 2}).add<std::uint8_t>(4).all<std::int32_t>(
+      {0, 1, 2, 3});
+  const Scene binary = read(binary_header_of("", normals, "") + bytes.str());
+  for (const Scene* s : {&text, &binary}) {
+    ASSERT_EQ(s->triangles.size(), 3u);
+    EXPECT_EQ(s->triangles[0].vertex, (std::array<std::uint32_t, 3>{0, 1, 2}));
+    EXPECT_EQ(s->triangles[0].normal[0], kNone);
+    for (const std::size_t bad : {1, 2})
+      EXPECT_EQ(s->triangles[bad].vertex, (std::array<std::uint32_t, 3>{3, 3, 3}));
+    ASSERT_EQ(s->warnings.size(), 2u);
+    EXPECT_SAYS(s->warnings[0],
+                "a.ply: element 'vertex' 3: 1 vertices are not finite (this is the first): the 2 triangles");
+    EXPECT_SAYS(s->warnings[1], "without a direction");
+  }
+}
+
+std::array<std::uint32_t, 3> color_at(const Scene& s, std::size_t triangle, std::size_t k) {
+  const auto& corner = s.paint.colors.at(triangle).c[k];
+  return {corner[0] & 0xffff, corner[0] >> 16, corner[1] & 0xffff};
+}
+
+TEST(Ply, ReadsColoursOfVerticesUnderAllNamesAndOfFaces) {
+  using Rgb = std::array<std::uint32_t, 3>;
+  const std::string corners = "0 0 0 255 0 0\n1 0 0 0 255 0\n1 1 0 0 0 255\n0 1 0 0 0 0\n";
+  const Scene short_names =
+      read(text_header("", "property uchar r\nproperty uchar g\nproperty uchar b\n", "") + corners +
+           "3 0 1 2\n3 0 2 3\n");
+  EXPECT_EQ(color_at(short_names, 0, 1), (Rgb{0, 65535, 0}));
+  EXPECT_TRUE(short_names.warnings.empty());
+  const std::string rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const Scene faces = read(text_header("", "", rgb) + kSquare + "3 0 1 2 255 0 0\n4 0 1 2 3 0 0 255\n");
+  ASSERT_EQ(faces.triangles.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(color_at(faces, 0, k), (Rgb{65535, 0, 0}));
+  for (const std::size_t t : {1, 2}) EXPECT_EQ(color_at(faces, t, 2), (Rgb{0, 0, 65535}));
+  EXPECT_EQ(faces.paint.coats.at(faces.materials[0].coat).colored, 1u);
+  EXPECT_TRUE(faces.warnings.empty());
+  // Those of vertices say more.
+  const Scene both = read(text_header("", rgb, rgb) + corners + "3 0 1 2 9 9 9\n3 0 2 3 9 9 9\n");
+  EXPECT_EQ(color_at(both, 0, 0), (Rgb{65535, 0, 0}));
+  ASSERT_EQ(both.warnings.size(), 1u);
+  EXPECT_SAYS(both.warnings[0], "3 properties of 'face' are left out: red, green, blue");
+}
+
+// The corners' places on the picture, from its upper left corner, as they come to the device.
+void expect_square_on_picture(const Scene& s) {
+  EXPECT_TRUE(s.warnings.empty()) << s.warnings[0];
+  ASSERT_EQ(s.paint.pictures.size(), 1u);
+  const Coat& coat = s.paint.coats.at(s.materials.at(s.triangles.at(0).material).coat);
+  ASSERT_EQ(s.paint.textures.at(coat.base).picture, 0u);
+  ASSERT_EQ(s.paint.texcoords[0].size(), s.triangles.size());
+  for (std::size_t i = 0; i < s.triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const dvec3& at = s.vertices[s.triangles[i].vertex[k]];
+      EXPECT_EQ(s.paint.texcoords[0][i].uv[k][0], at.x);
+      EXPECT_EQ(s.paint.texcoords[0][i].uv[k][1], 1 - at.y);
+    }
+}
+
+TEST(Ply, LaysOnPicturesByTextureCoordinates) {
+  const ScratchFolder folder;
+  folder.write("A b.png", test::four_colors());
+  const auto read_beside = [&](const std::string& text) {
+    Scene s = read_ply(text, folder / "a.ply");
+    check_scene(s);
+    return s;
+  };
+  const std::string comment = "comment TextureFile a b.png\n", list = "property list uchar float texcoord\n";
+  expect_square_on_picture(read_beside(text_header(comment, "", list) + kSquare +
+                                       "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0 0 1 1 0 1\n"));
+  expect_square_on_picture(read_beside(text_header(comment, "", list) + kSquare +
+                                       "4 3 0 1 2 8 0 1 0 0 1 0 1 1\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n"));
+  for (const std::string names : {"texture_u texture_v", "s t", "u v"}) {
+    const std::string u = names.substr(0, names.find(' ')), v = names.substr(names.find(' ') + 1);
+    const std::string of_vertex = "property float " + u + "\nproperty float " + v + "\n";
+    expect_square_on_picture(read_beside(text_header(comment, of_vertex, "") +
+                                         "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2\n3 0 2 3\n"));
+    Bytes bytes;
+    bytes.all<float>({0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 1, 0, 1, 0, 0, 1});
+    for (const auto& face : {std::vector<std::int32_t>{0, 1, 2}, {0, 2, 3}})
+      bytes.add<std::uint8_t>(3).all(face);
+    expect_square_on_picture(read_beside(binary_header_of(comment, of_vertex, "") + bytes.str()));
+  }
+}
+
+TEST(Ply, ChoosesAmongPicturesAndTellsOfWrongOnes) {
+  const ScratchFolder folder;
+  folder.write("a.png", test::four_colors());
+  folder.write("b.png", test::png(1, 1, 3, {1, 2, 3}));
+  const std::string two = "comment TextureFile a.png\ncomment TextureFile \"b.png\"\n";
+  const std::string of_face = "property list uchar float texcoord\nproperty int texnumber\n";
+  const Scene s =
+      read_ply(text_header(two, "", of_face) + kSquare + "3 0 1 2 6 0 0 1 0 1 1 1\n3 0 2 3 4 0 0 nan 0 7\n",
+               folder / "a.ply");
+  check_scene(s);
+  ASSERT_EQ(s.paint.pictures.size(), 2u);
+  EXPECT_EQ(
+      s.paint
+          .pictures[s.paint.textures[s.paint.coats[s.materials[s.triangles[0].material].coat].base].picture]
+          ->width,
+      1u);
+  EXPECT_EQ(s.triangles[1].material, 0u);
+  ASSERT_EQ(s.warnings.size(), 2u);
+  EXPECT_SAYS(s.warnings[0], "the texture coordinates of 1 faces are not two for each corner");
+  EXPECT_SAYS(s.warnings[1], "the texnumber of 1 faces is that of no TextureFile");
+  const Scene none =
+      read_ply(text_header("comment TextureFile ../c.png\n", "", "property list uchar float texcoord\n") +
+                   kSquare + "3 0 1 2 6 0 0 1 0 1 nan\n3 0 2 3 0\n",
+               folder / "a.ply");
+  check_scene(none);
+  ASSERT_EQ(none.warnings.size(), 2u);
+  EXPECT_SAYS(none.warnings[0], "1 texture coordinates are not finite");
+  EXPECT_SAYS(none.warnings[1], "no picture '../c.png'; put it beside the scene; --asset-root DIR allows");
+  const Scene bare =
+      read_ply(text_header(two, "", "property int texnumber\n") + kSquare + "3 0 1 2 1\n3 0 2 3 0\n",
+               folder / "a.ply");
+  check_scene(bare);
+  ASSERT_EQ(bare.warnings.size(), 1u);
+  EXPECT_SAYS(bare.warnings[0], "there are no texture coordinates");
+}
+
+TEST(Ply, TakesTheFirstOfPropertiesOfOneName) {
+  const Scene s = read(text_header("", "property float x\n", "") +
+                       "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n3 0 1 2\n3 0 2 3\n");
+  EXPECT_EQ(s.vertices[1], dvec3(1, 0, 0));
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_SAYS(s.warnings[0], "1 property of 'vertex' is left out: x (its second)");
+}
+
+TEST(Ply, SaysThatPointsHaveNoSurface) {
+  const Scene cloud = read(kAscii + kVertex + kEnd + kSquare);
+  ASSERT_EQ(cloud.warnings.size(), 1u);
+  EXPECT_SAYS(cloud.warnings[0], "a.ply: it is a point cloud: kdray shows surfaces; make a mesh of it first");
+  const Scene splats =
+      read(kAscii + kVertex + "property float f_dc_0\n" + kEnd + "0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n");
+  ASSERT_EQ(splats.warnings.size(), 2u);
+  EXPECT_SAYS(splats.warnings[0], "it holds Gaussian splats: kdray shows surfaces");
 }
 
 }  // namespace

@@ -28,10 +28,12 @@ TEST(Command, HasTheNumbersWithAllTheirBits) {
   sight.queues = 2;
   Settings settings;
   settings.load.smooth_degrees = 40;
+  settings.load.asset_root = "my textures";
   settings.view.camera = 1;
   EXPECT_EQ(
       command_for(sight, settings, "-x.nff"),
-      "kdray render './-x.nff' --smooth 40 --from=0.1,0.3333333333333333,-2e-07 --at=0,0,0 --up=0,0,1 "
+      "kdray render './-x.nff' --smooth 40 --asset-root 'my textures' --from=0.1,0.3333333333333333,-2e-07 "
+      "--at=0,0,0 --up=0,0,1 "
       "--camera 1 --ortho 2.5 --headlight 0.5 --size 64x48 --depth 1 --samples 1 --queues 2 --mode odprt "
       "--aov depth");
 }

@@ -39,6 +39,9 @@ struct LoadOptions {
   // limit.
   std::uint64_t texture_bytes = 0;
   Instances instances = Instances::automatic;
+  // A folder below which a scene may name files (pictures, buffers) that are not beside it or below; empty:
+  // none.
+  std::filesystem::path asset_root = {};
   bool operator==(const LoadOptions&) const = default;
 };
 
