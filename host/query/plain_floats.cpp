@@ -14,6 +14,7 @@ namespace {
 // Compilers make their vectors of it that any processor of the kind has.
 using Lanes = float __attribute__((vector_size(16)));
 using Select = int __attribute__((vector_size(16)));
+using Bits = unsigned __attribute__((vector_size(16)));
 
 constexpr float kNearEnough = 0x1p60f;  // in local lengths: begin() leaves origins within it
 
@@ -122,10 +123,10 @@ class PlainRays {
   class Looked {
    public:
     void at(const Halves& ray) {
-      const Select origin = (Select)ray.origin & 0x7fffffff, along = (Select)ray.direction & 0x7fffffff;
+      const Bits origin = (Bits)ray.origin & 0x7fffffffu, along = (Bits)ray.direction & 0x7fffffffu;
       // Sets the sign's bit where a float is infinite or no number; of t_max, no number alone.
-      constexpr Select kFinite = {0x00800000, 0x00800000, 0x00800000, 0x007fffff};
-      beyond_ |= (origin + 0x00800000) | (along + kFinite);
+      constexpr Bits kFinite = {0x00800000, 0x00800000, 0x00800000, 0x007fffff};
+      beyond_ |= (Select)((origin + 0x00800000u) | (along + kFinite));
       farthest_ = greater(farthest_, (Lanes)origin);
       const Lanes size = (Lanes)along;
       const Lanes largest = greater(size, greater(__builtin_shufflevector(size, size, 1, 2, 0, 3),

@@ -211,6 +211,7 @@ TEST_F(FindTest, TheFolderStaysWithinItsBound) {
     files.push_back(folder.put("balls" + std::to_string(i) + ".nff",
                                test::nff("balls", 1) + "s 0 0 " + std::to_string(i) + " 1\n"));
   cache.max_bytes = 4 * entry_bytes(test::prepared_from(files[0])) + 4096;
+  std::filesystem::create_directory(folder / "cache");
   for (const auto& file : files) {
     // File times may be coarse: what is there becomes older by a second.
     for (const auto& entry : std::filesystem::directory_iterator(folder / "cache"))
