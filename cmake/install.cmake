@@ -15,8 +15,7 @@ install(TARGETS kdray ${rooms} EXPORT kdray
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-file(GLOB type_headers CONFIGURE_DEPENDS host/types/kdray/*.h)
-install(FILES host/api/kdray/kdray.h host/api/kdray/scene.h host/base/kdray/error.h ${type_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kdray)
+install(DIRECTORY host/include/kdray DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 foreach(program kdray_cli kdray_bench_program)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
@@ -32,7 +31,7 @@ endif()
 if(TARGET kdray_c)
   install(TARGETS kdray_c EXPORT kdray LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  install(FILES host/capi/kdray.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(FILES host/include/kdray.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   configure_file(cmake/kdray.pc.in ${PROJECT_BINARY_DIR}/kdray.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/kdray.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endif()

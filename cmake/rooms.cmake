@@ -1,5 +1,5 @@
-# One static library per room of host/. The rooms' links are the architecture; tests/rooms checks that no room includes
-# another that it doesn't link.
+# One static library per module of host/ (a folder: host/GROUP/NAME, or host/NAME). Their links are the architecture;
+# tests/rooms checks that no module includes another that it doesn't link.
 add_library(kdray_warnings INTERFACE)
 target_compile_options(kdray_warnings INTERFACE -Wall -Wextra $<$<BOOL:${KDRAY_WERROR}>:-Werror>)
 # g++ 12 reports std::string's own memcpy as overlapping (GCC bug 105651): off for that compiler only.
@@ -28,7 +28,7 @@ if(KDRAY_SANITIZE)
 endif()
 
 # kdray_room(NAME SOURCES ... [PUBLIC libs...] [PRIVATE libs...] [APART])
-#   Adds the library kdray_NAME (alias kdray::NAME) from host/NAME. Headers are included as "NAME/file.h".
+#   Adds the library kdray_NAME (alias kdray::NAME) from the folder of that name. Headers are included as "GROUP/NAME/file.h".
 #   A room's files are compiled several at a time, as one: most of the time goes into headers that all of them include. Names in
 #   unnamed namespaces must differ within a room, then. (The preset `dev` joins nothing, so that a missing #include is found there.)
 #   APART: each file by itself, where the code that the compiler makes of it counts, or types in unnamed namespaces have linkage.

@@ -1,6 +1,6 @@
 #include "bench/ablation/ablations.h"
 
-#include "flatten/features.h"
+#include "accel/flatten/features.h"
 #include "layout/features.h"
 
 namespace kdray::bench {

@@ -9,11 +9,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "accel/flatten/features.h"
 #include "api/hooks.h"
 #include "api/statistics_json.h"
 #include "base/timer.h"
-#include "flatten/features.h"
-#include "generate/built_in.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 

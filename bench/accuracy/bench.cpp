@@ -14,7 +14,7 @@
 #include "bench/measure/cores.h"
 #include "bench/povray/pov_writer.h"
 #include "bench/povray/povray.h"
-#include "generate/built_in.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 

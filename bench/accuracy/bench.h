@@ -16,7 +16,7 @@
 #include "bench/accuracy/settings.h"
 #include "bench/measure/json.h"
 #include "bench/measure/spread.h"
-#include "film/compare.h"
+#include "io/image/compare.h"
 
 namespace kdray::bench {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "film/compare.h"
+#include "io/image/compare.h"
 
 namespace kdray::bench {
 

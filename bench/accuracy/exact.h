@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/accuracy/reference.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/povray/povray.h"
-#include "film/compare.h"
+#include "io/image/compare.h"
 
 namespace kdray::bench {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/accuracy/shown.h"
-#include "film/compare.h"
+#include "io/image/compare.h"
 
 namespace kdray::bench {
 

@@ -6,7 +6,7 @@
 //         pictures that are judged.
 #pragma once
 
-#include "film/image.h"
+#include "io/image/image.h"
 #include "kdray/kdray.h"
 
 namespace kdray::bench {

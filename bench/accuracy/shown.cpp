@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "film/heat.h"
+#include "io/image/heat.h"
 
 namespace kdray::bench {
 

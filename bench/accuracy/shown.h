@@ -3,7 +3,7 @@
 //         all else.
 #pragma once
 
-#include "film/image.h"
+#include "io/image/image.h"
 #include "kdray/kdray.h"
 
 namespace kdray::bench {

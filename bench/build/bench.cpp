@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "accel/prepare/prepared.h"
 #include "api/statistics_json.h"
 #include "bench/build/builders.h"
 #include "bench/embree/build.h"
@@ -15,8 +16,7 @@
 #include "bench/race/kdray_contestants.h"
 #include "bench/race/race.h"
 #include "bench/workload/rays.h"
-#include "generate/built_in.h"
-#include "prepare/prepared.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 

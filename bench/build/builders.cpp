@@ -1,7 +1,7 @@
 #include "bench/build/builders.h"
 
-#include "prepare/prepared.h"
-#include "prepare/quality.h"
+#include "accel/prepare/prepared.h"
+#include "accel/prepare/quality.h"
 
 namespace kdray::bench {
 

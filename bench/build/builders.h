@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kdtree/build.h"
+#include "accel/kdtree/build.h"
 
 namespace kdray::bench {
 

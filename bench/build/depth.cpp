@@ -6,11 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "accel/prepare/prepared.h"
 #include "bench/build/tree_facts.h"
 #include "bench/race/compare_hits.h"
 #include "bench/workload/rays.h"
-#include "generate/built_in.h"
-#include "prepare/prepared.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 

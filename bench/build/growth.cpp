@@ -8,7 +8,7 @@
 #include "bench/build/bench.h"
 #include "bench/build/builders.h"
 #include "bench/embree/build.h"
-#include "generate/displaced_sphere.h"
+#include "scene/generate/displaced_sphere.h"
 
 namespace kdray::bench {
 

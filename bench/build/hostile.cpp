@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "generate/displaced_sphere.h"
-#include "generate/hostile_meshes.h"
-#include "prepare/prepared.h"
+#include "accel/prepare/prepared.h"
+#include "scene/generate/displaced_sphere.h"
+#include "scene/generate/hostile_meshes.h"
 
 namespace kdray::bench {
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "accel/prepare/quality.h"
 #include "bench/build/report.h"
 #include "bench/measure/short_name.h"
-#include "prepare/quality.h"
 
 namespace kdray::bench {
 

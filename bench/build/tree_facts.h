@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "prepare/prepared.h"
+#include "accel/prepare/prepared.h"
 
 namespace kdray::bench {
 

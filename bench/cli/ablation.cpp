@@ -7,12 +7,12 @@
 
 #include <memory>
 
+#include "apps/cli/message.h"
+#include "apps/cli/options.h"
 #include "bench/ablation/bench.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
-#include "cli/message.h"
-#include "cli/options.h"
 
 namespace kdray::cli {
 

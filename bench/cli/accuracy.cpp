@@ -8,6 +8,9 @@
 
 #include <memory>
 
+#include "apps/cli/message.h"
+#include "apps/cli/options.h"
+#include "apps/cli/parse.h"
 #include "bench/accuracy/bench.h"
 #include "bench/accuracy/exact.h"
 #include "bench/accuracy/reference.h"
@@ -15,10 +18,7 @@
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
 #include "bench/povray/povray.h"
-#include "cli/message.h"
-#include "cli/options.h"
-#include "cli/parse.h"
-#include "film/write.h"
+#include "io/image/write.h"
 
 namespace kdray::cli {
 

@@ -6,14 +6,14 @@
 
 #include <memory>
 
+#include "apps/cli/message.h"
+#include "apps/cli/options.h"
+#include "apps/cli/parse.h"
 #include "bench/build/report.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
-#include "cli/message.h"
-#include "cli/options.h"
-#include "cli/parse.h"
-#include "generate/hostile_meshes.h"
+#include "scene/generate/hostile_meshes.h"
 
 namespace kdray::cli {
 

@@ -1,7 +1,7 @@
 // What    The commands of `kdray bench`, one file each: cli/command.h says what a command is.
 #pragma once
 
-#include "cli/command.h"
+#include "apps/cli/command.h"
 
 namespace kdray::cli {
 

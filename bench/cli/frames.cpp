@@ -4,13 +4,13 @@
 #include <memory>
 #include <string>
 
+#include "apps/cli/message.h"
+#include "apps/cli/options.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
 #include "bench/frames/bench.h"
 #include "bench/povray/povray.h"
-#include "cli/message.h"
-#include "cli/options.h"
 
 namespace kdray::cli {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "apps/cli/command_line.h"
 #include "bench/cli/commands.h"
-#include "cli/command_line.h"
 
 int main(int argc, char** argv) {
   return kdray::cli::run_program([&] {

@@ -9,18 +9,18 @@
 #include <algorithm>
 #include <memory>
 
+#include "apps/cli/message.h"
+#include "apps/cli/options.h"
+#include "apps/cli/parse.h"
+#include "apps/cli/rank_cores.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
 #include "bench/modes/bench.h"
 #include "bench/ranks/bench.h"
-#include "cli/message.h"
-#include "cli/options.h"
-#include "cli/parse.h"
-#include "cli/rank_cores.h"
+#include "cluster/transport/launcher.h"
+#include "cluster/transport/mpi.h"
 #include "kdray/error.h"
-#include "transport/launcher.h"
-#include "transport/mpi.h"
 
 namespace kdray::cli {
 

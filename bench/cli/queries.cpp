@@ -5,13 +5,13 @@
 #include <memory>
 #include <string>
 
+#include "apps/cli/message.h"
+#include "apps/cli/options.h"
+#include "apps/cli/parse.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
 #include "bench/queries/bench.h"
-#include "cli/message.h"
-#include "cli/options.h"
-#include "cli/parse.h"
 
 namespace kdray::cli {
 

@@ -2,12 +2,12 @@
 
 #include <cstdio>
 
+#include "apps/cli/message.h"
 #include "base/write_file.h"
 #include "bench/embree/embree.h"
 #include "bench/measure/run_program.h"
-#include "cli/message.h"
-#include "generate/built_in.h"
 #include "kdray/error.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::cli {
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "bench/race/contestant.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

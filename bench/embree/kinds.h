@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "bench/embree/api.h"
-#include "scene/geometry.h"
-#include "scene/scene.h"
+#include "scene/model/geometry.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

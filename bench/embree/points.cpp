@@ -1,8 +1,8 @@
 // What    The closest point of the mesh to each of many, by rtcPointQuery, whose function has the distance to
 //         a triangle.
 // Source  Ericson, "Real-Time Collision Detection", 2005, 5.1.5: by the regions of the triangle's plane.
+#include "base/vec.h"
 #include "bench/embree/asker.h"
-#include "math/vec.h"
 
 namespace kdray::bench {
 

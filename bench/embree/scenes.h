@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bench/embree/api.h"
-#include "scene/geometry.h"
-#include "scene/scene.h"
+#include "scene/model/geometry.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

@@ -12,9 +12,9 @@
 #include "bench/measure/cores.h"
 #include "bench/povray/povray.h"
 #include "bench/workload/rays.h"
-#include "generate/built_in.h"
-#include "generate/generate.h"
 #include "kdray/kdray.h"
+#include "scene/generate/built_in.h"
+#include "scene/generate/generate.h"
 
 namespace kdray::bench {
 

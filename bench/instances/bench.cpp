@@ -14,9 +14,9 @@
 #include "bench/race/compare_hits.h"
 #include "bench/race/kdray_contestants.h"
 #include "bench/workload/flock.h"
-#include "generate/built_in.h"
-#include "generate/displaced_sphere.h"
-#include "scene/instances.h"
+#include "scene/generate/built_in.h"
+#include "scene/generate/displaced_sphere.h"
+#include "scene/model/instances.h"
 
 namespace kdray::bench {
 

@@ -1,6 +1,6 @@
 // What    Runs a program of another's and waits for its end: POV-Ray, the script that draws plots.
-// Shape   It reads nothing, and what it prints to stdout is lost; stderr goes to `log`, or where this program's
-//         goes.
+// Shape   It reads nothing, and what it prints to stdout is lost; stderr goes to `log`, or where this
+//         program's goes.
 #pragma once
 
 #include <filesystem>

@@ -2,10 +2,10 @@
 //         counters: references per triangle and expected SAH cost.
 #include <benchmark/benchmark.h>
 
-#include "generate/displaced_sphere.h"
-#include "kdtree/build.h"
-#include "kdtree/statistics.h"
-#include "scene/geometry.h"
+#include "accel/kdtree/build.h"
+#include "accel/kdtree/statistics.h"
+#include "scene/generate/displaced_sphere.h"
+#include "scene/model/geometry.h"
 
 namespace kdray {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "generate/displaced_sphere.h"
-#include "scene/importers.h"
+#include "scene/generate/displaced_sphere.h"
+#include "scene/import/importers.h"
 
 namespace kdray {
 namespace {

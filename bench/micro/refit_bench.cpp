@@ -13,9 +13,9 @@
 
 #include "base/median.h"
 #include "base/timer.h"
-#include "generate/displaced_sphere.h"
 #include "kdray/kdray.h"
-#include "scene/scene.h"
+#include "scene/generate/displaced_sphere.h"
+#include "scene/model/scene.h"
 
 namespace kdray {
 namespace {

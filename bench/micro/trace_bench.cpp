@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "generate/displaced_sphere.h"
 #include "kdray/kdray.h"
+#include "scene/generate/displaced_sphere.h"
 
 namespace kdray {
 namespace {

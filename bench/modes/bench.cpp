@@ -6,10 +6,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "accel/prepare/prepared.h"
 #include "api/statistics_json.h"
 #include "bench/measure/cores.h"
-#include "generate/built_in.h"
-#include "prepare/prepared.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 

@@ -13,15 +13,15 @@
 #include "bench/modes/paths.h"
 #include "bench/modes/tiles.h"
 #include "bench/modes/traffic.h"
-#include "odprt/division.h"
-#include "odprt/replicate.h"
+#include "engine/odprt/division.h"
+#include "engine/odprt/replicate.h"
 
 namespace kdray::bench {
 
 namespace {
 
 constexpr int kTile = 8;  // pixels of the measured tiles' sides
-// These are the values of host/odprt.
+// These are the values of host/engine/odprt.
 constexpr std::size_t kLeastSubtrees = 64;
 constexpr std::array kKinds = {"primary", "shadow", "reflected", "refracted"};  // by LifeKind
 

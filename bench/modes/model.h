@@ -2,7 +2,7 @@
 //         predicts, by simulation, what 1 to 10,000 queues of one core each would take for the frame over a
 //         stated network.
 // Shape   PDPRT: the tiles' seconds through tiles.h. ODPRT: the wide tree cut into subtrees and dealt
-//         to queues as host/odprt does it, by the cost of a pilot sample; the lives of a larger sample
+//         to queues as host/engine/odprt does it, by the cost of a pilot sample; the lives of a larger sample
 //         (lives.h) sent along the subtrees they pass (paths.h, traffic.h) through events.h. Both
 //         are scaled to one core's measured time.
 // Why     docs/bench.md has the assumptions and the limits.
@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "accel/prepare/prepared.h"
 #include "kdray/kdray.h"
-#include "prepare/prepared.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flatten/collapse.h"
+#include "accel/flatten/collapse.h"
 
 namespace kdray::bench {
 

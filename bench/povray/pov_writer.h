@@ -9,7 +9,7 @@
 
 #include <iosfwd>
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "bench/measure/run_program.h"
 #include "bench/povray/pov_writer.h"
-#include "film/read.h"
+#include "io/image/read.h"
 
 namespace kdray::bench {
 

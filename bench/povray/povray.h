@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "film/image.h"
-#include "scene/scene.h"
+#include "io/image/image.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

@@ -12,7 +12,7 @@
 #include "bench/queries/compare.h"
 #include "bench/queries/kdray_side.h"
 #include "bench/race/build_race.h"
-#include "generate/built_in.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 

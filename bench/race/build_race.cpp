@@ -3,8 +3,8 @@
 #include <chrono>
 #include <ctime>
 
-#include "flatten/flatten.h"
-#include "flatten/wide.h"
+#include "accel/flatten/flatten.h"
+#include "accel/flatten/wide.h"
 
 namespace kdray::bench {
 

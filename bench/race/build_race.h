@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "accel/kdtree/build.h"
 #include "bench/measure/spread.h"
-#include "kdtree/build.h"
-#include "scene/geometry.h"
-#include "scene/scene.h"
+#include "scene/model/geometry.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

@@ -9,8 +9,8 @@
 #include "api/hooks.h"
 #include "api/statistics_json.h"
 #include "base/median.h"
-#include "generate/built_in.h"
-#include "transport/ranks.h"
+#include "cluster/transport/ranks.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 

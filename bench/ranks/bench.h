@@ -1,9 +1,9 @@
 // What    `kdray bench modes --ranks`: a frame by one core, and the same frame by ranks of a core each, in
 //         PDPRT and in ODPRT, with and without a delay of messages; beside them what the network costs, and
 //         how fast as many cores are that know nothing of each other.
-// Shape   Interleaved, as in `bench modes`: a round has each of them once, and one before that is not counted.
-//         Frames at once tell what the cores of this machine give so many queues; what ranks take beyond
-//         that is the protocol's and the network's.
+// Shape   Interleaved, as in `bench modes`: a round has each of them once, and one before that is not
+//         counted. Frames at once tell what the cores of this machine give so many queues; what ranks take
+//         beyond that is the protocol's and the network's.
 // Units   Seconds; bytes a second.
 #pragma once
 

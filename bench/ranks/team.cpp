@@ -10,10 +10,10 @@
 #include <thread>
 #include <utility>
 
+#include "cluster/transport/delayed.h"
+#include "cluster/transport/in_process.h"
+#include "cluster/transport/words.h"
 #include "kdray/error.h"
-#include "transport/delayed.h"
-#include "transport/in_process.h"
-#include "transport/words.h"
 
 namespace kdray::bench {
 

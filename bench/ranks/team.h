@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "transport/transport.h"
+#include "cluster/transport/transport.h"
 
 namespace kdray::bench {
 

@@ -12,7 +12,7 @@
 #include "bench/embree/embree.h"
 #include "bench/measure/cores.h"
 #include "bench/race/kdray_contestants.h"
-#include "generate/built_in.h"
+#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "generate/rotation.h"
-#include "scene/frame.h"
-#include "scene/instances.h"
+#include "scene/generate/rotation.h"
+#include "scene/model/frame.h"
+#include "scene/model/instances.h"
 
 namespace kdray::bench {
 

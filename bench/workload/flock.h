@@ -5,7 +5,7 @@
 //         (scene/frame.h).
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

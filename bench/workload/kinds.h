@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bench/measure/json.h"
-#include "primitives/kinds.h"
+#include "scene/primitives/kinds.h"
 
 namespace kdray::bench {
 

@@ -7,7 +7,7 @@
 
 #include "bench/workload/pixel_order.h"
 #include "bench/workload/surfaces.h"
-#include "generate/random.h"
+#include "scene/generate/random.h"
 
 namespace kdray::bench {
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "kdray/kdray.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/geometry.h"
-#include "scene/scene.h"
+#include "scene/model/geometry.h"
+#include "scene/model/scene.h"
 
 namespace kdray::bench {
 

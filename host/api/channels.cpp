@@ -5,7 +5,7 @@
 
 #include "api/owners.h"
 
-#include "wavefront/channels.h"
+#include "engine/wavefront/channels.h"
 
 namespace kdray::api {
 

@@ -5,7 +5,7 @@
 
 #include "api/job.h"
 #include "api/state.h"
-#include "film/image.h"
+#include "io/image/image.h"
 
 namespace kdray::api {
 

@@ -9,8 +9,8 @@
 #include <span>
 
 #include "api/device.h"
+#include "engine/query/ask.h"
 #include "kdray/kdray.h"
-#include "query/ask.h"
 
 namespace kdray::api {
 

@@ -8,13 +8,13 @@
 #include <optional>
 #include <string>
 
+#include "accel/prepare/prepared.h"
 #include "api/hooks.h"
 #include "api/tuning.h"
-#include "device/context.h"
+#include "device/opencl/context.h"
+#include "engine/wavefront/programs.h"
+#include "engine/wavefront/scene_buffers.h"
 #include "kdray/kdray.h"
-#include "prepare/prepared.h"
-#include "wavefront/programs.h"
-#include "wavefront/scene_buffers.h"
 
 namespace kdray::api {
 

@@ -2,9 +2,9 @@
 #include <iterator>
 
 #include "api/open_devices.h"
-#include "device/context.h"
+#include "device/opencl/context.h"
 #include "kdray/kdray.h"
-#include "trial/devices.h"
+#include "probe/trial/devices.h"
 
 namespace kdray {
 

@@ -7,7 +7,7 @@
 
 #include "api/film_memory.h"
 #include "api/record.h"
-#include "pdprt/render.h"
+#include "engine/pdprt/render.h"
 
 namespace kdray::api {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pdprt/render.h"
+#include "engine/pdprt/render.h"
 
 namespace kdray::api {
 

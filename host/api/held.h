@@ -1,12 +1,12 @@
 // What    What is known of a whole scene where a Renderer is made of a part of it: the holding of a rank
-//         (host/distribute).
+//         (host/cluster/partition).
 #pragma once
 
 #include <memory>
 
+#include "accel/flatten/core.h"
 #include "base/hash.h"
-#include "flatten/core.h"
-#include "transport/together.h"
+#include "cluster/transport/together.h"
 
 namespace kdray::api {
 

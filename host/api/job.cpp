@@ -1,12 +1,12 @@
 #include "api/job.h"
 
+#include "accel/flatten/features.h"
+#include "accel/flatten/frame.h"
 #include "api/precision.h"
 #include "api/state.h"
-#include "flatten/features.h"
-#include "flatten/frame.h"
 #include "layout/features.h"
-#include "scene/added_geometry.h"
-#include "scene/frame.h"
+#include "scene/model/added_geometry.h"
+#include "scene/model/frame.h"
 
 namespace kdray::api {
 

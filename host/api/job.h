@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "adaptive/report.h"
-#include "film/image.h"
+#include "base/timeline.h"
+#include "engine/adaptive/report.h"
+#include "engine/checkpoint/frame_ledger.h"
+#include "engine/wavefront/wavefront.h"
+#include "io/image/image.h"
 #include "kdray/kdray.h"
 #include "kdray/statistics.h"
 #include "layout/frame.layout.h"
-#include "ledger/frame_ledger.h"
-#include "timeline/timeline.h"
-#include "wavefront/wavefront.h"
 
 namespace kdray::api {
 

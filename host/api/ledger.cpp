@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 
+#include "accel/flatten/scene_hash.h"
 #include "api/names.h"
 #include "api/precision.h"
 #include "base/hash.h"
-#include "device/program.h"
-#include "flatten/scene_hash.h"
+#include "device/opencl/program.h"
+#include "engine/pdprt/tile_size.h"
 #include "ledger_fingerprint.h"
-#include "pdprt/tile_size.h"
 
 namespace kdray::api {
 

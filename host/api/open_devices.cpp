@@ -7,11 +7,11 @@
 
 #include "base/error.h"
 #include "base/timer.h"
-#include "device/faults.h"
-#include "device/program_cache.h"
-#include "selftest/self_test.h"
-#include "trial/devices.h"
-#include "trial/listing.h"
+#include "device/opencl/faults.h"
+#include "device/opencl/program_cache.h"
+#include "probe/selftest/self_test.h"
+#include "probe/trial/devices.h"
+#include "probe/trial/listing.h"
 
 namespace kdray::api {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "device/context.h"
-#include "device/verdicts.h"
+#include "device/opencl/context.h"
+#include "device/opencl/verdicts.h"
 #include "kdray/kdray.h"
 
 namespace kdray::api {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "film/queue_colors.h"
-#include "odprt/locate.h"
-#include "odprt/replicate.h"
-#include "pdprt/render.h"
+#include "engine/odprt/locate.h"
+#include "engine/odprt/replicate.h"
+#include "engine/pdprt/render.h"
+#include "io/image/queue_colors.h"
 
 namespace kdray::api {
 

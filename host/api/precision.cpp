@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "prepare/instanced.h"
+#include "accel/prepare/instanced.h"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 //         have it.
 #pragma once
 
+#include "accel/prepare/prepared.h"
 #include "kdray/kdray.h"
-#include "prepare/prepared.h"
 
 namespace kdray::api {
 

@@ -1,8 +1,8 @@
-#include "prepare/prepared.h"
+#include "accel/prepare/prepared.h"
 
+#include "accel/prepare/view.h"
 #include "kdray/kdray.h"
-#include "prepare/view.h"
-#include "scene/frame.h"
+#include "scene/model/frame.h"
 
 namespace kdray {
 

@@ -1,10 +1,10 @@
 #include "api/record.h"
 
+#include "accel/flatten/features.h"
+#include "accel/prepare/quality.h"
 #include "api/names.h"
 #include "api/precision.h"
-#include "flatten/features.h"
-#include "prepare/quality.h"
-#include "wavefront/programs.h"
+#include "engine/wavefront/programs.h"
 
 namespace kdray::api {
 

@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "adaptive/report.h"
+#include "accel/prepare/prepared.h"
 #include "api/job.h"
 #include "api/state.h"
+#include "engine/adaptive/report.h"
+#include "engine/odprt/render.h"
+#include "engine/pdprt/render.h"
 #include "kdray/statistics.h"
 #include "layout/features.h"
-#include "odprt/render.h"
-#include "pdprt/render.h"
-#include "prepare/prepared.h"
 
 namespace kdray::api {
 

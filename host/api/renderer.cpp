@@ -15,12 +15,12 @@
 #include "api/record.h"
 #include "api/state.h"
 
+#include "accel/prepare/instanced.h"
 #include "base/median.h"
+#include "base/timeline.h"
 #include "base/timer.h"
+#include "engine/query/trace.h"
 #include "kdray/kdray.h"
-#include "prepare/instanced.h"
-#include "query/trace.h"
-#include "timeline/timeline.h"
 
 namespace kdray {
 

@@ -1,4 +1,4 @@
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <fmt/format.h>
 
@@ -8,19 +8,19 @@
 #include <optional>
 #include <utility>
 
+#include "accel/prepare/instanced.h"
+#include "accel/prepare/refit.h"
 #include "api/committed.h"
 #include "base/timer.h"
+#include "engine/query/crossings.h"
+#include "engine/query/points.h"
 #include "kdray/kdray.h"
-#include "prepare/instanced.h"
-#include "prepare/refit.h"
-#include "query/crossings.h"
-#include "query/points.h"
-#include "scene/added_geometry.h"
-#include "scene/added_instances.h"
-#include "scene/added_paint.h"
-#include "scene/check_scene.h"
-#include "scene/frame.h"
-#include "scene/load.h"
+#include "scene/import/load.h"
+#include "scene/model/added_geometry.h"
+#include "scene/model/added_instances.h"
+#include "scene/model/added_paint.h"
+#include "scene/model/check_scene.h"
+#include "scene/model/frame.h"
 
 namespace kdray {
 
@@ -202,8 +202,8 @@ const scene::Scene& Scene::Impl::model() {
   }
   scene::assemble_paint(all, enabled, paint, materials.size());
   put_instances(all, first_material);
-  // It is the file's no more, and is not to be kept as the file's (host/cache). What was made up for the file
-  // alone is made up anew.
+  // It is the file's no more, and is not to be kept as the file's (host/accel/cache). What was made up for
+  // the file alone is made up anew.
   all.files.clear();
   if (all.framing.camera) all.camera.reset();
   if (all.framing.lights) all.lights.clear();

@@ -1,7 +1,7 @@
 #include <cstdlib>
 
+#include "accel/cache/cache.h"
 #include "base/cache_folder.h"
-#include "cache/cache.h"
 #include "kdray/kdray.h"
 
 namespace kdray {

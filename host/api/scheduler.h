@@ -9,8 +9,8 @@
 
 #include "api/device.h"
 #include "api/job.h"
-#include "pdprt/tile_size.h"
-#include "wavefront/wavefront.h"
+#include "engine/pdprt/tile_size.h"
+#include "engine/wavefront/wavefront.h"
 
 namespace kdray::api {
 

@@ -5,16 +5,16 @@
 #include <memory>
 #include <optional>
 
+#include "accel/flatten/core.h"
+#include "accel/prepare/prepared.h"
 #include "api/device.h"
 #include "api/held.h"
 #include "api/hooks.h"
 #include "api/scheduler.h"
 #include "base/hash.h"
-#include "device/faults.h"
-#include "flatten/core.h"
-#include "odprt/render.h"
-#include "prepare/prepared.h"
-#include "transport/ranks.h"
+#include "cluster/transport/ranks.h"
+#include "device/opencl/faults.h"
+#include "engine/odprt/render.h"
 
 namespace kdray::api {
 

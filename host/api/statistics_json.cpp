@@ -1,7 +1,7 @@
 #include "api/statistics_json.h"
 
+#include "device/tuning/settings.h"
 #include "kdray/kdray.h"
-#include "tune/settings.h"
 
 namespace kdray::api {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/hash.h"
-#include "device/program.h"
+#include "device/opencl/program.h"
 #include "kdray/error.h"
 
 namespace kdray::api {

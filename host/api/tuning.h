@@ -6,9 +6,9 @@
 #include <functional>
 #include <string>
 
-#include "device/context.h"
+#include "device/opencl/context.h"
+#include "device/tuning/database.h"
 #include "layout/features.h"
-#include "tune/database.h"
 
 namespace kdray::api {
 

@@ -7,19 +7,19 @@
 #include <utility>
 #include <vector>
 
+#include "accel/flatten/frame.h"
+#include "accel/kdtree/build.h"
+#include "accel/prepare/prepared.h"
 #include "api/device.h"
 #include "api/open_devices.h"
 #include "api/precision.h"
 #include "base/timer.h"
-#include "device/program_cache.h"
-#include "flatten/frame.h"
-#include "kdtree/build.h"
-#include "prepare/prepared.h"
-#include "query/trace.h"
-#include "scene/geometry.h"
-#include "selftest/known_case.h"
-#include "wavefront/channels.h"
-#include "wavefront/wavefront.h"
+#include "device/opencl/program_cache.h"
+#include "engine/query/trace.h"
+#include "engine/wavefront/channels.h"
+#include "engine/wavefront/wavefront.h"
+#include "probe/selftest/known_case.h"
+#include "scene/model/geometry.h"
 
 namespace kdray::api {
 

@@ -1,5 +1,5 @@
-// What    Every operation of simd.clh on given cases: the probe build and self-test of host/device/simd.h,
-//         and the test of all forms.
+// What    Every operation of simd.clh on given cases: the probe build and self-test of
+//         host/device/opencl/simd.h, and the test of all forms.
 // Shape   One work-item goes through all cases: the kernels that use simd.clh run one work-item to a vector,
 //         too. A compiler that says itself that its target lacks the form's instructions gets no kernel
 //         rather than a failed build, about which PoCL's would print a line.

@@ -1,5 +1,6 @@
 // What    The arguments of every kernel, each kernel's as one list of names: the kernel's parameters follow
-//         from it (KDRAY_PARAMETERS) and so do the names by which the host sets them (host/device/kernel.h).
+//         from it (KDRAY_PARAMETERS) and so do the names by which the host sets them
+//         (host/device/opencl/kernel.h).
 // Shape   An entry is X(access, type, name). Arrays: IN (read), OUT (written), IO (both), CONSTANT (one
 //         struct that all work-items read); VALUE is passed by itself. In the kernel an array bears its
 //         access in its name, such as in_nodes, io_film or out_hits; for the host it is nodes, film or hits,
@@ -13,7 +14,7 @@
 #include "layout/instances.layout.h"
 #include "layout/kinds.h"
 
-// The scene's arrays. host/wavefront/scene_buffers.h holds a buffer for each of them, by these names.
+// The scene's arrays. host/engine/wavefront/scene_buffers.h holds a buffer for each of them, by these names.
 #define KDRAY_PRIMITIVE_ARRAYS(X)          \
   KDRAY_KINDS_WITH(KDRAY_ARRAY_OF_KIND, X) \
   X(IN, Instance, instances)

@@ -1,7 +1,7 @@
 // What    Points whose closest point of the scene is asked for, and the answers.
 // Shape   A number is 64 bits: a double's, or, from a device without doubles, two floats that are to be added
 //         (the lower 32 bits are the larger one); `form` tells which. All in the scene's own space
-//         (host/math/local_space.h).
+//         (host/base/local_space.h).
 #ifndef KDRAY_LAYOUT_CLOSEST_H
 #define KDRAY_LAYOUT_CLOSEST_H
 #include "layout/base.layout.h"

@@ -1,6 +1,6 @@
-// What    The feature mask: what a scene needs. The host ORs it together (host/flatten/features.h) and passes
-//         it as KDRAY_FEATURES; here it becomes KDRAY_HAS_X = 0 or 1, to be tested with #if. Undefined:
-//         everything on, so that each kernel compiles alone.
+// What    The feature mask: what a scene needs. The host ORs it together (host/accel/flatten/features.h) and
+//         passes it as KDRAY_FEATURES; here it becomes KDRAY_HAS_X = 0 or 1, to be tested with #if.
+//         Undefined: everything on, so that each kernel compiles alone.
 // Shape   64 bits, 16 for each of four groups: the rules that are off (rules.h), the kinds of primitives
 //         (kinds.h), what surfaces need, what light and film need. Bits that have no name here are free.
 #ifndef KDRAY_LAYOUT_FEATURES_H

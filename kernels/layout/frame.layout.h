@@ -51,7 +51,7 @@ typedef struct Frame {
   u32 open_lights;  // bit i: light i is on the inner side of all faces
   u32 samples_at;   // adaptive rounds: where the samples begin in the list's buffer, in words; 0: whole tiles
   // The box of all but the triangles that lie in faces: planes that bound the scene along an axis, infinite
-  // where there are none (host/flatten/core.h).
+  // where there are none (host/accel/flatten/core.h).
   float core_lo[3], core_hi[3];
   float face_lo[3], face_hi[3];
   u32 parallel;  // 1: an orthographic camera

@@ -1,5 +1,5 @@
 // What    Instances of meshes: where a mesh lies in the scene, as rays and surfaces need it.
-// Shape   A mesh has a space of its own, as large as a scene's (host/math/local_space.h), and its own subtree
+// Shape   A mesh has a space of its own, as large as a scene's (host/base/local_space.h), and its own subtree
 //         of the wide form, whose root is `root`; its primitives lie in the scene's arrays, behind the
 //         scene's own.
 //             in the mesh  = to_mesh * (in the scene - place) + mesh_place
@@ -8,9 +8,10 @@
 //         mesh. So what is near the instance keeps its bits, wherever in the scene it is. A child of a wide
 //         node that is an instance is KDRAY_WIDE_LEAF | KDRAY_KIND_INSTANCE << KDRAY_WIDE_KIND_SHIFT | its
 //         index. Rays and hits name an instance by index + 1; 0 is the scene itself. Behind all instances lie
-//         pieces of some (host/flatten/instance_openings.h), the same but for `root`, which is a node below
-//         the mesh's: leaves of the tree over instances that have their hits under the whole one's name.
-// Errors  All are rounded once from double. host/flatten/instances.h has the bounds that follow.
+//         pieces of some (host/accel/flatten/instance_openings.h), the same but for `root`, which is a node
+//         below the mesh's: leaves of the tree over instances that have their hits under the whole one's
+//         name.
+// Errors  All are rounded once from double. host/accel/flatten/instances.h has the bounds that follow.
 #ifndef KDRAY_LAYOUT_INSTANCES_H
 #define KDRAY_LAYOUT_INSTANCES_H
 #include "layout/base.layout.h"

@@ -1,5 +1,5 @@
 // What    What pictures and colours at corners make of materials: coats, textures, and what triangles have at
-//         their corners; meanings as in host/scene/paint.h.
+//         their corners; meanings as in host/scene/textures/paint.h.
 // Shape   Texels are words, red in the lowest byte, then green, blue, alpha. The first KDRAY_TEXEL_CURVE of
 //         them are no texels but sRGB's curve: for each code of a byte what it is worth, in 65535ths.
 #ifndef KDRAY_LAYOUT_PAINT_H

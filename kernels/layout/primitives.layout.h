@@ -1,4 +1,4 @@
-// What    Primitives as the kernels read them, about the scene's centre (host/scene/geometry.h).
+// What    Primitives as the kernels read them, about the scene's centre (host/scene/model/geometry.h).
 #ifndef KDRAY_LAYOUT_PRIMITIVES_H
 #define KDRAY_LAYOUT_PRIMITIVES_H
 #include "layout/base.layout.h"

@@ -18,7 +18,7 @@
 #endif
 
 // In scenes with footprints rays have a last field, u32: their pencil (paint/pencil.clh). The host counts it
-// by itself (host/wavefront/slice_buffers.h).
+// by itself (host/engine/wavefront/slice_buffers.h).
 #ifdef __OPENCL_C_VERSION__
 #define KDRAY_PENCIL_FIELDS (KDRAY_HAS_FOOTPRINTS ? 1u : 0u)
 #else

@@ -1,4 +1,4 @@
-// What    Materials and lights as the kernels read them; meanings as in host/scene/scene.h.
+// What    Materials and lights as the kernels read them; meanings as in host/scene/model/scene.h.
 #ifndef KDRAY_LAYOUT_SHADING_H
 #define KDRAY_LAYOUT_SHADING_H
 #include "layout/base.layout.h"

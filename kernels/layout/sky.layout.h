@@ -1,5 +1,5 @@
 // What    A background by direction, as the kernels read it: colours by height, or a picture all around;
-//         meanings as in host/scene/sky.h.
+//         meanings as in host/scene/textures/sky.h.
 // Shape   Colours are floats in `sky_colors`. A gradient: a base colour, and behind it `width` steps of six,
 //         each the height where it begins, 1 over its height, and what it adds; the sixth is 0. A picture:
 //         red, green and blue of `width` times `height` texels, row by row from the top.

@@ -1,8 +1,8 @@
 // What    collect_hits: all hits of query rays: a list for each, sorted, of as many as fit, and whether there
 //         are more. pack_hits: the lists moved together as structures of arrays, those of ray i to places[i],
-//         with primitives' numbers for references (not with as_refs) and t in multiples of the direction as it
-//         was given.
-//         `space`: the scene's centre and scale (host/math/local_space.h).
+//         with primitives' numbers for references (not with as_refs) and t in multiples of the direction as
+//         it was given.
+//         `space`: the scene's centre and scale (host/base/local_space.h).
 // Shape   The wide walk has one ray to a work-item, the others KDRAY_CHUNK rays; pack_hits has one.
 // Cost    collect_hits reads 32 B of the ray and the tree, writes 16 B and 16 B for each hit.
 // Errors  There is no kernel in double, and none that walks the binary tree. A ray whose walk failed has

@@ -1,5 +1,5 @@
 // What    Query rays: the closest hit of each, or with any_hit whether anything lies inside of its interval
-//         (t = 0, else inf). `space`: the scene's centre and scale (host/math/local_space.h).
+//         (t = 0, else inf). `space`: the scene's centre and scale (host/base/local_space.h).
 // Shape   Binary and wide: one ray to a work-item. Otherwise one work-item to KDRAY_CHUNK rays.
 // Cost    reads 32 B of the ray and the tree, writes 16 B.
 // Errors  a full stack (binary tree) gives primitive KDRAY_QUERY_INVALID; the host checks for it.

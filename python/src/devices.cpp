@@ -2,7 +2,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "device/platform.h"
+#include "device/opencl/platform.h"
 #include "interrupt.h"
 #include "parts.h"
 

@@ -1,4 +1,4 @@
-// The page of a scene (host/view), served by this process until it is closed.
+// The page of a scene (host/apps/view), served by this process until it is closed.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -12,8 +12,8 @@
 
 #include "interrupt.h"
 #include "parts.h"
-#include "view/server.h"
-#include "view/show.h"
+#include "apps/view/server.h"
+#include "apps/view/show.h"
 
 namespace kdray::python {
 

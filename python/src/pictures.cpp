@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "arrays.h"
-#include "film/write.h"
+#include "io/image/write.h"
 #include "interrupt.h"
 #include "parts.h"
 

@@ -101,7 +101,7 @@ def test_a_port_that_is_taken_is_told(page, ball):
 
 # ---- In a browser
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "view"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "apps" / "view"))
 from browser import Browser  # type: ignore[import-not-found]  # noqa: E402
 
 

@@ -1,6 +1,6 @@
-// Views of a program's arrays (kdray/arrays.h): what they read, what they refuse, and that the way in which rows
-// lie in memory changes no answer. Arrays lie in blocks of exactly their size: under the address sanitizer, none
-// is read beyond its end.
+// Views of a program's arrays (kdray/arrays.h): what they read, what they refuse, and that the way in which
+// rows lie in memory changes no answer. Arrays lie in blocks of exactly their size: under the address
+// sanitizer, none is read beyond its end.
 #include "kdray/arrays.h"
 
 #include <gtest/gtest.h>

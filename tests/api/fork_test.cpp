@@ -1,5 +1,6 @@
 // A process that is forked off one that has asked OpenCL for devices: told so at once, and able to end.
-// (python/tests/test_processes.py has children of parents that had not.) A child that hangs is ended by a signal.
+// (python/tests/test_processes.py has children of parents that had not.) A child that hangs is ended by a
+// signal.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

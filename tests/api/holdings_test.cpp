@@ -9,17 +9,17 @@
 #include <optional>
 
 #include "api/held.h"
-#include "distribute/holding.h"
-#include "distribute/ply_files.h"
-#include "image/render.h"
-#include "image/scenes.h"
-#include "scene/load.h"
+#include "cluster/partition/holding.h"
+#include "cluster/partition/ply_files.h"
+#include "cluster/transport/delayed.h"
+#include "cluster/transport/in_process.h"
+#include "pictures/render.h"
+#include "pictures/scenes.h"
+#include "scene/import/load.h"
 #include "support/device.h"
 #include "support/errors.h"
 #include "support/folder.h"
 #include "support/rank_threads.h"
-#include "transport/delayed.h"
-#include "transport/in_process.h"
 
 namespace kdray::test {
 namespace {

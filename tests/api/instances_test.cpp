@@ -10,10 +10,10 @@
 #include <limits>
 #include <random>
 
+#include "accel/prepare/prepared.h"
 #include "kdray/kdray.h"
-#include "prepare/prepared.h"
-#include "scene/instances.h"
-#include "scene/scene.h"
+#include "scene/model/instances.h"
+#include "scene/model/scene.h"
 #include "support/device.h"
 #include "support/errors.h"
 #include "support/folder.h"

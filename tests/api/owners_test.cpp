@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
-#include "film/queue_colors.h"
+#include "io/image/queue_colors.h"
 #include "kdray/kdray.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include "support/device.h"
 
 namespace kdray {

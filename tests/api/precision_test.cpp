@@ -1,6 +1,6 @@
 // What double can't do is told in one line, with the code that fits: the device's fault is another than the
 // user's.
-#include "precision.h"
+#include "api/precision.h"
 
 #include <gtest/gtest.h>
 

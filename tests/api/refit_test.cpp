@@ -12,10 +12,10 @@
 #include <random>
 #include <thread>
 
-#include "generate/displaced_sphere.h"
+#include "accel/prepare/prepared.h"
 #include "kdray/kdray.h"
-#include "prepare/prepared.h"
-#include "scene/scene.h"
+#include "scene/generate/displaced_sphere.h"
+#include "scene/model/scene.h"
 #include "support/device.h"
 #include "support/errors.h"
 #include "support/meshes.h"

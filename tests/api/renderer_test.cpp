@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kdray/kdray.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include "support/device.h"
 
 namespace kdray {

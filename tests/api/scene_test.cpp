@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "kdray/kdray.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include "support/device.h"
 #include "support/errors.h"
 #include "support/folder.h"

@@ -1,14 +1,15 @@
 // What    every kind owes to points: no place of its surface is closer than what is found, and what is found
 //         is a place of it.
-// Held against random places of the surface, as other tests of a kind are; tests/query has exact arithmetic.
+// Held against random places of the surface, as other tests of a kind are; tests/engine/query has exact
+// arithmetic.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "conformance/all_kinds.h"
-#include "query/closest_point.h"
-#include "query/device_scene.h"
+#include "engine/query/closest_point.h"
+#include "engine/query/device_scene.h"
 #include "support/device.h"
 
 namespace kdray::test {

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "conformance/all_kinds.h"
-#include "scene/load.h"
+#include "scene/import/load.h"
 #include "scene/scratch.h"
 
 namespace kdray::test {

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/flatten/features.h"
+#include "accel/flatten/flatten.h"
+#include "accel/kdtree/build.h"
+#include "accel/kdtree/clip.h"
 #include "base/error.h"
 #include "conformance/all_kinds.h"
-#include "flatten/features.h"
-#include "flatten/flatten.h"
-#include "kdtree/build.h"
-#include "kdtree/clip.h"
-#include "scene/check_scene.h"
-#include "scene/transform.h"
+#include "scene/model/check_scene.h"
+#include "scene/model/transform.h"
 #include "support/scene_fields.h"
 
 namespace kdray::test {

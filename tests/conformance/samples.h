@@ -11,8 +11,8 @@
 #include <random>
 #include <utility>
 
-#include "scene/geometry.h"
-#include "scene/scene.h"
+#include "scene/model/geometry.h"
+#include "scene/model/scene.h"
 
 namespace kdray::test {
 

@@ -6,16 +6,16 @@
 #include <filesystem>
 #include <limits>
 
-#include "cache/entry.h"
+#include "accel/cache/entry.h"
+#include "accel/prepare/prepared.h"
+#include "apps/verify/verify.h"
 #include "conformance/all_kinds.h"
-#include "image/like_oracle.h"
-#include "image/render.h"
 #include "kdray/kdray.h"
 #include "layout/rules.h"
 #include "oracle/primitives.h"
-#include "prepare/prepared.h"
+#include "pictures/like_oracle.h"
+#include "pictures/render.h"
 #include "support/device.h"
-#include "verify/verify.h"
 
 namespace kdray::test {
 namespace {

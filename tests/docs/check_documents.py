@@ -72,7 +72,7 @@ def check_quoted(page, number, text):
 
 
 def named(path):
-    """Whether it names a file or folder; `host/pdprt/tiles` may stand for tiles.h and tiles.cpp."""
+    """Whether it names a file or folder; `host/engine/pdprt/tiles` may stand for tiles.h and tiles.cpp."""
     there = root / path
     return there.exists() or any(there.parent.glob(there.name + ".*"))
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "base/vec.h"
 #include "layout/primitives.layout.h"
-#include "math/vec.h"
 #include "support/device.h"
 #include "support/run_kernel.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "device/simd.h"
+#include "device/opencl/simd.h"
 #include "layout/frame.layout.h"
 #include "support/device.h"
 #include "support/run_kernel.h"

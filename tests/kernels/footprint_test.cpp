@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "base/vec.h"
 #include "layout/paint.layout.h"
-#include "math/vec.h"
 #include "support/device.h"
 #include "support/run_kernel.h"
 

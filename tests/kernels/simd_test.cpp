@@ -4,9 +4,9 @@
 
 #include <random>
 
-#include "device/context.h"
-#include "device/opencl_error.h"
-#include "device/simd_answers.h"
+#include "device/opencl/context.h"
+#include "device/opencl/opencl_error.h"
+#include "device/opencl/simd_answers.h"
 #include "support/device.h"
 
 namespace kdray {

@@ -12,8 +12,8 @@
 #include <random>
 #include <set>
 
+#include "base/vec.h"
 #include "layout/primitives.layout.h"
-#include "math/vec.h"
 #include "oracle/polynomial.h"
 #include "support/device.h"
 #include "support/run_kernel.h"

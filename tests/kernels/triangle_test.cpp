@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "math/vec.h"
+#include "base/vec.h"
 #include "support/device.h"
 #include "support/run_kernel.h"
 

@@ -1,5 +1,5 @@
 // Must not compile with KDRAY_TEST_FAULT 1 to 3: arguments of kernels that are set wrongly. (With 0 it must.)
-#include "device/kernel.h"
+#include "device/opencl/kernel.h"
 
 void set(kdray::device::Kernel<kdray::kernels::Shade>& shade, const cl::Buffer& buffer) {
   using kdray::kernels::Shade;

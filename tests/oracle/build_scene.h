@@ -1,7 +1,7 @@
 // What    Tiny scenes put together in code, for tests of one effect each.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::oracle {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::oracle {
 

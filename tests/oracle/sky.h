@@ -1,7 +1,7 @@
 // What    What rays that meet nothing see of a gradient or a picture all around, by the textbook, in double.
 #pragma once
 
-#include "scene/sky.h"
+#include "scene/textures/sky.h"
 
 namespace kdray::oracle {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "scene/check_scene.h"
-#include "scene/load.h"
+#include "scene/import/load.h"
+#include "scene/model/check_scene.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {

@@ -1,4 +1,4 @@
-#include "scene/frame.h"
+#include "scene/model/frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene/geometry.h"
+#include "scene/model/geometry.h"
 
 #include <random>
 

@@ -9,10 +9,10 @@
 #include <random>
 
 #include "base/error.h"
-#include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
-#include "scene/importers.h"
-#include "scene/load.h"
+#include "scene/import/importers.h"
+#include "scene/import/load.h"
+#include "scene/model/check_scene.h"
 #include "scene/scratch.h"
 #include "support/data.h"
 

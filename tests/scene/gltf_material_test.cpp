@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
-#include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
-#include "scene/importers.h"
+#include "scene/import/importers.h"
+#include "scene/model/check_scene.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {

@@ -5,10 +5,10 @@
 #include <random>
 
 #include "base/error.h"
-#include "scene/check_scene.h"
-#include "scene/gltf_uri.h"
-#include "scene/importers.h"
-#include "scene/load.h"
+#include "scene/import/gltf/gltf_uri.h"
+#include "scene/import/importers.h"
+#include "scene/import/load.h"
+#include "scene/model/check_scene.h"
 #include "scene/packed_samples.h"
 #include "scene/scratch.h"
 #include "support/data.h"

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <string>
 
-#include "scene/check_scene.h"
-#include "scene/find_file.h"
 #include "scene/gltf_samples.h"
-#include "scene/importers.h"
-#include "scene/instances.h"
+#include "scene/import/find_file.h"
+#include "scene/import/importers.h"
+#include "scene/model/check_scene.h"
+#include "scene/model/instances.h"
+#include "scene/model/tangents.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
-#include "scene/tangents.h"
 
 namespace kdray::scene {
 namespace {

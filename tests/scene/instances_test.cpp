@@ -1,16 +1,16 @@
 // What    Instances as files have them: what importers keep and what they copy, with what transforms, and
 //         what they refuse. Copies are what the file always was.
-#include "scene/instances.h"
+#include "scene/model/instances.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
-#include "scene/importers.h"
-#include "scene/load.h"
+#include "scene/import/importers.h"
+#include "scene/import/load.h"
+#include "scene/model/check_scene.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {

@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "scene/importers.h"
-#include "scene/json_keys.h"
+#include "scene/import/importers.h"
+#include "scene/import/json/json_keys.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
 #include "support/data.h"

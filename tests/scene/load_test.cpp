@@ -1,8 +1,8 @@
-#include "scene/load.h"
+#include "scene/import/load.h"
 
 #include <limits>
 
-#include "scene/check_scene.h"
+#include "scene/model/check_scene.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {

@@ -7,16 +7,16 @@
 #include <string>
 
 #include "base/error.h"
-#include "scene/added_paint.h"
-#include "scene/check_scene.h"
-#include "scene/derived_pictures.h"
 #include "scene/gltf_samples.h"
-#include "scene/import.h"
-#include "scene/importers.h"
-#include "scene/load.h"
-#include "scene/picture_limit.h"
+#include "scene/import/import.h"
+#include "scene/import/importers.h"
+#include "scene/import/load.h"
+#include "scene/model/added_paint.h"
+#include "scene/model/check_scene.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
+#include "scene/textures/derived_pictures.h"
+#include "scene/textures/picture_limit.h"
 
 namespace kdray::scene {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/material_table.h"
+#include "scene/import/material_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene/mtl.h"
+#include "scene/import/obj/mtl.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/check_scene.h"
+#include "scene/import/obj/whitted_from_mtl.h"
+#include "scene/model/check_scene.h"
 #include "scene/scratch.h"
-#include "scene/whitted_from_mtl.h"
 
 namespace kdray::scene {
 namespace {

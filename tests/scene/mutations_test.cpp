@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
-#include "scene/importers.h"
-#include "scene/instances.h"
-#include "scene/mtl.h"
+#include "scene/import/importers.h"
+#include "scene/import/obj/mtl.h"
+#include "scene/model/check_scene.h"
+#include "scene/model/instances.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
 #include "support/seed.h"

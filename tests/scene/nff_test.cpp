@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "scene/importers.h"
-#include "scene/load.h"
+#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/scratch.h"
 #include "support/data.h"
 

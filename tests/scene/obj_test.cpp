@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "scene/check_scene.h"
-#include "scene/find_file.h"
-#include "scene/importers.h"
+#include "scene/import/find_file.h"
+#include "scene/import/importers.h"
+#include "scene/model/check_scene.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "scene/load.h"
+#include "scene/import/load.h"
 #include "support/data.h"
 
 namespace kdray::scene {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "scene/gltf_samples.h"
+#include "scene/model/scene.h"
 #include "scene/pictures.h"
-#include "scene/scene.h"
 
 namespace kdray::test {
 

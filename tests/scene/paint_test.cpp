@@ -1,5 +1,5 @@
 // What of pictures and colours at corners files say, and how it comes to lie beside the triangles.
-#include "scene/paint.h"
+#include "scene/textures/paint.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <string>
 
-#include "scene/check_scene.h"
 #include "scene/gltf_samples.h"
-#include "scene/import.h"
-#include "scene/importers.h"
+#include "scene/import/import.h"
+#include "scene/import/importers.h"
+#include "scene/model/check_scene.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
 

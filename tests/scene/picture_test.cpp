@@ -1,5 +1,5 @@
 // Pictures of textures in every form that files have, and in none that decoders may be made to trip over.
-#include "scene/picture.h"
+#include "scene/textures/picture.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

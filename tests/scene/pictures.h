@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "film/png.h"
-#include "scene/paint.h"
+#include "io/image/png.h"
+#include "scene/textures/paint.h"
 
 namespace kdray::test {
 

@@ -1,4 +1,4 @@
-#include "scene/plain_number.h"
+#include "scene/import/plain_number.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene/reserve_ahead.h"
+#include "scene/import/reserve_ahead.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Backgrounds by direction: pictures in each form that files have, and in none that readers may be made to
 // trip over; what JSON scenes say of them.
-#include "scene/sky.h"
+#include "scene/textures/sky.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,11 @@
 #include <string>
 
 #include "base/error.h"
-#include "film/exr.h"
-#include "scene/importers.h"
+#include "io/image/exr.h"
+#include "scene/import/importers.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
-#include "scene/sky_picture.h"
+#include "scene/textures/sky_picture.h"
 #include "support/seed.h"
 
 namespace kdray::scene {

@@ -1,5 +1,5 @@
 // Normals from neighbours, against surfaces whose normals are known.
-#include "scene/smooth_normals.h"
+#include "scene/model/smooth_normals.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // The normals that stitches are shaded by.
-#include "scene/stitches.h"
+#include "scene/model/stitches.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "scene/geometry.h"
+#include "scene/model/geometry.h"
 #include "support/stitched_meshes.h"
 
 namespace kdray::scene {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/check_scene.h"
-#include "scene/importers.h"
+#include "scene/import/importers.h"
+#include "scene/model/check_scene.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {

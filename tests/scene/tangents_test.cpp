@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "scene/smooth_tangents.h"
-#include "scene/tangents.h"
-#include "scene/transform.h"
+#include "scene/model/smooth_tangents.h"
+#include "scene/model/tangents.h"
+#include "scene/model/transform.h"
 
 namespace kdray::scene {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/text_scanner.h"
+#include "scene/import/text_scanner.h"
 
 #include <limits>
 

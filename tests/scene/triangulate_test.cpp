@@ -1,4 +1,4 @@
-#include "scene/triangulate.h"
+#include "scene/model/triangulate.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "scene/predicates.h"
+#include "scene/model/predicates.h"
 
 namespace kdray::scene {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "base/error.h"
 #include "scene/gltf_samples.h"
-#include "scene/importers.h"
-#include "scene/picture.h"
+#include "scene/import/importers.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
+#include "scene/textures/picture.h"
 #include "support/seed.h"
 #ifdef KDRAY_WITH_WEBP
 #include <webp/encode.h>

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "query/meshes.h"
+#include "engine/query/meshes.h"
 #include "stress/exact.h"
 #include "stress/lines.h"
 #include "stress/table.h"

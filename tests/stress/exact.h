@@ -11,9 +11,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/vec.h"
 #include "layout/kinds.h"
 #include "layout/primitives.layout.h"
-#include "math/vec.h"
 
 namespace kdray::stress {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "accel/prepare/prepared.h"
+#include "base/vec.h"
 #include "kdray/kdray.h"
-#include "math/vec.h"
-#include "prepare/prepared.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include "stress/random.h"
 
 namespace kdray::stress {

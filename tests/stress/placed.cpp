@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "query/meshes.h"
+#include "engine/query/meshes.h"
 #include "stress/table.h"
 #include "support/stitched_meshes.h"
 

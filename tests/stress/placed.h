@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/vec.h"
 #include "kdray/kdray.h"
-#include "math/vec.h"
 
 namespace kdray::stress {
 

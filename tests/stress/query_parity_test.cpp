@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "query/meshes.h"
+#include "engine/query/meshes.h"
 #include "stress/lines.h"
 #include "stress/table.h"
 #include "stress/traced.h"

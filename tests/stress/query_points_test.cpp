@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "prepare/prepared.h"
+#include "accel/prepare/prepared.h"
 #include "stress/lines.h"
 #include "stress/table.h"
 #include "stress/traced.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "math/vec.h"
+#include "base/vec.h"
 
 namespace kdray::stress {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "cli/program.h"
+#include "apps/cli/program.h"
 #include "support/folder.h"
 
 namespace kdray::stress {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "conformance/samples.h"
-#include "image/scenes.h"
 #include "kdray/kdray.h"
 #include "oracle/primitives.h"
+#include "pictures/scenes.h"
 #include "stress/random.h"
 #include "stress/traced.h"
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "image/render.h"
-#include "image/scenes.h"
 #include "oracle/build_scene.h"
+#include "pictures/render.h"
+#include "pictures/scenes.h"
 #include "stress/random.h"
 #include "stress/table.h"
 #include "stress/traced.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "image/render.h"
 #include "oracle/build_scene.h"
+#include "pictures/render.h"
 #include "stress/random.h"
 #include "stress/table.h"
 #include "stress/traced.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include "device/opencl_error.h"
-#include "device/simd.h"
+#include "device/opencl/opencl_error.h"
+#include "device/opencl/simd.h"
 
 namespace kdray::stress {
 

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "device/context.h"
-#include "device/kernel.h"
+#include "accel/prepare/prepared.h"
+#include "device/opencl/context.h"
+#include "device/opencl/kernel.h"
+#include "engine/wavefront/scene_buffers.h"
 #include "kdray/kdray.h"
-#include "prepare/prepared.h"
-#include "wavefront/scene_buffers.h"
 
 // The arguments of the kernel in spawn.cpp, whose source has this list as well.
 #define SPAWN_ARGUMENTS(F, X) \

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include "stress/exact.h"
 #include "stress/random.h"
 #include "stress/table.h"

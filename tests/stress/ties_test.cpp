@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include "stress/random.h"
 #include "stress/table.h"
 #include "stress/traced.h"

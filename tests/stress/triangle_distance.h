@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 
-#include "math/vec.h"
+#include "base/vec.h"
 
 namespace kdray::stress {
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "primitives/shapes.h"
+#include "scene/primitives/shapes.h"
 
 namespace kdray::test {
 

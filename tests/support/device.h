@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "device/platform.h"
+#include "device/opencl/platform.h"
 
 namespace kdray::test {
 

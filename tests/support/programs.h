@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "device/builds.h"
-#include "device/program_cache.h"
+#include "device/opencl/builds.h"
+#include "device/opencl/program_cache.h"
 
 namespace kdray::test {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "cluster/transport/ranks.h"
 #include "kdray/error.h"
-#include "transport/ranks.h"
 
 namespace kdray::test {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "device/context.h"
-#include "device/opencl_error.h"
+#include "device/opencl/context.h"
+#include "device/opencl/opencl_error.h"
 #include "support/set_arguments.h"
 
 namespace kdray::test {

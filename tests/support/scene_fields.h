@@ -5,7 +5,7 @@
 
 #include <tuple>
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace kdray::test {
 

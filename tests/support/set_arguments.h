@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "device/opencl.h"
+#include "device/opencl/opencl.h"
 
 namespace kdray::test {
 

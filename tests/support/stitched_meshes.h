@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "math/vec.h"
-#include "scene/scene.h"
+#include "base/vec.h"
+#include "scene/model/scene.h"
 
 namespace kdray::test {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/program.h"
-#include "cli/scenes.h"
+#include "apps/cli/program.h"
+#include "apps/cli/scenes.h"
 #include "kdray/kdray.h"
 #include "support/folder.h"
 

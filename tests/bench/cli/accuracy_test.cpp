@@ -4,9 +4,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/program.h"
+#include "apps/cli/scenes.h"
 #include "bench/cli/expect_keys.h"
-#include "cli/program.h"
-#include "cli/scenes.h"
 #include "kdray/kdray.h"
 #include "support/folder.h"
 

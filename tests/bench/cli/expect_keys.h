@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/program.h"
+#include "apps/cli/program.h"
 #include "support/folder.h"
 
 namespace kdray::test {

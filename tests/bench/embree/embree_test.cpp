@@ -7,13 +7,13 @@
 #include <numeric>
 #include <type_traits>
 
+#include "apps/cli/program.h"
 #include "bench/race/compare_hits.h"
 #include "bench/workload/flock.h"
-#include "cli/program.h"
 #include "conformance/all_kinds.h"
-#include "generate/built_in.h"
-#include "generate/displaced_sphere.h"
-#include "scene/instances.h"
+#include "scene/generate/built_in.h"
+#include "scene/generate/displaced_sphere.h"
+#include "scene/model/instances.h"
 
 namespace kdray::bench {
 namespace {

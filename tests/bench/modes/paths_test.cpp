@@ -8,9 +8,9 @@
 #include <limits>
 #include <numeric>
 
-#include "generate/displaced_sphere.h"
-#include "generate/random.h"
-#include "prepare/prepared.h"
+#include "accel/prepare/prepared.h"
+#include "scene/generate/displaced_sphere.h"
+#include "scene/generate/random.h"
 
 namespace kdray::bench {
 namespace {

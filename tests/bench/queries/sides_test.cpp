@@ -4,11 +4,11 @@
 
 #include <random>
 
+#include "apps/cli/program.h"
 #include "bench/embree/embree.h"
 #include "bench/embree/sides.h"
 #include "bench/queries/compare.h"
 #include "bench/queries/kdray_side.h"
-#include "cli/program.h"
 
 namespace kdray::bench {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <thread>
 
-#include "generate/displaced_sphere.h"
+#include "scene/generate/displaced_sphere.h"
 
 namespace kdray::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "generate/displaced_sphere.h"
+#include "scene/generate/displaced_sphere.h"
 
 namespace kdray::bench {
 namespace {

@@ -1,0 +1,152 @@
+#include "accel/flatten/frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/model/frame.h"
+
+namespace kdray::flatten {
+
+namespace {
+
+constexpr int kDefaultDepth = 5, kMaxDepth = 64, kMaxSamples = 65536, kMaxSide = 65536;
+
+int pick(int option, const std::optional<int>& setting, int fallback) {
+  return option > 0 ? option : setting.value_or(fallback);
+}
+
+void check_range(const char* what, int value, int lo, int hi) {
+  if (value < lo || value > hi)
+    throw Error(ErrorCode::usage, fmt::format("{} is {}; it may be {} to {}", what, value, lo, hi));
+}
+
+double largest(const vec3& v) {
+  return std::max({v.x, v.y, v.z});
+}
+
+// The brightest that a light can arrive: fall-off is smallest at distance 0.
+double brightest(const scene::Light& light) {
+  const double color = largest(light.color);
+  return color > 0 ? color / light.attenuation.x : 0;
+}
+
+void set(float (&out)[3], const dvec3& v) {
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(v[k]);
+}
+
+// From farther off than this, in local lengths, no direction that floats tell from the next one meets another
+// part of the scene: the eye is taken to be there, since products of larger distances leave the range of
+// float.
+constexpr double kFarthestEye = 0x1p60;
+
+dvec3 local_eye(const LocalSpace& space, const dvec3& from) {
+  const dvec3 eye = space.local(from);
+  if (largest_component(eye) <= kFarthestEye) return eye;
+  return safe_normalize(from * 0.5 - space.center * 0.5) * kFarthestEye;
+}
+
+// A pinhole's rays go along forward + x*right + y*up, and are in focus at `focus` times that.
+void set_lens(layout::Frame& f, const scene::Camera& camera, const LocalSpace& space) {
+  if (!(camera.aperture > 0)) return;
+  const double focus = camera.focus > 0 ? camera.focus : safe_length(camera.at - camera.from);
+  f.lens_radius = static_cast<float>(space.local_length(camera.aperture / 2));
+  f.lens_slope = static_cast<float>(camera.aperture / 2 / focus);
+}
+
+}  // namespace
+
+RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings& settings) {
+  RenderOptions o = options;
+  o.width = pick(o.width, settings.width, scene::kDefaultSide);
+  o.height = pick(o.height, settings.height, scene::kDefaultSide);
+  o.depth = pick(o.depth, settings.depth, kDefaultDepth);
+  o.samples = o.adaptive_target > 0 ? 1 : pick(o.samples, settings.samples, 1);
+  if (!(o.min_weight >= 0)) o.min_weight = settings.min_weight.value_or(kDefaultMinWeight);
+  check_range("the picture's width", o.width, 1, kMaxSide);
+  check_range("the picture's height", o.height, 1, kMaxSide);
+  check_range("depth", o.depth, 1, kMaxDepth);
+  check_range("samples", o.samples, 1, kMaxSamples);
+  check_range("the tile's width", o.tile_width, 0, kMaxSide);
+  check_range("the tile's height", o.tile_height, 0, kMaxSide);
+  if (static_cast<double>(o.width) * o.height > 0x7fffffff)
+    throw Error(ErrorCode::usage, fmt::format("a picture of {}x{} has over 2^31 pixels", o.width, o.height));
+  return o;
+}
+
+double radiance_bound(const scene::Scene& scene, int depth) {
+  double incident = 0;
+  for (const scene::Light& light : scene.lights) incident += brightest(light);
+  const bool sky = scene.sky.kind != scene::SkyKind::none;
+  double shown = sky ? scene.sky.brightest : largest(scene.background), passed = 0;
+  for (const scene::Material& m : scene.materials) {
+    // Base colours are 1 at most; what a veil takes of a term it passes on.
+    const scene::Coat coat =
+        m.coat == scene::kNone ? scene::Coat{} : scene::largest_terms(scene.paint.coats[m.coat]);
+    const double lit = largest(m.diffuse + coat.diffuse) + largest(m.specular + coat.specular);
+    shown = std::max(shown, largest(m.emission + coat.emission) +
+                                largest(m.ambient + coat.ambient) * largest(scene.ambient) +
+                                (lit > 0 ? incident * lit : 0));
+    const double sent = largest(m.reflect + coat.reflect) + largest(m.transmit + coat.transmit);
+    passed = std::max(passed, coat.mode == scene::Alpha::blend ? std::max(sent, 1.0) : sent);
+  }
+  double sum = 0, share = 1;
+  for (int d = 0; d < depth; ++d, share *= passed) sum += share;
+  return shown * sum;
+}
+
+layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geometry, const RenderOptions& o) {
+  const scene::Camera camera = scene.camera.value_or(scene::Camera{});
+  const dvec3 forward = safe_normalize(camera.at - camera.from);
+  const dvec3 right =
+      glm::normalize(glm::cross(forward, camera.up * scale_to_one(largest_component(camera.up))));
+  const dvec3 up = glm::cross(right, forward);
+  const bool parallel = camera.ortho_width > 0;
+  const double half_height = parallel
+                                 ? geometry.space.local_length(camera.ortho_width) / 2 * o.height / o.width
+                                 : std::tan(camera.vertical_fov / 2);
+  const double half_width = half_height * o.width / o.height;
+  // The outermost samples of the corner grid lie on the picture's edges; with one pixel there is only one
+  // corner.
+  const bool corners = o.grid == PixelGrid::corners;
+  const double columns = std::max(1, o.width - (corners ? 1 : 0)),
+               rows = std::max(1, o.height - (corners ? 1 : 0));
+
+  layout::Frame f{};
+  set(f.eye, local_eye(geometry.space, camera.from));
+  set(f.forward, forward);
+  set(f.right, right);
+  set(f.up, up);
+  set(f.background, dvec3(scene.background));
+  f.hither = static_cast<float>(geometry.space.local_length(camera.hither));
+  f.x_scale = static_cast<float>(2 * half_width / columns);
+  f.x_offset = static_cast<float>(-half_width);
+  f.y_scale = static_cast<float>(-2 * half_height / rows);
+  f.y_offset = static_cast<float>(half_height);
+  set(f.root_lo, dvec3(geometry.bounds.lo));
+  set(f.root_hi, dvec3(geometry.bounds.hi));
+  for (int k = 0; k < 3; ++k)
+    if (!geometry.bounds.empty())
+      f.world_max = std::max({f.world_max, std::abs(f.root_lo[k]), std::abs(f.root_hi[k])});
+  // Without a finite bound the picture's own is left: a PNG shows nothing beyond 1.
+  const double bound = radiance_bound(scene, o.depth);
+  f.spawn_threshold =
+      bound > 0 ? static_cast<float>(o.min_weight / (std::isfinite(bound) ? bound : 1.0)) : 0.0f;
+  f.keep_weightless = o.min_weight == 0 ? 1 : 0;
+  f.width = static_cast<layout::u32>(o.width);
+  f.height = static_cast<layout::u32>(o.height);
+  f.n_samples = static_cast<layout::u32>(o.samples);
+  f.max_depth = static_cast<layout::u32>(o.depth);
+  f.n_lights = static_cast<layout::u32>(scene.lights.size());
+  f.corner_grid = corners ? 1 : 0;
+  f.parallel = parallel ? 1 : 0;
+  // The samples of a pixel share it.
+  f.pencil = static_cast<float>(
+      std::sqrt(std::abs(double{f.x_scale} * double{f.y_scale}) / static_cast<double>(o.samples)));
+  set_lens(f, camera, geometry.space);
+  return f;
+}
+
+}  // namespace kdray::flatten

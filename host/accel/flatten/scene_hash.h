@@ -1,0 +1,23 @@
+// What    A hash of all that a ray can meet in a scene, and how it looks: not of the tree, which changes no
+//         hit. It is the same however the primitives are divided among processes.
+// Shape   The sum of hashes of primitives, each with all that belongs to it; and a hash of that and of
+//         everything else.
+#pragma once
+
+#include "accel/flatten/flatten.h"
+#include "base/hash.h"
+
+namespace kdray::flatten {
+
+inline void add(Hash& sum, const Hash& one) {
+  sum.high += one.high;
+  sum.low += one.low;
+}
+
+// A scene in parts has the sum of the parts'.
+Hash hash_of_primitives(const FlatScene& flat);
+
+// `primitives` of the whole scene, of which `flat` may be a part.
+Hash scene_hash(const Hash& primitives, const FlatScene& flat);
+
+}  // namespace kdray::flatten

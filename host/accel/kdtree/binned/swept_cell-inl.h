@@ -1,0 +1,150 @@
+// What    The references of a cell that is swept (sweep-inl.h), in the order of their centres along each
+//         axis.
+// Shape   They are sorted once, by rank, and parting keeps the order. Numbers are relative to the longest
+//         edge of the cell, and taken anew for a group that is hardly wider than their steps: they choose
+//         where a group is parted and decide nothing else. Equal centres keep the references' order.
+#if defined(KDRAY_BINNED_SWEPT_CELL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef KDRAY_BINNED_SWEPT_CELL_INL_H
+#undef KDRAY_BINNED_SWEPT_CELL_INL_H
+#else
+#define KDRAY_BINNED_SWEPT_CELL_INL_H
+#endif
+
+#include "accel/kdtree/binned/cost-inl.h"
+#include "accel/kdtree/binned/sweep_room.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace kdray::kdtree::binned::HWY_NAMESPACE {
+
+// A place to part a group: behind the first n along an axis.
+struct Part {
+  std::size_t axis = 0, n = 0;
+};
+
+class SweptCell {
+ public:
+  using Axes = hn::Full128<float>;
+  using P = hn::Vec<Axes>;
+
+  explicit SweptCell(SweepRoom& room) : room_(room) {}
+
+  HWY_ATTR void load(std::span<const BoundedRef> refs, const Bounds& hull) {
+    refs_ = refs.data();
+    const Scale scale(hull);
+    for (std::size_t i = 0; i < refs.size(); ++i) put(i, scale);
+    for (std::size_t k = 0; k < 3; ++k) sort(refs.size(), k);
+  }
+
+  // Whether a group is so small a part of the cell that its numbers say little.
+  bool is_coarse(std::size_t begin, std::size_t end) const {
+    const std::array<int, 3> width = widths(begin, end);
+    return std::max({width[0], width[1], width[2]}) < kCoarse;
+  }
+
+  // How far apart a group's centres are along each axis.
+  std::array<int, 3> widths(std::size_t begin, std::size_t end) const {
+    std::array<int, 3> width;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& order = room_.order[k];
+      width[k] = room_.center[k][order[end - 1]] - room_.center[k][order[begin]];
+    }
+    return width;
+  }
+
+  // Gives a group, whose order is known along all axes, numbers of its own.
+  HWY_ATTR void load_anew(std::size_t begin, std::size_t end) {
+    Bounds hull = no_bounds();
+    for (std::size_t i = begin; i < end; ++i) hull = kdtree::hull(hull, refs_[room_.order[0][i]].bounds());
+    const Scale scale(hull);
+    if (!scale.usable()) return;
+    for (std::size_t i = begin; i < end; ++i) put(room_.order[0][i], scale);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& center = room_.center[k];
+      std::stable_sort(room_.order[k].begin() + at(begin), room_.order[k].begin() + at(end),
+                       [&](std::uint16_t a, std::uint16_t b) { return center[a] < center[b]; });
+    }
+  }
+
+  // The two others' orders, with what goes first in front; along the part's own axis it is there.
+  HWY_ATTR void keep_order(std::size_t begin, std::size_t end, const Part& part) {
+    const std::uint16_t* const parted = room_.order[part.axis].data();
+    std::uint8_t* const sides = room_.is_second.data();
+    std::uint16_t* const others = room_.others.data();
+    for (std::size_t i = begin; i < end; ++i) sides[parted[i]] = i < begin + part.n ? 0 : 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k == part.axis) continue;
+      std::uint16_t *const order = room_.order[k].data(), *first = order + begin, *second = others;
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::uint16_t r = order[i];
+        const std::ptrdiff_t is_second = sides[r];
+        *first = r;
+        *second = r;
+        first += 1 - is_second;
+        second += is_second;
+      }
+      std::copy(others, second, first);
+    }
+  }
+
+  static std::ptrdiff_t at(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
+
+  SweepRoom& room_;
+  const BoundedRef* refs_ = nullptr;
+
+ private:
+  static constexpr float kSteps = 16000;  // of twice a centre
+  static constexpr int kCoarse = 64;
+
+  // Numbers are relative to a hull's longest edge.
+  struct Scale {
+    std::array<float, 4> from;
+    float of;
+
+    explicit Scale(const Bounds& hull)
+        : from{hull.lo[0], hull.lo[1], hull.lo[2], 0},
+          of(1 / std::max({hull.hi[0] - hull.lo[0], hull.hi[1] - hull.lo[1], hull.hi[2] - hull.lo[2]})) {}
+    bool usable() const { return of > 0 && of < std::numeric_limits<float>::max(); }
+  };
+
+  HWY_ATTR void put(std::size_t i, const Scale& scale) {
+    const Axes d;
+    const hn::RebindToSigned<Axes> di;
+    const auto xyz = hn::FirstN(d, 3);  // the fourth lanes are a number and nothing
+    const P from = hn::LoadU(d, scale.from.data()), of = hn::Set(d, scale.of);
+    const P lo = hn::Mul(hn::IfThenElseZero(xyz, hn::Sub(hn::Load(d, refs_[i].lo.data()), from)), of);
+    const P hi = hn::Mul(hn::IfThenElseZero(xyz, hn::Sub(hn::Load(d, refs_[i].hi.data()), from)), of);
+    hn::Store(lo, d, room_.lo[i].data());
+    hn::Store(hi, d, room_.hi[i].data());
+    alignas(16) std::array<std::int32_t, 4> center;
+    hn::Store(hn::ConvertTo(di, hn::Mul(hn::Add(lo, hi), hn::Set(d, kSteps))), di, center.data());
+    for (std::size_t k = 0; k < 3; ++k) room_.center[k][i] = static_cast<std::int16_t>(center[k]);
+  }
+
+  // Each goes to the place of its rank. What has the same centre has the same rank, and comes in turn.
+  HWY_ATTR void sort(std::size_t n, std::size_t axis) {
+    rank(n, room_.center[axis].data());
+    std::fill_n(room_.ties.begin(), n, std::uint16_t{0});
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto rank = static_cast<std::size_t>(room_.ranks[i]);
+      room_.order[axis][rank + room_.ties[rank]++] = static_cast<std::uint16_t>(i);
+    }
+  }
+
+  // How many centres are below each. A difference's sign is what is counted: numbers have 15 bits.
+  HWY_ATTR void rank(std::size_t n, const std::int16_t* centers) {
+    const hn::CappedTag<std::int16_t, 2 * kMostLanes> d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t p = 0; p < n; p += lanes) {
+      const auto here = hn::Load(d, centers + p);
+      auto minus = hn::Zero(d);
+      for (std::size_t i = 0; i < n; ++i)
+        minus = hn::Add(minus, hn::ShiftRight<15>(hn::Sub(hn::Set(d, centers[i]), here)));
+      hn::Store(hn::Neg(minus), d, room_.ranks.data() + p);
+    }
+  }
+};
+
+}  // namespace kdray::kdtree::binned::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

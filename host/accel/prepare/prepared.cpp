@@ -1,0 +1,141 @@
+#include "accel/prepare/prepared.h"
+
+#include <algorithm>
+
+#include "accel/flatten/features.h"
+#include "accel/prepare/instanced.h"
+#include "accel/prepare/within.h"
+#include "base/timer.h"
+
+namespace kdray::prepare {
+
+namespace {
+
+kdtree::Quality quality_of(BuildQuality quality) {
+  switch (quality) {
+    case BuildQuality::fast:
+      return kdtree::Quality::fast;
+    case BuildQuality::best:
+      return kdtree::Quality::best;
+    default:
+      return kdtree::Quality::balanced;
+  }
+}
+
+}  // namespace
+
+kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
+  kdtree::BuildConfig config;
+  config.small_cells = o.binary_form;
+  config.quality = quality_of(o.quality);
+  config.max_depth = o.max_depth;
+  config.cost_traverse = o.cost_traverse;
+  config.cost_intersect = o.cost_intersect;
+  return kdtree::suited(config, n_primitives);
+}
+
+// The scene is taken apart into all its members, so that one that is added can't be forgotten.
+#define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
+scene::Scene settings_of(const scene::Scene& scene) {
+  const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
+               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
+               warnings, files, load_options] = scene;
+  scene::Sky without_picture = sky;
+  without_picture.picture.reset();
+  return {.name = name,
+          .vertices = {},
+          .normals = {},
+          .triangles = {},
+          KDRAY_SHAPES(KDRAY_NO_SHAPES).meshes = {},
+          .instances = {},
+          .materials = materials,
+          .paint = {.coats = paint.coats},
+          .lights = lights,
+          .unlit = unlit,
+          .camera = camera,
+          .cameras = cameras,
+          .framing = framing,
+          .background = background,
+          .sky = without_picture,
+          .ambient = ambient,
+          .settings = settings,
+          .warnings = warnings,
+          .files = files,
+          .load_options = load_options};
+}
+#undef KDRAY_NO_SHAPES
+
+namespace {
+
+Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geometry,
+                        const kdtree::BuildConfig& config, bool binary_form, std::uint64_t most_bytes) {
+  std::string warning;
+  Prepared made = make_within(
+      config, most_bytes,
+      [&](const kdtree::BuildConfig& coarser) { return prepare(scene, geometry, coarser, binary_form); },
+      warning);
+  if (!warning.empty()) made.settings.warnings.push_back(warning);
+  return made;
+}
+
+}  // namespace
+
+std::size_t Prepared::largest_array() const {
+  std::size_t largest = 0;
+  const auto look_at = [&](const auto& array) { largest = std::max(largest, array.bytes()); };
+  flatten::for_each_flat_array(flat, look_at);
+  flatten::for_each_wide_array(wide, look_at);
+  return largest;
+}
+
+Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
+                 const std::optional<LocalSpace>& kept) {
+  const Timer timer;
+  const scene::Geometry geometry = scene::make_geometry(scene, kept);
+  const kdtree::BuildConfig config = config_of(options, std::max(geometry.size(), largest_mesh(scene)));
+  const double seconds = timer.seconds();
+  Prepared made = options.memory_bytes > 0
+                      ? prepare_within(scene, geometry, config, options.binary_form, options.memory_bytes)
+                      : prepare(scene, geometry, config, options.binary_form);
+  made.tree_options = options;
+  made.seconds.build += seconds;
+  return made;
+}
+
+void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& geometry) {
+  made.settings = settings_of(scene);
+  made.geometry.space = geometry.space;
+  made.geometry.dropped_degenerate = geometry.dropped_degenerate;
+  if (const std::string warning = scene::range_warning(geometry); !warning.empty())
+    made.settings.warnings.push_back(warning);
+  made.counts.primitives = scene.primitive_count();
+  primitives::for_each_kind(
+      [&](auto kind) { decltype(kind)::of(made.counts) = decltype(kind)::of(geometry).size(); });
+  made.counts.stitches = geometry.stitches.size();
+}
+
+Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
+                 const kdtree::BuildConfig& config, bool binary_form) {
+  Prepared made;
+  describe(made, scene, geometry);
+  made.features = flatten::features_of(scene, geometry);
+
+  Timer step;
+  const kdtree::Tree tree = kdtree::build(geometry, config);
+  const Meshes meshes(scene, config);
+  made.seconds.build = step.seconds();
+
+  step.restart();
+  made.flat = flatten::flatten(scene, geometry, tree, binary_form && scene.instances.empty());
+  made.wide = flatten::make_wide(tree, made.flat, meshes.block(tree, geometry.size()));
+  made.geometry.bounds = tree.bounds;
+  made.tree_depth = tree.max_depth;
+  made.tree_nodes = tree.nodes.size();
+  meshes.join(made);
+  made.seconds.flatten = step.seconds();
+
+  made.tree = kdtree::measure(tree, geometry, config);
+  return made;
+}
+
+}  // namespace kdray::prepare

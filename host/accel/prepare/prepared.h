@@ -1,0 +1,86 @@
+// What    A scene ready to be traced: all that a renderer keeps of it. The rest of the scene may go once it
+//         is made.
+// Shape   Plain values and arrays that a CPU device uses as they are; the scene cache (host/accel/cache)
+//         keeps them in a file.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "accel/flatten/flatten.h"
+#include "accel/flatten/instances.h"
+#include "accel/flatten/wide.h"
+#include "accel/kdtree/build.h"
+#include "accel/kdtree/statistics.h"
+#include "kdray/options.h"
+#include "layout/features.h"
+#include "scene/model/geometry.h"
+#include "scene/model/scene.h"
+
+namespace kdray::prepare {
+
+struct Counts {
+  std::uint64_t primitives = 0;  // of the file, degenerate ones too
+  // That can be hit.
+#define KDRAY_COUNT(NAME, name, names, Struct) std::uint64_t names = 0;
+  KDRAY_KINDS(KDRAY_COUNT)
+#undef KDRAY_COUNT
+  std::uint64_t stitches = 0;   // of the triangles, those without area (scene/stitches.h)
+  std::uint64_t instances = 0;  // of meshes
+  std::uint64_t instanced = 0;  // primitives in all of them
+};
+
+// These are wall times.
+struct Seconds {
+  double load = 0, build = 0, flatten = 0;
+  double total() const { return load + build + flatten; }
+};
+
+// What instances can be placed anew by, without a look at their meshes (prepare/instanced.h).
+struct PlacedMeshes {
+  std::vector<flatten::MeshForm> meshes;  // roots are counted from the first mesh's first node
+  std::vector<std::size_t> sizes;         // of each, primitives that can be hit
+  Box own_bounds;                         // of the scene without its instances
+  int own_stack = 0, mesh_stack = 0;      // what walks stack in the scene's own tree, and in meshes
+  std::size_t n_own_nodes = 0, n_mesh_nodes = 0;
+};
+
+struct Prepared {
+  scene::Scene settings;     // the scene but for its primitives, vertices and normals
+  scene::Geometry geometry;  // centre and bounds (the root's cell: what rays are clipped to); no primitives
+  Counts counts;
+  layout::Features features = 0;
+  int tree_depth = 0;  // of the deepest leaf: it sizes the kernels' stacks
+  std::uint64_t tree_nodes = 0;
+  kdtree::Statistics tree;
+  flatten::FlatScene flat;
+  flatten::WideForm wide;
+  std::shared_ptr<const PlacedMeshes> placed_meshes;  // where there are instances; not kept in files
+  TreeOptions tree_options;                           // that it was made with
+  Seconds seconds;                                    // that it took to make
+
+  std::size_t bytes() const { return flat.bytes() + wide.bytes(); }
+  std::size_t largest_array() const;  // what a device has to hold in one piece
+};
+
+// What the tree of a scene of n primitives is built with.
+kdtree::BuildConfig config_of(const TreeOptions& options, std::size_t n_primitives);
+
+// `kept`: the space of what the scene was before it moved (scene::make_geometry).
+Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
+                 const std::optional<LocalSpace>& kept = {});
+
+// The same with a tree of any kind, for the scene's `geometry`. Its tree_options are left at their defaults.
+Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
+                 const kdtree::BuildConfig& config, bool binary_form = true);
+
+// A scene but for its primitives, vertices and normals.
+scene::Scene settings_of(const scene::Scene& scene);
+
+// Writes what has nothing to do with the tree: settings, counts, warnings, and of the geometry all but its
+// bounds.
+void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& geometry);
+
+}  // namespace kdray::prepare

@@ -1,0 +1,37 @@
+// What    The parts of what `kdray info` prints, as JSON, and that JSON as text for people: one source
+//         of figures for both.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "accel/flatten/flatten.h"
+#include "accel/flatten/wide.h"
+#include "accel/kdtree/statistics.h"
+#include "accel/kdtree/tree.h"
+#include "apps/cli/stats.h"
+#include "scene/model/geometry.h"
+#include "scene/model/scene.h"
+
+namespace kdray::cli {
+
+Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry);
+Json tree_report(const kdtree::Statistics& statistics);
+
+// What takes memory on the way from a file to the device.
+struct MemoryUsers {
+  const scene::Scene& scene;
+  const scene::Geometry& geometry;
+  const kdtree::Tree& tree;
+  const flatten::FlatScene& flat;
+  const flatten::WideForm& wide;
+  std::optional<std::uint64_t> build_peak;  // of building and flattening, beyond scene and geometry
+  std::uint64_t process_peak;
+};
+
+Json memory_report(const MemoryUsers& users);
+
+std::string report_as_text(const Json& report);
+
+}  // namespace kdray::cli

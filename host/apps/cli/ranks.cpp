@@ -1,0 +1,169 @@
+#include "apps/cli/ranks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <new>
+#include <optional>
+#include <string_view>
+
+#include "apps/cli/message.h"
+#include "apps/cli/parse.h"
+#include "apps/cli/rank_cores.h"
+#include "cluster/transport/delayed.h"
+#include "cluster/transport/launcher.h"
+#include "cluster/transport/mpi.h"
+
+namespace kdray::cli {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kChoices = {"auto", "on", "off"},
+                                          kHoldings = {"auto", "whole", "shares"};
+
+std::shared_ptr<transport::Ranks>& this_run() {
+  static std::shared_ptr<transport::Ranks> ranks;
+  return ranks;
+}
+
+// The command line is parsed when there are ranks, so that a mistake in it is told once.
+std::string choice_in(const std::vector<std::string>& arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] == "--mpi" && i + 1 < arguments.size()) return arguments[i + 1];
+    if (arguments[i].starts_with("--mpi=")) return arguments[i].substr(6);
+  }
+  return "auto";
+}
+
+bool wants_ranks(const std::vector<std::string>& arguments, const transport::Launched& launched) {
+  if (arguments.size() < 2 || arguments[1] != "render") return false;
+  const std::string choice = choice_in(arguments);
+  return choice == "on" || (choice == "auto" && launched.ranks > 1);
+}
+
+std::optional<double> asked_in(const char* variable, double least, double most) {
+  const char* const asked = std::getenv(variable);
+  if (asked == nullptr || *asked == '\0') return std::nullopt;
+  return parse_real(variable, asked, least, most);
+}
+
+// A slower network, for measurements. KDRAY_MPI_DELAY: milliseconds that every message is to take longer;
+// KDRAY_MPI_BANDWIDTH: gigabits a second that a rank receives at most.
+std::unique_ptr<transport::Transport> as_asked(std::unique_ptr<transport::Transport> mpi) {
+  const auto delay = asked_in("KDRAY_MPI_DELAY", 0, 1000);
+  const auto bandwidth = asked_in("KDRAY_MPI_BANDWIDTH", 1e-3, 1e6);
+  if (!delay && !bandwidth) return mpi;
+  transport::Link link{.latency = 1e-3 * delay.value_or(0)};
+  if (bandwidth) link.bandwidth = 1e9 / 8 * *bandwidth;
+  return transport::delayed(std::move(mpi), link);
+}
+
+// How a run ends that `error` has come out of.
+int end_with(transport::Ranks& ranks, const Error& error) {
+  if (!ranks.leads()) return ranks.wait_for_end(&error);
+  const int code = error.code() == ErrorCode::internal ? 1 : static_cast<int>(error.code());
+  say(error.what());
+  ranks.end(code);
+  return code;
+}
+
+int run_as_rank(transport::Ranks& ranks, const std::function<int()>& run) {
+  try {
+    share_cores(ranks);
+    const int code = run();
+    if (!ranks.leads()) return ranks.wait_for_end(nullptr);
+    ranks.end(code);
+    return code;
+  } catch (const transport::Ended& ended) {
+    ranks.leave();
+    return ended.exit_code;
+  } catch (const Error& error) {
+    return end_with(ranks, error);
+  } catch (const std::bad_alloc&) {
+    return end_with(ranks, Error(ErrorCode::out_of_memory, "out of memory; take fewer ranks to a machine"));
+  } catch (const std::exception& error) {
+    return end_with(ranks, Error(ErrorCode::internal, error.what()));
+  }
+}
+
+}  // namespace
+
+int run_in_ranks(const std::vector<std::string>& arguments, const std::function<int()>& run) {
+  const transport::Launched launched = transport::launched();
+  if (!wants_ranks(arguments, launched)) return run();
+  try {
+    this_run() = std::make_shared<transport::Ranks>(as_asked(transport::open_mpi(launched.ranks)));
+  } catch (const Error&) {
+    // Processes that share a folder need no MPI, though srun may have started them.
+    const bool shares =
+        std::ranges::any_of(arguments, [](const std::string& a) { return a.starts_with("--share"); });
+    if (shares && choice_in(arguments) == "auto") return run();
+    if (launched.rank == 0) throw;
+    return static_cast<int>(ErrorCode::usage);  // rank 0 finds the same, and says so
+  }
+  return run_as_rank(*this_run(), run);
+}
+
+const std::shared_ptr<transport::Ranks>& ranks_of_this_run() {
+  return this_run();
+}
+
+// One for the whole run, since it numbers the steps.
+std::shared_ptr<transport::Together> together_of_this_run() {
+  static const auto together = std::make_shared<transport::Together>(*this_run());
+  return together;
+}
+
+bool leads() {
+  return !this_run() || this_run()->leads();
+}
+
+void add_ranks_options(CLI::App& app, std::string& hold) {
+  add_text(app, "--mpi", "NAME",
+           "Render together with the other processes that mpirun or srun has started: auto (default; when it "
+           "has), on, "
+           "off",
+           [](const std::string& text) { parse_choice("--mpi", text, kChoices); })
+      ->group("Division");
+  add_text(
+      app, "--hold", "WHAT",
+      "With ranks and odprt each holds the whole scene, or shares of it: auto (default; shares of a file "
+      "of 64 MiB or more), whole, shares",
+      [&hold](const std::string& text) { hold = parse_choice("--hold", text, kHoldings); })
+      ->group("Division");
+}
+
+void check_ranks(const RenderArgs& o) {
+  const auto refuse = [](const std::string& what) { throw Error(ErrorCode::usage, what); };
+  if (!ranks_of_this_run()) return;
+  if (o.scene.is_stdin())
+    refuse("every rank reads the scene, and standard input is rank 0's alone; name a file");
+  if (o.ledger.restarts > 0)
+    refuse("--restarts can't start the ranks of MPI again; run mpirun again with --resume (docs/cluster.md)");
+  if (!o.ledger.share.empty() && o.ledger.frames)
+    refuse(
+        "ranks render the frames of a sequence one after the other; take --checkpoint for --share, or --mpi "
+        "off");
+  if (o.render.division != Division::bag)
+    refuse("ranks take their tiles from a bag; leave --division out, or add --mpi off");
+  if (!o.timeline.empty()) refuse("--trace tells of one process's queues; leave it out, or add --mpi off");
+}
+
+std::string faults_of_rank(const std::string& faults, int rank) {
+  std::string own;
+  for (std::size_t first = 0; first < faults.size();) {
+    const std::size_t comma = std::min(faults.find(',', first), faults.size());
+    std::string fault = faults.substr(first, comma - first);
+    first = comma + 1;
+    if (const std::size_t slash = fault.find('/'); slash != std::string::npos) {
+      if (fault.substr(0, slash) != std::to_string(rank)) continue;
+      fault = fault.substr(slash + 1);
+    }
+    own += (own.empty() ? "" : ",") + fault;
+  }
+  return own;
+}
+
+}  // namespace kdray::cli

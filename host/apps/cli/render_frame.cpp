@@ -1,0 +1,191 @@
+#include "apps/cli/render_frame.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/cli/hold_scene.h"
+#include "apps/cli/memory.h"
+#include "apps/cli/message.h"
+#include "apps/cli/output.h"
+#include "apps/cli/progress.h"
+#include "apps/cli/ranks.h"
+#include "apps/cli/stats.h"
+#include "apps/cli/summary.h"
+#include "base/free_memory.h"
+#include "scene/model/frame.h"
+#include "scene/model/scene.h"
+
+namespace kdray::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Before the scene is read. A name that isn't given depends on the files that the scene names.
+void check_files(const RenderArgs& o, RunFiles& files) {
+  check_scene_input(o.scene);
+  if (o.view.transparent && o.render.adaptive_target > 0)
+    throw Error(ErrorCode::usage,
+                "--background transparent needs a number of --samples; adaptive ones don't look at coverage");
+  files.read("SCENE", o.scene.file);
+  files.write_picture("--output", o.output, o.render.channels, o.write);
+  files.write("--stats", o.stats);
+  files.write("--trace", o.timeline);
+}
+
+fs::path default_output(const RenderArgs& o) {
+  return default_picture(o.scene.file, o.write.format.value_or(film::PictureFormat::png));
+}
+
+// Once it is known which files the scene names.
+void check_files(RenderArgs& o, RunFiles& files, const scene::Scene& asked) {
+  files.read_scene(asked.files);
+  if (!o.output.empty()) return;
+  const fs::path usual = default_output(o);
+  o.output = files.free_name(usual, o.render.channels, o.write).string();
+  files.write_picture("--output", o.output, o.render.channels, o.write);
+  if (o.output != usual && !o.quiet)
+    say(fmt::format("{} is a file that the scene names: the picture goes to {}", usual.string(), o.output));
+}
+
+bool makes_exr(const RenderArgs& o) {
+  return o.write.format ? *o.write.format == film::PictureFormat::exr : ending_of(o.output) == ".exr";
+}
+
+void tell_of_options_without_effect(const RenderArgs& o) {
+  if (o.quiet || !makes_exr(o)) return;
+  if (o.gamma_given) say("--gamma has no effect: an EXR holds linear values");
+  if (o.bits_given) say("--bits has no effect: an EXR holds floats");
+}
+
+// As the renderer will resolve it (RenderOptions::width).
+void check_memory(const RenderArgs& o, const scene::RenderSettings& asked) {
+  const RenderOptions& render = o.render;
+  const int width = render.width > 0 ? render.width : asked.width.value_or(scene::kDefaultSide);
+  const int height = render.height > 0 ? render.height : asked.height.value_or(scene::kDefaultSide);
+  PictureNeeds picture{.width = static_cast<std::uint64_t>(width),
+                       .height = static_cast<std::uint64_t>(height)};
+  for (const std::string& name : render.channels) picture.n_channels += name == "normal" ? 3 : 1;
+  if (o.view.transparent) ++picture.n_channels;
+  picture.exr = makes_exr(o);
+  picture.bits = o.write.png_bits;
+  picture.adaptive = render.adaptive_target > 0;
+  picture.n_queues = static_cast<std::uint64_t>(o.device.queues);
+  check_picture_fits(picture, free_memory());
+}
+
+// What eye rays have brought of a background can be taken out where it is the same everywhere.
+void check_transparent(const RenderArgs& o, const scene::Scene& scene) {
+  if (o.view.transparent && scene.sky.kind != scene::SkyKind::none)
+    throw Error(ErrorCode::usage,
+                "--background transparent is for scenes whose background is one colour; this one's is not");
+}
+
+// Before a tree is built for nothing.
+void check_view_of(const RenderArgs& o, const scene::Scene& asked) {
+  if (o.view.any) check_view(asked, o.view.view);
+  check_transparent(o, asked);
+}
+
+// The picture's alpha, where it is wanted; the background is taken out of its colours then.
+std::vector<float> make_transparent(Picture& picture, const PreparedScene& scene, const DeviceOptions& device,
+                                    const RenderArgs& o) {
+  if (!o.view.transparent) return {};
+  std::vector<float> alpha = coverage(scene, device, o.render);
+  const vec3& background = scene.settings().background;
+  take_out_background(alpha, std::span<const float, 3>(&background.x, 3), picture.rgb);
+  return alpha;
+}
+
+film::Image to_image(const Picture& picture) {
+  film::Image image{picture.width, picture.height, std::vector<vec3>(picture.rgb.size() / 3)};
+  static_assert(sizeof(vec3) == 3 * sizeof(float));
+  std::memcpy(image.pixels.data(), picture.rgb.data(), image.pixels.size() * sizeof(vec3));
+  return image;
+}
+
+film::Written write(Picture&& picture, std::vector<float>&& alpha, const RenderArgs& o) {
+  std::vector<film::Channel> channels;
+  for (Channel& c : picture.channels) channels.push_back({std::move(c.name), std::move(c.values)});
+  film::Image image = to_image(picture);
+  image.alpha = std::move(alpha);
+  picture.rgb = {};  // large pictures: no third copy while the file is made
+  return put_picture(o.output, image, channels, o.write);
+}
+
+// Rank 0 puts the scene into the cache first, where the others find it, if they see the same folder.
+void wait_for_scene() {
+  if (!leads()) ranks_of_this_run()->wait(transport::kTagsOfScenes);
+}
+
+void tell_of_scene(OpenedScene& scene) {
+  if (!ranks_of_this_run() || !leads()) return;
+  scene.keep_scene();
+  ranks_of_this_run()->send_to_others(transport::kTagsOfScenes.first, {});
+}
+
+}  // namespace
+
+FrameMaker::FrameMaker(RenderArgs& o) {
+  if (leads()) check_files(o, files_);
+  tell_of_options_without_effect(o);
+  o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
+  scene_.emplace(
+      o.scene, o.tree, o.device, o.cache, o.quiet,
+      [&](const scene::Scene& asked) {
+        check_view_of(o, asked);
+        if (leads()) check_files(o, files_, asked);
+        check_memory(o, scene::settings_of(asked));
+      },
+      o.hooks, OpeningByRanks{.in_shares = holds_shares(o), .before_lookup = wait_for_scene});
+  if (scene_->cache() != "off") tell_of_scene(*scene_);
+  o.hooks.held = scene_->held();
+  seen_ = o.view.any ? scene_->scene().seen(o.view.view, o.render.width, o.render.height) : scene_->scene();
+  check_transparent(o, seen_->settings());
+  renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
+}
+
+Picture FrameMaker::render(const RenderArgs& o) {
+  Progress progress(o.quiet);
+  RenderOptions options = o.render;
+  options.timeline = !o.timeline.empty();
+  options.progress = [&progress](double share) { progress.update(share); };
+  return renderer_->render(options);
+}
+
+void FrameMaker::make(RenderArgs& o) {
+  if (!is_first_ && leads()) {
+    check_files(o, files_);
+    check_files(o, files_, seen_->settings());
+  }
+  Picture picture = render(o);
+  if (!leads()) return;
+  std::vector<float> alpha = make_transparent(picture, *seen_, scene_->device(), o);
+  if (!o.quiet)
+    for (const std::string& warning : picture.warnings) say(warning);
+  Statistics figures = renderer_->statistics();
+  const Timer step;
+  const film::Written written = write(std::move(picture), std::move(alpha), o);
+  figures.seconds.write = step.seconds();
+  if (is_first_) {
+    scene_->keep();
+    scene_->add_to(figures.seconds);
+  }
+  is_first_ = false;
+  figures.seconds.total = total_.seconds();
+  total_.restart();
+
+  Json stats = collect_stats("render", o.scene.file, figures);
+  stats["cache"] = scene_->cache();
+  for (const auto& file : written.files) stats["files"].push_back(file.string());
+  if (!o.stats.empty()) write_stats(o.stats, stats);
+  if (!o.timeline.empty()) write_text(o.timeline, renderer_->timeline() + "\n");
+  if (!o.quiet) print_render_summary(stats, written.nan_values, o.verbose);
+}
+
+}  // namespace kdray::cli

@@ -1,0 +1,61 @@
+// What    What render was asked for, and the way from there to a picture in its file: of one frame, or of
+//         several that have a scene in common.
+// Shape   With ranks, all of them make a frame, and rank 0 writes its files.
+//         Everything that can be refused is refused before the scene is read; the picture is written whole or
+//         not at all, the statistics after it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "api/hooks.h"
+#include "apps/cli/ledger_options.h"
+#include "apps/cli/open_scene.h"
+#include "apps/cli/options.h"
+#include "apps/cli/run_files.h"
+#include "apps/cli/scene_input.h"
+#include "apps/cli/view_options.h"
+#include "base/timer.h"
+#include "io/image/write.h"
+#include "kdray/kdray.h"
+
+namespace kdray::cli {
+
+struct RenderArgs {
+  SceneInput scene;
+  std::string output, stats, timeline;
+  bool quiet = false, verbose = false;
+  bool gamma_given = false, bits_given = false;
+  CacheChoice cache;
+  TreeOptions tree;
+  DeviceOptions device;
+  api::Hooks hooks;
+  RenderOptions render;  // with the ledger that the frame has
+  ViewOptions view;
+  film::WriteOptions write;
+  LedgerChoice ledger;
+  std::string hold = "auto";  // --hold
+};
+
+// A scene on its device, ready for frames.
+class FrameMaker {
+ public:
+  // `o` is that of the first frame.
+  explicit FrameMaker(RenderArgs& o);
+
+  // Renders a frame of the scene, and writes its files.
+  void make(RenderArgs& o);
+
+ private:
+  Picture render(const RenderArgs& o);
+
+  Timer total_;  // since the start, or the last frame's end
+  RunFiles files_;
+  std::optional<OpenedScene> scene_;
+  std::optional<PreparedScene> seen_;
+  std::optional<Renderer> renderer_;
+  bool is_first_ = true;
+};
+
+}  // namespace kdray::cli

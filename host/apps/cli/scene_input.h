@@ -1,0 +1,36 @@
+// What    The argument SCENE: a file, or "-" for a scene from standard input, whose format --scene-format
+//         tells.
+// Errors  kdray::Error: ErrorCode::usage for a format that is missing or superfluous, else the reader's own.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "kdray/kdray.h"
+#include "scene/model/scene.h"
+
+namespace kdray::cli {
+
+struct SceneInput {
+  std::string file;
+  std::string format;  // of standard input: the ending of such a file, "nff" or "ply"
+  LoadOptions load;
+
+  bool is_stdin() const { return file == "-"; }
+};
+
+// SCENE, --scene-format, and how it is loaded
+void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help);
+
+// --smooth --time --animation --texture-memory --texture-cache --instances --asset-root
+void add_load_options(CLI::App& app, LoadOptions& load);
+
+// Before anything else is done with it.
+void check_load_options(const LoadOptions& load);
+void check_scene_input(const SceneInput& input);
+
+// The scene with a camera and lights, as scene::load() and Scene::load() give it.
+scene::Scene load_model(const SceneInput& input);
+Scene load_scene(const SceneInput& input);
+
+}  // namespace kdray::cli

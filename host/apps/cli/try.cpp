@@ -1,0 +1,18 @@
+#include "apps/cli/try.h"
+
+#include <span>
+#include <string>
+
+#include "apps/cli/self_test.h"
+#include "probe/trial/asked.h"
+#include "probe/trial/program.h"
+
+namespace kdray::cli {
+
+void try_if_asked(int argc, char** argv) {
+  trial::this_program_tries();
+  if (const auto asked = trial::asked_by({argv, static_cast<std::size_t>(argc)}))
+    trial::try_it(*asked, [](int number) { return self_test(std::to_string(number)); });
+}
+
+}  // namespace kdray::cli

@@ -1,0 +1,56 @@
+// What    The scenes that settings are tried on: renders them, compares every bit with the reference, takes
+//         times.
+// Shape   The reference is the picture of what kdray ships with, on this device, which has passed its
+//         self-test. Scenes of one key (tune/database.h) belong together: they share an entry.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "device/tuning/database.h"
+#include "device/tuning/race.h"
+#include "kdray/kdray.h"
+
+namespace kdray::cli {
+
+class TuneScene {
+ public:
+  // A file, or a scene that is built in (generate/built_in.h). `check` sees it before anything is done with
+  // it.
+  TuneScene(const std::string& name, const DeviceOptions& device, const RenderOptions& render,
+            const std::function<void(const scene::Scene&)>& check);
+
+  const std::string& name() const { return name_; }
+  tune::Key key() const;  // of the scene, its device and schedule
+
+  // Renders with these settings: what is wrong with the picture, or nothing.
+  std::string fault(const Tuning& tuning);
+  double seconds(const Tuning& tuning);  // of a frame
+
+ private:
+  Picture render(const Tuning& tuning);
+
+  std::string name_;
+  RenderOptions options_;
+  Renderer renderer_;
+  Picture reference_;
+};
+
+// For tests: pictures made with this value of a setting have a wrong bit.
+struct Injection {
+  int Tuning::*setting = nullptr;
+  int value = 0;
+  bool hits(const Tuning& tuning) const { return setting && tuning.*setting == value; }
+};
+
+using TuneScenes = std::vector<std::unique_ptr<TuneScene>>;
+
+// The clock begins now; the scenes have to outlive it.
+tune::Lab make_lab(TuneScenes& scenes, const Injection& injection, std::function<void(double)> progress);
+
+// Scenes of one key each.
+std::vector<TuneScenes> by_key(TuneScenes scenes);
+
+}  // namespace kdray::cli

@@ -1,0 +1,81 @@
+#include "apps/verify/inside.h"
+
+#include <cmath>
+#include <limits>
+
+#include "scene/model/predicates.h"
+
+namespace kdray::verify {
+
+namespace {
+
+using scene::dvec2;
+
+dvec2 across_x(const dvec3& p) {
+  return {p.y, p.z};
+}
+
+enum class Crossing { none, one, unsure };
+
+// Whether the ray from p along +x crosses the triangle.
+Crossing crossing(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c) {
+  const int ab = scene::orient_sign(across_x(a), across_x(b), across_x(p));
+  const int bc = scene::orient_sign(across_x(b), across_x(c), across_x(p));
+  const int ca = scene::orient_sign(across_x(c), across_x(a), across_x(p));
+  if (ab * bc < 0 || bc * ca < 0 || ca * ab < 0) return Crossing::none;
+  if (ab == 0 || bc == 0 || ca == 0) return Crossing::unsure;
+  // The sign of this volume tells on which side of the plane p lies. The triangle's winding, seen along x,
+  // tells which side lies ahead of the ray.
+  const dvec3 u = a - p, v = b - p, w = c - p;
+  const dvec3 m = glm::cross(v, w);
+  const double volume = glm::dot(u, m);
+  const dvec3 size = glm::abs(dvec3(v.y, v.z, v.x)) * glm::abs(dvec3(w.z, w.x, w.y)) +
+                     glm::abs(dvec3(v.z, v.x, v.y)) * glm::abs(dvec3(w.y, w.z, w.x));
+  const double bound = 16 * std::numeric_limits<double>::epsilon() * glm::dot(glm::abs(u), size);
+  if (std::abs(volume) <= bound) return Crossing::unsure;
+  return (volume > 0) == (ab > 0) ? Crossing::one : Crossing::none;
+}
+
+// From the line of a stitch's corners, which differ.
+double distance_from_line(const dvec3& p, const dvec3& a, const dvec3& b) {
+  return glm::length(glm::cross(b - a, p - a)) / glm::length(b - a);
+}
+
+}  // namespace
+
+bool Insides::near(const dvec3& p, std::uint32_t component, double clearance) const {
+  bool near = false;
+  boxes_.touching({p - clearance, p + clearance}, [&](std::uint32_t face) {
+    if (topology_.component_of[face] != component) return true;
+    const dvec3 a(mesh_.corner(face, 0)), n = mesh_.normal(face);
+    near = mesh_.stitch[face] != 0 ? !(distance_from_line(p, a, dvec3(mesh_.corner(face, 1))) > clearance)
+                                   : !(std::abs(glm::dot(n, p - a)) > clearance * glm::length(n));
+    return !near;
+  });
+  return near;
+}
+
+Side Insides::side_of(const dvec3& p, std::uint32_t component, double clearance) const {
+  if (near(p, component, clearance)) return Side::unsure;
+  bool odd = false, unsure = false;
+  const dvec3 far(std::numeric_limits<double>::infinity(), p.y, p.z);
+  boxes_.touching({p, far}, [&](std::uint32_t face) {
+    if (topology_.component_of[face] != component) return true;
+    switch (crossing(p, dvec3(mesh_.corner(face, 0)), dvec3(mesh_.corner(face, 1)),
+                     dvec3(mesh_.corner(face, 2)))) {
+      case Crossing::one:
+        odd = !odd;
+        break;
+      case Crossing::unsure:
+        unsure = true;
+        break;
+      case Crossing::none:
+        break;
+    }
+    return !unsure;
+  });
+  if (unsure) return Side::unsure;
+  return odd ? Side::inside : Side::outside;
+}
+
+}  // namespace kdray::verify

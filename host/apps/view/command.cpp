@@ -1,0 +1,90 @@
+// What    The command line that renders what a page shows.
+// Shape   Numbers as short as they can be and still be read back as the same bits. What can't change a bit
+//         (device, tree, cache) is left out; mode, walk and queues are there where the page has chosen some,
+//         for timing.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "apps/view/sight.h"
+
+namespace kdray::view {
+
+namespace {
+
+// A shell takes it as it is.
+std::string quoted(const std::string& text) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string("/._-+,:@%=").find(char(c)) < 99;
+  };
+  if (!text.empty() && text[0] != '-' && std::ranges::all_of(text, is_plain)) return text;
+  std::string result = text.starts_with('-') ? "'./" : "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+std::string numbers(const View::Vector& v) {
+  return fmt::format("{},{},{}", v[0], v[1], v[2]);
+}
+
+std::string view_options(const View& view) {
+  std::string text =
+      fmt::format(" --from={} --at={} --up={}", numbers(*view.from), numbers(*view.at), numbers(*view.up));
+  if (view.camera) text += fmt::format(" --camera {}", *view.camera);
+  if (view.fov) text += fmt::format(" --fov {}", *view.fov);
+  if (view.ortho_width) text += fmt::format(" --ortho {}", *view.ortho_width);
+  if (view.aperture) text += fmt::format(" --aperture {}", *view.aperture);
+  if (view.focus) text += fmt::format(" --focus {}", *view.focus);
+  if (view.headlight > 0) text += fmt::format(" --headlight {}", view.headlight);
+  if (const auto& b = view.background)
+    text += fmt::format(" --background {},{},{}", (*b)[0], (*b)[1], (*b)[2]);
+  return text;
+}
+
+std::string picture_options(const RenderOptions& o) {
+  std::string text = fmt::format(" --size {}x{}", o.width, o.height);
+  if (o.depth > 0) text += fmt::format(" --depth {}", o.depth);
+  if (o.min_weight >= 0) text += fmt::format(" --min-weight {}", o.min_weight);
+  if (o.adaptive_target == kDefaultAdaptiveTarget)
+    text += " --samples adaptive";
+  else if (o.adaptive_target > 0)
+    text += fmt::format(" --samples adaptive:{}", o.adaptive_target);
+  else if (o.samples > 0)
+    text += fmt::format(" --samples {}", o.samples);
+  if (o.grid == PixelGrid::corners) text += " --grid corners";
+  if (o.precision == Precision::float64) text += " --precision double";
+  return text;
+}
+
+// In the order of the enumerations.
+std::string division_options(const RenderOptions& o, int queues) {
+  static constexpr const char* kModes[] = {"auto", "pdprt", "odprt"};
+  static constexpr const char* kWalks[] = {"auto", "binary", "wide", "packet", "batch"};
+  std::string text;
+  if (queues > 1) text += fmt::format(" --queues {}", queues);
+  if (o.mode != Mode::automatic) text += fmt::format(" --mode {}", kModes[static_cast<int>(o.mode)]);
+  if (o.traversal != Traversal::automatic)
+    text += fmt::format(" --traversal {}", kWalks[static_cast<int>(o.traversal)]);
+  for (const std::string& channel : o.channels) text += " --aov " + channel;
+  return text;
+}
+
+}  // namespace
+
+std::string command_for(const Sight& sight, const Settings& settings, const std::string& scene) {
+  const RenderOptions options = render_of(sight, settings);
+  std::string text = "kdray render " + quoted(scene);
+  if (settings.load.instances == Instances::flat) text += " --instances flat";
+  if (settings.load.instances == Instances::kept) text += " --instances kept";
+  if (settings.load.smooth_degrees) text += fmt::format(" --smooth {}", *settings.load.smooth_degrees);
+  if (settings.load.time) text += fmt::format(" --time {}", *settings.load.time);
+  if (!settings.load.animation.empty()) text += " --animation " + quoted(settings.load.animation);
+  if (settings.load.texture_bytes > 0)
+    text += fmt::format(" --texture-memory {}", settings.load.texture_bytes);
+  if (!settings.load.asset_root.empty()) text += " --asset-root " + quoted(settings.load.asset_root.string());
+  return text + view_options(view_of(sight, settings)) + picture_options(options) +
+         division_options(options, queues_of(sight, settings));
+}
+
+}  // namespace kdray::view

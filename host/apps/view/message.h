@@ -1,0 +1,49 @@
+// What    What the page says, checked: every field of its type and in its range, nothing that isn't known.
+// Shape   JSON texts of at most kMostText bytes. The page's own numbers (of looks, frames, picks) come back
+//         in what answers them.
+// Errors  kdray::Error, ErrorCode::input: for whoever sent it, and the end of its connection.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <variant>
+
+#include "apps/view/sight.h"
+
+namespace kdray::view {
+
+inline constexpr std::size_t kMostText = 4096;
+inline constexpr int kMostSide = 4096;
+inline constexpr int kMostPixels = 8 << 20;
+inline constexpr int kMostCellDepth = 24;
+
+// What it wants to see now; `moving`: more of them are going to follow at once.
+struct Look {
+  std::uint32_t number = 0;
+  bool moving = false;
+  Sight sight;
+};
+// The frame is on the screen.
+struct Shown {
+  std::uint32_t frame = 0;
+};
+// What is at a point of the picture, in shares of its width and height.
+struct Pick {
+  std::uint32_t number = 0;
+  double x = 0, y = 0;
+  Sight sight;
+};
+// The tree's cells to a depth; 0: none.
+struct Cells {
+  std::size_t scene = 0;
+  int depth = 0;
+};
+using Message = std::variant<Look, Shown, Pick, Cells>;
+
+Message parse_message(std::string_view text);
+
+// The token in a first message {"type": "hello", "token": "..."}, or nothing.
+std::string token_of_hello(std::string_view text);
+
+}  // namespace kdray::view

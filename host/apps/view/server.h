@@ -1,0 +1,59 @@
+// What    The server of the page: HTTP and WebSockets on one address, by a single thread.
+// Shape   A connection asks for files, one after the other, or becomes a WebSocket, whose page is a Visitor
+//         once it has shown that it knows the token. Everything a client can make grow has a limit.
+// Errors  ErrorCode::input for an address that can't be listened on. Clients can't cause any: what they do
+//         wrong ends their connection.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "apps/view/visitor.h"
+
+namespace kdray::view {
+
+struct ServerOptions {
+  std::string bind = "127.0.0.1";  // an address in numbers
+  int port = 0;                    // 0: kUsualPort, or the next one that is free
+  // Pages of this machine's other servers may have the page in a frame: for notebooks. None may otherwise.
+  bool framed = false;
+  // It ends so long after the last page was closed; none: it stays.
+  std::chrono::milliseconds linger{0};
+  // Asked twice a second: true ends it.
+  std::function<bool()> is_over = {};
+};
+
+inline constexpr int kUsualPort = 7878;
+
+// What a client may take.
+struct Limits {
+  std::size_t connections = 64;  // beyond them the one that has waited longest for nothing has to go
+  std::size_t pages = 16;
+  std::size_t queued_messages = 64, queued_bytes = std::size_t{64} << 20;  // to one that doesn't read
+  std::chrono::seconds request{10};  // for a whole request, and between two
+  std::chrono::seconds silence{20};  // of a WebSocket, that doesn't even answer pings
+};
+
+class Server {
+ public:
+  explicit Server(const ServerOptions& options, const Limits& limits = {});
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  int port() const;
+  // For the browser; who has it may look.
+  std::string address() const;
+
+  // Serves until stop(), or as the options say. To be called once.
+  void run(Reception& reception);
+  void stop();  // from any thread
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kdray::view

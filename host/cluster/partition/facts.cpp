@@ -1,0 +1,49 @@
+#include "cluster/partition/facts.h"
+
+#include <algorithm>
+
+#include "accel/flatten/features.h"
+#include "scene/model/geometry.h"
+
+namespace kdray::distribute {
+
+void Facts::add(const scene::Scene& scene, const scene::Geometry& geometry) {
+  Facts part;
+  part.dropped = geometry.dropped_degenerate;
+  part.lost = geometry.lost;
+  part.fine = geometry.fine;
+  part.stitches = geometry.stitches.size();
+  primitives::for_each_kind(
+      [&](auto kind) { part.counts[kind.kNumber] = decltype(kind)::of(geometry).size(); });
+  if (!geometry.triangles.empty())
+    part.last_number = geometry.triangles[geometry.triangles.size() - 1].number;
+  part.features = flatten::features_of(scene, geometry) & ~KDRAY_FEATURE_NUMBERS;
+  part.bounds = geometry.bounds;
+  add(part);
+}
+
+void Facts::add(const Facts& o) {
+  dropped += o.dropped, lost += o.lost, fine += o.fine, stitches += o.stitches, shaded_flat += o.shaded_flat;
+  for (std::size_t kind = 0; kind < counts.size(); ++kind) counts[kind] += o.counts[kind];
+  last_number = std::max(last_number, o.last_number);
+  features |= o.features;
+  bounds.grow(o.bounds);
+}
+
+void tell(const Facts& facts, prepare::Prepared& whole) {
+  const std::uint64_t kept = facts.counts[KDRAY_KIND_TRIANGLE];
+  if (const auto warning = scene::range_warning(facts.lost, facts.fine, kept); !warning.empty())
+    whole.settings.warnings.push_back(warning);
+  whole.geometry.dropped_degenerate = static_cast<std::uint32_t>(facts.dropped);
+  whole.geometry.bounds = facts.bounds;
+  whole.counts.primitives = kept + facts.dropped;
+  primitives::for_each_kind(
+      [&](auto kind) { decltype(kind)::of(whole.counts) = facts.counts[kind.kNumber]; });
+  whole.counts.stitches = facts.stitches;
+  // Numbers ascend, so that they are the places of what is kept if the last one is.
+  const bool numbers = kept > 0 && facts.last_number != kept - 1;
+  const layout::Features mask = facts.features | (numbers ? KDRAY_FEATURE_NUMBERS : layout::Features{0});
+  whole.features = flatten::features_in_light(mask, whole.settings);
+}
+
+}  // namespace kdray::distribute

@@ -1,0 +1,196 @@
+// What    Reads a binary PLY file in shares: each rank a run of its vertices and one of its faces.
+// Shape   A rank goes through its faces some at a time, twice: to tell the vertices' holders which of them
+//         are used, from which the scene's space follows; and to fetch them, make triangles, and let go of
+//         them. What is made of some faces is made by the code that makes it of all.
+// Memory  The share's vertices, faces and triangles, and a batch of each.
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "cluster/partition/facts.h"
+#include "cluster/partition/share.h"
+#include "cluster/partition/stitches.h"
+#include "cluster/partition/vertices.h"
+#include "cluster/partition/wire.h"
+#include "scene/import/files_read.h"
+#include "scene/import/load.h"
+#include "scene/import/ply/ply_rows.h"
+#include "scene/model/frame.h"
+#include "scene/model/settle_normals.h"
+
+namespace kdray::distribute {
+
+namespace {
+
+using scene::ply::Corners, scene::ply::Rows, scene::ply::Vertices;
+
+constexpr std::size_t kBatchOfFaces = std::size_t{1} << 17;  // faces
+
+scene::ply::RowRange range_of(const Slice& slice) {
+  return {slice.first, slice.last - slice.first};
+}
+
+// The vertices of some faces, in ascending order.
+std::vector<std::uint32_t> vertices_of(std::span<const Corners> faces) {
+  std::vector<std::uint32_t> vertices;
+  vertices.reserve(3 * faces.size());
+  for (const Corners& corners : faces) vertices.insert(vertices.end(), corners.begin(), corners.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+std::uint32_t place_in(const std::vector<std::uint32_t>& vertices, std::uint32_t vertex) {
+  return static_cast<std::uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
+                                    vertices.begin());
+}
+
+class PlyReader {
+ public:
+  PlyReader(const std::filesystem::path& file, Rows& rows, transport::Together& all)
+      : file_(file.string()), rows_(rows), all_(all) {}
+
+  // False: some row is no good, of whatever rank's.
+  bool read_rows() {
+    const Slice vertices = slice_of(rows_.n_vertices(), all_.rank(), all_.size());
+    const Slice faces = slice_of(rows_.n_faces(), all_.rank(), all_.size());
+    first_face_ = faces.first;
+    Vertices own;
+    const bool good =
+        rows_.read_vertices(range_of(vertices), own) && rows_.read_faces(range_of(faces), faces_);
+    if (all_.any(!good)) return false;
+    holders_.emplace(all_, rows_, std::move(own));
+    n_rounds_ = all_.most((faces_.size() + kBatchOfFaces - 1) / kBatchOfFaces);
+    return true;
+  }
+
+  Share read(const LoadOptions& options, std::vector<scene::FileRead> files) {
+    for (std::size_t round = 0; round < n_rounds_; ++round) holders_->use(vertices_of(faces_of(round)));
+    const DBox bounds = holders_->bounds_of_used();
+    prepare::Prepared& whole = share_.whole;
+    whole.geometry.space = scene::space_of(bounds, file_);
+    describe_settings(options, std::move(files));
+    for (std::size_t round = 0; round < n_rounds_; ++round) make_triangles(faces_of(round));
+    facts_ = all_.join_values(facts_, [](Facts& sum, const Facts& one) { sum.add(one); });
+    holders_.reset();
+    faces_ = {};
+    warn();
+    frame(bounds);
+    tell(facts_, whole);
+    whole.flat.lights = flatten::pack_lights(whole.settings, whole.geometry.space);
+    if (facts_.stitches > 0) settle_stitches(share_.goods, all_);
+    return std::move(share_);
+  }
+
+ private:
+  std::span<const Corners> faces_of(std::size_t round) const {
+    const std::size_t first = std::min(faces_.size(), round * kBatchOfFaces);
+    return std::span(faces_).subspan(first, std::min(kBatchOfFaces, faces_.size() - first));
+  }
+
+  // Material and coat are those of a file without faces: they follow from the vertices' properties.
+  void describe_settings(const LoadOptions& options, std::vector<scene::FileRead> files) {
+    const std::uint32_t n = rows_.n_vertices() > 0 ? 1 : 0;
+    scene::ply::Mesh mesh(n);
+    mesh.vertices().places.assign(n, dvec3(0));
+    if (rows_.columns().has_colors) mesh.vertices().colors.resize(n);
+    scene::Scene empty = mesh.finish(file_);
+    empty.name = file_;
+    empty.load_options = options;
+    empty.files = std::move(files);
+    empty.warnings.clear();
+    prepare::Prepared& whole = share_.whole;
+    whole.settings = prepare::settings_of(empty);
+    whole.flat.materials = flatten::pack_materials(empty);
+    if (!empty.paint.coats.empty()) whole.flat.coats = flatten::pack_coats(empty);
+  }
+
+  void make_triangles(std::span<const Corners> faces) {
+    const std::vector<std::uint32_t> wanted = vertices_of(faces);
+    Vertices vertices = holders_->fetch(wanted);
+    if (faces.empty()) return;
+    scene::ply::Mesh mesh(static_cast<std::uint32_t>(wanted.size()));
+    mesh.vertices() = std::move(vertices);
+    mesh.set_color_unit(rows_.columns().color_unit);
+    for (const Corners& c : faces)
+      mesh.add_triangle(place_in(wanted, c[0]), place_in(wanted, c[1]), place_in(wanted, c[2]));
+    scene::Scene part = mesh.finish(file_);
+    const auto first =
+        static_cast<std::uint32_t>(first_face_ + static_cast<std::size_t>(faces.data() - faces_.data()));
+    for (scene::Triangle& t : part.triangles) t.number += first;
+    sample_middles(part);
+    const scene::Geometry geometry = scene::make_geometry_in(share_.whole.geometry.space, part);
+    add_slice(share_.goods, part, geometry, flatten::flatten(part, geometry, kdtree::Tree(), false), 0, 1);
+    facts_.add(part, geometry);
+    facts_.shaded_flat += mesh.n_shaded_flat();
+  }
+
+  void sample_middles(const scene::Scene& part) {
+    const std::size_t step = scene::step_of_samples(rows_.n_faces());
+    for (const scene::Triangle& t : part.triangles) {
+      if (t.number % step != 0) continue;
+      const auto& at = part.vertices;
+      middles_.push_back((at[t.vertex[0]] + at[t.vertex[1]] + at[t.vertex[2]]) / 3.0);
+    }
+  }
+
+  // They come in the order of ply.cpp.
+  void warn() {
+    std::vector<std::string>& warnings = share_.whole.settings.warnings;
+    for (const std::string& what : rows_.left_out()) warnings.push_back(file_ + ": " + what);
+    if (rows_.has_more())
+      warnings.push_back(file_ + ": more data after the last element of the header are left out");
+    if (rows_.n_faces() == 0) warnings.push_back(scene::nothing_to_see(file_));
+    if (facts_.shaded_flat > 0) warnings.push_back(scene::flat_warning(file_, facts_.shaded_flat));
+  }
+
+  void frame(const DBox& bounds) {
+    std::vector<dvec3> middles;
+    const auto parts = all_.gather(transport::bytes_of_list(std::span<const dvec3>(middles_)));
+    for (std::size_t from = 0; from < parts.size(); ++from) {
+      WireReader reader(parts[from], static_cast<int>(from));
+      reader.take(middles, parts[from].size() / sizeof(dvec3));
+      reader.end();
+    }
+    scene::frame_scene(
+        share_.whole.settings,
+        {.bounds = bounds, .n_primitives = rows_.n_faces(), .middles = [&] { return middles; }});
+  }
+
+  std::string file_;
+  Rows& rows_;
+  transport::Together& all_;
+  std::size_t first_face_ = 0, n_rounds_ = 0;
+  RawVector<Corners> faces_;
+  std::optional<VertexHolders> holders_;
+  std::vector<dvec3> middles_;
+  Facts facts_;
+  Share share_;
+};
+
+// Nothing where some rank can't, or has another file.
+std::optional<Rows> open_together(const std::filesystem::path& file, transport::Together& all) {
+  std::optional<Rows> rows = Rows::open(file);
+  const std::uint64_t own = rows ? rows->fingerprint() | 1 : 0;
+  const std::uint64_t most = all.most(own), inverse = all.most(~own);
+  if (most == 0 || inverse != ~most) return std::nullopt;
+  return rows;
+}
+
+}  // namespace
+
+std::optional<Share> read_in_shares(const std::filesystem::path& file, const LoadOptions& options,
+                                    transport::Together& all) {
+  if (options.smooth_degrees || options.time) return std::nullopt;  // the latter has to be warned of
+  scene::FilesRead files;
+  std::optional<Rows> rows = open_together(file, all);
+  if (!rows) return std::nullopt;
+  PlyReader reader(file, *rows, all);
+  if (!reader.read_rows()) return std::nullopt;
+  std::vector<scene::FileRead> read = files.take();
+  read.insert(read.begin(), scene::FileRead{file, {}, false});
+  return reader.read(options, std::move(read));
+}
+
+}  // namespace kdray::distribute

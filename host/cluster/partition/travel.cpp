@@ -1,0 +1,161 @@
+#include "cluster/partition/travel.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "cluster/partition/wire.h"
+#include "scene/model/check_scene.h"
+
+namespace kdray::distribute {
+
+namespace {
+
+using transport::Bytes;
+
+constexpr std::size_t kBatchOfGoods = std::size_t{1} << 16;  // primitives of a kind
+
+struct Counts {
+  std::array<std::uint64_t, primitives::kKinds> of{};
+  std::uint64_t normals = 0;
+};
+
+bool has_normals(const layout::Triangle& t) {
+  return t.normals != KDRAY_NO_NORMALS;
+}
+
+class Carrier {
+ public:
+  Carrier(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
+          transport::Together& all)
+      : goods_(std::move(goods)), rank_of_(rank_of), rows_(rows), all_(all) {}
+
+  Goods carry() {
+    make_room();
+    std::size_t first = 0;  // of the kind, in rank_of_
+    primitives::for_each_kind([&](auto kind) {
+      const std::size_t n = decltype(kind)::of(goods_).size();
+      const std::size_t n_rounds = all_.most((n + kBatchOfGoods - 1) / kBatchOfGoods);
+      for (std::size_t round = 0; round < n_rounds; ++round) {
+        const std::size_t begin = std::min(n, round * kBatchOfGoods),
+                          end = std::min(n, begin + kBatchOfGoods);
+        exchange(kind, first, begin, end);
+      }
+      first += n;
+    });
+    return std::move(here_);
+  }
+
+ private:
+  std::size_t n_ranks() const { return static_cast<std::size_t>(all_.size()); }
+
+  // How many of each kind come from whom, and so where they go.
+  void make_room() {
+    std::vector<Counts> out(n_ranks());
+    std::size_t i = 0;
+    primitives::for_each_kind([&](auto kind) {
+      for (const auto& item : decltype(kind)::of(goods_)) {
+        Counts& counts = out[rank_of_[i++]];
+        ++counts.of[kind.kNumber];
+        if constexpr (!decltype(kind)::kIsShape) counts.normals += has_normals(item) ? 1 : 0;
+      }
+    });
+    std::vector<Bytes> messages(n_ranks());
+    for (std::size_t to = 0; to < n_ranks(); ++to) WireWriter(messages[to]).put(out[to]);
+    messages = all_.exchange(std::move(messages));
+    Counts sum;
+    for (std::size_t from = 0; from < n_ranks(); ++from) {
+      const auto counts = WireReader(messages[from], static_cast<int>(from)).get<Counts>();
+      next_.push_back(sum);
+      for (std::size_t kind = 0; kind < sum.of.size(); ++kind) sum.of[kind] += counts.of[kind];
+      sum.normals += counts.normals;
+      end_.push_back(sum);
+    }
+    check(sum);
+    const std::size_t n_triangles = sum.of[KDRAY_KIND_TRIANGLE];
+    here_.normals.resize(sum.normals);
+    here_.colors.resize(n_triangles * rows_.colors);
+    here_.texcoords.resize(n_triangles * rows_.texcoords);
+    primitives::for_each_kind([&](auto kind) { decltype(kind)::of(here_).resize(sum.of[kind.kNumber]); });
+  }
+
+  static void check(const Counts& sum) {
+    for (const std::uint64_t n : sum.of)
+      if (n >= scene::kMaxPrimitivesPerKind)
+        throw Error(ErrorCode::input, "2^28 primitives of one kind or more for one rank; take more ranks");
+  }
+
+  template <class Kind>
+  void exchange(Kind kind, std::size_t first, std::size_t begin, std::size_t end) {
+    std::vector<std::vector<std::uint32_t>> places(n_ranks());
+    for (std::size_t i = begin; i < end; ++i)
+      places[rank_of_[first + i]].push_back(static_cast<std::uint32_t>(i));
+    std::vector<Bytes> messages(n_ranks());
+    for (std::size_t to = 0; to < n_ranks(); ++to) pack(kind, places[to], messages[to]);
+    messages = all_.exchange(std::move(messages));
+    for (std::size_t from = 0; from < n_ranks(); ++from) unpack(kind, from, messages[from]);
+  }
+
+  template <class Kind>
+  void pack(Kind, const std::vector<std::uint32_t>& places, Bytes& bytes) const {
+    WireWriter writer(bytes);
+    writer.put(static_cast<std::uint64_t>(places.size()));
+    writer.put_some(Kind::of(goods_), places);
+    if constexpr (!Kind::kIsShape) {
+      for (const std::uint32_t place : places)
+        if (const auto& t = goods_.triangles[place]; has_normals(t))
+          writer.put(goods_.normals[t.normals & KDRAY_NORMALS_MASK]);
+      put_rows(writer, goods_.colors, rows_.colors, places);
+      put_rows(writer, goods_.texcoords, rows_.texcoords, places);
+    }
+  }
+
+  template <class List>
+  static void put_rows(WireWriter& writer, const List& rows, std::size_t each,
+                       const std::vector<std::uint32_t>& places) {
+    for (const std::uint32_t place : places)
+      for (std::size_t k = 0; k < each; ++k) writer.put(rows[place * each + k]);
+  }
+
+  template <class Kind>
+  void unpack(Kind, std::size_t from, const Bytes& bytes) {
+    WireReader reader(bytes, static_cast<int>(from));
+    const auto n = reader.get<std::uint64_t>();
+    std::uint64_t& next = next_[from].of[Kind::kNumber];
+    if (n > end_[from].of[Kind::kNumber] - next) transport::throw_odd_message(static_cast<int>(from));
+    reader.get_all(Kind::of(here_).data() + next, n);
+    if constexpr (!Kind::kIsShape) {
+      take_normals(reader, from, next, n);
+      reader.get_all(here_.colors.data() + next * rows_.colors, n * rows_.colors);
+      reader.get_all(here_.texcoords.data() + next * rows_.texcoords, n * rows_.texcoords);
+    }
+    reader.end();
+    next += n;
+  }
+
+  void take_normals(WireReader& reader, std::size_t from, std::size_t first, std::size_t n) {
+    std::uint64_t& next = next_[from].normals;
+    for (std::size_t i = first; i < first + n; ++i) {
+      layout::Triangle& t = here_.triangles[i];
+      if (!has_normals(t)) continue;
+      if (next == end_[from].normals) transport::throw_odd_message(static_cast<int>(from));
+      here_.normals[next] = reader.get<layout::VertexNormals>();
+      t.normals = (t.normals & KDRAY_STITCH) | static_cast<layout::u32>(next++);
+    }
+  }
+
+  Goods goods_, here_;
+  std::span<const std::uint32_t> rank_of_;
+  CornerRows rows_;
+  transport::Together& all_;
+  std::vector<Counts> next_, end_;  // for each rank: where its next goes, and the end of its own
+};
+
+}  // namespace
+
+Goods bring(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
+            transport::Together& all) {
+  return Carrier(std::move(goods), rank_of, rows, all).carry();
+}
+
+}  // namespace kdray::distribute

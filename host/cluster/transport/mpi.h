@@ -1,0 +1,18 @@
+// What    Ranks that an MPI has started, by way of the plugin libkdray-mpi.so (mpi_plugin/), so that kdray
+//         itself is not linked with any MPI.
+// Shape   The plugin is looked for where KDRAY_MPI_PLUGIN says, else beside the program: in ../lib of its
+//         folder, in ../lib/kdray, and where the system's loader looks.
+// Errors  ErrorCode::usage, in one line, when there is none, when it is another version's, or when its MPI is
+//         not the one that has started this process.
+#pragma once
+
+#include <memory>
+
+#include "cluster/transport/transport.h"
+
+namespace kdray::transport {
+
+// `expected`: how many ranks the launcher has told of; 0: it has told nothing.
+std::unique_ptr<Transport> open_mpi(int expected);
+
+}  // namespace kdray::transport

@@ -1,0 +1,77 @@
+// What    The ranks of a run: a transport with what all that is said over it has in common. Rank 0 leads.
+// Shape   Each protocol has tags of its own; a message is kept until somebody asks for its tag, since they
+//         come in any order. A rank that fails tells rank 0, which then says why and ends all; a rank that is
+//         told to end finds out when it next looks for messages.
+// Errors  kdray::Error of rank 0: what another rank has failed of, with its number. Ended of another rank:
+//         rank 0 has ended the run.
+// Threads One, the one that renders.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "base/error.h"
+#include "cluster/transport/transport.h"
+
+namespace kdray::transport {
+
+// Tags of one protocol.
+struct Tags {
+  Tag first, last;
+  bool hold(Tag tag) const { return first <= tag && tag <= last; }
+};
+inline constexpr Tags kTagsOfRanks{0, 15}, kTagsOfCores{16, 17}, kTagsOfScenes{24, 24}, kTagsOfFrames{32, 47},
+    kTagsOfTiles{48, 63}, kTagsOfShares{64, 79}, kTagsOfLists{80, 86}, kTagsOfDivisions{87, 87},
+    kTagsOfJoining{88, 95}, kTagsOfRays{96, 111};
+
+// Not an error of this rank's; its code is the one to exit with.
+struct Ended {
+  int exit_code;
+};
+
+class Ranks {
+ public:
+  explicit Ranks(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {}
+
+  int rank() const { return transport_->rank(); }
+  int size() const { return transport_->ranks(); }
+  bool leads() const { return rank() == 0; }
+
+  void send(int to, Tag tag, Bytes bytes) { transport_->send(to, tag, std::move(bytes)); }
+  void send_to_others(Tag tag, const Bytes& bytes);
+
+  // A message of these tags, if one has come.
+  std::optional<Message> next(Tags tags);
+  Message wait(Tags tags);
+
+  // Counts up: for what a protocol has to tell apart over the whole run. Of the others: as far as they have
+  // heard.
+  std::uint32_t next_number() { return ++number_; }
+  std::uint32_t number() const { return number_; }
+  void reach(std::uint32_t number) { number_ = number; }
+
+  double now() const { return transport_->now(); }
+  const Counters& counters() const { return transport_->counters(); }
+
+  // Ends the run, when all is done or `exit_code` says that it failed. Of rank 0; the others are told.
+  void end(int exit_code);
+  // Of the others: waits for rank 0 to end the run, and returns the code to exit with. `failure`: why this
+  // rank can't go on; null: it has done what it had to.
+  int wait_for_end(const Error* failure);
+  // Of the others, when they have caught Ended.
+  void leave();
+
+ private:
+  void look();
+  void mind(const Message& message);
+
+  std::unique_ptr<Transport> transport_;
+  std::deque<Message> kept_;
+  int n_gone_ = 0;
+  std::uint32_t number_ = 0;
+  bool is_ending_ = false;
+};
+
+}  // namespace kdray::transport

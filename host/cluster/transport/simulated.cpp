@@ -1,0 +1,61 @@
+#include "cluster/transport/simulated.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace kdray::transport {
+
+class Simulated final : public Transport {
+ public:
+  Simulated(int rank, int ranks, Network& network) : Transport(rank, ranks), network_(network) {}
+
+  std::size_t bytes_waiting() const override { return 0; }
+  double now() const override { return network_.now(); }
+  [[noreturn]] void abort(int) override { throw std::runtime_error("a simulated rank has ended all"); }
+
+ private:
+  void post(int to, Tag tag, Bytes bytes) override { network_.post(rank(), to, tag, std::move(bytes)); }
+
+  std::optional<Message> take() override {
+    std::queue<Message>& inbox = network_.inboxes_[static_cast<std::size_t>(rank())];
+    if (inbox.empty()) return std::nullopt;
+    Message message = std::move(inbox.front());
+    inbox.pop();
+    return message;
+  }
+
+  Network& network_;
+};
+
+Network::Network(int ranks, const Link& link, std::uint64_t seed)
+    : link_(link),
+      random_(seed),
+      free_at_(static_cast<std::size_t>(ranks)),
+      inboxes_(static_cast<std::size_t>(ranks)) {
+  for (int rank = 0; rank < ranks; ++rank) ranks_.push_back(std::make_unique<Simulated>(rank, ranks, *this));
+}
+
+void Network::post(int from, int to, Tag tag, Bytes bytes) {
+  double& free_at = free_at_[static_cast<std::size_t>(from)];
+  free_at = std::max(free_at, now_) + static_cast<double>(bytes.size()) / link_.bandwidth;
+  // The generator's bits are the same everywhere; a distribution of the library's need not be.
+  const double part = static_cast<double>(random_() >> 11) * 0x1p-53;
+  const double travels = to == from ? 0 : link_.latency * (1 + link_.jitter * part);
+  on_their_way_.push(
+      {free_at + travels, n_posted_++, to, std::make_shared<Message>(Message{from, tag, std::move(bytes)})});
+}
+
+double Network::next_arrival() const {
+  return on_their_way_.empty() ? std::numeric_limits<double>::infinity() : on_their_way_.top().arrives;
+}
+
+void Network::advance(double to) {
+  now_ = std::max(now_, to);
+  for (; !on_their_way_.empty() && on_their_way_.top().arrives <= now_; on_their_way_.pop()) {
+    const OnItsWay& next = on_their_way_.top();
+    inboxes_[static_cast<std::size_t>(next.to)].push(std::move(*next.message));
+  }
+}
+
+}  // namespace kdray::transport

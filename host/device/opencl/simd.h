@@ -1,0 +1,61 @@
+// What    Which form of common/simd.clh a device's kernels are built with: x86 builtins (AVX-512, else AVX2)
+//         or portable OpenCL C.
+// Shape   Forms are tried from the best on, per device and once per process: the processor's features, a
+//         probe build, and a self-test of every operation against answers made on the host
+//         (device/simd_answers.h) have to let a form pass. A device's name is never asked. A compiler that
+//         has lost a builtin, or got one wrong, costs the form that needs it and no other.
+//         KDRAY_SIMD=portable, avx2 or avx512 in the environment asks for a form; it has to pass all the
+//         same.
+// Errors  ErrorCode::no_device: no form passes, or the one asked for doesn't. ErrorCode::usage: KDRAY_SIMD is
+//         none of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/opencl/builds.h"
+#include "device/opencl/kernel.h"
+#include "device/opencl/platform.h"
+#include "layout/simd.h"
+#include "layout/simd_test.layout.h"
+
+namespace kdray::device {
+
+struct Opened;
+
+enum class Simd {
+  portable = KDRAY_SIMD_PORTABLE,
+  avx2 = KDRAY_SIMD_AVX2,
+  avx512 = KDRAY_SIMD_AVX512,
+};
+
+// A device's form, and the better ones that it can't have.
+struct SimdChoice {
+  struct Refusal {
+    Simd form;
+    std::string why;
+  };
+  Simd form = Simd::portable;
+  std::vector<Refusal> refused = {};
+
+  // "x86 AVX-512: the processor has no AVX-512 (F, VL, DQ and BW)", or empty.
+  std::string refused_in_words() const;
+};
+
+const char* in_words(Simd form);      // "portable", "x86 AVX2", "x86 AVX-512"
+std::string build_option(Simd form);  // "-DKDRAY_SIMD=0"
+
+// The form for this device's kernels; remembered, since it takes a build and a launch to know.
+SimdChoice choose_simd(const FoundDevice& found, const Opened& opened, const Builds& builds = {});
+
+// The same, tried anew.
+SimdChoice probe_simd(const FoundDevice& found, const Opened& opened, const Builds& builds = {});
+
+// Why this device can't have the form; empty when it can.
+std::string why_not(Simd form, const FoundDevice& found, const Opened& opened, const Builds& builds = {});
+
+// What the device answers to the cases, by the kernel of common/simd_test.cl. Throws cl::Error.
+std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, Kernel<kernels::SimdTest>& kernel,
+                                               const std::vector<layout::SimdCase>& cases);
+
+}  // namespace kdray::device

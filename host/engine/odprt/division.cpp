@@ -1,0 +1,90 @@
+#include "engine/odprt/division.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/odprt/deal.h"
+#include "engine/odprt/replicate.h"
+
+namespace kdray::odprt {
+
+bool Division::replicates() const {
+  return std::find(part_of.begin(), part_of.end(), kEveryPart) != part_of.end();
+}
+
+std::vector<std::uint32_t> Division::subtrees_of(std::uint32_t part) const {
+  std::vector<std::uint32_t> subtrees;
+  for (std::uint32_t i = 0; i < part_of.size(); ++i)
+    if (part_of[i] == part || part_of[i] == kEveryPart) subtrees.push_back(i);
+  return subtrees;
+}
+
+std::size_t largest_bytes(const Division& division) {
+  std::size_t largest = 0;
+  for (const Part& part : division.parts) largest = std::max(largest, part.geometry_bytes());
+  return largest;
+}
+
+namespace {
+
+// Chooses the subtrees that every part is to hold.
+std::vector<bool> choose_replicated(const Cut& cut, std::span<const double> costs, const DivideOptions& o) {
+  std::vector<std::uint64_t> bytes;
+  std::vector<double> visits;
+  double all_bytes = 0;
+  for (std::size_t i = 0; i < cut.subtrees.size(); ++i) {
+    bytes.push_back(cut.subtrees[i].bytes);
+    // An instance is in one part alone: a shadow ray need not name the one that it leaves.
+    visits.push_back(cut.subtrees[i].placed ? 0 : costs[i] / cut.subtrees[i].visit);
+    all_bytes += static_cast<double>(bytes.back());
+  }
+  // n parts that share s of the whole hold s + (1 - s)/n each.
+  const double most = o.n_parts > 1 ? o.replicated * o.n_parts / (o.n_parts - 1) : 0;
+  return replicate(visits, bytes, static_cast<std::uint64_t>(most * all_bytes));
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> assign(const Cut& cut, std::span<const double> costs, const DivideOptions& o) {
+  const std::vector<bool> everywhere = choose_replicated(cut, costs, o);
+  std::vector<double> dealt_costs;
+  std::vector<std::uint64_t> dealt_bytes;
+  double all = 0, replicated = 0;
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const std::uint64_t bytes = cut.subtrees[i].bytes;
+    all += static_cast<double>(bytes);
+    if (everywhere[i]) {
+      replicated += static_cast<double>(bytes);
+    } else {
+      dealt_costs.push_back(costs[i]);
+      dealt_bytes.push_back(bytes);
+    }
+  }
+  const double most = (1.0 / o.n_parts + o.spare) * all - replicated;
+  const std::vector<std::uint32_t> dealt =
+      deal(dealt_costs, dealt_bytes, o.n_parts, static_cast<std::uint64_t>(std::max(most, 0.0)));
+  std::vector<std::uint32_t> part_of;
+  for (std::size_t i = 0, next = 0; i < costs.size(); ++i)
+    part_of.push_back(everywhere[i] ? kEveryPart : dealt[next++]);
+  return part_of;
+}
+
+Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
+                std::span<const double> costs, const DivideOptions& options) {
+  return divide(scene, form, cut, assign(cut, costs, options), options.n_parts);
+}
+
+Division divide(const flatten::FlatScene& scene, const flatten::WideForm& form, const Cut& cut,
+                std::vector<std::uint32_t> part_of, std::uint32_t n_parts) {
+  Division division;
+  division.part_of = std::move(part_of);
+  if (n_parts == 1) {  // nothing to take apart, and nowhere to go
+    division.parts.push_back({scene, form, 0});
+    return division;
+  }
+  division.directory = make_directory(form, cut, division.part_of);
+  division.parts = make_parts(scene, form, cut, division.part_of, n_parts);
+  return division;
+}
+
+}  // namespace kdray::odprt

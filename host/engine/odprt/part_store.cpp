@@ -1,0 +1,62 @@
+#include "engine/odprt/part_store.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace kdray::odprt {
+
+namespace {
+
+using wavefront::SceneBuffers;
+
+// For each array the size that it has in the part that has most of it.
+SceneBuffers::Sizes largest_sizes(const Division& division) {
+  SceneBuffers::Sizes most{};
+  for (const Part& part : division.parts) {
+    const SceneBuffers::Sizes sizes = SceneBuffers::sizes_of(part.flat, part.wide);
+    for (std::size_t i = 0; i < sizes.size(); ++i) most[i] = std::max(most[i], sizes[i]);
+  }
+  return most;
+}
+
+}  // namespace
+
+std::size_t room_bytes(const Division& division) {
+  SceneBuffers::Sizes sizes = largest_sizes(division);
+  for (const std::size_t no_geometry : {SceneBuffers::Slot::materials, SceneBuffers::Slot::lights})
+    sizes[no_geometry] = 0;
+  return std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
+}
+
+SceneBuffers PartStore::scene_of(const Part& part) {
+  if (!streamed_) return {context_, part.flat, part.wide};
+  if (!room_) room_.emplace(context_, largest_sizes(division_));
+  room_->copy(queue_, part.flat, part.wide);
+  return *room_;
+}
+
+const LoadedPart& PartStore::get(std::uint32_t number) {
+  if (loaded_ && loaded_->number == number) return *loaded_;
+  const Part& part = division_.parts[number];
+  std::vector<layout::PartCell> cells;
+  for (const std::uint32_t i : division_.subtrees_of(number)) {
+    const Box& box = cut_.subtrees[i].bounds;
+    cells.push_back({{box.lo.x, box.lo.y, box.lo.z}, number, {box.hi.x, box.hi.y, box.hi.z}, 0});
+  }
+  loaded_.emplace(
+      LoadedPart{number, part.n_shared, division_.replicates(), scene_of(part),
+                 context_.buffer(CL_MEM_READ_ONLY, cells.size() * sizeof cells[0], "the subtrees"),
+                 static_cast<std::uint32_t>(cells.size())});
+  if (!cells.empty())
+    queue_.enqueueWriteBuffer(loaded_->subtrees, CL_TRUE, 0, cells.size() * sizeof cells[0], cells.data());
+  ++n_loads_;
+  return *loaded_;
+}
+
+std::size_t PartStore::bytes() const {
+  if (room_) return room_bytes(division_);
+  return loaded_ ? division_.parts[loaded_->number].geometry_bytes() : 0;
+}
+
+}  // namespace kdray::odprt

@@ -1,0 +1,138 @@
+// What    ODPRT: renders a frame with the scene divided among queues: each holds some subtrees, and rays
+//         travel between them.
+// Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed parallel ray tracing.
+// Errors  A queue whose device fails, or has too little memory, is left out from then on: the scene is
+//         divided among the others, and the frame begun anew. The error itself when no queue is left, or
+//         there are other ranks. Any other error ends the frame (device/opencl_error.h).
+// Ranks   All call render(), with the same frame. Rank 0 has the picture; the result of the others has none.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/timeline.h"
+#include "cluster/transport/together.h"
+#include "device/opencl/faults.h"
+#include "engine/adaptive/report.h"
+#include "engine/checkpoint/frame_ledger.h"
+#include "engine/odprt/division.h"
+#include "engine/odprt/exchange.h"
+#include "engine/odprt/rank_table.h"
+#include "engine/wavefront/programs.h"
+#include "engine/wavefront/wavefront.h"
+#include "io/image/image.h"
+#include "kdray/options.h"
+
+namespace kdray::odprt {
+
+struct Queue {
+  const device::Context* context = nullptr;
+  cl::CommandQueue queue;
+  wavefront::Programs* programs = nullptr;
+  std::size_t number = 0;  // among all queues, also those that are left out
+};
+
+struct Request {
+  std::vector<Queue> queues;
+  RankTable table;      // of them, and of other ranks'
+  layout::Frame frame;  // with tiles
+  layout::Features features = 0;
+  Traversal traversal = Traversal::automatic;
+  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one.
+  double adaptive_target = 0;
+  Balance balance = Balance::sah;
+  std::uint32_t n_slices = 16;  // of each queue: enough for all of its compute units
+  std::uint32_t ray_buffer = 0;
+  std::uint64_t device_memory = 0;
+  std::uint32_t census_every = 0;  // visits to subtrees are counted in one wave of so many
+  timeline::Timeline* timeline = nullptr;
+  device::Faults* faults = nullptr;
+  std::function<void(double)> progress;
+  // What is finished already, and where it goes; its tiles are the frame's. Null: there is none.
+  ledger::FrameLedger* ledger = nullptr;
+};
+
+struct QueueReport {
+  std::size_t number = 0;
+  std::string device;
+  double busy_seconds = 0;
+  std::uint64_t launches = 0, waves = 0, traced = 0;  // traced: rays that the queue has looked for a hit of
+  std::uint32_t n_parts = 0, n_subtrees = 0;
+  std::uint64_t n_loads = 0;                       // of parts
+  std::size_t geometry_bytes = 0, work_bytes = 0;  // geometry: the most at one time
+  double cost_share = 0;                           // of the expected cost
+  int rank = 0;
+};
+
+struct Quarantined {
+  std::size_t queue = 0;
+  std::string what;
+};
+
+struct Result {
+  film::Image image;
+  std::optional<adaptive::Report> samples;  // of adaptive sampling
+  wavefront::Counters counters;
+  std::map<std::string, double> stage_seconds;
+  double render_seconds = 0, divide_seconds = 0;
+  std::vector<QueueReport> queues;
+  ExchangeCounts exchange{0};
+  std::vector<SubtreeUse> visits;             // of each subtree, where counted
+  std::vector<std::uint32_t> subtree_queues;  // the number of the queue that holds it, or kEveryPart
+  std::vector<Quarantined> quarantined;
+  std::uint32_t n_bands = 0, n_parts = 0, n_cells = 0;
+  std::vector<std::uint64_t> peak_bytes;  // of each rank's process, so far; 0: not known
+};
+
+struct Provision;
+
+// A scene that frames are rendered of, and what has been learned about its costs.
+class DividedScene {
+ public:
+  // `all`: of ranks, if the scene is what this one holds of it (holding.h); they have one table in all
+  // frames.
+  DividedScene(flatten::FlatScene flat, flatten::WideForm wide,
+               std::shared_ptr<transport::Together> all = nullptr);
+
+  Result render(const Request& request);
+
+  // From the next frame on.
+  void light(const Array<layout::Light>& lights);
+
+  const Cut& cut() const { return cut_; }
+  // Of the whole scene; where it is held by ranks, once a frame was rendered.
+  std::size_t geometry_bytes() const { return all_ ? held_bytes_ : odprt::geometry_bytes(flat_, wide_); }
+
+ private:
+  void cut_for(std::uint32_t n_parts);
+  void cut_into(std::size_t n_subtrees);
+  void divide_by(const DivideOptions& options);
+  void measure_costs(const Request& request);
+  void weigh(std::span<const SubtreeUse> visits);
+  double cost_of(const SubtreeUse& use, std::size_t subtree) const;
+  void learn(const Result& result);
+  Provision divide_for(const Request& request);
+  Provision divide_with_ranks(const Request& request);
+  Provision divide_what_is_held(const Request& request);
+  Provision divide_as_asked(const Request& request);
+  void check_division(std::span<const std::uint32_t> part_of, std::uint32_t n_parts) const;
+  Result render_once(const Request& request);
+
+  flatten::FlatScene flat_;
+  flatten::WideForm wide_;
+  std::size_t n_asked_ = 0;  // subtrees that the cut was to have
+  Cut cut_;
+  std::vector<double> costs_;  // of the subtrees, as they are dealt out by
+  bool measured_ = false;      // costs_ come from rays
+  std::optional<Division> division_;
+  DivideOptions divided_by_;
+  std::shared_ptr<transport::Together> all_;
+  std::size_t held_bytes_ = 0;  // by all ranks
+};
+
+}  // namespace kdray::odprt

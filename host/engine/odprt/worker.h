@@ -1,0 +1,136 @@
+// What    One queue of ODPRT on its device: its slices' pools and streams, its film, and the part of the
+//         scene that it serves at the moment. It does what it is told; who sends what to whom is decided in
+//         exchange.h.
+// Shape   Slice s of every worker handles the rays of the pixels whose tiles are slice s's in the list of the
+//         worker that makes their eye rays: within a worker no two slices touch one pixel. Each worker has a
+//         film of all the band's pixels; their sums add up to the picture.
+// Errors  cl::Error and kdray::Error of the device; counters are handed out for the caller to check.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/opencl/context.h"
+#include "engine/odprt/mail.h"
+#include "engine/odprt/outbox.h"
+#include "engine/odprt/plan.h"
+#include "engine/odprt/subtrees.h"
+#include "engine/wavefront/programs.h"
+#include "engine/wavefront/scene_buffers.h"
+#include "engine/wavefront/slice_buffers.h"
+#include "engine/wavefront/stage.h"
+#include "layout/frame.layout.h"
+#include "layout/odprt.layout.h"
+
+namespace kdray::odprt {
+
+// A part on a device.
+struct LoadedPart {
+  std::uint32_t number = 0, n_shared = 0;
+  bool replicates = false;  // the division does
+  wavefront::SceneBuffers scene;
+  cl::Buffer subtrees;  // a cell for each, for the census
+  std::uint32_t n_subtrees = 0;
+};
+
+// What is rendered between two clearings of the film: tiles of a band of the picture, or runs of samples
+// (frame.layout.h).
+struct Work {
+  std::size_t first_pixel = 0, n_places = 0;  // of the film
+  std::span<const layout::u32> samples = {};  // empty: tiles
+};
+
+// The most of it that there is room for.
+struct WorkRoom {
+  std::size_t places = 0, entries = 0, samples = 0;
+};
+
+class Worker {
+ public:
+  Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
+         const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
+         std::span<const layout::PartCell> directory, const WorkRoom& room, std::size_t max_subtrees);
+  ~Worker();
+  Worker(const Worker&) = delete;
+
+  const device::Context& context() const { return context_; }
+
+  // Clears the film.
+  void begin(const Work& work);
+  // Entries (tiles, or runs of samples) whose eye rays the worker is to make, behind those that it has.
+  void add(std::span<const layout::u32> entries);
+  // About how many of them a launch begins.
+  std::uint32_t launch_tiles() const;
+
+  // `census_every`: visits to the part's subtrees are counted in one wave of so many; 0: in none.
+  void serve(const LoadedPart& part, std::uint32_t census_every);
+
+  // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the
+  // frame's time.
+  void warm_up(const LoadedPart& part, Outbox& outbox);
+
+  // Takes the rays that a place of an outbox of this context has into the pools.
+  void receive(const Outbox& outbox, std::uint32_t place);
+  // Takes as many of the rays in the mail as there is room for; returns how many.
+  std::uint64_t receive(Mail& mail);
+
+  // One launch: up to n_waves waves of each slice. What it sends is in `outbox`, whose counts are read back.
+  void launch(std::span<const layout::Grant> grants, Outbox& outbox);
+  // Waits for what has been received without a launch.
+  void finish();
+
+  // Takes everything that waits out of the pools.
+  void stash(Mail& mail);
+
+  // What the last launch left.
+  std::span<const layout::Slice> slices() const { return slices_; }
+  std::span<const layout::Traffic> traffic() const { return traffic_; }
+  std::uint32_t tiles_left() const;  // not begun
+  std::uint64_t n_waiting() const;   // rays in the pools
+  std::vector<SubtreeUse> visits() const;
+
+  // The film's sums, three for each place, until unmap_film().
+  std::span<const layout::i64> map_film();
+  void unmap_film();
+
+  // Copies what an outbox of this queue has to the mail of the parts that it goes to; nullptr: not that
+  // part's.
+  void copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of);
+
+  void add_cycles(std::map<std::string, double>& cycles) const;  // of the stages, in the band
+
+  std::size_t bytes() const { return bytes_; }
+  double busy_seconds() { return wave_.collect_seconds() + receive_.collect_seconds(); }
+
+ private:
+  cl::Buffer make(std::size_t bytes, const char* what);
+  template <class K>
+  void set_arguments(wavefront::Stage<K>& stage);
+
+  const device::Context& context_;
+  cl::CommandQueue queue_;
+  layout::Frame frame_;
+  const Plan plan_;
+  layout::Travel travel_{};
+  WorkRoom room_;
+  std::size_t bytes_ = 0, n_places_ = 0;
+  bool in_runs_ = false;  // the entries are runs of samples
+  std::vector<layout::u32> list_;
+  std::vector<layout::Slice> slices_;
+  std::vector<layout::Traffic> traffic_;
+  std::vector<layout::u32> visits_;
+  wavefront::SliceBuffers buffers_;
+  cl::Buffer travel_buffer_, cells_, grant_buffer_, traffic_buffer_, shadow_pool_, visit_buffer_;
+  void* mapped_film_ = nullptr;
+  std::vector<std::vector<float>>
+      stashed_;   // what is being read of the pools: here, since after an error a read may go on
+  Outbox inbox_;  // of one part: rays from the host's memory
+  wavefront::Stage<kernels::TravelWave> wave_;
+  wavefront::Stage<kernels::Receive> receive_;
+};
+
+}  // namespace kdray::odprt

@@ -1,0 +1,160 @@
+#include "engine/pdprt/queue.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "device/opencl/opencl_error.h"
+
+namespace kdray::pdprt {
+
+namespace {
+
+// Shorter launches than this are not worth their report.
+constexpr double kShortestSeconds = 0.0003;
+
+layout::Frame scheduled(layout::Frame frame, const wavefront::Schedule& schedule, layout::Features features) {
+  schedule.apply(frame, features);
+  return frame;
+}
+
+// Of a tile, when none has been rendered: as if each eye ray spawned one.
+double guessed_waves(const layout::Frame& frame) {
+  const double samples = static_cast<double>(frame.tile_width) * frame.tile_height * frame.n_samples;
+  return 2 * samples / frame.batch_size;
+}
+
+constexpr double kWavesOfRun = 2.0 * KDRAY_SAMPLE_RUN;  // times rays in a batch, guessed in the same way
+
+// Of the film.
+struct Extent {
+  std::size_t first, n;
+};
+
+// The rows of the picture that the tiles cover.
+Extent extent_of(std::span<const layout::u32> tiles, const layout::Frame& frame) {
+  std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
+  for (const layout::u32 tile : tiles) {
+    first = std::min<std::size_t>(first, KDRAY_TILE_ROW(tile));
+    last = std::max<std::size_t>(last, KDRAY_TILE_ROW(tile));
+  }
+  const std::size_t first_row = first * frame.tile_height;
+  const std::size_t end_row = std::min<std::size_t>((last + 1) * frame.tile_height, frame.height);
+  return {first_row * frame.width, (end_row - first_row) * frame.width};
+}
+
+Extent extent_of_runs(std::span<const layout::u32> runs) {
+  const auto [first, last] = std::minmax_element(runs.begin(), runs.end());
+  return {std::size_t{*first} * KDRAY_SAMPLE_RUN, std::size_t{*last + 1 - *first} * KDRAY_SAMPLE_RUN};
+}
+
+}  // namespace
+
+Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& queue, const Task& task,
+             const wavefront::Room& room)
+    : number_(number),
+      frame_(scheduled(task.frame, device.schedule, task.features)),
+      n_slices_(device.schedule.n_slices),
+      waves_per_launch_(n_slices_ * (device.schedule.fused ? device.schedule.fused_waves : 1.0)),
+      waves_per_tile_(guessed_waves(frame_)),
+      compute_units_(device::checked(
+          "asking for the queue's device",
+          [&] { return queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(); })),
+      wavefront_(*device.context, queue, *device.scene, *device.programs, frame_, device.schedule,
+                 task.features, room) {
+  wavefront::Watch watch;
+  if (task.faults) watch.before = [faults = task.faults, number] { faults->launch(number); };
+  if (task.timeline) {
+    device::checked("comparing clocks", [&] { clock_.emplace(device.context->get(), queue); });
+    watch.after = [this, timeline = task.timeline](const wavefront::LaunchDone& done) {
+      timeline->add(static_cast<int>(number_), "launch", timeline->seconds_at(clock_->on_host(done.start)),
+                    timeline->seconds_at(clock_->on_host(done.end)),
+                    {{"waves", static_cast<double>(done.waves)},
+                     {"tiles", static_cast<double>(done.tiles)},
+                     {"rays", static_cast<double>(done.rays)}});
+    };
+  }
+  wavefront_.watch(std::move(watch));
+}
+
+std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wavefront::Progress& progress,
+                                                        const Work& work, Shared& shared) {
+  if (tiles.left()) return std::nullopt;
+  shared.tiles_done += progress.taken - n_told_;
+  n_told_ = progress.taken;
+  if (since_begin_.seconds() > work.seconds) return std::span<const layout::u32>();
+  const std::size_t ahead = tiles.taken(number_).size() - progress.front;
+  const bool measured = progress.taken > 0;
+  if (measured) waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
+  // The launch that is running takes as much as it can of what there is. The one to be queued is to find all
+  // it can take, and more, when that is known: a slice that runs dry traces its last rays in batches that
+  // aren't full.
+  return tiles.take(number_, {.most = (measured ? 2 : 1) * tiles_of_launch() + n_slices_ - 1,
+                              .least = shortest_launch(progress),
+                              .ahead = ahead - std::min(ahead, tiles_of_launch())});
+}
+
+// In tiles, by the time that they have taken so far.
+std::size_t Queue::shortest_launch(const wavefront::Progress& progress) const {
+  const double busy = wavefront_.busy_seconds() - busy_before_;
+  return busy > 0 ? static_cast<std::size_t>(kShortestSeconds / busy * progress.taken) + 1 : 1;
+}
+
+std::size_t Queue::tiles_of_launch() const {
+  return static_cast<std::size_t>(waves_per_launch_ / waves_per_tile_) + 1;
+}
+
+void Queue::serve(Tiles& tiles, const Work& work, Shared& shared) {
+  waves_per_tile_ = work.samples.empty() ? guessed_waves(frame_) : kWavesOfRun / frame_.batch_size;
+  while (tiles.wait(number_)) {
+    n_told_ = 0;
+    busy_before_ = wavefront_.busy_seconds();
+    since_begin_.restart();
+    work.samples.empty() ? wavefront_.begin(work.first_pixel) : wavefront_.begin_samples(work.samples);
+    const auto feed = [&](const wavefront::Progress& progress) {
+      return more(tiles, progress, work, shared);
+    };
+    if (!wavefront_.render(feed)) return;
+    deliver(tiles.taken(number_), work, shared);
+    tiles.done(number_);
+  }
+}
+
+void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared) {
+  if (tiles.empty()) return wavefront_.finish();  // another queue was faster
+  if (work.samples.empty()) note_costs(tiles, shared);
+  const Extent extent = work.samples.empty() ? extent_of(tiles, frame_) : extent_of_runs(tiles);
+  // Last: what it adds to the counters counts.
+  wavefront_.finish(extent.first, extent.n,
+                    [&](const wavefront::FilmSums& film) { shared.deliver(film, tiles); });
+  if (work.samples.empty()) {
+    n_tiles_ += tiles.size();
+    for (const layout::u32 tile : tiles)
+      shared.tile_queues[KDRAY_TILE_ROW(tile) * frame_.n_tiles_x + KDRAY_TILE_COLUMN(tile)] =
+          static_cast<std::uint32_t>(number_);
+  }
+  shared.tiles_done += tiles.size() - n_told_;
+  n_told_ = 0;
+}
+
+// The list's device time, shared out by the cycles that were charged to its tiles.
+void Queue::note_costs(std::span<const layout::u32> tiles, Shared& shared) {
+  const std::vector<layout::u64> cycles = wavefront_.tile_cycles();
+  const double sum = std::accumulate(cycles.begin(), cycles.end(), 0.0);
+  if (sum == 0) return;
+  const double seconds = (wavefront_.busy_seconds() - busy_before_) * compute_units_;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const double cost = static_cast<double>(cycles[i]) * (seconds / sum);
+    tile_cost_.costliest = std::max(tile_cost_.costliest, cost);
+    if (!shared.tile_seconds.empty())
+      shared.tile_seconds[KDRAY_TILE_ROW(tiles[i]) * frame_.n_tiles_x + KDRAY_TILE_COLUMN(tiles[i])] = cost;
+  }
+  tile_cost_.total += seconds;
+}
+
+void Queue::withdraw(Shared& shared) {
+  shared.tiles_done -= n_told_;
+  n_told_ = 0;
+}
+
+}  // namespace kdray::pdprt

@@ -1,0 +1,91 @@
+// What    PDPRT: renders a frame with its pixels divided among the queues of any number of devices, each of
+//         which sees the whole scene.
+// Shape   The tiles of a band (the whole frame, unless its film is too large for a queue) along a curve; a
+//         thread for each queue takes tiles (tiles.h), keeps its queue's list filled, and puts the queue's
+//         tiles into the picture. Each queue has a film of its own; the one that took a tile last owns it.
+//         With ranks, rank 0 has the bag (lender.h), and the others borrow from it (borrower.h).
+// Errors  A queue whose device fails, or has too little memory, is left alone from then on: the others render
+//         the tiles that it has not delivered. The error of the last queue, when all fail. Any other error
+//         ends the frame (device/opencl_error.h).
+// Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: pixel-distributed, bag of tasks.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/timeline.h"
+#include "cluster/transport/ranks.h"
+#include "device/opencl/faults.h"
+#include "engine/adaptive/report.h"
+#include "engine/checkpoint/frame_ledger.h"
+#include "engine/pdprt/bags.h"
+#include "engine/pdprt/tile_size.h"
+#include "engine/wavefront/wavefront.h"
+#include "io/image/image.h"
+
+namespace kdray::pdprt {
+
+// The queues of one context, and what they share. All devices' schedules have the same tiles.
+struct Device {
+  const device::Context* context;
+  const wavefront::SceneBuffers* scene;
+  wavefront::Programs* programs;
+  wavefront::Schedule schedule;
+};
+
+// Stands for a tile that no queue of this process has rendered: it was found in a ledger.
+inline constexpr std::uint32_t kNobody = 0xffffffffu;
+
+// Samples of one round of adaptive sampling that a queue's film has room for at least, so that small pictures
+// don't take many lists for one.
+inline constexpr std::size_t kLeastSamples = std::size_t{1} << 18;
+
+struct Task {
+  layout::Frame frame;  // without a schedule (flatten::make_frame)
+  layout::Features features = 0;
+  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one.
+  double adaptive_target = 0;
+  Division division = Division::bag;
+  std::function<void(double)> progress = {};  // called from render()'s thread with the share done
+  device::Faults* faults = nullptr;
+  timeline::Timeline* timeline = nullptr;               // also asks for Result::tile_seconds
+  std::size_t max_film_bytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
+  // What is finished already, and where it goes; its tiles are those of the schedule. Null: there is none.
+  ledger::FrameLedger* ledger = nullptr;
+  // Others that render the same frame; rank 0 has the picture then, and the others' result has none. Null:
+  // there are none.
+  transport::Ranks* ranks = nullptr;
+  Hash shared_frame = {};  // the same for all of them, and for no other frame (ledger::Header::frame())
+  int ranks_to_a_bag = kRanksToABag;  // the same for all of them; beyond that there are several
+};
+
+struct QueueResult {
+  std::string device;
+  double busy_seconds = 0;
+  std::uint64_t rays = 0, tiles = 0;  // that are in the picture
+  std::size_t device_bytes = 0;       // without the scene
+  std::string failure;                // empty: none
+  std::uint64_t tiles_lost = 0;       // that it had taken when it failed
+  int rank = 0;                       // that it is of
+};
+
+struct Result {
+  film::Image image;
+  std::optional<adaptive::Report> samples;  // of adaptive sampling
+  wavefront::Counters counters;
+  std::map<std::string, double> stage_seconds;  // device time, added over the queues
+  double render_seconds = 0;                    // wall time from the first launch to the finished film
+  std::vector<QueueResult> queues;
+  std::uint32_t tile_width = 0, tile_height = 0, n_tiles = 0, n_bands = 0;
+  TileCost tile_cost;                      // no total: it was not measured
+  std::vector<double> tile_seconds;        // of a compute unit, in the order of the curve, band after band
+  std::vector<std::uint32_t> tile_queues;  // by row and column of tiles: who rendered it, or kNobody
+};
+
+Result render(std::span<const Device> devices, const Task& task);
+
+}  // namespace kdray::pdprt

@@ -1,0 +1,242 @@
+#include "engine/query/crossings.h"
+
+#include <fmt/format.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/free_memory.h"
+#include "base/memory.h"
+#include "engine/query/all_hits.h"
+#include "engine/query/exact_rays.h"
+#include "engine/query/grains.h"
+#include "engine/query/pace.h"
+#include "engine/query/surface.h"
+
+namespace kdray::query {
+
+namespace {
+
+// Rays of a chunk at most, and of the first one; the hits that a chunk is tried to have, since they are held
+// beside the answer; and how many are too many for it, unless they are a single ray's.
+constexpr std::size_t kCollected = std::size_t{1} << 16, kFirstRays = std::size_t{1} << 10;
+constexpr std::size_t kHitsAtOnce = std::size_t{1} << 22, kTooMany = 4 * kHitsAtOnce;
+// An answer so small is made without a look at how much memory is free.
+constexpr std::uint64_t kSmallAnswer = std::uint64_t{1} << 26;
+
+// The rays of a chunk in the scene's own space, and their masks where primitives have some.
+class CollectedRays {
+ public:
+  CollectedRays(const Asked& asked, const RayArrays& rays)
+      : rays_(&rays), local_(rays, asked.frame), masked_(asked.target.masks() != nullptr) {}
+
+  std::span<const Ray> take(std::size_t first, std::size_t most, const QueryOptions& options) {
+    throw_if_cancelled(options.cancel);
+    const std::size_t n = std::min(most, rays_->size() - first);
+    taken_.resize(n);
+    static_assert(sizeof(Ray) == sizeof(layout::QueryRay));
+    local_.fill(first, n, reinterpret_cast<layout::QueryRay*>(taken_.data()));
+    check_invalid(local_, options);
+    masks_.resize(masked_ ? n : 0);
+    for (std::size_t i = 0; i < masks_.size(); ++i) masks_[i] = rays_->mask(first + i);
+    return taken_;
+  }
+
+  std::span<const std::uint32_t> masks() const { return masks_; }
+  const LocalRays& local() const { return local_; }
+
+ private:
+  const RayArrays* rays_;
+  LocalRays local_;
+  bool masked_;
+  std::vector<Ray> taken_;
+  std::vector<std::uint32_t> masks_;
+};
+
+// The answer, to which chunks' hits are added in turn.
+class Answer {
+ public:
+  Answer(const Asked& asked, std::size_t n_rays, std::uint64_t max_bytes)
+      : asked_(&asked), n_all_(n_rays), max_bytes_(max_bytes) {
+    hits_.splits.reserve(n_rays + 1);
+    hits_.splits.push_back(0);
+    hits_.more.reserve(n_rays);
+  }
+
+  void add(const LocalRays& local, const LocalHits& found) {
+    const std::size_t before =
+        begin(found.more, [&](std::size_t i) { return found.splits[i + 1] - found.splits[i]; });
+    for_each_index(found.more.size(), [&](std::size_t i) {
+      for (std::size_t k = found.splits[i]; k < found.splits[i + 1]; ++k) {
+        const std::uint32_t instance = found.instance.empty() ? kNoInstance : found.instance[k];
+        put(before + k, local.world_t(i, found.t[k]), found.u[k], found.v[k], found.primitive[k], instance);
+      }
+    });
+  }
+
+  // Of rays of doubles: hits by reference, and instances by index.
+  void add(const ExactHits& found) {
+    begin(found.more, [&](std::size_t i) { return found.hits[i].size(); });
+    const std::size_t first = hits_.more.size() - found.more.size();
+    const flatten::FlatScene& flat = asked_->scene().flat;
+    for_each_index(found.more.size(), [&](std::size_t i) {
+      std::size_t at = hits_.splits[first + i];
+      for (const ExactHit& hit : found.hits[i]) {
+        const bool placed = hit.instance != kNoInstance;
+        put(at++, hit.t, hit.u, hit.v, number_of(flat, hit.ref),
+            placed ? flat.instances[hit.instance].number : kNoInstance);
+      }
+    });
+  }
+
+  AllHits take(std::uint64_t n_invalid) {
+    hits_.report.invalid = n_invalid;
+    return std::move(hits_);
+  }
+
+ private:
+  static constexpr std::uint64_t kBytesPerHit =
+      sizeof(double) + 2 * sizeof(float) + 3 * sizeof(std::uint32_t);
+
+  // Makes room for more rays with their hits: where these begin.
+  template <class CountOf>
+  std::size_t begin(const auto& more, const CountOf& count_of) {
+    const std::size_t before = hits_.t.size();
+    n_rays_ += more.size();
+    std::size_t n = before;
+    for (std::size_t i = 0; i < more.size(); ++i) hits_.splits.push_back(n += count_of(i));
+    hits_.more.insert(hits_.more.end(), more.begin(), more.end());
+    make_room(n);
+    return before;
+  }
+
+  // For n hits; and at once for all that there will be, if the other rays have as many and there is memory.
+  void make_room(std::size_t n) {
+    if (hits_.t.capacity() < n) {
+      const double all =
+          1.05 * static_cast<double>(n) * static_cast<double>(n_all_) / static_cast<double>(n_rays_);
+      const std::size_t most = room_for(n);
+      const std::size_t wanted =
+          std::max(n, static_cast<std::size_t>(std::min(all, static_cast<double>(most))));
+      const auto reserve = [&](auto& array) {
+        array.reserve(wanted);
+        prefer_large_pages(array.data(), array.capacity() * sizeof(array[0]));
+      };
+      reserve(hits_.t), reserve(hits_.geometry), reserve(hits_.primitive), reserve(hits_.u), reserve(hits_.v);
+      reserve(hits_.instance);
+    }
+    hits_.t.resize(n), hits_.geometry.resize(n), hits_.primitive.resize(n), hits_.u.resize(n),
+        hits_.v.resize(n);
+    hits_.instance.resize(n);
+  }
+
+  // How many hits the answer can have, of which there are n. While an array grows there are two of it.
+  std::size_t room_for(std::size_t n) const {
+    const std::uint64_t held = hits_.t.capacity() * kBytesPerHit, needed = n * kBytesPerHit;
+    std::uint64_t most = max_bytes_;
+    if (most == 0) {
+      if (needed <= kSmallAnswer) return kSmallAnswer / kBytesPerHit;
+      const std::uint64_t free = free_memory(), twice = hits_.t.capacity() * sizeof(double);
+      most = held + (free > twice ? free - twice : 0);
+    }
+    if (needed > most)
+      throw Error(
+          ErrorCode::out_of_memory,
+          fmt::format(
+              "all hits: the first {} of {} rays have {} hits, which take {} bytes, and {} are {}; ask "
+              "for the first hits of each ray alone (max_hits), or for fewer rays at a time",
+              n_rays_, n_all_, n, needed, most, max_bytes_ == 0 ? "free" : "allowed (max_bytes)"));
+    return most / kBytesPerHit;
+  }
+
+  // `instance`: by its place in the scene's list.
+  void put(std::size_t at, double t, float u, float v, std::uint32_t number, std::uint32_t instance) {
+    const bool placed = instance != kNoInstance;
+    const auto shown =
+        placed ? asked_->table.of_instance(instance) : GeometryTable::InstancePlace{0, kNoInstance};
+    const auto place = placed ? GeometryTable::Place{shown.geometry, number} : asked_->table.of(number);
+    hits_.t[at] = t;
+    hits_.geometry[at] = place.geometry;
+    hits_.primitive[at] = place.primitive;
+    hits_.u[at] = u;
+    hits_.v[at] = v;
+    hits_.instance[at] = shown.instance;
+  }
+
+  const Asked* asked_;
+  std::size_t n_all_, n_rays_ = 0;  // rays there are, and that were added
+  std::uint64_t max_bytes_;
+  AllHits hits_;
+};
+
+}  // namespace
+
+QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, const QueryOptions& options) {
+  const RayArrays arrays(rays);
+  check_out(out.size(), arrays.size(), "counts");
+  CollectedRays collected(asked, arrays);
+  const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
+  std::vector<std::uint32_t> counts;
+  Pace pace(kFirstRays, kCollected);
+  for (std::size_t first = 0; first < arrays.size();) {
+    const std::span<const Ray> taken = collected.take(first, pace.take(), options);
+    counts.resize(taken.size());
+    count_hits(*passes, taken, {.masks = collected.masks(), .cancel = options.cancel}, counts);
+    if (arrays.in_double()) ExactRays(asked, arrays).count(first, counts, options.cancel);
+    if (!out.empty())
+      out.fill(first, counts.size(), [&](std::size_t ray) { return std::array{counts[ray - first]}; });
+    first += taken.size();
+    pace.done(taken.size());
+  }
+  return {collected.local().n_invalid()};
+}
+
+// While a chunk is traced, the hits of the one before it are added to the answer.
+AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options) {
+  const RayArrays arrays(rays);
+  const bool exact = arrays.in_double();
+  const ExactRays in_double(asked, arrays);
+  struct Chunk {
+    Chunk(const Asked& asked, const RayArrays& rays) : rays(asked, rays) {}
+    CollectedRays rays;
+    LocalHits found;
+    ExactHits exact;
+  };
+  Chunk chunks[2] = {{asked, arrays}, {asked, arrays}};
+  Answer answer(asked, arrays.size(), options.max_bytes);
+  const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
+  tbb::task_group adding;
+  Pace pace(kFirstRays, kCollected);
+  try {
+    for (std::size_t first = 0, turn = 0; first < arrays.size();) {
+      Chunk& chunk = chunks[turn];
+      const std::span<const Ray> taken = chunk.rays.take(first, pace.take(), options);
+      const CollectOptions collect{.max_hits = options.max_hits,
+                                   .masks = chunk.rays.masks(),
+                                   .as_refs = exact,
+                                   .cancel = options.cancel,
+                                   .at_once = taken.size() > 1 ? kTooMany : SIZE_MAX};
+      if (!all_hits(*passes, taken, collect, chunk.found)) {
+        pace.done(taken.size(), taken.size() / 8);
+        continue;
+      }
+      pace.done(taken.size(), kHitsAtOnce * taken.size() / std::max<std::size_t>(chunk.found.t.size(), 1));
+      if (exact) chunk.exact = in_double.settle(first, chunk.found, options.max_hits, options.cancel);
+      adding.wait();
+      const auto add = [&answer, &chunk, exact] {
+        exact ? answer.add(chunk.exact) : answer.add(chunk.rays.local(), chunk.found);
+      };
+      first += taken.size();
+      first < arrays.size() ? adding.run(add) : add();
+      turn ^= 1;
+    }
+  } catch (...) {
+    adding.cancel();
+    adding.wait();
+    throw;
+  }
+  return answer.take(chunks[0].rays.local().n_invalid() + chunks[1].rays.local().n_invalid());
+}
+
+}  // namespace kdray::query

@@ -1,0 +1,51 @@
+// What    Of a program's rays of doubles, what floats leave undecided: all hits of those that begin so near
+//         to a surface that floats can't tell whether it lies ahead, and t in double of all others.
+// Shape   Rays of floats are none of its business. t is in the units of the caller's rays.
+// Threads As many calls at once as there are threads.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/query/all_hits.h"
+#include "engine/query/ask.h"
+#include "engine/query/exact_scene.h"
+
+namespace kdray::query {
+
+// Of each ray of a chunk.
+struct ExactHits {
+  std::vector<std::vector<ExactHit>> hits;
+  std::vector<std::uint8_t> more;  // 1: it has more than max_hits
+};
+
+class ExactRays {
+ public:
+  ExactRays(const Asked& asked, const RayArrays& rays)
+      : asked_(&asked), rays_(&rays), scene_(asked.scene()) {}
+
+  // Of rays first and on: counts anew what those cross that begin near a surface.
+  void count(std::size_t first, std::span<std::uint32_t> counts, const std::optional<Cancel>& cancel) const;
+
+  // All hits of rays first and on, from those that floats have found, which are named by reference.
+  ExactHits settle(std::size_t first, const LocalHits& found, std::uint32_t max_hits,
+                   const std::optional<Cancel>& cancel) const;
+
+  // t in double of a hit of ray i that floats have found at `t`, in multiples of the local direction.
+  double distance(std::size_t i, std::uint32_t ref, std::uint32_t instance, float t) const;
+  void prefetch(std::uint32_t ref) const { scene_.prefetch(ref); }
+
+ private:
+  std::optional<LocalLine> line_of(std::size_t i) const;
+  bool begins_near(std::size_t i) const;
+  void all_hits(std::size_t i, std::vector<ExactHit>& hits) const;
+  bool is_seen(const ExactHit& hit, std::uint32_t mask) const;
+
+  const Asked* asked_;
+  const RayArrays* rays_;
+  ExactScene scene_;
+};
+
+}  // namespace kdray::query

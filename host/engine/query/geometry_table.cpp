@@ -1,0 +1,56 @@
+#include "engine/query/geometry_table.h"
+
+#include <algorithm>
+
+namespace kdray::query {
+
+void GeometryTable::add(GeometryId id, std::uint32_t n, std::uint32_t mask) {
+  if (n == 0) return;
+  geometries_.push_back({next_, n, id, mask});
+  next_ += n;
+}
+
+void GeometryTable::add_instances(GeometryId id, std::uint32_t n, std::uint32_t mask) {
+  if (n == 0) return;
+  instances_.push_back({next_instance_, n, id, mask});
+  next_instance_ += n;
+}
+
+const GeometryTable::Geometry& GeometryTable::holder(const std::vector<Geometry>& geometries,
+                                                     std::uint32_t number) {
+  if (geometries.size() == 1) return geometries.front();
+  const auto after = std::upper_bound(geometries.begin(), geometries.end(), number,
+                                      [](std::uint32_t n, const Geometry& g) { return n < g.first; });
+  return *(after - 1);
+}
+
+GeometryTable::Place GeometryTable::of(std::uint32_t number) const {
+  const Geometry& g = holder(geometries_, number);
+  return {g.id, number - g.first};
+}
+
+GeometryTable::InstancePlace GeometryTable::of_instance(std::uint32_t instance) const {
+  const Geometry& g = holder(instances_, instance);
+  return {g.id, instance - g.first};
+}
+
+std::optional<GeometryId> GeometryTable::only() const {
+  return geometries_.size() == 1 && instances_.empty() ? std::optional(geometries_.front().id) : std::nullopt;
+}
+
+std::vector<std::uint32_t> GeometryTable::masks(std::span<const std::uint32_t> instances) const {
+  const auto sees_all = [](const Geometry& g) { return g.mask == 0xffffffffu; };
+  if (std::ranges::all_of(geometries_, sees_all) && std::ranges::all_of(instances_, sees_all)) return {};
+  std::vector<std::uint32_t> masks;
+  if (!instances.empty()) {
+    masks.push_back(static_cast<std::uint32_t>(1 + instances.size()));
+    for (const std::uint32_t instance : instances) masks.push_back(holder(instances_, instance).mask);
+  }
+  const std::size_t first = masks.size();
+  masks.resize(first + next_);
+  for (const Geometry& g : geometries_)
+    std::fill_n(masks.begin() + static_cast<std::ptrdiff_t>(first + g.first), g.n, g.mask);
+  return masks;
+}
+
+}  // namespace kdray::query

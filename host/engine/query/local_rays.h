@@ -1,0 +1,136 @@
+// What    A program's rays, float or double, as the kernels take them: in the scene's own space, in float.
+// Shape   A chunk of Rays -> layout::QueryRay, and what turns the answers back: of each ray, how far ahead of
+//         its origin it begins, and by which power of two its t is scaled.
+// Errors  A ray that means nothing becomes one that meets nothing, and is counted; the first one's number is
+//         kept.
+//         In double a ray begins where it enters the scene's bounds, so that it is as exact there as one that
+//         starts beside them: origin + ahead * direction is rounded once, to float, whatever `ahead` is,
+//         and t comes back as ahead + t in double. A ray of floats is begun elsewhere only from over 2^60
+//         times the scene's size away. Else the origin, less the scene's centre, and the
+//         direction are rounded to float once; lengths change by powers of two.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/box.h"
+#include "base/local_space.h"
+#include "kdray/query.h"
+#include "layout/rays.layout.h"
+#include "scene/model/geometry.h"
+
+namespace kdray::query {
+
+// The rows of arrays that have one for each ray, or one for all: checked once.
+class RayArrays {
+ public:
+  // Throws ErrorCode::input where the sizes don't match.
+  explicit RayArrays(const Rays& rays);
+
+  std::size_t size() const { return n_; }
+  const Rays& rays() const { return rays_; }
+  dvec3 origin(std::size_t i) const { return vector(rays_.origins[rays_.origins.size() == 1 ? 0 : i]); }
+  dvec3 direction(std::size_t i) const {
+    return vector(rays_.directions[rays_.directions.size() == 1 ? 0 : i]);
+  }
+  double t_min(std::size_t i) const { return value(rays_.t_min, i, 0); }
+  double t_max(std::size_t i) const { return value(rays_.t_max, i, std::numeric_limits<double>::infinity()); }
+  std::uint32_t mask(std::size_t i) const {
+    return rays_.masks.empty() ? 0xffffffffu : rays_.masks[rays_.masks.size() == 1 ? 0 : i][0];
+  }
+  bool in_double() const { return in_double_; }  // whether one of the arrays is
+
+ private:
+  static dvec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+  static double value(const Values& values, std::size_t i, double none) {
+    return values.empty() ? none : values[values.size() == 1 ? 0 : i][0];
+  }
+
+  Rays rays_;
+  std::size_t n_;
+  bool in_double_;
+};
+
+// A ray that begins `ahead` of its origin: t = ahead + ldexp(local t, exponent).
+struct LocalRay {
+  layout::QueryRay ray;
+  double ahead;
+  int exponent;
+};
+
+// The same in doubles: t = ldexp(ahead + local t, exponent).
+struct LocalLine {
+  dvec3 origin, direction;
+  double ahead;  // in multiples of the local direction
+  int exponent;
+};
+
+class LocalFrame {
+ public:
+  explicit LocalFrame(const scene::Geometry& geometry);  // its space and bounds
+
+  // None where it passes the bounds by, or stays too far from them for floats.
+  std::optional<LocalLine> line(const dvec3& origin, const dvec3& direction, bool in_double) const;
+  LocalRay begin(const dvec3& origin, const dvec3& direction, double t_min, double t_max,
+                 bool in_double) const;
+  // The exponent of rays that need no more: those of ordinary length that are not moved.
+  int exponent() const { return exponent_; }
+  double unit() const { return unit_; }  // 2^exponent()
+  const LocalSpace& space() const { return space_; }
+  // Whether a point, in the scene's own space, lies outside of its bounds for certain.
+  bool is_outside(const dvec3& local) const {
+    return glm::any(glm::lessThan(local, lo_)) || glm::any(glm::greaterThan(local, hi_));
+  }
+
+ private:
+  double distance_ahead(const dvec3& origin, const dvec3& direction) const;
+  std::optional<LocalLine> begin_line(const dvec3& origin, const dvec3& direction, bool in_double) const;
+
+  LocalSpace space_;
+  dvec3 lo_, hi_;  // the bounds, a little wider
+  int exponent_;
+  double unit_;
+  double near_;  // origins of doubles within this, along each axis, stay
+};
+
+// One chunk after the other; its memory is used again.
+class LocalRays {
+ public:
+  LocalRays(const RayArrays& rays, const LocalFrame& frame) : rays_(&rays), frame_(&frame) {}
+
+  // Fills out[0, n) with rays [first, first + n), which may be asked for again. One whose mask has no bit
+  // meets nothing.
+  void fill(std::size_t first, std::size_t n, layout::QueryRay* out);
+
+  // Of ray i of the chunk that was filled last.
+  double world_t(std::size_t i, float t) const {
+    if (moved_.empty()) return t * frame_->unit();
+    return moved_[i].ahead + std::ldexp(double{t}, moved_[i].exponent);
+  }
+
+  bool has_moved() const { return !moved_.empty(); }  // rays of that chunk need a t of their own each
+
+  std::uint64_t n_invalid() const { return n_invalid_; }
+  std::optional<std::string> first_invalid() const { return first_invalid_; }
+
+ private:
+  struct Moved {
+    double ahead;
+    int exponent;
+  };
+  void fill_any(std::size_t first, std::size_t n, layout::QueryRay* out);
+  void note_invalid(std::size_t first, std::size_t n);
+
+  const RayArrays* rays_;
+  const LocalFrame* frame_;
+  std::vector<Moved> moved_;   // empty: all rays of the chunk are as far ahead and as long as usual
+  std::size_t looked_at_ = 0;  // rays before this one have been counted where they are invalid
+  std::uint64_t n_invalid_ = 0;
+  std::optional<std::string> first_invalid_;
+};
+
+}  // namespace kdray::query

@@ -1,0 +1,144 @@
+#include "engine/query/point_session.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/error.h"
+#include "base/rounding.h"
+#include "device/opencl/opencl_error.h"
+#include "engine/query/grains.h"
+
+namespace kdray::query {
+
+namespace {
+
+using layout::ClosestHit;
+using layout::QueryPoint;
+
+// A launch has room for so many points at least.
+constexpr std::size_t kLeastRoom = 1024;
+// Fewer are asked as they come: sorting them would take longer than they do.
+constexpr std::size_t kFewPoints = 64;
+
+QueryPoint packed(const dvec3& place) {
+  return {{std::bit_cast<layout::u64>(place.x), std::bit_cast<layout::u64>(place.y),
+           std::bit_cast<layout::u64>(place.z)}};
+}
+
+double number_of(layout::u64 bits, layout::u32 form) {
+  if (form == KDRAY_FORM_DOUBLE) return std::bit_cast<double>(bits);
+  return double{std::bit_cast<float>(static_cast<layout::u32>(bits))} +
+         double{std::bit_cast<float>(static_cast<layout::u32>(bits >> 32))};
+}
+
+ClosestPoint answer_of(const Places& places, const dvec3& point, const ClosestHit& hit, double radius) {
+  if (hit.number < 0) return kNoClosestPoint;
+  const dvec3 local(number_of(hit.point[0], hit.form), number_of(hit.point[1], hit.form),
+                    number_of(hit.point[2], hit.form));
+  const double distance = places.distance(point, local, number_of(hit.distance, hit.form));
+  if (distance > radius) return kNoClosestPoint;
+  return {distance, places.space.world(local), hit.number, hit.u, hit.v};
+}
+
+cl_float4 corner_of_bounds(const vec3& v) {
+  return cl_float4{{v.x, v.y, v.z, 0}};
+}
+
+// In local lengths, rounded up; beyond all floats: without end.
+float reach_of(const LocalSpace& space, double radius) {
+  const double local = space.local_length(radius);
+  return local < kPointReach ? round_up(local) : std::numeric_limits<float>::max();
+}
+
+}  // namespace
+
+PointSession::PointSession(const Target& target)
+    : target_(target),
+      places_{target.scene.geometry.space},
+      stage_(target.programs.kernel<K>(target.scene.features, Traversal::wide)),
+      queue_(target.context),
+      order_(target.scene.geometry.bounds) {
+  const Box& bounds = target.scene.geometry.bounds;
+  device::checked("getting ready to find closest points", [&] {
+    target.buffers.set_arguments(stage_);
+    stage_.set(K::root_lo, corner_of_bounds(bounds.lo)).set(K::root_hi, corner_of_bounds(bounds.hi));
+    reserve(kLeastRoom);
+    // PoCL compiles a kernel for good at its first launch.
+    const device::AtWork compiling(target.context.builds());
+    stage_.set(K::n_points, cl_uint{0}).set(K::reach, 0.0f);
+    launch(1);
+    queue_.get().finish();
+    stage_.forget_launches();
+  });
+}
+
+void PointSession::reserve(std::size_t n) {
+  if (n <= queries_.size()) return;
+  n = std::bit_ceil(n);
+  queries_ = {target_.context, CL_MEM_READ_ONLY, n, "the points"};
+  hits_ = {target_.context, CL_MEM_WRITE_ONLY, n, "the closest points"};
+  stage_.set(K::points, queries_.buffer()).set(K::closest, hits_.buffer());
+}
+
+void PointSession::start(std::span<const dvec3> points, double radius) {
+  points_ = points;
+  radius_ = radius;
+  device::checked("finding closest points", [&] {
+    reserve(points.size());
+    points_order_ = put_in_order(points);
+    queries_.send(queue_.get(), points.size());
+    stage_.set(K::n_points, static_cast<cl_uint>(points.size()));
+    stage_.set(K::reach, reach_of(places_.space, radius));
+    launch(points.size());
+    queue_.get().flush();
+  });
+}
+
+void PointSession::wait(std::span<ClosestPoint> answers) {
+  device::checked("finding closest points", [&] {
+    queue_.get().finish();
+    stage_.forget_launches();
+    hits_.fetch(queue_.get(), points_.size());
+  });
+  const ClosestHit* const hits = hits_.data();
+  std::atomic<bool> failed{false};
+  for_each_grain(points_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (hits[i].number == KDRAY_CLOSEST_INVALID) failed = true;
+      const std::size_t at = points_order_.empty() ? i : points_order_[i];
+      answers[at] = answer_of(places_, points_[at], hits[i], radius_);
+    }
+  });
+  if (failed)
+    throw Error(ErrorCode::internal,
+                "a point came to a kind of primitive that its program lacks; please report it");
+}
+
+// Makes the queries, and tells which points they are of; empty: the same.
+std::span<const std::uint32_t> PointSession::put_in_order(std::span<const dvec3> points) {
+  const auto for_all = [&](const auto& work) {
+    for_each_grain(points.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work(i);
+    });
+  };
+  QueryPoint* const queries = queries_.data();
+  if (points.size() < kFewPoints) {
+    for_all([&](std::size_t i) { queries[i] = packed(places_.place_of(points[i])); });
+    return {};
+  }
+  cells_.resize(points.size());
+  for_all([&](std::size_t i) { cells_[i] = order_.cell_of(places_.place_of(points[i])); });
+  const std::span<const std::uint32_t> order = order_.sorted(cells_);
+  for_all([&](std::size_t i) { queries[i] = packed(places_.place_of(points[order[i]])); });
+  return order;
+}
+
+void PointSession::launch(std::size_t n) {
+  stage_.launch(queue_.get(), n, target_.work_group);
+}
+
+}  // namespace kdray::query

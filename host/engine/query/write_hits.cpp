@@ -1,0 +1,215 @@
+#include "engine/query/write_hits.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "engine/query/surface.h"
+
+namespace kdray::query {
+
+namespace {
+
+using layout::QueryHit;
+
+bool missed(const QueryHit& hit) {
+  return hit.primitive == -1;
+}
+std::array<double, 3> array(const dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+template <class T, class View>
+bool is_dense(const View& view) {
+  return view.empty() || (view.template first_of<T>() != nullptr && view.stride() == sizeof(T));
+}
+
+using Lanes = float __attribute__((vector_size(16)));
+using Words = int __attribute__((vector_size(16)));
+
+Lanes four_of(const QueryHit& hit) {
+  static_assert(sizeof(QueryHit) == sizeof(Lanes));
+  Lanes lanes;
+  std::memcpy(&lanes, &hit, sizeof lanes);
+  return lanes;
+}
+
+template <class T, class V>
+void put_four(T* to, std::size_t at, const V& four) {
+  if (to != nullptr) std::memcpy(to + at, &four, sizeof four);
+}
+
+// Columns without gaps; null: not wanted.
+struct DenseColumns {
+  float* t;
+  std::uint32_t *geometry, *primitive;
+  float *u, *v;
+
+  explicit DenseColumns(const HitsOut& out)
+      : t(out.t.first_of<float>()),
+        geometry(out.geometry.first_of<std::uint32_t>()),
+        primitive(out.primitive.first_of<std::uint32_t>()),
+        u(out.u.first_of<float>()),
+        v(out.v.first_of<float>()) {}
+
+  // Four hits to the rows from `at` on; t in multiples of `unit`, hits all of one geometry.
+  void put(std::size_t at, const QueryHit* hits, float unit, GeometryId id) const {
+    const Lanes a = four_of(hits[0]), b = four_of(hits[1]), c = four_of(hits[2]), d = four_of(hits[3]);
+    const Lanes tp01 = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+                tp23 = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const Lanes uv01 = __builtin_shufflevector(a, b, 2, 6, 3, 7),
+                uv23 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    const Words numbers = (Words)__builtin_shufflevector(tp01, tp23, 2, 3, 6, 7);
+    put_four(t, at, __builtin_shufflevector(tp01, tp23, 0, 1, 4, 5) * unit);
+    put_four(primitive, at, numbers);  // of a miss -1: kNoPrimitive
+    put_four(geometry, at,
+             numbers == -1 ? Words{} + static_cast<int>(kNoGeometry) : Words{} + static_cast<int>(id));
+    put_four(u, at, __builtin_shufflevector(uv01, uv23, 0, 1, 4, 5));
+    put_four(v, at, __builtin_shufflevector(uv01, uv23, 2, 3, 6, 7));
+  }
+};
+static_assert(kNoPrimitive == 0xffffffffu);
+
+}  // namespace
+
+HitWriter::HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& out)
+    : asked_(&asked), rays_(&rays), out_(out) {
+  const std::size_t n = rays.size();
+  check_out(out.t.size(), n, "t");
+  check_out(out.geometry.size(), n, "geometry");
+  check_out(out.primitive.size(), n, "primitive");
+  check_out(out.u.size(), n, "u");
+  check_out(out.v.size(), n, "v");
+  check_out(out.normal.size(), n, "normal");
+  check_out(out.point.size(), n, "point");
+  check_out(out.instance.size(), n, "instance");
+  if (rays.in_double() && !(out.t.empty() && out.point.empty())) exact_.emplace(asked, rays);
+  const double unit = asked.frame.unit();
+  dense_ = !exact_ && is_dense<float>(out.t) && is_dense<std::uint32_t>(out.geometry) &&
+           is_dense<std::uint32_t>(out.primitive) && is_dense<float>(out.u) && is_dense<float>(out.v) &&
+           asked.table.only() && unit >= std::numeric_limits<float>::min() &&
+           unit <= std::numeric_limits<float>::max();
+}
+
+void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, const FoundHits& found,
+                      const LocalRays& local) const {
+  Numbered numbered;
+  std::array<double, kRows> t;
+  for (; begin < end; begin += kRows) {
+    const FoundHits part = found.part(begin, std::min(kRows, end - begin));
+    Some some{first + begin, begin, part.hits, part.instances, local, nullptr};
+    if (exact_) {
+      find_distances(some, t);
+      some.exact = t.data();
+    }
+    if (wants_refs()) {
+      out_.normal.empty() ? number(some, numbered) : write_normals(some, numbered);
+      some.hits = std::span(numbered).first(some.hits.size());
+    }
+    write_columns(some, write_dense(some));
+  }
+}
+
+// Of hits that are named by references.
+void HitWriter::find_distances(const Some& some, std::span<double> t) const {
+  for (const QueryHit& hit : some.hits)
+    if (!missed(hit)) exact_->prefetch(static_cast<std::uint32_t>(hit.primitive));
+  for (std::size_t i = 0; i < some.hits.size(); ++i) {
+    const QueryHit& hit = some.hits[i];
+    t[i] = missed(hit) ? HUGE_VAL
+                       : exact_->distance(some.ray + i, static_cast<std::uint32_t>(hit.primitive),
+                                          some.instance(i), hit.t);
+  }
+}
+
+void HitWriter::number(const Some& some, Numbered& numbered) const {
+  for (std::size_t i = 0; i < some.hits.size(); ++i) {
+    numbered[i] = some.hits[i];
+    if (!missed(some.hits[i]))
+      numbered[i].primitive = static_cast<std::int32_t>(
+          number_of(asked_->scene().flat, static_cast<std::uint32_t>(some.hits[i].primitive)));
+  }
+}
+
+// Of a hit that is named by a reference, which gets its number.
+dvec3 HitWriter::normal_of(const Some& some, std::size_t i, QueryHit& hit) const {
+  const flatten::FlatScene& flat = asked_->scene().flat;
+  const std::uint32_t index = some.instance(i);
+  const layout::Instance* const instance = index == kNoInstance ? nullptr : &flat.instances[index];
+  const auto point = [&] {
+    const dvec3 local = asked_->frame.space().local(point_of(some.ray + i, some.t(i)));
+    return instance ? in_mesh(*instance, local) : local;
+  };
+  const Surface surface = surface_at(flat, static_cast<std::uint32_t>(hit.primitive), point);
+  hit.primitive = static_cast<std::int32_t>(surface.number);
+  return instance ? normal_in_scene(*instance, surface.normal) : surface.normal;
+}
+
+// The normals of hits that are named by references; `numbered`: the same hits named by numbers.
+void HitWriter::write_normals(const Some& some, Numbered& numbered) const {
+  fill(out_.normal, some, 0, [&](std::size_t i, QueryHit hit) {
+    const dvec3 normal = missed(hit) ? dvec3(0) : normal_of(some, i, hit);
+    numbered[i] = hit;
+    return array(normal);
+  });
+}
+
+// How many of them were written.
+std::size_t HitWriter::write_dense(const Some& some) const {
+  if (!dense_ || some.local.has_moved()) return 0;
+  const DenseColumns columns(out_);
+  const auto unit = static_cast<float>(asked_->frame.unit());
+  const GeometryId id = *asked_->table.only();
+  std::size_t i = 0;
+  for (; i + 4 <= some.hits.size(); i += 4) columns.put(some.ray + i, &some.hits[i], unit, id);
+  return i;
+}
+
+void HitWriter::write_instances(const Some& some, std::size_t from) const {
+  fill(out_.instance, some, from, [&](std::size_t i, const QueryHit& hit) {
+    const std::uint32_t index = missed(hit) ? kNoInstance : some.instance(i);
+    if (index == kNoInstance) return std::array{kNoInstance};
+    return std::array{asked_->table.of_instance(asked_->scene().flat.instances[index].number).instance};
+  });
+}
+
+template <class Column, class ValueOf>
+void HitWriter::fill(const Column& column, const Some& some, std::size_t from,
+                     const ValueOf& value_of) const {
+  if (column.empty()) return;
+  column.fill(some.ray + from, some.hits.size() - from, [&](std::size_t ray) {
+    const std::size_t i = ray - some.ray;
+    return value_of(i, some.hits[i]);
+  });
+}
+
+// Those from `from` on.
+void HitWriter::write_columns(const Some& some, std::size_t from) const {
+  // The t of a miss is infinite, and stays so.
+  const auto t_of = [&](std::size_t i) { return some.t(i); };
+  const auto place_of = [&](std::size_t i, const QueryHit& hit) {
+    if (missed(hit)) return GeometryTable::Place{kNoGeometry, kNoPrimitive};
+    const auto number = static_cast<std::uint32_t>(hit.primitive);
+    const std::uint32_t index = some.instance(i);
+    if (index == kNoInstance) return asked_->table.of(number);
+    const std::uint32_t place = asked_->scene().flat.instances[index].number;
+    return GeometryTable::Place{asked_->table.of_instance(place).geometry, number};
+  };
+  fill(out_.t, some, from, [&](std::size_t i, const auto&) { return std::array{t_of(i)}; });
+  fill(out_.geometry, some, from,
+       [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).geometry}; });
+  fill(out_.primitive, some, from,
+       [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).primitive}; });
+  write_instances(some, from);
+  fill(out_.u, some, from, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
+  fill(out_.v, some, from, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
+  fill(out_.point, some, 0,
+       [&](std::size_t i, const auto&) { return array(point_of(some.ray + i, t_of(i))); });
+}
+
+dvec3 HitWriter::point_of(std::size_t ray, double t) const {
+  return std::isinf(t) ? dvec3(HUGE_VAL) : rays_->origin(ray) + t * rays_->direction(ray);
+}
+
+}  // namespace kdray::query

@@ -1,0 +1,23 @@
+// What    Renders the extra channels (AOVs): one eye ray per pixel, apart from the film.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/local_space.h"
+#include "engine/wavefront/programs.h"
+#include "engine/wavefront/scene_buffers.h"
+#include "io/image/image.h"
+#include "layout/frame.layout.h"
+
+namespace kdray::wavefront {
+
+// `names` of "depth", "normal", "primitive", "cost"; throws ErrorCode::usage, naming what there is, for
+// others. Depths are the world's; the frame's lengths are those of `space`.
+std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
+                                           Programs& programs, const layout::Frame& frame,
+                                           const LocalSpace& space, layout::Features features,
+                                           Precision precision, std::span<const std::string> names);
+
+}  // namespace kdray::wavefront

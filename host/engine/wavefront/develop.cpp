@@ -1,0 +1,136 @@
+#include "engine/wavefront/develop.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+// Of a function in several forms (target_clones) one is chosen while the program is being loaded, before a
+// sanitizer is ready for any code: with sanitizers there is one form.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define KDRAY_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define KDRAY_SANITIZED
+#endif
+#endif
+
+namespace kdray::wavefront {
+
+namespace {
+
+constexpr std::size_t kGrain = 1 << 15;  // pixels to a task: 1 MiB of sums and picture
+
+// Neighbouring tiles of one row.
+struct TileSpan {
+  std::uint32_t row, first_column, end_column;
+};
+
+// Spans as long as can be: sums and picture are read and written in the order in which they lie.
+std::vector<TileSpan> spans_of(std::span<const layout::u32> tiles) {
+  std::vector<layout::u32> sorted(tiles.begin(), tiles.end());
+  std::sort(sorted.begin(), sorted.end());  // by row, then by column
+  std::vector<TileSpan> spans;
+  for (const layout::u32 tile : sorted) {
+    const std::uint32_t row = KDRAY_TILE_ROW(tile), column = KDRAY_TILE_COLUMN(tile);
+    if (!spans.empty() && spans.back().row == row && spans.back().end_column == column)
+      ++spans.back().end_column;
+    else
+      spans.push_back({row, column, column + 1});
+  }
+  return spans;
+}
+
+// Calls take(pixel, n) for the pixels of the tiles, row by row: n from the picture's pixel on.
+template <class Take>
+void for_each_row(const layout::Frame& frame, std::span<const layout::u32> tiles, const Take& take) {
+  const auto take_span = [&](const TileSpan& span) {
+    const std::size_t x = std::size_t{span.first_column} * frame.tile_width;
+    const std::size_t end_x =
+        std::min<std::size_t>(std::size_t{span.end_column} * frame.tile_width, frame.width);
+    const std::size_t end_y =
+        std::min<std::size_t>((std::size_t{span.row} + 1) * frame.tile_height, frame.height);
+    for (std::size_t y = std::size_t{span.row} * frame.tile_height; y < end_y; ++y)
+      take(y * frame.width + x, end_x - x);
+  };
+  const std::vector<TileSpan> spans = spans_of(tiles);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, spans.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) take_span(spans[i]);
+  });
+}
+
+// This is compiled for vectors of eight as well, where the processor has them: the conversions of 64-bit
+// whole numbers are instructions there, of eight at once. Each operation is rounded by itself, so the values
+// are the same.
+#if defined(__x86_64__) && defined(__linux__) && !defined(KDRAY_SANITIZED)
+__attribute__((target_clones("arch=x86-64-v4", "default")))
+#endif
+void scale_sums(const layout::i64* sums, std::size_t n, double scale, float* values) {
+  for (std::size_t i = 0; i < n; ++i) values[i] = static_cast<float>(static_cast<double>(sums[i]) * scale);
+}
+
+// The films' sums from `first` on.
+void add_pieces(Films films, std::size_t first, std::span<layout::i64> sums) {
+  constexpr auto kLeast = std::numeric_limits<layout::i64>::min(),
+                 kMost = std::numeric_limits<layout::i64>::max();
+  const auto begin = films.front().begin() + static_cast<std::ptrdiff_t>(first);
+  std::copy(begin, begin + static_cast<std::ptrdiff_t>(sums.size()), sums.begin());
+  for (const auto& film : films.subspan(1))
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const layout::i64 more = film[first + i];
+      if (__builtin_add_overflow(sums[i], more, &sums[i])) sums[i] = more < 0 ? kLeast : kMost;
+    }
+}
+
+class Developer {
+ public:
+  explicit Developer(std::uint32_t samples)
+      : scale_(1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples)) {}
+
+  void operator()(std::span<const layout::i64> sums, std::span<vec3> pixels) const {
+    static_assert(sizeof(vec3) == 3 * sizeof(float));
+    if (!pixels.empty()) scale_sums(sums.data(), 3 * pixels.size(), scale_, &pixels.front().x);
+  }
+
+ private:
+  double scale_;
+};
+
+}  // namespace
+
+void develop(Films films, int samples, std::span<vec3> pixels) {
+  const Developer developer(static_cast<std::uint32_t>(samples));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kGrain), [&](const auto& range) {
+    const auto to = pixels.subspan(range.begin(), range.size());
+    if (films.size() == 1) return developer(films.front().subspan(3 * range.begin(), 3 * range.size()), to);
+    std::vector<layout::i64> sums(3 * range.size());
+    add_pieces(films, 3 * range.begin(), sums);
+    developer(sums, to);
+  });
+}
+
+void add_up(Films films, std::span<layout::i64> sums) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sums.size(), kGrain), [&](const auto& range) {
+    add_pieces(films, range.begin(), sums.subspan(range.begin(), range.size()));
+  });
+}
+
+void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+                   std::span<const layout::u32> tiles, std::span<vec3> picture) {
+  const Developer developer(frame.n_samples);
+  for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
+    developer(sums.subspan(3 * (pixel - first_pixel), 3 * n), picture.subspan(pixel, n));
+  });
+}
+
+void copy_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+                std::span<const layout::u32> tiles, std::span<layout::i64> picture_sums) {
+  for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
+    const auto from = sums.subspan(3 * (pixel - first_pixel), 3 * n);
+    std::copy(from.begin(), from.end(), picture_sums.subspan(3 * pixel).begin());
+  });
+}
+
+}  // namespace kdray::wavefront

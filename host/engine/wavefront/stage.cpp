@@ -1,0 +1,26 @@
+#include "engine/wavefront/stage.h"
+
+namespace kdray::wavefront {
+
+cl::Event LaunchClock::launch(const cl::Kernel& kernel, cl::CommandQueue& queue, std::size_t items,
+                              std::size_t local) {
+  const std::size_t groups = (items + local - 1) / local;
+  cl::Event event;
+  queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * local), cl::NDRange(local), nullptr,
+                             &event);
+  launches_.push_back(event);
+  return event;
+}
+
+double LaunchClock::collect_seconds() {
+  while (!launches_.empty() &&
+         launches_.front().getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() == CL_COMPLETE) {
+    const cl::Event& event = launches_.front();
+    seconds_ += 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                           event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+    launches_.pop_front();
+  }
+  return seconds_;
+}
+
+}  // namespace kdray::wavefront

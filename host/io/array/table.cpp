@@ -1,0 +1,102 @@
+#include "io/array/table.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "base/error.h"
+#include "io/array/npy_header.h"
+#include "io/array/zip.h"
+
+namespace kdray::rays {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "NumPy's '<f4' is written as it lies");
+
+constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+
+// "('point', '<f8', (3,))" of a structured type.
+std::string field_of(const Column& c) {
+  const std::string shape = c.n_values > 1 ? ", (" + std::to_string(c.n_values) + ",)" : "";
+  return "('" + c.name + "', '" + c.type + "'" + shape + ")";
+}
+
+std::string header_of(std::span<const Column> columns) {
+  const Column& first = columns.front();
+  std::vector<std::uint64_t> shape = {first.n_rows};
+  if (columns.size() == 1) {
+    if (first.n_values > 1) shape.push_back(first.n_values);
+    return make_header("'" + first.type + "'", shape);
+  }
+  std::string type;
+  for (const Column& c : columns) type += (type.empty() ? "[" : ", ") + field_of(c);
+  return make_header(type + "]", shape);
+}
+
+// Whether the columns' rows lie in memory just as they do in the file.
+bool lie_packed(std::span<const Column> columns, std::size_t record_bytes) {
+  std::size_t offset = 0;
+  for (const Column& c : columns) {
+    if (c.stride != record_bytes || c.first != columns.front().first + offset) return false;
+    offset += c.row_bytes();
+  }
+  return true;
+}
+
+// Puts rows [begin, end) of all columns, record by record, to `to`.
+void gather(std::span<const Column> columns, std::size_t record_bytes, std::size_t begin, std::size_t end,
+            char* to) {
+  for (const Column& c : columns) {
+    const std::size_t n_bytes = c.row_bytes();
+    for (std::size_t i = begin; i < end; ++i)
+      std::memcpy(to + (i - begin) * record_bytes, c.first + i * c.stride, n_bytes);
+    to += n_bytes;
+  }
+}
+
+void write_rows(std::span<const Column> columns, const Sink& sink) {
+  const std::size_t n_rows = columns.front().n_rows;
+  if (n_rows == 0) return;
+  std::size_t record_bytes = 0;
+  for (const Column& c : columns) record_bytes += c.row_bytes();
+  if (lie_packed(columns, record_bytes))
+    return sink({reinterpret_cast<const char*>(columns.front().first), n_rows * record_bytes});
+  const std::size_t n_at_once = std::max<std::size_t>(1, kPieceBytes / record_bytes);
+  std::string piece(std::min(n_rows, n_at_once) * record_bytes, '\0');
+  for (std::size_t begin = 0; begin < n_rows; begin += n_at_once) {
+    const std::size_t end = std::min(n_rows, begin + n_at_once);
+    gather(columns, record_bytes, begin, end, piece.data());
+    sink(std::string_view(piece).substr(0, (end - begin) * record_bytes));
+  }
+}
+
+void write_npy(std::span<const Column> columns, const Sink& sink) {
+  for (const Column& c : columns)
+    if (c.n_rows != columns.front().n_rows)
+      throw Error(ErrorCode::internal, "the columns of an .npy have different lengths");
+  sink(header_of(columns));
+  write_rows(columns, sink);
+}
+
+}  // namespace
+
+Column flags(std::string name, std::span<const std::uint8_t> values) {
+  const auto* const first = reinterpret_cast<const std::byte*>(values.data());
+  return {std::move(name), "|b1", 1, 1, first, values.size(), 1};
+}
+
+void write_table(std::span<const Column> columns, TableFormat format, const Sink& sink) {
+  if (format == TableFormat::npy) return write_npy(columns, sink);
+  ZipWriter zip(sink);
+  for (const Column& c : columns) zip.add(c.name + ".npy", [&](const Sink& to) { write_npy({&c, 1}, to); });
+  zip.finish();
+}
+
+void write_table(const std::filesystem::path& file, std::span<const Column> columns, TableFormat format) {
+  write_atomically(file, [&](const std::filesystem::path& temporary) {
+    write_pieces(temporary, file, [&](const Sink& sink) { write_table(columns, format, sink); });
+  });
+}
+
+}  // namespace kdray::rays

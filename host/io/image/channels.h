@@ -1,0 +1,25 @@
+// What    Pictures of extra channels, for beside a PNG: how a depth, a normal, a primitive's number or a cost
+//         looks, and who traced what.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/image/image.h"
+#include "io/image/png.h"
+
+namespace kdray::film {
+
+struct ChannelPicture {
+  std::string name;  // "depth", "normal", "primitive", "cost", "queue": the part between NAME. and .png
+  PngPixels pixels;
+  PngMeta meta;
+};
+
+// One picture per channel; the three of a normal make one. `image`: the picture beside them, which lends the
+// colours of queues its brightness; empty: they are flat.
+std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<const Channel> channels,
+                                             std::span<const vec3> image = {});
+
+}  // namespace kdray::film

@@ -1,9 +1,0 @@
-#include "pdprt/rank_messages.h"
-
-namespace kdray::pdprt {
-
-ledger::Rectangle SharedFrame::places_of(bool of_runs, layout::u32 entry) const {
-  return ledger::places_of({width, height, tile_width, tile_height}, of_runs ? 1 : 0, entry);
-}
-
-}  // namespace kdray::pdprt

@@ -1,0 +1,98 @@
+#include "probe/trial/trial.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string_view>
+
+#include "probe/trial/asked.h"
+#include "probe/trial/program.h"
+
+namespace kdray::trial {
+
+namespace {
+
+constexpr double kLimitSeconds = 15;
+constexpr double kPictureLimit = 4;  // times as long: it takes the compiling of a whole render
+
+// In the order of Subject: what a child is told to do, and how that is called when it went wrong.
+struct Words {
+  const char* asked;
+  const char* in;
+  const char* to;
+};
+constexpr std::array<Words, 3> kWords = {{
+    {"driver", "when it is asked for its devices", "to list its devices"},
+    {"device", "in the self-test", "for the self-test"},
+    {"picture", "in the test picture", "for the test picture"},
+}};
+
+const Words& words_for(Subject subject) {
+  return kWords[static_cast<std::size_t>(subject)];
+}
+
+// Whether the signal comes from outside: from a user, from a batch system, from the kernel that is out of
+// memory.
+bool is_sent(int signal) {
+  constexpr std::array kSent = {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGXCPU};
+  return std::ranges::find(kSent, signal) != kSent.end();
+}
+
+// The last whole line of a report.
+std::string_view last_line(std::string_view report) {
+  report = report.substr(0, report.rfind('\n') + 1);
+  if (report.empty()) return report;
+  report.remove_suffix(1);
+  return report.substr(report.rfind('\n') + 1);
+}
+
+std::optional<std::string> behind(std::string_view word, std::string_view line) {
+  if (!line.starts_with(word)) return std::nullopt;
+  return std::string(line.substr(word.size()));
+}
+
+Outcome failed(const std::string& text, bool lasting = true) {
+  return {device::Verdict{false, text}, lasting};
+}
+
+}  // namespace
+
+double time_limit() {
+  const char* const set = std::getenv("KDRAY_TRIAL_SECONDS");
+  const double seconds = set ? std::strtod(set, nullptr) : 0;
+  return seconds > 0 && seconds <= 1e6 ? seconds : kLimitSeconds;
+}
+
+Outcome outcome_of(Subject subject, const ChildEnd& end, double limit_seconds) {
+  const std::string_view line = last_line(end.report);
+  if (const auto text = behind(kPassed, line)) return {device::Verdict{true, *text}};
+  if (const auto text = behind(kFailed, line)) return failed(*text);
+  if (line != kBegun) return {};
+  const Words& words = words_for(subject);
+  if (end.timed_out) return failed(fmt::format("takes longer than {} s {}", limit_seconds, words.to));
+  if (is_sent(end.signal))
+    return failed(fmt::format("was stopped by {} {}", signal_name(end.signal), words.in), false);
+  if (end.signal != 0) return failed(fmt::format("crashes ({}) {}", signal_name(end.signal), words.in));
+  return failed(fmt::format("ends the program {}", words.in));
+}
+
+Trial::Trial(Subject subject, const Hash& key, const std::map<std::string, std::string>& environment)
+    : subject_(subject), limit_seconds_(time_limit() * (subject == Subject::picture ? kPictureLimit : 1)) {
+  if (const auto found = program())
+    child_ = std::make_unique<Child>(
+        ChildOptions{.program = *found,
+                     .arguments = {kTry, words_for(subject).asked, in_hex(key), std::to_string(::getpid())},
+                     .environment = environment,
+                     .limit_seconds = limit_seconds_});
+}
+
+const Outcome& Trial::outcome() {
+  if (!outcome_) outcome_ = child_ ? outcome_of(subject_, child_->wait(), limit_seconds_) : Outcome{};
+  return *outcome_;
+}
+
+}  // namespace kdray::trial

@@ -1,0 +1,47 @@
+// What    glTF materials in the terms of the Whitted model, and their numbers in the scene.
+//         docs/scenes-meshes.md tells users how they are mapped.
+// Source  glTF 2.0, appendix B (the metallic-roughness model); KHR_materials_ior, _transmission, _volume,
+//         _emissive_strength, _unlit, _pbrSpecularGlossiness.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scene/import/gltf/gltf_document.h"
+#include "scene/import/gltf/gltf_textures.h"
+#include "scene/model/scene.h"
+
+namespace kdray::scene::gltf {
+
+class Materials {
+ public:
+  Materials(Document& document, Scene& scene)
+      : document_(document), scene_(scene), textures_(document, scene) {}
+
+  // The scene's number of the material that a primitive names, or of glTF's default material. `at`: what
+  // the primitive has at its corners; tangents count where a picture bends normals.
+  struct Corners {
+    bool colors = false, tangents = false;
+    auto operator<=>(const Corners&) const = default;
+  };
+  std::uint32_t number_of(const JsonNode& primitive, Corners at);
+  // Called after the last primitive: warns of what was left out.
+  void warn();
+
+ private:
+  Material read(const JsonNode* node, Corners at);
+  std::optional<std::uint32_t> base_texture(const JsonNode& node);
+  std::uint32_t map_of(const JsonNode& holder, std::string_view key, bool curved);
+  void read_maps(const JsonNode& node, bool has_metal, Coat& coat, vec3& emission);
+  void count_left_out(const JsonNode& node);
+
+  Document& document_;
+  Scene& scene_;
+  Textures textures_;
+  // By the file's index, kDefault for no material, and what its corners have.
+  std::map<std::pair<std::uint64_t, Corners>, std::uint32_t> numbers_;
+  std::map<std::string, std::size_t> left_out_;  // number of materials by what they ask for in vain
+};
+
+}  // namespace kdray::scene::gltf

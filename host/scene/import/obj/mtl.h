@@ -1,0 +1,43 @@
+// What    The materials of an MTL file, as the file says them.
+// Errors  kdray::Error for UTF-16 alone. What is no finite number where one is wanted leaves the default,
+//         what is out of range (a negative colour) is brought into range; unknown statements are left out, as
+//         every exporter has its own: one warning of each kind.
+// Source  Alias Wavefront, "MTL material format", Appendix B2 of the Advanced Visualizer manual.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace kdray::scene {
+
+// A picture and its options. It is looked at u*scale[0] + offset[0], and v likewise, where v goes upwards.
+struct MtlPicture {
+  std::string file;
+  std::array<double, 2> scale{1, 1}, offset{0, 0};
+  bool clamp = false;
+  double strength = 1;  // of a relief
+};
+
+struct MtlMaterial {
+  std::string name;
+  vec3 kd{0.8f}, ks{0}, ke{0};
+  std::optional<vec3> tf;         // colour that is let through
+  std::optional<float> dissolve;  // `d`: 1 is opaque
+  std::optional<float> tr;        // 1 - d, as some exporters write it; `d` wins
+  float ns = 0, ni = 1;
+  std::optional<int> illum;
+  std::optional<MtlPicture> map_kd, map_ks, map_ke, map_d;
+  std::optional<MtlPicture> normals, relief;  // `norm`; `bump` and `map_Bump`, which may show normals as well
+  std::vector<std::string> left_out;          // statements that nothing is made of
+};
+
+// Adds the file's materials to `materials`, its warnings to `warnings`.
+void read_mtl(std::string_view text, const std::string& file, std::vector<MtlMaterial>& materials,
+              std::vector<std::string>& warnings);
+
+}  // namespace kdray::scene

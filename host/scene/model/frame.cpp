@@ -1,0 +1,214 @@
+#include "scene/model/frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/local_space.h"
+
+namespace kdray::scene {
+
+namespace {
+
+constexpr double kFov = 0.6981317007977318;  // 40 degrees
+constexpr double kMargin = 1.05;             // of the half picture: 2.5% of its height stay free on each side
+constexpr float kKey = 0.75f, kFill = 0.25f;
+
+// Right, up and forward of a camera, unit vectors.
+struct Basis {
+  dvec3 right, up, forward;
+};
+
+// The rotation by the shortest way from y, which is up for the directions in this file, to `up`.
+dvec3 turned_to(const dvec3& up, const dvec3& v) {
+  const dvec3 to = safe_normalize(up);
+  if (to.y == 1) return v;
+  if (to.y == -1) return {v.x, -v.y, -v.z};
+  const dvec3 axis(to.z, 0, -to.x);  // y x up, as long as the sine of the angle
+  return to.y * v + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1 + to.y));
+}
+
+Basis basis_of(const Camera& camera) {
+  const dvec3 forward = safe_normalize(camera.at - camera.from);
+  const dvec3 right =
+      glm::normalize(glm::cross(forward, camera.up * scale_to_one(largest_component(camera.up))));
+  return {right, glm::cross(right, forward), forward};
+}
+
+// What brings the box to a size of about 1: a power of two. Cameras are made at that size.
+double scale_of(const DBox& world) {
+  return scale_to_one(std::max(largest_component(world.lo), largest_component(world.hi)));
+}
+
+std::array<dvec3, 8> corners_of(const DBox& box) {
+  std::array<dvec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = {i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z};
+  return corners;
+}
+
+Light directional(const dvec3& direction, float intensity) {
+  Light light;
+  light.kind = LightKind::directional;
+  light.direction = glm::normalize(direction);
+  light.color = vec3(intensity);
+  return light;
+}
+
+Light point(const dvec3& position, float intensity) {
+  Light light;
+  light.position = position;
+  light.color = vec3(intensity);
+  return light;
+}
+
+bool contains(const DBox& box, const dvec3& p) {
+  return glm::all(glm::lessThanEqual(box.lo, p)) && glm::all(glm::lessThanEqual(p, box.hi));
+}
+
+// A key light from over the viewer's left shoulder and a weaker one from the right. A viewer inside the scene
+// (a room) gets lamps instead, for walls would keep light from outside away: one at the eye and one beside
+// it.
+void add_lights_for_camera(Scene& scene, const DBox& box) {
+  const Basis view = basis_of(*scene.camera);
+  const dvec3 eye = scene.camera->from;
+  if (contains(box, eye)) {
+    const double step = 0.02 * safe_length(box.extent());
+    scene.lights.push_back(point(eye, kKey));
+    scene.lights.push_back(point(eye + step * view.up, kFill));
+  } else {
+    scene.lights.push_back(directional(view.forward + 0.5 * view.right - 0.7 * view.up, kKey));
+    scene.lights.push_back(directional(view.forward - 0.9 * view.right - 0.1 * view.up, kFill));
+  }
+}
+
+// The box of the middles of all but the outermost hundredth of the primitives, on each side of each axis.
+DBox inner_box(std::vector<dvec3> middles) {
+  DBox box;
+  const std::size_t cut = middles.size() / 100;
+  for (int k = 0; k < 3; ++k) {
+    const auto below = [k](const dvec3& a, const dvec3& b) { return a[k] < b[k]; };
+    std::nth_element(middles.begin(), middles.begin() + static_cast<std::ptrdiff_t>(cut), middles.end(),
+                     below);
+    box.lo[k] = middles[cut][k];
+    std::nth_element(middles.begin(), middles.end() - 1 - static_cast<std::ptrdiff_t>(cut), middles.end(),
+                     below);
+    box.hi[k] = middles[middles.size() - 1 - cut][k];
+  }
+  return box;
+}
+
+// What the camera should show: the bounding box, unless a few far or huge primitives (a ground plane, a stray
+// vertex) would leave the scene itself a speck in it. Then it is the box of all the others, with a warning.
+DBox worth_showing(Scene& scene, const Framed& framed) {
+  constexpr double kSpeck = 4;
+  constexpr std::size_t kFew = 100;  // with fewer primitives each of them matters
+  const DBox& bounds = framed.bounds;
+  if (framed.n_primitives < kFew) return bounds;
+  DBox box = inner_box(framed.middles());
+  const dvec3 margin = 0.05 * box.extent();
+  box = intersection(DBox{box.lo - margin, box.hi + margin}, bounds);
+  if (safe_length(box.extent()) * kSpeck > safe_length(bounds.extent())) return bounds;
+  scene.warnings.push_back("a few primitives reach far beyond the others: the camera looks at the others");
+  return box;
+}
+
+}  // namespace
+
+RenderSettings settings_of(const Scene& scene) {
+  RenderSettings settings = scene.settings;
+  const double aspect = scene.camera ? scene.camera->aspect : 0;
+  if (settings.width || settings.height || !(aspect > 0)) return settings;
+  const auto side = [](double share) {
+    return static_cast<int>(std::lround(kDefaultSide * std::clamp(share, 1.0 / kDefaultSide, 1.0)));
+  };
+  settings.width = side(aspect);
+  settings.height = side(1 / aspect);
+  return settings;
+}
+
+double aspect_of(const RenderSettings& settings) {
+  if (!settings.width || !settings.height) return 1;
+  return static_cast<double>(*settings.width) / *settings.height;
+}
+
+Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect) {
+  const double scale = scale_of(world);
+  const DBox box{world.lo * scale, world.hi * scale};
+  Camera camera = wanted;
+  camera.at *= scale;
+  const dvec3 away = turned_to(camera.up, glm::normalize(dvec3(0.8, 0.6, 1.2)));
+  camera.from = camera.at + away;
+  const Basis view = basis_of(camera);
+  const double tan_up = std::tan(camera.vertical_fov / 2) / kMargin;
+  const double tan_side = tan_up * aspect;
+  double distance = 0;
+  for (const dvec3& corner : corners_of(box)) {
+    const dvec3 p = corner - camera.at;
+    const double sideways = std::abs(glm::dot(p, view.right)) / tan_side;
+    const double upward = std::abs(glm::dot(p, view.up)) / tan_up;
+    distance = std::max(distance, std::max(sideways, upward) - glm::dot(p, view.forward));
+  }
+  if (!(distance > 0)) distance = scale;  // a single point
+  camera.from = (camera.at + distance * away) / scale;
+  camera.at /= scale;
+  return camera;
+}
+
+double width_to_show(const DBox& world, const Camera& camera, double aspect) {
+  if (world.empty()) return 0;
+  const double scale = scale_of(world);
+  const DBox box{world.lo * scale, world.hi * scale};
+  const Basis view = basis_of(camera);
+  double half = 0;
+  for (const dvec3& corner : corners_of(box)) {
+    const dvec3 p = corner - camera.from * scale;
+    half = std::max({half, std::abs(glm::dot(p, view.right)), aspect * std::abs(glm::dot(p, view.up))});
+  }
+  return 2 * kMargin * half / scale;
+}
+
+void add_lights(Scene& scene) {
+  if (!scene.framing.box.empty()) add_lights_for_camera(scene, scene.framing.box);
+}
+
+// Of about kSampled primitives, evenly through the file.
+std::size_t step_of_samples(std::size_t n_primitives) {
+  constexpr std::size_t kSampled = 20000;
+  return std::max<std::size_t>(1, n_primitives / kSampled);
+}
+
+std::vector<dvec3> sampled_middles(const Scene& scene) {
+  const std::size_t step = step_of_samples(scene.primitive_count());
+  std::vector<dvec3> middles;
+  for (std::size_t i = 0; i < scene.triangles.size(); i += step) {
+    const auto& v = scene.triangles[i].vertex;
+    middles.push_back((scene.vertices[v[0]] + scene.vertices[v[1]] + scene.vertices[v[2]]) / 3.0);
+  }
+  primitives::for_each_shape([&](auto kind) {
+    const auto& shapes = decltype(kind)::of(scene);
+    for (std::size_t i = 0; i < shapes.size(); i += step) middles.push_back(middle_of(shapes[i]));
+  });
+  return middles;
+}
+
+void frame_scene(Scene& scene) {
+  frame_scene(scene, {.bounds = scene.bounds(), .n_primitives = scene.primitive_count(), .middles = [&] {
+                        return sampled_middles(scene);
+                      }});
+}
+
+void frame_scene(Scene& scene, const Framed& framed) {
+  const DBox& bounds = framed.bounds;
+  const DBox box = scene.camera || bounds.empty() ? bounds : worth_showing(scene, framed);
+  scene.framing = {.camera = !scene.camera, .lights = scene.lights.empty() && !scene.unlit, .box = box};
+  if (!scene.camera) {
+    const double scale = box.empty() ? 1 : scale_of(box);
+    const Camera usual{.at = DBox{box.lo * scale, box.hi * scale}.center() / scale, .vertical_fov = kFov};
+    scene.camera = box.empty() ? Camera{} : three_quarter_view(box, usual, aspect_of(scene.settings));
+  }
+  if (scene.framing.lights) add_lights(scene);
+}
+
+}  // namespace kdray::scene

@@ -1,0 +1,138 @@
+#include "scene/model/instances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "base/error.h"
+#include "layout/tree.layout.h"
+#include "scene/model/scene.h"
+#include "scene/model/transform.h"
+
+namespace kdray::scene {
+
+namespace {
+
+thread_local Instances wanted = Instances::automatic;
+
+// What copies may come to, in primitives beyond the first of each mesh, before they are instances.
+constexpr std::uint64_t kFewCopied = std::uint64_t{1} << 20;
+
+double largest_row(const dmat3& m) {
+  double largest = 0;
+  for (int row = 0; row < 3; ++row)
+    largest = std::max(largest, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+  return largest;
+}
+
+}  // namespace
+
+Instance instance_of(const dmat4& to_world, std::uint32_t mesh) {
+  return {.linear = dmat3(to_world), .move = dvec3(to_world[3]), .mesh = mesh};
+}
+
+double condition_of(const dmat3& linear) {
+  const double size = largest_row(linear);
+  if (!(size > 0) || !std::isfinite(size)) return std::numeric_limits<double>::infinity();
+  const dmat3 unit = linear / size;  // so that the determinant neither vanishes nor overflows
+  const double volume = std::abs(glm::determinant(unit));
+  if (!(volume > 1e-15)) return std::numeric_limits<double>::infinity();
+  return largest_row(unit) * largest_row(glm::inverse(unit));
+}
+
+const char* fault_of(const Instance& instance) {
+  for (int k = 0; k < 3; ++k)
+    if (!is_finite(instance.linear[k])) return "a transform that is not finite";
+  if (!is_finite(instance.move)) return "a transform that is not finite";
+  const double condition = condition_of(instance.linear);
+  if (std::isinf(condition)) return "a transform that flattens the mesh";
+  if (condition > kMostCondition)
+    return "a transform that stretches one direction over 48 times as much as another";
+  return nullptr;
+}
+
+DBox bounds_of(const Instance& instance, const DBox& mesh) {
+  DBox box;
+  if (mesh.empty()) return box;
+  for (int corner = 0; corner < 8; ++corner)
+    box.grow(instance.point({corner & 1 ? mesh.hi.x : mesh.lo.x, corner & 2 ? mesh.hi.y : mesh.lo.y,
+                             corner & 4 ? mesh.hi.z : mesh.lo.z}));
+  return box;
+}
+
+bool worth_keeping(std::uint64_t primitives, std::uint64_t copies) {
+  if (wanted != Instances::automatic) return wanted == Instances::kept && copies > 0;
+  return copies > 1 && primitives > kFewCopied / (copies - 1);
+}
+
+namespace {
+
+void check_room(const Scene& mesh, const Scene& scene) {
+  if (std::uint64_t{scene.primitive_count()} + mesh.primitive_count() >= KDRAY_REF_INDEX_MASK ||
+      scene.vertices.size() + mesh.vertices.size() >= kNone ||
+      scene.normals.size() + mesh.normals.size() >= kNone)
+    throw input_error(scene.name, 0, "copies of its meshes make 2^28 primitives or more",
+                      "leave --instances flat out");
+}
+
+dmat4 matrix_of(const Instance& instance) {
+  dmat4 m(instance.linear);
+  m[3] = glm::dvec4(instance.move, 1);
+  return m;
+}
+
+}  // namespace
+
+void add_copy(const Scene& mesh, const Instance& instance, Scene& scene) {
+  check_room(mesh, scene);
+  Scene part;
+  part.vertices = mesh.vertices;
+  part.normals = mesh.normals;
+  part.triangles = mesh.triangles;
+  primitives::for_each_shape([&](auto kind) { decltype(kind)::of(part) = decltype(kind)::of(mesh); });
+  part.paint = mesh.paint;  // of which what is at corners goes with them
+  apply_transform(matrix_of(instance), part);
+  const std::uint32_t number = scene.primitive_count();
+  const auto first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
+  const auto first_normal = static_cast<std::uint32_t>(scene.normals.size());
+  const auto take = [&](auto primitive) {
+    if (instance.material != kNone) primitive.material = instance.material;
+    primitive.number += number;
+    return primitive;
+  };
+  scene.paint.append(part.paint, scene.triangles.size(), mesh.triangles.size());
+  scene.vertices.insert(scene.vertices.end(), part.vertices.begin(), part.vertices.end());
+  scene.normals.insert(scene.normals.end(), part.normals.begin(), part.normals.end());
+  for (Triangle t : part.triangles) {
+    for (std::uint32_t& v : t.vertex) v += first_vertex;
+    for (std::uint32_t& n : t.normal) n = n == kNone ? kNone : n + first_normal;
+    scene.triangles.push_back(take(t));
+  }
+  primitives::for_each_shape([&](auto kind) {
+    for (const auto& shape : decltype(kind)::of(part)) decltype(kind)::of(scene).push_back(take(shape));
+  });
+}
+
+void flatten_instances(Scene& scene) {
+  const auto instances = std::exchange(scene.instances, {});
+  const auto meshes = std::exchange(scene.meshes, {});
+  for (const Instance& instance : instances) {
+    try {
+      add_copy(*meshes[instance.mesh], instance, scene);
+    } catch (const std::domain_error& e) {
+      throw input_error(scene.name, 0, std::string("an instance: ") + e.what(), "leave --instances flat out");
+    }
+  }
+}
+
+Instancing::Instancing(Instances how) : outer_(std::exchange(wanted, how)) {}
+Instancing::~Instancing() {
+  wanted = outer_;
+}
+Instances Instancing::how() {
+  return wanted;
+}
+
+}  // namespace kdray::scene

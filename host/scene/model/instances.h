@@ -1,0 +1,73 @@
+// What    Instances: meshes that lie in a scene many times and in memory once. A mesh is a scene of its own,
+//         of primitives alone; its materials are those of the scene that it is in.
+// Shape   An instance's transform is affine, with an inverse: p in the mesh is linear*p + move in the world.
+//         Importers keep as instances what pays (worth_keeping), and copy the rest, as they copy everything
+//         where Instancing says so.
+// Errors  fault_of: what makes a transform none that instances can have, in words.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/box.h"
+#include "base/vec.h"
+#include "kdray/options.h"
+
+namespace kdray::scene {
+
+struct Scene;
+
+struct Instance {
+  dmat3 linear{1};
+  dvec3 move{0};
+  std::uint32_t mesh = 0;                // into Scene::meshes
+  std::uint32_t material = 0xffffffffu;  // of all its primitives; none: each has its own
+
+  dvec3 point(const dvec3& p) const { return linear * p + move; }
+};
+
+Instance instance_of(const dmat4& to_world, std::uint32_t mesh);
+
+// The largest ratio of what a transform does to two directions, bounded: |linear| times |inverse|, where |m|
+// is the largest sum of a row's absolute values. At least 1, infinite for a flat transform. A rotation with
+// one scale has 3 at most.
+double condition_of(const dmat3& linear);
+
+// Beyond this the rounding of a ray on its way into the mesh is too large a share of the scene.
+inline constexpr double kMostCondition = 48;
+
+// What the word of a wide node's child holds.
+inline constexpr std::size_t kMaxInstances = std::size_t{1} << 27;
+
+// What is wrong with a transform; null: nothing.
+const char* fault_of(const Instance& instance);
+
+// Contains the mesh's bounds, moved.
+DBox bounds_of(const Instance& instance, const DBox& mesh);
+
+// Whether so many copies of a mesh take so much more than it does that they are to be instances. What is
+// small is copied: rays go through one tree faster than through two.
+bool worth_keeping(std::uint64_t primitives, std::uint64_t copies);
+
+// Takes the copies of a mesh that are none of `scene`'s instances yet into its triangles and shapes.
+// Throws std::domain_error where shapes would become none.
+void add_copy(const Scene& mesh, const Instance& instance, Scene& scene);
+
+// Copies all instances into the scene's primitives, behind those that there are.
+// Errors: ErrorCode::input where they become too many, or a sphere an ellipsoid.
+void flatten_instances(Scene& scene);
+
+// While one lives, importers of its thread do as it says.
+class Instancing {
+ public:
+  explicit Instancing(Instances how);
+  ~Instancing();
+  Instancing(const Instancing&) = delete;
+  Instancing& operator=(const Instancing&) = delete;
+  static Instances how();
+
+ private:
+  Instances outer_;
+};
+
+}  // namespace kdray::scene

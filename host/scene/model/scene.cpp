@@ -1,0 +1,58 @@
+#include "scene/model/scene.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+namespace kdray::scene {
+
+namespace {
+
+constexpr std::size_t kBoundsGrain = std::size_t{1} << 14;
+
+// Only vertices that a triangle uses count: files often carry some that no face names. They are marked, since
+// a mesh has six times as many corners as vertices.
+std::vector<std::uint8_t> used_vertices(const Scene& scene) {
+  std::vector<std::uint8_t> used(scene.vertices.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), kBoundsGrain),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i)
+                        for (const std::uint32_t v : scene.triangles[i].vertex)
+                          std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
+                    });
+  return used;
+}
+
+DBox triangle_bounds(const Scene& scene) {
+  const std::vector<std::uint8_t> used = used_vertices(scene);
+  const auto grow = [&](const tbb::blocked_range<std::size_t>& range, DBox box) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      if (used[i] != 0) box.grow(scene.vertices[i]);
+    return box;
+  };
+  const auto join = [](DBox a, const DBox& b) {
+    a.grow(b);
+    return a;
+  };
+  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, scene.vertices.size(), kBoundsGrain), DBox(),
+                              grow, join);
+}
+
+}  // namespace
+
+DBox Scene::bounds() const {
+  DBox box = triangle_bounds(*this);
+  primitives::for_each_shape([&](auto kind) {
+    for (const auto& shape : decltype(kind)::of(*this)) box.grow(bounds_of(shape));
+  });
+  std::vector<DBox> of_meshes;
+  for (const auto& mesh : meshes) of_meshes.push_back(mesh->bounds());
+  for (const Instance& instance : instances) box.grow(bounds_of(instance, of_meshes[instance.mesh]));
+  return box;
+}
+
+}  // namespace kdray::scene

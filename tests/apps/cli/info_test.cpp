@@ -1,0 +1,159 @@
+// What    kdray info: the figures of a scene whose figures are known; without any device.
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/program.h"
+#include "apps/cli/scenes.h"
+#include "support/folder.h"
+
+namespace kdray::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+// An empty folder for drivers: OpenCL's loader finds no platform.
+RunOptions no_device(const Folder& folder) {
+  fs::create_directory(folder / "vendors");
+  return {.environment = {{"OCL_ICD_VENDORS", (folder / "vendors").string() + "/"}}};
+}
+
+TEST(InfoCommand, CountsBoundsAndMaterialsWithoutADevice) {
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const Outcome run = kdray({"info", scene, "--json"}, no_device(folder));
+  ASSERT_TRUE(succeeds(run));
+  const Json info = Json::parse(run.out);
+  EXPECT_EQ(info["primitives"]["total"], 3);
+  EXPECT_EQ(info["primitives"]["triangles"], 2);
+  EXPECT_EQ(info["primitives"]["spheres"], 1);
+  EXPECT_EQ(info["primitives"]["dropped_degenerate"], 0);
+  EXPECT_EQ(info["bounds"]["min"], Json({-4.0, -4.0, 0.0}));
+  EXPECT_EQ(info["bounds"]["max"], Json({4.0, 4.0, 2.0}));
+  EXPECT_EQ(info["lights"].size(), 1u);
+  ASSERT_EQ(info["materials"].size(), 2u);
+  EXPECT_EQ(info["materials"][0]["primitives"], 2);
+  EXPECT_EQ(info["materials"][1]["primitives"], 1);
+  EXPECT_NEAR(info["camera"]["vertical_fov_degrees"], 40, 1e-9);
+}
+
+TEST(InfoCommand, TheTreesFiguresAgreeWithEachOther) {
+  const Folder folder;
+  const fs::path scene = folder / "b.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "2", "-o", scene})));
+  const Json info = Json::parse(kdray({"info", scene, "--json"}).out);
+  const Json& tree = info["tree"];
+  EXPECT_EQ(tree["leaves"].get<int>(), tree["inner_nodes"].get<int>() + 1);
+  EXPECT_EQ(tree["nodes"].get<int>(), tree["inner_nodes"].get<int>() + tree["leaves"].get<int>());
+  int leaves = 0;
+  for (const Json& count : tree["leaves_by_size"]) leaves += count.get<int>();
+  EXPECT_EQ(leaves, tree["leaves"]);
+  EXPECT_GE(tree["duplication"], 1.0);
+  EXPECT_GT(tree["sah_cost"], 0.0);
+  EXPECT_GT(info["memory"]["tree_bytes"], 8 * tree["nodes"].get<int>());
+}
+
+TEST(InfoCommand, MemoryIsThatOfItsArrays) {
+  const Folder folder;
+  const fs::path scene = folder / "b.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "3", "-o", scene})));
+  const Json info = Json::parse(kdray({"info", scene, "--json"}).out);
+  const Json& memory = info["memory"];
+  for (const char* const part : {"scene", "geometry", "tree", "flat", "wide"}) {
+    std::uint64_t sum = 0;
+    for (const Json& array : memory["arrays"][part]) sum += array.get<std::uint64_t>();
+    EXPECT_EQ(memory[std::string(part) + "_bytes"], sum) << part;
+    EXPECT_GT(sum, 0u) << part;
+  }
+  EXPECT_EQ(memory["final_bytes"], memory["flat_bytes"].get<int>() + memory["wide_bytes"].get<int>());
+  EXPECT_EQ(memory["arrays"]["flat"]["references"], 4 * info["tree"]["references"].get<int>());
+  EXPECT_EQ(memory["arrays"]["flat"]["nodes"], 8 * info["tree"]["nodes"].get<int>());
+  EXPECT_GT(memory["process_peak_bytes"], memory["final_bytes"]);
+  if (!memory["build_peak_bytes"].is_null()) {
+    EXPECT_GT(memory["build_peak_bytes"], 0);
+    EXPECT_LE(memory["build_peak_bytes"], memory["process_peak_bytes"]);
+  }
+}
+
+TEST(InfoCommand, TreeOptionsChangeTheTree) {
+  const Folder folder;
+  const fs::path scene = folder / "b.nff";
+  ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "3", "-o", scene})));
+  const auto depth = [&](const std::vector<std::string>& more) -> int {
+    std::vector<std::string> arguments = {"info", scene, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Json::parse(kdray(arguments).out)["tree"]["max_depth"];
+  };
+  EXPECT_EQ(depth({"--tree-depth", "0"}), 0);
+  EXPECT_EQ(depth({"--tree-depth", "3"}), 3);
+  EXPECT_GT(depth({}), 3);
+  for (const char* const quality : {"fast", "balanced", "best"}) {
+    EXPECT_GT(depth({"--build", quality}), 3);
+    EXPECT_EQ(Json::parse(kdray({"info", scene, "--json", "--build", quality}).out)["tree"]["build"],
+              quality);
+  }
+  EXPECT_TRUE(fails_with(kdray({"info", scene, "--build", "slow"}), 2, "fast, balanced, best"));
+  // Nothing is worth a split when tests cost nothing beside nodes.
+  EXPECT_EQ(depth({"--cost-traverse", "1000000", "--cost-intersect", "0.000001"}), 0);
+}
+
+TEST(InfoCommand, TextHasThoseFiguresForPeople) {
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const Outcome run = kdray({"info", scene});
+  ASSERT_TRUE(succeeds(run));
+  for (const char* const text :
+       {"3: 2 triangles, 1 spheres", "(-4, -4, 0) to (4, 4, 2)", "40 degrees", "SAH cost", "materials",
+        "memory", "built balanced", "on the device", "sphere blocks", "at most"})
+    EXPECT_NE(run.out.find(text), std::string::npos) << text << " in " << run.out;
+}
+
+TEST(InfoCommand, AnEmptySceneIsToldAsSuch) {
+  const Folder folder;
+  const fs::path scene = folder.put("none.nff", "b 0 0 0\n");
+  const Outcome run = kdray({"info", scene, "--json"});
+  if (run.code == 0) {
+    EXPECT_TRUE(Json::parse(run.out)["bounds"].is_null());
+  } else {
+    EXPECT_TRUE(fails_with(run, 1, "none.nff"));
+  }
+  EXPECT_EQ(kdray({"info", scene}).code, run.code);
+}
+
+std::string sheet(int n) {
+  std::string obj;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) obj += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const int a = y * (n + 1) + x + 1;
+      obj += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(a + n + 2) + "\n";
+      obj +=
+          "f " + std::to_string(a) + " " + std::to_string(a + n + 2) + " " + std::to_string(a + n + 1) + "\n";
+    }
+  return obj;
+}
+
+TEST(InfoCommand, TheTreeIsMadeToFitTheMemoryWithAWarningAsInRender) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const std::string scene = folder.put("sheet.obj", sheet(60));
+  const auto bytes_of = [](const Outcome& run) {
+    return nlohmann::json::parse(run.out)["memory"]["final_bytes"].get<std::uint64_t>();
+  };
+  const std::string least =
+      std::to_string(bytes_of(kdray({"info", scene, "--json", "--memory", "100m"})) * 23 / 25);
+  const Outcome coarse = kdray({"info", scene, "--json", "--memory", least});
+  ASSERT_TRUE(succeeds(coarse));
+  EXPECT_LE(bytes_of(coarse), std::stoull(least));
+  EXPECT_NE(coarse.err.find("the tree is coarser"), std::string::npos) << coarse.err;
+  EXPECT_TRUE(fails_with(kdray({"info", scene, "--memory", "1K"}), 4, "too little"));
+  const std::string picture = folder / "a.png";
+  const Outcome render = kdray({"render", scene, "-o", picture, "--size", "16x16", "--memory", least});
+  ASSERT_TRUE(succeeds(render));
+  EXPECT_NE(render.err.find("the tree is coarser"), std::string::npos) << render.err;
+  const Outcome quiet = kdray({"render", scene, "-o", picture, "--size", "16x16", "--memory", least, "-q"});
+  EXPECT_EQ(quiet.err, "");
+}
+
+}  // namespace
+}  // namespace kdray::test

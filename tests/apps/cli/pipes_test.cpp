@@ -1,0 +1,75 @@
+// What    "-": scenes from standard input, and pictures, hits and scenes to standard output.
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/program.h"
+#include "apps/cli/scenes.h"
+#include "support/folder.h"
+
+namespace kdray::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PipesTest : testing::Test {
+  Folder folder;
+  fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  Outcome piped(const std::vector<std::string>& arguments) const {
+    return kdray(arguments, {.stdin_file = scene});
+  }
+};
+
+TEST_F(PipesTest, APictureThatGoesToStdoutHasTheFilesBytes) {
+  KDRAY_NEED_DEVICE();
+  for (const char* const format : {"png", "exr"}) {
+    const std::string file = folder / (std::string("a.") + format);
+    ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", file})));
+    const Outcome run = kdray({"render", scene, "-o", "-", "--format", format});
+    ASSERT_TRUE(succeeds(run));
+    EXPECT_EQ(run.out, folder.get(std::string("a.") + format));
+    EXPECT_NE(run.err.find("Mrays/s"), std::string::npos) << run.err;
+  }
+  EXPECT_EQ(kdray({"render", scene, "-o", "-", "-q"}).out, folder.get("a.png"));
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "odd.name", "--format", "exr"})));
+  EXPECT_EQ(folder.get("odd.name"), folder.get("a.exr"));
+}
+
+TEST_F(PipesTest, AnExrHoldsItsChannelsOnStdoutToo) {
+  KDRAY_NEED_DEVICE();
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.exr", "--aov", "depth"})));
+  EXPECT_EQ(kdray({"render", scene, "-o", "-", "--format", "exr", "--aov", "depth", "-q"}).out,
+            folder.get("a.exr"));
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "-o", "-", "--aov", "depth"}), 2, "--format exr"));
+}
+
+TEST_F(PipesTest, ASceneFromStdinIsTheFiles) {
+  KDRAY_NEED_DEVICE();
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.png"})));
+  const Outcome run = piped({"render", "-", "--scene-format", "nff", "-o", "-", "-q"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_EQ(run.out, folder.get("a.png"));
+}
+
+TEST_F(PipesTest, InfoReadsStdinToo) {
+  const Outcome run = piped({"info", "-", "--scene-format", ".nff", "--json"});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_EQ(nlohmann::json::parse(run.out)["primitives"]["total"], 3);
+}
+
+TEST_F(PipesTest, TheFormatOfStdinHasToBeSaid) {
+  EXPECT_TRUE(fails_with(piped({"render", "-"}), 2, "--scene-format"));
+  EXPECT_TRUE(fails_with(piped({"info", scene, "--scene-format", "nff"}), 2, "--scene-format"));
+  EXPECT_TRUE(fails_with(piped({"info", "-", "--scene-format", "doc"}), 1, ".doc"));
+  const fs::path bad = folder.put("bad", "b 0 0 0\ns 0 0 nan 1\n");
+  const Outcome run = kdray({"info", "-", "--scene-format", "nff"}, {.stdin_file = bad});
+  EXPECT_TRUE(fails_with(run, 1, "stdin.nff:2: "));
+}
+
+TEST_F(PipesTest, WhatStdoutIsNotFor) {
+  const std::string picture = folder.put("a.png", "");
+  EXPECT_TRUE(fails_with(kdray({"compare", picture, picture, "--diff", "-"}), 2, "standard output"));
+  EXPECT_TRUE(fails_with(kdray({"compare", "-", picture}), 2, "compare reads files"));
+  EXPECT_TRUE(fails_with(kdray({"tune", scene, "-o", "-"}), 2, "--output"));
+}
+
+}  // namespace
+}  // namespace kdray::test

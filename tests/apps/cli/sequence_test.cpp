@@ -1,0 +1,196 @@
+// Sequences and shared pictures: each frame has the bytes of the picture that the same camera or scene gives
+// by itself, whoever made it.
+#include <fmt/format.h>
+
+#include <gtest/gtest.h>
+#include <algorithm>
+
+#include <cstring>
+#include <filesystem>
+
+#include "apps/cli/camera_path.h"
+#include "apps/cli/program.h"
+#include "apps/cli/running.h"
+#include "apps/cli/scenes.h"
+#include "apps/cli/sequence.h"
+#include "engine/checkpoint/header.h"
+#include "engine/checkpoint/record.h"
+#include "support/errors.h"
+#include "support/folder.h"
+
+namespace kdray::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Arguments = std::vector<std::string>;
+
+constexpr const char* kPath =
+    R"({"kdray_camera_path": 1, "interpolation": "linear", "keys": [
+  {"frame": 2, "from": [0, -6, 3], "at": [0, 0, 1], "up": [0, 0, 1], "fov": 40},
+  {"frame": 4, "from": [2, -6, 5], "at": [0, 0, 0], "up": [0, 0, 1], "fov": 30}]})";
+
+struct SequenceTest : testing::Test {
+  Folder folder;
+  fs::path scene = folder.put("ball.nff", kSphereOnSquare), path = folder.put("path.json", kPath);
+
+  Outcome render(const Arguments& more) const {
+    Arguments arguments{"render", scene, "--size", "120x80", "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return kdray(arguments, {.folder = folder.path()});
+  }
+  std::string seen(const std::string& from, const std::string& at, const std::string& fov) const {
+    EXPECT_TRUE(
+        succeeds(render({"-o", folder / "one.png", "--from", from, "--at", at, "--up", "z", "--fov", fov})));
+    return folder.get("one.png");
+  }
+};
+
+TEST_F(SequenceTest, FramesAreWhatTheirCamerasSee) {
+  KDRAY_NEED_DEVICE();
+  ASSERT_TRUE(succeeds(render({"-o", folder / "f.png", "--frames", "0..5", "--camera-path", path})));
+  EXPECT_EQ(folder.get("f0000.png"), seen("0,-6,3", "0,0,1", "40"));
+  EXPECT_EQ(folder.get("f0002.png"), folder.get("f0000.png"));
+  EXPECT_EQ(folder.get("f0003.png"), seen("1,-6,4", "0,0,0.5", "35"));
+  EXPECT_EQ(folder.get("f0004.png"), seen("2,-6,5", "0,0,0", "30"));
+  EXPECT_EQ(folder.get("f0005.png"), folder.get("f0004.png"));
+}
+
+TEST_F(SequenceTest, NumberedScenesAreFramesToo) {
+  KDRAY_NEED_DEVICE();
+  fs::copy_file(scene, folder / "s07.nff");
+  folder.put("s08.nff", std::string(kSphereOnSquare) + "s 1 0 2 0.5\n");
+  const Outcome run =
+      kdray({"render", "s%02d.nff", "--frames", "7..8", "--size", "120x80", "-q", "--stats", "s.json"},
+            {.folder = folder.path()});
+  ASSERT_TRUE(succeeds(run));
+  for (const char* const name : {"s07", "s08"}) {
+    ASSERT_TRUE(
+        succeeds(kdray({"render", std::string(name) + ".nff", "--size", "120x80", "-q", "-o", "one.png"},
+                       {.folder = folder.path()})));
+    EXPECT_EQ(folder.get(std::string(name) + ".png"), folder.get("one.png"));
+  }
+  EXPECT_TRUE(fs::exists(folder / "s0007.json"));
+  EXPECT_TRUE(fails_with(kdray({"render", "s%02d.nff", "--frames", "9..9", "-q"}, {.folder = folder.path()}),
+                         1, "s09.nff: no such file"));
+}
+
+TEST_F(SequenceTest, ProcessesThatShareAFolderMakeAllFrames) {
+  KDRAY_NEED_DEVICE();
+  const Arguments frames{"--frames", "1..5", "--camera-path", path};
+  Arguments alone{"-o", folder / "a%d.png"};
+  alone.insert(alone.end(), frames.begin(), frames.end());
+  ASSERT_TRUE(succeeds(render(alone)));
+  Arguments shared{"render",           scene,     "--size",         "120x80", "-o",
+                   folder / "b%d.png", "--share", folder / "ledger"};
+  shared.insert(shared.end(), frames.begin(), frames.end());
+  std::vector<Running> runs;
+  for (int i = 0; i < 3; ++i) runs.emplace_back(shared, folder / "log");
+  for (Running& run : runs) {
+    ASSERT_TRUE(run.wait());
+    EXPECT_EQ(run.code(), 0) << folder.get("log");
+  }
+  for (int i = 1; i <= 5; ++i)
+    EXPECT_EQ(folder.get(fmt::format("b{}.png", i)), folder.get(fmt::format("a{}.png", i))) << i;
+  shared.insert(shared.end(), {"--samples", "2"});
+  EXPECT_TRUE(fails_with(kdray(shared), 1, "other settings"));
+  // Frames that are done would be left as they are, and others made otherwise.
+  shared.back() = "3";
+  std::ranges::replace(shared, "1..5", "1..6");
+  EXPECT_TRUE(fails_with(kdray(shared), 1, "--samples 0; here --samples 3"));
+  EXPECT_FALSE(fs::exists(folder / "b6.png"));
+}
+
+// The same records twice are no fault; one whose sums differ is, however right its checksums are.
+TEST_F(SequenceTest, AMachineThatComputesWronglyIsToldOf) {
+  KDRAY_NEED_DEVICE();
+  const Arguments share{"-o", folder / "a.png", "--share", folder / "ledger"};
+  ASSERT_TRUE(succeeds(render(share)));
+  for (const auto& entry : fs::directory_iterator(folder / "ledger"))
+    if (entry.path().extension() == ".tiles") fs::copy_file(entry.path(), folder / "ledger/copy.tiles");
+  EXPECT_TRUE(succeeds(render(share)));
+  const std::string good = folder.get("ledger/copy.tiles");
+  std::string wrong = good.substr(0, ledger::kHeaderBytes);
+  const Hash frame = ledger::header_of(good)->frame();
+  const auto head = ledger::head_of(std::string_view(good).substr(ledger::kHeaderBytes), frame);
+  ASSERT_TRUE(head);
+  std::vector<layout::i64> sums(head->piece.places.sums());
+  std::memcpy(sums.data(), good.data() + ledger::kHeaderBytes + ledger::kRecordHead, sums.size() * 8);
+  ++sums.back();  // by 2^-36
+  ledger::append_record(wrong, frame, head->piece, sums, ledger::hash_of_sums(sums));
+  folder.put("ledger/wrong.tiles", wrong);
+  EXPECT_TRUE(fails_with(render(share), 1, "was made twice, and the results differ: by "));
+}
+
+TEST_F(SequenceTest, RestartsEndWithTheRunsOwnCode) {
+  KDRAY_NEED_DEVICE();
+  EXPECT_TRUE(
+      succeeds(render({"-o", folder / "a.png", "--checkpoint", folder / "ledger", "--restarts", "3"})));
+  EXPECT_TRUE(fails_with(render({"--checkpoint", folder / "ledger", "--restarts=3"}), 2, "--resume"));
+  EXPECT_TRUE(succeeds(render({"--checkpoint", folder / "ledger", "--restarts=3", "--resume"})));
+}
+
+TEST_F(SequenceTest, WhatMakesNoSequence) {
+  EXPECT_TRUE(fails_with(render({"--frames", "1..2"}), 2, "--camera-path FILE, or number the scenes"));
+  EXPECT_TRUE(fails_with(render({"--camera-path", path}), 2, "--frames A..B"));
+  EXPECT_TRUE(fails_with(render({"--frames", "1-2", "--camera-path", path}), 2, "A..B"));
+  EXPECT_TRUE(fails_with(render({"--frames", "3..2", "--camera-path", path}), 2, "--frames"));
+  EXPECT_TRUE(fails_with(render({"--frames", "1..2", "--camera-path", path, "--fov", "3"}), 2, "--fov"));
+  EXPECT_TRUE(
+      fails_with(render({"--frames", "1..2", "--camera-path", path, "-o", "-"}), 2, "a file for each frame"));
+  EXPECT_TRUE(fails_with(render({"--restarts", "2"}), 2, "--checkpoint DIR or --share DIR"));
+  EXPECT_TRUE(fails_with(render({"--lease", "2"}), 2, "--share DIR"));
+  EXPECT_TRUE(fails_with(render({"--share", "a", "--checkpoint", "b"}), 2, "give one of them"));
+  EXPECT_TRUE(fails_with(render({"--share", "a", "--resume"}), 2, "leave --resume out"));
+  EXPECT_TRUE(fails_with(render({"--frames", "1..2", "--camera-path", "none.json"}), 1, "none.json"));
+}
+
+TEST(CameraPath, SmoothCurvesPassTheKeysAndReproduceParabolas) {
+  const Folder folder;
+  std::string keys;
+  const auto parabola = [](double t) { return 0.25 * t * t - 3 * t + 1; };
+  for (const int t : {0, 3, 4, 9})
+    keys += fmt::format(R"({}{{"frame": {}, "from": [{}, 0, 9], "at": [0, {}, 0]}})",
+                        keys.empty() ? "" : ", ", t, parabola(t), 2 * t);
+  const cli::CameraPath path(folder.put("p.json", R"({"kdray_camera_path": 1, "keys": [)" + keys + "]}"));
+  for (const int t : {0, 3, 4, 9}) EXPECT_NEAR(path.at(t).from[0], parabola(t), 1e-12) << t;
+  EXPECT_NEAR(path.at(5).at[1], 10, 1e-12);  // a line stays one
+  EXPECT_EQ(path.at(100).from, path.at(9).from);
+  EXPECT_EQ(path.at(7).up, (Vec3{0, 1, 0}));
+  EXPECT_EQ(path.at(7).fov, 45);
+}
+
+TEST(CameraPath, WhatIsWrongIsTold) {
+  const Folder folder;
+  const auto refuses = [&](const std::string& keys, const std::string& text) {
+    const fs::path file = folder.put("p.json", R"({"kdray_camera_path": 1, "keys": [)" + keys + "]}");
+    return fails(
+        [&] {
+          const cli::CameraPath path(file);
+          for (int frame = 0; frame < 20; ++frame) (void)path.at(frame);
+        },
+        text, ErrorCode::input);
+  };
+  EXPECT_TRUE(refuses("", "one key at least"));
+  EXPECT_TRUE(refuses(R"({"frame": 0, "from": [0, 0, 1]})", "p.json: /keys/0"));
+  EXPECT_TRUE(refuses(R"({"frame": 0, "from": [0, 0, 1], "at": [0, 0, 1]})", "same point"));
+  EXPECT_TRUE(refuses(R"({"frame": 0, "from": [0, 0, 1], "at": [0, 0, 0], "fov": 200})", "/keys/0/fov"));
+  EXPECT_TRUE(refuses(R"({"frame": 0, "from": [0, 0, 1], "at": [0, 0, 0], "roll": 2})", "roll"));
+  EXPECT_TRUE(refuses(
+      R"({"frame": 3, "from": [0, 0, 1], "at": [0, 0, 0]}, {"frame": 3, "from": [0, 0, 2], "at": [0, 0, 0]})",
+      "not behind"));
+  EXPECT_TRUE(refuses(R"({"frame": 0, "from": [0, 0, 1], "at": [0, 0, 0]}, )"
+                      R"({"frame": 10, "from": [0, 0, -1], "at": [0, 0, 0]})",
+                      "at frame 5"));
+}
+
+TEST(Numbered, NamesOfFrames) {
+  EXPECT_EQ(cli::numbered("a/out.png", 7, true), "a/out0007.png");
+  EXPECT_EQ(cli::numbered("a/out.png", 7, false), "a/out.png");
+  EXPECT_EQ(cli::numbered("a/%d.png", 7, true), "a/7.png");
+  EXPECT_EQ(cli::numbered("%d/out%03d.png", 12345, true), "%d/out12345.png");
+  EXPECT_EQ(cli::numbered("100%.png", 7, true), "100%0007.png");
+  EXPECT_EQ(cli::numbered("100%_%06d.exr", 7, true), "100%_000007.exr");
+}
+
+}  // namespace
+}  // namespace kdray::test

@@ -1,0 +1,203 @@
+// What    The view on the command line against the same view in the file, and against closed forms: what a
+//         sphere covers in parallel rays, what a mesh looks like that was turned instead of the camera.
+#include <cmath>
+#include <fstream>
+
+#include "apps/cli/program.h"
+#include "apps/cli/scenes.h"
+#include "io/image/compare.h"
+#include "io/image/read.h"
+#include "scene/gltf_samples.h"
+#include "support/folder.h"
+
+namespace kdray::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPi = 3.141592653589793;
+
+struct ViewTest : testing::Test {
+  void SetUp() override { KDRAY_NEED_DEVICE(); }
+  Folder folder;
+  film::Image rendered(const std::string& scene, const std::vector<std::string>& options = {},
+                       const std::string& size = "64x64") const {
+    std::vector<std::string> arguments = {"render", folder / scene, "-o", folder / "out.exr",
+                                          "-q",     "--size",       size};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_TRUE(succeeds(kdray(arguments)));
+    return film::read_picture(folder / "out.exr", {});
+  }
+};
+
+bool same_bits(const film::Image& a, const film::Image& b) {
+  return a.pixels == b.pixels && a.alpha == b.alpha;
+}
+
+double mean_alpha(const film::Image& image) {
+  double sum = 0;
+  for (const float a : image.alpha) sum += a;
+  return sum / static_cast<double>(image.alpha.size());
+}
+
+// A wedge of no symmetry; its corners as `turn` puts them.
+std::string wedge(dvec3 (*turn)(const dvec3&)) {
+  std::string text;
+  for (const dvec3& v : {dvec3(0, 0, 0), dvec3(3, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 2)}) {
+    const dvec3 t = turn(v);
+    text += "v " + std::to_string(t.x) + " " + std::to_string(t.y) + " " + std::to_string(t.z) + "\n";
+  }
+  return text + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+}
+
+TEST_F(ViewTest, OptionsAreTheFilesCamera) {
+  folder.put("a.nff", kSphereOnSquare);
+  std::string other = kSphereOnSquare;
+  const std::string own = "from 0 -6 3\nat 0 0 1\nup 0 0 1\nangle 40\n";
+  other.replace(other.find(own), own.size(), "from -3 4 2.5\nat 0.5 0 0\nup 1 0 1\nangle 55\n");
+  folder.put("b.nff", other);
+  const film::Image wanted = rendered("b.nff");
+  EXPECT_TRUE(same_bits(
+      rendered("a.nff", {"--from", "-3,4,2.5", "--at=0.5,0,0", "--up", "1,0,1", "--fov", "55"}), wanted));
+  EXPECT_FALSE(same_bits(rendered("a.nff"), wanted));
+}
+
+TEST_F(ViewTest, UpAloneIsAsIfTheMeshWereTurned) {
+  folder.put("y.obj", wedge([](const dvec3& v) { return v; }));
+  folder.put("z.obj", wedge([](const dvec3& v) { return dvec3(v.x, -v.z, v.y); }));
+  folder.put("down.obj", wedge([](const dvec3& v) { return dvec3(v.x, -v.y, -v.z); }));
+  const film::Image upright = rendered("y.obj");
+  EXPECT_TRUE(same_bits(rendered("y.obj", {"--up", "y"}), upright));
+  EXPECT_LT(film::compare(rendered("z.obj", {"--up", "z"}), upright).rmse, 1e-3);
+  EXPECT_LT(film::compare(rendered("down.obj", {"--up", "-y"}), upright).rmse, 1e-3);
+  EXPECT_GT(film::compare(rendered("z.obj"), upright).rmse, 0.02) << "nothing was turned";
+}
+
+TEST_F(ViewTest, LightsThatTheFileLacksFollowTheCamera) {
+  folder.put("y.obj", wedge([](const dvec3& v) { return v; }));
+  for (const char* const from : {"9,1,0", "-9,1,0", "0,1,9", "0,1,-9", "1,-9,1"}) {
+    const film::Image image = rendered("y.obj", {"--from", from, "--background", "transparent"});
+    ASSERT_GT(mean_alpha(image), 0.01) << from;
+    double brightest = 0;
+    for (const vec3& p : image.pixels) brightest = std::max<double>(brightest, p.x);
+    EXPECT_GT(brightest, 0.25) << from << ": by ambient light alone it were under 0.1";
+  }
+}
+
+TEST_F(ViewTest, ASphereInParallelRaysCoversItsCircle) {
+  folder.put("s.nff",
+             "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nresolution 64 64\nf 1 1 1 1 0 1 0 0\ns 0 0 0 1\n");
+  const double circle = kPi / 16;
+  for (const char* const from : {"0,0,5", "0,0,1.5", "0,0,100"}) {
+    const film::Image image =
+        rendered("s.nff", {"--ortho", "4", "--from", from, "--samples", "64", "--background", "transparent"});
+    EXPECT_NEAR(mean_alpha(image), circle, 0.002) << from;
+    for (const float a : image.alpha) EXPECT_EQ(a * 64, std::round(a * 64)) << "no whole number of samples";
+  }
+  // As wide as the scene needs: 2, and a margin of a twentieth.
+  const film::Image fitted = rendered("s.nff", {"--samples", "64", "--background", "transparent", "--ortho"});
+  EXPECT_NEAR(mean_alpha(fitted), kPi / 4 / (1.05 * 1.05), 0.002);
+  // Higher than wide: it is the width then that has to show all.
+  const film::Image high = rendered("s.nff", {"--background", "transparent", "--ortho"}, "32x128");
+  EXPECT_NEAR(mean_alpha(high), kPi / 16 / (1.05 * 1.05), 0.01);
+}
+
+TEST_F(ViewTest, ParallelRaysAreTheSameInEveryMode) {
+  folder.put("a.nff", kSphereOnSquare);
+  const film::Image plain = rendered("a.nff", {"--ortho"});
+  EXPECT_FALSE(same_bits(plain, rendered("a.nff")));
+  for (const std::vector<std::string>& mode : {std::vector<std::string>{"--mode=odprt", "--queues=2"},
+                                               {"--traversal=binary"},
+                                               {"--tile=5x5"},
+                                               {"--schedule=global"}}) {
+    std::vector<std::string> options = mode;
+    options.push_back("--ortho");
+    EXPECT_TRUE(same_bits(rendered("a.nff", options), plain)) << mode[0];
+  }
+  folder.put("a.json", R"({"camera": {"from": [0, 0, 9], "at": [0, 0, 0], "ortho": 3},
+                           "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1}]})");
+  EXPECT_NEAR(mean_alpha(rendered("a.json", {"--background=transparent"})), kPi / 9, 0.01);
+}
+
+TEST_F(ViewTest, CamerasAreChosenByNumber) {
+  GltfSample sample;
+  const int positions = sample.vectors({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  sample.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}}};
+  sample.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}}}},
+                            {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}}}}};
+  const auto with_nodes = [&](int first, int second) {
+    sample.json["nodes"] = {{{"mesh", 0}, {"children", {1, 2}}},
+                            {{"camera", first}, {"translation", {0.5, 0.5, 3}}},
+                            {{"camera", second}, {"translation", {0.5, 0.5, 3}}}};
+    return sample.json.dump();
+  };
+  folder.put("a.gltf", with_nodes(0, 1));
+  folder.put("b.gltf", with_nodes(1, 0));
+  const film::Image first = rendered("a.gltf"), second = rendered("b.gltf");
+  EXPECT_FALSE(same_bits(first, second));
+  EXPECT_TRUE(same_bits(rendered("a.gltf", {"--camera", "0"}), first));
+  EXPECT_TRUE(same_bits(rendered("a.gltf", {"--camera", "1"}), second));
+  EXPECT_TRUE(fails_with(kdray({"render", folder / "a.gltf", "-o", folder / "a.png", "--camera", "2"}), 2,
+                         "has cameras 0 to 1"));
+}
+
+// What is over the background is what the opaque picture shows.
+TEST_F(ViewTest, ATransparentPictureOverItsBackgroundIsTheOpaqueOne) {
+  folder.put("a.nff", kSphereOnSquare);  // its background is 0.1, 0.2, 0.4
+  const film::Image opaque = rendered("a.nff", {"--samples", "4"});
+  const film::Image clear = rendered("a.nff", {"--samples", "4", "--background", "transparent"});
+  ASSERT_EQ(clear.alpha.size(), opaque.pixels.size());
+  std::size_t n_clear = 0, n_partly = 0;
+  for (std::size_t i = 0; i < clear.pixels.size(); ++i) {
+    const vec3 over = clear.pixels[i] + (1 - clear.alpha[i]) * vec3(0.1f, 0.2f, 0.4f);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(over[c], opaque.pixels[i][c], 1e-6) << i;
+    n_clear += clear.alpha[i] == 0, n_partly += clear.alpha[i] > 0 && clear.alpha[i] < 1;
+    if (clear.alpha[i] == 0) {
+      EXPECT_EQ(clear.pixels[i], vec3(0)) << i;
+    }
+  }
+  EXPECT_GT(n_clear, 100u);
+  EXPECT_GT(n_partly, 10u);
+  ASSERT_TRUE(
+      succeeds(kdray({"render", folder / "a.nff", "-o", folder / "a.png", "--background", "transparent"})));
+  EXPECT_EQ(film::read_picture(folder / "a.png", {}).alpha.size(), 48u * 32u);
+}
+
+TEST_F(ViewTest, TheBackgroundIsTheColourAskedFor) {
+  folder.put("a.nff", kSphereOnSquare);
+  EXPECT_EQ(rendered("a.nff", {"--background", "0.25,0.5,2"}).pixels[0], vec3(0.25f, 0.5f, 2));
+  ASSERT_TRUE(
+      succeeds(kdray({"render", folder / "a.nff", "-o", folder / "a.png", "--background", "#2080fF"})));
+  ASSERT_TRUE(
+      succeeds(kdray({"render", folder / "a.nff", "-o", folder / "b.png", "--background", "0.014,0.216,1"})));
+  const film::Image a = film::read_picture(folder / "a.png", {}),
+                    b = film::read_picture(folder / "b.png", {});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.pixels[0][c], b.pixels[0][c], 0.005f);
+}
+
+TEST(ViewOptions, WhatMakesNoViewIsRefused) {
+  const Folder folder;
+  const std::string scene = folder.put("a.nff", kSphereOnSquare), out = folder / "a.png";
+  const auto refuses = [&](const std::vector<std::string>& options, const std::string& text) {
+    std::vector<std::string> arguments = {"render", scene, "-o", out};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return fails_with(kdray(arguments), 2, text);
+  };
+  EXPECT_TRUE(refuses({"--from", "1,2"}, "--from '1,2': expected X,Y,Z"));
+  EXPECT_TRUE(refuses({"--at", "1,2,x"}, "X,Y,Z"));
+  EXPECT_TRUE(refuses({"--up", "0,0,0"}, "not all 0"));
+  EXPECT_TRUE(refuses({"--up", "w"}, "x, y, z"));
+  EXPECT_TRUE(refuses({"--fov", "180"}, "--fov"));
+  EXPECT_TRUE(refuses({"--ortho", "0"}, "--ortho"));
+  EXPECT_TRUE(refuses({"--ortho", "2", "--fov", "40"}, "--ortho"));
+  EXPECT_TRUE(refuses({"--background", "#12345"}, "transparent"));
+  EXPECT_TRUE(refuses({"--background", "1,1,-1"}, "each from 0"));
+  EXPECT_TRUE(refuses({"--background", "transparent", "--samples", "adaptive"}, "--samples"));
+  if (!has_device()) return;
+  EXPECT_TRUE(refuses({"--from", "0,0,5", "--at", "0,0,0"}, "parallel to the view direction"));
+  EXPECT_TRUE(refuses({"--from", "0,0,1", "--at", "0,0,1"}, "the same point"));
+  EXPECT_TRUE(refuses({"--camera", "3"}, "has one camera, number 0"));
+}
+
+}  // namespace
+}  // namespace kdray::test
