@@ -1,6 +1,9 @@
 // What    The sessions of every query about a scene (sessions.h).
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+
 #include "engine/query/passes.h"
 #include "engine/query/point_session.h"
 #include "engine/query/session.h"
@@ -16,6 +19,7 @@ struct AllSessions {
   Sessions<Passes> crossings;  // count, all
   Sessions<Passes> of_all;     // of every geometry, whatever its mask: inside
   Sessions<PointSession> points;
+  std::atomic<std::size_t> counted_at_once{0}, collected_at_once{0}, points_at_once{0};  // pace.h
 
  private:
   static Target without_masks(Target target) {

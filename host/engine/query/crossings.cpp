@@ -178,7 +178,7 @@ QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, con
   CollectedRays collected(asked, arrays);
   const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
   std::vector<std::uint32_t> counts;
-  Pace pace(kFirstRays, kCollected);
+  Pace pace(kFirstRays, kCollected, asked.sessions.counted_at_once);
   for (std::size_t first = 0; first < arrays.size();) {
     const std::span<const Ray> taken = collected.take(first, pace.take(), options);
     counts.resize(taken.size());
@@ -207,7 +207,7 @@ AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options)
   Answer answer(asked, arrays.size(), options.max_bytes);
   const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
   tbb::task_group adding;
-  Pace pace(kFirstRays, kCollected);
+  Pace pace(kFirstRays, kCollected, asked.sessions.collected_at_once);
   try {
     for (std::size_t first = 0, turn = 0; first < arrays.size();) {
       Chunk& chunk = chunks[turn];

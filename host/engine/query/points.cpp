@@ -140,9 +140,10 @@ class Nearest {
 };
 
 template <class Take>
-QueryReport for_each_chunk(const Points& points, const PointOptions& options, const Take& take) {
+QueryReport for_each_chunk(const Asked& asked, const Points& points, const PointOptions& options,
+                           const Take& take) {
   PointChunks chunks(points, options);
-  Pace pace(kFirstPoints, kPointsAtOnce);
+  Pace pace(kFirstPoints, kPointsAtOnce, asked.sessions.points_at_once);
   for (std::size_t first = 0; first < points.size();) {
     const std::span<const dvec3> some = chunks.take(first, pace.take());
     take(first, some, chunks);
@@ -165,7 +166,7 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
   check_out(out.u.size(), n, "u");
   check_out(out.v.size(), n, "v");
   return for_each_chunk(
-      points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+      asked, points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
         Nearest nearest(asked, some, options.radius);
         const std::vector<ClosestPoint>& found = nearest.wait();
         const auto fill = [&](const auto& column, const auto& value_of) {
@@ -191,7 +192,7 @@ QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out
                    const PointOptions& options) {
   check_out(out.size(), points.size(), "inside");
   return for_each_chunk(
-      points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+      asked, points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
         const std::vector<std::uint8_t> found = are_inside(asked, some, are_doubles(points), options);
         if (out.empty()) return;
         out.fill(first, some.size(), [&](std::size_t i) {
@@ -205,7 +206,7 @@ QueryReport signed_distance(const Asked& asked, const Points& points, const Valu
   prepare::refuse_instances(asked.scene(), "signed distances");
   check_out(out.size(), points.size(), "distance");
   return for_each_chunk(
-      points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+      asked, points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
         Nearest nearest(asked, some, options.radius);
         const std::vector<std::uint8_t> inside = are_inside(asked, some, are_doubles(points), options);
         const std::vector<ClosestPoint>& found = nearest.wait();
