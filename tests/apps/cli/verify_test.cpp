@@ -152,7 +152,7 @@ TEST(VerifyCommand, BadInputIsToldInOneLine) {
   const Folder folder;
   const fs::path scene = folder.put("cube.obj", cube());
   EXPECT_TRUE(fails_with(verify(folder / "no.obj"), 1, "no.obj"));
-  EXPECT_TRUE(fails_with(verify(folder.put("bad.obj", "v 1 nan 2\n")), 1, "bad.obj"));
+  EXPECT_TRUE(fails_with(verify(folder.put("bad.obj", "v 1 x 2\n")), 1, "bad.obj"));
   EXPECT_TRUE(fails_with(verify(scene, {"-o", "where.gif"}), 1, "where.gif"));
   EXPECT_TRUE(fails_with(verify(scene, {"-o", folder / "a.png", "--size", "20x20"}), 2, "320x200"));
   EXPECT_TRUE(fails_with(verify(scene, {"--stats", scene}), 2, "same file"));
