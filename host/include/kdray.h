@@ -259,8 +259,7 @@ typedef struct kdray_query_options {
   uint64_t* n_invalid;        /* NULL, or told how many meant nothing */
 } kdray_query_options;
 
-/* Of each ray what it hits first. Which primitive that is is decided in floats; for rays of doubles t and the
- * point are found in double from the primitive that was hit. */
+/* Of each ray what it hits first, in floats, for rays of doubles too. */
 typedef struct kdray_hits {
   size_t size;
   kdray_out t;                   /* floats of either kind; infinity: a miss */

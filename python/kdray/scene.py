@@ -459,9 +459,9 @@ class Scene:
     ) -> Hits:
         """What each ray hits first.
 
-        Which surface a ray hits first is decided in floats; of float64 rays `t` and `point` are found in double from
-        the surface that was hit (shapes are floats about the scene's centre, whatever they were given as); results
-        are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted
+        It is found in floats about the scene's centre, t of float64 rays too: a ray that is asked again with its t as
+        t_min, which is exclusive, finds what comes after just that hit (`all_hits` finds t in double). Results are
+        float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted
         (all but `point`, and `instance` only where the scene has instances, if you say nothing): fewer are faster;
         `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or with `strict` an
         InputError that names the first.

@@ -33,6 +33,8 @@ Ints = npt.NDArray[np.int64]
 
 # A t_min is left out; this one lets in the hit at t = 0, which trimesh's engines count.
 _FROM_ZERO = -1e-30
+# By how much of the mesh's size its vertices are moved at most when they become floats, and some.
+_ROUNDED = 2.0**-23
 # How far a hit may lie from where the mesh's own double triangles have it, in the mesh's size: what comes from float
 # vertices is less. Beyond it (rays along a triangle) the plane tells nothing.
 _NEAR = 2.0**-17
@@ -126,7 +128,7 @@ class RayMeshIntersector:
         scene = self.scene
         t: Floats
         if multiple_hits:
-            hits = scene.all_hits(origins, directions, max_hits=max_hits)
+            hits = scene.all_hits(origins, directions, self._from_zero(directions), max_hits=max_hits)
             index_tri, index_ray, t = hits.primitive.astype(np.int64), hits.ray, hits.t
         else:
             fields = ("primitive", "t") if return_locations else ("primitive",)
@@ -137,6 +139,13 @@ class RayMeshIntersector:
         if not return_locations:
             return index_tri, index_ray
         return index_tri, index_ray, self._places(origins[index_ray], directions[index_ray], index_tri, t)
+
+    def _from_zero(self, directions: Floats) -> Floats:
+        """A t_min for each ray that lets in the surface that it begins on, whose float vertices may lie behind it."""
+        length = np.sqrt(np.einsum("ij,ij->i", directions, directions))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t_min: Floats = np.where(length > 0, -_ROUNDED * float(self.mesh.scale) / length, 0)
+        return np.maximum(t_min, -np.finfo(np.float64).max)
 
     def _places(self, origins: Floats, directions: Floats, faces: Ints, t: Floats) -> Floats:
         """Where the rays meet the planes of the faces, which the scene knows with float vertices only."""

@@ -84,9 +84,8 @@ HitWriter::HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& o
   check_out(out.normal.size(), n, "normal");
   check_out(out.point.size(), n, "point");
   check_out(out.instance.size(), n, "instance");
-  if (rays.in_double() && !(out.t.empty() && out.point.empty())) exact_.emplace(asked, rays);
   const double unit = asked.frame.unit();
-  dense_ = !exact_ && is_dense<float>(out.t) && is_dense<std::uint32_t>(out.geometry) &&
+  dense_ = is_dense<float>(out.t) && is_dense<std::uint32_t>(out.geometry) &&
            is_dense<std::uint32_t>(out.primitive) && is_dense<float>(out.u) && is_dense<float>(out.v) &&
            asked.table.only() && unit >= std::numeric_limits<float>::min() &&
            unit <= std::numeric_limits<float>::max();
@@ -95,40 +94,14 @@ HitWriter::HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& o
 void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, const FoundHits& found,
                       const LocalRays& local) const {
   Numbered numbered;
-  std::array<double, kRows> t;
   for (; begin < end; begin += kRows) {
     const FoundHits part = found.part(begin, std::min(kRows, end - begin));
-    Some some{first + begin, begin, part.hits, part.instances, local, nullptr};
-    if (exact_) {
-      find_distances(some, t);
-      some.exact = t.data();
-    }
+    Some some{first + begin, begin, part.hits, part.instances, local};
     if (wants_refs()) {
-      out_.normal.empty() ? number(some, numbered) : write_normals(some, numbered);
+      write_normals(some, numbered);
       some.hits = std::span(numbered).first(some.hits.size());
     }
     write_columns(some, write_dense(some));
-  }
-}
-
-// Of hits that are named by references.
-void HitWriter::find_distances(const Some& some, std::span<double> t) const {
-  for (const QueryHit& hit : some.hits)
-    if (!missed(hit)) exact_->prefetch(static_cast<std::uint32_t>(hit.primitive));
-  for (std::size_t i = 0; i < some.hits.size(); ++i) {
-    const QueryHit& hit = some.hits[i];
-    t[i] = missed(hit) ? HUGE_VAL
-                       : exact_->distance(some.ray + i, static_cast<std::uint32_t>(hit.primitive),
-                                          some.instance(i), hit.t);
-  }
-}
-
-void HitWriter::number(const Some& some, Numbered& numbered) const {
-  for (std::size_t i = 0; i < some.hits.size(); ++i) {
-    numbered[i] = some.hits[i];
-    if (!missed(some.hits[i]))
-      numbered[i].primitive = static_cast<std::int32_t>(
-          number_of(asked_->scene().flat, static_cast<std::uint32_t>(some.hits[i].primitive)));
   }
 }
 
@@ -138,7 +111,8 @@ dvec3 HitWriter::normal_of(const Some& some, std::size_t i, QueryHit& hit) const
   const std::uint32_t index = some.instance(i);
   const layout::Instance* const instance = index == kNoInstance ? nullptr : &flat.instances[index];
   const auto point = [&] {
-    const dvec3 local = asked_->frame.space().local(point_of(some.ray + i, some.t(i)));
+    const dvec3 local =
+        asked_->frame.space().local(point_of(some.ray + i, some.local.world_t(some.at + i, hit.t)));
     return instance ? in_mesh(*instance, local) : local;
   };
   const Surface surface = surface_at(flat, static_cast<std::uint32_t>(hit.primitive), point);
@@ -187,7 +161,9 @@ void HitWriter::fill(const Column& column, const Some& some, std::size_t from,
 // Those from `from` on.
 void HitWriter::write_columns(const Some& some, std::size_t from) const {
   // The t of a miss is infinite, and stays so.
-  const auto t_of = [&](std::size_t i) { return some.t(i); };
+  const auto t_of = [&](std::size_t i, const QueryHit& hit) {
+    return some.local.world_t(some.at + i, hit.t);
+  };
   const auto place_of = [&](std::size_t i, const QueryHit& hit) {
     if (missed(hit)) return GeometryTable::Place{kNoGeometry, kNoPrimitive};
     const auto number = static_cast<std::uint32_t>(hit.primitive);
@@ -196,7 +172,7 @@ void HitWriter::write_columns(const Some& some, std::size_t from) const {
     const std::uint32_t place = asked_->scene().flat.instances[index].number;
     return GeometryTable::Place{asked_->table.of_instance(place).geometry, number};
   };
-  fill(out_.t, some, from, [&](std::size_t i, const auto&) { return std::array{t_of(i)}; });
+  fill(out_.t, some, from, [&](std::size_t i, const auto& hit) { return std::array{t_of(i, hit)}; });
   fill(out_.geometry, some, from,
        [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).geometry}; });
   fill(out_.primitive, some, from,
@@ -205,7 +181,7 @@ void HitWriter::write_columns(const Some& some, std::size_t from) const {
   fill(out_.u, some, from, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
   fill(out_.v, some, from, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
   fill(out_.point, some, 0,
-       [&](std::size_t i, const auto&) { return array(point_of(some.ray + i, t_of(i))); });
+       [&](std::size_t i, const auto& hit) { return array(point_of(some.ray + i, t_of(i, hit))); });
 }
 
 dvec3 HitWriter::point_of(std::size_t ray, double t) const {

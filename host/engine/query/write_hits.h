@@ -1,5 +1,4 @@
 // What    Hits to the arrays of a program that asked for them.
-//         Which primitive a ray hits is decided in floats; its t, for rays of doubles, in double.
 // Shape   Column by column; where the columns are of floats and words without gaps, as most are, four hits at
 //         a time and all columns at once.
 // Errors  ErrorCode::input for an array of answers of another size than there are rays.
@@ -7,11 +6,9 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "engine/query/ask.h"
-#include "engine/query/exact_rays.h"
 
 namespace kdray::query {
 
@@ -29,7 +26,7 @@ class HitWriter {
  public:
   HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& out);
 
-  bool wants_refs() const { return !out_.normal.empty() || exact_; }
+  bool wants_refs() const { return !out_.normal.empty(); }
 
   // Of rays first + begin to first + end, of which hits[begin] is the first's.
   void write(std::size_t first, std::size_t begin, std::size_t end, const FoundHits& found,
@@ -42,17 +39,13 @@ class HitWriter {
     std::span<const layout::QueryHit> hits;
     std::span<const std::uint32_t> instances;
     const LocalRays& local;
-    const double* exact;  // each t in double, or null
 
-    double t(std::size_t i) const { return exact ? exact[i] : local.world_t(at + i, hits[i].t); }
     std::uint32_t instance(std::size_t i) const { return instances.empty() ? kNoInstance : instances[i]; }
   };
   static constexpr std::size_t kRows = 512;  // these stay in the nearest cache for all columns
   using Numbered = std::array<layout::QueryHit, kRows>;
 
-  void find_distances(const Some& some, std::span<double> t) const;
   void write_normals(const Some& some, Numbered& numbered) const;
-  void number(const Some& some, Numbered& numbered) const;
   std::size_t write_dense(const Some& some) const;
   void write_columns(const Some& some, std::size_t from) const;
   template <class Column, class ValueOf>
@@ -64,8 +57,7 @@ class HitWriter {
   const Asked* asked_;
   const RayArrays* rays_;
   HitsOut out_;
-  std::optional<ExactRays> exact_;  // of rays of doubles, whose t is wanted
-  bool dense_;                      // columns without gaps, of one geometry
+  bool dense_;  // columns without gaps, of one geometry
 };
 
 }  // namespace kdray::query

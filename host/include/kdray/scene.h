@@ -142,9 +142,8 @@ class Scene {
   // walk ask for CommitOptions::tree.binary_form.
   Picture render(const RenderOptions& options = {}) const;
 
-  // What each ray hits first. Which primitive that is is decided in floats; for rays of doubles t and the
-  // point are found in double from the primitive that was hit. Primitives are floats about the scene's
-  // centre.
+  // What each ray hits first, in floats about the scene's centre, for rays of doubles too: with the t of a
+  // hit as t_min the same ray finds what comes after just that hit.
   QueryReport closest(const Rays& rays, const HitsOut& out, const QueryOptions& options = {}) const;
   // 1 for each ray that hits anything between t_min and t_max, else 0.
   QueryReport any(const Rays& rays, const BytesOut& out, const QueryOptions& options = {}) const;

@@ -24,10 +24,12 @@ int n_messages() {
   return given ? std::atoi(given) : 3000;
 }
 
-// A busy machine may take its time to say what it has to say.
+// A busy machine may take its time to say what it has to say. (`request` is also what a farewell is waited
+// for.)
 view::Limits patient() {
   view::Limits limits;
-  limits.request = limits.silence = std::chrono::seconds(static_cast<int>(kPatience));
+  limits.request = 5s;
+  limits.silence = std::chrono::seconds(static_cast<int>(kPatience));
   return limits;
 }
 
