@@ -266,9 +266,12 @@ def test_ctrl_c_ends_a_long_call(question):
 
 
 # A ray hits a thousand of these triangles.
-SOUP = LONG.replace("scene.add_spheres(rng.normal(size=(20000, 3)), 0.02)", """
+SOUP = LONG.replace(
+    "scene.add_spheres(rng.normal(size=(20000, 3)), 0.02)",
+    """
 scene.add_mesh(rng.uniform(-1, 1, (90000, 3)), np.arange(90000).reshape(-1, 3))
-""")
+""",
+)
 
 
 def test_ctrl_c_ends_a_call_of_very_many_hits():
