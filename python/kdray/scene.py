@@ -778,7 +778,7 @@ def set_texture_cache(size: int) -> None:
 
 
 def _device(wanted: str | int) -> str:
-    """As kdray._core takes it; one that isn't what most machines have is looked for now."""
+    """As kdray._core takes it. Raises NoDeviceError at once where there is no device of that name, number or kind."""
     name = str(wanted)
     if name.lower() not in ("auto", "", "cpu"):  # those take what is there, and OpenCL is not begun with for them
         _drivers.choose()

@@ -35,7 +35,6 @@ class ExactRays {
 
   // t in double of a hit of ray i that floats have found at `t`, in multiples of the local direction.
   double distance(std::size_t i, std::uint32_t ref, std::uint32_t instance, float t) const;
-  void prefetch(std::uint32_t ref) const { scene_.prefetch(ref); }
 
  private:
   std::optional<LocalLine> line_of(std::size_t i) const;

@@ -297,12 +297,6 @@ double ExactScene::distance(const dvec3& origin, const dvec3& direction, std::ui
   return distance_in_mesh({origin, direction}, ref, t);
 }
 
-void ExactScene::prefetch(std::uint32_t ref) const {
-  primitives::with_kind(ref >> KDRAY_REF_KIND_SHIFT, [&](auto kind) {
-    __builtin_prefetch(&decltype(kind)::of(scene_->flat)[ref & KDRAY_REF_INDEX_MASK]);
-  });
-}
-
 double ExactScene::distance_in_mesh(const Line& line, std::uint32_t ref, double t) const {
   return primitives::with_kind(ref >> KDRAY_REF_KIND_SHIFT, [&](auto kind) {
     const auto& primitive = decltype(kind)::of(scene_->flat)[ref & KDRAY_REF_INDEX_MASK];

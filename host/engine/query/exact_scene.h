@@ -44,8 +44,6 @@ class ExactScene {
   // primitive, or runs along it.
   double distance(const dvec3& origin, const dvec3& direction, std::uint32_t ref, std::uint32_t instance,
                   double t) const;
-  // A hit's distance is soon asked for: its primitive is fetched from memory meanwhile.
-  void prefetch(std::uint32_t ref) const;
 
  private:
   struct Walk;
