@@ -1,17 +1,17 @@
-# cmake --install: bin/kdray, bin/kdray-bench beside it (which `kdray bench` starts; a package may leave it out), the rooms as static libraries, the public headers, and the package that
+# cmake --install: bin/kdray, bin/kdray-bench beside it (which `kdray bench` starts; a package may leave it out), the modules as static libraries, the public headers, and the package that
 # find_package(kdray) finds, with the target kdray::kdray. tests/consumer uses what is installed.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kdray)
-get_property(rooms GLOBAL PROPERTY KDRAY_ROOMS)
+get_property(modules GLOBAL PROPERTY KDRAY_MODULES)
 
-# What a user links: the API, and through it every room behind it.
+# What a user links: the API, and through it every module behind it.
 add_library(kdray INTERFACE)
 add_library(kdray::kdray ALIAS kdray)
 target_link_libraries(kdray INTERFACE kdray::api)
 
-install(TARGETS kdray ${rooms} EXPORT kdray
+install(TARGETS kdray ${modules} EXPORT kdray
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -98,7 +98,7 @@ class AccuracyScene {
   }
 
   // `plain` is kdray's picture of one sample at depth 16.
-  void make_povray(const film::Image& plain) {
+  void make_povray(const image::Image& plain) {
     if (exact_ || !options_.povray || !has_povray() || !pov_has_words_for(scene_)) return;
     calls_.working(run_.scene + ": POV-Ray");
     povray_ = std::make_unique<PovrayPoints>(scene_, reference_, plain, run_.cores, options_.quick);
@@ -110,20 +110,20 @@ class AccuracyScene {
       run_.povray->points.push_back({.group = kPovray, .name = s.name, .label = s.name});
   }
 
-  void judge(AccuracyPoint& point, const film::Image& reference, const film::Image& image,
-             const film::Image& base) {
-    point.error = film::compare(reference, image);
-    point.change = film::compare(base, image).rmse;
+  void judge(AccuracyPoint& point, const image::Image& reference, const image::Image& image,
+             const image::Image& base) {
+    point.error = image::compare(reference, image);
+    point.change = image::compare(base, image).rmse;
     calls_.picture(run_.scene, point.group == kPovray ? "POV-Ray " + point.name : point.name,
                    error_picture(reference, image));
   }
 
   void judge_all() {
     calls_.working(run_.scene + ": pictures");
-    film::Image base;
+    image::Image base;
     for (AccuracyPoint& point : run_.points) {
       const Rendered rendered = render(point.setting);
-      const film::Image image = shown(image_of(rendered.picture));
+      const image::Image image = shown(image_of(rendered.picture));
       point.taken = rendered.taken();
       if (base.pixels.empty()) base = image;
       judge(point, reference_, image, base);
@@ -171,7 +171,7 @@ class AccuracyScene {
   std::optional<ExactScene> exact_;
   scene::Scene scene_;
   std::map<std::pair<BuildQuality, double>, std::unique_ptr<Renderer>> renderers_;
-  film::Image reference_;
+  image::Image reference_;
   std::unique_ptr<PovrayPoints> povray_;
   std::vector<std::vector<double>> seconds_, povray_seconds_;  // [point]
   AccuracyRun run_;

@@ -41,7 +41,7 @@ struct AccuracyPoint {
   std::string group, name, label;
   Setting setting = {};  // of kdray's
   Spread seconds = {};
-  film::Difference error = {};      // against the reference
+  image::Difference error = {};     // against the reference
   double change = 0;                // RMSE against the base's picture
   std::optional<Taken> taken = {};  // adaptive sampling
   bool on_front = false;  // no other point of the same program is both faster and nearer to the reference
@@ -49,7 +49,7 @@ struct AccuracyPoint {
 
 struct PovrayRun {
   std::vector<AccuracyPoint> points;
-  film::Difference model_difference;  // of one ray through each pixel's centre, from kdray's
+  image::Difference model_difference;  // of one ray through each pixel's centre, from kdray's
   // Where that is not small: its points are not held against kdray's reference.
   bool has_own_reference = false;
 };
@@ -68,7 +68,7 @@ struct AccuracyCalls {
   std::function<void(std::span<const AccuracyRun>)> done;  // a scene: all so far, it last
   std::function<void(const std::string&)> working;
   // The reference and, by the name of its setting, where each picture differs from it.
-  std::function<void(const std::string& scene, const std::string& name, const film::Image&)> picture;
+  std::function<void(const std::string& scene, const std::string& name, const image::Image&)> picture;
 };
 
 std::vector<AccuracyRun> bench_accuracy(const AccuracyOptions& options, const AccuracyCalls& calls);

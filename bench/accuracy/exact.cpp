@@ -88,9 +88,9 @@ double wave_integral(double x) {
   return phase < 1 ? of_positive_half(phase) : of_positive_half(1) - of_positive_half(phase - 1);
 }
 
-film::Image mean_chessboard(int width, int height, int rows_of_pixel) {
+image::Image mean_chessboard(int width, int height, int rows_of_pixel) {
   const double pixel = 2 * kHalfHeight / height;
-  film::Image image{width, height, {}};
+  image::Image image{width, height, {}};
   std::vector<double> sums(static_cast<std::size_t>(width));
   for (int row = 0; row < height; ++row) {
     std::ranges::fill(sums, 0.0);
@@ -146,9 +146,9 @@ double light_at(double x, double z) {
   return kLight * sum / (4 * kHalfAcross * kHalfDown);
 }
 
-film::Image mean_penumbra(int width, int height, int places) {
+image::Image mean_penumbra(int width, int height, int places) {
   const double pixel = kWide / width;
-  film::Image image{width, height, {}};
+  image::Image image{width, height, {}};
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       double sum = 0;
@@ -163,14 +163,14 @@ film::Image mean_penumbra(int width, int height, int places) {
 
 // ---- Both
 
-using Mean = film::Image (*)(int width, int height, int places);
+using Mean = image::Image (*)(int width, int height, int places);
 
 template <Mean mean, int kPlaces>
 Reference exact_reference(int width, int height) {
   const auto start = std::chrono::steady_clock::now();
   Reference r;
   r.image = mean(width, height, kPlaces);
-  r.own_error = film::compare(r.image, mean(width, height, kPlaces / 2)).rmse;
+  r.own_error = image::compare(r.image, mean(width, height, kPlaces / 2)).rmse;
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return r;
 }

@@ -38,14 +38,14 @@ std::vector<PovraySetting> povray_settings(bool quick) {
           setting(2, "0.03", 4)};
 }
 
-PovrayPoints::PovrayPoints(const scene::Scene& scene, const film::Image& reference, const film::Image& plain,
-                           int threads, bool quick)
+PovrayPoints::PovrayPoints(const scene::Scene& scene, const image::Image& reference,
+                           const image::Image& plain, int threads, bool quick)
     : settings_(povray_settings(quick)), threads_(threads) {
   const int width = plain.width, height = plain.height;
   deep_ = std::make_unique<Povray>(scene, width, height, kDeep, kDefaultMinWeight);
   shallow_ = std::make_unique<Povray>(scene, width, height, kShallow, kDefaultMinWeight);
-  model_difference_ = film::compare(plain, shown(deep_->trace(threads, {"-A"}).image));
-  has_own_reference_ = model_difference_.rmse > kSameModel * film::compare(reference, plain).rmse;
+  model_difference_ = image::compare(plain, shown(deep_->trace(threads, {"-A"}).image));
+  has_own_reference_ = model_difference_.rmse > kSameModel * image::compare(reference, plain).rmse;
   if (!has_own_reference_) {
     reference_ = reference;
     return;

@@ -28,22 +28,22 @@ std::vector<PovraySetting> povray_settings(bool quick);
 class PovrayPoints {
  public:
   // `plain` is kdray's picture of one sample at each pixel's centre.
-  PovrayPoints(const scene::Scene& scene, const film::Image& reference, const film::Image& plain, int threads,
-               bool quick);
+  PovrayPoints(const scene::Scene& scene, const image::Image& reference, const image::Image& plain,
+               int threads, bool quick);
 
   const std::vector<PovraySetting>& settings() const { return settings_; }
-  const film::Difference& model_difference() const { return model_difference_; }  // at the pixels' centres
+  const image::Difference& model_difference() const { return model_difference_; }  // at the pixels' centres
   bool has_own_reference() const { return has_own_reference_; }
-  const film::Image& reference() const { return reference_; }
+  const image::Image& reference() const { return reference_; }
   // Seconds and the picture as it is shown.
   Povray::Traced trace(std::size_t setting) const;
 
  private:
   std::vector<PovraySetting> settings_;
   std::unique_ptr<Povray> deep_, shallow_;
-  film::Difference model_difference_;
+  image::Difference model_difference_;
   bool has_own_reference_ = false;
-  film::Image reference_;
+  image::Image reference_;
   int threads_;
 };
 

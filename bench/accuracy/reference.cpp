@@ -21,13 +21,13 @@ Reference make_reference(Renderer& renderer, int width, int height, int samples,
     o.samples = n, o.depth = kDepth, o.min_weight = 0;
     o.precision = precision;
     o.mode = Mode::pdprt;
-    film::Image image = image_of(renderer.render(o));
+    image::Image image = image_of(renderer.render(o));
     r.seconds += renderer.statistics().seconds.render;
     return image;
   };
-  const film::Image one = shrunk(render(2, samples / 8), 2), other = shrunk(render(4, samples / 32), 4);
+  const image::Image one = shrunk(render(2, samples / 8), 2), other = shrunk(render(4, samples / 32), 4);
   r.image = shown(mean_of(one, other));
-  r.own_error = film::compare(shown(one), shown(other)).rmse / 2;
+  r.own_error = image::compare(shown(one), shown(other)).rmse / 2;
   return r;
 }
 

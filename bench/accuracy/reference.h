@@ -12,7 +12,7 @@
 namespace kdray::bench {
 
 struct Reference {
-  film::Image image;
+  image::Image image;
   double own_error = 0;  // RMSE, estimated
   double seconds = 0;    // to render it
 };

@@ -41,7 +41,7 @@ std::string row_of(const AccuracyPoint& p, double base_seconds) {
                      100 * p.error.differing_share, p.error.flip, change, taken);
 }
 
-Json json_of(const film::Difference& d) {
+Json json_of(const image::Difference& d) {
   return {{"rmse", d.rmse},
           {"mean_absolute", d.mean_absolute},
           {"max", d.max},

@@ -15,21 +15,21 @@ float shown_value(float v) {
 
 }  // namespace
 
-film::Image image_of(const Picture& picture) {
-  film::Image image{picture.width, picture.height, {}};
+image::Image image_of(const Picture& picture) {
+  image::Image image{picture.width, picture.height, {}};
   image.pixels.reserve(picture.rgb.size() / 3);
   for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3)
     image.pixels.emplace_back(picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]);
   return image;
 }
 
-film::Image shown(film::Image image) {
+image::Image shown(image::Image image) {
   for (vec3& p : image.pixels) p = {shown_value(p.x), shown_value(p.y), shown_value(p.z)};
   return image;
 }
 
-film::Image shrunk(const film::Image& image, int factor) {
-  film::Image small{image.width / factor, image.height / factor, {}};
+image::Image shrunk(const image::Image& image, int factor) {
+  image::Image small{image.width / factor, image.height / factor, {}};
   small.pixels.reserve(static_cast<std::size_t>(small.width) * static_cast<std::size_t>(small.height));
   for (int y = 0; y < small.height; ++y)
     for (int x = 0; x < small.width; ++x) {
@@ -44,19 +44,19 @@ film::Image shrunk(const film::Image& image, int factor) {
   return small;
 }
 
-film::Image mean_of(film::Image a, const film::Image& b) {
+image::Image mean_of(image::Image a, const image::Image& b) {
   for (std::size_t i = 0; i < a.pixels.size(); ++i) a.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
   return a;
 }
 
-film::Image error_picture(const film::Image& reference, const film::Image& image) {
-  film::Image map{reference.width, reference.height, {}};
+image::Image error_picture(const image::Image& reference, const image::Image& image) {
+  image::Image map{reference.width, reference.height, {}};
   map.pixels.reserve(reference.pixels.size());
   for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
     float largest = 0;
     for (int c = 0; c < 3; ++c)
       largest = std::max(largest, std::abs(reference.pixels[i][c] - image.pixels[i][c]));
-    map.pixels.push_back(film::heat(std::sqrt(largest)));
+    map.pixels.push_back(image::heat(std::sqrt(largest)));
   }
   return map;
 }

@@ -8,17 +8,17 @@
 
 namespace kdray::bench {
 
-film::Image image_of(const Picture& picture);
+image::Image image_of(const Picture& picture);
 
-film::Image shown(film::Image image);
+image::Image shown(image::Image image);
 
 // The mean of each `factor` x `factor` pixels; the sides are multiples of it.
-film::Image shrunk(const film::Image& image, int factor);
+image::Image shrunk(const image::Image& image, int factor);
 
-film::Image mean_of(film::Image a, const film::Image& b);
+image::Image mean_of(image::Image a, const image::Image& b);
 
 // The errors on the same scale for all pictures: a heat map of the square root of the largest channel's
 // difference, so that 1/255 is visible (6% of the scale) and 1 is the hottest.
-film::Image error_picture(const film::Image& reference, const film::Image& image);
+image::Image error_picture(const image::Image& reference, const image::Image& image);
 
 }  // namespace kdray::bench

@@ -57,10 +57,10 @@ int run(const AccuracyCommand& c) {
           },
       .working = [](const std::string& what) { say(what); },
       .picture =
-          [&](const std::string& scene, const std::string& name, const film::Image& image) {
+          [&](const std::string& scene, const std::string& name, const image::Image& image) {
             if (c.report.empty()) return;
             const auto folder = std::filesystem::path(c.report) / kName;
-            film::write_picture(folder / bench::picture_name(scene, name), image, {}, {});
+            image::write_picture(folder / bench::picture_name(scene, name), image, {}, {});
           }};
   const auto runs = bench::bench_accuracy(c.options, calls);
   if (const std::size_t n = bench::count_unlike_base(runs); n > 0)

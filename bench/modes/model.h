@@ -1,7 +1,7 @@
 // What    A model of both modes: from the measured costs of a scene's tiles and from a sample of its rays it
 //         predicts, by simulation, what 1 to 10,000 queues of one core each would take for the frame over a
 //         stated network.
-// Shape   PDPRT: the tiles' seconds through tiles.h. ODPRT: the wide tree cut into subtrees and dealt
+// Shape   PDPRT: the tiles' seconds through tiles.h. ODPRT: the wide tree cut into subtrees and assigned
 //         to queues as host/engine/odprt does it, by the cost of a pilot sample; the lives of a larger sample
 //         (lives.h) sent along the subtrees they pass (paths.h, traffic.h) through events.h. Both
 //         are scaled to one core's measured time.

@@ -76,7 +76,7 @@ Povray::Traced Povray::trace(int threads, const std::vector<std::string>& flags)
   std::vector<std::string> all = flags;
   all.insert(all.end(), {"+FE", "+O" + file.string()});
   const double seconds = run_with(threads, all);
-  return {seconds, film::read_picture(file, {})};
+  return {seconds, image::read_picture(file, {})};
 }
 
 double Povray::run_with(int threads, const std::vector<std::string>& flags) const {

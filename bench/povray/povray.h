@@ -27,7 +27,7 @@ class Povray {
 
   struct Traced {
     double seconds = 0;
-    film::Image image;  // linear, as it is: values above 1 too
+    image::Image image;  // linear, as it is: values above 1 too
   };
   // Antialiasing is as `flags` have it: "+AM2", "+A0.1", ...
   Traced trace(int threads, const std::vector<std::string>& flags) const;

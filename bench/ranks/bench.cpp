@@ -162,22 +162,22 @@ void measure(RanksRun& run, Team& team, const PreparedScene& scene, const RanksO
 
 }  // namespace
 
-SceneShelf::Held::Held(const std::string& name)
+SceneShelf::Entry::Entry(const std::string& name)
     : scene(generate::load_scene(name)), prepared(scene, {.binary_form = false}) {}
 
 struct SceneShelf::Shelved {
   std::mutex mutex;
-  std::map<std::string, std::unique_ptr<Held>> held;
+  std::map<std::string, std::unique_ptr<Entry>> entries;
 };
 
 SceneShelf::SceneShelf() : shelved_(std::make_unique<Shelved>()) {}
 SceneShelf::~SceneShelf() = default;
 
-const SceneShelf::Held& SceneShelf::get(const std::string& name) {
+const SceneShelf::Entry& SceneShelf::get(const std::string& name) {
   const std::lock_guard lock(shelved_->mutex);
-  auto& held = shelved_->held[name];
-  if (!held) held = std::make_unique<Held>(name);
-  return *held;
+  auto& entry = shelved_->entries[name];
+  if (!entry) entry = std::make_unique<Entry>(name);
+  return *entry;
 }
 
 std::vector<RanksRun> bench_ranks(Team& team, SceneShelf& shelf, bool over_mpi, const RanksOptions& options,
@@ -186,11 +186,11 @@ std::vector<RanksRun> bench_ranks(Team& team, SceneShelf& shelf, bool over_mpi, 
   std::vector<RanksRun> runs;
   for (const std::string& name : options.scenes.empty() ? kScenes : options.scenes) {
     if (team.leads()) working(name);
-    const SceneShelf::Held& held = shelf.get(name);
+    const SceneShelf::Entry& entry = shelf.get(name);
     RanksRun run;
-    run.scene = name, run.n_primitives = held.scene.primitives(), run.over_mpi = over_mpi;
+    run.scene = name, run.n_primitives = entry.scene.primitives(), run.over_mpi = over_mpi;
     run.cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    measure(run, team, held.prepared, options);
+    measure(run, team, entry.prepared, options);
     team.meet();
     if (!team.leads()) continue;
     done(run);

@@ -64,12 +64,12 @@ class SceneShelf {
  public:
   SceneShelf();
   ~SceneShelf();
-  struct Held {
-    explicit Held(const std::string& name);
+  struct Entry {
+    explicit Entry(const std::string& name);
     Scene scene;
     PreparedScene prepared;
   };
-  const Held& get(const std::string& name);
+  const Entry& get(const std::string& name);
 
  private:
   struct Shelved;

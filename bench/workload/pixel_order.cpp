@@ -18,7 +18,7 @@ std::uint32_t even_bits(std::uint64_t code) {
   return static_cast<std::uint32_t>(x);
 }
 
-std::vector<Pixel> room_for(int side) {
+std::vector<Pixel> reserved(int side) {
   std::vector<Pixel> pixels;
   pixels.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   return pixels;
@@ -28,7 +28,7 @@ std::vector<Pixel> room_for(int side) {
 
 // The curve fills a square whose side is a power of two; what lies outside the picture is passed over.
 std::vector<Pixel> morton_order(int side) {
-  std::vector<Pixel> pixels = room_for(side);
+  std::vector<Pixel> pixels = reserved(side);
   const std::uint64_t square = std::bit_ceil(static_cast<std::uint64_t>(side));
   for (std::uint64_t code = 0; code < square * square; ++code) {
     const Pixel p{static_cast<int>(even_bits(code)), static_cast<int>(even_bits(code >> 1))};
@@ -38,7 +38,7 @@ std::vector<Pixel> morton_order(int side) {
 }
 
 std::vector<Pixel> scanline_order(int side) {
-  std::vector<Pixel> pixels = room_for(side);
+  std::vector<Pixel> pixels = reserved(side);
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) pixels.push_back({x, y});
   return pixels;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "api/checkpoint.h"
 #include "api/film_memory.h"
-#include "api/ledger.h"
 
 namespace kdray::api {
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr transport::Tag kFrame = transport::kTagsOfFrames.first;
 
-ledger::Cut cut_of_schedule(State& state, const Job& job) {
+checkpoint::Cut cut_of_schedule(State& state, const Job& job) {
   const wavefront::Schedule schedule = state.scheduler.schedule_for(state.devices.first(), job);
   return {job.frame.width, job.frame.height, schedule.tile_width, schedule.tile_height};
 }
@@ -26,21 +26,21 @@ struct Rest {
 };
 
 Mode lead(State& state, Job& job, Mode mode) {
-  const ledger::Header header{.identity = identity_of(state, job),
-                              .cut = job.ledger ? job.ledger->cut() : cut_of_schedule(state, job),
-                              .maker = "rank 0"};
+  const checkpoint::Header header{.identity = identity_of(state, job),
+                                  .cut = job.checkpoint ? job.checkpoint->cut() : cut_of_schedule(state, job),
+                                  .maker = "rank 0"};
   if (mode == Mode::pdprt) job.film_of_ranks = film_bytes(state, job);
   job.shared_frame = header.frame();
   job.options.tile_width = static_cast<int>(header.cut.tile_width);
   job.options.tile_height = static_cast<int>(header.cut.tile_height);
-  transport::Bytes bytes = ledger::to_bytes(header);
+  transport::Bytes bytes = checkpoint::to_bytes(header);
   const Rest rest{job.film_of_ranks, static_cast<std::uint32_t>(mode)};
   bytes.append(reinterpret_cast<const char*>(&rest), sizeof rest);
   state.ranks->send_to_others(kFrame, bytes);
   return mode;
 }
 
-void check_same(const ledger::Identity& own, const ledger::Identity& first) {
+void check_same(const checkpoint::Identity& own, const checkpoint::Identity& first) {
   const auto refuse = [](const std::string& what) {
     throw Error(ErrorCode::input,
                 fmt::format("this rank has {} than rank 0; all of them need the same", what));
@@ -53,10 +53,10 @@ void check_same(const ledger::Identity& own, const ledger::Identity& first) {
 
 Mode follow(State& state, Job& job) {
   const transport::Message message = state.ranks->wait(transport::kTagsOfFrames);
-  const auto header = ledger::header_of(message.bytes);
+  const auto header = checkpoint::header_of(message.bytes);
   Rest rest;
-  if (message.from == 0 && header && message.bytes.size() == ledger::kHeaderBytes + sizeof rest)
-    std::memcpy(&rest, message.bytes.data() + ledger::kHeaderBytes, sizeof rest);
+  if (message.from == 0 && header && message.bytes.size() == checkpoint::kHeaderBytes + sizeof rest)
+    std::memcpy(&rest, message.bytes.data() + checkpoint::kHeaderBytes, sizeof rest);
   const auto mode = static_cast<Mode>(rest.mode);
   if (!header || (mode != Mode::pdprt && mode != Mode::odprt))
     throw Error(ErrorCode::input, "rank 0 is of another version of kdray than this rank");

@@ -9,7 +9,7 @@
 
 namespace kdray::api {
 
-// Takes the counts of samples out of `drawn`; they come last.
-std::vector<film::Channel> channels_of(State& state, const Job& job, Drawn& drawn);
+// Takes the counts of samples out of `frame_result`; they come last.
+std::vector<image::Channel> channels_of(State& state, const Job& job, FrameResult& frame_result);
 
 }  // namespace kdray::api

@@ -24,7 +24,7 @@ class Committed {
 
   const PreparedScene& scene() const { return scene_; }
   Picture render(const RenderOptions& options);
-  query::Asked asked() { return {target_, table_, frame_, sessions_}; }
+  query::QueryContext query_context() { return {target_, table_, frame_, sessions_}; }
 
   // Of a query over so many rays or points that took this long, and of all that came before it.
   Statistics statistics(std::uint64_t n_asked, std::span<const double> seconds) const;

@@ -66,7 +66,7 @@ std::uint32_t Device::units_of_a_queue() const {
 DeviceSet::DeviceSet(const DeviceOptions& options, const Hooks& hooks, const prepare::Prepared& scene) {
   const OpenedDevices opened = open_devices(options, hooks.faults);
   open_seconds_ = opened.seconds;
-  const tune::Database tunings = read_tunings(options);
+  const tuning::Database tunings = read_tunings(options);
   for (const device::Context& context : opened.contexts) {
     Device& device = devices_.emplace_back(context, options, hooks.build_options, scene);
     device.use(tuned_for(context, device.global, scene.features, tunings, options.tunings.string()));
@@ -75,7 +75,7 @@ DeviceSet::DeviceSet(const DeviceOptions& options, const Hooks& hooks, const pre
 
 void DeviceSet::tune(const Tuning& tuning) {
   for (Device& d : devices_)
-    d.use({tune::merged(tune::shipped(d.context.info().kind), tuning), d.tuned.key, "given"});
+    d.use({tuning::merged(tuning::shipped(d.context.info().kind), tuning), d.tuned.key, "given"});
 }
 
 std::size_t DeviceSet::n_queues() const {

@@ -53,11 +53,11 @@ odprt::Request request_for(State& state, Job& job) {
     request.n_slices = joined.n_slices;
   }
   request.ray_buffer = static_cast<std::uint32_t>(o.ray_buffer);
-  request.device_memory = state.held ? 0 : memory_limit(state, o);
+  request.device_memory = state.whole ? 0 : memory_limit(state, o);
   request.timeline = job.timeline;
   request.faults = &state.faults;
   request.progress = o.progress;
-  request.ledger = job.ledger.get();
+  request.checkpoint = job.checkpoint.get();
   return request;
 }
 
@@ -72,38 +72,38 @@ std::vector<std::string> warnings_of(const odprt::Result& r) {
 
 }  // namespace
 
-Drawn draw_odprt(State& state, Job& job) {
+FrameResult draw_odprt(State& state, Job& job) {
   const RenderOptions& o = job.options;
   if (o.device_memory > 0 && !o.channels.empty())
     throw Error(ErrorCode::usage, "--aov needs the whole scene on a device; leave --device-memory out");
   if (o.device_memory > 0 && state.ranks)
     throw Error(ErrorCode::usage,
                 "with ranks each part of the scene stays where it is; take more ranks for --device-memory");
-  if (state.held) job.options.balance = Balance::sah;  // each rank divides what it holds
+  if (state.whole) job.options.balance = Balance::sah;  // each rank divides what it holds
   const odprt::Request request = request_for(state, job);
   if (!state.divided)
     state.divided = std::make_unique<odprt::DividedScene>(state.scene.flat, state.scene.wide,
-                                                          state.held ? state.held->ranks : nullptr);
+                                                          state.whole ? state.whole->ranks : nullptr);
   odprt::Result result = state.divided->render(request);
   state.speeds.take(job.frame).odprt = mrays_per_s(result.counters.total(), result.render_seconds);
-  Drawn drawn;
-  drawn.division = division_of(result, job, state.divided->geometry_bytes());
+  FrameResult frame_result;
+  frame_result.division = division_of(result, job, state.divided->geometry_bytes());
   if (state.ranks) {
-    tell_of_ranks(drawn.division, result.queues, *state.ranks);
-    drawn.division.ranks->whole = state.held == nullptr;
-    drawn.division.ranks->peak_bytes = result.peak_bytes;
+    tell_of_ranks(frame_result.division, result.queues, *state.ranks);
+    frame_result.division.ranks->whole = state.whole == nullptr;
+    frame_result.division.ranks->peak_bytes = result.peak_bytes;
   }
   for (const odprt::QueueReport& queue : result.queues)
-    drawn.memory_of_queues.push_back({queue.geometry_bytes, queue.work_bytes});
-  drawn.divide_seconds = result.divide_seconds;
-  drawn.warnings = warnings_of(result);
-  drawn.owners.of_subtrees = std::move(result.subtree_queues);
-  drawn.image = std::move(result.image);
-  drawn.samples = std::move(result.samples);
-  drawn.counters = result.counters;
-  drawn.stage_seconds = std::move(result.stage_seconds);
-  drawn.render_seconds = result.render_seconds;
-  return drawn;
+    frame_result.memory_of_queues.push_back({queue.geometry_bytes, queue.work_bytes});
+  frame_result.divide_seconds = result.divide_seconds;
+  frame_result.warnings = warnings_of(result);
+  frame_result.owners.of_subtrees = std::move(result.subtree_queues);
+  frame_result.image = std::move(result.image);
+  frame_result.samples = std::move(result.samples);
+  frame_result.counters = result.counters;
+  frame_result.stage_seconds = std::move(result.stage_seconds);
+  frame_result.render_seconds = result.render_seconds;
+  return frame_result;
 }
 
 }  // namespace kdray::api

@@ -9,6 +9,6 @@
 namespace kdray::api {
 
 // Writes the schedule into the job's frame.
-Drawn draw_odprt(State& state, Job& job);
+FrameResult draw_odprt(State& state, Job& job);
 
 }  // namespace kdray::api

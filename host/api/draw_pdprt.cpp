@@ -37,17 +37,17 @@ std::vector<std::string> warnings_of(const pdprt::Result& result) {
 }
 
 // Each queue sees the whole scene.
-void add_memory(Drawn& drawn, const pdprt::Result& result, std::uint64_t scene_bytes) {
-  drawn.frame_bytes = 0;
+void add_memory(FrameResult& frame_result, const pdprt::Result& result, std::uint64_t scene_bytes) {
+  frame_result.frame_bytes = 0;
   for (const pdprt::QueueResult& queue : result.queues) {
-    *drawn.frame_bytes += queue.device_bytes;
-    drawn.memory_of_queues.push_back({scene_bytes, queue.device_bytes});
+    *frame_result.frame_bytes += queue.device_bytes;
+    frame_result.memory_of_queues.push_back({scene_bytes, queue.device_bytes});
   }
 }
 
 }  // namespace
 
-Drawn draw_pdprt(State& state, const Job& job) {
+FrameResult draw_pdprt(State& state, const Job& job) {
   const std::size_t max_film_bytes = state.ranks ? job.film_of_ranks : film_bytes(state, job);
   pdprt::Result result = pdprt::render(places_on(state, job), {.frame = job.frame,
                                                                .features = job.features,
@@ -57,23 +57,23 @@ Drawn draw_pdprt(State& state, const Job& job) {
                                                                .faults = &state.faults,
                                                                .timeline = job.timeline,
                                                                .max_film_bytes = max_film_bytes,
-                                                               .ledger = job.ledger.get(),
+                                                               .checkpoint = job.checkpoint.get(),
                                                                .ranks = state.ranks.get(),
                                                                .shared_frame = job.shared_frame});
   state.scheduler.remember(job.frame, result.tile_cost);
   state.speeds.take(job.frame).pdprt = mrays_per_s(result.counters.total(), result.render_seconds);
-  Drawn drawn;
-  drawn.division = division_of(result, job, state.devices.first().global);
-  if (state.ranks) tell_of_ranks(drawn.division, result.queues, *state.ranks);
-  add_memory(drawn, result, state.scene_bytes);
-  drawn.warnings = warnings_of(result);
-  drawn.owners = {result.tile_width, result.tile_height, std::move(result.tile_queues)};
-  drawn.image = std::move(result.image);
-  drawn.samples = std::move(result.samples);
-  drawn.counters = result.counters;
-  drawn.stage_seconds = std::move(result.stage_seconds);
-  drawn.render_seconds = result.render_seconds;
-  return drawn;
+  FrameResult frame_result;
+  frame_result.division = division_of(result, job, state.devices.first().global);
+  if (state.ranks) tell_of_ranks(frame_result.division, result.queues, *state.ranks);
+  add_memory(frame_result, result, state.scene_bytes);
+  frame_result.warnings = warnings_of(result);
+  frame_result.owners = {result.tile_width, result.tile_height, std::move(result.tile_queues)};
+  frame_result.image = std::move(result.image);
+  frame_result.samples = std::move(result.samples);
+  frame_result.counters = result.counters;
+  frame_result.stage_seconds = std::move(result.stage_seconds);
+  frame_result.render_seconds = result.render_seconds;
+  return frame_result;
 }
 
 }  // namespace kdray::api

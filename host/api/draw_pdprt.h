@@ -6,6 +6,6 @@
 
 namespace kdray::api {
 
-Drawn draw_pdprt(State& state, const Job& job);
+FrameResult draw_pdprt(State& state, const Job& job);
 
 }  // namespace kdray::api

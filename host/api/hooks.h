@@ -14,7 +14,7 @@ class Ranks;
 
 namespace kdray::api {
 
-struct Held;
+struct WholeScene;
 
 struct Hooks {
   // "1@5,0@9" makes the fifth launch on queue 1 and the ninth on queue 0 fail as if the device had;
@@ -30,7 +30,7 @@ struct Hooks {
   std::shared_ptr<transport::Ranks> ranks = {};
   // With ranks, for frames in ODPRT alone: the scene is what this rank holds of one that no rank has whole.
   // Null: each has all of it.
-  std::shared_ptr<const Held> held = {};
+  std::shared_ptr<const WholeScene> whole = {};
 };
 
 Renderer make_renderer(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks);

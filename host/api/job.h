@@ -10,7 +10,7 @@
 
 #include "base/timeline.h"
 #include "engine/adaptive/report.h"
-#include "engine/checkpoint/frame_ledger.h"
+#include "engine/checkpoint/frame_checkpoint.h"
 #include "engine/wavefront/wavefront.h"
 #include "io/image/image.h"
 #include "kdray/kdray.h"
@@ -23,8 +23,8 @@ struct Job {
   RenderOptions options;  // with what they leave open filled in from the scene
   layout::Frame frame;
   layout::Features features;
-  timeline::Timeline* timeline;                      // null: not wanted
-  std::shared_ptr<ledger::FrameLedger> ledger = {};  // null: there is none
+  timeline::Timeline* timeline;                                  // null: not wanted
+  std::shared_ptr<checkpoint::FrameCheckpoint> checkpoint = {};  // null: there is none
   // With ranks: the frame's mark, and what a queue's film takes at most (agree.h).
   Hash shared_frame = {};
   std::size_t film_of_ranks = 0;
@@ -36,8 +36,8 @@ struct Owners {
   std::vector<std::uint32_t> of_tiles = {}, of_subtrees = {};
 };
 
-struct Drawn {
-  film::Image image;
+struct FrameResult {
+  image::Image image;
   std::optional<adaptive::Report> samples;
   std::vector<std::string> warnings;
   wavefront::Counters counters;

@@ -29,7 +29,7 @@ dvec3 point_at(const layout::Frame& frame, std::uint32_t column, std::uint32_t r
 }
 
 float channel_of(std::uint32_t queue) {
-  return queue == odprt::kEveryPart ? film::kEveryQueue : static_cast<float>(queue);
+  return queue == odprt::kEveryPart ? image::kEveryQueue : static_cast<float>(queue);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ std::vector<float> queues_by_tiles(const layout::Frame& frame, const Owners& own
     for (std::uint32_t column = 0; column < frame.width; ++column) {
       const std::uint32_t queue =
           owners.of_tiles[row / owners.tile_height * n_tiles_x + column / owners.tile_width];
-      queues.push_back(queue == pdprt::kNobody ? film::kNoQueue : static_cast<float>(queue));
+      queues.push_back(queue == pdprt::kNobody ? image::kNoQueue : static_cast<float>(queue));
     }
   return queues;
 }
@@ -50,7 +50,7 @@ std::vector<float> queues_by_tiles(const layout::Frame& frame, const Owners& own
 std::vector<float> queues_by_subtrees(const State& state, const layout::Frame& frame, const Owners& owners,
                                       std::span<const float> depths) {
   const odprt::Locator locator(state.scene.wide, state.divided->cut());
-  std::vector<float> queues(depths.size(), film::kNoQueue);
+  std::vector<float> queues(depths.size(), image::kNoQueue);
   tbb::parallel_for(std::uint32_t{0}, frame.height, [&](std::uint32_t row) {
     for (std::uint32_t column = 0; column < frame.width; ++column) {
       const std::size_t pixel = std::size_t{row} * frame.width + column;

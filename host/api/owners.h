@@ -1,6 +1,6 @@
 // What    Channel "queue": for each pixel who traced it. Of PDPRT that is the queue that rendered its tile,
 //         of ODPRT the one whose subtree the eye ray through its centre ends in.
-// Shape   The number of a queue, film::kNoQueue or film::kEveryQueue.
+// Shape   The number of a queue, image::kNoQueue or image::kEveryQueue.
 #pragma once
 
 #include <span>

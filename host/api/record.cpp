@@ -69,11 +69,11 @@ Statistics::Samples samples_told(const layout::Frame& frame, const std::optional
           std::move(adaptive)};
 }
 
-std::optional<Statistics::Ledger> ledger_told(const Job& job) {
-  if (!job.ledger) return std::nullopt;
-  const ledger::Report r = job.ledger->report();
+std::optional<Statistics::Ledger> checkpoint_told(const Job& job) {
+  if (!job.checkpoint) return std::nullopt;
+  const checkpoint::Report r = job.checkpoint->report();
   return Statistics::Ledger{job.options.ledger->folder.string(),
-                            r.pieces,
+                            r.records,
                             r.found,
                             r.rendered,
                             r.damaged,
@@ -106,7 +106,7 @@ Statistics::Features features_told(layout::Features mask) {
 }
 
 Statistics::DeviceTuning tuning_told(const Tuned& tuned) {
-  const tune::Key& k = tuned.key;
+  const tuning::Key& k = tuned.key;
   return {tuned.from, tuned.settings, k.device, k.driver, k.kernels, k.schedule, k.features};
 }
 
@@ -125,43 +125,44 @@ Statistics first_statistics(const prepare::Prepared& scene, const DeviceSet& dev
   return s;
 }
 
-void record_frame(Statistics& statistics, const State& state, const Job& job, Drawn& drawn,
+void record_frame(Statistics& statistics, const State& state, const Job& job, FrameResult& frame_result,
                   const std::string& why) {
   const Device& first = state.devices.first();
   const auto stage = [&](const char* name) {
-    const auto found = drawn.stage_seconds.find(name);
-    return found == drawn.stage_seconds.end() ? 0.0 : found->second;
+    const auto found = frame_result.stage_seconds.find(name);
+    return found == frame_result.stage_seconds.end() ? 0.0 : found->second;
   };
   Statistics::Seconds& seconds = statistics.seconds;
   record_preparations(statistics, state.devices);
-  seconds.render = drawn.render_seconds;
+  seconds.render = frame_result.render_seconds;
   seconds.trace = stage("trace_closest") + stage("trace_shadow");
   seconds.shade = stage("shade");
   seconds.admit = stage("admit");
   seconds.add = stage("add");
-  seconds.divide = drawn.divide_seconds;
+  seconds.divide = frame_result.divide_seconds;
   seconds.route.reset();
-  if (drawn.division.odprt) seconds.route = stage("route");
-  statistics.rays = rays_told(drawn.counters);
-  statistics.mrays_per_s = mrays_per_s(drawn.counters.total(), drawn.render_seconds);
+  if (frame_result.division.odprt) seconds.route = stage("route");
+  statistics.rays = rays_told(frame_result.counters);
+  statistics.mrays_per_s = mrays_per_s(frame_result.counters.total(), frame_result.render_seconds);
   statistics.features = features_told(job.features);
   statistics.frame = {job.frame.width, job.frame.height, job.frame.n_samples, job.frame.max_depth,
                       job.frame.spawn_threshold};
-  statistics.samples = samples_told(job.frame, drawn.samples);
-  statistics.ledger = ledger_told(job);
-  statistics.memory.frame_bytes = drawn.frame_bytes;
-  statistics.memory.per_queue = std::move(drawn.memory_of_queues);
-  add_devices(drawn.division, state.devices);
-  const std::size_t n_queues = state.ranks ? drawn.division.per_queue.size() : state.devices.n_queues();
-  drawn.division.why = why;
+  statistics.samples = samples_told(job.frame, frame_result.samples);
+  statistics.ledger = checkpoint_told(job);
+  statistics.memory.frame_bytes = frame_result.frame_bytes;
+  statistics.memory.per_queue = std::move(frame_result.memory_of_queues);
+  add_devices(frame_result.division, state.devices);
+  const std::size_t n_queues =
+      state.ranks ? frame_result.division.per_queue.size() : state.devices.n_queues();
+  frame_result.division.why = why;
   const Traversal traversal =
       traversal_in(job.options.precision, job.options.traversal, first.context.info());
-  statistics.mode = {.name = drawn.division.odprt ? "odprt" : "pdprt",
+  statistics.mode = {.name = frame_result.division.odprt ? "odprt" : "pdprt",
                      .queues = n_queues,
                      .work_group = first.work_group,
                      .traversal = name_of(traversal),
                      .precision = name_of(job.options.precision),
-                     .division = std::move(drawn.division),
+                     .division = std::move(frame_result.division),
                      .repeat = {}};
 }
 

@@ -1,4 +1,4 @@
-// What    Fills in the Statistics of a Renderer, or of a scene that is asked, from what its rooms tell: the
+// What    Fills in the Statistics of a Renderer, or of a scene that is asked, from what its modules tell: the
 //         scene, the tree, rays, samples, queues.
 #pragma once
 
@@ -36,7 +36,7 @@ void tell_of_ranks(Statistics::Division& division, const Queues& queues, const t
 }
 
 // What all modes tell of a frame.
-void record_frame(Statistics& statistics, const State& state, const Job& job, Drawn& drawn,
+void record_frame(Statistics& statistics, const State& state, const Job& job, FrameResult& frame_result,
                   const std::string& why);
 
 struct Query {

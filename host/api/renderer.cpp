@@ -5,12 +5,12 @@
 
 #include "api/agree.h"
 #include "api/channels.h"
+#include "api/checkpoint.h"
 #include "api/choose_mode.h"
 #include "api/draw_odprt.h"
 #include "api/draw_pdprt.h"
 #include "api/hooks.h"
 #include "api/job.h"
-#include "api/ledger.h"
 #include "api/precision.h"
 #include "api/record.h"
 #include "api/state.h"
@@ -26,14 +26,14 @@ namespace kdray {
 
 namespace {
 
-Picture to_picture(const film::Image& image, std::vector<film::Channel> channels) {
+Picture to_picture(const image::Image& image, std::vector<image::Channel> channels) {
   Picture picture{image.width, image.height, {}, {}, {}};
   static_assert(sizeof(vec3) == 3 * sizeof(float));
   if (!image.pixels.empty()) {
     const float* const first = &image.pixels.front().x;
     picture.rgb.assign(first, first + 3 * image.pixels.size());
   }
-  for (film::Channel& c : channels) picture.channels.push_back({std::move(c.name), std::move(c.values)});
+  for (image::Channel& c : channels) picture.channels.push_back({std::move(c.name), std::move(c.values)});
   return picture;
 }
 
@@ -90,18 +90,21 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
   timeline::Timeline kept;
   api::Job job = api::make_job(state, options, options.timeline ? &kept : nullptr);
   const bool leads = !state.ranks || state.ranks->leads();
-  if (options.ledger && leads) api::open_ledger(state, job);
+  if (options.ledger && leads) api::open_checkpoint(state, job);
   api::ChosenMode chosen = api::choose_mode(state, job);
   if (state.ranks) chosen.mode = api::agree(state, job, chosen.mode);
   const Preparing preparing(state.devices);
-  api::Drawn drawn = chosen.mode == Mode::odprt ? api::draw_odprt(state, job) : api::draw_pdprt(state, job);
+  api::FrameResult frame_result =
+      chosen.mode == Mode::odprt ? api::draw_odprt(state, job) : api::draw_pdprt(state, job);
   timeline = options.timeline ? kept.json() : std::string();
-  statistics.seconds.prepare = preparing.beside(drawn.render_seconds + drawn.divide_seconds.value_or(0));
-  api::record_frame(statistics, state, job, drawn, chosen.why);
-  if (job.ledger) std::ranges::copy(job.ledger->warnings(), std::back_inserter(drawn.warnings));
+  statistics.seconds.prepare =
+      preparing.beside(frame_result.render_seconds + frame_result.divide_seconds.value_or(0));
+  api::record_frame(statistics, state, job, frame_result, chosen.why);
+  if (job.checkpoint)
+    std::ranges::copy(job.checkpoint->warnings(), std::back_inserter(frame_result.warnings));
   if (!leads) return {};
-  Picture picture = to_picture(drawn.image, api::channels_of(state, job, drawn));
-  picture.warnings = std::move(drawn.warnings);
+  Picture picture = to_picture(frame_result.image, api::channels_of(state, job, frame_result));
+  picture.warnings = std::move(frame_result.warnings);
   return picture;
 }
 

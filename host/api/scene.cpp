@@ -490,35 +490,35 @@ Picture Scene::render(const RenderOptions& options) const {
 }
 QueryReport Scene::closest(const Rays& rays, const HitsOut& out, const QueryOptions& options) const {
   const auto committed = impl_->asked();
-  return query::closest(committed->asked(), rays, out, options);
+  return query::closest(committed->query_context(), rays, out, options);
 }
 QueryReport Scene::any(const Rays& rays, const BytesOut& out, const QueryOptions& options) const {
   const auto committed = impl_->asked();
-  return query::any(committed->asked(), rays, out, options);
+  return query::any(committed->query_context(), rays, out, options);
 }
 
 QueryReport Scene::count(const Rays& rays, const WordsOut& out, const QueryOptions& options) const {
   const auto committed = impl_->asked();
-  return query::count(committed->asked(), rays, out, options);
+  return query::count(committed->query_context(), rays, out, options);
 }
 AllHits Scene::all(const Rays& rays, const AllHitsOptions& options) const {
   const auto committed = impl_->asked();
-  return query::all(committed->asked(), rays, options);
+  return query::all(committed->query_context(), rays, options);
 }
 
 QueryReport Scene::closest_points(const Points& points, const ClosestPointsOut& out,
                                   const PointOptions& options) const {
   const auto committed = impl_->asked();
-  return query::closest_points(committed->asked(), points, out, options);
+  return query::closest_points(committed->query_context(), points, out, options);
 }
 QueryReport Scene::inside(const Points& points, const BytesOut& out, const PointOptions& options) const {
   const auto committed = impl_->asked();
-  return query::inside(committed->asked(), points, out, options);
+  return query::inside(committed->query_context(), points, out, options);
 }
 QueryReport Scene::signed_distance(const Points& points, const ValuesOut& out,
                                    const PointOptions& options) const {
   const auto committed = impl_->asked();
-  return query::signed_distance(committed->asked(), points, out, options);
+  return query::signed_distance(committed->query_context(), points, out, options);
 }
 
 }  // namespace kdray

@@ -8,9 +8,9 @@
 #include "accel/flatten/core.h"
 #include "accel/prepare/prepared.h"
 #include "api/device.h"
-#include "api/held.h"
 #include "api/hooks.h"
 #include "api/scheduler.h"
+#include "api/whole_scene.h"
 #include "base/hash.h"
 #include "cluster/transport/ranks.h"
 #include "device/opencl/faults.h"
@@ -41,8 +41,8 @@ struct State {
         faults(hooks.faults),
         keep(hooks.keep),
         ranks(hooks.ranks),
-        held(hooks.held) {
-    if (held) core = held->core, primitives = held->primitives;
+        whole(hooks.whole) {
+    if (whole) core = whole->core, primitives = whole->primitives;
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -56,9 +56,9 @@ struct State {
   Speeds speeds;
   std::uint64_t keep;                       // Hooks::keep
   std::shared_ptr<transport::Ranks> ranks;  // Hooks::ranks
-  std::shared_ptr<const Held> held;         // Hooks::held
+  std::shared_ptr<const WholeScene> whole;  // Hooks::whole
   std::optional<flatten::Core> core;        // looked for with the first frame that could make use of it
-  std::optional<Hash> primitives;           // their hash, made for the first ledger or ranks
+  std::optional<Hash> primitives;           // their hash, made for the first checkpoint or ranks
 };
 
 }  // namespace kdray::api

@@ -86,7 +86,7 @@ Json memory_json(const Statistics::Memory& m) {
 
 Json tuning_json(const Statistics::DeviceTuning& t) {
   Json settings = Json::object();
-  for (const tune::Setting& s : tune::settings())
+  for (const tuning::Setting& s : tuning::settings())
     if (t.settings.*s.value != 0) settings[std::string(s.name)] = t.settings.*s.value;
   return {{"from", t.from},
           {"settings", std::move(settings)},

@@ -12,18 +12,18 @@
 
 namespace kdray::api {
 
-tune::Key tuning_key(const device::Context& context, bool global, layout::Features features);
+tuning::Key tuning_key(const device::Context& context, bool global, layout::Features features);
 
 struct Tuned {
   Tuning settings;
-  tune::Key key;
+  tuning::Key key;
   std::string from;  // "shipped", "given", or the file and the features of its entry
 };
 
 // The file's entries; none where it is of no use, of which the options' tunings_ignored is told.
-tune::Database read_tunings(const DeviceOptions& options);
+tuning::Database read_tunings(const DeviceOptions& options);
 
 Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
-                const tune::Database& tunings, const std::string& file);
+                const tuning::Database& tunings, const std::string& file);
 
 }  // namespace kdray::api

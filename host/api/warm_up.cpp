@@ -61,9 +61,9 @@ class Warming {
     schedule.work_group = work_group_;
     schedule.traversal = traversal_in(Precision::float32, Traversal::automatic, context_.info());
     schedule.apply(frame, scene_.features);
-    const wavefront::Room room{.tiles = 1, .pixels = std::size_t{kSide} * kSide};
+    const wavefront::Capacity capacity{.tiles = 1, .pixels = std::size_t{kSide} * kSide};
     const wavefront::Wavefront wavefront(context_, context_.queues().front(), buffers_, programs_, frame,
-                                         schedule, scene_.features, room);
+                                         schedule, scene_.features, capacity);
   }
 
   void queries() {
@@ -114,7 +114,7 @@ std::vector<WarmProgram> warm_up(const DeviceOptions& options,
   using namespace api;
   check(options.programs);
   const OpenedDevices opened = open_devices(options);
-  const tune::Database tunings = read_tunings(options);
+  const tuning::Database tunings = read_tunings(options);
   device::ProgramCache& cache = *builds_of(options).cache;
   cache.keep();  // what the opening has compiled
   std::vector<WarmProgram> all;

@@ -48,7 +48,7 @@ class Pages {
   }
 
   // Whether plain memory may have so much more.
-  bool has_room(std::size_t bytes) {
+  bool fits(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     const std::uint64_t most = budget() / 4 * 3;
     return plain_ <= most && bytes <= most - plain_;
@@ -157,7 +157,7 @@ void set_paged_budget(std::uint64_t bytes) {
 
 std::shared_ptr<void> allocate_paged(std::size_t bytes) {
   if (bytes < kLeast) return allocate(bytes);
-  if (Pages::all().has_room(bytes)) return allocate_plain(bytes);
+  if (Pages::all().fits(bytes)) return allocate_plain(bytes);
   const std::filesystem::path folder = folder_of_files();
   if (std::shared_ptr<void> memory = map_nameless_file(folder, bytes)) {
     void* const data = memory.get();
@@ -172,7 +172,7 @@ std::shared_ptr<void> allocate_paged(std::size_t bytes) {
 }
 
 std::shared_ptr<void> page_mapped(std::shared_ptr<void> owner, void* memory, std::size_t bytes) {
-  if (bytes < kLeast || Pages::all().has_room(bytes)) return owner;
+  if (bytes < kLeast || Pages::all().fits(bytes)) return owner;
   return watched(std::move(owner), memory, bytes);
 }
 

@@ -227,7 +227,7 @@
   X(IN, u32, tiles)                       \
   X(VALUE, u32, n_tiles)                  \
   X(IO, Slice, slices)                    \
-  X(IO, Grant, grants)                    \
+  X(IO, Credits, credits)                 \
   X(IO, Traffic, traffic)                 \
   X(IO, float, pool)                      \
   X(IO, float, batch)                     \

@@ -42,10 +42,10 @@ KDRAY_ASSERT_SIZE(Travel, 64)
 
 // What a slice may make in a launch beyond what it ends: [0] shadow rays that leave the part where they
 // begin, [d] rays of depth d.
-typedef struct Grant {
+typedef struct Credits {
   u32 rays[KDRAY_MAX_DEPTH + 1];
-} Grant;
-KDRAY_ASSERT_SIZE(Grant, 260)
+} Credits;
+KDRAY_ASSERT_SIZE(Credits, 260)
 
 // A slice's account of a launch, in the same order.
 typedef struct Traffic {

@@ -2,7 +2,7 @@
 //         part of the scene, and puts those that go on elsewhere into the outbox.
 // Shape   One work-item per slice. The stages are those of wave/wave.cl, and two more: rays are routed before
 //         and after their trace. It ends when a slice has done n_waves, has nothing left that it may do, or
-//         has no room for a batch in the outbox.
+//         has no space for a batch in the outbox.
 // Errors  as the stages'; all counted in the slice and its traffic, which the host reads after each launch.
 #define KDRAY_ODPRT 1
 #include "film/add.clh"
@@ -52,7 +52,7 @@ inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32
     const u32 made = t->slice->depth < frame->max_depth ? t->slice->n_pool[t->slice->depth] - before : 0;
     if (made > 0) {
       t->traffic->made[t->slice->depth + 1] += made;
-      t->grant->rays[t->slice->depth + 1] -= made;
+      t->credits->rays[t->slice->depth + 1] -= made;
     }
     clock_stage(&t->slice->cycles_shade, since);
 #if KDRAY_HAS_LIGHTS
@@ -83,8 +83,8 @@ inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32
 inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* frame, u32 slice_id,
                      const Shaders* shaders, const Census* census, const Streams* s) {
   u64 since = cycles();
-  const Account account = account_of(tiles, frame, t->slice, t->grant, t->traffic, &t->out);
-  if (!has_room(&account, t->travel)) return false;
+  const Account account = account_of(tiles, frame, t->slice, t->credits, t->traffic, &t->out);
+  if (!has_space(&account, t->travel)) return false;
   const Work work = choose_work(&account);
   if (work.n == 0) return false;
   if (work.depth == 0) {
@@ -119,7 +119,7 @@ KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARG
                      {travel, slice_id, out_sent_rays, out_sent_shadow_rays, out_sent_counts},
                      travel,
                      io_slices + slice_id,
-                     io_grants + slice_id,
+                     io_credits + slice_id,
                      io_traffic + slice_id};
   const Shaders shaders = {KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS),
                            KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_PAINT_ARRAYS),

@@ -13,7 +13,7 @@
 #include "interrupt.h"
 #include "parts.h"
 #include "apps/view/server.h"
-#include "apps/view/show.h"
+#include "apps/view/view_service.h"
 
 namespace kdray::python {
 
@@ -25,8 +25,8 @@ using namespace nb::literals;
 using CameraNumbers = std::array<double, 14>;
 
 // As it was committed last, with the ids and names of its geometries.
-view::Opened opened(const Scene& scene) {
-  view::Opened opened{scene.prepared(), {}};
+view::LoadedScene opened(const Scene& scene) {
+  view::LoadedScene opened{scene.prepared(), {}};
   for (const GeometryId id : scene.geometries()) {
     const GeometryInfo info = scene.info(id);
     if (info.enabled) opened.geometries.push_back({info.name, id, info.primitives});
@@ -64,9 +64,9 @@ class Page {
     settings.device.compute_units = compute_units;
     settings.device.programs = default_program_folder();
     settings.device.remember_programs = true;
-    served_->show.emplace(std::vector<view::Source>{{name, "", [this] { return scene_now(); }}}, settings,
+    served_->service.emplace(std::vector<view::SceneSource>{{name, "", [this] { return scene_now(); }}}, settings,
                           scene_);
-    served_->thread = std::thread([s = served_.get()] { s->server.run(*s->show); });
+    served_->thread = std::thread([s = served_.get()] { s->server.run(*s->service); });
   }
   ~Page() { close(); }
   Page(const Page&) = delete;
@@ -75,13 +75,13 @@ class Page {
   const std::string& address() const { return address_; }
 
   void update(const Scene& scene) {
-    view::Opened now = opened(scene);
+    view::LoadedScene now = opened(scene);
     {
       const std::lock_guard lock(mutex_);
       scene_ = std::move(now);
     }
     const std::lock_guard lock(closing_);
-    if (served_) served_->show->open_again(0);
+    if (served_) served_->service->open_again(0);
   }
 
   void close() {
@@ -97,17 +97,17 @@ class Page {
   struct Served {
     explicit Served(const view::ServerOptions& options) : server(options) {}
     view::Server server;
-    std::optional<view::Show> show;  // ends before the server: it holds visitors
+    std::optional<view::ViewService> service;  // ends before the server: it holds clients
     std::thread thread;
   };
 
-  view::Opened scene_now() {
+  view::LoadedScene scene_now() {
     const std::lock_guard lock(mutex_);
     return scene_;
   }
 
   std::mutex mutex_, closing_;
-  view::Opened scene_;              // by `mutex_`
+  view::LoadedScene scene_;              // by `mutex_`
   std::unique_ptr<Served> served_;  // null: closed
   std::string address_;
   pid_t process_ = ::getpid();

@@ -74,9 +74,9 @@ nb::tuple arrays_of(Picture&& picture) {
                         picture.warnings);
 }
 
-film::Image image_of(const Pixels& pixels) {
+image::Image image_of(const Pixels& pixels) {
   if (pixels.shape(2) != 3) throw Error(ErrorCode::input, "a picture has three values to a pixel");
-  film::Image image{static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)), {}};
+  image::Image image{static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)), {}};
   image.pixels.resize(pixels.shape(0) * pixels.shape(1));
   const float* const values = pixels.data();
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -84,15 +84,15 @@ film::Image image_of(const Pixels& pixels) {
   return image;
 }
 
-std::vector<film::Channel> channels_of(const std::vector<std::pair<std::string, Values>>& given) {
-  std::vector<film::Channel> channels;
+std::vector<image::Channel> channels_of(const std::vector<std::pair<std::string, Values>>& given) {
+  std::vector<image::Channel> channels;
   for (const auto& [name, values] : given)
     channels.push_back({name, std::vector<float>(values.data(), values.data() + values.size())});
   return channels;
 }
 
-void check_channels(const Pixels& pixels, const std::vector<film::Channel>& channels) {
-  for (const film::Channel& channel : channels)
+void check_channels(const Pixels& pixels, const std::vector<image::Channel>& channels) {
+  for (const image::Channel& channel : channels)
     if (channel.values.size() != pixels.shape(0) * pixels.shape(1))
       throw Error(ErrorCode::input, "the channel " + channel.name + " is not of the picture's size");
 }
@@ -123,17 +123,17 @@ void add_pictures(nb::module_& module, SceneClass scene) {
       [](const std::string& file, const Pixels& pixels,
          const std::vector<std::pair<std::string, Values>>& channels, double gamma, int bits) {
         if (bits != 8 && bits != 16) throw Error(ErrorCode::usage, "a PNG has 8 or 16 bits");
-        const std::vector<film::Channel> beside = channels_of(channels);
+        const std::vector<image::Channel> beside = channels_of(channels);
         check_channels(pixels, beside);
-        const film::WriteOptions options{{gamma == 0, gamma}, bits};
-        const film::Written written = film::write_picture(file, image_of(pixels), beside, options);
+        const image::WriteOptions options{{gamma == 0, gamma}, bits};
+        const image::Written written = image::write_picture(file, image_of(pixels), beside, options);
         std::vector<std::string> files;
         for (const auto& path : written.files) files.push_back(path.string());
         return files;
       },
       "file"_a, "pixels"_a, "channels"_a, "gamma"_a, "bits"_a);
   module.def("encode_png", [](const Pixels& pixels) {
-    const std::string bytes = film::encode_picture(film::PictureFormat::png, image_of(pixels), {}, {});
+    const std::string bytes = image::encode_picture(image::PictureFormat::png, image_of(pixels), {}, {});
     return nb::bytes(bytes.data(), bytes.size());
   });
 }

@@ -80,11 +80,11 @@ TEST_P(Owners, OfSubtreesLieWhereTheyAre) {
     std::map<float, std::size_t> left, right;
     for (std::size_t i = 0; i < queue->values.size(); ++i)
       ++(i % kWidth < kWidth / 2 ? left : right)[queue->values[i]];
-    EXPECT_GT(left[film::kNoQueue], 100u) << "the background is nobody's";
+    EXPECT_GT(left[image::kNoQueue], 100u) << "the background is nobody's";
     // Equal costs don't part them exactly, and some of both is held by all.
     const auto mostly = [](const std::map<float, std::size_t>& half) {
       double all = 0;
-      std::pair<float, std::size_t> most{film::kNoQueue, 0};
+      std::pair<float, std::size_t> most{image::kNoQueue, 0};
       for (const auto& [whose, n] : half) {
         if (whose < 0) continue;
         all += static_cast<double>(n);

@@ -39,13 +39,13 @@ struct Noise {
 };
 
 // What the three forms of the scene have in common: the unit square, lit from the side.
-struct Asked {
+struct MaterialCase {
   bool metal, occlusion, base, blend;
 };
-constexpr Asked kAsked[] = {{true, true, true, false},
-                            {true, false, false, false},
-                            {true, true, true, true},
-                            {true, false, true, false}};
+constexpr MaterialCase kCases[] = {{true, true, true, false},
+                                   {true, false, false, false},
+                                   {true, true, true, true},
+                                   {true, false, true, false}};
 
 Picture rendered(Scene scene) {
   scene.set_background({0.25f, 0.5f, 1});
@@ -56,21 +56,21 @@ Picture rendered(Scene scene) {
   return renderer.render(exact_options(kSide, kSide, 3));
 }
 
-Picture from_gltf(const Noise& noise, const Asked& asked) {
+Picture from_gltf(const Noise& noise, const MaterialCase& given) {
   GltfSample sample = square();
   for (std::size_t i = 0; i < 3; ++i) {
     sample.json["images"].push_back({{"uri", "data:image/png;base64," + base64(noise.file(i))}});
     sample.json["textures"].push_back({{"source", i}});
   }
   json metal = {{"baseColorFactor", {kBase[0], kBase[1], kBase[2], 1}}};
-  if (asked.base) metal["baseColorTexture"] = {{"index", 0}};
-  if (asked.metal) {
+  if (given.base) metal["baseColorTexture"] = {{"index", 0}};
+  if (given.metal) {
     metal["metallicRoughnessTexture"] = {{"index", 1}};
     metal["metallicFactor"] = kMetallic, metal["roughnessFactor"] = kRoughness;
   }
   json material = {{"pbrMetallicRoughness", metal}};
-  if (asked.occlusion) material["occlusionTexture"] = {{"index", 2}, {"strength", kOcclusion}};
-  if (asked.blend) material["alphaMode"] = "BLEND";
+  if (given.occlusion) material["occlusionTexture"] = {{"index", 2}, {"strength", kOcclusion}};
+  if (given.blend) material["alphaMode"] = "BLEND";
   sample.json["materials"] = {material};
   sample.primitive()["material"] = 0;
   const int pairs = sample.view(bytes_of<float>({0, 1, 1, 1, 1, 0, 0, 0}));
@@ -78,7 +78,7 @@ Picture from_gltf(const Noise& noise, const Asked& asked) {
   return rendered(Scene::from_memory(sample.text(), "a.gltf"));
 }
 
-Picture from_program(const Noise& noise, const Asked& asked) {
+Picture from_program(const Noise& noise, const MaterialCase& given) {
   Scene scene;
   PictureId ids[3];
   for (std::size_t i = 0; i < 3; ++i)
@@ -87,10 +87,10 @@ Picture from_program(const Noise& noise, const Asked& asked) {
                                 .height = kTexels,
                                 .channels = static_cast<std::uint32_t>(noise.channels[i])});
   Material m{.diffuse = {kBase[0], kBase[1], kBase[2]}};
-  if (asked.base) m.picture = ids[0];
-  if (asked.metal) m.metal_picture = ids[1], m.metallic = kMetallic, m.roughness = kRoughness;
-  if (asked.occlusion) m.occlusion_picture = ids[2], m.occlusion = kOcclusion;
-  if (asked.blend) m.alpha = AlphaMode::blend;
+  if (given.base) m.picture = ids[0];
+  if (given.metal) m.metal_picture = ids[1], m.metallic = kMetallic, m.roughness = kRoughness;
+  if (given.occlusion) m.occlusion_picture = ids[2], m.occlusion = kOcclusion;
+  if (given.blend) m.alpha = AlphaMode::blend;
   const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, uv = {0, 1, 1, 1, 1, 0, 0, 0};
   const std::vector<std::uint32_t> faces = {0, 1, 2, 0, 2, 3};
   scene.add_mesh({.vertices = corners, .triangles = faces, .texcoords = {uv.data(), 4}},
@@ -98,15 +98,15 @@ Picture from_program(const Noise& noise, const Asked& asked) {
   return rendered(std::move(scene));
 }
 
-Picture from_json(const Noise& noise, const Asked& asked, const ScratchFolder& folder) {
+Picture from_json(const Noise& noise, const MaterialCase& given, const ScratchFolder& folder) {
   json material = {{"color", {kBase[0], kBase[1], kBase[2]}}};
   const char* const names[] = {"base.png", "metal.png", "occlusion.png"};
   for (std::size_t i = 0; i < 3; ++i) folder.write(names[i], noise.file(i));
-  if (asked.base) material["picture"] = names[0];
-  if (asked.metal) material["metal_picture"] = names[1];
-  if (asked.metal) material["metallic"] = kMetallic, material["roughness"] = kRoughness;
-  if (asked.occlusion) material["occlusion_picture"] = names[2], material["occlusion"] = kOcclusion;
-  if (asked.blend) material["alpha"] = "blend";
+  if (given.base) material["picture"] = names[0];
+  if (given.metal) material["metal_picture"] = names[1];
+  if (given.metal) material["metallic"] = kMetallic, material["roughness"] = kRoughness;
+  if (given.occlusion) material["occlusion_picture"] = names[2], material["occlusion"] = kOcclusion;
+  if (given.blend) material["alpha"] = "blend";
   const json scene = {{"objects",
                        {{{"type", "triangles"},
                          {"vertices", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
@@ -120,12 +120,12 @@ TEST(GivenPictures, OfMetalAndOcclusionAreThoseOfGltf) {
   RecordProperty("seed", kSeed);
   const Noise noise(kSeed);
   const ScratchFolder folder;
-  for (const Asked& asked : kAsked) {
-    SCOPED_TRACE(&asked - kAsked);
-    const Picture wanted = from_gltf(noise, asked);
+  for (const MaterialCase& given : kCases) {
+    SCOPED_TRACE(&given - kCases);
+    const Picture wanted = from_gltf(noise, given);
     EXPECT_GT(mean_luminance(wanted), 0.05);
-    EXPECT_TRUE(same_bits(from_program(noise, asked).rgb, wanted.rgb));
-    EXPECT_TRUE(same_bits(from_json(noise, asked, folder).rgb, wanted.rgb));
+    EXPECT_TRUE(same_bits(from_program(noise, given).rgb, wanted.rgb));
+    EXPECT_TRUE(same_bits(from_json(noise, given, folder).rgb, wanted.rgb));
   }
 }
 

@@ -20,11 +20,11 @@ TEST_P(Povray, SeesTheSame) {
   const std::filesystem::path reference = data_path("spd/povray/" + name + ".png");
   KDRAY_NEED_DATA(file);
   KDRAY_NEED_DATA(reference);
-  const film::Image wanted = film::read_picture(reference, {.srgb = false, .gamma = 1});
+  const image::Image wanted = image::read_picture(reference, {.srgb = false, .gamma = 1});
   const Scene scene = Scene::load(file);
   Renderer renderer(scene, {}, device_of());
   const Picture picture = renderer.render(exact_options(1024, 1024));
-  film::Image found{picture.width, picture.height, {}};
+  image::Image found{picture.width, picture.height, {}};
   found.pixels.reserve(picture.rgb.size() / 3);
   // Values are rounded as a PNG holds them: else POV-Ray's own rounding to 8 bits, 1e-3 in the mean, would be
   // all that is measured.
@@ -32,7 +32,7 @@ TEST_P(Povray, SeesTheSame) {
     const vec3 pixel(picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]);
     found.pixels.push_back(glm::round(glm::clamp(pixel, vec3(0), vec3(1)) * 255.0f) / 255.0f);
   }
-  const film::Difference d = film::compare(found, wanted);
+  const image::Difference d = image::compare(found, wanted);
   RecordProperty("mean_absolute", std::to_string(d.mean_absolute));
   EXPECT_LT(d.mean_absolute, 1e-3) << "rmse " << d.rmse << ", share of differing pixels "
                                    << d.differing_share;

@@ -13,7 +13,7 @@ namespace kdray::test {
 // Rows from the top, `channels` samples for each pixel.
 inline std::string png(int width, int height, int channels, const std::vector<std::uint16_t>& samples,
                        int bits = 8) {
-  return film::encode_png({width, height, channels, bits, samples}, {});
+  return image::encode_png({width, height, channels, bits, samples}, {});
 }
 
 // Two columns, two rows: red, green; blue, white.

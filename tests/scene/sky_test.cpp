@@ -159,11 +159,11 @@ TEST(SkyPicture, BrokenExrIsRefusedOrRead) {
   const unsigned seed = test::seed_or(4);
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
-  film::Image image;
+  image::Image image;
   image.width = 9, image.height = 5;
   for (int i = 0; i < 45; ++i)
     image.pixels.emplace_back(static_cast<float>(random() % 9), 0.5f, static_cast<float>(i) / 7);
-  mutate(film::encode_exr(image, {}), random);
+  mutate(image::encode_exr(image, {}), random);
 }
 
 TEST(SkyPicture, PngIsMadeLinear) {
@@ -174,11 +174,11 @@ TEST(SkyPicture, PngIsMadeLinear) {
 }
 
 TEST(SkyPicture, ExrAsItIsButForWhatIsNoLight) {
-  film::Image image;
+  image::Image image;
   image.width = 2, image.height = 1;
   image.pixels = {{1e4f, -1, 0.5f}, {std::numeric_limits<float>::infinity(), std::nanf(""), 2}};
   std::vector<std::string> warnings;
-  const auto p = decode_sky_picture(film::encode_exr(image, {}), "p", warnings);
+  const auto p = decode_sky_picture(image::encode_exr(image, {}), "p", warnings);
   EXPECT_EQ(p->rgb, (std::vector<float>{1e4f, 0, 0.5f, 0, 0, 2}));
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_SAYS(warnings[0], "p: 3 values are below 0, infinite or no numbers");
@@ -186,12 +186,12 @@ TEST(SkyPicture, ExrAsItIsButForWhatIsNoLight) {
 
 // One that says that it is large is refused before it is read.
 TEST(SkyPicture, ExrOfTooManyPixels) {
-  film::Image image;
+  image::Image image;
   image.width = 40, image.height = 30;
   image.pixels.assign(1200, vec3(1));
-  const std::string bytes = film::encode_exr(image, {});
-  EXPECT_SAYS(test::refusal([&] { film::decode_exr(bytes, "p", 1199); }), "40 x 30 pixels");
-  EXPECT_EQ(film::decode_exr(bytes, "p", 1200).pixels.size(), 1200u);
+  const std::string bytes = image::encode_exr(image, {});
+  EXPECT_SAYS(test::refusal([&] { image::decode_exr(bytes, "p", 1199); }), "40 x 30 pixels");
+  EXPECT_EQ(image::decode_exr(bytes, "p", 1200).pixels.size(), 1200u);
 }
 
 TEST(SkyAxes, TurnRightHandedAboutUp) {

@@ -12,8 +12,8 @@ namespace kdray::cli {
 
 namespace {
 
-using rays::Column;
-using rays::column;
+using array::Column;
+using array::column;
 
 template <class T>
 Column column_of(const char* name, const std::vector<T>& values) {
@@ -50,7 +50,7 @@ std::vector<Column> columns_of(std::span<const Hit> hits, const std::vector<std:
                         !instances.empty(), instances);
 }
 
-void Answers::ask(const query::Asked& scene, const AskedRows& rows, std::size_t n) {
+void Answers::ask(const query::QueryContext& scene, const RequestedRows& rows, std::size_t n) {
   placed_ = !scene.scene().flat.instances.empty();
   switch (question_) {
     case Question::closest:
@@ -76,7 +76,7 @@ void Answers::ask(const query::Asked& scene, const AskedRows& rows, std::size_t 
   }
 }
 
-void Answers::ask_closest(const query::Asked& scene, const Rays& rays, std::size_t n) {
+void Answers::ask_closest(const query::QueryContext& scene, const Rays& rays, std::size_t n) {
   t_.resize(n), primitive_.resize(n), u_.resize(n), v_.resize(n);
   if (placed_) instance_.resize(n);
   query::closest(scene, rays, {.t = t_, .primitive = primitive_, .u = u_, .v = v_, .instance = instance_},
@@ -84,7 +84,7 @@ void Answers::ask_closest(const query::Asked& scene, const Rays& rays, std::size
 }
 
 // What a Renderer tells of any hit: t is 0, and nothing of where it is.
-void Answers::ask_any(const query::Asked& scene, const Rays& rays, std::size_t n) {
+void Answers::ask_any(const query::QueryContext& scene, const Rays& rays, std::size_t n) {
   flags_.resize(n);
   query::any(scene, rays, flags_, {});
   t_.resize(n);
@@ -94,14 +94,14 @@ void Answers::ask_any(const query::Asked& scene, const Rays& rays, std::size_t n
   if (placed_) instance_.assign(n, kNoInstance);
 }
 
-void Answers::ask_all(const query::Asked& scene, const Rays& rays, std::size_t) {
+void Answers::ask_all(const query::QueryContext& scene, const Rays& rays, std::size_t) {
   AllHitsOptions options;
   options.max_hits = max_hits_;
   all_ = query::all(scene, rays, options);
   if (placed_) instance_ = all_.instance;
 }
 
-void Answers::ask_closest_point(const query::Asked& scene, const Points& points, std::size_t n) {
+void Answers::ask_closest_point(const query::QueryContext& scene, const Points& points, std::size_t n) {
   t_.resize(n), point_.resize(n), geometry_.resize(n), primitive_.resize(n), u_.resize(n), v_.resize(n);
   query::closest_points(
       scene, points,
@@ -119,7 +119,7 @@ std::vector<Column> Answers::columns() const {
     case Question::all:
       return with_instances({column_of("splits", all_.splits), column_of("t", all_.t),
                              column_of("geometry", all_.geometry), column_of("primitive", all_.primitive),
-                             column_of("u", all_.u), column_of("v", all_.v), rays::flags("more", all_.more)},
+                             column_of("u", all_.u), column_of("v", all_.v), array::flags("more", all_.more)},
                             placed_, instance_);
     case Question::count:
       return {column_of("count", counts_)};
@@ -133,7 +133,7 @@ std::vector<Column> Answers::columns() const {
     case Question::signed_distance:
       return {column_of("distance", t_)};
     case Question::inside:
-      return {rays::flags("inside", flags_)};
+      return {array::flags("inside", flags_)};
   }
   return {};
 }

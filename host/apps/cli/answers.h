@@ -9,32 +9,32 @@
 #include <vector>
 
 #include "api/committed.h"
-#include "apps/cli/asked_rows.h"
 #include "apps/cli/question.h"
+#include "apps/cli/requested_rows.h"
 #include "io/array/table.h"
 #include "kdray/query.h"
 
 namespace kdray::cli {
 
 // The columns of hits that a Renderer has traced; `instances`: of each hit, in a scene that has some.
-std::vector<rays::Column> columns_of(std::span<const Hit> hits, const std::vector<std::uint32_t>& instances);
+std::vector<array::Column> columns_of(std::span<const Hit> hits, const std::vector<std::uint32_t>& instances);
 
 class Answers {
  public:
   Answers(Question question, std::uint32_t max_hits) : question_(question), max_hits_(max_hits) {}
 
   // About the first n rows.
-  void ask(const query::Asked& scene, const AskedRows& rows, std::size_t n);
+  void ask(const query::QueryContext& scene, const RequestedRows& rows, std::size_t n);
 
-  std::vector<rays::Column> columns() const;
+  std::vector<array::Column> columns() const;
   // Rays that hit something, all hits, all crossings, points that something is near, or that lie inside.
   std::uint64_t n_found() const;
 
  private:
-  void ask_any(const query::Asked& scene, const Rays& rays, std::size_t n);
-  void ask_all(const query::Asked& scene, const Rays& rays, std::size_t n);
-  void ask_closest(const query::Asked& scene, const Rays& rays, std::size_t n);
-  void ask_closest_point(const query::Asked& scene, const Points& points, std::size_t n);
+  void ask_any(const query::QueryContext& scene, const Rays& rays, std::size_t n);
+  void ask_all(const query::QueryContext& scene, const Rays& rays, std::size_t n);
+  void ask_closest(const query::QueryContext& scene, const Rays& rays, std::size_t n);
+  void ask_closest_point(const query::QueryContext& scene, const Points& points, std::size_t n);
 
   Question question_;
   std::uint32_t max_hits_;

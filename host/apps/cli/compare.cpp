@@ -23,12 +23,12 @@ namespace {
 
 struct CompareArgs {
   std::string a, b, diff;
-  film::Transfer transfer;
+  image::Transfer transfer;
   double max_rmse = -1;  // < 0: no limit
   bool json = false;
 };
 
-std::string as_text(const film::Difference& d) {
+std::string as_text(const image::Difference& d) {
   return fmt::format(
       "RMSE            {:.6g}\n"
       "mean absolute   {:.6g}\n"
@@ -38,7 +38,7 @@ std::string as_text(const film::Difference& d) {
       d.rmse, d.mean_absolute, d.max, d.differing_share * 100, d.flip);
 }
 
-std::string as_json(const film::Difference& d) {
+std::string as_json(const image::Difference& d) {
   const Json json = {{"rmse", d.rmse},
                      {"mean_absolute", d.mean_absolute},
                      {"max", d.max},
@@ -57,14 +57,14 @@ int run(const CompareArgs& o) {
   if (o.diff == "-")
     throw Error(ErrorCode::usage, "--diff '-': the figures go to standard output; name a file");
   files.write_picture("--diff", o.diff, {}, {});
-  const film::Image a = film::read_picture(o.a, o.transfer);
-  const film::Image b = film::read_picture(o.b, o.transfer);
+  const image::Image a = image::read_picture(o.a, o.transfer);
+  const image::Image b = image::read_picture(o.b, o.transfer);
   if (a.width != b.width || a.height != b.height)
     throw input_error(o.b, 0,
                       fmt::format("is {}x{}, but {} is {}x{}", b.width, b.height, o.a, a.width, a.height),
                       "render both with the same --size");
-  const film::Difference d = film::compare(a, b);
-  if (!o.diff.empty()) film::write_picture(o.diff, film::difference_image(a, b), {}, {});
+  const image::Difference d = image::compare(a, b);
+  if (!o.diff.empty()) image::write_picture(o.diff, image::difference_image(a, b), {}, {});
   print(o.json ? as_json(d) : as_text(d));
   // Written so that a NaN, which is below nothing, fails too.
   if (o.max_rmse >= 0 && !(d.rmse <= o.max_rmse)) {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <future>
 
-#include "apps/cli/hold_scene.h"
 #include "apps/cli/message.h"
+#include "apps/cli/partition_scene.h"
 #include "base/peak_memory.h"
 #include "base/timer.h"
 #include "scene/model/scene.h"
@@ -59,7 +59,7 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
     wait_for(device_opened);
   };
   if (ranks.in_shares) wait_for(device_opened);
-  if (ranks.in_shares && hold(input, tree, tell)) return;
+  if (ranks.in_shares && open_partition(input, tree, tell)) return;
   if (has_cache(input, choice)) {
     if (ranks.before_lookup) ranks.before_lookup();
     if (find(input, tree, tell)) return;
@@ -69,18 +69,19 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
 
 // False: the scene isn't one that is divided. The device is open: what it takes of memory to compile for the
 // self-test, and what reading and building take, are not to come together.
-bool OpenedScene::hold(const SceneInput& input, const TreeOptions& tree, const Tell& tell) {
+bool OpenedScene::open_partition(const SceneInput& input, const TreeOptions& tree, const Tell& tell) {
   std::size_t told = 0;
   give_back_free_memory();
-  std::optional<SceneHeld> share = hold_scene(input, tree, quiet_, [&](const scene::Scene& settings) {
-    told = settings.warnings.size();
-    tell(settings);
-  });
+  std::optional<PartitionedScene> share =
+      partition_scene(input, tree, quiet_, [&](const scene::Scene& settings) {
+        told = settings.warnings.size();
+        tell(settings);
+      });
   give_back_free_memory();
   if (!share) return false;
   seconds_.load = share->prepared.seconds.load;
   scene_.emplace(std::move(share->prepared));
-  held_ = share->held;
+  whole_ = share->whole;
   tell_more(scene_->warnings(), told);
   return true;
 }

@@ -37,7 +37,7 @@ class OpenedScene {
   const PreparedScene& scene() const { return *scene_; }
 
   // Where the scene is a share of it; else null.
-  const std::shared_ptr<const api::Held>& held() const { return held_; }
+  const std::shared_ptr<const api::WholeScene>& whole() const { return whole_; }
 
   // What the Renderer is to be made with.
   const DeviceOptions& device() const { return device_; }
@@ -61,7 +61,7 @@ class OpenedScene {
   using Tell = std::function<void(const scene::Scene&)>;
 
   void wait_for(std::future<OpenSeconds>& device);
-  bool hold(const SceneInput& input, const TreeOptions& tree, const Tell& tell);
+  bool open_partition(const SceneInput& input, const TreeOptions& tree, const Tell& tell);
   bool find(const SceneInput& input, const TreeOptions& tree, const Tell& tell);
   void read(const SceneInput& input, const TreeOptions& tree, const Tell& tell);
   void tell_more(const std::vector<std::string>& warnings, std::size_t told) const;
@@ -76,7 +76,7 @@ class OpenedScene {
   bool is_kept_ = false;
   Statistics::Seconds seconds_;
   std::optional<PreparedScene> scene_;
-  std::shared_ptr<const api::Held> held_;
+  std::shared_ptr<const api::WholeScene> whole_;
 };
 
 }  // namespace kdray::cli

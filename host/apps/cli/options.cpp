@@ -66,12 +66,12 @@ void add_loudness(CLI::App& app, bool& quiet, bool& verbose) {
       ->excludes(silent);
 }
 
-void add_picture_format(CLI::App& app, std::optional<film::PictureFormat>& format) {
+void add_picture_format(CLI::App& app, std::optional<image::PictureFormat>& format) {
   static constexpr std::array<std::string_view, 2> kFormats = {"png", "exr"};
   add_text(app, "--format", "NAME", "The picture's format: png, exr (default: by its name; to stdout png)",
            [&format](const std::string& text) {
              const bool exr = parse_choice("--format", text, kFormats) == "exr";
-             format = exr ? film::PictureFormat::exr : film::PictureFormat::png;
+             format = exr ? image::PictureFormat::exr : image::PictureFormat::png;
            });
 }
 
@@ -117,7 +117,7 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
 
 void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal, Precision& precision) {
   const std::string group = "Device";
-  device.tunings = tune::default_file();
+  device.tunings = tuning::default_file();
   app.add_flag_callback(
          "--no-tuning", [&device] { device.tunings.clear(); },
          "Leave aside what 'kdray tune' found; take what kdray ships with")

@@ -27,7 +27,7 @@ CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string&
 // --quiet --verbose
 void add_loudness(CLI::App& app, bool& quiet, bool& verbose);
 // --format png|exr
-void add_picture_format(CLI::App& app, std::optional<film::PictureFormat>& format);
+void add_picture_format(CLI::App& app, std::optional<image::PictureFormat>& format);
 
 // Where prepared scenes are kept.
 struct CacheChoice {

@@ -31,18 +31,18 @@ std::string ending_of(const fs::path& file) {
   return ending;
 }
 
-fs::path default_picture(const fs::path& scene, film::PictureFormat format) {
+fs::path default_picture(const fs::path& scene, image::PictureFormat format) {
   fs::path name = scene == "-" ? "stdin" : scene.filename();
   if (const std::string ending = ending_of(name); ending == ".gz" || ending == ".xz") name = name.stem();
-  return name.replace_extension(format == film::PictureFormat::exr ? ".exr" : ".png");
+  return name.replace_extension(format == image::PictureFormat::exr ? ".exr" : ".png");
 }
 
-film::Written put_picture(const fs::path& file, const film::Image& image,
-                          std::span<const film::Channel> channels, const film::WriteOptions& options) {
-  if (file != "-") return film::write_picture(file, image, channels, options);
-  const auto format = options.format.value_or(film::PictureFormat::png);
-  print(film::encode_picture(format, image, channels, options));
-  return {{file}, film::count_nan(image)};
+image::Written put_picture(const fs::path& file, const image::Image& image,
+                           std::span<const image::Channel> channels, const image::WriteOptions& options) {
+  if (file != "-") return image::write_picture(file, image, channels, options);
+  const auto format = options.format.value_or(image::PictureFormat::png);
+  print(image::encode_picture(format, image, channels, options));
+  return {{file}, image::count_nan(image)};
 }
 
 }  // namespace kdray::cli

@@ -23,10 +23,10 @@ std::string ending_of(const std::filesystem::path& file);
 
 // "scenes/dragon.ply.xz" -> "dragon.png", in the current folder; a scene from stdin, "-", has "stdin.png".
 std::filesystem::path default_picture(const std::filesystem::path& scene,
-                                      film::PictureFormat format = film::PictureFormat::png);
+                                      image::PictureFormat format = image::PictureFormat::png);
 
-// As film::write_picture, or to stdout when the file is called "-": a PNG unless the options say otherwise.
-film::Written put_picture(const std::filesystem::path& file, const film::Image& image,
-                          std::span<const film::Channel> channels, const film::WriteOptions& options);
+// As image::write_picture, or to stdout when the file is called "-": a PNG unless the options say otherwise.
+image::Written put_picture(const std::filesystem::path& file, const image::Image& image,
+                           std::span<const image::Channel> channels, const image::WriteOptions& options);
 
 }  // namespace kdray::cli

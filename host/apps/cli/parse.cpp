@@ -110,7 +110,7 @@ Samples parse_samples(std::string_view option, std::string_view text) {
                   kMost, kLeast));
 }
 
-film::Transfer parse_gamma(std::string_view option, std::string_view text) {
+image::Transfer parse_gamma(std::string_view option, std::string_view text) {
   if (text == "srgb") return {};
   double gamma = 0;
   if (!whole_number(text, gamma) || gamma < 0.1 || gamma > 10)

@@ -40,7 +40,7 @@ struct Samples {
 Samples parse_samples(std::string_view option, std::string_view text);
 
 // "srgb", or the exponent G of v^(1/G).
-film::Transfer parse_gamma(std::string_view option, std::string_view text);
+image::Transfer parse_gamma(std::string_view option, std::string_view text);
 
 // One of `accepted`.
 std::string parse_choice(std::string_view option, std::string_view text,

@@ -18,13 +18,13 @@ namespace {
 }
 
 // What was asked, each with its option and, of points, the file.
-std::vector<Asked> all_asked(const QuestionArgs& args) {
-  std::vector<Asked> asked;
+std::vector<TraceRequest> all_requests(const QuestionArgs& args) {
+  std::vector<TraceRequest> requests;
   const auto of_rays = [&](bool given, Question question, const char* option) {
-    if (given) asked.push_back({question, option, args.rays});
+    if (given) requests.push_back({question, option, args.rays});
   };
   const auto of_points = [&](const std::string& file, Question question, const char* option) {
-    if (!file.empty()) asked.push_back({question, option, file});
+    if (!file.empty()) requests.push_back({question, option, file});
   };
   of_rays(args.any_hit, Question::any, "--any-hit");
   of_rays(args.all_hits, Question::all, "--all-hits");
@@ -32,7 +32,7 @@ std::vector<Asked> all_asked(const QuestionArgs& args) {
   of_points(args.closest_point, Question::closest_point, "--closest-point");
   of_points(args.signed_distance, Question::signed_distance, "--signed-distance");
   of_points(args.inside, Question::inside, "--inside");
-  return asked;
+  return requests;
 }
 
 }  // namespace
@@ -60,33 +60,34 @@ void add_question_options(CLI::App& app, QuestionArgs& args) {
   add_path(app, "--inside", "Whether each lies in closed surfaces," + points, args.inside)->group(group);
 }
 
-Asked asked_by(const QuestionArgs& args) {
-  const std::vector<Asked> asked = all_asked(args);
-  if (asked.size() > 1)
-    refuse(fmt::format("{} and {} ask different things; give one of them", asked[0].option, asked[1].option));
+TraceRequest request_of(const QuestionArgs& args) {
+  const std::vector<TraceRequest> requests = all_requests(args);
+  if (requests.size() > 1)
+    refuse(fmt::format("{} and {} ask different things; give one of them", requests[0].option,
+                       requests[1].option));
   if (args.max_hits > 0 && !args.all_hits) refuse("--max-hits is for --all-hits alone");
-  const Question question = asked.empty() ? Question::closest : asked[0].question;
+  const Question question = requests.empty() ? Question::closest : requests[0].question;
   if (is_of_points(question)) {
-    if (!args.rays.empty()) refuse(fmt::format("{} asks about points; leave --rays out", asked[0].option));
-    return asked[0];
+    if (!args.rays.empty()) refuse(fmt::format("{} asks about points; leave --rays out", requests[0].option));
+    return requests[0];
   }
   if (args.rays.empty())
     refuse("--rays is required, or a question about points: --closest-point, --signed-distance, --inside");
   return {question, "--rays", args.rays};
 }
 
-rays::TableFormat format_of(const std::string& output, Question question) {
+array::TableFormat format_of(const std::string& output, Question question) {
   const bool npz = ending_of(output) == ".npz";
-  if (question != Question::all) return npz ? rays::TableFormat::npz : rays::TableFormat::npy;
+  if (question != Question::all) return npz ? array::TableFormat::npz : array::TableFormat::npy;
   if (!npz && output != "-")
     refuse(fmt::format(
         "--output '{}': expected a name that ends in .npz, since --all-hits has arrays of several lengths",
         output));
-  return rays::TableFormat::npz;
+  return array::TableFormat::npz;
 }
 
-bool is_for_renderer(const Asked& asked, bool in_double, Traversal traversal, Precision precision) {
-  const bool plain = asked.question == Question::closest || asked.question == Question::any;
+bool is_for_renderer(const TraceRequest& request, bool in_double, Traversal traversal, Precision precision) {
+  const bool plain = request.question == Question::closest || request.question == Question::any;
   if (plain && !in_double) return true;
   const char* const option = traversal != Traversal::automatic ? "--traversal"
                              : precision != Precision::float32 ? "--precision"
@@ -94,7 +95,7 @@ bool is_for_renderer(const Asked& asked, bool in_double, Traversal traversal, Pr
   if (option == nullptr) return false;
   refuse(fmt::format(
       "{} is for the closest and any hits of float32 rays; leave it out{}", option,
-      plain ? fmt::format(", or save rays.astype('<f4') ({} holds float64)", asked.file) : std::string()));
+      plain ? fmt::format(", or save rays.astype('<f4') ({} holds float64)", request.file) : std::string()));
 }
 
 }  // namespace kdray::cli

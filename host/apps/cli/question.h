@@ -29,19 +29,19 @@ struct QuestionArgs {
 };
 void add_question_options(CLI::App& app, QuestionArgs& args);
 
-struct Asked {
+struct TraceRequest {
   Question question;
   std::string option, file;  // "--rays" and the file that it names
 
-  const rays::RowsWanted& wanted() const { return is_of_points(question) ? rays::kPoints : rays::kRays; }
+  const array::RowsWanted& wanted() const { return is_of_points(question) ? array::kPoints : array::kRays; }
 };
-Asked asked_by(const QuestionArgs& args);
+TraceRequest request_of(const QuestionArgs& args);
 
 // By the ending of the file's name; to stdout ("-") an .npy where it holds the answers.
-rays::TableFormat format_of(const std::string& output, Question question);
+array::TableFormat format_of(const std::string& output, Question question);
 
 // Whether a Renderer traces the rays, which have been on the device before the time counts: the closest or
 // any hits of float rays. Throws where it is not, and options ask for what a Renderer alone has.
-bool is_for_renderer(const Asked& asked, bool in_double, Traversal traversal, Precision precision);
+bool is_for_renderer(const TraceRequest& request, bool in_double, Traversal traversal, Precision precision);
 
 }  // namespace kdray::cli

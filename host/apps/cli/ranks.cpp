@@ -140,9 +140,9 @@ void check_ranks(const RenderArgs& o) {
   if (!ranks_of_this_run()) return;
   if (o.scene.is_stdin())
     refuse("every rank reads the scene, and standard input is rank 0's alone; name a file");
-  if (o.ledger.restarts > 0)
+  if (o.checkpoint.restarts > 0)
     refuse("--restarts can't start the ranks of MPI again; run mpirun again with --resume (docs/cluster.md)");
-  if (!o.ledger.share.empty() && o.ledger.frames)
+  if (!o.checkpoint.share.empty() && o.checkpoint.frames)
     refuse(
         "ranks render the frames of a sequence one after the other; take --checkpoint for --share, or --mpi "
         "off");

@@ -51,16 +51,16 @@ void add_trace_options(CLI::App& app, RenderArgs& o) {
 }
 
 int run(RenderArgs& o) {
-  check_ledger(o);
+  check_checkpoint(o);
   check_ranks(o);
   if (ranks_of_this_run()) {
     o.hooks.ranks = ranks_of_this_run();
     o.hooks.faults = faults_of_rank(o.hooks.faults, o.hooks.ranks->rank());
     o.quiet = o.quiet || !leads();
   }
-  if (o.ledger.restarts > 0) return run_again(o.ledger);
-  if (o.ledger.frames) return render_sequence(o);
-  o.render.ledger = o.ledger.options();
+  if (o.checkpoint.restarts > 0) return run_again(o.checkpoint);
+  if (o.checkpoint.frames) return render_sequence(o);
+  o.render.ledger = o.checkpoint.options();
   FrameMaker(o).make(o);
   return 0;
 }
@@ -79,7 +79,7 @@ Command add_render(CLI::App& kdray) {
   add_division_options(*app, o->render);
   add_ranks_options(*app, o->hold);
   add_trace_options(*app, *o);
-  add_ledger_options(*app, o->ledger);
+  add_checkpoint_options(*app, o->checkpoint);
   add_device_options(*app, o->device, o->render.traversal, o->render.precision);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);

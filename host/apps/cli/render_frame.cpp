@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/cli/hold_scene.h"
 #include "apps/cli/memory.h"
 #include "apps/cli/message.h"
 #include "apps/cli/output.h"
+#include "apps/cli/partition_scene.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/ranks.h"
 #include "apps/cli/stats.h"
@@ -39,7 +39,7 @@ void check_files(const RenderArgs& o, RunFiles& files) {
 }
 
 fs::path default_output(const RenderArgs& o) {
-  return default_picture(o.scene.file, o.write.format.value_or(film::PictureFormat::png));
+  return default_picture(o.scene.file, o.write.format.value_or(image::PictureFormat::png));
 }
 
 // Once it is known which files the scene names.
@@ -54,7 +54,7 @@ void check_files(RenderArgs& o, RunFiles& files, const scene::Scene& asked) {
 }
 
 bool makes_exr(const RenderArgs& o) {
-  return o.write.format ? *o.write.format == film::PictureFormat::exr : ending_of(o.output) == ".exr";
+  return o.write.format ? *o.write.format == image::PictureFormat::exr : ending_of(o.output) == ".exr";
 }
 
 void tell_of_options_without_effect(const RenderArgs& o) {
@@ -102,17 +102,17 @@ std::vector<float> make_transparent(Picture& picture, const PreparedScene& scene
   return alpha;
 }
 
-film::Image to_image(const Picture& picture) {
-  film::Image image{picture.width, picture.height, std::vector<vec3>(picture.rgb.size() / 3)};
+image::Image to_image(const Picture& picture) {
+  image::Image image{picture.width, picture.height, std::vector<vec3>(picture.rgb.size() / 3)};
   static_assert(sizeof(vec3) == 3 * sizeof(float));
   std::memcpy(image.pixels.data(), picture.rgb.data(), image.pixels.size() * sizeof(vec3));
   return image;
 }
 
-film::Written write(Picture&& picture, std::vector<float>&& alpha, const RenderArgs& o) {
-  std::vector<film::Channel> channels;
+image::Written write(Picture&& picture, std::vector<float>&& alpha, const RenderArgs& o) {
+  std::vector<image::Channel> channels;
   for (Channel& c : picture.channels) channels.push_back({std::move(c.name), std::move(c.values)});
-  film::Image image = to_image(picture);
+  image::Image image = to_image(picture);
   image.alpha = std::move(alpha);
   picture.rgb = {};  // large pictures: no third copy while the file is made
   return put_picture(o.output, image, channels, o.write);
@@ -144,7 +144,7 @@ FrameMaker::FrameMaker(RenderArgs& o) {
       },
       o.hooks, OpeningByRanks{.in_shares = holds_shares(o), .before_lookup = wait_for_scene});
   if (scene_->cache() != "off") tell_of_scene(*scene_);
-  o.hooks.held = scene_->held();
+  o.hooks.whole = scene_->whole();
   seen_ = o.view.any ? scene_->scene().seen(o.view.view, o.render.width, o.render.height) : scene_->scene();
   check_transparent(o, seen_->settings());
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
@@ -170,7 +170,7 @@ void FrameMaker::make(RenderArgs& o) {
     for (const std::string& warning : picture.warnings) say(warning);
   Statistics figures = renderer_->statistics();
   const Timer step;
-  const film::Written written = write(std::move(picture), std::move(alpha), o);
+  const image::Written written = write(std::move(picture), std::move(alpha), o);
   figures.seconds.write = step.seconds();
   if (is_first_) {
     scene_->keep();

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "api/hooks.h"
-#include "apps/cli/ledger_options.h"
+#include "apps/cli/checkpoint_options.h"
 #include "apps/cli/open_scene.h"
 #include "apps/cli/options.h"
 #include "apps/cli/run_files.h"
@@ -31,10 +31,10 @@ struct RenderArgs {
   TreeOptions tree;
   DeviceOptions device;
   api::Hooks hooks;
-  RenderOptions render;  // with the ledger that the frame has
+  RenderOptions render;  // with the checkpoint that the frame has
   ViewOptions view;
-  film::WriteOptions write;
-  LedgerChoice ledger;
+  image::WriteOptions write;
+  CheckpointChoice checkpoint;
   std::string hold = "auto";  // --hold
 };
 

@@ -67,7 +67,7 @@ bool is_on_purpose(int signal) {
 
 }  // namespace
 
-int run_again(const LedgerChoice& choice) {
+int run_again(const CheckpointChoice& choice) {
   std::vector<std::string> arguments = own_arguments();
   for (int left = choice.restarts;; --left) {
     const int status = run_once(arguments);

@@ -68,17 +68,17 @@ void RunFiles::write(const std::string& option, const fs::path& file) {
 }
 
 void RunFiles::write_picture(const std::string& option, const fs::path& file,
-                             std::span<const std::string> channels, const film::WriteOptions& options) {
+                             std::span<const std::string> channels, const image::WriteOptions& options) {
   if (file.empty()) return;
   if (file == "-") {
     check_stdout_takes_bytes(option);
-    if (!channels.empty() && options.format != film::PictureFormat::exr)
+    if (!channels.empty() && options.format != image::PictureFormat::exr)
       throw Error(ErrorCode::usage,
                   "--aov makes more pictures beside a PNG, and standard output has room for one; take "
                   "--format exr, which holds them all");
     return write(option, file);
   }
-  for (const fs::path& one : film::picture_files(file, channels, options))
+  for (const fs::path& one : image::picture_files(file, channels, options))
     write(one == file ? option : "--aov", one);
 }
 
@@ -88,9 +88,9 @@ bool RunFiles::is_taken(const Place& place) const {
 }
 
 fs::path RunFiles::free_name(const fs::path& picture, std::span<const std::string> channels,
-                             const film::WriteOptions& options) const {
+                             const image::WriteOptions& options) const {
   const auto taken = [&](const fs::path& name) {
-    return std::ranges::any_of(film::picture_files(name, channels, options),
+    return std::ranges::any_of(image::picture_files(name, channels, options),
                                [&](const fs::path& file) { return is_taken(Place(file)); });
   };
   fs::path name = picture;

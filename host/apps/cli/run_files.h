@@ -31,12 +31,12 @@ class RunFiles {
   void write(const std::string& option, const std::filesystem::path& file);
   // A picture with its channels' pictures.
   void write_picture(const std::string& option, const std::filesystem::path& file,
-                     std::span<const std::string> channels, const film::WriteOptions& options);
+                     std::span<const std::string> channels, const image::WriteOptions& options);
 
   // The first of NAME.png, NAME.kdray.png, NAME.kdray2.png, ... that is not taken, for a picture that was
   // given no name.
   std::filesystem::path free_name(const std::filesystem::path& picture, std::span<const std::string> channels,
-                                  const film::WriteOptions& options) const;
+                                  const image::WriteOptions& options) const;
 
  private:
   // Where a name leads to.

@@ -48,7 +48,7 @@ bool is_numbered(const RenderArgs& o) {
 
 void check_sequence(const RenderArgs& o) {
   const auto refuse = [](const std::string& what) { throw Error(ErrorCode::usage, what); };
-  if (o.ledger.camera_path.empty() && !is_numbered(o) && !o.ledger.fps)
+  if (o.checkpoint.camera_path.empty() && !is_numbered(o) && !o.checkpoint.fps)
     refuse(
         "all frames would be the same picture: add --camera-path FILE, or number the scenes (scene%04d.nff), "
         "or "
@@ -56,7 +56,7 @@ void check_sequence(const RenderArgs& o) {
   if (o.scene.is_stdin() || o.output == "-" || o.stats == "-")
     refuse("a sequence has a file for each frame; standard input and output have room for one");
   const View& v = o.view.view;
-  if (!o.ledger.camera_path.empty() && (v.camera || v.from || v.at || v.up || v.fov || v.ortho_width))
+  if (!o.checkpoint.camera_path.empty() && (v.camera || v.from || v.at || v.up || v.fov || v.ortho_width))
     refuse(
         "--camera-path says where the camera is; leave --from, --at, --up, --fov, --camera and --ortho out");
 }
@@ -67,7 +67,7 @@ RenderArgs args_of(const RenderArgs& o, const std::optional<CameraPath>& path, i
   frame.scene.file = numbered(o.scene.file, number, false);
   if (o.output.empty()) {
     const fs::path name =
-        default_picture(frame.scene.file, o.write.format.value_or(film::PictureFormat::png));
+        default_picture(frame.scene.file, o.write.format.value_or(image::PictureFormat::png));
     frame.output = is_numbered(o) ? name.string() : numbered(name.string(), number, true);
   } else {
     frame.output = numbered(o.output, number, true);
@@ -75,19 +75,20 @@ RenderArgs args_of(const RenderArgs& o, const std::optional<CameraPath>& path, i
   if (!o.stats.empty()) frame.stats = numbered(o.stats, number, true);
   if (!o.timeline.empty()) frame.timeline = numbered(o.timeline, number, true);
   if (path) frame.render.camera = path->at(number);
-  if (o.ledger.fps) frame.scene.load.time = o.scene.load.time.value_or(0) + number / *o.ledger.fps;
-  frame.render.ledger = o.ledger.options(fs::path(o.ledger.folder()) / fmt::format("frame-{}", number));
+  if (o.checkpoint.fps) frame.scene.load.time = o.scene.load.time.value_or(0) + number / *o.checkpoint.fps;
+  frame.render.ledger =
+      o.checkpoint.options(fs::path(o.checkpoint.folder()) / fmt::format("frame-{}", number));
   return frame;
 }
 
 class Sequence {
  public:
-  explicit Sequence(const RenderArgs& o) : o_(o), range_(*o.ledger.frames) {
-    if (!o.ledger.camera_path.empty()) path_.emplace(o.ledger.camera_path);
+  explicit Sequence(const RenderArgs& o) : o_(o), range_(*o.checkpoint.frames) {
+    if (!o.checkpoint.camera_path.empty()) path_.emplace(o.checkpoint.camera_path);
   }
 
   int render() {
-    if (o_.ledger.share.empty())
+    if (o_.checkpoint.share.empty())
       for (int number = range_.first; number <= range_.last; ++number) make(number);
     else
       render_shared();
@@ -117,14 +118,14 @@ void Sequence::make(int number) {
 }
 
 void Sequence::render_shared() {
-  const LedgerOptions options = *o_.ledger.options();
+  const LedgerOptions options = *o_.checkpoint.options();
   std::error_code error;
   fs::create_directories(options.folder, error);
   check_sequence_settings(o_, options.folder);
-  ledger::Heartbeat heartbeat(options.folder, ledger::new_owner(), options.lease_seconds);
+  checkpoint::Heartbeat heartbeat(options.folder, checkpoint::new_owner(), options.lease_seconds);
   const auto first = static_cast<std::size_t>(range_.first),
              n = static_cast<std::size_t>(range_.last) - first + 1;
-  ledger::Leases frames(options.folder, "frame", first, n, heartbeat);
+  checkpoint::Leases frames(options.folder, "frame", first, n, heartbeat);
   // Processes that join others spread over what is in work.
   std::size_t join = std::hash<std::string>()(heartbeat.owner()) % n;
   const auto find = [&](std::size_t from, const auto& is_it) {
@@ -144,8 +145,8 @@ void Sequence::render_shared() {
   make_what_is_missing();
 }
 
-// Pictures that were made elsewhere, or removed. One at least, which tells whether the ledger is this run's
-// at all.
+// Pictures that were made elsewhere, or removed. One at least, which tells whether the checkpoint is this
+// run's at all.
 void Sequence::make_what_is_missing() {
   const auto is_there = [&](int number) { return fs::exists(args_of(o_, path_, number).output); };
   for (int number = range_.first; number <= range_.last; ++number)
@@ -164,11 +165,11 @@ std::string numbered(const std::string& name, int number, bool insert) {
   return path.string();
 }
 
-void check_ledger(const RenderArgs& o) {
-  o.ledger.check();
-  if (o.ledger.restarts > 0 && o.scene.is_stdin())
+void check_checkpoint(const RenderArgs& o) {
+  o.checkpoint.check();
+  if (o.checkpoint.restarts > 0 && o.scene.is_stdin())
     throw Error(ErrorCode::usage, "--restarts can't read a scene from standard input again; name a file");
-  if (o.ledger.frames) check_sequence(o);
+  if (o.checkpoint.frames) check_sequence(o);
 }
 
 int render_sequence(const RenderArgs& o) {

@@ -1,7 +1,7 @@
 // What    --frames: the frames of a sequence, by a camera path, from numbered scenes or of an animation, to
 //         numbered pictures; alone one after the other, with --share each by whoever is free.
 // Shape   A shared sequence has a lease for each frame: a process takes one that nobody has; when there is
-//         none left it joins the others in theirs, tile by tile. Each frame has its own ledger, in
+//         none left it joins the others in theirs, tile by tile. Each frame has its own checkpoint, in
 //         DIR/frame-N.
 // Errors  kdray::Error, ErrorCode::usage: what makes no sequence.
 #pragma once
@@ -13,7 +13,7 @@
 namespace kdray::cli {
 
 // What can be told before anything else is done.
-void check_ledger(const RenderArgs& o);
+void check_checkpoint(const RenderArgs& o);
 
 int render_sequence(const RenderArgs& o);
 

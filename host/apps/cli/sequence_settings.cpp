@@ -47,10 +47,10 @@ std::string settings_of(const RenderArgs& o) {
   add("--min-weight", fmt::format("{}", r.min_weight));
   add("--grid", fmt::format("{}", static_cast<int>(r.grid)));
   add("--precision", fmt::format("{}", static_cast<int>(r.precision)));
-  add("--camera-path", hash_of_file(o.ledger.camera_path));
+  add("--camera-path", hash_of_file(o.checkpoint.camera_path));
   const LoadOptions& load = o.scene.load;
-  if (o.ledger.fps || load.time) {
-    add("--fps", in_text(o.ledger.fps));
+  if (o.checkpoint.fps || load.time) {
+    add("--fps", in_text(o.checkpoint.fps));
     add("--time", in_text(load.time));
     add("--animation", load.animation);
   }
@@ -81,12 +81,12 @@ std::string difference(const std::string& there, const std::string& here) {
 void check_sequence_settings(const RenderArgs& o, const fs::path& folder) {
   const fs::path file = folder / "sequence.ledger";
   const std::string here = settings_of(o);
-  if (ledger::create_once(file, here)) return;
-  std::string there = ledger::read_small(file, kMostBytes);
+  if (checkpoint::create_once(file, here)) return;
+  std::string there = checkpoint::read_small(file, kMostBytes);
   for (int i = 0; there.empty() && i < 20;
        ++i) {  // where it is made without a link, it may be a moment until it is whole
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    there = ledger::read_small(file, kMostBytes);
+    there = checkpoint::read_small(file, kMostBytes);
   }
   if (there != here)
     throw input_error(folder.string(), 0,

@@ -1,7 +1,7 @@
 // What    That all processes which share a sequence, and all runs that go on from it, make the same frames: a
-//         frame that is done is not looked at again, so that its own ledger can't tell.
+//         frame that is done is not looked at again, so that its own checkpoint can't tell.
 // Shape   DIR/sequence.ledger, made once, has what was asked for and has a say in the pictures, a line for
-//         each. The scene itself is checked by the ledger of each frame that is rendered.
+//         each. The scene itself is checked by the checkpoint of each frame that is rendered.
 // Errors  ErrorCode::input, in a line that says which setting differs.
 #pragma once
 

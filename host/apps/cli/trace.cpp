@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "apps/cli/answers.h"
-#include "apps/cli/asked_rows.h"
 #include "apps/cli/command.h"
 #include "apps/cli/open_scene.h"
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "apps/cli/question.h"
+#include "apps/cli/requested_rows.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/scene_input.h"
 #include "apps/cli/stats.h"
@@ -60,19 +60,19 @@ void check_device(const DeviceOptions& device) {
                   (device.queues > 1 ? "it out" : "the others out"));
 }
 
-void check_files(const TraceArgs& o, const Asked& asked, RunFiles& files) {
+void check_files(const TraceArgs& o, const TraceRequest& request, RunFiles& files) {
   check_scene_input(o.scene);
   files.read("SCENE", o.scene.file);
-  files.read(asked.option, asked.file);
+  files.read(request.option, request.file);
   if (o.output == "-") check_stdout_takes_bytes("--output");
   files.write("--output", o.output);
   files.write("--stats", o.stats);
 }
 
-void write_answers(const std::string& output, std::span<const rays::Column> columns, rays::TableFormat format,
-                   Statistics& figures) {
+void write_answers(const std::string& output, std::span<const array::Column> columns,
+                   array::TableFormat format, Statistics& figures) {
   const Timer timer;
-  output == "-" ? rays::write_table(columns, format, print) : rays::write_table(output, columns, format);
+  output == "-" ? array::write_table(columns, format, print) : array::write_table(output, columns, format);
   figures.seconds.write = timer.seconds();
 }
 
@@ -94,16 +94,17 @@ auto naming_file(const std::string& file, const Work& work) {
 }
 
 // Closest and any hits of floats, which are on the device before the time counts.
-Traced trace(const OpenedScene& scene, const TraceArgs& o, const Asked& asked, const AskedRows& rows) {
+Traced trace(const OpenedScene& scene, const TraceArgs& o, const TraceRequest& request,
+             const RequestedRows& rows) {
   Renderer renderer(scene.scene(), scene.device());
   std::vector<std::uint32_t> instances;
-  const std::vector<Hit> hits = naming_file(asked.file, [&] {
-    return renderer.trace(rows.structs(), asked.question == Question::any, o.repeat, o.traversal, o.precision,
-                          &instances);
+  const std::vector<Hit> hits = naming_file(request.file, [&] {
+    return renderer.trace(rows.structs(), request.question == Question::any, o.repeat, o.traversal,
+                          o.precision, &instances);
   });
   const auto found = std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return std::isfinite(h.t); });
   Traced traced{renderer.statistics(), static_cast<std::uint64_t>(found)};
-  write_answers(o.output, columns_of(hits, instances), format_of(o.output, asked.question), traced.figures);
+  write_answers(o.output, columns_of(hits, instances), format_of(o.output, request.question), traced.figures);
   return traced;
 }
 
@@ -112,14 +113,15 @@ Traced trace(const OpenedScene& scene, const TraceArgs& o, const Asked& asked, c
 constexpr std::size_t kWarmUp = std::size_t{1} << 17;
 
 // All else. Before the time counts the first row is asked about alone.
-Traced ask(const OpenedScene& scene, const TraceArgs& o, const Asked& asked, const AskedRows& rows) {
+Traced ask(const OpenedScene& scene, const TraceArgs& o, const TraceRequest& request,
+           const RequestedRows& rows) {
   api::Committed committed(scene.scene(), scene.device());
-  const query::Asked of = committed.asked();
+  const query::QueryContext of = committed.query_context();
   const int max_hits = o.question.max_hits;
-  Answers answers(asked.question, max_hits > 0 ? static_cast<std::uint32_t>(max_hits) : 0xffffffffu);
+  Answers answers(request.question, max_hits > 0 ? static_cast<std::uint32_t>(max_hits) : 0xffffffffu);
   std::vector<double> seconds(static_cast<std::size_t>(o.repeat));
   Timer timer;
-  const double prepare = naming_file(asked.file, [&] {
+  const double prepare = naming_file(request.file, [&] {
     answers.ask(of, rows, std::min<std::size_t>(rows.size(), 1));
     if (committed.has_compiled()) answers.ask(of, rows, std::min(rows.size(), kWarmUp));
     const double first = timer.seconds();
@@ -132,33 +134,34 @@ Traced ask(const OpenedScene& scene, const TraceArgs& o, const Asked& asked, con
   });
   Traced traced{committed.statistics(rows.size(), seconds), answers.n_found()};
   traced.figures.seconds.prepare = prepare;
-  write_answers(o.output, answers.columns(), format_of(o.output, asked.question), traced.figures);
+  write_answers(o.output, answers.columns(), format_of(o.output, request.question), traced.figures);
   return traced;
 }
 
-Json answers_told(const TraceArgs& o, const Asked& asked, std::size_t n_rows, std::uint64_t n_found) {
-  return {{"file", o.output}, {"asked", name_of(asked.question)},           {asked.wanted().name, n_rows},
-          {"hits", n_found},  {"any_hit", asked.question == Question::any}, {"repeat", o.repeat}};
+Json answers_told(const TraceArgs& o, const TraceRequest& request, std::size_t n_rows,
+                  std::uint64_t n_found) {
+  return {{"file", o.output}, {"asked", name_of(request.question)},           {request.wanted().name, n_rows},
+          {"hits", n_found},  {"any_hit", request.question == Question::any}, {"repeat", o.repeat}};
 }
 
 int run(const TraceArgs& o) {
   const Timer total;
-  const Asked asked = asked_by(o.question);
+  const TraceRequest request = request_of(o.question);
   check_device(o.device);
-  static_cast<void>(format_of(o.output, asked.question));
+  static_cast<void>(format_of(o.output, request.question));
   RunFiles files;
-  check_files(o, asked, files);
+  check_files(o, request, files);
   const Timer step;
-  rays::RowsFile file(asked.file, asked.wanted());
-  const bool by_renderer = is_for_renderer(asked, file.in_double(), o.traversal, o.precision);
-  const AskedRows rows(file, asked, free_memory());
+  array::RowsFile file(request.file, request.wanted());
+  const bool by_renderer = is_for_renderer(request, file.in_double(), o.traversal, o.precision);
+  const RequestedRows rows(file, request, free_memory());
   const double read_rays = step.seconds();
 
   TreeOptions tree = o.tree;
   tree.binary_form = takes_binary_form(o.traversal, o.precision);
   OpenedScene scene(o.scene, tree, o.device, o.cache, o.quiet,
                     [&files](const scene::Scene& read) { files.read_scene(read.files); });
-  auto [figures, n_found] = (by_renderer ? trace : ask)(scene, o, asked, rows);
+  auto [figures, n_found] = (by_renderer ? trace : ask)(scene, o, request, rows);
   scene.keep();
   scene.add_to(figures.seconds);
   figures.seconds.read_rays = read_rays;
@@ -166,7 +169,7 @@ int run(const TraceArgs& o) {
 
   Json stats = collect_stats("trace", o.scene.file, figures);
   stats["cache"] = scene.cache();
-  stats["hits"] = answers_told(o, asked, rows.size(), n_found);
+  stats["hits"] = answers_told(o, request, rows.size(), n_found);
   if (!o.stats.empty()) write_stats(o.stats, stats);
   if (!o.quiet) print_trace_summary(stats, o.verbose);
   return 0;

@@ -1,4 +1,4 @@
-// What    `kdray --try`: the child of a trial (trial/asked.h). It is no command: kdray starts it itself.
+// What    `kdray --try`: the child of a trial (trial/request.h). It is no command: kdray starts it itself.
 #pragma once
 
 namespace kdray::cli {

@@ -44,7 +44,7 @@ struct TuneArgs {
   std::string file, stats;
   bool explain = false, check = false, quiet = false;
   int rounds = kCheckRounds;
-  tune::SearchOptions search;
+  tuning::SearchOptions search;
   DeviceOptions device;
   RenderOptions render = {.width = 512, .height = 512};
   Injection injection;
@@ -54,9 +54,9 @@ void talk(const TuneArgs& o, const std::string& text) {
   if (!o.quiet) say(text);
 }
 
-tune::Database read_own(const TuneArgs& o) {
+tuning::Database read_own(const TuneArgs& o) {
   try {
-    return tune::Database::read(o.file);
+    return tuning::Database::read(o.file);
   } catch (const Error& error) {
     talk(o, fmt::format("{}; it is begun anew", error.what()));
     return {};
@@ -64,26 +64,26 @@ tune::Database read_own(const TuneArgs& o) {
 }
 
 // What others wrote meanwhile is kept.
-void add_to_file(const TuneArgs& o, const tune::Database& found) {
-  tune::Database all = read_own(o);
+void add_to_file(const TuneArgs& o, const tuning::Database& found) {
+  tuning::Database all = read_own(o);
   all.merge(found);
   all.write(o.file);
 }
 
 int merge_files(const TuneArgs& o) {
-  tune::Database others;
+  tuning::Database others;
   for (const std::string& file : o.merge) {
     if (!std::filesystem::exists(file)) throw input_error(file, 0, "no such file", "name files of tunings");
-    others.merge(tune::Database::read(file));
+    others.merge(tuning::Database::read(file));
   }
   add_to_file(o, others);
   talk(o, fmt::format("{}: {} entries from {} files", o.file, others.entries().size(), o.merge.size()));
   return 0;
 }
 
-tune::Entry entry_of(const Tuned& tuned, tune::Key key, bool any) {
+tuning::Entry entry_of(const Tuned& tuned, tuning::Key key, bool any) {
   using Clock = std::chrono::system_clock;
-  if (any) key.features = tune::kAnyFeatures;
+  if (any) key.features = tuning::kAnyFeatures;
   return {.key = std::move(key),
           .settings = tuned.found.best,
           .ratio = tuned.found.ratio,
@@ -96,19 +96,21 @@ Tuned tune_group(const TuneArgs& o, TuneScenes& scenes) {
   Tuned tuned;
   for (const auto& scene : scenes) tuned.scenes.push_back(scene->name());
   Progress progress(o.quiet);
-  const tune::Lab lab = make_lab(scenes, o.injection, [&progress](double share) { progress.update(share); });
-  tune::SearchOptions search = o.search;
+  const tuning::Lab lab =
+      make_lab(scenes, o.injection, [&progress](double share) { progress.update(share); });
+  tuning::SearchOptions search = o.search;
   search.global = scenes.front()->key().schedule == "global";
-  tuned.found = tune::search(lab, {}, search);
+  tuned.found = tuning::search(lab, {}, search);
   return tuned;
 }
 
-std::vector<Checked> check(const TuneArgs& o, std::vector<TuneScenes>& groups, const tune::Database& found) {
+std::vector<Checked> check(const TuneArgs& o, std::vector<TuneScenes>& groups,
+                           const tuning::Database& found) {
   std::vector<Checked> checked;
   for (TuneScenes& group : groups)
     for (auto& scene : group) {
       Progress progress(o.quiet);
-      const tune::Entry* const entry = found.find(scene->key());
+      const tuning::Entry* const entry = found.find(scene->key());
       Checked c{scene->name(), entry ? entry->settings : Tuning{}, {}};
       for (int round = 0; round < o.rounds; ++round) {
         const bool first = round % 2 == 0;
@@ -136,7 +138,7 @@ void check_outputs(const TuneArgs& o, RunFiles& files) {
 }
 
 int run(TuneArgs& o) {
-  if (o.file.empty()) o.file = tune::default_file().string();
+  if (o.file.empty()) o.file = tuning::default_file().string();
   if (o.file.empty())
     throw Error(ErrorCode::usage, "there is no home folder to keep tunings in; name a file with --output");
   RunFiles files;
@@ -155,7 +157,7 @@ int run(TuneArgs& o) {
     groups.push_back(std::move(scenes));
   else
     groups = by_key(std::move(scenes));
-  tune::Database found;
+  tuning::Database found;
   std::vector<Tuned> tuned;
   for (TuneScenes& group : groups) {
     tuned.push_back(tune_group(o, group));
@@ -179,7 +181,7 @@ int run(TuneArgs& o) {
 // "packets=8"
 Injection parse_injection(const std::string& text) {
   const std::size_t equals = text.find('=');
-  const tune::Setting* const setting = tune::find_setting(text.substr(0, equals));
+  const tuning::Setting* const setting = tuning::find_setting(text.substr(0, equals));
   if (!setting || equals == std::string::npos)
     throw usage_error("--inject-fault", text, "a setting and a value, as in packets=8");
   return {setting->value, parse_int("--inject-fault", text.substr(equals + 1), 0, 1 << 20)};

@@ -44,7 +44,7 @@ TuneScene::TuneScene(const std::string& name, const DeviceOptions& device, const
                 device),
       reference_(TuneScene::render({})) {}
 
-tune::Key TuneScene::key() const {
+tuning::Key TuneScene::key() const {
   const Statistics::DeviceTuning& tuning = renderer_.statistics().tuning;
   return {tuning.device, tuning.driver, tuning.kernels, tuning.schedule, tuning.features};
 }
@@ -79,8 +79,8 @@ std::string first_fault(TuneScenes& scenes, const Tuning& tuning) {
 
 }  // namespace
 
-tune::Lab make_lab(TuneScenes& scenes, const Injection& injection, std::function<void(double)> progress) {
-  tune::Lab lab;
+tuning::Lab make_lab(TuneScenes& scenes, const Injection& injection, std::function<void(double)> progress) {
+  tuning::Lab lab;
   lab.fault = [&scenes, injection](const Tuning& tuning) {
     return injection.hits(tuning) ? "told to be wrong" : first_fault(scenes, tuning);
   };

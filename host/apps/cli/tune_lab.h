@@ -23,7 +23,7 @@ class TuneScene {
             const std::function<void(const scene::Scene&)>& check);
 
   const std::string& name() const { return name_; }
-  tune::Key key() const;  // of the scene, its device and schedule
+  tuning::Key key() const;  // of the scene, its device and schedule
 
   // Renders with these settings: what is wrong with the picture, or nothing.
   std::string fault(const Tuning& tuning);
@@ -48,7 +48,7 @@ struct Injection {
 using TuneScenes = std::vector<std::unique_ptr<TuneScene>>;
 
 // The clock begins now; the scenes have to outlive it.
-tune::Lab make_lab(TuneScenes& scenes, const Injection& injection, std::function<void(double)> progress);
+tuning::Lab make_lab(TuneScenes& scenes, const Injection& injection, std::function<void(double)> progress);
 
 // Scenes of one key each.
 std::vector<TuneScenes> by_key(TuneScenes scenes);

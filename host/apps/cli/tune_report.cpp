@@ -18,26 +18,26 @@ std::string speed_text(double ratio) {
   return fmt::format("{:.1f} % {}", percent < 0 ? -percent : percent, percent < 0 ? "slower" : "faster");
 }
 
-std::string explain_rival(const tune::Setting& setting, const tune::Rival& rival) {
+std::string explain_rival(const tuning::Setting& setting, const tuning::Rival& rival) {
   const std::string untimed = rival.fault.empty() ? "not timed, the budget was spent" : rival.fault;
   const std::string what = rival.ratios.empty() ? untimed : speed_text(rival.ratio());
   return fmt::format("    {:>6}  {:<9}  {}, {} round{}\n", value_text(rival.tuning.*setting.value),
-                     tune::name_of(rival.verdict), what, rival.ratios.size(),
+                     tuning::name_of(rival.verdict), what, rival.ratios.size(),
                      rival.ratios.size() == 1 ? "" : "s");
 }
 
 nlohmann::json settings_json(const Tuning& tuning) {
   nlohmann::json json = nlohmann::json::object();
-  for (const tune::Setting& s : tune::settings())
+  for (const tuning::Setting& s : tuning::settings())
     if (tuning.*s.value != 0) json[std::string(s.name)] = tuning.*s.value;
   return json;
 }
 
-nlohmann::json step_json(const tune::Step& step) {
+nlohmann::json step_json(const tuning::Step& step) {
   nlohmann::json rivals = nlohmann::json::array();
-  for (const tune::Rival& r : step.rivals)
+  for (const tuning::Rival& r : step.rivals)
     rivals.push_back({{"value", r.tuning.*step.setting->value},
-                      {"verdict", tune::name_of(r.verdict)},
+                      {"verdict", tuning::name_of(r.verdict)},
                       {"fault", r.fault},
                       {"ratio", r.ratio()},
                       {"rounds", r.ratios.size()}});
@@ -48,21 +48,21 @@ nlohmann::json step_json(const tune::Step& step) {
 }  // namespace
 
 std::string one_line_of(const Tuned& tuned) {
-  const tune::Found& f = tuned.found;
+  const tuning::Found& f = tuned.found;
   return fmt::format("{}: {}, {} in {:.1f} s ({} races; {})", fmt::join(tuned.scenes, " "),
-                     tune::in_words(f.best), f.kept_start ? "nothing surely faster" : speed_text(f.ratio),
+                     tuning::in_words(f.best), f.kept_start ? "nothing surely faster" : speed_text(f.ratio),
                      f.seconds, f.steps.size(), f.ended_by);
 }
 
-std::string explain(const tune::Found& found) {
+std::string explain(const tuning::Found& found) {
   std::string text;
-  for (const tune::Step& step : found.steps) {
+  for (const tuning::Step& step : found.steps) {
     const std::string bought = step.after == step.before
                                    ? "stays"
                                    : fmt::format("-> {}: {}", value_text(step.after), speed_text(step.ratio));
     text += fmt::format("  {} ({}): {} {}, in {:.1f} s\n", step.setting->name, step.setting->what,
                         value_text(step.before), bought, step.seconds);
-    for (const tune::Rival& r : step.rivals) text += explain_rival(*step.setting, r);
+    for (const tuning::Rival& r : step.rivals) text += explain_rival(*step.setting, r);
   }
   if (!found.last.ratios.empty())
     text +=
@@ -75,10 +75,10 @@ std::string table_of(const std::vector<Checked>& checked) {
   std::string text =
       fmt::format("  {:<16} {:>10} {:>9} {:>9}  {}\n", "scene", "time", "least", "most", "settings");
   for (const Checked& c : checked)
-    text +=
-        fmt::format("  {:<16} {:>10.3f} {:>9.3f} {:>9.3f}  {}\n", c.scene, c.rival.ratio(),
-                    std::ranges::min(c.rival.ratios), std::ranges::max(c.rival.ratios),
-                    c.settings == Tuning{} ? "kdray's own on both sides: noise" : tune::in_words(c.settings));
+    text += fmt::format(
+        "  {:<16} {:>10.3f} {:>9.3f} {:>9.3f}  {}\n", c.scene, c.rival.ratio(),
+        std::ranges::min(c.rival.ratios), std::ranges::max(c.rival.ratios),
+        c.settings == Tuning{} ? "kdray's own on both sides: noise" : tuning::in_words(c.settings));
   return text;
 }
 
@@ -86,7 +86,7 @@ nlohmann::json json_of(const std::vector<Tuned>& tuned, const std::vector<Checke
   nlohmann::json json = {{"tuned", nlohmann::json::array()}, {"checked", nlohmann::json::array()}};
   for (const Tuned& t : tuned) {
     nlohmann::json steps = nlohmann::json::array();
-    for (const tune::Step& step : t.found.steps) steps.push_back(step_json(step));
+    for (const tuning::Step& step : t.found.steps) steps.push_back(step_json(step));
     json["tuned"].push_back({{"scenes", t.scenes},
                              {"settings", settings_json(t.found.best)},
                              {"ratio", t.found.ratio},

@@ -11,18 +11,18 @@ namespace kdray::cli {
 
 struct Tuned {
   std::vector<std::string> scenes;
-  tune::Found found;
+  tuning::Found found;
 };
 
 // A scene rendered with the entry that render would take, against none.
 struct Checked {
   std::string scene;
   Tuning settings;
-  tune::Rival rival;
+  tuning::Rival rival;
 };
 
 std::string one_line_of(const Tuned& tuned);
-std::string explain(const tune::Found& found);  // what each setting bought, and what else was tried
+std::string explain(const tuning::Found& found);  // what each setting bought, and what else was tried
 std::string table_of(const std::vector<Checked>& checked);
 
 nlohmann::json json_of(const std::vector<Tuned>& tuned, const std::vector<Checked>& checked);

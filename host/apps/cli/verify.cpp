@@ -31,7 +31,7 @@ namespace {
 struct VerifyArgs {
   SceneInput scene;
   std::string output, stats;
-  film::WriteOptions write;
+  image::WriteOptions write;
   int width = 1280, height = 720, rays = 1 << 18;
   bool quiet = false;
   TreeOptions tree;

@@ -25,7 +25,7 @@ struct ViewArgs {
   ViewOptions view;
 };
 
-// view_page.cpp, or, in a kdray without the room, view_missing.cpp.
+// view_page.cpp, or, in a kdray without that module, view_missing.cpp.
 int show_page(ViewArgs& args);
 
 }  // namespace kdray::cli

@@ -29,7 +29,7 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != 0;
 }
 
-// Its own chatter is nobody's.
+// Its own output is thrown away.
 bool start(const char* program, const std::string& argument) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -71,10 +71,11 @@ std::unique_ptr<Temporary> open_in_browser(const std::string& address) {
   return folder;
 }
 
-Company::Company() : watch_in_(!has_hung_up(STDIN_FILENO)), watch_err_(!has_hung_up(STDERR_FILENO)) {}
+StdioMonitor::StdioMonitor()
+    : watches_in_(!has_hung_up(STDIN_FILENO)), watches_err_(!has_hung_up(STDERR_FILENO)) {}
 
-bool Company::is_gone() const {
-  return (watch_in_ && has_hung_up(STDIN_FILENO)) || (watch_err_ && has_hung_up(STDERR_FILENO));
+bool StdioMonitor::is_closed() const {
+  return (watches_in_ && has_hung_up(STDIN_FILENO)) || (watches_err_ && has_hung_up(STDERR_FILENO));
 }
 
 }  // namespace kdray::cli

@@ -1,5 +1,5 @@
-// What    Opens the page in the user's browser, and tells when nobody is there any more who could see or end
-//         the server.
+// What    Opens the page in the user's browser, and tells when the terminal or pipe is closed by which the
+//         user could see or end the server.
 #pragma once
 
 #include <memory>
@@ -16,14 +16,15 @@ bool can_open();
 // address has the token. The file goes with what is returned; null: there is no program that opens pages.
 std::unique_ptr<Temporary> open_in_browser(const std::string& address);
 
-// Of standard input and standard error, where they lead to somebody (a terminal, a pipe) at first.
-class Company {
+// Tells whether standard input or standard error has been closed, where it led to a terminal or a pipe at
+// first.
+class StdioMonitor {
  public:
-  Company();
-  bool is_gone() const;
+  StdioMonitor();
+  bool is_closed() const;
 
  private:
-  bool watch_in_, watch_err_;
+  bool watches_in_, watches_err_;
 };
 
 }  // namespace kdray::cli

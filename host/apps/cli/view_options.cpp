@@ -39,7 +39,7 @@ View::Vector parse_up(std::string_view option, std::string_view text) {
 float parse_hex(std::string_view text, std::size_t at) {
   const auto digit = [](char c) { return c <= '9' ? c - '0' : (c | 0x20) - 'a' + 10; };
   const int value = digit(text[at]) * 16 + digit(text[at + 1]);
-  return static_cast<float>(film::decode(film::Transfer{}, value / 255.0));
+  return static_cast<float>(image::decode(image::Transfer{}, value / 255.0));
 }
 
 std::array<float, 3> parse_color(std::string_view option, std::string_view text) {

@@ -13,7 +13,7 @@
 #include "apps/cli/view_open.h"
 #include "apps/view/address.h"
 #include "apps/view/server.h"
-#include "apps/view/show.h"
+#include "apps/view/view_service.h"
 #include "scene/model/scene.h"
 
 namespace kdray::cli {
@@ -29,13 +29,13 @@ SceneInput input_of(const ViewArgs& args, const std::string& scene) {
   return input;
 }
 
-std::vector<view::Source> sources_of(const ViewArgs& args) {
-  std::vector<view::Source> sources;
+std::vector<view::SceneSource> sources_of(const ViewArgs& args) {
+  std::vector<view::SceneSource> sources;
   for (const std::string& scene : args.scenes) {
     const auto open = [&args, scene] {
       OpenedScene opened(input_of(args, scene), args.tree, args.device, args.cache, true);
       opened.keep();
-      return view::Opened{opened.scene(), {}};
+      return view::LoadedScene{opened.scene(), {}};
     };
     sources.push_back({fs::path(scene).filename().string(), scene, open});
   }
@@ -68,12 +68,12 @@ void say_where(const ViewArgs& args, const view::Server& server) {
 }  // namespace
 
 int show_page(ViewArgs& args) {
-  const Company company;
+  const StdioMonitor stdio;
   const view::ServerOptions options{
       .bind = args.bind,
       .port = args.port,
       .linger = std::chrono::milliseconds(static_cast<long long>(args.linger * 1000)),
-      .is_over = [&company] { return company.is_gone(); }};
+      .is_over = [&stdio] { return stdio.is_closed(); }};
   view::Server server(options);  // before the scene is read: the port may be taken
   args.tree.binary_form = true;  // channels and cells are of it
   OpenedScene first(input_of(args, args.scenes.front()), args.tree, args.device, args.cache, args.quiet,
@@ -82,14 +82,14 @@ int show_page(ViewArgs& args) {
                     });
   first.keep();
   view::Settings settings{args.view.view, args.render, first.device(), args.load};
-  view::Show show(sources_of(args), settings, {first.scene(), {}});
+  view::ViewService service(sources_of(args), settings, {first.scene(), {}});
   say_where(args, server);
   std::unique_ptr<Temporary> opened;
   if (args.open || (!args.no_open && can_open())) {
     opened = open_in_browser(server.address());
     if (!opened) say("there is no xdg-open here: open the address in a browser");
   }
-  server.run(show);
+  server.run(service);
   if (!args.quiet) say("no page is open any more");
   return 0;
 }

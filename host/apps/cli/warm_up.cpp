@@ -73,7 +73,7 @@ Command add_warm_up(CLI::App& kdray) {
   CLI::App* const app =
       kdray.add_subcommand("warm-up", "Compile beforehand what any scene's first picture would wait for");
   const auto o = std::make_shared<WarmUpArgs>();
-  o->device.tunings = tune::default_file();
+  o->device.tunings = tuning::default_file();
   add_device(*app, *o);
   add_text(*app, "--cache", "DIR",
            "Keep the programs there, as for render (default: the user's cache directory)",

@@ -61,7 +61,7 @@ std::vector<View> views_of(const prepare::Prepared& scene, int height) {
 // One of the views in the picture.
 class Panel {
  public:
-  Panel(film::Image& image, int x, int width, int height, const View& view)
+  Panel(image::Image& image, int x, int width, int height, const View& view)
       : image_(image), x_(x), width_(width), height_(height), view_(view) {}
 
   void shade(Tracer& tracer, const std::vector<const vec3*>& fills) {
@@ -183,7 +183,7 @@ class Panel {
     if (!hidden || mark.seen < 1) mark = {color, hidden ? kThrough : 1.0f};
   }
 
-  film::Image& image_;
+  image::Image& image_;
   const int x_, width_, height_;
   const View view_;
   std::vector<double> depth_;  // of each pixel, from the eye
@@ -214,9 +214,9 @@ void mark_findings(const Findings& f, const std::vector<const vec3*>& fills, Pan
 
 }  // namespace
 
-film::Image draw(const Findings& found, const prepare::Prepared& scene, Tracer& tracer, int width,
-                 int height) {
-  film::Image image{width, height, {}};
+image::Image draw(const Findings& found, const prepare::Prepared& scene, Tracer& tracer, int width,
+                  int height) {
+  image::Image image{width, height, {}};
   image.pixels.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kPaper);
   const std::vector<const vec3*> fills = fills_of(found, scene.counts.primitives);
   int x = 0;

@@ -16,8 +16,8 @@ class Tracer;
 
 inline constexpr int kLeastWidth = 320, kLeastHeight = 200;  // of a picture on which something can be seen
 
-film::Image draw(const Findings& found, const prepare::Prepared& scene, Tracer& tracer, int width,
-                 int height);
+image::Image draw(const Findings& found, const prepare::Prepared& scene, Tracer& tracer, int width,
+                  int height);
 
 // Which colours the picture has and what they mark: "red: open edges, blue: ..."; empty where there are none.
 std::string colors_of(const Findings& found);

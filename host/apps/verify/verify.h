@@ -44,7 +44,7 @@ struct Findings {
   Duplicates duplicates;
   Probes probes;
   Film film;
-  film::Image picture;
+  image::Image picture;
   Seconds seconds;
 
   bool mesh_is_sound() const;  // nothing open, crowded, flipped, doubled or dropped

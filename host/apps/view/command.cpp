@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <string>
 
-#include "apps/view/sight.h"
+#include "apps/view/view_request.h"
 
 namespace kdray::view {
 
@@ -72,8 +72,8 @@ std::string division_options(const RenderOptions& o, int queues) {
 
 }  // namespace
 
-std::string command_for(const Sight& sight, const Settings& settings, const std::string& scene) {
-  const RenderOptions options = render_of(sight, settings);
+std::string command_for(const ViewRequest& request, const Settings& settings, const std::string& scene) {
+  const RenderOptions options = render_of(request, settings);
   std::string text = "kdray render " + quoted(scene);
   if (settings.load.instances == Instances::flat) text += " --instances flat";
   if (settings.load.instances == Instances::kept) text += " --instances kept";
@@ -83,8 +83,8 @@ std::string command_for(const Sight& sight, const Settings& settings, const std:
   if (settings.load.texture_bytes > 0)
     text += fmt::format(" --texture-memory {}", settings.load.texture_bytes);
   if (!settings.load.asset_root.empty()) text += " --asset-root " + quoted(settings.load.asset_root.string());
-  return text + view_options(view_of(sight, settings)) + picture_options(options) +
-         division_options(options, queues_of(sight, settings));
+  return text + view_options(view_of(request, settings)) + picture_options(options) +
+         division_options(options, queues_of(request, settings));
 }
 
 }  // namespace kdray::view

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "apps/view/house.h"
+#include "apps/view/server_context.h"
 #include "apps/view/socket.h"
 #include "base/error.h"
 
@@ -38,15 +38,15 @@ Request request_of(const http::request<http::string_body>& message) {
 }
 
 // A connection that is no WebSocket (yet).
-class Connection : public Guestless, public std::enable_shared_from_this<Connection> {
+class Connection : public PendingConnection, public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket&& socket, House& house) : stream_(std::move(socket)), house_(house) {}
+  Connection(tcp::socket&& socket, ServerContext& context) : stream_(std::move(socket)), context_(context) {}
   ~Connection() override {
-    if (listed_) house_.waiting.erase(place_);
+    if (listed_) context_.pending.erase(place_);
   }
 
   void start() {
-    place_ = house_.waiting.insert(house_.waiting.end(), weak_from_this());
+    place_ = context_.pending.insert(context_.pending.end(), weak_from_this());
     listed_ = true;
     read();
   }
@@ -54,16 +54,16 @@ class Connection : public Guestless, public std::enable_shared_from_this<Connect
 
  private:
   void read();
-  void take(beast::error_code error);
+  void handle(beast::error_code error);
   void reply(const Response& response);
   void written(bool keep, beast::error_code error);
 
   beast::tcp_stream stream_;
-  House& house_;
+  ServerContext& context_;
   beast::flat_buffer buffer_{2 * kMostHead};
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
-  std::list<std::weak_ptr<Guestless>>::iterator place_;
+  std::list<std::weak_ptr<PendingConnection>>::iterator place_;
   bool listed_ = false;
 };
 
@@ -71,27 +71,29 @@ void Connection::read() {
   parser_.emplace();
   parser_->header_limit(kMostHead);
   parser_->body_limit(kMostBody);
-  stream_.expires_after(house_.limits.request);
-  http::async_read(stream_, buffer_, *parser_,
-                   [self = shared_from_this()](beast::error_code error, std::size_t) { self->take(error); });
+  stream_.expires_after(context_.limits.request);
+  http::async_read(
+      stream_, buffer_, *parser_,
+      [self = shared_from_this()](beast::error_code error, std::size_t) { self->handle(error); });
 }
 
-void Connection::take(beast::error_code error) {
-  if (error) return;  // what can't be understood gets no answer
+void Connection::handle(beast::error_code error) {
+  if (error) return;  // what can't be parsed gets no answer
   const auto& message = parser_->get();
   const Request request = request_of(message);
-  if (!beast::websocket::is_upgrade(message)) return reply(answer(request, house_.door));
-  if (!may_connect(request, house_.door)) return reply({403, "text/plain", "this is for the page itself\n"});
-  const bool known = knows_token(request, house_.door);
+  if (!beast::websocket::is_upgrade(message)) return reply(answer(request, context_.access));
+  if (!may_connect(request, context_.access))
+    return reply({403, "text/plain", "this is for the page itself\n"});
+  const bool known = knows_token(request, context_.access);
   stream_.expires_never();  // the WebSocket has a timer of its own
-  open_socket(std::move(stream_), parser_->release(), known, house_);
+  open_socket(std::move(stream_), parser_->release(), known, context_);
 }
 
 void Connection::reply(const Response& response) {
-  const auto& asked = parser_->get();
-  bool keep = asked.keep_alive();
+  const auto& request = parser_->get();
+  bool keep = request.keep_alive();
   response_ = {};
-  response_.version(asked.version());
+  response_.version(request.version());
   response_.result(static_cast<unsigned>(response.status));
   response_.set(http::field::content_type, beast_view(response.type));
   response_.set(http::field::cache_control, "no-store");
@@ -103,9 +105,9 @@ void Connection::reply(const Response& response) {
     if (name == "Connection" && value == "close") keep = false;
   }
   response_.keep_alive(keep);
-  if (asked.method() != http::verb::head) response_.body() = response.body;
+  if (request.method() != http::verb::head) response_.body() = response.body;
   response_.content_length(response.body.size());
-  stream_.expires_after(house_.limits.request);
+  stream_.expires_after(context_.limits.request);
   http::async_write(stream_, response_,
                     [self = shared_from_this(), keep](beast::error_code error, std::size_t) {
                       self->written(keep, error);
@@ -121,12 +123,12 @@ void Connection::written(bool keep, beast::error_code error) {
 
 }  // namespace
 
-void receive(tcp::socket socket, House& house) {
+void serve(tcp::socket socket, ServerContext& context) {
   boost::system::error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
-  if (house.waiting.size() + house.n_pages >= house.limits.connections && !house.waiting.empty())
-    if (const auto oldest = house.waiting.front().lock()) oldest->close();
-  std::make_shared<Connection>(std::move(socket), house)->start();
+  if (context.pending.size() + context.n_pages >= context.limits.connections && !context.pending.empty())
+    if (const auto oldest = context.pending.front().lock()) oldest->close();
+  std::make_shared<Connection>(std::move(socket), context)->start();
 }
 
 }  // namespace kdray::view

@@ -63,7 +63,7 @@ Json queues_of(const Statistics::Division& division) {
   Json queues = Json::array();
   for (const Statistics::Queue& q : division.per_queue) {
     Json queue = {{"number", q.number},
-                  {"color", film::queue_color(q.number)},
+                  {"color", image::queue_color(q.number)},
                   {"busy", q.busy_seconds * 1e3},
                   {"idle", q.idle_share},
                   {"rays", q.rays}};
@@ -95,17 +95,17 @@ Json figures_of(const Statistics& s) {
 
 }  // namespace
 
-std::string tell_scene(std::span<const Source> sources, std::size_t number, const Stage& stage,
-                       const Settings& settings, bool again) {
-  const scene::Scene& scene = stage.scene().settings();
+std::string scene_message(std::span<const SceneSource> sources, std::size_t number,
+                          const SceneRenderer& renderer, const Settings& settings, bool again) {
+  const scene::Scene& scene = renderer.scene().settings();
   const RenderOptions& given = settings.render;
   const scene::RenderSettings asked = scene::settings_of(scene);
   Json json = {{"type", "scene"}, {"scene", number}, {"again", again}};
-  for (const Source& source : sources) json["names"].push_back(source.name);
+  for (const SceneSource& source : sources) json["names"].push_back(source.name);
   const int width = given.width > 0 ? given.width : asked.width.value_or(0);
   const int height = given.height > 0 ? given.height : asked.height.value_or(0);
   json["size"] = given.width > 0 ? Json{given.width, given.height} : Json(nullptr);
-  json["camera"] = json_of(stage.camera(width, height));
+  json["camera"] = json_of(renderer.camera(width, height));
   const DBox& box = scene.framing.box;
   json["box"] =
       box.empty() ? Json(nullptr) : Json{{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
@@ -113,7 +113,7 @@ std::string tell_scene(std::span<const Source> sources, std::size_t number, cons
   json["samples"] = given.samples > 0 ? Json(given.samples) : Json("adaptive");
   json["headlight"] = settings.view.headlight;
   json["queues"] = settings.device.queues;
-  const prepare::Prepared& prepared = stage.scene().prepared();
+  const prepare::Prepared& prepared = renderer.scene().prepared();
   json["primitives"] = prepared.counts.primitives;
   json["nodes"] = prepared.tree_nodes;
   json["tree_depth"] = prepared.tree_depth;
@@ -123,7 +123,7 @@ std::string tell_scene(std::span<const Source> sources, std::size_t number, cons
   return text_of(json);
 }
 
-std::string tell_frame(const FrameFacts& f) {
+std::string frame_message(const FrameFacts& f) {
   Json json = {{"type", "frame"},
                {"frame", f.frame},
                {"look", f.look},
@@ -138,8 +138,8 @@ std::string tell_frame(const FrameFacts& f) {
   return text_of(json);
 }
 
-std::string tell_picked(std::uint32_t number, const std::optional<Picked>& picked,
-                        const PreparedScene& scene) {
+std::string picked_message(std::uint32_t number, const std::optional<Picked>& picked,
+                           const PreparedScene& scene) {
   Json json = {{"type", "picked"}, {"number", number}, {"hit", picked.has_value()}};
   if (!picked) return text_of(json);
   const Picked& p = *picked;
@@ -165,17 +165,17 @@ std::string tell_picked(std::uint32_t number, const std::optional<Picked>& picke
   return text_of(json);
 }
 
-std::string tell_cells(std::size_t scene, int depth, const std::vector<DBox>& cells) {
+std::string cells_message(std::size_t scene, int depth, const std::vector<DBox>& cells) {
   Json boxes = Json::array();
   for (const DBox& b : cells) boxes.push_back({b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z});
   return text_of({{"type", "cells"}, {"scene", scene}, {"depth", depth}, {"boxes", boxes}});
 }
 
-std::string tell_problem(const std::string& about, const std::string& what) {
+std::string problem_message(const std::string& about, const std::string& what) {
   return text_of({{"type", "problem"}, {"about", about}, {"text", what}});
 }
 
-std::string tell_busy(const std::string& what) {
+std::string busy_message(const std::string& what) {
   return text_of({{"type", "busy"}, {"text", what}});
 }
 

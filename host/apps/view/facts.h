@@ -1,4 +1,4 @@
-// What    What the page is told in text: of a scene, of a frame, of what was picked, of what went wrong.
+// What    The texts that the page is sent: of a scene, of a frame, of what was picked, of what went wrong.
 // Shape   JSON objects with a "type".
 #pragma once
 
@@ -9,15 +9,15 @@
 
 #include "apps/view/message.h"
 #include "apps/view/pick.h"
-#include "apps/view/stage.h"
+#include "apps/view/scene_renderer.h"
 #include "base/box.h"
 #include "kdray/kdray.h"
 
 namespace kdray::view {
 
 // `again`: the scene was opened anew, since a file has changed; the page keeps its camera.
-std::string tell_scene(std::span<const Source> sources, std::size_t number, const Stage& stage,
-                       const Settings& settings, bool again);
+std::string scene_message(std::span<const SceneSource> sources, std::size_t number,
+                          const SceneRenderer& renderer, const Settings& settings, bool again);
 
 struct FrameFacts {
   std::uint32_t frame = 0, look = 0;
@@ -28,13 +28,13 @@ struct FrameFacts {
   std::string command = {};  // of the final picture
   const Statistics* statistics = nullptr;
 };
-std::string tell_frame(const FrameFacts& facts);
+std::string frame_message(const FrameFacts& facts);
 
-std::string tell_picked(std::uint32_t number, const std::optional<Picked>& picked,
-                        const PreparedScene& scene);
-std::string tell_cells(std::size_t scene, int depth, const std::vector<DBox>& cells);
+std::string picked_message(std::uint32_t number, const std::optional<Picked>& picked,
+                           const PreparedScene& scene);
+std::string cells_message(std::size_t scene, int depth, const std::vector<DBox>& cells);
 // `about`: "scene" (it can't be opened), "look", "pick".
-std::string tell_problem(const std::string& about, const std::string& what);
-std::string tell_busy(const std::string& what);  // empty: not any more
+std::string problem_message(const std::string& about, const std::string& what);
+std::string busy_message(const std::string& what);  // empty: not any more
 
 }  // namespace kdray::view

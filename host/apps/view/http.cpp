@@ -41,33 +41,33 @@ Response file(const Request& request, bool framed) {
   return refuse(404, "there is no such file\n");
 }
 
-Response session(const Request& request, const Door& door) {
-  if (!request.origin.empty() && !door.names.allow_origin(request.origin, request.host))
+Response session(const Request& request, const AccessPolicy& access) {
+  if (!request.origin.empty() && !access.names.allow_origin(request.origin, request.host))
     return refuse(403, "this is for the page itself\n");
-  if (!door.token.is(request.body))
+  if (!access.token.is(request.body))
     return refuse(403, "wrong token: open the address that kdray view has printed\n");
   return {204,
           {},
           {},
           {{"Set-Cookie",
-            fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", door.cookie, door.token.text())}}};
+            fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", access.cookie, access.token.text())}}};
 }
 
 }  // namespace
 
-Response answer(const Request& request, const Door& door) {
-  if (!door.names.allow_host(request.host)) return refuse(403, "kdray view is not known by this name\n");
-  if (request.method == "POST" && request.target == "/session") return session(request, door);
+Response answer(const Request& request, const AccessPolicy& access) {
+  if (!access.names.allow_host(request.host)) return refuse(403, "kdray view is not known by this name\n");
+  if (request.method == "POST" && request.target == "/session") return session(request, access);
   if (request.method != "GET" && request.method != "HEAD") return refuse(405, "GET or HEAD\n");
-  return file(request, door.framed);
+  return file(request, access.framed);
 }
 
-bool may_connect(const Request& request, const Door& door) {
-  return request.target == "/socket" && door.names.allow_origin(request.origin, request.host);
+bool may_connect(const Request& request, const AccessPolicy& access) {
+  return request.target == "/socket" && access.names.allow_origin(request.origin, request.host);
 }
 
-bool knows_token(const Request& request, const Door& door) {
-  return door.token.is(cookie_in(request.cookie, door.cookie));
+bool knows_token(const Request& request, const AccessPolicy& access) {
+  return access.token.is(cookie_in(request.cookie, access.cookie));
 }
 
 }  // namespace kdray::view

@@ -1,5 +1,5 @@
 // What    The answers to plain requests: the page's files, and a cookie for the token. All of it is a
-//         function of the request; connection.h brings and takes the bytes.
+//         function of the request; connection.cpp reads and writes the bytes.
 // Shape   GET and HEAD of a file; POST /session with the token. Nothing is ever looked for by a path that was
 //         asked for: it is compared with the names of the embedded files.
 // Errors  403 foreign Host or Origin, or a wrong token; 404, 405, 400.
@@ -26,19 +26,19 @@ struct Response {
   std::vector<std::pair<std::string_view, std::string>> fields = {};  // more of the head
 };
 
-// What the server knows of itself.
-struct Door {
+// Who may reach the server, and what its cookie is called.
+struct AccessPolicy {
   Names names;
   Token token;
   std::string cookie;   // the name of this server's own: cookies don't know ports
   bool framed = false;  // whether pages at the loopback may have this one in a frame
 };
 
-Response answer(const Request& request, const Door& door);
+Response answer(const Request& request, const AccessPolicy& access);
 
 // Whether a WebSocket may be opened: from the page itself.
-bool may_connect(const Request& request, const Door& door);
-// ... and whether its cookie tells that it has had the token.
-bool knows_token(const Request& request, const Door& door);
+bool may_connect(const Request& request, const AccessPolicy& access);
+// Whether its cookie has the token.
+bool knows_token(const Request& request, const AccessPolicy& access);
 
 }  // namespace kdray::view

@@ -21,7 +21,7 @@ const std::array<unsigned char, kTable + 1>& display_table() {
     std::array<unsigned char, kTable + 1> codes{};
     for (int i = 0; i <= kTable; ++i)
       codes[static_cast<std::size_t>(i)] = static_cast<unsigned char>(
-          255 * film::encode(film::Transfer{}, static_cast<double>(i) / kTable) + 0.5);
+          255 * image::encode(image::Transfer{}, static_cast<double>(i) / kTable) + 0.5);
     return codes;
   }();
   return table;
@@ -59,7 +59,7 @@ std::string encode_jpeg(const Picture& picture, const JpegOptions& options) {
   return compress(bytes, picture.width, picture.height, false, options);
 }
 
-std::string encode_jpeg(const film::PngPixels& pixels, const JpegOptions& options) {
+std::string encode_jpeg(const image::PngPixels& pixels, const JpegOptions& options) {
   std::vector<unsigned char> bytes(pixels.samples.size());
   const int shift = pixels.bits == 16 ? 8 : 0;
   for (std::size_t i = 0; i < bytes.size(); ++i)

@@ -18,6 +18,6 @@ struct JpegOptions {
 
 // Through sRGB's curve, by a table: within half a code of what a PNG has.
 std::string encode_jpeg(const Picture& picture, const JpegOptions& options);
-std::string encode_jpeg(const film::PngPixels& pixels, const JpegOptions& options);
+std::string encode_jpeg(const image::PngPixels& pixels, const JpegOptions& options);
 
 }  // namespace kdray::view

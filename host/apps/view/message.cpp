@@ -18,7 +18,7 @@ using Json = nlohmann::json;
   throw Error(ErrorCode::input, "the page's message: " + what);
 }
 
-// Fields of an object are taken one by one; what is left in the end is not known.
+// Reads an object's fields one by one; end() refuses those that nobody has read.
 class Fields {
  public:
   explicit Fields(const Json& object) : object_(object) {
@@ -27,7 +27,7 @@ class Fields {
   const Json* find(const char* name) {
     const auto found = object_.find(name);
     if (found == object_.end()) return nullptr;
-    ++n_taken_;
+    ++n_read_;
     return &*found;
   }
   const Json& get(const char* name) {
@@ -64,12 +64,12 @@ class Fields {
     refuse(std::string(name) + " is none of its choices");
   }
   void end() const {
-    if (n_taken_ != object_.size()) refuse("there is a field that means nothing");
+    if (n_read_ != object_.size()) refuse("there is a field that means nothing");
   }
 
  private:
   const Json& object_;
-  std::size_t n_taken_ = 0;
+  std::size_t n_read_ = 0;
 };
 
 Camera camera_of(const Json& value) {
@@ -84,40 +84,40 @@ Camera camera_of(const Json& value) {
   return camera;
 }
 
-void take_samples(const Json& value, Fields& fields, Sight& sight) {
+void read_samples(const Json& value, Fields& fields, ViewRequest& request) {
   constexpr int kMost = 1024;
   if (value == "adaptive") {
-    sight.samples = Samples::adaptive;
+    request.samples = Samples::adaptive;
     return;
   }
   const double n = fields.real(value, "samples", 0, kMost);
   if (n != std::floor(n)) refuse("samples is no whole number");
-  sight.samples = n > 0 ? Samples::number : Samples::as_given;
-  sight.n_samples = std::max(1, static_cast<int>(n));
+  request.samples = n > 0 ? Samples::number : Samples::as_given;
+  request.n_samples = std::max(1, static_cast<int>(n));
 }
 
-Sight sight_of(const Json& value) {
+ViewRequest view_request_of(const Json& value) {
   static constexpr std::array<std::string_view, 7> kChannels = {"",     "depth",   "normal", "primitive",
                                                                 "cost", "samples", "queue"};
   static constexpr std::array<std::string_view, 3> kModes = {"auto", "pdprt", "odprt"};
   static constexpr std::array<std::string_view, 5> kWalks = {"auto", "binary", "wide", "packet", "batch"};
   Fields fields(value);
-  Sight sight;
-  sight.scene = static_cast<std::size_t>(fields.whole("scene", 0, 1 << 20));
-  sight.camera = camera_of(fields.get("camera"));
-  sight.width = static_cast<int>(fields.whole("width", 1, kMostSide));
-  sight.height = static_cast<int>(fields.whole("height", 1, kMostSide));
-  if (sight.width * sight.height > kMostPixels) refuse("the picture is too large");
-  sight.depth = static_cast<int>(fields.whole("depth", 0, 64));
-  take_samples(fields.get("samples"), fields, sight);
-  sight.min_weight = fields.real("weight", -1, 1);
-  sight.headlight = fields.real("headlight", 0, 1000);
-  sight.channel = kChannels[static_cast<std::size_t>(fields.choice("channel", kChannels))];
-  sight.mode = static_cast<Mode>(fields.choice("mode", kModes));
-  sight.traversal = static_cast<Traversal>(fields.choice("traversal", kWalks));
-  sight.queues = static_cast<int>(fields.whole("queues", 0, 64));
+  ViewRequest request;
+  request.scene = static_cast<std::size_t>(fields.whole("scene", 0, 1 << 20));
+  request.camera = camera_of(fields.get("camera"));
+  request.width = static_cast<int>(fields.whole("width", 1, kMostSide));
+  request.height = static_cast<int>(fields.whole("height", 1, kMostSide));
+  if (request.width * request.height > kMostPixels) refuse("the picture is too large");
+  request.depth = static_cast<int>(fields.whole("depth", 0, 64));
+  read_samples(fields.get("samples"), fields, request);
+  request.min_weight = fields.real("weight", -1, 1);
+  request.headlight = fields.real("headlight", 0, 1000);
+  request.channel = kChannels[static_cast<std::size_t>(fields.choice("channel", kChannels))];
+  request.mode = static_cast<Mode>(fields.choice("mode", kModes));
+  request.traversal = static_cast<Traversal>(fields.choice("traversal", kWalks));
+  request.queues = static_cast<int>(fields.whole("queues", 0, 64));
   fields.end();
-  return sight;
+  return request;
 }
 
 Json parsed(std::string_view text) {
@@ -133,7 +133,7 @@ Look look_of(Fields& fields) {
   const Json& moving = fields.get("moving");
   if (!moving.is_boolean()) refuse("moving is neither true nor false");
   look.moving = moving.get<bool>();
-  look.sight = sight_of(fields.get("sight"));
+  look.request = view_request_of(fields.get("sight"));
   return look;
 }
 
@@ -142,7 +142,7 @@ Pick pick_of(Fields& fields) {
   pick.number = fields.number("number");
   pick.x = fields.real("x", 0, 1);
   pick.y = fields.real("y", 0, 1);
-  pick.sight = sight_of(fields.get("sight"));
+  pick.request = view_request_of(fields.get("sight"));
   return pick;
 }
 

@@ -1,4 +1,4 @@
-// What    What the page says, checked: every field of its type and in its range, nothing that isn't known.
+// What    The page's messages, checked: every field of its type and in its range, and no unknown field.
 // Shape   JSON texts of at most kMostText bytes. The page's own numbers (of looks, frames, picks) come back
 //         in what answers them.
 // Errors  kdray::Error, ErrorCode::input: for whoever sent it, and the end of its connection.
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <variant>
 
-#include "apps/view/sight.h"
+#include "apps/view/view_request.h"
 
 namespace kdray::view {
 
@@ -18,11 +18,11 @@ inline constexpr int kMostSide = 4096;
 inline constexpr int kMostPixels = 8 << 20;
 inline constexpr int kMostCellDepth = 24;
 
-// What it wants to see now; `moving`: more of them are going to follow at once.
+// What the page is to show now; `moving`: more looks are going to follow at once.
 struct Look {
   std::uint32_t number = 0;
   bool moving = false;
-  Sight sight;
+  ViewRequest request;
 };
 // The frame is on the screen.
 struct Shown {
@@ -32,7 +32,7 @@ struct Shown {
 struct Pick {
   std::uint32_t number = 0;
   double x = 0, y = 0;
-  Sight sight;
+  ViewRequest request;
 };
 // The tree's cells to a depth; 0: none.
 struct Cells {

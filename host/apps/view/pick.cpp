@@ -64,7 +64,7 @@ std::optional<Picked> Picker::pick(const EyeRay& ray) {
                     .normal = {picked.normal.data(), 1},
                     .point = {picked.point.data(), 1},
                     .instance = {&instance, 1}};
-  query::closest(asked_->asked(), rays, out, {});
+  query::closest(asked_->query_context(), rays, out, {});
   if (number == kNoPrimitive) return std::nullopt;
   instance == kNoInstance ? name(number, picked) : name_instance(number, instance, picked);
   return picked;

@@ -18,11 +18,11 @@ std::vector<vec3> pixels_of(const Picture& picture) {
   return pixels;
 }
 
-film::ChannelPicture channel_of(const Picture& picture) {
-  std::vector<film::Channel> channels;
+image::ChannelPicture channel_of(const Picture& picture) {
+  std::vector<image::Channel> channels;
   for (const Channel& c : picture.channels) channels.push_back({c.name, c.values});
-  const std::vector<film::ChannelPicture> pictures =
-      film::channel_pictures(picture.width, picture.height, channels, pixels_of(picture));
+  const std::vector<image::ChannelPicture> pictures =
+      image::channel_pictures(picture.width, picture.height, channels, pixels_of(picture));
   if (pictures.empty()) throw Error(ErrorCode::internal, "the channel was not rendered");
   return pictures.front();
 }
@@ -37,11 +37,11 @@ std::string as_jpeg(const Picture& picture, const RenderOptions& options, bool a
 
 std::string as_png(const Picture& picture, const RenderOptions& options) {
   if (!options.channels.empty()) {
-    const film::ChannelPicture channel = channel_of(picture);
-    return film::encode_png(channel.pixels, channel.meta);
+    const image::ChannelPicture channel = channel_of(picture);
+    return image::encode_png(channel.pixels, channel.meta);
   }
-  const film::Image image{picture.width, picture.height, pixels_of(picture)};
-  return film::encode_picture(film::PictureFormat::png, image, {}, {});
+  const image::Image image{picture.width, picture.height, pixels_of(picture)};
+  return image::encode_picture(image::PictureFormat::png, image, {}, {});
 }
 
 }  // namespace kdray::view

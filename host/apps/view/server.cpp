@@ -6,7 +6,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "apps/view/house.h"
+#include "apps/view/server_context.h"
 #include "base/error.h"
 
 namespace kdray::view {
@@ -19,7 +19,7 @@ using Failure = boost::system::error_code;
 using namespace std::chrono_literals;
 
 constexpr int kPortsTried = 40;
-constexpr auto kAskEvery = 500ms, kPause = 100ms;
+constexpr auto kPollEvery = 500ms, kPause = 100ms;
 constexpr std::size_t kCookieLetters = 8;
 
 asio::ip::address address_of(const std::string& text) {
@@ -39,19 +39,19 @@ struct Server::Impl {
   void listen(const asio::ip::address& address, int port, Failure& failure);
   void accept();
   void pages_changed();
-  void ask();
+  void poll();
 
   ServerOptions options;
-  House house;
-  asio::io_context context{1};
-  tcp::acceptor acceptor{context};
-  asio::steady_timer pause{context}, asking{context}, lingering{context};
+  ServerContext context;
+  asio::io_context io{1};
+  tcp::acceptor acceptor{io};
+  asio::steady_timer pause{io}, polling{io}, lingering{io};
 };
 
 Server::Impl::Impl(const ServerOptions& o, const Limits& limits)
-    : options(o), house{{Names(o.bind), Token(), {}, o.framed}, limits, nullptr, {}, 0, {}} {
-  house.door.cookie = "kdray-" + Token().text().substr(0, kCookieLetters);
-  house.pages_changed = [this] { pages_changed(); };
+    : options(o), context{{Names(o.bind), Token(), {}, o.framed}, limits, nullptr, {}, 0, {}} {
+  context.access.cookie = "kdray-" + Token().text().substr(0, kCookieLetters);
+  context.pages_changed = [this] { pages_changed(); };
   const asio::ip::address address = address_of(o.bind);
   Failure failure;
   const int first = o.port > 0 ? o.port : kUsualPort, tries = o.port > 0 ? 1 : kPortsTried;
@@ -77,9 +77,9 @@ void Server::Impl::listen(const asio::ip::address& address, int port, Failure& f
 void Server::Impl::accept() {
   acceptor.async_accept([this](Failure failure, tcp::socket socket) {
     if (failure == asio::error::operation_aborted) return;
-    if (!failure) receive(std::move(socket), house);
+    if (!failure) serve(std::move(socket), context);
     if (!failure) return accept();
-    // Out of descriptors, say: others are going to be closed.
+    // Out of descriptors, say: waits until other connections have been closed.
     pause.expires_after(kPause);
     pause.async_wait([this](Failure ended) {
       if (!ended) accept();
@@ -89,19 +89,19 @@ void Server::Impl::accept() {
 
 void Server::Impl::pages_changed() {
   lingering.cancel();
-  if (house.n_pages > 0 || options.linger == 0ms) return;
+  if (context.n_pages > 0 || options.linger == 0ms) return;
   lingering.expires_after(options.linger);
   lingering.async_wait([this](Failure cancelled) {
-    if (!cancelled) context.stop();
+    if (!cancelled) io.stop();
   });
 }
 
-void Server::Impl::ask() {
+void Server::Impl::poll() {
   if (!options.is_over) return;
-  asking.expires_after(kAskEvery);
-  asking.async_wait([this](Failure cancelled) {
+  polling.expires_after(kPollEvery);
+  polling.async_wait([this](Failure cancelled) {
     if (cancelled) return;
-    options.is_over() ? context.stop() : ask();
+    options.is_over() ? io.stop() : poll();
   });
 }
 
@@ -116,18 +116,18 @@ int Server::port() const {
 std::string Server::address() const {
   const std::string& bound = impl_->options.bind;
   const std::string host = bound == "0.0.0.0" ? "127.0.0.1" : bound == "::" ? "[::1]" : in_brackets(bound);
-  return fmt::format("http://{}:{}/#token={}", host, port(), impl_->house.door.token.text());
+  return fmt::format("http://{}:{}/#token={}", host, port(), impl_->context.access.token.text());
 }
 
-void Server::run(Reception& reception) {
-  impl_->house.reception = &reception;
+void Server::run(ClientHandler& handler) {
+  impl_->context.handler = &handler;
   impl_->accept();
-  impl_->ask();
-  impl_->context.run();
+  impl_->poll();
+  impl_->io.run();
 }
 
 void Server::stop() {
-  impl_->context.stop();
+  impl_->io.stop();
 }
 
 }  // namespace kdray::view

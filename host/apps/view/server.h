@@ -1,6 +1,6 @@
 // What    The server of the page: HTTP and WebSockets on one address, by a single thread.
-// Shape   A connection asks for files, one after the other, or becomes a WebSocket, whose page is a Visitor
-//         once it has shown that it knows the token. Everything a client can make grow has a limit.
+// Shape   A connection asks for files, one after the other, or becomes a WebSocket, whose page is a Client
+//         once it has shown that it knows the token. Everything that a client can make grow has a limit.
 // Errors  ErrorCode::input for an address that can't be listened on. Clients can't cause any: what they do
 //         wrong ends their connection.
 #pragma once
@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "apps/view/visitor.h"
+#include "apps/view/client_handler.h"
 
 namespace kdray::view {
 
@@ -21,15 +21,15 @@ struct ServerOptions {
   bool framed = false;
   // It ends so long after the last page was closed; none: it stays.
   std::chrono::milliseconds linger{0};
-  // Asked twice a second: true ends it.
+  // Called twice a second: true ends it.
   std::function<bool()> is_over = {};
 };
 
 inline constexpr int kUsualPort = 7878;
 
-// What a client may take.
+// The most that a client may use.
 struct Limits {
-  std::size_t connections = 64;  // beyond them the one that has waited longest for nothing has to go
+  std::size_t connections = 64;  // beyond them the oldest one that is no page is closed
   std::size_t pages = 16;
   std::size_t queued_messages = 64, queued_bytes = std::size_t{64} << 20;  // to one that doesn't read
   std::chrono::seconds request{10};  // for a whole request, and between two
@@ -44,11 +44,11 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   int port() const;
-  // For the browser; who has it may look.
+  // For the browser; it has the token.
   std::string address() const;
 
   // Serves until stop(), or as the options say. To be called once.
-  void run(Reception& reception);
+  void run(ClientHandler& handler);
   void stop();  // from any thread
 
  private:

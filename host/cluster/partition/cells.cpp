@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 namespace {
 
@@ -96,9 +96,8 @@ void offer_planes(const std::array<Bin, kBins>& bins, int axis, std::uint64_t n,
 
 class Divider {
  public:
-  Divider(const Goods& goods, transport::Together& all)
-      : goods_(goods), all_(all), cell_of_(goods.size(), 0) {
-    for_each_box(goods_, [&](std::uint32_t number, const Box& bounds) {
+  Divider(const PrimitiveSet& set, transport::Together& all) : set_(set), all_(all), cell_of_(set.size(), 0) {
+    for_each_box(set_, [&](std::uint32_t number, const Box& bounds) {
       const Item item = item_of(number, bounds);
       root_.all.add({1, item.bounds, {item.middle, item.middle}});
     });
@@ -129,9 +128,8 @@ class Divider {
   template <class Use>
   void for_each_item(const Use& use) {
     std::size_t i = 0;
-    for_each_box(goods_, [&](std::uint32_t number, const Box& bounds) {
-      use(cell_of_[i++], item_of(number, bounds));
-    });
+    for_each_box(
+        set_, [&](std::uint32_t number, const Box& bounds) { use(cell_of_[i++], item_of(number, bounds)); });
   }
 
   void count(std::size_t n) {
@@ -203,7 +201,7 @@ class Divider {
 
   static constexpr std::size_t kWhole = ~std::size_t{0};
 
-  const Goods& goods_;
+  const PrimitiveSet& set_;
   transport::Together& all_;
   std::vector<std::uint32_t> cell_of_;
   Node root_;
@@ -215,8 +213,8 @@ class Divider {
 
 }  // namespace
 
-Cells divide_into_cells(const Goods& goods, std::uint64_t n_cells, transport::Together& all) {
-  return Divider(goods, all).divide(n_cells);
+Cells divide_into_cells(const PrimitiveSet& set, std::uint64_t n_cells, transport::Together& all) {
+  return Divider(set, all).divide(n_cells);
 }
 
 std::uint64_t cells_for(std::uint64_t n) {
@@ -224,7 +222,7 @@ std::uint64_t cells_for(std::uint64_t n) {
   return std::min(kMost, (n + kLeast - 1) / kLeast);
 }
 
-std::vector<std::uint32_t> deal_cells(const std::vector<Cell>& cells, int ranks) {
+std::vector<std::uint32_t> assign_cells(const std::vector<Cell>& cells, int ranks) {
   std::uint64_t n = 0;
   for (const Cell& cell : cells) n += cell.n;
   std::vector<std::uint32_t> rank_of;
@@ -241,4 +239,4 @@ std::vector<std::uint32_t> deal_cells(const std::vector<Cell>& cells, int ranks)
   return rank_of;
 }
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "base/box.h"
-#include "cluster/partition/goods.h"
+#include "cluster/partition/primitive_set.h"
 #include "cluster/transport/together.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 struct Cell {
   std::uint64_t n = 0;  // primitives
@@ -25,16 +25,16 @@ struct Cell {
 
 struct Cells {
   std::vector<Cell> cells;
-  std::vector<std::uint32_t> cell_of;  // of each of the rank's goods, in the order of for_each_box()
+  std::vector<std::uint32_t> cell_of;  // of each of the rank's primitives, in the order of for_each_box()
 };
 
 // No cell has more than one in `most_cells` of the primitives, and there are at most some times as many.
-Cells divide_into_cells(const Goods& goods, std::uint64_t n_cells, transport::Together& all);
+Cells divide_into_cells(const PrimitiveSet& set, std::uint64_t n_cells, transport::Together& all);
 
 // How many cells a scene of n primitives is to have.
 std::uint64_t cells_for(std::uint64_t n);
 
 // The rank of each cell: runs of neighbours, of about as many primitives each.
-std::vector<std::uint32_t> deal_cells(const std::vector<Cell>& cells, int ranks);
+std::vector<std::uint32_t> assign_cells(const std::vector<Cell>& cells, int ranks);
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

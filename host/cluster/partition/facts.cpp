@@ -5,7 +5,7 @@
 #include "accel/flatten/features.h"
 #include "scene/model/geometry.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 void Facts::add(const scene::Scene& scene, const scene::Geometry& geometry) {
   Facts part;
@@ -46,4 +46,4 @@ void tell(const Facts& facts, prepare::Prepared& whole) {
   whole.features = flatten::features_in_light(mask, whole.settings);
 }
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

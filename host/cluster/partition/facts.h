@@ -11,7 +11,7 @@
 #include "layout/features.h"
 #include "scene/primitives/kinds.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 struct Facts {
   std::uint64_t dropped = 0, lost = 0, fine = 0, stitches = 0, shaded_flat = 0;
@@ -28,4 +28,4 @@ struct Facts {
 // Writes them into the whole of a scene of triangles alone, which has its settings.
 void tell(const Facts& facts, prepare::Prepared& whole);
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

@@ -19,7 +19,7 @@
 #include "scene/model/frame.h"
 #include "scene/model/settle_normals.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 namespace {
 
@@ -79,7 +79,7 @@ class PlyReader {
     frame(bounds);
     tell(facts_, whole);
     whole.flat.lights = flatten::pack_lights(whole.settings, whole.geometry.space);
-    if (facts_.stitches > 0) settle_stitches(share_.goods, all_);
+    if (facts_.stitches > 0) settle_stitches(share_.primitives, all_);
     return std::move(share_);
   }
 
@@ -121,7 +121,8 @@ class PlyReader {
     for (scene::Triangle& t : part.triangles) t.number += first;
     sample_middles(part);
     const scene::Geometry geometry = scene::make_geometry_in(share_.whole.geometry.space, part);
-    add_slice(share_.goods, part, geometry, flatten::flatten(part, geometry, kdtree::Tree(), false), 0, 1);
+    add_slice(share_.primitives, part, geometry, flatten::flatten(part, geometry, kdtree::Tree(), false), 0,
+              1);
     facts_.add(part, geometry);
     facts_.shaded_flat += mesh.n_shaded_flat();
   }
@@ -193,4 +194,4 @@ std::optional<Share> read_in_shares(const std::filesystem::path& file, const Loa
   return reader.read(options, std::move(read));
 }
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

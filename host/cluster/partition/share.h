@@ -8,14 +8,14 @@
 #include <optional>
 
 #include "accel/prepare/prepared.h"
-#include "cluster/partition/goods.h"
+#include "cluster/partition/primitive_set.h"
 #include "cluster/transport/together.h"
 #include "kdray/options.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 struct Share {
-  Goods goods;
+  PrimitiveSet primitives;
   // Of the whole scene; without primitives, nodes and blocks, but with all that these refer to.
   prepare::Prepared whole;
 };
@@ -28,4 +28,4 @@ std::optional<Share> read_in_shares(const std::filesystem::path& file, const Loa
 // The same of a scene that every rank has. Throws ErrorCode::input where they have different ones.
 Share share_of(const scene::Scene& scene, transport::Together& all);
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

@@ -10,7 +10,7 @@
 #include "scene/model/stitches.h"
 #include "scene/primitives/pack.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 namespace {
 
@@ -19,9 +19,9 @@ constexpr std::size_t kGrainOfStitches = std::size_t{1} << 14;
 using Stitches = std::vector<layout::Triangle>;
 
 // Those of all ranks, in the order of the file.
-Stitches gather_stitches(const Goods& goods, transport::Together& all) {
+Stitches gather_stitches(const PrimitiveSet& set, transport::Together& all) {
   std::vector<layout::Triangle> own;
-  for (const layout::Triangle& t : goods.triangles)
+  for (const layout::Triangle& t : set.triangles)
     if (scene::is_stitch(t)) own.push_back(t);
   const auto parts = all.gather(transport::bytes_of_list(std::span<const layout::Triangle>(own)));
   Stitches stitches;
@@ -34,12 +34,12 @@ Stitches gather_stitches(const Goods& goods, transport::Together& all) {
   return stitches;
 }
 
-const layout::Triangle& triangle_of(const Goods& goods, std::uint32_t number) {
-  return *std::ranges::lower_bound(goods.triangles, number, {}, &layout::Triangle::number);
+const layout::Triangle& triangle_of(const PrimitiveSet& set, std::uint32_t number) {
+  return *std::ranges::lower_bound(set.triangles, number, {}, &layout::Triangle::number);
 }
 
 // For each side its neighbour's normal, from the rank that has the neighbour.
-std::vector<vec3> normals_of_neighbours(const Goods& goods, scene::StitchSides& sides,
+std::vector<vec3> normals_of_neighbours(const PrimitiveSet& set, scene::StitchSides& sides,
                                         transport::Together& all) {
   const std::vector<std::uint32_t> own(sides.neighbours().begin(), sides.neighbours().end());
   all.join_lists(sides.neighbours(),
@@ -47,7 +47,7 @@ std::vector<vec3> normals_of_neighbours(const Goods& goods, scene::StitchSides& 
   std::vector<vec3> normals(own.size(), vec3(0));
   for (std::size_t i = 0; i < own.size(); ++i)
     if (own[i] != scene::StitchSides::kNobody && own[i] == sides.neighbours()[i])
-      normals[i] = scene::StitchSides::normal_of(triangle_of(goods, own[i]));
+      normals[i] = scene::StitchSides::normal_of(triangle_of(set, own[i]));
   all.join_lists(std::span<vec3>(normals), [](vec3& sum, const vec3& one) {
     if (sum == vec3(0)) sum = one;
   });
@@ -56,24 +56,23 @@ std::vector<vec3> normals_of_neighbours(const Goods& goods, scene::StitchSides& 
 
 }  // namespace
 
-void settle_stitches(Goods& goods, transport::Together& all) {
-  const Stitches stitches = gather_stitches(goods, all);
+void settle_stitches(PrimitiveSet& set, transport::Together& all) {
+  const Stitches stitches = gather_stitches(set, all);
   scene::StitchSides sides(stitches);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, goods.triangles.size(), kGrainOfStitches),
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, set.triangles.size(), kGrainOfStitches),
                     [&](const auto& range) {
                       for (std::size_t i = range.begin(); i < range.end(); ++i)
-                        sides.meet(goods.triangles[i], goods.triangles[i].number);
+                        sides.meet(set.triangles[i], set.triangles[i].number);
                     });
-  const std::vector<vec3> neighbours = normals_of_neighbours(goods, sides, all);
+  const std::vector<vec3> neighbours = normals_of_neighbours(set, sides, all);
   const std::vector<vec3> normals = sides.normals([&](std::size_t side) { return neighbours[side]; });
-  for (const std::uint32_t place : goods.bare_stitches) {
-    const layout::Triangle& t = goods.triangles[place];
+  for (const std::uint32_t place : set.bare_stitches) {
+    const layout::Triangle& t = set.triangles[place];
     const auto found = std::ranges::lower_bound(stitches, t.number, {}, &layout::Triangle::number);
     const vec3& normal = normals[static_cast<std::size_t>(found - stitches.begin())];
-    for (auto& at_corner : goods.normals[t.normals & KDRAY_NORMALS_MASK].n)
-      primitives::set(at_corner, normal);
+    for (auto& at_corner : set.normals[t.normals & KDRAY_NORMALS_MASK].n) primitives::set(at_corner, normal);
   }
-  goods.bare_stitches.clear();
+  set.bare_stitches.clear();
 }
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

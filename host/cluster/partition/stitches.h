@@ -3,12 +3,12 @@
 // Memory  All stitches of the scene, on every rank.
 #pragma once
 
-#include "cluster/partition/goods.h"
+#include "cluster/partition/primitive_set.h"
 #include "cluster/transport/together.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 // Gives the bare stitches of all shares the normals that they have in the whole scene.
-void settle_stitches(Goods& goods, transport::Together& all);
+void settle_stitches(PrimitiveSet& set, transport::Together& all);
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

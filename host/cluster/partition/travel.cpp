@@ -7,13 +7,13 @@
 #include "cluster/partition/wire.h"
 #include "scene/model/check_scene.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 namespace {
 
 using transport::Bytes;
 
-constexpr std::size_t kBatchOfGoods = std::size_t{1} << 16;  // primitives of a kind
+constexpr std::size_t kBatchOfPrimitives = std::size_t{1} << 16;  // primitives of a kind
 
 struct Counts {
   std::array<std::uint64_t, primitives::kKinds> of{};
@@ -26,19 +26,19 @@ bool has_normals(const layout::Triangle& t) {
 
 class Carrier {
  public:
-  Carrier(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
+  Carrier(PrimitiveSet set, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
           transport::Together& all)
-      : goods_(std::move(goods)), rank_of_(rank_of), rows_(rows), all_(all) {}
+      : set_(std::move(set)), rank_of_(rank_of), rows_(rows), all_(all) {}
 
-  Goods carry() {
-    make_room();
+  PrimitiveSet carry() {
+    count_arrivals();
     std::size_t first = 0;  // of the kind, in rank_of_
     primitives::for_each_kind([&](auto kind) {
-      const std::size_t n = decltype(kind)::of(goods_).size();
-      const std::size_t n_rounds = all_.most((n + kBatchOfGoods - 1) / kBatchOfGoods);
+      const std::size_t n = decltype(kind)::of(set_).size();
+      const std::size_t n_rounds = all_.most((n + kBatchOfPrimitives - 1) / kBatchOfPrimitives);
       for (std::size_t round = 0; round < n_rounds; ++round) {
-        const std::size_t begin = std::min(n, round * kBatchOfGoods),
-                          end = std::min(n, begin + kBatchOfGoods);
+        const std::size_t begin = std::min(n, round * kBatchOfPrimitives),
+                          end = std::min(n, begin + kBatchOfPrimitives);
         exchange(kind, first, begin, end);
       }
       first += n;
@@ -50,11 +50,11 @@ class Carrier {
   std::size_t n_ranks() const { return static_cast<std::size_t>(all_.size()); }
 
   // How many of each kind come from whom, and so where they go.
-  void make_room() {
+  void count_arrivals() {
     std::vector<Counts> out(n_ranks());
     std::size_t i = 0;
     primitives::for_each_kind([&](auto kind) {
-      for (const auto& item : decltype(kind)::of(goods_)) {
+      for (const auto& item : decltype(kind)::of(set_)) {
         Counts& counts = out[rank_of_[i++]];
         ++counts.of[kind.kNumber];
         if constexpr (!decltype(kind)::kIsShape) counts.normals += has_normals(item) ? 1 : 0;
@@ -100,13 +100,13 @@ class Carrier {
   void pack(Kind, const std::vector<std::uint32_t>& places, Bytes& bytes) const {
     WireWriter writer(bytes);
     writer.put(static_cast<std::uint64_t>(places.size()));
-    writer.put_some(Kind::of(goods_), places);
+    writer.put_some(Kind::of(set_), places);
     if constexpr (!Kind::kIsShape) {
       for (const std::uint32_t place : places)
-        if (const auto& t = goods_.triangles[place]; has_normals(t))
-          writer.put(goods_.normals[t.normals & KDRAY_NORMALS_MASK]);
-      put_rows(writer, goods_.colors, rows_.colors, places);
-      put_rows(writer, goods_.texcoords, rows_.texcoords, places);
+        if (const auto& t = set_.triangles[place]; has_normals(t))
+          writer.put(set_.normals[t.normals & KDRAY_NORMALS_MASK]);
+      put_rows(writer, set_.colors, rows_.colors, places);
+      put_rows(writer, set_.texcoords, rows_.texcoords, places);
     }
   }
 
@@ -144,7 +144,7 @@ class Carrier {
     }
   }
 
-  Goods goods_, here_;
+  PrimitiveSet set_, here_;
   std::span<const std::uint32_t> rank_of_;
   CornerRows rows_;
   transport::Together& all_;
@@ -153,9 +153,9 @@ class Carrier {
 
 }  // namespace
 
-Goods bring(Goods goods, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
-            transport::Together& all) {
-  return Carrier(std::move(goods), rank_of, rows, all).carry();
+PrimitiveSet bring(PrimitiveSet set, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
+                   transport::Together& all) {
+  return Carrier(std::move(set), rank_of, rows, all).carry();
 }
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

@@ -4,10 +4,10 @@
 #include <span>
 #include <utility>
 
-#include "cluster/partition/goods.h"
+#include "cluster/partition/primitive_set.h"
 #include "cluster/partition/wire.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 using scene::ply::Vertices;
 using transport::Bytes;
@@ -80,4 +80,4 @@ Vertices VertexHolders::fetch(const std::vector<std::uint32_t>& wanted) {
   return found;
 }
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

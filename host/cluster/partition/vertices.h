@@ -11,7 +11,7 @@
 #include "cluster/transport/together.h"
 #include "scene/import/ply/ply_rows.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 class VertexHolders {
  public:
@@ -36,4 +36,4 @@ class VertexHolders {
   std::vector<std::uint8_t> used_;
 };
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "cluster/partition/share.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 namespace {
 
@@ -38,12 +38,12 @@ Share share_of(const scene::Scene& scene, transport::Together& all) {
   share.whole.geometry.bounds = geometry.bounds;
   flatten::FlatScene flat = flatten::flatten(scene, geometry, kdtree::Tree(), false);
   check_same(scene, flat, all);
-  add_slice(share.goods, scene, geometry, flat, all.rank(), all.size());
-  share.goods.bare_stitches.clear();  // they have their neighbours' normals, which are here
+  add_slice(share.primitives, scene, geometry, flat, all.rank(), all.size());
+  share.primitives.bare_stitches.clear();  // they have their neighbours' normals, which are here
   flat.triangles = {}, flat.normals = {}, flat.corner_colors = {}, flat.texcoords = {};
   primitives::for_each_shape([&](auto kind) { decltype(kind)::of(flat) = {}; });
   share.whole.flat = std::move(flat);
   return share;
 }
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

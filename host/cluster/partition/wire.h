@@ -9,7 +9,7 @@
 
 #include "cluster/transport/together.h"
 
-namespace kdray::distribute {
+namespace kdray::partition {
 
 class WireWriter {
  public:
@@ -80,4 +80,4 @@ class WireReader {
   std::size_t at_ = 0;
 };
 
-}  // namespace kdray::distribute
+}  // namespace kdray::partition

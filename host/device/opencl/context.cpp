@@ -45,8 +45,8 @@ std::vector<cl::Device> divide(cl::Device device, int n, cl_uint units) {
   return sub_devices;
 }
 
-Opened open(const cl::Device& device, int n_queues, cl_uint units) {
-  Opened opened;
+OpenDevice open(const cl::Device& device, int n_queues, cl_uint units) {
+  OpenDevice opened;
   opened.devices = divide(device, n_queues, units);
   opened.context = cl::Context(opened.devices);
   for (int i = 0; i < n_queues; ++i)
@@ -67,9 +67,9 @@ std::vector<std::string> split(const std::string& specs) {
 }
 
 // What is opened is never destroyed, on purpose: see the header.
-const Opened& opened_before_or_now(const FoundDevice& found, int n_queues) {
+const OpenDevice& opened_before_or_now(const FoundDevice& found, int n_queues) {
   static std::mutex mutex;
-  static auto* all = new std::map<std::tuple<int, int, cl_uint>, Opened>;
+  static auto* all = new std::map<std::tuple<int, int, cl_uint>, OpenDevice>;
   const std::lock_guard lock(mutex);
   const std::tuple key{found.info.number, n_queues, found.info.compute_units};
   auto place = all->find(key);
@@ -117,7 +117,7 @@ namespace {
 // By all that a program is made of. Like what is opened, they are never destroyed.
 class RememberedPrograms {
  public:
-  using Key = std::tuple<const Opened*, std::string, std::string, std::string>;
+  using Key = std::tuple<const OpenDevice*, std::string, std::string, std::string>;
 
   template <class Build>
   static BuiltVariant find_or(const Key& key, const Build& build) {

@@ -21,7 +21,7 @@
 namespace kdray::device {
 
 // An OpenCL context with its devices (the device itself, or its sub-devices) and queues.
-struct Opened {
+struct OpenDevice {
   std::vector<cl::Device> devices;
   cl::Context context;
   std::vector<cl::CommandQueue> queues;
@@ -37,7 +37,7 @@ class Context {
   const Builds& builds() const { return builds_; }
   Context without_cache() const;       // the same, but what it builds is neither looked for nor kept
   Simd simd() const { return simd_; }  // the form of vectors that kernels are to be built with
-  const Opened& opened() const { return *opened_; }
+  const OpenDevice& opened() const { return *opened_; }
   const cl::Context& get() const { return opened_->context; }
   const std::vector<cl::CommandQueue>& queues() const { return opened_->queues; }
   std::size_t max_work_group() const;
@@ -81,7 +81,7 @@ class Context {
  private:
   FoundDevice found_;
   Builds builds_;
-  const Opened* opened_;
+  const OpenDevice* opened_;
   Simd simd_ = Simd::portable;
 };
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // A program takes up to 2 MiB while it is compiled; a first run compiles several.
-constexpr std::uint64_t kLeastRoom = std::uint64_t{16} << 20;
+constexpr std::uint64_t kLeastFree = std::uint64_t{16} << 20;
 constexpr const char* kTemporary = "kdray-pocl-";
 
 // The folder that PoCL would choose. It is empty where PoCL is told to have none, which ends the process.
@@ -77,7 +77,7 @@ PoclCache choose() {
         "XDG_RUNTIME_DIR, "
         "/dev/shm); set POCL_CACHE_DIR to a folder that can be written, has {} MiB of room and may hold "
         "programs",
-        cache.preferred.string(), cache.why_not, kLeastRoom >> 20);
+        cache.preferred.string(), cache.why_not, kLeastFree >> 20);
   } else {
     cache.folder = other;
     ::setenv("POCL_CACHE_DIR", other.c_str(), 1);
@@ -112,7 +112,7 @@ std::string why_no_cache(const fs::path& folder) {
   const bool executable = is_executable(descriptor);
   ::close(descriptor);
   ::unlink(trial.c_str());
-  if (known && std::uint64_t{system.f_bavail} * system.f_frsize < kLeastRoom) return "its disk is full";
+  if (known && std::uint64_t{system.f_bavail} * system.f_frsize < kLeastFree) return "its disk is full";
   if (!executable) return "nothing in it may be executed (a file system mounted with noexec?)";
   return "";
 }

@@ -64,7 +64,7 @@ const Form& described(Simd form) {
 }
 
 // The form's kernel, or none where the compiler refuses it: an answer, not an error, hence no report of it.
-std::optional<Kernel<SimdTest>> try_probe_build(Simd form, const Opened& opened, const Builds& builds) {
+std::optional<Kernel<SimdTest>> try_probe_build(Simd form, const OpenDevice& opened, const Builds& builds) {
   try {
     std::string log;
     const cl::Program program = try_build(opened.context, opened.devices, expand_source(SimdTest::kFile),
@@ -76,7 +76,7 @@ std::optional<Kernel<SimdTest>> try_probe_build(Simd form, const Opened& opened,
   return std::nullopt;
 }
 
-std::string difference_in(const Opened& opened, Kernel<SimdTest>& kernel) {
+std::string difference_in(const OpenDevice& opened, Kernel<SimdTest>& kernel) {
   const std::vector<layout::SimdCase> cases = known_cases();
   return first_difference(cases, run_simd_test(opened, kernel, cases));
 }
@@ -92,7 +92,7 @@ const Form* asked_for() {
               fmt::format("KDRAY_SIMD is '{}'; it may be portable, avx2 or avx512, or unset", asked));
 }
 
-void check_portable(const FoundDevice& found, const Opened& opened, const Builds& builds) {
+void check_portable(const FoundDevice& found, const OpenDevice& opened, const Builds& builds) {
   const cl::Program program =
       build_program(opened.context, opened.devices, SimdTest::kFile, options_for(Simd::portable), builds);
   const std::string difference = checked("testing " + found.info.name, [&] {
@@ -124,7 +124,7 @@ std::string SimdChoice::refused_in_words() const {
   return text;
 }
 
-std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, Kernel<SimdTest>& kernel,
+std::vector<layout::SimdAnswers> run_simd_test(const OpenDevice& opened, Kernel<SimdTest>& kernel,
                                                const std::vector<layout::SimdCase>& cases) {
   std::vector<layout::SimdAnswers> answers(cases.size());
   const std::size_t in_bytes = cases.size() * sizeof(layout::SimdCase);
@@ -145,7 +145,7 @@ std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, Kernel<Simd
 // lacks may well build (a compiler can be told any target) and then kills the process, which no self-test
 // survives. The processor asked is the one this runs on, which is a CPU device's own; a GPU's or an
 // accelerator's compiler need not be bothered with builtins that aren't its own.
-std::string why_not(Simd form, const FoundDevice& found, const Opened& opened, const Builds& builds) {
+std::string why_not(Simd form, const FoundDevice& found, const OpenDevice& opened, const Builds& builds) {
   const Form& wanted = described(form);
   if (!wanted.processor_has) return "";
   if (!wanted.processor_has()) return fmt::format("the processor has no {}", wanted.needs);
@@ -160,7 +160,7 @@ std::string why_not(Simd form, const FoundDevice& found, const Opened& opened, c
   }
 }
 
-SimdChoice probe_simd(const FoundDevice& found, const Opened& opened, const Builds& builds) {
+SimdChoice probe_simd(const FoundDevice& found, const OpenDevice& opened, const Builds& builds) {
   const Form* const asked = asked_for();
   SimdChoice choice;
   for (const Form& form : kForms) {
@@ -178,7 +178,7 @@ SimdChoice probe_simd(const FoundDevice& found, const Opened& opened, const Buil
   return choice;
 }
 
-SimdChoice choose_simd(const FoundDevice& found, const Opened& opened, const Builds& builds) {
+SimdChoice choose_simd(const FoundDevice& found, const OpenDevice& opened, const Builds& builds) {
   static std::mutex mutex;
   static std::map<std::pair<int, const Form*>, SimdChoice> chosen;
   const std::lock_guard lock(mutex);

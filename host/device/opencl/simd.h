@@ -21,7 +21,7 @@
 
 namespace kdray::device {
 
-struct Opened;
+struct OpenDevice;
 
 enum class Simd {
   portable = KDRAY_SIMD_PORTABLE,
@@ -46,16 +46,16 @@ const char* in_words(Simd form);      // "portable", "x86 AVX2", "x86 AVX-512"
 std::string build_option(Simd form);  // "-DKDRAY_SIMD=0"
 
 // The form for this device's kernels; remembered, since it takes a build and a launch to know.
-SimdChoice choose_simd(const FoundDevice& found, const Opened& opened, const Builds& builds = {});
+SimdChoice choose_simd(const FoundDevice& found, const OpenDevice& opened, const Builds& builds = {});
 
 // The same, tried anew.
-SimdChoice probe_simd(const FoundDevice& found, const Opened& opened, const Builds& builds = {});
+SimdChoice probe_simd(const FoundDevice& found, const OpenDevice& opened, const Builds& builds = {});
 
 // Why this device can't have the form; empty when it can.
-std::string why_not(Simd form, const FoundDevice& found, const Opened& opened, const Builds& builds = {});
+std::string why_not(Simd form, const FoundDevice& found, const OpenDevice& opened, const Builds& builds = {});
 
 // What the device answers to the cases, by the kernel of common/simd_test.cl. Throws cl::Error.
-std::vector<layout::SimdAnswers> run_simd_test(const Opened& opened, Kernel<kernels::SimdTest>& kernel,
+std::vector<layout::SimdAnswers> run_simd_test(const OpenDevice& opened, Kernel<kernels::SimdTest>& kernel,
                                                const std::vector<layout::SimdCase>& cases);
 
 }  // namespace kdray::device

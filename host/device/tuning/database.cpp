@@ -11,7 +11,7 @@
 #include "base/write_file.h"
 #include "kdray/error.h"
 
-namespace kdray::tune {
+namespace kdray::tuning {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
@@ -134,4 +134,4 @@ fs::path default_file() {
   return {};
 }
 
-}  // namespace kdray::tune
+}  // namespace kdray::tuning

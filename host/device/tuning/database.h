@@ -15,7 +15,7 @@
 
 #include "device/tuning/settings.h"
 
-namespace kdray::tune {
+namespace kdray::tuning {
 
 inline const std::string kAnyFeatures = "any";
 
@@ -62,4 +62,4 @@ class Database {
 // home, or where KDRAY_TUNE_FILE is set to nothing.
 std::filesystem::path default_file();
 
-}  // namespace kdray::tune
+}  // namespace kdray::tuning

@@ -5,7 +5,7 @@
 
 #include "base/median.h"
 
-namespace kdray::tune {
+namespace kdray::tuning {
 
 namespace {
 
@@ -119,4 +119,4 @@ void race(const Lab& lab, const Tuning& champion, std::vector<Rival>& rivals, co
   if (best.surely_faster(kLeastGain)) best.verdict = Verdict::won;
 }
 
-}  // namespace kdray::tune
+}  // namespace kdray::tuning

@@ -11,7 +11,7 @@
 
 #include "kdray/options.h"
 
-namespace kdray::tune {
+namespace kdray::tuning {
 
 // How candidates are looked at. The first look at one may compile.
 struct Lab {
@@ -47,4 +47,4 @@ struct RaceLimits {
 // Fills in the rivals; those with a wrong output are never timed. At most one has won.
 void race(const Lab& lab, const Tuning& champion, std::vector<Rival>& rivals, const RaceLimits& limits);
 
-}  // namespace kdray::tune
+}  // namespace kdray::tuning

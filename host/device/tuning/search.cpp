@@ -6,7 +6,7 @@
 
 #include "kdray/error.h"
 
-namespace kdray::tune {
+namespace kdray::tuning {
 
 namespace {
 
@@ -158,4 +158,4 @@ Found search(const Lab& lab, const Tuning& start, const SearchOptions& options) 
   return Search(lab, start, options).run();
 }
 
-}  // namespace kdray::tune
+}  // namespace kdray::tuning

@@ -15,7 +15,7 @@
 #include "device/tuning/race.h"
 #include "device/tuning/settings.h"
 
-namespace kdray::tune {
+namespace kdray::tuning {
 
 struct SearchOptions {
   double budget = 20;     // seconds
@@ -45,4 +45,4 @@ struct Found {
 // `start` must be right; throws ErrorCode::internal where its output isn't.
 Found search(const Lab& lab, const Tuning& start, const SearchOptions& options);
 
-}  // namespace kdray::tune
+}  // namespace kdray::tuning

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace kdray::tune {
+namespace kdray::tuning {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::string in_words(const Tuning& tuning) {
   return words.empty() ? "kdray's own" : words;
 }
 
-}  // namespace kdray::tune
+}  // namespace kdray::tuning

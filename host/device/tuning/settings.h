@@ -12,7 +12,7 @@
 
 #include "kdray/options.h"
 
-namespace kdray::tune {
+namespace kdray::tuning {
 
 struct Setting {
   std::string_view name;
@@ -40,4 +40,4 @@ Tuning merged(const Tuning& under, const Tuning& over);
 // own".
 std::string in_words(const Tuning& tuning);
 
-}  // namespace kdray::tune
+}  // namespace kdray::tuning

@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "base/temporary.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 namespace fs = std::filesystem;
 
@@ -75,4 +75,4 @@ std::string new_owner() {
   return fmt::format("{}-{}-{:08x}", host, ::getpid(), std::random_device()());
 }
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -11,14 +11,14 @@
 
 #include "base/error.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "ledgers are in the machine's own order");
+static_assert(std::endian::native == std::endian::little, "checkpoints are in the machine's own order");
 
 constexpr std::array<char, 8> kHeaderMagic = {'k', 'd', 'r', 'a', 'y', 'l', 'e', 'd'};
-constexpr std::uint32_t kVersion = 1;  // of the form of ledgers
+constexpr std::uint32_t kVersion = 1;  // of the form of checkpoints
 
 struct Fixed {
   std::array<char, 8> magic;
@@ -91,21 +91,22 @@ std::optional<Header> header_of(std::string_view bytes) {
                 .maker = text_of(fixed.maker)};
 }
 
-void check_same(const std::filesystem::path& folder, const Identity& ledger, const Identity& run) {
+void check_same(const std::filesystem::path& folder, const Identity& checkpoint, const Identity& run) {
   const auto refuse = [&](const std::string& what) {
-    throw input_error(folder.string(), 0, "the ledger in this folder is of " + what,
+    throw input_error(folder.string(), 0, "the checkpoint in this folder is of " + what,
                       "name another folder, or remove this one");
   };
-  if (ledger.build != run.build)
-    refuse(ledger.build_text == run.build_text
-               ? fmt::format("another build of kdray ({})", run.build_text)
-               : fmt::format("another kdray or driver ({}; this is {})", ledger.build_text, run.build_text));
-  if (ledger.scene != run.scene) refuse("another scene");
-  if (ledger.settings != run.settings)
+  if (checkpoint.build != run.build)
     refuse(
-        ledger.settings_text == run.settings_text
-            ? fmt::format("another view or other settings ({})", run.settings_text)
-            : fmt::format("other settings ({}; here they are {})", ledger.settings_text, run.settings_text));
+        checkpoint.build_text == run.build_text
+            ? fmt::format("another build of kdray ({})", run.build_text)
+            : fmt::format("another kdray or driver ({}; this is {})", checkpoint.build_text, run.build_text));
+  if (checkpoint.scene != run.scene) refuse("another scene");
+  if (checkpoint.settings != run.settings)
+    refuse(checkpoint.settings_text == run.settings_text
+               ? fmt::format("another view or other settings ({})", run.settings_text)
+               : fmt::format("other settings ({}; here they are {})", checkpoint.settings_text,
+                             run.settings_text));
 }
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -1,6 +1,6 @@
-// What    What a ledger is of: hashes of the scene, of the settings and of what computes the picture, and how
-//         the picture is cut into tiles. It is what a run must have in common with a ledger to go on from it,
-//         and what every file of tiles begins with.
+// What    What a checkpoint is of: hashes of the scene, of the settings and of what computes the picture, and
+//         how the picture is cut into tiles. It is what a run must have in common with a checkpoint to go on
+//         from it, and what every file of tiles begins with.
 // Shape   1024 bytes: fixed fields, then texts for people, then a checksum of all that.
 // Errors  check_same(): ErrorCode::input, in a line that says which of them differs.
 #pragma once
@@ -14,7 +14,7 @@
 #include "base/hash.h"
 #include "engine/checkpoint/record.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 // Three hashes instead of one, so that a message can tell what differs.
 struct Identity {
@@ -30,7 +30,7 @@ struct Cut {
   bool operator==(const Cut&) const = default;
 };
 
-// Where a piece's sums belong: of a picture that is cut so, or of a list of samples.
+// Where a record's sums belong: of a picture that is cut so, or of a list of samples.
 Rectangle places_of(const Cut& cut, std::uint32_t round, std::uint32_t number);
 
 struct Header {
@@ -47,7 +47,7 @@ inline constexpr std::size_t kHeaderBytes = 1024;
 std::string to_bytes(const Header& header);
 std::optional<Header> header_of(std::string_view bytes);  // none: damaged, or of another version
 
-// Throws where a run of this identity can't go on from the ledger that is in the folder.
-void check_same(const std::filesystem::path& folder, const Identity& ledger, const Identity& run);
+// Throws where a run of this identity can't go on from the checkpoint that is in the folder.
+void check_same(const std::filesystem::path& folder, const Identity& checkpoint, const Identity& run);
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -7,7 +7,7 @@
 
 #include "engine/checkpoint/create_once.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 namespace {
 
@@ -62,4 +62,4 @@ bool Heartbeat::is_alive(const std::string& owner) {
   return now - watched.since <= lease_;
 }
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

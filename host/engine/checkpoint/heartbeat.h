@@ -20,7 +20,7 @@
 
 #include "base/temporary.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 class Heartbeat {
  public:
@@ -52,4 +52,4 @@ class Heartbeat {
   std::jthread thread_;
 };
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

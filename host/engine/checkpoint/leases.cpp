@@ -8,7 +8,7 @@
 
 #include "engine/checkpoint/create_once.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 namespace fs = std::filesystem;
 
@@ -95,4 +95,4 @@ bool Leases::finish(std::size_t i) {
   return create_once(file_of(i, kDone), heartbeat_.owner());
 }
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -15,7 +15,7 @@
 
 #include "engine/checkpoint/heartbeat.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 class Leases {
  public:
@@ -61,4 +61,4 @@ class Leases {
   std::vector<Thing> things_;
 };
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 namespace {
 
@@ -22,12 +22,12 @@ std::uint64_t bytes_of(const Rectangle& places) {
 
 }  // namespace
 
-void append_record(std::string& to, const Hash& frame, const Piece& piece, Sums sums, const Hash& content) {
+void append_record(std::string& to, const Hash& frame, const RecordId& id, Sums sums, const Hash& content) {
   RecordHead head{};
   std::copy(std::begin(kRecordMagic), std::end(kRecordMagic), head.magic);
-  head.bytes = bytes_of(piece.places);
+  head.bytes = bytes_of(id.places);
   head.frame = frame;
-  head.piece = piece;
+  head.id = id;
   head.content = content;
   head.check = check_of(head);
   to.append(reinterpret_cast<const char*>(&head), sizeof head);
@@ -39,7 +39,7 @@ std::optional<RecordHead> head_of(std::string_view bytes, const Hash& frame) {
   RecordHead head;
   std::memcpy(&head, bytes.data(), sizeof head);
   if (!std::equal(std::begin(kRecordMagic), std::end(kRecordMagic), head.magic) ||
-      head.check != check_of(head) || head.frame != frame || head.bytes != bytes_of(head.piece.places))
+      head.check != check_of(head) || head.frame != frame || head.bytes != bytes_of(head.id.places))
     return std::nullopt;
   return head;
 }
@@ -50,4 +50,4 @@ std::size_t find_record(std::string_view bytes, std::size_t from) {
   return std::string_view::npos;
 }
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

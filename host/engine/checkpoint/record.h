@@ -1,10 +1,10 @@
-// What    A finished piece of a frame as bytes: the film's sums of a tile, or of a run of samples, with what
-//         it is of and checksums. Records lie one after the other in a file (record_file.h), or are sent.
+// What    A finished tile or run of samples of a frame as bytes: the film's sums, with what they are of and
+//         checksums. Records lie one after the other in a file (record_file.h), or are sent.
 // Shape   A head, then three 64-bit sums for each place, row by row. Of a tile the places are its pixels; of
 //         a run its samples, in one row.
 // Units   Sums are the film's (kernels/layout/frame.layout.h); lengths in bytes, multiples of 8.
-// Why     Sums are whole numbers: whoever renders a piece, however it was divided, gets the same ones. Two
-//         records of one piece that differ tell of a machine that computes wrongly.
+// Why     Sums are whole numbers: whoever renders a tile or a run, however it was divided, gets the same
+//         ones. Two records of one that differ tell of a machine that computes wrongly.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 #include "base/hash.h"
 #include "layout/frame.layout.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 using Sums = std::span<const layout::i64>;
 
@@ -29,17 +29,17 @@ struct Rectangle {
 
 // Round 0 has the picture's tiles; further rounds, of adaptive sampling, have runs of samples. `number` is
 // the entry of a queue's list: KDRAY_TILE, or the run's number.
-struct Piece {
+struct RecordId {
   std::uint32_t round = 0, number = 0;
   Rectangle places;
-  bool operator==(const Piece&) const = default;
+  bool operator==(const RecordId&) const = default;
 };
 
 struct RecordHead {
   char magic[8];
   std::uint64_t bytes;  // of the whole record
   Hash frame;           // Header::frame(): a record of another frame is none here
-  Piece piece;
+  RecordId id;
   Hash content;  // of the sums
   Hash check;    // of the head before it
 };
@@ -51,7 +51,7 @@ inline Hash hash_of_sums(Sums sums) {
 }
 
 // `content` is hash_of_sums(sums).
-void append_record(std::string& to, const Hash& frame, const Piece& piece, Sums sums, const Hash& content);
+void append_record(std::string& to, const Hash& frame, const RecordId& id, Sums sums, const Hash& content);
 
 // The head that the bytes begin with, when it is whole and of this frame.
 std::optional<RecordHead> head_of(std::string_view bytes, const Hash& frame);
@@ -59,4 +59,4 @@ std::optional<RecordHead> head_of(std::string_view bytes, const Hash& frame);
 // Where a head may begin in the bytes, from `from` on and at a multiple of 8; npos: nowhere.
 std::size_t find_record(std::string_view bytes, std::size_t from);
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

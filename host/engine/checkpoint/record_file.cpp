@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 namespace {
 
@@ -122,4 +122,4 @@ bool RecordFile::load(std::uint64_t offset, const Hash& content, std::span<layou
          hash_of_sums(sums) == content;
 }
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -15,7 +15,7 @@
 #include "engine/checkpoint/header.h"
 #include "engine/checkpoint/record.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 class RecordFile {
  public:
@@ -53,4 +53,4 @@ class RecordFile {
   std::size_t window_bytes_ = 0;
 };
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

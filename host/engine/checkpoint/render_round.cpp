@@ -5,11 +5,11 @@
 #include <numeric>
 #include <utility>
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 namespace {
 
-constexpr std::size_t kLeastTiles = 4, kLeastRuns = 64;  // of a lot: 64 runs are 16384 samples
+constexpr std::size_t kLeastTiles = 4, kLeastRuns = 64;  // of a chunk: 64 runs are 16384 samples
 
 using Entries = std::vector<layout::u32>;
 
@@ -28,7 +28,7 @@ Round round_of_tiles(const layout::Frame& frame, Entries curve, std::span<layout
           .places = [cut](layout::u32 tile) { return places_of(cut, 0, tile); },
           .pitch = frame.width,
           .sums = sums,
-          .least_lot = kLeastTiles};
+          .least_chunk = kLeastTiles};
 }
 
 Round round_of_runs(std::uint32_t number, std::size_t n_runs, std::span<layout::i64> sums) {
@@ -39,21 +39,22 @@ Round round_of_runs(std::uint32_t number, std::size_t n_runs, std::span<layout::
           .places = [number](layout::u32 run) { return places_of({}, number, run); },
           .pitch = 0,
           .sums = sums,
-          .least_lot = kLeastRuns};
+          .least_chunk = kLeastRuns};
 }
 
-void render_round(FrameLedger& ledger, Round round, const Stretches& stretches) {
-  ledger.begin(std::move(round));
-  for (Entries wanted = ledger.next(stretches.idle); !wanted.empty(); wanted = ledger.next(stretches.idle)) {
+void render_round(FrameCheckpoint& checkpoint, Round round, const Stretches& stretches) {
+  checkpoint.begin(std::move(round));
+  for (Entries wanted = checkpoint.next(stretches.idle); !wanted.empty();
+       wanted = checkpoint.next(stretches.idle)) {
     std::map<std::size_t, Entries> by_stretch;
     for (const layout::u32 entry : wanted) by_stretch[stretches.number_of(entry)].push_back(entry);
     for (const auto& [number, entries] : by_stretch) {
-      Entries left = stretches.render(number, entries, ledger.seconds());
+      Entries left = stretches.render(number, entries, checkpoint.seconds());
       const bool all = left.empty();
-      ledger.keep(without(entries, std::move(left)));
+      checkpoint.keep(without(entries, std::move(left)));
       if (!all) break;  // the interval is over: what is next is asked anew
     }
   }
 }
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

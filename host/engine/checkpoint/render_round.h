@@ -1,6 +1,6 @@
-// What    What modes have in common when they render a frame of which a ledger is kept: the rounds of tiles
-//         and of samples, and the way through a round, a stretch of it (what a queue's film has places for)
-//         at a time.
+// What    What modes have in common when they render a frame of which a checkpoint is kept: the rounds of
+//         tiles and of samples, and the way through a round, a stretch of it (what a queue's film has places
+//         for) at a time.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "engine/checkpoint/frame_ledger.h"
+#include "engine/checkpoint/frame_checkpoint.h"
 #include "layout/frame.layout.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 // All tiles of the frame, of which `curve` has the order; `sums` are the picture's.
 Round round_of_tiles(const layout::Frame& frame, std::vector<layout::u32> curve, std::span<layout::i64> sums);
@@ -28,6 +28,6 @@ struct Stretches {
   std::function<void()> idle = {};  // called while others are waited for
 };
 
-void render_round(FrameLedger& ledger, Round round, const Stretches& stretches);
+void render_round(FrameCheckpoint& checkpoint, Round round, const Stretches& stretches);
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 namespace {
 
@@ -61,4 +61,4 @@ void TileFile::sync_meanwhile() {
   syncing_ = std::async(std::launch::async, [this] { (void)::fdatasync(descriptor_); });
 }
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

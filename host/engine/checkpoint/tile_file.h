@@ -1,6 +1,6 @@
 // What    The file that one process appends its finished tiles to: a header, then records. No other process
 //         writes it, and none goes on with it, so that a torn end has nothing behind it.
-// Shape   Pieces that are finished together are one write(2). What was written survives the process, however
+// Shape   Records that are finished together are one write(2). What was written survives the process, however
 //         it ends; what was synchronised survives the machine, too.
 // Errors  ErrorCode::input when the file can't be written. append() after a failed one does nothing: records
 //         behind half a record are only found by a search.
@@ -13,7 +13,7 @@
 
 #include "engine/checkpoint/header.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 
 inline constexpr const char* kTilesEnding = ".tiles";
 
@@ -37,4 +37,4 @@ class TileFile {
   std::future<void> syncing_;
 };
 
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -12,11 +12,11 @@
 #include <span>
 #include <vector>
 
-#include "engine/odprt/crew.h"
 #include "engine/odprt/exchange.h"
-#include "engine/odprt/post.h"
+#include "engine/odprt/rank_exchange.h"
 #include "engine/odprt/render.h"
 #include "engine/odprt/shares.h"
+#include "engine/odprt/worker_pool.h"
 #include "engine/wavefront/bands.h"
 
 namespace kdray::odprt {
@@ -37,7 +37,7 @@ struct BandWork {
 
 class BandRun {
  public:
-  BandRun(const Request& request, Crew& crew, BandWork& band);
+  BandRun(const Request& request, WorkerPool& pool, BandWork& band);
 
   // Blocks until the band is done, by all ranks, or a queue has failed. `progress` hears the share of the
   // tiles that have been begun.
@@ -47,26 +47,26 @@ class BandRun {
 
  private:
   void take_turns(std::size_t queue);
-  void take_turn(std::size_t queue, const Turn& turn, QueueState& state, Mail& pending);
+  void take_turn(std::size_t queue, const Turn& turn, QueueState& state, HostRayQueue& pending);
   void take_entries(std::size_t queue);
-  void change_part(std::size_t queue, std::uint32_t part, QueueState& state, Mail& pending);
+  void change_part(std::size_t queue, std::uint32_t part, QueueState& state, HostRayQueue& pending);
   void launch(std::size_t queue, const Turn& turn, QueueState& state);
-  bool sends_mail(std::size_t queue, const Outbox& outbox) const;
+  bool sends_to_host(std::size_t queue, const Outbox& outbox) const;
   void hand_over(std::size_t queue, const Turn& turn, const QueueState& state);
   void wait(const std::function<void(double)>& progress);
   void close();
 
   const Request& request_;
-  Crew& crew_;
+  WorkerPool& pool_;
   BandWork& band_;
   Exchange exchange_;
-  std::optional<Post> post_;  // with other ranks
+  std::optional<RankExchange> rank_exchange_;  // with other ranks
   std::mutex mutex_;
   std::condition_variable ended_;
   std::size_t n_serving_ = 0;
   std::vector<std::atomic<std::uint32_t>> tiles_left_;  // of those that a queue has taken
-  // The mail of each queue's last turn to each part. It stays here for the memory that it has.
-  std::vector<std::vector<Mail>> sent_;
+  // What each queue's last turn sent to each part by way of the host. It stays for the memory that it has.
+  std::vector<std::vector<HostRayQueue>> sent_;
 };
 
 }  // namespace kdray::odprt

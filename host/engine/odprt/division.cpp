@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/odprt/deal.h"
+#include "engine/odprt/assign_balanced.h"
 #include "engine/odprt/replicate.h"
 
 namespace kdray::odprt {
@@ -47,8 +47,8 @@ std::vector<bool> choose_replicated(const Cut& cut, std::span<const double> cost
 
 std::vector<std::uint32_t> assign(const Cut& cut, std::span<const double> costs, const DivideOptions& o) {
   const std::vector<bool> everywhere = choose_replicated(cut, costs, o);
-  std::vector<double> dealt_costs;
-  std::vector<std::uint64_t> dealt_bytes;
+  std::vector<double> rest_costs;
+  std::vector<std::uint64_t> rest_bytes;
   double all = 0, replicated = 0;
   for (std::size_t i = 0; i < costs.size(); ++i) {
     const std::uint64_t bytes = cut.subtrees[i].bytes;
@@ -56,16 +56,16 @@ std::vector<std::uint32_t> assign(const Cut& cut, std::span<const double> costs,
     if (everywhere[i]) {
       replicated += static_cast<double>(bytes);
     } else {
-      dealt_costs.push_back(costs[i]);
-      dealt_bytes.push_back(bytes);
+      rest_costs.push_back(costs[i]);
+      rest_bytes.push_back(bytes);
     }
   }
   const double most = (1.0 / o.n_parts + o.spare) * all - replicated;
-  const std::vector<std::uint32_t> dealt =
-      deal(dealt_costs, dealt_bytes, o.n_parts, static_cast<std::uint64_t>(std::max(most, 0.0)));
+  const std::vector<std::uint32_t> assigned =
+      assign_balanced(rest_costs, rest_bytes, o.n_parts, static_cast<std::uint64_t>(std::max(most, 0.0)));
   std::vector<std::uint32_t> part_of;
   for (std::size_t i = 0, next = 0; i < costs.size(); ++i)
-    part_of.push_back(everywhere[i] ? kEveryPart : dealt[next++]);
+    part_of.push_back(everywhere[i] ? kEveryPart : assigned[next++]);
   return part_of;
 }
 

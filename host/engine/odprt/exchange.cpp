@@ -12,9 +12,9 @@ Exchange::Exchange(const Plan& plan, const RankTable& table, std::vector<std::si
       direct_(std::move(direct)),
       outboxes_(outboxes),
       shares_(shares),
-      ledger_(plan.n_slices, plan.capacity, plan.least, outboxes.size(), table.place()),
-      letters_(owner_.size()),
-      mail_(owner_.size(), Mail(plan.n_slices, plan.outbox.ray_fields)),
+      credits_(plan.n_slices, plan.capacity, plan.least, outboxes.size(), table.place()),
+      messages_(owner_.size()),
+      host_rays_(owner_.size(), HostRayQueue(plan.n_slices, plan.outbox.ray_fields)),
       has_tiles_(outboxes.size(), 1),
       running_(outboxes.size(), 0),
       waiting_(outboxes.size(), 0),
@@ -27,7 +27,7 @@ bool Exchange::done() const {
 }
 
 bool Exchange::nothing_is_left() const {
-  return ledger_.alive() == 0 &&
+  return credits_.alive() == 0 &&
          std::none_of(has_tiles_.begin(), has_tiles_.end(), [](char c) { return c; }) &&
          std::none_of(running_.begin(), running_.end(), [](char c) { return c; });
 }
@@ -38,22 +38,24 @@ Outbox* Exchange::free_outbox(std::size_t queue) const {
   return nullptr;
 }
 
-// Whether a launch may do something. One that did nothing is not repeated before the ledger has changed.
+// Whether a launch may do something. One that did nothing is not repeated before the credits have changed.
 bool Exchange::may_launch(std::size_t queue, const QueueState& state) const {
   return (state.has_rays || has_tiles_[queue]) &&
-         (state.progressed || ledger_.version() != seen_version_[queue]);
+         (state.progressed || credits_.version() != seen_version_[queue]);
 }
 
 std::optional<std::uint32_t> Exchange::choose_part(std::size_t queue, const QueueState& state) const {
-  if (!letters_[state.part].empty() || mail_[state.part].n > 0 || may_launch(queue, state)) return state.part;
+  if (!messages_[state.part].empty() || host_rays_[state.part].n > 0 || may_launch(queue, state))
+    return state.part;
   std::optional<std::uint32_t> best;
   // Where nothing could be done, the deepest rays are what others wait for.
   const auto rank = [&](std::uint32_t part) {
-    return state.progressed ? mail_[part].n : std::uint64_t{mail_[part].deepest} << 48 | mail_[part].n;
+    return state.progressed ? host_rays_[part].n
+                            : std::uint64_t{host_rays_[part].deepest} << 48 | host_rays_[part].n;
   };
   const std::size_t own = table_.own_first() + queue;
   for (std::uint32_t part = 0; part < owner_.size(); ++part)
-    if (owner_[part] == own && mail_[part].n > 0 && (!best || rank(part) > rank(*best))) best = part;
+    if (owner_[part] == own && host_rays_[part].n > 0 && (!best || rank(part) > rank(*best))) best = part;
   return best;
 }
 
@@ -63,14 +65,14 @@ std::optional<Turn> Exchange::begin_turn(std::size_t queue, const QueueState& st
   if (!part) return std::nullopt;
   Turn turn;
   turn.part = *part;
-  turn.letters.swap(letters_[*part]);
-  const bool worth = !turn.letters.empty() || mail_[*part].n > 0 || may_launch(queue, state);
+  turn.messages.swap(messages_[*part]);
+  const bool worth = !turn.messages.empty() || host_rays_[*part].n > 0 || may_launch(queue, state);
   turn.outbox = worth ? free_outbox(queue) : nullptr;
-  if (turn.letters.empty() && !turn.outbox) return std::nullopt;
+  if (turn.messages.empty() && !turn.outbox) return std::nullopt;
   if (turn.outbox) {
-    turn.grants.resize(mail_.front().rays.size());
-    ledger_.grant(queue, turn.grants);
-    seen_version_[queue] = ledger_.version();
+    turn.credits.resize(host_rays_.front().rays.size());
+    credits_.grant(queue, turn.credits);
+    seen_version_[queue] = credits_.version();
     running_[queue] = 1;
   }
   return turn;
@@ -94,26 +96,26 @@ std::optional<Turn> Exchange::try_turn(std::size_t queue, const QueueState& stat
   return turn;
 }
 
-void Exchange::take_mail(std::uint32_t part, Mail& into) {
+void Exchange::take_host_rays(std::uint32_t part, HostRayQueue& into) {
   const std::lock_guard lock(mutex_);
-  into.take_all(mail_[part]);
+  into.take_all(host_rays_[part]);
 }
 
-void Exchange::put_mail(std::uint32_t part, Mail& from) {
+void Exchange::put_host_rays(std::uint32_t part, HostRayQueue& from) {
   const std::lock_guard lock(mutex_);
-  mail_[part].take_all(from);
+  host_rays_[part].take_all(from);
 }
 
 void Exchange::end_turn(std::size_t queue, const Turn& turn, std::span<const layout::Traffic> traffic,
-                        const QueueState& state, std::vector<Mail>& sent) {
+                        const QueueState& state, std::vector<HostRayQueue>& sent) {
   const std::lock_guard lock(mutex_);
-  for (const Letter& letter : turn.letters) --letter.outbox->n_readers;
+  for (const DeviceMessage& message : turn.messages) --message.outbox->n_readers;
   has_tiles_[queue] = state.has_tiles || shares_.left() > 0;
   if (turn.outbox) {
-    // A queue's own settling changes the ledger, but tells it nothing new.
-    const bool news = ledger_.version() != seen_version_[queue];
-    ledger_.settle(queue, traffic);
-    if (!news) seen_version_[queue] = ledger_.version();
+    // A queue's own settling changes the credits, but tells it nothing new.
+    const bool news = credits_.version() != seen_version_[queue];
+    credits_.settle(queue, traffic);
+    if (!news) seen_version_[queue] = credits_.version();
     running_[queue] = 0;
     stuck_[queue] = !state.progressed;
     for (std::uint32_t part = 0; part < owner_.size(); ++part) {
@@ -126,9 +128,9 @@ void Exchange::end_turn(std::size_t queue, const Turn& turn, std::span<const lay
       counts_.shadow_rays[from][owner_[part]] += n_shadow;
       if (directly) {
         ++turn.outbox->n_readers;
-        letters_[part].push_back({turn.outbox, queue});
+        messages_[part].push_back({turn.outbox, queue});
       } else {
-        mail_[part].take_all(sent[part]);
+        host_rays_[part].take_all(sent[part]);
       }
     }
   }
@@ -145,7 +147,7 @@ bool Exchange::is_idle() const {
   return nothing_is_left();
 }
 
-bool Exchange::is_short_of_room() const {
+bool Exchange::is_short_of_credits() const {
   const std::lock_guard lock(mutex_);
   if (nothing_is_left()) return false;
   bool any = false, all = true;
@@ -156,37 +158,37 @@ bool Exchange::is_short_of_room() const {
   return any && all;
 }
 
-std::uint64_t Exchange::n_mail(std::uint32_t first_part, std::size_t n_parts) const {
+std::uint64_t Exchange::n_host_rays(std::uint32_t first_part, std::size_t n_parts) const {
   const std::lock_guard lock(mutex_);
   std::uint64_t n = 0;
-  for (std::size_t p = 0; p < n_parts; ++p) n += mail_[first_part + p].n;
+  for (std::size_t p = 0; p < n_parts; ++p) n += host_rays_[first_part + p].n;
   return n;
 }
 
 void Exchange::depart(std::span<const std::uint32_t> counts) {
   const std::lock_guard lock(mutex_);
-  ledger_.depart(counts);
+  credits_.depart(counts);
 }
 
-void Exchange::deliver(std::uint32_t first_part, std::span<Mail> mail,
+void Exchange::deliver(std::uint32_t first_part, std::span<HostRayQueue> host_rays,
                        std::span<const std::uint32_t> counts) {
   const std::lock_guard lock(mutex_);
-  ledger_.arrive(counts);
-  for (std::size_t p = 0; p < mail.size(); ++p) mail_[first_part + p].take_all(mail[p]);
+  credits_.arrive(counts);
+  for (std::size_t p = 0; p < host_rays.size(); ++p) host_rays_[first_part + p].take_all(host_rays[p]);
   wake();
 }
 
-void Exchange::add_room(std::span<const std::uint32_t> counts) {
+void Exchange::add_credits(std::span<const std::uint32_t> counts) {
   const std::lock_guard lock(mutex_);
-  ledger_.add_room(counts);
+  credits_.add_credits(counts);
   wake();
 }
 
-Exchange::Counts Exchange::take_room(
+Exchange::Counts Exchange::take_credits(
     const std::function<Counts(std::span<const std::uint32_t> spare)>& choose) {
   const std::lock_guard lock(mutex_);
-  Counts taken = choose(ledger_.spare());
-  ledger_.take_room(taken);
+  Counts taken = choose(credits_.spare());
+  credits_.take_credits(taken);
   return taken;
 }
 

@@ -33,14 +33,15 @@ void check(const Exchange& exchange) {
 using wavefront::Films;
 
 // `of_others`: of other ranks, if there are any.
-void take_films(Crew& crew, std::span<const layout::i64> of_others, const std::function<void(Films)>& take) {
+void take_films(WorkerPool& pool, std::span<const layout::i64> of_others,
+                const std::function<void(Films)>& take) {
   std::vector<std::span<const layout::i64>> films;
   if (!of_others.empty()) films.push_back(of_others);
-  for (std::size_t q = 0; q < crew.workers.size(); ++q)
-    films.push_back(on_queue(q, "reading the film", [&] { return crew.workers[q]->map_film(); }));
+  for (std::size_t q = 0; q < pool.workers.size(); ++q)
+    films.push_back(on_queue(q, "reading the film", [&] { return pool.workers[q]->map_film(); }));
   take(films);
-  for (std::size_t q = 0; q < crew.workers.size(); ++q)
-    on_queue(q, "giving back the film", [&] { crew.workers[q]->unmap_film(); });
+  for (std::size_t q = 0; q < pool.workers.size(); ++q)
+    on_queue(q, "giving back the film", [&] { pool.workers[q]->unmap_film(); });
 }
 
 void add_counts(const std::vector<std::vector<std::uint64_t>>& from,
@@ -49,18 +50,18 @@ void add_counts(const std::vector<std::vector<std::uint64_t>>& from,
     for (std::size_t k = 0; k < from[i].size(); ++k) to[i][k] += from[i][k];
 }
 
-void add_band(const Crew& crew, const Exchange& exchange, Result& result) {
+void add_band(const WorkerPool& pool, const Exchange& exchange, Result& result) {
   add_counts(exchange.counts().rays, result.exchange.rays);
   add_counts(exchange.counts().shadow_rays, result.exchange.shadow_rays);
-  for (const auto& worker : crew.workers) {
+  for (const auto& worker : pool.workers) {
     for (const layout::Slice& slice : worker->slices()) result.counters.add(slice);
   }
 }
 
-void add_visits(const Crew& crew, const Division& division, Result& result) {
-  for (std::size_t q = 0; q < crew.workers.size(); ++q) {
+void add_visits(const WorkerPool& pool, const Division& division, Result& result) {
+  for (std::size_t q = 0; q < pool.workers.size(); ++q) {
     const std::vector<SubtreeUse> visits =
-        on_queue(q, "reading the visits", [&] { return crew.workers[q]->visits(); });
+        on_queue(q, "reading the visits", [&] { return pool.workers[q]->visits(); });
     const std::vector<std::uint32_t> subtrees = division.subtrees_of(static_cast<std::uint32_t>(q));
     for (std::size_t i = 0; i < visits.size(); ++i) {
       result.visits[subtrees[i]].visits += visits[i].visits;
@@ -70,9 +71,9 @@ void add_visits(const Crew& crew, const Division& division, Result& result) {
 }
 
 // Shares the time that the queues were busy out among the stages, by their cycles.
-void share_out_seconds(const Crew& crew, Result& result) {
+void share_out_seconds(const WorkerPool& pool, Result& result) {
   std::map<std::string, double> cycles;
-  for (const auto& worker : crew.workers) worker->add_cycles(cycles);
+  for (const auto& worker : pool.workers) worker->add_cycles(cycles);
   double busy = 0, sum = 0;
   for (const QueueReport& report : result.queues) busy += report.busy_seconds;
   for (const auto& [stage, n] : cycles) sum += n;
@@ -82,37 +83,37 @@ void share_out_seconds(const Crew& crew, Result& result) {
 
 // Of the queue that serves a part. A rank's queues have numbers one after the other; without ranks some may
 // be left out.
-std::uint32_t number_of(const Crew& crew, const RankTable& table, std::uint32_t part) {
-  const std::size_t queue = crew.owner[part];
-  return static_cast<std::uint32_t>(table.ranks ? queue : crew.reports[queue].number);
+std::uint32_t number_of(const WorkerPool& pool, const RankTable& table, std::uint32_t part) {
+  const std::size_t queue = pool.owner[part];
+  return static_cast<std::uint32_t>(table.ranks ? queue : pool.reports[queue].number);
 }
 
-void finish(Crew& crew, const RankTable& table, const Division& division, Result& result) {
-  for (std::size_t q = 0; q < crew.workers.size(); ++q) {
-    QueueReport& report = crew.reports[q];
+void finish(WorkerPool& pool, const RankTable& table, const Division& division, Result& result) {
+  for (std::size_t q = 0; q < pool.workers.size(); ++q) {
+    QueueReport& report = pool.reports[q];
     report.busy_seconds =
-        on_queue(q, "reading the queue's clock", [&] { return crew.workers[q]->busy_seconds(); });
-    report.n_loads = crew.stores[q]->n_loads();
-    report.geometry_bytes = crew.stores[q]->bytes();
+        on_queue(q, "reading the queue's clock", [&] { return pool.workers[q]->busy_seconds(); });
+    report.n_loads = pool.stores[q]->n_loads();
+    report.geometry_bytes = pool.stores[q]->bytes();
     result.counters.waves += report.waves;
-    for (std::uint32_t part = 0; part < crew.owner.size(); ++part) {
-      if (crew.owner[part] != table.own_first() + q) continue;
+    for (std::uint32_t part = 0; part < pool.owner.size(); ++part) {
+      if (pool.owner[part] != table.own_first() + q) continue;
       ++report.n_parts;
       report.n_subtrees += static_cast<std::uint32_t>(division.subtrees_of(part).size());
     }
   }
   for (const std::uint32_t part : division.part_of)
-    result.subtree_queues.push_back(part == kEveryPart ? kEveryPart : number_of(crew, table, part));
-  result.queues = crew.reports;
-  share_out_seconds(crew, result);
+    result.subtree_queues.push_back(part == kEveryPart ? kEveryPart : number_of(pool, table, part));
+  result.queues = pool.reports;
+  share_out_seconds(pool, result);
 }
 
 // Renders one frame, band by band.
 class FrameRun {
  public:
-  FrameRun(const Request& request, const Provision& provision, const Division& division, Crew& crew,
+  FrameRun(const Request& request, const Provision& provision, const Division& division, WorkerPool& pool,
            Result& result)
-      : request_(request), provision_(provision), division_(division), crew_(crew), result_(result) {}
+      : request_(request), provision_(provision), division_(division), pool_(pool), result_(result) {}
 
   void render_uniform();
   void render_kept_uniform();
@@ -132,7 +133,7 @@ class FrameRun {
   void render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums);
   BandWork work_of(const ListHead& list, std::span<const layout::u32> entries,
                    std::span<const layout::u32> samples = {});
-  Dealt deal_out(const ListHead& list, std::span<const layout::u32> entries) const;
+  Assignment assign_entries(const ListHead& list, std::span<const layout::u32> entries) const;
   std::function<bool(layout::u32)> entry_test(const ListHead& list) const;
   void check_list(const List& list) const;
   void render(BandWork& work, double from, double to, const std::function<void(Films)>& take);
@@ -141,10 +142,10 @@ class FrameRun {
   const Request& request_;
   const Provision& provision_;
   const Division& division_;
-  Crew& crew_;
+  WorkerPool& pool_;
   Result& result_;
   double from_ = 0, to_ = 1;    // of the share done, that the round in work is
-  std::uint32_t n_rounds_ = 1;  // that were begun, of a frame with a ledger
+  std::uint32_t n_rounds_ = 1;  // that were begun, of a frame with a checkpoint
 };
 
 // Which entries a list may have.
@@ -159,11 +160,11 @@ std::function<bool(layout::u32)> FrameRun::entry_test(const ListHead& list) cons
   };
 }
 
-Dealt FrameRun::deal_out(const ListHead& list, std::span<const layout::u32> entries) const {
+Assignment FrameRun::assign_entries(const ListHead& list, std::span<const layout::u32> entries) const {
   const std::size_t n_queues = request_.table.n_queues();
-  const Dealt all =
+  const Assignment all =
       list.of_runs ? share_evenly(entries, n_queues)
-                   : share_by_part(entries, n_queues, provision_.frame, division_.directory, crew_.owner);
+                   : share_by_part(entries, n_queues, provision_.frame, division_.directory, pool_.owner);
   return request_.table.ranks ? of_rank(all, request_.table) : all;
 }
 
@@ -173,7 +174,7 @@ BandWork FrameRun::work_of(const ListHead& list, std::span<const layout::u32> en
   const RankTable& table = request_.table;
   return {.list = table.ranks && table.leads() ? begin_list(*table.ranks, list, entries, samples) : list.list,
           .n_entries = entries.size(),
-          .shares = Shares(deal_out(list, entries)),
+          .shares = Shares(assign_entries(list, entries)),
           .first_pixel = list.first_pixel,
           .n_places = list.n_places,
           .samples = samples,
@@ -182,11 +183,11 @@ BandWork FrameRun::work_of(const ListHead& list, std::span<const layout::u32> en
 
 // `from`, `to`: of the round.
 void FrameRun::run(BandWork& work, double from, double to) {
-  BandRun run(request_, crew_, work);
+  BandRun run(request_, pool_, work);
   const auto progress = [&](double share) { tell(from + (to - from) * share); };
   run.run(request_.progress ? progress : std::function<void(double)>());
   check(run.exchange());
-  add_band(crew_, run.exchange(), result_);
+  add_band(pool_, run.exchange(), result_);
 }
 
 void FrameRun::render(BandWork& work, double from, double to, const std::function<void(Films)>& take) {
@@ -196,15 +197,15 @@ void FrameRun::render(BandWork& work, double from, double to, const std::functio
     of_others.resize(3 * work.n_places);
     gather_sums(*request_.table.ranks, work.list, of_others, work.left);
   }
-  take_films(crew_, of_others, take);
-  if (request_.census_every > 0) add_visits(crew_, division_, result_);
+  take_films(pool_, of_others, take);
+  if (request_.census_every > 0) add_visits(pool_, division_, result_);
 }
 
-// What rank 0 begins has to fit what this rank has made room for.
+// What rank 0 begins has to fit this rank's capacity.
 void FrameRun::check_list(const List& list) const {
   const ListHead& head = list.head;
   const std::size_t n_words = head.of_runs ? 2 * head.n_places : 0;
-  if (head.n_places > provision_.room.places || head.n_entries > provision_.room.entries ||
+  if (head.n_places > provision_.capacity.places || head.n_entries > provision_.capacity.entries ||
       list.samples.size() != n_words || !std::ranges::all_of(list.entries, entry_test(head)))
     throw Error(ErrorCode::internal, "rank 0 has cut the picture otherwise than this rank");
 }
@@ -216,7 +217,7 @@ void FrameRun::render_for_rank_0() {
     BandWork work = work_of(list->head, list->entries, list->samples);
     run(work, 0, 1);
     std::vector<layout::i64> sums(3 * work.n_places);
-    take_films(crew_, {}, [&](Films films) { wavefront::add_up(films, sums); });
+    take_films(pool_, {}, [&](Films films) { wavefront::add_up(films, sums); });
     send_sums(ranks, work.list, sums, work.left);
   }
 }
@@ -245,8 +246,8 @@ void FrameRun::tell(double share_of_round) const {
 }
 
 double FrameRun::share_present() const {
-  const auto n = static_cast<double>(std::max<std::size_t>(request_.ledger->n_entries(), 1));
-  return static_cast<double>(request_.ledger->n_present()) / n;
+  const auto n = static_cast<double>(std::max<std::size_t>(request_.checkpoint->n_entries(), 1));
+  return static_cast<double>(request_.checkpoint->n_present()) / n;
 }
 
 // Tiles of a band, whose film is cleared and read as a whole. Returns those that were not begun.
@@ -267,13 +268,13 @@ std::vector<layout::u32> FrameRun::render_tiles(const wavefront::Band& band,
   return left;
 }
 
-// The sums of all tiles, from the ledger or rendered, to where the picture's are.
+// The sums of all tiles, from the checkpoint or rendered, to where the picture's are.
 void FrameRun::render_kept_tiles(std::span<layout::i64> sums) {
   const layout::Frame& frame = provision_.frame;
   const std::uint32_t of_band = provision_.bands.front().n_rows;
-  ledger::render_round(
-      *request_.ledger,
-      ledger::round_of_tiles(
+  checkpoint::render_round(
+      *request_.checkpoint,
+      checkpoint::round_of_tiles(
           frame, wavefront::tile_curve(frame.n_tiles_x, 0, frame.n_tiles / frame.n_tiles_x), sums),
       {.number_of = [of_band](layout::u32 tile) { return std::size_t{KDRAY_TILE_ROW(tile) / of_band}; },
        .render = [&](std::size_t band, const std::vector<layout::u32>& tiles,
@@ -294,7 +295,7 @@ std::vector<layout::u32> FrameRun::render_runs(std::size_t first, std::span<cons
                                                std::span<layout::i64> sums) {
   constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN, kSums = 3 * KDRAY_SAMPLE_RUN;
   const auto begin = static_cast<layout::u32>(first);
-  const std::size_t most = provision_.room.samples / KDRAY_SAMPLE_RUN;
+  const std::size_t most = provision_.capacity.samples / KDRAY_SAMPLE_RUN;
   const std::size_t n = std::min(most, samples.size() / kWords - first);
   std::vector<layout::u32> in_stretch;
   for (const layout::u32 run : runs) in_stretch.push_back(run - begin);
@@ -313,9 +314,10 @@ std::vector<layout::u32> FrameRun::render_runs(std::size_t first, std::span<cons
 }
 
 void FrameRun::render_kept_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
-  const std::size_t most = provision_.room.samples / KDRAY_SAMPLE_RUN;
-  ledger::render_round(
-      *request_.ledger, ledger::round_of_runs(n_rounds_++, samples.size() / (2 * KDRAY_SAMPLE_RUN), sums),
+  const std::size_t most = provision_.capacity.samples / KDRAY_SAMPLE_RUN;
+  checkpoint::render_round(
+      *request_.checkpoint,
+      checkpoint::round_of_runs(n_rounds_++, samples.size() / (2 * KDRAY_SAMPLE_RUN), sums),
       {.number_of = [most](layout::u32 run) { return run / most; },
        .render = [&](std::size_t stretch, const std::vector<layout::u32>& runs,
                      double seconds) { return render_runs(stretch * most, runs, seconds, samples, sums); },
@@ -325,7 +327,7 @@ void FrameRun::render_kept_samples(std::span<const layout::u32> samples, std::sp
 // Renders as many samples at a time as the queues' films have places for.
 void FrameRun::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
   constexpr std::size_t kWords = 2 * KDRAY_SAMPLE_RUN;
-  const std::size_t n_runs = samples.size() / kWords, most = provision_.room.samples / KDRAY_SAMPLE_RUN;
+  const std::size_t n_runs = samples.size() / kWords, most = provision_.capacity.samples / KDRAY_SAMPLE_RUN;
   const auto all = static_cast<double>(n_runs);
   for (std::size_t first = 0; first < n_runs; first += most) {
     const std::size_t n = std::min(most, n_runs - first), n_places = n * KDRAY_SAMPLE_RUN;
@@ -343,7 +345,7 @@ void FrameRun::render_adaptive() {
   adaptive::Sampler sampler({provision_.frame.width, provision_.frame.height}, request_.adaptive_target,
                             (request_.features & KDRAY_FEATURES_NOISY) != 0);
   to_ = 0.5;
-  if (request_.ledger)
+  if (request_.checkpoint)
     render_kept_tiles(sampler.first_sums());
   else
     render_bands([&](const wavefront::Band& band, Films films) {
@@ -354,7 +356,7 @@ void FrameRun::render_adaptive() {
     from_ = to_;  // how many rounds there will be is not known
     to_ = (1 + to_) / 2;
     sums.resize(samples.size() / 2 * 3);
-    request_.ledger ? render_kept_samples(samples, sums) : render_samples(samples, sums);
+    request_.checkpoint ? render_kept_samples(samples, sums) : render_samples(samples, sums);
     sampler.take(sums);
   }
   result_.image.pixels = sampler.picture();
@@ -383,23 +385,23 @@ Result render_frame(const Request& request, const Provision& provision, const Di
   result.n_bands = static_cast<std::uint32_t>(provision.bands.size());
   result.n_parts = provision.n_parts;
   result.n_cells = static_cast<std::uint32_t>(division.directory.size());
-  Crew crew = make_crew(request, provision, division, cut);
+  WorkerPool pool = make_worker_pool(request, provision, division, cut);
   if (request.census_every > 0) result.visits.resize(cut.subtrees.size());
-  load_parts(crew, request.table, provision);
+  load_parts(pool, request.table, provision);
   if (request.timeline)
-    for (const QueueReport& report : crew.reports)
+    for (const QueueReport& report : pool.reports)
       request.timeline->name_row(static_cast<int>(report.number),
                                  fmt::format("queue {}: {}", report.number, report.device));
   const Timer timer;
-  FrameRun run(request, provision, division, crew, result);
+  FrameRun run(request, provision, division, pool, result);
   if (!request.table.leads())
     run.render_for_rank_0();
   else if (request.adaptive_target > 0)
     run.render_adaptive();
   else
-    request.ledger ? run.render_kept_uniform() : run.render_uniform();
+    request.checkpoint ? run.render_kept_uniform() : run.render_uniform();
   result.render_seconds = timer.seconds();
-  finish(crew, request.table, division, result);
+  finish(pool, request.table, division, result);
   if (request.table.ranks) share_reports(request.table, result);
   return result;
 }

@@ -19,10 +19,10 @@ float distance_to(const Box& box, const vec3& point) {
 
 // What lies in a child's bounds is nowhere nearer than these are.
 void Locator::look_below(std::size_t opened, const vec3& point, Nearest& nearest) const {
-  const Opened& node = cut_.top[opened];
+  const OpenedNode& node = cut_.top[opened];
   for (std::uint32_t slot = 0; slot < 8 && nearest.distance > 0; ++slot) {
     const std::int32_t below = node.below[slot];
-    if (below == Opened::kEmpty) continue;
+    if (below == OpenedNode::kEmpty) continue;
     const float distance = distance_to(bounds_of_child(form_.nodes[node.node], slot), point);
     if (distance >= nearest.distance) continue;
     if (below >= 0)

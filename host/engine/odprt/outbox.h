@@ -2,7 +2,7 @@
 //         alone, in buffers on the device (kernels/odprt/send.clh), with their counts.
 // Shape   A queue has several, so that it can go on while others still read the last one. Receivers whose
 //         context is the same read the buffers themselves; for others, and for parts that nobody serves at
-//         the moment, the rays are copied (mail.h).
+//         the moment, the rays are copied (host_ray_queue.h).
 #pragma once
 
 #include <atomic>

@@ -22,7 +22,7 @@ SceneBuffers::Sizes largest_sizes(const Division& division) {
 
 }  // namespace
 
-std::size_t room_bytes(const Division& division) {
+std::size_t buffer_bytes(const Division& division) {
   SceneBuffers::Sizes sizes = largest_sizes(division);
   for (const std::size_t no_geometry : {SceneBuffers::Slot::materials, SceneBuffers::Slot::lights})
     sizes[no_geometry] = 0;
@@ -31,9 +31,9 @@ std::size_t room_bytes(const Division& division) {
 
 SceneBuffers PartStore::scene_of(const Part& part) {
   if (!streamed_) return {context_, part.flat, part.wide};
-  if (!room_) room_.emplace(context_, largest_sizes(division_));
-  room_->copy(queue_, part.flat, part.wide);
-  return *room_;
+  if (!buffers_) buffers_.emplace(context_, largest_sizes(division_));
+  buffers_->copy(queue_, part.flat, part.wide);
+  return *buffers_;
 }
 
 const LoadedPart& PartStore::get(std::uint32_t number) {
@@ -55,7 +55,7 @@ const LoadedPart& PartStore::get(std::uint32_t number) {
 }
 
 std::size_t PartStore::bytes() const {
-  if (room_) return room_bytes(division_);
+  if (buffers_) return buffer_bytes(division_);
   return loaded_ ? division_.parts[loaded_->number].geometry_bytes() : 0;
 }
 

@@ -1,5 +1,5 @@
 // What    The part that a queue's device holds: its only one, or, where memory is short, one at a time in
-//         room that is made once.
+//         buffers that are made once.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace kdray::odprt {
 
 // The bytes of buffers that any part's geometry fits into: each array as large as the part with most of it
 // needs. Where parts hold different kinds of primitives, that is more than the largest part.
-std::size_t room_bytes(const Division& division);
+std::size_t buffer_bytes(const Division& division);
 
 class PartStore {
  public:
@@ -26,7 +26,7 @@ class PartStore {
   // until another is asked for.
   const LoadedPart& get(std::uint32_t part);
 
-  std::size_t bytes() const;  // of geometry, with room that is not used
+  std::size_t bytes() const;  // of geometry; of streamed parts that of the buffers
   std::uint64_t n_loads() const { return n_loads_; }
 
  private:
@@ -37,7 +37,7 @@ class PartStore {
   const Division& division_;
   const Cut& cut_;
   const bool streamed_;
-  std::optional<wavefront::SceneBuffers> room_;  // streamed: large enough for every part
+  std::optional<wavefront::SceneBuffers> buffers_;  // streamed: large enough for every part
   std::optional<LoadedPart> loaded_;
   std::uint64_t n_loads_ = 0;
 };

@@ -56,7 +56,7 @@ class PartWalk {
 
   // What becomes of an opened node's child.
   bool holds(std::int32_t below) const {
-    if (below == Opened::kEmpty) return false;
+    if (below == OpenedNode::kEmpty) return false;
     if (below >= 0) return holds_[static_cast<std::size_t>(below)];
     const std::uint32_t part = part_of_[static_cast<std::size_t>(-1 - below)];
     return part == part_ || part == kEveryPart;
@@ -92,7 +92,7 @@ class Counting {
 
  private:
   void count_opened(std::size_t i) {
-    const Opened& opened = walk_.cut().top[i];
+    const OpenedNode& opened = walk_.cut().top[i];
     const layout::WideNode& node = walk_.form().nodes[opened.node];
     ++sizes_.nodes;
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
@@ -220,7 +220,7 @@ class Copying {
 
   // Inner children of a node get neighbouring places, as flatten/collapse gives them.
   void copy_opened(std::size_t i, std::size_t place) {
-    const Opened& opened = walk_.cut().top[i];
+    const OpenedNode& opened = walk_.cut().top[i];
     layout::WideNode node = walk_.form().nodes[opened.node];
     std::array<std::size_t, 8> places{};
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
@@ -369,9 +369,9 @@ Below below_of(const flatten::WideForm& form, const Cut& cut, std::span<const st
                std::int32_t below, const Box& bounds) {
   if (below < 0) return {false, part_of[static_cast<std::size_t>(-1 - below)], bounds};
   Below all;
-  const Opened& opened = cut.top[static_cast<std::size_t>(below)];
+  const OpenedNode& opened = cut.top[static_cast<std::size_t>(below)];
   for (std::uint32_t slot = 0; slot < 8; ++slot)
-    if (opened.below[slot] != Opened::kEmpty)
+    if (opened.below[slot] != OpenedNode::kEmpty)
       all.add(
           below_of(form, cut, part_of, opened.below[slot], bounds_of_child(form.nodes[opened.node], slot)));
   return all;
@@ -407,10 +407,10 @@ class Directory {
 
   // The largest nodes of the top whose contents lie in one part.
   void add_largest(std::size_t i) {
-    const Opened& opened = cut_.top[i];
+    const OpenedNode& opened = cut_.top[i];
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
       const std::int32_t below = opened.below[slot];
-      if (below == Opened::kEmpty) continue;
+      if (below == OpenedNode::kEmpty) continue;
       const Below all =
           below_of(form_, cut_, part_of_, below, bounds_of_child(form_.nodes[opened.node], slot));
       if (all.several) {
@@ -424,9 +424,9 @@ class Directory {
   void add(std::int32_t below, const Below& all, Cells& cells) {
     if (below < 0) return add_subtree(cut_.subtrees[static_cast<std::size_t>(-1 - below)].child, all, cells);
     const std::size_t first = begin(all.bounds, all.part, cells);
-    const Opened& opened = cut_.top[static_cast<std::size_t>(below)];
+    const OpenedNode& opened = cut_.top[static_cast<std::size_t>(below)];
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
-      if (opened.below[slot] == Opened::kEmpty) continue;
+      if (opened.below[slot] == OpenedNode::kEmpty) continue;
       const Below child = below_of(form_, cut_, part_of_, opened.below[slot],
                                    bounds_of_child(form_.nodes[opened.node], slot));
       if (child.part != kEveryPart) add(opened.below[slot], child, cells);

@@ -21,8 +21,8 @@ constexpr std::uint32_t kMostPlaces = 4;
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 
 // How many rays of a level a slice may have: enough that no queue waits for what others hold, or a few of the
-// buffers that were asked for; and so many that, whoever has the room for them, some rank has twice what a
-// ray needs (post.h).
+// buffers that were asked for; and so many that, whoever has the credits for them, some rank has twice what a
+// ray needs (rank_exchange.h).
 std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uint32_t n_slices) {
   if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least * r.n_ranks);
   const std::uint32_t in_work = kBatch * (std::min(least, 4u) * r.n_queues + 2);
@@ -79,7 +79,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   plan.shadow_pool = sorts ? std::min(streamed, plan.capacity[0]) : plan.capacity[0];
 
   OutboxShape& out = plan.outbox;
-  // Few parts are what most of a launch's rays go to: where all are copied, they share the room.
+  // Few parts are what most of a launch's rays go to: where all are copied, they share the outbox.
   out.n_places = sorts ? 1 : r.n_parts;
   out.n_slices = plan.n_slices;
   out.ray_fields = wavefront::travel_ray_fields(r.features);

@@ -14,8 +14,8 @@ namespace kdray::odprt {
 struct Plan {
   std::uint32_t n_slices = 0;
   std::uint32_t n_waves = 0;            // of a slice in one launch, at most
-  std::vector<std::uint32_t> capacity;  // of the ledger's levels
-  std::vector<std::uint32_t> least;     // what one ray may make: the least that a grant is good for
+  std::vector<std::uint32_t> capacity;  // of the levels (ray_credits.h)
+  std::vector<std::uint32_t> least;     // what one ray may make: the least that is of use in a launch
   std::uint32_t shadow_pool = 0;        // shadow rays from elsewhere that a slice can hold
   OutboxShape outbox;
   OutboxShape inbox;  // of one part: rays from the host's memory

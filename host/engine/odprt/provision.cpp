@@ -19,8 +19,8 @@ constexpr std::size_t kMaxFilmBytes = std::size_t{256} << 20;  // of a queue; la
 // The most that the directory may take of a scene that isn't streamed.
 constexpr std::size_t kMostDirectory = std::size_t{5120} * sizeof(layout::PartCell);
 // The film's share of memory that is short. Each band goes through all parts, so the film is worth more than
-// room for larger parts; and the more parts there are, the more cells every ray is tested against, so there
-// is room for one at a time only.
+// larger parts; and the more parts there are, the more cells every ray is tested against, so only one is held
+// at a time.
 constexpr std::size_t kFilmEighths = 3;
 
 // Queues on the device that has most of them.
@@ -32,10 +32,10 @@ std::size_t queues_on_a_device(const Request& request) {
 }
 
 // A round gets places for as many samples as the largest band has pixels.
-void add_samples(WorkRoom& room) {
-  const std::size_t n_runs = (room.places + KDRAY_SAMPLE_RUN - 1) / KDRAY_SAMPLE_RUN;
-  room.samples = room.places = n_runs * KDRAY_SAMPLE_RUN;
-  room.entries = std::max(room.entries, n_runs);
+void add_samples(WorkCapacity& capacity) {
+  const std::size_t n_runs = (capacity.places + KDRAY_SAMPLE_RUN - 1) / KDRAY_SAMPLE_RUN;
+  capacity.samples = capacity.places = n_runs * KDRAY_SAMPLE_RUN;
+  capacity.entries = std::max(capacity.entries, n_runs);
 }
 
 // `of_queue` is the memory of a queue where parts are streamed.
@@ -58,14 +58,15 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
                                   : std::clamp(kOutboxPlaces / n_parts, kLeastOutboxes, kMostOutboxes);
   p.plan = make_plan(p.frame, plan);
   p.bands = wavefront::bands_of(p.frame, film_bytes);
-  for (const wavefront::Band& band : p.bands) p.room.places = std::max(p.room.places, band.n_pixels);
-  p.room.entries = p.frame.n_tiles;
-  if (request.adaptive_target > 0) add_samples(p.room);
+  for (const wavefront::Band& band : p.bands) p.capacity.places = std::max(p.capacity.places, band.n_pixels);
+  p.capacity.entries = p.frame.n_tiles;
+  if (request.adaptive_target > 0) add_samples(p.capacity);
   return p;
 }
 
 std::size_t work_of(const Provision& p) {
-  return work_bytes(p.frame, p.plan, p.room.places, p.n_outboxes) + 2 * sizeof(layout::u32) * p.room.samples;
+  return work_bytes(p.frame, p.plan, p.capacity.places, p.n_outboxes) +
+         2 * sizeof(layout::u32) * p.capacity.samples;
 }
 
 Error too_little(const Request& request, std::size_t needed) {
@@ -116,7 +117,7 @@ Provision provide(const Request& request, std::size_t geometry_bytes, std::uint3
 
 bool fits(const Provision& provision, const Division& division, const Request& request) {
   if (!provision.streamed) return true;
-  const std::size_t largest = room_bytes(division) + division.directory.size() * sizeof(layout::PartCell);
+  const std::size_t largest = buffer_bytes(division) + division.directory.size() * sizeof(layout::PartCell);
   if (largest <= provision.most_geometry) return true;
   if (provision.n_parts < kMostParts) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));

@@ -15,7 +15,7 @@
 
 namespace kdray::odprt {
 
-// A part is given room for this multiple of an equal share of the geometry, since some primitives lie in
+// A part may take this multiple of an equal share of the geometry, since some primitives lie in
 // several parts and parts are of unequal size.
 inline constexpr double kSpareGeometry = 1.3;
 
@@ -30,7 +30,7 @@ struct Provision {
   bool streamed = false;          // parts come and go
   std::size_t most_geometry = 0;  // of a queue, when streamed
   std::vector<wavefront::Band> bands;
-  WorkRoom room;  // of a queue: the largest band, or a round's samples
+  WorkCapacity capacity;  // of a queue: the largest band, or a round's samples
 };
 
 // There are as many parts as queues where that fits, and more, which come and go, where the request's limit

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cluster/transport/ranks.h"
-#include "engine/odprt/ledger.h"
+#include "engine/odprt/ray_credits.h"
 
 namespace kdray::odprt {
 

@@ -67,16 +67,16 @@ bool is_ray(std::span<const float> ray, const RaysKnown& known) {
 
 }  // namespace
 
-transport::Bytes pack_rays(std::uint32_t list, std::uint32_t first_part, std::span<Mail> mail,
+transport::Bytes pack_rays(std::uint32_t list, std::uint32_t first_part, std::span<HostRayQueue> host_rays,
                            std::size_t most_bytes, std::span<std::uint32_t> counts) {
   RaysHead head{list, 0};
   transport::Bytes bytes = transport::to_bytes(head);
   const auto used = [&] { return bytes.size() - sizeof head; };
-  const std::size_t n_levels = mail.empty() ? 0 : counts.size() / mail.front().rays.size();
-  for (std::uint32_t p = 0; p < mail.size(); ++p)
-    for (std::uint32_t s = 0; s < mail[p].rays.size() && used() < most_bytes; ++s) {
-      auto& rays = mail[p].rays[s];
-      auto& shadow_rays = mail[p].shadow_rays[s];
+  const std::size_t n_levels = host_rays.empty() ? 0 : counts.size() / host_rays.front().rays.size();
+  for (std::uint32_t p = 0; p < host_rays.size(); ++p)
+    for (std::uint32_t s = 0; s < host_rays[p].rays.size() && used() < most_bytes; ++s) {
+      auto& rays = host_rays[p].rays[s];
+      auto& shadow_rays = host_rays[p].shadow_rays[s];
       if (rays.size() + shadow_rays.size() == 0) continue;
       ++head.n_piles;
       PileHead pile{first_part + p, s, 0, 0};
@@ -91,14 +91,14 @@ transport::Bytes pack_rays(std::uint32_t list, std::uint32_t first_part, std::sp
       if (pile.n_rays == 0 || used() < most_bytes) pile.n_shadow_rays = copy_rays(shadow_rays, most, bytes);
       shadow_rays.drop(pile.n_shadow_rays);
       counts[s * n_levels] += pile.n_shadow_rays;
-      mail[p].n -= pile.n_rays + pile.n_shadow_rays;
+      host_rays[p].n -= pile.n_rays + pile.n_shadow_rays;
       std::memcpy(&bytes[at], &pile, sizeof pile);
     }
   std::memcpy(bytes.data(), &head, sizeof head);
   return bytes;
 }
 
-void unpack_rays(const transport::Message& message, const RaysKnown& known, std::span<Mail> mail,
+void unpack_rays(const transport::Message& message, const RaysKnown& known, std::span<HostRayQueue> host_rays,
                  std::span<std::uint32_t> counts) {
   const auto head = transport::head_of<RaysHead>(message);
   const std::size_t n_levels = known.max_depth + 1;
@@ -107,7 +107,7 @@ void unpack_rays(const transport::Message& message, const RaysKnown& known, std:
     const PileHead pile = reader.head();
     if (pile.part - known.first_part >= known.n_parts || pile.slice >= known.n_slices)
       transport::refuse(message);
-    Mail& to = mail[pile.part - known.first_part];
+    HostRayQueue& to = host_rays[pile.part - known.first_part];
     const auto rays = reader.words(std::size_t{pile.n_rays} * known.ray_fields);
     for (std::size_t r = 0; r < pile.n_rays; ++r) {
       const auto ray = rays.subspan(r * known.ray_fields, known.ray_fields);

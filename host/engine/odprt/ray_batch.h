@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cluster/transport/words.h"
-#include "engine/odprt/mail.h"
+#include "engine/odprt/host_ray_queue.h"
 
 namespace kdray::odprt {
 
@@ -27,13 +27,13 @@ struct RaysKnown {
   std::size_t n_counts() const { return std::size_t{n_slices} * (max_depth + 1); }
 };
 
-// Takes rays out of the mail of parts first_part, first_part + 1, ..., for `most_bytes` or a little more.
+// Takes rays out of the queues of parts first_part, first_part + 1, ..., for `most_bytes` or a little more.
 // `counts` (by slice and level) of those that it takes are added up.
-transport::Bytes pack_rays(std::uint32_t list, std::uint32_t first_part, std::span<Mail> mail,
+transport::Bytes pack_rays(std::uint32_t list, std::uint32_t first_part, std::span<HostRayQueue> host_rays,
                            std::size_t most_bytes, std::span<std::uint32_t> counts);
 
-// Puts them into the mail of the rank's own parts.
-void unpack_rays(const transport::Message& message, const RaysKnown& known, std::span<Mail> mail,
+// Puts them into the queues of the rank's own parts.
+void unpack_rays(const transport::Message& message, const RaysKnown& known, std::span<HostRayQueue> host_rays,
                  std::span<std::uint32_t> counts);
 
 }  // namespace kdray::odprt

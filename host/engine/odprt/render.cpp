@@ -8,9 +8,9 @@
 #include "accel/flatten/instance_openings.h"
 #include "base/error.h"
 #include "base/timer.h"
+#include "engine/odprt/cost_probe.h"
+#include "engine/odprt/divide_partition.h"
 #include "engine/odprt/frame.h"
-#include "engine/odprt/holding.h"
-#include "engine/odprt/pilot.h"
 #include "engine/odprt/queue_failure.h"
 #include "engine/odprt/rank_lists.h"
 #include "engine/odprt/replicate.h"
@@ -86,7 +86,7 @@ void DividedScene::divide_by(const DivideOptions& options) {
 void DividedScene::measure_costs(const Request& request) {
   if (request.balance == Balance::sah || measured_) return;
   const Division whole = divide(flat_, wide_, cut_, costs_, {});
-  weigh(run_pilot(request, whole, cut_));
+  weigh(probe_costs(request, whole, cut_));
 }
 
 // A subtree costs as much as rays came to it, times what one is expected to cost there, and what its hits are
@@ -149,9 +149,9 @@ Provision DividedScene::divide_with_ranks(const Request& request) {
   Provision provision = provide(request, geometry_bytes());
   cut_for(provision.n_parts);
   if (request.table.leads()) {
-    Request pilot = request;
-    pilot.ledger = nullptr;
-    measure_costs(pilot);
+    Request probe = request;
+    probe.checkpoint = nullptr;
+    measure_costs(probe);
     divide_by(options_for(provision, request));
   }
   std::vector<std::uint32_t> part_of = share_division(
@@ -167,13 +167,13 @@ Provision DividedScene::divide_with_ranks(const Request& request) {
   return provision;
 }
 
-// Costs are the tree's, since a pilot would need the whole scene.
+// Costs are the tree's, since a probe would need the whole scene.
 Provision DividedScene::divide_what_is_held(const Request& request) {
   Provision provision = provide(request, 0);
   cut_into(subtrees_of_rank(subtrees_for(provision.n_parts), request.table));
   if (!division_) {
     held_bytes_ = all_->sum(odprt::geometry_bytes(flat_, wide_));
-    division_ = divide_holding(flat_, wide_, cut_, costs_, request.table, *all_);
+    division_ = divide_partition(flat_, wide_, cut_, costs_, request.table, *all_);
   }
   return provision;
 }

@@ -19,7 +19,7 @@
 #include "cluster/transport/together.h"
 #include "device/opencl/faults.h"
 #include "engine/adaptive/report.h"
-#include "engine/checkpoint/frame_ledger.h"
+#include "engine/checkpoint/frame_checkpoint.h"
 #include "engine/odprt/division.h"
 #include "engine/odprt/exchange.h"
 #include "engine/odprt/rank_table.h"
@@ -54,7 +54,7 @@ struct Request {
   device::Faults* faults = nullptr;
   std::function<void(double)> progress;
   // What is finished already, and where it goes; its tiles are the frame's. Null: there is none.
-  ledger::FrameLedger* ledger = nullptr;
+  checkpoint::FrameCheckpoint* checkpoint = nullptr;
 };
 
 struct QueueReport {
@@ -75,7 +75,7 @@ struct Quarantined {
 };
 
 struct Result {
-  film::Image image;
+  image::Image image;
   std::optional<adaptive::Report> samples;  // of adaptive sampling
   wavefront::Counters counters;
   std::map<std::string, double> stage_seconds;
@@ -94,8 +94,8 @@ struct Provision;
 // A scene that frames are rendered of, and what has been learned about its costs.
 class DividedScene {
  public:
-  // `all`: of ranks, if the scene is what this one holds of it (holding.h); they have one table in all
-  // frames.
+  // `all`: of ranks, if the scene is what this one holds of it (divide_partition.h); they have one table in
+  // all frames.
   DividedScene(flatten::FlatScene flat, flatten::WideForm wide,
                std::shared_ptr<transport::Together> all = nullptr);
 
@@ -127,7 +127,7 @@ class DividedScene {
   flatten::WideForm wide_;
   std::size_t n_asked_ = 0;  // subtrees that the cut was to have
   Cut cut_;
-  std::vector<double> costs_;  // of the subtrees, as they are dealt out by
+  std::vector<double> costs_;  // of the subtrees, by which they are assigned
   bool measured_ = false;      // costs_ come from rays
   std::optional<Division> division_;
   DivideOptions divided_by_;

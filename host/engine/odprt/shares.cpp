@@ -33,9 +33,9 @@ double entry(const layout::PartCell& cell, const dvec3& origin, const dvec3& inv
 }
 
 // A tile's sampled rays, and the parts that they enter first, as kernels/odprt/route.clh finds them.
-class Probe {
+class TileProbe {
  public:
-  Probe(const layout::Frame& frame, std::span<const layout::PartCell> directory)
+  TileProbe(const layout::Frame& frame, std::span<const layout::PartCell> directory)
       : frame_(frame), directory_(directory), eye_(vector(frame.eye)) {}
 
   // At (x, y) in pixels. KDRAY_NO_PART: none.
@@ -70,7 +70,7 @@ class Probe {
 constexpr int kProbes = 3;  // a side of a tile
 
 // The queue that most of a tile's rays begin with; n_queues: they meet no part.
-std::size_t queue_of(layout::u32 tile, const layout::Frame& frame, const Probe& probe,
+std::size_t queue_of(layout::u32 tile, const layout::Frame& frame, const TileProbe& probe,
                      std::span<const std::size_t> owner, std::size_t n_queues) {
   std::vector<int> counts(n_queues);
   for (int i = 0; i < kProbes * kProbes; ++i) {
@@ -85,7 +85,8 @@ std::size_t queue_of(layout::u32 tile, const layout::Frame& frame, const Probe& 
 
 }  // namespace
 
-Shares::Shares(Dealt dealt) : own_(std::move(dealt.of_queues)), anyones_(std::move(dealt.anyones)) {
+Shares::Shares(Assignment assigned)
+    : own_(std::move(assigned.of_queues)), anyones_(std::move(assigned.anyones)) {
   for (Entries& own : own_) std::reverse(own.begin(), own.end());
   std::reverse(anyones_.begin(), anyones_.end());
 }
@@ -147,13 +148,13 @@ std::size_t Shares::left() const {
                          [](std::size_t n, const Entries& own) { return n + own.size(); });
 }
 
-Dealt share_evenly(std::span<const layout::u32> list, std::size_t n_queues) {
+Assignment share_evenly(std::span<const layout::u32> list, std::size_t n_queues) {
   return {std::vector<Shares::Entries>(n_queues), scattered(list)};
 }
 
-Dealt share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
-                    std::span<const layout::PartCell> directory, std::span<const std::size_t> owner) {
-  const Probe probe(frame, directory);
+Assignment share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
+                         std::span<const layout::PartCell> directory, std::span<const std::size_t> owner) {
+  const TileProbe probe(frame, directory);
   const std::vector<layout::u32> order = scattered(tiles);
   std::vector<std::size_t> queues(order.size());
   tbb::parallel_for(std::size_t{0}, order.size(),
@@ -165,8 +166,8 @@ Dealt share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, co
   return {std::move(shares), std::move(anyones)};
 }
 
-Dealt of_rank(const Dealt& all, const RankTable& table) {
-  Dealt own;
+Assignment of_rank(const Assignment& all, const RankTable& table) {
+  Assignment own;
   for (std::size_t q = 0; q < table.n_own(); ++q)
     own.of_queues.push_back(all.of_queues[table.own_first() + q]);
   const RankOf place = table.place();

@@ -17,8 +17,8 @@
 
 namespace kdray::odprt {
 
-// Entries as they are dealt out: in the order in which they are to be taken.
-struct Dealt {
+// Who gets which entries, in the order in which they are to be taken.
+struct Assignment {
   std::vector<std::vector<layout::u32>> of_queues;
   std::vector<layout::u32> anyones;
 };
@@ -27,7 +27,7 @@ class Shares {
  public:
   using Entries = std::vector<layout::u32>;
 
-  explicit Shares(Dealt dealt);
+  explicit Shares(Assignment assigned);
 
   // Takes at most n entries for a queue. None means that none are left anywhere. Any thread may call it.
   Entries take(std::size_t queue, std::size_t n);
@@ -52,14 +52,14 @@ class Shares {
 };
 
 // Entries of any kind: all are anyone's.
-Dealt share_evenly(std::span<const layout::u32> list, std::size_t n_queues);
+Assignment share_evenly(std::span<const layout::u32> list, std::size_t n_queues);
 
 // Tiles: each belongs to the owner of the part that most of its rays enter first; those whose rays enter none
 // are anyone's. `owner`: the queue of each part.
-Dealt share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
-                    std::span<const layout::PartCell> directory, std::span<const std::size_t> owner);
+Assignment share_by_part(std::span<const layout::u32> tiles, std::size_t n_queues, const layout::Frame& frame,
+                         std::span<const layout::PartCell> directory, std::span<const std::size_t> owner);
 
 // What of them is a rank's: its queues' own, and an equal part of anyone's.
-Dealt of_rank(const Dealt& all, const RankTable& table);
+Assignment of_rank(const Assignment& all, const RankTable& table);
 
 }  // namespace kdray::odprt

@@ -141,7 +141,7 @@ class Cutter {
     const layout::WideNode& node = form_.nodes[index];
     const auto parent = static_cast<std::uint32_t>(cut_.top.size());
     cut_.top.push_back({index, {}});
-    cut_.top.back().below.fill(Opened::kEmpty);
+    cut_.top.back().below.fill(OpenedNode::kEmpty);
     for (std::uint32_t k = 8; k-- > 0;) {
       const std::uint32_t slot = node.order[0] >> (3 * k) & 7u;
       const Box bounds = bounds_of_child(node, slot);

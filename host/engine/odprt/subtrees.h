@@ -1,4 +1,4 @@
-// What    Cuts the wide form of a scene into subtrees of about equal expected cost: what ODPRT deals out to
+// What    Cuts the wide form of a scene into subtrees of about equal expected cost: what ODPRT assigns to
 //         queues.
 // Shape   An instance is a leaf: it is as dear as its mesh, whose bytes its instances share.
 //         The costliest subtree is opened until there are enough. Subtrees come in the kd-tree's own order,
@@ -34,7 +34,7 @@ struct SubtreeUse {
 };
 
 // An opened node of the wide tree, and what became of its children.
-struct Opened {
+struct OpenedNode {
   static constexpr std::int32_t kEmpty = INT32_MIN;
 
   std::uint32_t node = 0;
@@ -43,7 +43,7 @@ struct Opened {
 };
 
 struct Cut {
-  std::vector<Opened> top;        // [0] is the root
+  std::vector<OpenedNode> top;    // [0] is the root
   std::vector<Subtree> subtrees;  // in the order of the tree
 };
 

@@ -15,20 +15,21 @@ cl::Buffer Worker::make(std::size_t bytes, const char* what) {
 
 Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
                const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
-               std::span<const layout::PartCell> directory, const WorkRoom& room, std::size_t max_subtrees)
+               std::span<const layout::PartCell> directory, const WorkCapacity& capacity,
+               std::size_t max_subtrees)
     : context_(context),
       queue_(std::move(queue)),
       frame_(frame),
       plan_(plan),
-      room_(room),
+      capacity_(capacity),
       slices_(plan.n_slices),
       traffic_(plan.n_slices),
       visits_(2 * plan.n_slices * max_subtrees),
-      buffers_(context, frame, {plan.n_slices, room.entries, room.samples, room.places},
+      buffers_(context, frame, {plan.n_slices, capacity.entries, capacity.samples, capacity.places},
                wavefront::StreamForm::of_odprt(frame, features)),
       travel_buffer_(make(sizeof(layout::Travel), "the division")),
       cells_(make(directory.size_bytes(), "the directory")),
-      grant_buffer_(make(plan.n_slices * sizeof(layout::Grant), "the slices' grants")),
+      credit_buffer_(make(plan.n_slices * sizeof(layout::Credits), "the slices' credits")),
       traffic_buffer_(make(plan.n_slices * sizeof(layout::Traffic), "the slices' accounts")),
       shadow_pool_(make(std::size_t{plan.n_slices} * KDRAY_TRAVEL_SHADOW_FIELDS *
                             (plan.shadow_pool + 2 * KDRAY_LANES) * sizeof(float),
@@ -60,7 +61,7 @@ void Worker::set_arguments(wavefront::Stage<K>& stage) {
   KDRAY_SET_WHERE_TAKEN(K, stage, travel, travel_buffer_);
   KDRAY_SET_WHERE_TAKEN(K, stage, n_waves, plan_.n_waves);
   KDRAY_SET_WHERE_TAKEN(K, stage, cells, cells_);
-  KDRAY_SET_WHERE_TAKEN(K, stage, grants, grant_buffer_);
+  KDRAY_SET_WHERE_TAKEN(K, stage, credits, credit_buffer_);
   KDRAY_SET_WHERE_TAKEN(K, stage, traffic, traffic_buffer_);
   KDRAY_SET_WHERE_TAKEN(K, stage, shadow_pool, shadow_pool_);
   KDRAY_SET_WHERE_TAKEN(K, stage, visits, visit_buffer_);
@@ -76,17 +77,17 @@ Worker::~Worker() {
 
 void Worker::begin(const Work& work) {
   frame_.first_pixel = static_cast<layout::u32>(work.first_pixel);
-  frame_.samples_at = work.samples.empty() ? 0 : static_cast<layout::u32>(room_.entries);
+  frame_.samples_at = work.samples.empty() ? 0 : static_cast<layout::u32>(capacity_.entries);
   n_places_ = work.n_places;
   in_runs_ = !work.samples.empty();
   list_.clear();
-  list_.reserve(room_.entries);  // what is added stays where it is while it is being copied
+  list_.reserve(capacity_.entries);  // what is added stays where it is while it is being copied
   const std::vector<layout::Slice> fresh = wavefront::fresh_slices(plan_.n_slices);
   std::copy(fresh.begin(), fresh.end(), slices_.begin());
   std::fill(traffic_.begin(), traffic_.end(), layout::Traffic{});
   queue_.enqueueWriteBuffer(buffers_.frame, CL_FALSE, 0, sizeof frame_, &frame_);
   if (!work.samples.empty())
-    queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, room_.entries * sizeof(layout::u32),
+    queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, capacity_.entries * sizeof(layout::u32),
                               work.samples.size_bytes(), work.samples.data());
   queue_.enqueueWriteBuffer(buffers_.slices, CL_FALSE, 0, slices_.size() * sizeof(layout::Slice),
                             slices_.data());
@@ -133,8 +134,8 @@ void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
   std::fill(outbox.n().begin(), outbox.n().end(), 0);
   queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
   receive(outbox, std::min(part.number, outbox.shape().n_places - 1));
-  const std::vector<layout::Grant> grants(plan_.n_slices);
-  launch(grants, outbox);
+  const std::vector<layout::Credits> credits(plan_.n_slices);
+  launch(credits, outbox);
   wave_.forget_launches();
   receive_.forget_launches();
 }
@@ -148,7 +149,7 @@ void Worker::receive(const Outbox& outbox, std::uint32_t place) {
   receive_.launch(queue_, plan_.n_slices, 1);
 }
 
-std::uint64_t Worker::receive(Mail& mail) {
+std::uint64_t Worker::receive(HostRayQueue& host_rays) {
   const OutboxShape& shape = inbox_.shape();
   auto* rays = static_cast<float*>(
       queue_.enqueueMapBuffer(inbox_.rays(), CL_FALSE, CL_MAP_WRITE, 0,  // the next one waits for both
@@ -161,20 +162,21 @@ std::uint64_t Worker::receive(Mail& mail) {
     const auto fullest =
         *std::max_element(std::begin(slices_[s].n_pool), std::begin(slices_[s].n_pool) + frame_.max_depth);
     const std::size_t n =
-        std::min<std::size_t>({mail.rays[s].size(), shape.rays, frame_.pool_size - fullest});
+        std::min<std::size_t>({host_rays.rays[s].size(), shape.rays, frame_.pool_size - fullest});
     const std::size_t n_shadow = std::min<std::size_t>(
-        {mail.shadow_rays[s].size(), shape.shadow, plan_.shadow_pool - traffic_[s].n_shadow_pool});
-    mail.rays[s].take(rays + std::size_t{s} * shape.ray_fields * shape.ray_capacity, shape.ray_capacity, 0,
-                      n);
-    mail.shadow_rays[s].take(shadow_rays + std::size_t{s} * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity,
-                             shape.shadow_capacity, 0, n_shadow);
+        {host_rays.shadow_rays[s].size(), shape.shadow, plan_.shadow_pool - traffic_[s].n_shadow_pool});
+    host_rays.rays[s].take(rays + std::size_t{s} * shape.ray_fields * shape.ray_capacity, shape.ray_capacity,
+                           0, n);
+    host_rays.shadow_rays[s].take(
+        shadow_rays + std::size_t{s} * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity,
+        shape.shadow_capacity, 0, n_shadow);
     inbox_.n()[s] = static_cast<layout::u32>(n);
     inbox_.n()[plan_.n_slices + s] = static_cast<layout::u32>(n_shadow);
     total += n + n_shadow;
   }
   queue_.enqueueUnmapMemObject(inbox_.rays(), rays);
   queue_.enqueueUnmapMemObject(inbox_.shadow_rays(), shadow_rays);
-  mail.n -= total;
+  host_rays.n -= total;
   if (total == 0) return 0;
   queue_.enqueueWriteBuffer(inbox_.counts(), CL_FALSE, 0, inbox_.n().size() * sizeof(layout::u32),
                             inbox_.n().data());
@@ -182,8 +184,8 @@ std::uint64_t Worker::receive(Mail& mail) {
   return total;
 }
 
-void Worker::launch(std::span<const layout::Grant> grants, Outbox& outbox) {
-  queue_.enqueueWriteBuffer(grant_buffer_, CL_FALSE, 0, grants.size_bytes(), grants.data());
+void Worker::launch(std::span<const layout::Credits> credits, Outbox& outbox) {
+  queue_.enqueueWriteBuffer(credit_buffer_, CL_FALSE, 0, credits.size_bytes(), credits.data());
   queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
   wave_.set(kernels::TravelWave::n_tiles, static_cast<cl_uint>(list_.size()));
   outbox.set_arguments(wave_);
@@ -202,7 +204,7 @@ void Worker::finish() {
   receive_.collect_seconds();
 }
 
-void Worker::stash(Mail& mail) {
+void Worker::stash(HostRayQueue& host_rays) {
   const std::size_t pool_words = std::size_t{plan_.inbox.ray_fields} * frame_.pool_capacity;
   const std::size_t shadow_words = KDRAY_TRAVEL_SHADOW_FIELDS * std::size_t{travel_.shadow_pool_capacity};
   stashed_.clear();
@@ -227,12 +229,12 @@ void Worker::stash(Mail& mail) {
   auto words = stashed_.begin();
   for_each_in_use(
       [&](std::uint32_t s, std::uint32_t depth, layout::u32& n) {
-        mail.put_pooled_rays(s, (words++)->data(), frame_.pool_capacity, n, depth);
+        host_rays.put_pooled_rays(s, (words++)->data(), frame_.pool_capacity, n, depth);
         n = 0;
       },
       [&](std::uint32_t s, layout::u32& n) {
         for (layout::u32 i = 0; i < n; ++i)
-          mail.put_shadow_ray(s, words->data(), travel_.shadow_pool_capacity, i);
+          host_rays.put_shadow_ray(s, words->data(), travel_.shadow_pool_capacity, i);
         ++words;
         n = 0;
       });
@@ -243,7 +245,7 @@ void Worker::stash(Mail& mail) {
                             traffic_.data());
 }
 
-void Worker::copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of) {
+void Worker::copy_out(const Outbox& outbox, const std::function<HostRayQueue*(std::uint32_t)>& host_rays_of) {
   const OutboxShape& shape = outbox.shape();
   const std::size_t ray_words = std::size_t{shape.ray_fields} * shape.ray_capacity;
   const std::size_t shadow_words = std::size_t{KDRAY_SENT_SHADOW_FIELDS} * shape.shadow_capacity;
@@ -255,10 +257,10 @@ void Worker::copy_out(const Outbox& outbox, const std::function<Mail*(std::uint3
   float* const shadow_rays = map(outbox.shadow_rays(), shadow_words);
   for (std::size_t i = 0; i < shape.n_streams(); ++i) {
     const std::size_t place = i / shape.n_slices, slice = i % shape.n_slices;
-    if (shape.n_places > 1 && mail_of(static_cast<std::uint32_t>(place)) == nullptr) continue;
-    sort_rays(rays + i * ray_words, shape.ray_capacity, outbox.n()[i], slice, mail_of);
+    if (shape.n_places > 1 && host_rays_of(static_cast<std::uint32_t>(place)) == nullptr) continue;
+    sort_rays(rays + i * ray_words, shape.ray_capacity, outbox.n()[i], slice, host_rays_of);
     sort_shadow_rays(shadow_rays + i * shadow_words, shape.shadow_capacity, outbox.n()[shape.n_streams() + i],
-                     slice, mail_of);
+                     slice, host_rays_of);
   }
   queue_.enqueueUnmapMemObject(outbox.rays(), rays);
   queue_.enqueueUnmapMemObject(outbox.shadow_rays(), shadow_rays);

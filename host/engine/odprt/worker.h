@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "device/opencl/context.h"
-#include "engine/odprt/mail.h"
+#include "engine/odprt/host_ray_queue.h"
 #include "engine/odprt/outbox.h"
 #include "engine/odprt/plan.h"
 #include "engine/odprt/subtrees.h"
@@ -44,8 +44,8 @@ struct Work {
   std::span<const layout::u32> samples = {};  // empty: tiles
 };
 
-// The most of it that there is room for.
-struct WorkRoom {
+// The most of it that fits.
+struct WorkCapacity {
   std::size_t places = 0, entries = 0, samples = 0;
 };
 
@@ -53,7 +53,7 @@ class Worker {
  public:
   Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
          const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
-         std::span<const layout::PartCell> directory, const WorkRoom& room, std::size_t max_subtrees);
+         std::span<const layout::PartCell> directory, const WorkCapacity& capacity, std::size_t max_subtrees);
   ~Worker();
   Worker(const Worker&) = delete;
 
@@ -75,16 +75,16 @@ class Worker {
 
   // Takes the rays that a place of an outbox of this context has into the pools.
   void receive(const Outbox& outbox, std::uint32_t place);
-  // Takes as many of the rays in the mail as there is room for; returns how many.
-  std::uint64_t receive(Mail& mail);
+  // Takes as many of these rays as fit; returns how many.
+  std::uint64_t receive(HostRayQueue& host_rays);
 
   // One launch: up to n_waves waves of each slice. What it sends is in `outbox`, whose counts are read back.
-  void launch(std::span<const layout::Grant> grants, Outbox& outbox);
+  void launch(std::span<const layout::Credits> credits, Outbox& outbox);
   // Waits for what has been received without a launch.
   void finish();
 
   // Takes everything that waits out of the pools.
-  void stash(Mail& mail);
+  void stash(HostRayQueue& host_rays);
 
   // What the last launch left.
   std::span<const layout::Slice> slices() const { return slices_; }
@@ -97,9 +97,9 @@ class Worker {
   std::span<const layout::i64> map_film();
   void unmap_film();
 
-  // Copies what an outbox of this queue has to the mail of the parts that it goes to; nullptr: not that
-  // part's.
-  void copy_out(const Outbox& outbox, const std::function<Mail*(std::uint32_t)>& mail_of);
+  // Copies what an outbox of this queue has to where the rays of the parts that it goes to wait; nullptr: not
+  // that part's.
+  void copy_out(const Outbox& outbox, const std::function<HostRayQueue*(std::uint32_t)>& host_rays_of);
 
   void add_cycles(std::map<std::string, double>& cycles) const;  // of the stages, in the band
 
@@ -116,7 +116,7 @@ class Worker {
   layout::Frame frame_;
   const Plan plan_;
   layout::Travel travel_{};
-  WorkRoom room_;
+  WorkCapacity capacity_;
   std::size_t bytes_ = 0, n_places_ = 0;
   bool in_runs_ = false;  // the entries are runs of samples
   std::vector<layout::u32> list_;
@@ -124,7 +124,7 @@ class Worker {
   std::vector<layout::Traffic> traffic_;
   std::vector<layout::u32> visits_;
   wavefront::SliceBuffers buffers_;
-  cl::Buffer travel_buffer_, cells_, grant_buffer_, traffic_buffer_, shadow_pool_, visit_buffer_;
+  cl::Buffer travel_buffer_, cells_, credit_buffer_, traffic_buffer_, shadow_pool_, visit_buffer_;
   void* mapped_film_ = nullptr;
   std::vector<std::vector<float>>
       stashed_;   // what is being read of the pools: here, since after an error a read may go on

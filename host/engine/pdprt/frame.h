@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/adaptive/sampler.h"
-#include "engine/pdprt/crew.h"
-#include "engine/pdprt/lender.h"
+#include "engine/pdprt/tile_server.h"
+#include "engine/pdprt/worker_pool.h"
 #include "engine/wavefront/bands.h"
 
 namespace kdray::pdprt {
@@ -25,7 +25,7 @@ class Frame {
   // Where the sums of a list's entries go.
   struct Destination {
     std::function<void(const wavefront::FilmSums&, std::span<const layout::u32> entries)> own;
-    Lender::Take of_others = {};
+    TileServer::Take of_others = {};
   };
 
   void render_uniform();
@@ -45,30 +45,30 @@ class Frame {
   std::vector<layout::u32> render_list(std::vector<layout::u32> list, const Work& work, const Destination& to,
                                        double seconds);
   std::vector<layout::u32> render_list_alone(std::vector<layout::u32> list, const Work& work, double seconds);
-  std::vector<layout::u32> lend_list(std::vector<layout::u32> list, const Work& work, Lender::Take of_others,
-                                     double seconds);
-  void render_borrowed(class Borrower& borrower);
+  std::vector<layout::u32> serve_list(std::vector<layout::u32> list, const Work& work,
+                                      TileServer::Take of_others, double seconds);
+  void render_assigned(class TileClient& client);
   void check_entries(const Begin& list) const;
 
   void tell_progress() const;
   void idle();
   SharedFrame shared_frame() const;
-  Bags bags() const;
+  TileHierarchy hierarchy() const;
   Result collect(double seconds);
   void add_reports(Result& result);
 
   const Task& task_;
   layout::Frame frame_;
   std::vector<wavefront::Band> bands_;
-  wavefront::Room room_;
-  film::Image image_;
+  wavefront::Capacity capacity_;
+  image::Image image_;
   std::optional<adaptive::Sampler> sampler_;  // adaptive sampling
-  std::optional<Crew> crew_;
-  std::optional<Lender> lender_;                // of rank 0
+  std::optional<WorkerPool> pool_;
+  std::optional<TileServer> server_;            // of rank 0
   double progress_from_ = 0, progress_to_ = 1;  // of the share done: what n_tiles_ are
   std::uint64_t n_tiles_ = 0;                   // of the lists of a round
   std::uint64_t n_of_others_ = 0;               // of these, in lists that are over
-  std::uint32_t n_rounds_ = 1;                  // that were begun, of a frame with a ledger
+  std::uint32_t n_rounds_ = 1;                  // that were begun, of a frame with a checkpoint
 };
 
 }  // namespace kdray::pdprt

@@ -29,10 +29,10 @@ std::vector<layout::u32> Frame::render_runs(std::size_t first, std::vector<layou
             }
           },
       .of_others =
-          [&](layout::u32 run, ledger::Sums from) {
+          [&](layout::u32 run, checkpoint::Sums from) {
             std::copy(from.begin(), from.end(), sums.subspan((first + run) * kSumsOfRun).begin());
           }};
-  const std::size_t most = room_.samples / KDRAY_SAMPLE_RUN,
+  const std::size_t most = capacity_.samples / KDRAY_SAMPLE_RUN,
                     n = std::min(most, samples.size() / kWordsOfRun - first);
   return render_list(std::move(runs), {.samples = samples.subspan(first * kWordsOfRun, n * kWordsOfRun)}, to,
                      seconds);
@@ -40,9 +40,9 @@ std::vector<layout::u32> Frame::render_runs(std::size_t first, std::vector<layou
 
 // Renders as many runs at a time as the queues have room for.
 void Frame::render_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
-  crew_->shared().tiles_done = n_of_others_ = 0;
+  pool_->shared().tiles_done = n_of_others_ = 0;
   n_tiles_ = samples.size() / kWordsOfRun;
-  const std::size_t most = room_.samples / KDRAY_SAMPLE_RUN;
+  const std::size_t most = capacity_.samples / KDRAY_SAMPLE_RUN;
   for (std::size_t first = 0; first < n_tiles_; first += most) {
     std::vector<layout::u32> runs(std::min<std::size_t>(most, n_tiles_ - first));
     std::iota(runs.begin(), runs.end(), 0u);
@@ -52,19 +52,19 @@ void Frame::render_samples(std::span<const layout::u32> samples, std::span<layou
 
 void Frame::render_kept_samples(std::span<const layout::u32> samples, std::span<layout::i64> sums) {
   n_tiles_ = samples.size() / kWordsOfRun;
-  const auto most = static_cast<layout::u32>(room_.samples / KDRAY_SAMPLE_RUN);
+  const auto most = static_cast<layout::u32>(capacity_.samples / KDRAY_SAMPLE_RUN);
   const auto render = [&](std::size_t stretch, std::vector<layout::u32> runs, double seconds) {
     const auto first = static_cast<layout::u32>(stretch * most);
-    crew_->shared().tiles_done = n_of_others_ = 0;
+    pool_->shared().tiles_done = n_of_others_ = 0;
     for (layout::u32& run : runs) run -= first;
     runs = render_runs(first, std::move(runs), samples, sums, seconds);
     for (layout::u32& run : runs) run += first;
     return runs;
   };
-  ledger::render_round(*task_.ledger, ledger::round_of_runs(n_rounds_++, n_tiles_, sums),
-                       {.number_of = [most](layout::u32 run) { return std::size_t{run / most}; },
-                        .render = render,
-                        .idle = [this] { idle(); }});
+  checkpoint::render_round(*task_.checkpoint, checkpoint::round_of_runs(n_rounds_++, n_tiles_, sums),
+                           {.number_of = [most](layout::u32 run) { return std::size_t{run / most}; },
+                            .render = render,
+                            .idle = [this] { idle(); }});
 }
 
 void Frame::render_adaptive() {
@@ -75,7 +75,7 @@ void Frame::render_adaptive() {
     progress_from_ = progress_to_;  // how many rounds there will be is not known
     progress_to_ = (1 + progress_to_) / 2;
     sums.resize(samples.size() / 2 * 3);
-    task_.ledger ? render_kept_samples(samples, sums) : render_samples(samples, sums);
+    task_.checkpoint ? render_kept_samples(samples, sums) : render_samples(samples, sums);
     sampler_->take(sums);
   }
   image_.pixels = sampler_->picture();

@@ -51,7 +51,7 @@ Extent extent_of_runs(std::span<const layout::u32> runs) {
 }  // namespace
 
 Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& queue, const Task& task,
-             const wavefront::Room& room)
+             const wavefront::Capacity& capacity)
     : number_(number),
       frame_(scheduled(task.frame, device.schedule, task.features)),
       n_slices_(device.schedule.n_slices),
@@ -61,7 +61,7 @@ Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& q
           "asking for the queue's device",
           [&] { return queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(); })),
       wavefront_(*device.context, queue, *device.scene, *device.programs, frame_, device.schedule,
-                 task.features, room) {
+                 task.features, capacity) {
   wavefront::Watch watch;
   if (task.faults) watch.before = [faults = task.faults, number] { faults->launch(number); };
   if (task.timeline) {

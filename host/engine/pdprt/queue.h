@@ -42,7 +42,7 @@ class Queue {
  public:
   // Throws kdray::Error when the device can't.
   Queue(std::size_t number, const Device& device, const cl::CommandQueue& queue, const Task& task,
-        const wavefront::Room& room);
+        const wavefront::Capacity& capacity);
 
   // Renders tiles until all of them are in the picture, those of the other queues too, or someone has left.
   void serve(Tiles& tiles, const Work& work, Shared& shared);

@@ -2,8 +2,8 @@
 
 namespace kdray::pdprt {
 
-ledger::Rectangle SharedFrame::places_of(bool of_runs, layout::u32 entry) const {
-  return ledger::places_of({width, height, tile_width, tile_height}, of_runs ? 1 : 0, entry);
+checkpoint::Rectangle SharedFrame::places_of(bool of_runs, layout::u32 entry) const {
+  return checkpoint::places_of({width, height, tile_width, tile_height}, of_runs ? 1 : 0, entry);
 }
 
 }  // namespace kdray::pdprt

@@ -1,8 +1,8 @@
 // What    What ranks say to each other while they render a frame's lists of tiles, as bytes and back.
-// Shape   Who lends (bags.h) begins a list, is asked for tiles (want), grants some, and gets their sums
-//         (pieces) as records of a ledger; when all lists are done rank 0 finishes the frame, which is passed
-//         on, and gets a report from each.
-//         Every message names its list, by a number that goes up over all frames of a run.
+// Shape   A server of tiles (tile_hierarchy.h) begins a list, is asked for tiles (want), grants some, and
+//         gets their sums as records of a checkpoint; when all lists are done rank 0 finishes the frame,
+//         which is passed on, and gets a report from each. Every message names its list, by a number that
+//         goes up over all frames of a run.
 // Errors  ErrorCode::internal: bytes that are no such message. Values are checked by whoever knows the list.
 #pragma once
 
@@ -14,7 +14,7 @@
 namespace kdray::pdprt {
 
 inline constexpr transport::Tag kBegin = transport::kTagsOfTiles.first, kWant = kBegin + 1,
-                                kGrant = kBegin + 2, kPieces = kBegin + 3, kFinish = kBegin + 4,
+                                kGrant = kBegin + 2, kRecords = kBegin + 3, kFinish = kBegin + 4,
                                 kReport = kBegin + 5;
 
 struct Begin {
@@ -32,7 +32,7 @@ struct Grant {
   std::uint64_t n_left = 0;   // that nobody has, for each rank
 };
 
-struct Pieces {
+struct Records {
   std::uint32_t list = 0, unused = 0;
 };
 
@@ -42,11 +42,11 @@ struct Finish {
 
 // What all ranks have to agree on about a frame.
 struct SharedFrame {
-  Hash frame;  // ledger::Header::frame()
+  Hash frame;  // checkpoint::Header::frame()
   std::uint32_t width = 0, height = 0, tile_width = 0, tile_height = 0;
 
   // Nowhere (no width): there is no such entry.
-  ledger::Rectangle places_of(bool of_runs, layout::u32 entry) const;
+  checkpoint::Rectangle places_of(bool of_runs, layout::u32 entry) const;
 };
 
 using transport::head_of, transport::refuse, transport::to_bytes, transport::words_behind;

@@ -27,26 +27,26 @@ Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), f
   if (task.adaptive_target > 0 && has_picture)
     sampler_.emplace(size, task.adaptive_target, (task.features & KDRAY_FEATURES_NOISY) != 0);
   if (task.adaptive_target == 0 && has_picture) image_.pixels.resize(size.pixels());
-  room_.tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
-  room_.pixels = bands_.front().n_pixels;
+  capacity_.tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
+  capacity_.pixels = bands_.front().n_pixels;
   if (task.adaptive_target > 0)
-    room_.samples = std::max(kLeastSamples, room_.pixels / KDRAY_SAMPLE_RUN * KDRAY_SAMPLE_RUN);
-  crew_.emplace(devices, task, room_);
-  crew_->shared().tile_queues.assign(frame_.n_tiles, kNobody);
-  if (task.timeline) crew_->shared().tile_seconds.resize(frame_.n_tiles);
-  if (task.ranks && task.ranks->leads()) lender_.emplace(*task.ranks, shared_frame(), bags());
+    capacity_.samples = std::max(kLeastSamples, capacity_.pixels / KDRAY_SAMPLE_RUN * KDRAY_SAMPLE_RUN);
+  pool_.emplace(devices, task, capacity_);
+  pool_->shared().tile_queues.assign(frame_.n_tiles, kNobody);
+  if (task.timeline) pool_->shared().tile_seconds.resize(frame_.n_tiles);
+  if (task.ranks && task.ranks->leads()) server_.emplace(*task.ranks, shared_frame(), hierarchy());
 }
 
 SharedFrame Frame::shared_frame() const {
   return {task_.shared_frame, frame_.width, frame_.height, frame_.tile_width, frame_.tile_height};
 }
 
-Bags Frame::bags() const {
-  return Bags(task_.ranks->size(), task_.ranks_to_a_bag);
+TileHierarchy Frame::hierarchy() const {
+  return TileHierarchy(task_.ranks->size(), task_.ranks_to_a_bag);
 }
 
 void Frame::render_bands(const Destination& to) {
-  crew_->shared().tiles_done = n_of_others_ = 0;
+  pool_->shared().tiles_done = n_of_others_ = 0;
   n_tiles_ = frame_.n_tiles;
   for (const wavefront::Band& band : bands_)
     render_list(wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows),
@@ -65,8 +65,8 @@ Frame::Destination Frame::to_picture(std::span<layout::i64> sums) const {
                 wavefront::copy_tiles(film.sums, film.first, frame_, tiles, sums);
               },
           .of_others =
-              [this, sums](layout::u32 tile, ledger::Sums from) {
-                const ledger::Rectangle r = shared_frame().places_of(false, tile);
+              [this, sums](layout::u32 tile, checkpoint::Sums from) {
+                const checkpoint::Rectangle r = shared_frame().places_of(false, tile);
                 for (std::size_t row = 0; row < r.height;
                      ++row, from = from.subspan(std::size_t{3} * r.width))
                   std::copy_n(from.begin(), std::size_t{3} * r.width,
@@ -74,18 +74,19 @@ Frame::Destination Frame::to_picture(std::span<layout::i64> sums) const {
               }};
 }
 
-// The sums of all tiles, from the ledger or rendered, to where the picture's are.
+// The sums of all tiles, from the checkpoint or rendered, to where the picture's are.
 void Frame::render_sums_of_tiles(std::span<layout::i64> sums) {
   const Destination to = to_picture(sums);
-  if (!task_.ledger) return render_bands(to);
+  if (!task_.checkpoint) return render_bands(to);
   n_tiles_ = frame_.n_tiles;
   const std::uint32_t n_rows = frame_.n_tiles / frame_.n_tiles_x, of_band = bands_.front().n_rows;
-  ledger::render_round(
-      *task_.ledger, ledger::round_of_tiles(frame_, wavefront::tile_curve(frame_.n_tiles_x, 0, n_rows), sums),
+  checkpoint::render_round(
+      *task_.checkpoint,
+      checkpoint::round_of_tiles(frame_, wavefront::tile_curve(frame_.n_tiles_x, 0, n_rows), sums),
       {.number_of = [of_band](layout::u32 tile) { return std::size_t{KDRAY_TILE_ROW(tile) / of_band}; },
        .render =
            [&](std::size_t band, std::vector<layout::u32> tiles, double seconds) {
-             crew_->shared().tiles_done = n_of_others_ = 0;
+             pool_->shared().tiles_done = n_of_others_ = 0;
              return render_list(std::move(tiles), {.first_pixel = bands_[band].first_pixel}, to, seconds);
            },
        .idle = [this] { idle(); }});
@@ -98,17 +99,17 @@ void Frame::render_uniform_sums() {
   wavefront::develop({&film, 1}, static_cast<int>(frame_.n_samples), image_.pixels);
 }
 
-// Others that share the ledger are waited for.
+// Others that share the checkpoint are waited for.
 void Frame::idle() {
-  crew_->shared().tiles_done = n_of_others_ = 0;
+  pool_->shared().tiles_done = n_of_others_ = 0;
   tell_progress();
 }
 
 void Frame::tell_progress() const {
   if (!task_.progress) return;
-  const std::uint64_t before = task_.ledger ? task_.ledger->n_present() : 0;
-  const std::uint64_t of_others = n_of_others_ + (lender_ ? lender_->n_rendered() : 0);
-  const double share = static_cast<double>(before + of_others + crew_->shared().tiles_done) /
+  const std::uint64_t before = task_.checkpoint ? task_.checkpoint->n_present() : 0;
+  const std::uint64_t of_others = n_of_others_ + (server_ ? server_->n_rendered() : 0);
+  const double share = static_cast<double>(before + of_others + pool_->shared().tiles_done) /
                        static_cast<double>(std::max<std::uint64_t>(n_tiles_, 1));
   task_.progress(progress_from_ + std::min(share, 1.0) * (progress_to_ - progress_from_));
 }
@@ -122,10 +123,10 @@ Result Frame::collect(double seconds) {
   result.tile_height = frame_.tile_height;
   result.n_tiles = frame_.n_tiles;
   result.n_bands = static_cast<std::uint32_t>(bands_.size());
-  result.tile_queues = std::move(crew_->shared().tile_queues);
+  result.tile_queues = std::move(pool_->shared().tile_queues);
   result.tile_cost.tile_pixels = std::uint64_t{frame_.tile_width} * frame_.tile_height;
-  crew_->collect(result);
-  const std::vector<double>& costs = crew_->shared().tile_seconds;
+  pool_->collect(result);
+  const std::vector<double>& costs = pool_->shared().tile_seconds;
   for (const wavefront::Band& band : bands_)
     if (!costs.empty() && result.tile_cost.total > 0)
       for (const layout::u32 tile : wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows))
@@ -135,16 +136,16 @@ Result Frame::collect(double seconds) {
 }
 
 Result Frame::render() {
-  crew_->require_one();
+  pool_->require_one();
   const Timer timer;
   if (sampler_)
     render_adaptive();
   else
-    task_.ledger || task_.ranks ? render_uniform_sums() : render_uniform();
+    task_.checkpoint || task_.ranks ? render_uniform_sums() : render_uniform();
   const double seconds = timer.seconds();
   if (task_.progress) task_.progress(1.0);
   Result result = collect(seconds);
-  if (lender_) add_reports(result);
+  if (server_) add_reports(result);
   return result;
 }
 

@@ -3,7 +3,7 @@
 // Shape   The tiles of a band (the whole frame, unless its film is too large for a queue) along a curve; a
 //         thread for each queue takes tiles (tiles.h), keeps its queue's list filled, and puts the queue's
 //         tiles into the picture. Each queue has a film of its own; the one that took a tile last owns it.
-//         With ranks, rank 0 has the bag (lender.h), and the others borrow from it (borrower.h).
+//         With ranks, rank 0 has the bag (tile_server.h), and the others get theirs from it (tile_client.h).
 // Errors  A queue whose device fails, or has too little memory, is left alone from then on: the others render
 //         the tiles that it has not delivered. The error of the last queue, when all fail. Any other error
 //         ends the frame (device/opencl_error.h).
@@ -21,8 +21,8 @@
 #include "cluster/transport/ranks.h"
 #include "device/opencl/faults.h"
 #include "engine/adaptive/report.h"
-#include "engine/checkpoint/frame_ledger.h"
-#include "engine/pdprt/bags.h"
+#include "engine/checkpoint/frame_checkpoint.h"
+#include "engine/pdprt/tile_hierarchy.h"
 #include "engine/pdprt/tile_size.h"
 #include "engine/wavefront/wavefront.h"
 #include "io/image/image.h"
@@ -37,7 +37,7 @@ struct Device {
   wavefront::Schedule schedule;
 };
 
-// Stands for a tile that no queue of this process has rendered: it was found in a ledger.
+// Stands for a tile that no queue of this process has rendered: it was found in a checkpoint.
 inline constexpr std::uint32_t kNobody = 0xffffffffu;
 
 // Samples of one round of adaptive sampling that a queue's film has room for at least, so that small pictures
@@ -55,11 +55,11 @@ struct Task {
   timeline::Timeline* timeline = nullptr;               // also asks for Result::tile_seconds
   std::size_t max_film_bytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
   // What is finished already, and where it goes; its tiles are those of the schedule. Null: there is none.
-  ledger::FrameLedger* ledger = nullptr;
+  checkpoint::FrameCheckpoint* checkpoint = nullptr;
   // Others that render the same frame; rank 0 has the picture then, and the others' result has none. Null:
   // there are none.
   transport::Ranks* ranks = nullptr;
-  Hash shared_frame = {};  // the same for all of them, and for no other frame (ledger::Header::frame())
+  Hash shared_frame = {};  // the same for all of them, and for no other frame (checkpoint::Header::frame())
   int ranks_to_a_bag = kRanksToABag;  // the same for all of them; beyond that there are several
 };
 
@@ -74,7 +74,7 @@ struct QueueResult {
 };
 
 struct Result {
-  film::Image image;
+  image::Image image;
   std::optional<adaptive::Report> samples;  // of adaptive sampling
   wavefront::Counters counters;
   std::map<std::string, double> stage_seconds;  // device time, added over the queues

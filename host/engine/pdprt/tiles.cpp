@@ -11,8 +11,8 @@ namespace {
 // that none keeps the others waiting.
 constexpr std::size_t kPartsPerQueue = 4;
 
-std::vector<std::vector<layout::u32>> deal(const std::vector<layout::u32>& curve, Division division,
-                                           std::size_t n_queues) {
+std::vector<std::vector<layout::u32>> assign_shares(const std::vector<layout::u32>& curve, Division division,
+                                                    std::size_t n_queues) {
   std::vector<std::vector<layout::u32>> shares(n_queues);
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const std::size_t queue = division == Division::interleaved ? i % n_queues : i * n_queues / curve.size();
@@ -39,7 +39,7 @@ Tiles::Tiles(std::vector<layout::u32> curve, Division division, std::size_t n_qu
     shares_.resize(n_queues);
     bag_ = std::move(curve);
   } else {
-    shares_ = deal(curve, division, n_queues);
+    shares_ = assign_shares(curve, division, n_queues);
   }
 }
 

@@ -1,4 +1,4 @@
-// What    Who renders which tile: shares dealt out beforehand, or a bag from which whoever is free takes; and
+// What    Who renders which tile: shares assigned beforehand, or a bag from which whoever is free takes; and
 //         who has taken what, so that the tiles of a queue that fails are rendered by the others.
 // Shape   A tile is first in a queue's share or in the bag, then with the queue that took it, then done. What
 //         a queue that failed had goes into the bag, from which all take when their own share has come to an

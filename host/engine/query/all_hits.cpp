@@ -74,12 +74,12 @@ class Collection {
       to_.splits[n_rays_ + i + 1] = first + n;
       to_.more[n_rays_ + i] = more;
     }
-    make_room(first, first + n, spans.size());
+    grow_to(first, first + n, spans.size());
     return n;
   }
 
   // For all hits that there will be, if the other chunks have as many.
-  void make_room(std::size_t first, std::size_t n, std::size_t n_rays) {
+  void grow_to(std::size_t first, std::size_t n, std::size_t n_rays) {
     const double all = 1.05 * static_cast<double>(n) * static_cast<double>(to_.more.size()) /
                        static_cast<double>(n_rays_ + n_rays);
     const auto grow = [&](auto& array) {

@@ -28,8 +28,8 @@ namespace {
 
 // A chunk that is being traced.
 struct Chunk {
-  explicit Chunk(const Asked& asked, const RayArrays& rays)
-      : session(asked.sessions.rays.borrow()), local(rays, asked.frame) {}
+  explicit Chunk(const QueryContext& context, const RayArrays& rays)
+      : session(context.sessions.rays.borrow()), local(rays, context.frame) {}
 
   Sessions<Session>::Borrowed session;
   LocalRays local;
@@ -47,16 +47,17 @@ std::size_t chunk_for(std::size_t n, std::size_t most) {
 template <class Take>
 class ChunkTracer {
  public:
-  ChunkTracer(const Asked& asked, const RayArrays& rays, bool any_hit, bool as_refs, const Take& take)
-      : asked_(asked), rays_(rays), any_hit_(any_hit), as_refs_(as_refs), take_(take) {}
+  ChunkTracer(const QueryContext& context, const RayArrays& rays, bool any_hit, bool as_refs,
+              const Take& take)
+      : context_(context), rays_(rays), any_hit_(any_hit), as_refs_(as_refs), take_(take) {}
 
   QueryReport run(const QueryOptions& options) {
     if (rays_.size() == 0) return {};
-    chunks_[0].emplace(asked_, rays_);
+    chunks_[0].emplace(context_, rays_);
     const std::size_t at_once = chunk_for(rays_.size(), chunks_[0]->session->chunk());
     for (std::size_t first = 0, turn = 0; first < rays_.size(); first += at_once, turn ^= 1) {
       throw_if_cancelled(options.cancel);
-      if (!chunks_[turn]) chunks_[turn].emplace(asked_, rays_);
+      if (!chunks_[turn]) chunks_[turn].emplace(context_, rays_);
       finish(*chunks_[turn]);
       start(*chunks_[turn], first, std::min(at_once, rays_.size() - first), options);
       last_ = turn;
@@ -74,7 +75,7 @@ class ChunkTracer {
   void start(Chunk& chunk, std::size_t first, std::size_t n, const QueryOptions& options) {
     chunk.local.fill(first, n, chunk.session->rays());
     check_invalid(chunk.local, options);
-    if (asked_.target.masks() != nullptr)
+    if (context_.target.masks() != nullptr)
       for (std::size_t i = 0; i < n; ++i) chunk.session->ray_masks()[i] = rays_.mask(first + i);
     chunk.session->start(n, any_hit_, as_refs_);
     chunk.first = first;
@@ -95,7 +96,7 @@ class ChunkTracer {
     if (failed) throw_failed_walk();
   }
 
-  const Asked& asked_;
+  const QueryContext& context_;
   const RayArrays& rays_;
   bool any_hit_, as_refs_;
   const Take& take_;
@@ -104,28 +105,30 @@ class ChunkTracer {
 };
 
 template <class Take>
-QueryReport trace_chunks(const Asked& asked, const RayArrays& rays, bool any_hit, bool as_refs,
+QueryReport trace_chunks(const QueryContext& context, const RayArrays& rays, bool any_hit, bool as_refs,
                          const QueryOptions& options, const Take& take) {
-  return ChunkTracer<Take>(asked, rays, any_hit, as_refs, take).run(options);
+  return ChunkTracer<Take>(context, rays, any_hit, as_refs, take).run(options);
 }
 
 }  // namespace
 
-QueryReport closest(const Asked& asked, const Rays& rays, const HitsOut& out, const QueryOptions& options) {
+QueryReport closest(const QueryContext& context, const Rays& rays, const HitsOut& out,
+                    const QueryOptions& options) {
   const RayArrays arrays(rays);
-  const HitWriter writer(asked, arrays, out);
+  const HitWriter writer(context, arrays, out);
   return trace_chunks(
-      asked, arrays, false, writer.wants_refs(), options,
+      context, arrays, false, writer.wants_refs(), options,
       [&](const Chunk& chunk, std::span<const layout::QueryHit> hits, std::size_t begin, std::size_t end) {
         writer.write(chunk.first, begin, end, {hits, chunk.session->instances()}, chunk.local);
       });
 }
 
-QueryReport any(const Asked& asked, const Rays& rays, const BytesOut& out, const QueryOptions& options) {
+QueryReport any(const QueryContext& context, const Rays& rays, const BytesOut& out,
+                const QueryOptions& options) {
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "hit");
   return trace_chunks(
-      asked, arrays, true, false, options,
+      context, arrays, true, false, options,
       [&](const Chunk& chunk, std::span<const layout::QueryHit> hits, std::size_t begin, std::size_t end) {
         if (out.empty()) return;
         out.fill(chunk.first + begin, end - begin, [&](std::size_t ray) {

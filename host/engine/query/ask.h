@@ -13,8 +13,8 @@
 
 namespace kdray::query {
 
-// What is asked: a scene that is ready, and what its numbers mean.
-struct Asked {
+// What every query needs: a scene that is ready, and what its numbers mean.
+struct QueryContext {
   const Target& target;  // of rays in the scene's own space
   const GeometryTable& table;
   const LocalFrame& frame;
@@ -28,9 +28,11 @@ struct Asked {
 void check_invalid(const LocalRays& rays, const QueryOptions& options);
 void check_out(std::size_t size, std::size_t n, const char* name);
 
-QueryReport closest(const Asked& asked, const Rays& rays, const HitsOut& out, const QueryOptions& options);
+QueryReport closest(const QueryContext& context, const Rays& rays, const HitsOut& out,
+                    const QueryOptions& options);
 
 // 1 for each ray that something lies in the way of, else 0.
-QueryReport any(const Asked& asked, const Rays& rays, const BytesOut& out, const QueryOptions& options);
+QueryReport any(const QueryContext& context, const Rays& rays, const BytesOut& out,
+                const QueryOptions& options);
 
 }  // namespace kdray::query

@@ -28,8 +28,8 @@ constexpr std::uint64_t kSmallAnswer = std::uint64_t{1} << 26;
 // The rays of a chunk in the scene's own space, and their masks where primitives have some.
 class CollectedRays {
  public:
-  CollectedRays(const Asked& asked, const RayArrays& rays)
-      : rays_(&rays), local_(rays, asked.frame), masked_(asked.target.masks() != nullptr) {}
+  CollectedRays(const QueryContext& context, const RayArrays& rays)
+      : rays_(&rays), local_(rays, context.frame), masked_(context.target.masks() != nullptr) {}
 
   std::span<const Ray> take(std::size_t first, std::size_t most, const QueryOptions& options) {
     throw_if_cancelled(options.cancel);
@@ -57,8 +57,8 @@ class CollectedRays {
 // The answer, to which chunks' hits are added in turn.
 class Answer {
  public:
-  Answer(const Asked& asked, std::size_t n_rays, std::uint64_t max_bytes)
-      : asked_(&asked), n_all_(n_rays), max_bytes_(max_bytes) {
+  Answer(const QueryContext& context, std::size_t n_rays, std::uint64_t max_bytes)
+      : context_(&context), n_all_(n_rays), max_bytes_(max_bytes) {
     hits_.splits.reserve(n_rays + 1);
     hits_.splits.push_back(0);
     hits_.more.reserve(n_rays);
@@ -79,7 +79,7 @@ class Answer {
   void add(const ExactHits& found) {
     begin(found.more, [&](std::size_t i) { return found.hits[i].size(); });
     const std::size_t first = hits_.more.size() - found.more.size();
-    const flatten::FlatScene& flat = asked_->scene().flat;
+    const flatten::FlatScene& flat = context_->scene().flat;
     for_each_index(found.more.size(), [&](std::size_t i) {
       std::size_t at = hits_.splits[first + i];
       for (const ExactHit& hit : found.hits[i]) {
@@ -107,16 +107,16 @@ class Answer {
     std::size_t n = before;
     for (std::size_t i = 0; i < more.size(); ++i) hits_.splits.push_back(n += count_of(i));
     hits_.more.insert(hits_.more.end(), more.begin(), more.end());
-    make_room(n);
+    grow_to(n);
     return before;
   }
 
   // For n hits; and at once for all that there will be, if the other rays have as many and there is memory.
-  void make_room(std::size_t n) {
+  void grow_to(std::size_t n) {
     if (hits_.t.capacity() < n) {
       const double all =
           1.05 * static_cast<double>(n) * static_cast<double>(n_all_) / static_cast<double>(n_rays_);
-      const std::size_t most = room_for(n);
+      const std::size_t most = most_hits(n);
       const std::size_t wanted =
           std::max(n, static_cast<std::size_t>(std::min(all, static_cast<double>(most))));
       const auto reserve = [&](auto& array) {
@@ -132,7 +132,7 @@ class Answer {
   }
 
   // How many hits the answer can have, of which there are n. While an array grows there are two of it.
-  std::size_t room_for(std::size_t n) const {
+  std::size_t most_hits(std::size_t n) const {
     const std::uint64_t held = hits_.t.capacity() * kBytesPerHit, needed = n * kBytesPerHit;
     std::uint64_t most = max_bytes_;
     if (most == 0) {
@@ -154,8 +154,8 @@ class Answer {
   void put(std::size_t at, double t, float u, float v, std::uint32_t number, std::uint32_t instance) {
     const bool placed = instance != kNoInstance;
     const auto shown =
-        placed ? asked_->table.of_instance(instance) : GeometryTable::InstancePlace{0, kNoInstance};
-    const auto place = placed ? GeometryTable::Place{shown.geometry, number} : asked_->table.of(number);
+        placed ? context_->table.of_instance(instance) : GeometryTable::InstancePlace{0, kNoInstance};
+    const auto place = placed ? GeometryTable::Place{shown.geometry, number} : context_->table.of(number);
     hits_.t[at] = t;
     hits_.geometry[at] = place.geometry;
     hits_.primitive[at] = place.primitive;
@@ -164,7 +164,7 @@ class Answer {
     hits_.instance[at] = shown.instance;
   }
 
-  const Asked* asked_;
+  const QueryContext* context_;
   std::size_t n_all_, n_rays_ = 0;  // rays there are, and that were added
   std::uint64_t max_bytes_;
   AllHits hits_;
@@ -172,18 +172,19 @@ class Answer {
 
 }  // namespace
 
-QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, const QueryOptions& options) {
+QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut& out,
+                  const QueryOptions& options) {
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "counts");
-  CollectedRays collected(asked, arrays);
-  const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
+  CollectedRays collected(context, arrays);
+  const Sessions<Passes>::Borrowed passes = context.sessions.crossings.borrow();
   std::vector<std::uint32_t> counts;
-  Pace pace(kFirstRays, kCollected, asked.sessions.counted_at_once);
+  Pace pace(kFirstRays, kCollected, context.sessions.counted_at_once);
   for (std::size_t first = 0; first < arrays.size();) {
     const std::span<const Ray> taken = collected.take(first, pace.take(), options);
     counts.resize(taken.size());
     count_hits(*passes, taken, {.masks = collected.masks(), .cancel = options.cancel}, counts);
-    if (arrays.in_double()) ExactRays(asked, arrays).count(first, counts, options.cancel);
+    if (arrays.in_double()) ExactRays(context, arrays).count(first, counts, options.cancel);
     if (!out.empty())
       out.fill(first, counts.size(), [&](std::size_t ray) { return std::array{counts[ray - first]}; });
     first += taken.size();
@@ -193,21 +194,21 @@ QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, con
 }
 
 // While a chunk is traced, the hits of the one before it are added to the answer.
-AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options) {
+AllHits all(const QueryContext& context, const Rays& rays, const AllHitsOptions& options) {
   const RayArrays arrays(rays);
   const bool exact = arrays.in_double();
-  const ExactRays in_double(asked, arrays);
+  const ExactRays in_double(context, arrays);
   struct Chunk {
-    Chunk(const Asked& asked, const RayArrays& rays) : rays(asked, rays) {}
+    Chunk(const QueryContext& context, const RayArrays& rays) : rays(context, rays) {}
     CollectedRays rays;
     LocalHits found;
     ExactHits exact;
   };
-  Chunk chunks[2] = {{asked, arrays}, {asked, arrays}};
-  Answer answer(asked, arrays.size(), options.max_bytes);
-  const Sessions<Passes>::Borrowed passes = asked.sessions.crossings.borrow();
+  Chunk chunks[2] = {{context, arrays}, {context, arrays}};
+  Answer answer(context, arrays.size(), options.max_bytes);
+  const Sessions<Passes>::Borrowed passes = context.sessions.crossings.borrow();
   tbb::task_group adding;
-  Pace pace(kFirstRays, kCollected, asked.sessions.collected_at_once);
+  Pace pace(kFirstRays, kCollected, context.sessions.collected_at_once);
   try {
     for (std::size_t first = 0, turn = 0; first < arrays.size();) {
       Chunk& chunk = chunks[turn];

@@ -9,8 +9,9 @@
 
 namespace kdray::query {
 
-QueryReport count(const Asked& asked, const Rays& rays, const WordsOut& out, const QueryOptions& options);
+QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut& out,
+                  const QueryOptions& options);
 
-AllHits all(const Asked& asked, const Rays& rays, const AllHitsOptions& options);
+AllHits all(const QueryContext& context, const Rays& rays, const AllHitsOptions& options);
 
 }  // namespace kdray::query

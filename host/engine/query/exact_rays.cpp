@@ -15,7 +15,7 @@ std::optional<LocalLine> ExactRays::line_of(std::size_t i) const {
   const double t_min = rays_->t_min(i);
   if (fault_of(origin, direction, t_min, rays_->t_max(i)) != nullptr || rays_->mask(i) == 0)
     return std::nullopt;
-  std::optional<LocalLine> line = asked_->frame.line(origin, direction, true);
+  std::optional<LocalLine> line = context_->frame.line(origin, direction, true);
   if (!line || line->ahead != 0) return std::nullopt;
   if (t_min != 0) line->origin += std::scalbn(t_min, -line->exponent) * line->direction;
   return line;
@@ -23,14 +23,14 @@ std::optional<LocalLine> ExactRays::line_of(std::size_t i) const {
 
 bool ExactRays::begins_near(std::size_t i) const {
   const std::optional<LocalLine> line = line_of(i);
-  return line && !asked_->frame.is_outside(line->origin) && scene_.is_near(line->origin);
+  return line && !context_->frame.is_outside(line->origin) && scene_.is_near(line->origin);
 }
 
 bool ExactRays::is_seen(const ExactHit& hit, std::uint32_t mask) const {
-  const flatten::FlatScene& flat = asked_->scene().flat;
+  const flatten::FlatScene& flat = context_->scene().flat;
   if (hit.instance != kNoInstance)
-    return (asked_->table.mask_of_instance(flat.instances[hit.instance].number) & mask) != 0;
-  return (asked_->table.mask_of(number_of(flat, hit.ref)) & mask) != 0;
+    return (context_->table.mask_of_instance(flat.instances[hit.instance].number) & mask) != 0;
+  return (context_->table.mask_of(number_of(flat, hit.ref)) & mask) != 0;
 }
 
 void ExactRays::all_hits(std::size_t i, std::vector<ExactHit>& hits) const {
@@ -47,7 +47,7 @@ void ExactRays::all_hits(std::size_t i, std::vector<ExactHit>& hits) const {
 }
 
 double ExactRays::distance(std::size_t i, std::uint32_t ref, std::uint32_t instance, float t) const {
-  const std::optional<LocalLine> line = asked_->frame.line(rays_->origin(i), rays_->direction(i), true);
+  const std::optional<LocalLine> line = context_->frame.line(rays_->origin(i), rays_->direction(i), true);
   if (!line) return t;  // it meets nothing
   const double at = scene_.distance(line->origin, line->direction, ref, instance, t);
   return std::max(std::scalbn(line->ahead + at, line->exponent), rays_->t_min(i));

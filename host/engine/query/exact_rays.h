@@ -23,8 +23,8 @@ struct ExactHits {
 
 class ExactRays {
  public:
-  ExactRays(const Asked& asked, const RayArrays& rays)
-      : asked_(&asked), rays_(&rays), scene_(asked.scene()) {}
+  ExactRays(const QueryContext& context, const RayArrays& rays)
+      : context_(&context), rays_(&rays), scene_(context.scene()) {}
 
   // Of rays first and on: counts anew what those cross that begin near a surface.
   void count(std::size_t first, std::span<std::uint32_t> counts, const std::optional<Cancel>& cancel) const;
@@ -42,7 +42,7 @@ class ExactRays {
   void all_hits(std::size_t i, std::vector<ExactHit>& hits) const;
   bool is_seen(const ExactHit& hit, std::uint32_t mask) const;
 
-  const Asked* asked_;
+  const QueryContext* context_;
   const RayArrays* rays_;
   ExactScene scene_;
 };

@@ -34,16 +34,16 @@ Expansion<2> difference(double a, double b) {
   return d;
 }
 
-template <int kRoom, int kA, int kB>
-void add_product(Expansion<kRoom>& sum, const Expansion<kA>& a, const Expansion<kB>& b, double sign) {
+template <int kCapacity, int kA, int kB>
+void add_product(Expansion<kCapacity>& sum, const Expansion<kA>& a, const Expansion<kB>& b, double sign) {
   for (const double part : b) sum.add_product(a, sign * part);
 }
 
 // a*b - c*d
-template <int kRoom, int kA>
-Expansion<kRoom> cross(const Expansion<kA>& a, const Expansion<kA>& b, const Expansion<kA>& c,
-                       const Expansion<kA>& d) {
-  Expansion<kRoom> sum;
+template <int kCapacity, int kA>
+Expansion<kCapacity> cross(const Expansion<kA>& a, const Expansion<kA>& b, const Expansion<kA>& c,
+                           const Expansion<kA>& d) {
+  Expansion<kCapacity> sum;
   add_product(sum, a, b, 1);
   add_product(sum, c, d, -1);
   return sum;

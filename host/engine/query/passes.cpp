@@ -64,12 +64,12 @@ void Passes::begin(std::size_t n_rays, const CollectOptions& options) {
   cancel_ = options.cancel;
   max_hits_ = options.max_hits;
   capacity_ = std::clamp(options.max_hits, 1u, kLeastFirst);
-  room_ = std::min(n_rays * capacity_, launch_hits(target_));
+  launch_capacity_ = std::min(n_rays * capacity_, launch_hits(target_));
   n_taken_ = 0;
 }
 
 std::size_t Passes::next_chunk(std::size_t left) const {
-  return std::min(left, room_ / capacity_);
+  return std::min(left, launch_capacity_ / capacity_);
 }
 
 std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
@@ -86,9 +86,9 @@ std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<co
   const std::span<const QuerySpan> spans = first_.find({rays_, masks_}, !seen_.ordinary, {}, capacity_);
   const auto n_more =
       std::count_if(spans.begin(), spans.end(), [](const QuerySpan& s) { return s.more != 0; });
-  const auto room = static_cast<std::uint32_t>(room_);
+  const auto launch_capacity = static_cast<std::uint32_t>(launch_capacity_);
   if (static_cast<std::size_t>(n_more) > spans.size() / 16)
-    capacity_ = std::max(capacity_, std::min({2 * capacity_, kMostFirst, max_hits_, room}));
+    capacity_ = std::max(capacity_, std::min({2 * capacity_, kMostFirst, max_hits_, launch_capacity}));
   return spans;
 }
 
@@ -110,12 +110,12 @@ bool Passes::others(std::span<const QuerySpan> spans, bool want_hits, const Foun
 
 bool Passes::pass(std::span<const Rest> rest, bool want_hits, const Found& found, std::vector<Rest>& still) {
   throw_if_cancelled(cancel_);
-  const std::size_t room = launch_hits(target_);
+  const std::size_t launch_capacity = launch_hits(target_);
   if (!later_)
     later_ =
         std::make_unique<HitLists>(target_, HitLists::Walk{traversal_, masked_}, near_rays_.kernel_space());
-  const auto capacity =
-      static_cast<std::uint32_t>(std::clamp<std::size_t>(room / rest.size(), kLeastLater, kMostLater));
+  const auto capacity = static_cast<std::uint32_t>(
+      std::clamp<std::size_t>(launch_capacity / rest.size(), kLeastLater, kMostLater));
   std::vector<Ray> rays;
   std::vector<std::uint32_t> masks;
   std::vector<QuerySpan> after;

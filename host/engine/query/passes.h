@@ -87,8 +87,8 @@ class Passes {
   bool faulty_miss_ = false, as_refs_ = false;
   std::optional<Cancel> cancel_;
   std::uint32_t max_hits_ = 0, capacity_ = 0;
-  std::size_t room_ = 0;     // for hits in a launch
-  std::size_t n_taken_ = 0;  // rays of the chunks so far
+  std::size_t launch_capacity_ = 0;  // for hits in a launch
+  std::size_t n_taken_ = 0;          // rays of the chunks so far
   // Of the chunk in work: its rays, and what holds them where some are none.
   RaysSeen seen_{};
   std::span<const Ray> rays_;

@@ -20,7 +20,7 @@ using layout::ClosestHit;
 using layout::QueryPoint;
 
 // A launch has room for so many points at least.
-constexpr std::size_t kLeastRoom = 1024;
+constexpr std::size_t kLeastCapacity = 1024;
 // Fewer are asked as they come: sorting them would take longer than they do.
 constexpr std::size_t kFewPoints = 64;
 
@@ -66,7 +66,7 @@ PointSession::PointSession(const Target& target)
   device::checked("getting ready to find closest points", [&] {
     target.buffers.set_arguments(stage_);
     stage_.set(K::root_lo, corner_of_bounds(bounds.lo)).set(K::root_hi, corner_of_bounds(bounds.hi));
-    reserve(kLeastRoom);
+    reserve(kLeastCapacity);
     // PoCL compiles a kernel for good at its first launch.
     const device::AtWork compiling(target.context.builds());
     stage_.set(K::n_points, cl_uint{0}).set(K::reach, 0.0f);

@@ -75,37 +75,37 @@ class PointChunks {
 constexpr float kUp[3] = {0.1803f, 0.2741f, 1};
 
 // How many surfaces each point has above it. Masks are for rays: points see every geometry.
-std::vector<std::uint32_t> crossings_above(const Asked& asked, std::span<const dvec3> points,
+std::vector<std::uint32_t> crossings_above(const QueryContext& context, std::span<const dvec3> points,
                                            const PointOptions& options) {
   std::vector<Ray> rays(points.size());
   for_each_index(points.size(), [&](std::size_t i) {
-    const dvec3 local = asked.frame.space().local(points[i]);
-    const bool outside = asked.frame.is_outside(local);
+    const dvec3 local = context.frame.space().local(points[i]);
+    const bool outside = context.frame.is_outside(local);
     const vec3 at = outside ? vec3(0) : vec3(local);
     const float end = std::numeric_limits<float>::infinity();
     rays[i] = {{at.x, at.y, at.z}, 0, {kUp[0], kUp[1], kUp[2]}, outside ? -end : end};
   });
   std::vector<std::uint32_t> counts(points.size());
-  AllSessions& all = asked.sessions;
-  const bool masked = asked.target.masks() != nullptr;
+  AllSessions& all = context.sessions;
+  const bool masked = context.target.masks() != nullptr;
   count_hits(*(masked ? all.of_all : all.crossings).borrow(), rays, {.cancel = options.cancel}, counts);
   return counts;
 }
 
 // Whether each point has an odd number of surfaces above it: it is inside of closed ones. Points of doubles
 // so near to a surface that floats can't tell are looked at in double.
-std::vector<std::uint8_t> are_inside(const Asked& asked, std::span<const dvec3> points, bool in_double,
-                                     const PointOptions& options) {
-  const std::vector<std::uint32_t> counts = crossings_above(asked, points, options);
+std::vector<std::uint8_t> are_inside(const QueryContext& context, std::span<const dvec3> points,
+                                     bool in_double, const PointOptions& options) {
+  const std::vector<std::uint32_t> counts = crossings_above(context, points, options);
   std::vector<std::uint8_t> inside(points.size());
   for_each_index(points.size(), [&](std::size_t i) { inside[i] = counts[i] % 2; });
   if (!in_double) return inside;
-  const ExactScene exact(asked.scene());
+  const ExactScene exact(context.scene());
   for_each_slow_grain(points.size(), options.cancel, [&](std::size_t begin, std::size_t end) {
     std::vector<ExactHit> hits;
     for (std::size_t i = begin; i < end; ++i) {
-      const dvec3 place = asked.frame.space().local(points[i]);
-      if (asked.frame.is_outside(place) || !exact.is_near(place)) continue;
+      const dvec3 place = context.frame.space().local(points[i]);
+      if (context.frame.is_outside(place) || !exact.is_near(place)) continue;
       exact.cross(place, dvec3(kUp[0], kUp[1], kUp[2]), hits);
       inside[i] = hits.size() % 2;
     }
@@ -120,11 +120,11 @@ bool are_doubles(const Points& points) {
 // What lies nearest to points: asked for when it is made, so that the device works at it meanwhile.
 class Nearest {
  public:
-  Nearest(const Asked& asked, std::span<const dvec3> points, double radius)
+  Nearest(const QueryContext& context, std::span<const dvec3> points, double radius)
       : found_(points.size(), kNoClosestPoint) {
     check_points(points, radius);
-    if (points.empty() || asked.scene().geometry.bounds.empty()) return;
-    session_ = asked.sessions.points.borrow();
+    if (points.empty() || context.scene().geometry.bounds.empty()) return;
+    session_ = context.sessions.points.borrow();
     session_->start(points, radius);
   }
 
@@ -140,10 +140,10 @@ class Nearest {
 };
 
 template <class Take>
-QueryReport for_each_chunk(const Asked& asked, const Points& points, const PointOptions& options,
+QueryReport for_each_chunk(const QueryContext& context, const Points& points, const PointOptions& options,
                            const Take& take) {
   PointChunks chunks(points, options);
-  Pace pace(kFirstPoints, kPointsAtOnce, asked.sessions.points_at_once);
+  Pace pace(kFirstPoints, kPointsAtOnce, context.sessions.points_at_once);
   for (std::size_t first = 0; first < points.size();) {
     const std::span<const dvec3> some = chunks.take(first, pace.take());
     take(first, some, chunks);
@@ -155,9 +155,9 @@ QueryReport for_each_chunk(const Asked& asked, const Points& points, const Point
 
 }  // namespace
 
-QueryReport closest_points(const Asked& asked, const Points& points, const ClosestPointsOut& out,
+QueryReport closest_points(const QueryContext& context, const Points& points, const ClosestPointsOut& out,
                            const PointOptions& options) {
-  prepare::refuse_instances(asked.scene(), "closest points");
+  prepare::refuse_instances(context.scene(), "closest points");
   const std::size_t n = points.size();
   check_out(out.distance.size(), n, "distance");
   check_out(out.point.size(), n, "point");
@@ -166,8 +166,9 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
   check_out(out.u.size(), n, "u");
   check_out(out.v.size(), n, "v");
   return for_each_chunk(
-      asked, points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        Nearest nearest(asked, some, options.radius);
+      context, points, options,
+      [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+        Nearest nearest(context, some, options.radius);
         const std::vector<ClosestPoint>& found = nearest.wait();
         const auto fill = [&](const auto& column, const auto& value_of) {
           if (column.empty()) return;
@@ -177,7 +178,7 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
         };
         const auto place_of = [&](const ClosestPoint& p) {
           return p.primitive < 0 ? GeometryTable::Place{kNoGeometry, kNoPrimitive}
-                                 : asked.table.of(static_cast<std::uint32_t>(p.primitive));
+                                 : context.table.of(static_cast<std::uint32_t>(p.primitive));
         };
         fill(out.distance, [](const ClosestPoint& p) { return std::array{p.distance}; });
         fill(out.point, [](const ClosestPoint& p) { return std::array{p.point.x, p.point.y, p.point.z}; });
@@ -188,12 +189,13 @@ QueryReport closest_points(const Asked& asked, const Points& points, const Close
       });
 }
 
-QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out,
+QueryReport inside(const QueryContext& context, const Points& points, const BytesOut& out,
                    const PointOptions& options) {
   check_out(out.size(), points.size(), "inside");
   return for_each_chunk(
-      asked, points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        const std::vector<std::uint8_t> found = are_inside(asked, some, are_doubles(points), options);
+      context, points, options,
+      [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+        const std::vector<std::uint8_t> found = are_inside(context, some, are_doubles(points), options);
         if (out.empty()) return;
         out.fill(first, some.size(), [&](std::size_t i) {
           return std::array{std::uint8_t(chunks.is_invalid(i - first) ? 0 : found[i - first])};
@@ -201,22 +203,23 @@ QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out
       });
 }
 
-QueryReport signed_distance(const Asked& asked, const Points& points, const ValuesOut& out,
+QueryReport signed_distance(const QueryContext& context, const Points& points, const ValuesOut& out,
                             const PointOptions& options) {
-  prepare::refuse_instances(asked.scene(), "signed distances");
+  prepare::refuse_instances(context.scene(), "signed distances");
   check_out(out.size(), points.size(), "distance");
-  return for_each_chunk(
-      asked, points, options, [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        Nearest nearest(asked, some, options.radius);
-        const std::vector<std::uint8_t> inside = are_inside(asked, some, are_doubles(points), options);
-        const std::vector<ClosestPoint>& found = nearest.wait();
-        if (out.empty()) return;
-        out.fill(first, some.size(), [&](std::size_t i) {
-          const std::size_t at = i - first;
-          if (chunks.is_invalid(at)) return std::array{chunks.signed_distance(at)};
-          return std::array{inside[at] ? -found[at].distance : found[at].distance};
-        });
-      });
+  return for_each_chunk(context, points, options,
+                        [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
+                          Nearest nearest(context, some, options.radius);
+                          const std::vector<std::uint8_t> inside =
+                              are_inside(context, some, are_doubles(points), options);
+                          const std::vector<ClosestPoint>& found = nearest.wait();
+                          if (out.empty()) return;
+                          out.fill(first, some.size(), [&](std::size_t i) {
+                            const std::size_t at = i - first;
+                            if (chunks.is_invalid(at)) return std::array{chunks.signed_distance(at)};
+                            return std::array{inside[at] ? -found[at].distance : found[at].distance};
+                          });
+                        });
 }
 
 }  // namespace kdray::query

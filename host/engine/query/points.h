@@ -9,13 +9,13 @@
 
 namespace kdray::query {
 
-QueryReport closest_points(const Asked& asked, const Points& points, const ClosestPointsOut& out,
+QueryReport closest_points(const QueryContext& context, const Points& points, const ClosestPointsOut& out,
                            const PointOptions& options);
 
-QueryReport inside(const Asked& asked, const Points& points, const BytesOut& out,
+QueryReport inside(const QueryContext& context, const Points& points, const BytesOut& out,
                    const PointOptions& options);
 
-QueryReport signed_distance(const Asked& asked, const Points& points, const ValuesOut& out,
+QueryReport signed_distance(const QueryContext& context, const Points& points, const ValuesOut& out,
                             const PointOptions& options);
 
 }  // namespace kdray::query

@@ -73,8 +73,8 @@ static_assert(kNoPrimitive == 0xffffffffu);
 
 }  // namespace
 
-HitWriter::HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& out)
-    : asked_(&asked), rays_(&rays), out_(out) {
+HitWriter::HitWriter(const QueryContext& context, const RayArrays& rays, const HitsOut& out)
+    : context_(&context), rays_(&rays), out_(out) {
   const std::size_t n = rays.size();
   check_out(out.t.size(), n, "t");
   check_out(out.geometry.size(), n, "geometry");
@@ -84,10 +84,10 @@ HitWriter::HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& o
   check_out(out.normal.size(), n, "normal");
   check_out(out.point.size(), n, "point");
   check_out(out.instance.size(), n, "instance");
-  const double unit = asked.frame.unit();
+  const double unit = context.frame.unit();
   dense_ = is_dense<float>(out.t) && is_dense<std::uint32_t>(out.geometry) &&
            is_dense<std::uint32_t>(out.primitive) && is_dense<float>(out.u) && is_dense<float>(out.v) &&
-           asked.table.only() && unit >= std::numeric_limits<float>::min() &&
+           context.table.only() && unit >= std::numeric_limits<float>::min() &&
            unit <= std::numeric_limits<float>::max();
 }
 
@@ -107,12 +107,12 @@ void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, con
 
 // Of a hit that is named by a reference, which gets its number.
 dvec3 HitWriter::normal_of(const Some& some, std::size_t i, QueryHit& hit) const {
-  const flatten::FlatScene& flat = asked_->scene().flat;
+  const flatten::FlatScene& flat = context_->scene().flat;
   const std::uint32_t index = some.instance(i);
   const layout::Instance* const instance = index == kNoInstance ? nullptr : &flat.instances[index];
   const auto point = [&] {
     const dvec3 local =
-        asked_->frame.space().local(point_of(some.ray + i, some.local.world_t(some.at + i, hit.t)));
+        context_->frame.space().local(point_of(some.ray + i, some.local.world_t(some.at + i, hit.t)));
     return instance ? in_mesh(*instance, local) : local;
   };
   const Surface surface = surface_at(flat, static_cast<std::uint32_t>(hit.primitive), point);
@@ -133,8 +133,8 @@ void HitWriter::write_normals(const Some& some, Numbered& numbered) const {
 std::size_t HitWriter::write_dense(const Some& some) const {
   if (!dense_ || some.local.has_moved()) return 0;
   const DenseColumns columns(out_);
-  const auto unit = static_cast<float>(asked_->frame.unit());
-  const GeometryId id = *asked_->table.only();
+  const auto unit = static_cast<float>(context_->frame.unit());
+  const GeometryId id = *context_->table.only();
   std::size_t i = 0;
   for (; i + 4 <= some.hits.size(); i += 4) columns.put(some.ray + i, &some.hits[i], unit, id);
   return i;
@@ -144,7 +144,7 @@ void HitWriter::write_instances(const Some& some, std::size_t from) const {
   fill(out_.instance, some, from, [&](std::size_t i, const QueryHit& hit) {
     const std::uint32_t index = missed(hit) ? kNoInstance : some.instance(i);
     if (index == kNoInstance) return std::array{kNoInstance};
-    return std::array{asked_->table.of_instance(asked_->scene().flat.instances[index].number).instance};
+    return std::array{context_->table.of_instance(context_->scene().flat.instances[index].number).instance};
   });
 }
 
@@ -168,9 +168,9 @@ void HitWriter::write_columns(const Some& some, std::size_t from) const {
     if (missed(hit)) return GeometryTable::Place{kNoGeometry, kNoPrimitive};
     const auto number = static_cast<std::uint32_t>(hit.primitive);
     const std::uint32_t index = some.instance(i);
-    if (index == kNoInstance) return asked_->table.of(number);
-    const std::uint32_t place = asked_->scene().flat.instances[index].number;
-    return GeometryTable::Place{asked_->table.of_instance(place).geometry, number};
+    if (index == kNoInstance) return context_->table.of(number);
+    const std::uint32_t place = context_->scene().flat.instances[index].number;
+    return GeometryTable::Place{context_->table.of_instance(place).geometry, number};
   };
   fill(out_.t, some, from, [&](std::size_t i, const auto& hit) { return std::array{t_of(i, hit)}; });
   fill(out_.geometry, some, from,

@@ -24,7 +24,7 @@ struct FoundHits {
 
 class HitWriter {
  public:
-  HitWriter(const Asked& asked, const RayArrays& rays, const HitsOut& out);
+  HitWriter(const QueryContext& context, const RayArrays& rays, const HitsOut& out);
 
   bool wants_refs() const { return !out_.normal.empty(); }
 
@@ -54,7 +54,7 @@ class HitWriter {
   dvec3 normal_of(const Some& some, std::size_t i, layout::QueryHit& hit) const;
   void write_instances(const Some& some, std::size_t from) const;
 
-  const Asked* asked_;
+  const QueryContext* context_;
   const RayArrays* rays_;
   HitsOut out_;
   bool dense_;  // columns without gaps, of one geometry

@@ -20,7 +20,7 @@ constexpr std::size_t kWorkGroup = 16;             // items of KDRAY_LANES pixel
 
 struct Plane {
   const char* channel;  // as the user names it
-  const char* name;     // film::Channel's
+  const char* name;     // image::Channel's
   std::size_t index;
 };
 constexpr Plane kPlaneTable[kPlanes] = {{"depth", "depth", 0},         {"normal", "normal.x", 1},
@@ -45,13 +45,13 @@ std::vector<Plane> wanted_planes(std::span<const std::string> names) {
 
 }  // namespace
 
-std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
-                                           Programs& programs, const layout::Frame& frame,
-                                           const LocalSpace& space, layout::Features features,
-                                           Precision precision, std::span<const std::string> names) {
+std::vector<image::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
+                                            Programs& programs, const layout::Frame& frame,
+                                            const LocalSpace& space, layout::Features features,
+                                            Precision precision, std::span<const std::string> names) {
   const std::vector<Plane> planes = wanted_planes(names);
   const std::size_t n_pixels = std::size_t{frame.width} * frame.height;
-  std::vector<film::Channel> channels;
+  std::vector<image::Channel> channels;
   for (const Plane& p : planes) channels.push_back({p.name, std::vector<float>(n_pixels)});
   if (planes.empty()) return channels;
 

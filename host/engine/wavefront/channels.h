@@ -15,9 +15,9 @@ namespace kdray::wavefront {
 
 // `names` of "depth", "normal", "primitive", "cost"; throws ErrorCode::usage, naming what there is, for
 // others. Depths are the world's; the frame's lengths are those of `space`.
-std::vector<film::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
-                                           Programs& programs, const layout::Frame& frame,
-                                           const LocalSpace& space, layout::Features features,
-                                           Precision precision, std::span<const std::string> names);
+std::vector<image::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
+                                            Programs& programs, const layout::Frame& frame,
+                                            const LocalSpace& space, layout::Features features,
+                                            Precision precision, std::span<const std::string> names);
 
 }  // namespace kdray::wavefront

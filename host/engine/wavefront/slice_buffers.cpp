@@ -9,8 +9,8 @@ namespace kdray::wavefront {
 namespace {
 
 // Entries, and behind them two words for each sample; what is read beyond the last is left out.
-std::size_t list_words(const SliceRoom& room) {
-  return room.entries + (room.samples > 0 ? 2 * room.samples + KDRAY_LANES : 0);
+std::size_t list_words(const SliceCapacity& capacity) {
+  return capacity.entries + (capacity.samples > 0 ? 2 * capacity.samples + KDRAY_LANES : 0);
 }
 
 }  // namespace
@@ -86,17 +86,17 @@ std::size_t StreamForm::largest(const layout::Frame& frame) const {
   return std::max({sizeof(layout::Slice), pool_bytes(frame), batch_bytes(frame), shadow_bytes(frame)});
 }
 
-SliceBuffers::SliceBuffers(const device::Context& context, const layout::Frame& f, const SliceRoom& room,
-                           const StreamForm& form) {
+SliceBuffers::SliceBuffers(const device::Context& context, const layout::Frame& f,
+                           const SliceCapacity& capacity, const StreamForm& form) {
   const auto make = [&](std::size_t n_bytes, const char* what) {
     bytes += n_bytes;
     return context.buffer(CL_MEM_READ_WRITE, n_bytes, what);
   };
-  const std::size_t n = room.n_slices, pool_bytes = n * form.pool_bytes(f);
-  const std::size_t film_bytes = room.places * 3 * sizeof(layout::i64);
+  const std::size_t n = capacity.n_slices, pool_bytes = n * form.pool_bytes(f);
+  const std::size_t film_bytes = capacity.places * 3 * sizeof(layout::i64);
   frame = make(sizeof(layout::Frame), "the frame");
   slices = make(n * sizeof(layout::Slice), "the slices");
-  tiles = make(list_words(room) * sizeof(layout::u32), "the list of tiles");
+  tiles = make(list_words(capacity) * sizeof(layout::u32), "the list of tiles");
   pool = form.sparse_pools ? context.sparse_buffer(CL_MEM_READ_WRITE, pool_bytes, "the ray pools")
                            : context.buffer(CL_MEM_READ_WRITE, pool_bytes, "the ray pools");
   batch = make(n * form.batch_bytes(f), "the ray batches");

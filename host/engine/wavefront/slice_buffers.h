@@ -36,8 +36,8 @@ std::uint32_t travel_ray_fields(layout::Features features);
 // A stream's words per field for `n` rays: whole vectors, and one behind the last ray (rays.layout.h).
 std::uint32_t capacity_for(std::uint32_t n);
 
-// How much there is room for. The frame has the capacities of the streams.
-struct SliceRoom {
+// How much fits. The frame has the capacities of the streams.
+struct SliceCapacity {
   std::uint32_t n_slices = 0;
   std::size_t entries = 0, samples = 0;  // of the list
   std::size_t places = 0;                // of the film
@@ -68,7 +68,7 @@ struct StreamForm {
 };
 
 struct SliceBuffers {
-  SliceBuffers(const device::Context& context, const layout::Frame& frame, const SliceRoom& room,
+  SliceBuffers(const device::Context& context, const layout::Frame& frame, const SliceCapacity& capacity,
                const StreamForm& form);
 
 #define KDRAY_SLICE_BUFFERS(X) \

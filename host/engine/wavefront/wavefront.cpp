@@ -61,15 +61,15 @@ void Schedule::fit(layout::Frame frame, layout::Features features, std::size_t m
 
 Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
                      Programs& programs, const layout::Frame& frame, const Schedule& schedule,
-                     layout::Features features, const Room& room)
+                     layout::Features features, const Capacity& capacity)
     : context_(context),
       queue_(std::move(queue)),
       frame_(frame),
       schedule_(schedule),
       features_(features),
-      room_{std::max(room.tiles, room.samples / KDRAY_SAMPLE_RUN), std::max(room.pixels, room.samples),
-            room.samples},
-      buffers_(context, frame, {schedule.n_slices, room_.tiles, room_.samples, room_.pixels},
+      capacity_{std::max(capacity.tiles, capacity.samples / KDRAY_SAMPLE_RUN),
+                std::max(capacity.pixels, capacity.samples), capacity.samples},
+      buffers_(context, frame, {schedule.n_slices, capacity_.tiles, capacity_.samples, capacity_.pixels},
                StreamForm::of_device(frame, word_of(schedule.precision), features)),
       tile_cycles_(context.buffer(CL_MEM_READ_WRITE, tile_cycle_bytes(), "the tiles' cycles")) {
   device::checked("setting up the kernels", [&] {
@@ -202,9 +202,9 @@ void Wavefront::begin(std::size_t first_pixel) {
 
 void Wavefront::begin_samples(std::span<const layout::u32> samples) {
   frame_.first_pixel = 0;
-  frame_.samples_at = static_cast<layout::u32>(room_.tiles);
+  frame_.samples_at = static_cast<layout::u32>(capacity_.tiles);
   device::checked("writing the samples", [&] {
-    queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, room_.tiles * sizeof(layout::u32),
+    queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, capacity_.tiles * sizeof(layout::u32),
                               samples.size_bytes(), samples.data());
   });
   begin_list();
@@ -216,7 +216,8 @@ void Wavefront::begin_list() {
   const std::vector<layout::Slice> slices = fresh_slices(schedule_.n_slices);
   for (Launch& launch : launches_) launch.slices.resize(schedule_.n_slices);
   device::checked("beginning a list of tiles", [&] {
-    if (wave_) queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, 0, room_.tiles * sizeof(layout::u64));
+    if (wave_)
+      queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, 0, capacity_.tiles * sizeof(layout::u64));
     queue_.enqueueWriteBuffer(buffers_.frame, CL_TRUE, 0, sizeof frame_, &frame_);
     queue_.enqueueWriteBuffer(buffers_.slices, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
                               slices.data());

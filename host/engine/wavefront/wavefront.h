@@ -81,9 +81,9 @@ struct FilmSums {
   std::size_t first;
 };
 
-// What a queue has room for: entries in a list, the film's pixels, samples of a round of adaptive sampling
+// How much a queue can hold: entries in a list, the film's pixels, samples of a round of adaptive sampling
 // (whole runs).
-struct Room {
+struct Capacity {
   std::size_t tiles = 0, pixels = 0, samples = 0;
 };
 
@@ -92,7 +92,7 @@ class Wavefront {
   // `frame` has the schedule applied; its film band is set by begin().
   Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
             Programs& programs, const layout::Frame& frame, const Schedule& schedule,
-            layout::Features features, const Room& room);
+            layout::Features features, const Capacity& capacity);
 
   ~Wavefront();
 
@@ -134,7 +134,7 @@ class Wavefront {
     std::uint32_t listed = 0;
   };
 
-  std::size_t tile_cycle_bytes() const { return schedule_.fused ? room_.tiles * sizeof(layout::u64) : 0; }
+  std::size_t tile_cycle_bytes() const { return schedule_.fused ? capacity_.tiles * sizeof(layout::u64) : 0; }
   template <class K>
   void set_arguments(Stage<K>& stage, const SceneBuffers& scene);
   template <class K>
@@ -167,7 +167,7 @@ class Wavefront {
   layout::Frame frame_;
   Schedule schedule_;
   layout::Features features_;
-  Room room_;
+  Capacity capacity_;
   Watch watch_;
   Launch launches_[2];
   SliceBuffers buffers_;

@@ -17,20 +17,20 @@ class Cancel {
   Cancel() = default;
   // Ends the call too when `asked` answers true. It is called by the thread whose call it may end, between
   // launches; it must not throw. (For programs that learn of Ctrl-C only when they ask for it.)
-  explicit Cancel(std::function<bool()> asked) : asked_(std::make_shared<Asked>(std::move(asked))) {}
+  explicit Cancel(std::function<bool()> asked) : state_(std::make_shared<State>(std::move(asked))) {}
 
-  void cancel() { asked_->cancelled.store(true, std::memory_order_relaxed); }
+  void cancel() { state_->cancelled.store(true, std::memory_order_relaxed); }
   bool is_cancelled() const {
-    return asked_->cancelled.load(std::memory_order_relaxed) || (asked_->also && asked_->also());
+    return state_->cancelled.load(std::memory_order_relaxed) || (state_->also && state_->also());
   }
 
  private:
-  struct Asked {
-    explicit Asked(std::function<bool()> question = {}) : also(std::move(question)) {}
+  struct State {
+    explicit State(std::function<bool()> question = {}) : also(std::move(question)) {}
     std::atomic<bool> cancelled{false};
     const std::function<bool()> also;
   };
-  std::shared_ptr<Asked> asked_ = std::make_shared<Asked>();
+  std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
 }  // namespace kdray

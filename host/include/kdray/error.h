@@ -1,5 +1,5 @@
 // What    The one exception type of kdray: a code (the process's exit status), where, what and what to do.
-// Errors  Thrown by every room; caught only by the API edge and the command line.
+// Errors  Thrown by every module; caught only by the API edge and the command line.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // What    The options of kdray's public interface: how a tree is built, which devices are used, how a frame
 //         is rendered.
-// Shape   Plain values, which every room below the interface may see; kdray/kdray.h includes them.
+// Shape   Plain values, which every module below the interface may see; kdray/kdray.h includes them.
 #pragma once
 
 #include <cstdint>
@@ -144,11 +144,11 @@ constexpr double kDefaultAdaptiveTarget = 0.0075;
 // 12.92, in the dark), since no smaller change shows in a PNG.
 constexpr double kDefaultMinWeight = 0.5 / 255 / 12.92;
 
-// Finished pieces of a picture, with their film's sums, in a folder: what a run that ends before its time
-// leaves for the next one, and what several processes make one picture by (docs/design/ledger.md).
+// Finished tiles of a picture, with their film's sums, in a folder: what a run that ends before its time
+// leaves for the next one, and what several processes make one picture by (docs/design/checkpoint.md).
 struct LedgerOptions {
   std::filesystem::path folder = {};  // made if need be
-  // Goes on from what is there, which may be nothing; false: a ledger that is there is refused.
+  // Goes on from what is there, which may be nothing; false: a checkpoint that is there is refused.
   bool resume = false;
   // Other processes may be at the same picture, on this machine or others that see the folder; implies
   // resume.

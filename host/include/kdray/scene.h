@@ -23,7 +23,7 @@
 
 namespace kdray {
 
-// For kdray's own rooms.
+// For kdray's own modules.
 namespace scene {
 struct Scene;
 }

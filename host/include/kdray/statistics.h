@@ -111,8 +111,8 @@ struct Statistics {
     std::optional<Adaptive> adaptive;  // none: all pixels have the same number
   };
 
-  // Of a frame with a ledger: tiles, and runs of samples where sampling is adaptive. The frame's rays, its
-  // times and what is told of queues are of those that were rendered by this process.
+  // Of a frame with a checkpoint: tiles, and runs of samples where sampling is adaptive. The frame's rays,
+  // its times and what is told of queues are of those that were rendered by this process.
   struct Ledger {
     std::string folder;
     std::uint64_t pieces = 0, found = 0, rendered = 0;  // found: when their round began

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 
-namespace kdray::rays {
+namespace kdray::array {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
@@ -179,4 +179,4 @@ std::string make_header(std::string_view type, std::span<const std::uint64_t> sh
   return header + text;
 }
 
-}  // namespace kdray::rays
+}  // namespace kdray::array

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace kdray::rays {
+namespace kdray::array {
 
 struct NpyHeader {
   std::string type;  // '<f4' of a plain type; the Python text of a structured one, e.g. [('t', '<f4')]
@@ -39,4 +39,4 @@ std::string make_header(std::string_view type, std::span<const std::uint64_t> sh
 // "(3,)", "(3, 8)"; of more than six sizes the first.
 std::string shape_text(std::span<const std::uint64_t> shape);
 
-}  // namespace kdray::rays
+}  // namespace kdray::array

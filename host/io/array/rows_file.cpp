@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "io/array/npy_header.h"
 
-namespace kdray::rays {
+namespace kdray::array {
 namespace fs = std::filesystem;
 namespace {
 
@@ -114,4 +114,4 @@ void RowsFile::cannot_be_read() const {
   throw input_error(name_, 0, "cannot be read to its end", "check the disk, or save it again");
 }
 
-}  // namespace kdray::rays
+}  // namespace kdray::array

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace kdray::rays {
+namespace kdray::array {
 
 // What a file is to hold, in words for messages.
 struct RowsWanted {
@@ -53,4 +53,4 @@ class RowsFile {
   bool in_double_ = false;
 };
 
-}  // namespace kdray::rays
+}  // namespace kdray::array

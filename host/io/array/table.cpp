@@ -8,7 +8,7 @@
 #include "io/array/npy_header.h"
 #include "io/array/zip.h"
 
-namespace kdray::rays {
+namespace kdray::array {
 
 namespace {
 
@@ -99,4 +99,4 @@ void write_table(const std::filesystem::path& file, std::span<const Column> colu
   });
 }
 
-}  // namespace kdray::rays
+}  // namespace kdray::array

@@ -15,7 +15,7 @@
 
 #include "base/write_file.h"
 
-namespace kdray::rays {
+namespace kdray::array {
 
 struct Column {
   std::string name;
@@ -69,4 +69,4 @@ void write_table(std::span<const Column> columns, TableFormat format, const Sink
 // The same to a file, whole or not at all.
 void write_table(const std::filesystem::path& file, std::span<const Column> columns, TableFormat format);
 
-}  // namespace kdray::rays
+}  // namespace kdray::array

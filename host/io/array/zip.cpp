@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace kdray::rays {
+namespace kdray::array {
 
 namespace {
 
@@ -118,4 +118,4 @@ void ZipWriter::finish() {
   write(directory_end(begin, written_ - begin));
 }
 
-}  // namespace kdray::rays
+}  // namespace kdray::array

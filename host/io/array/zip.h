@@ -13,7 +13,7 @@
 
 #include "base/write_file.h"
 
-namespace kdray::rays {
+namespace kdray::array {
 
 class ZipWriter {
  public:
@@ -43,4 +43,4 @@ class ZipWriter {
   std::vector<Entry> entries_;
 };
 
-}  // namespace kdray::rays
+}  // namespace kdray::array

@@ -10,7 +10,7 @@
 #include "io/image/queue_colors.h"
 #include "io/image/transfer.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 struct Range {
@@ -154,4 +154,4 @@ std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<co
   return pictures;
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

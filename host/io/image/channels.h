@@ -9,7 +9,7 @@
 #include "io/image/image.h"
 #include "io/image/png.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 struct ChannelPicture {
   std::string name;  // "depth", "normal", "primitive", "cost", "queue": the part between NAME. and .png
@@ -22,4 +22,4 @@ struct ChannelPicture {
 std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<const Channel> channels,
                                              std::span<const vec3> image = {});
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -9,7 +9,7 @@
 #include "io/image/flip.h"
 #include "io/image/heat.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 void check_sizes(const Image& a, const Image& b) {
@@ -95,4 +95,4 @@ Image difference_image(const Image& a, const Image& b) {
   return image;
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -8,7 +8,7 @@
 
 #include "io/image/image.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 struct Difference {
   double rmse = 0, mean_absolute = 0, max = 0, differing_share = 0, flip = 0;
@@ -20,4 +20,4 @@ Difference compare(const Image& a, const Image& b);
 // colour.
 Image difference_image(const Image& a, const Image& b);
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -9,7 +9,7 @@
 
 #include "io/image/image.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 // Colour goes out as R, G and B, its alpha as A where it has one, `channels` under the names that they have
 // in an EXR (exr_name).
@@ -23,4 +23,4 @@ Image decode_exr(std::string_view bytes, const std::string& file, std::uint64_t 
 // "depth" becomes "Z", "normal.x" becomes "N.X"; others stay as they are.
 std::string exr_name(const std::string& channel);
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -14,7 +14,7 @@
 #include "io/image/exr.h"
 #include "io/image/exr_threads.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 constexpr int kMaxSide = 1 << 16;
@@ -142,4 +142,4 @@ Image decode_exr(std::string_view bytes, const std::string& file, std::uint64_t 
   }
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <thread>
 
-namespace kdray::film {
+namespace kdray::image {
 
 int exr_threads() {
   static const int n_threads = [] {
@@ -17,4 +17,4 @@ int exr_threads() {
   return n_threads;
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -1,8 +1,8 @@
 // What    How many threads OpenEXR may use: all of the machine's, asked for once per process.
 #pragma once
 
-namespace kdray::film {
+namespace kdray::image {
 
 int exr_threads();
 
-}  // namespace kdray::film
+}  // namespace kdray::image

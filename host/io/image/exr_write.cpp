@@ -11,7 +11,7 @@
 #include "io/image/exr.h"
 #include "io/image/exr_threads.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 // OpenEXR takes a base pointer and strides; it does not write through the pointer of an output slice.
@@ -58,4 +58,4 @@ std::string encode_exr(const Image& image, std::span<const Channel> channels) {
   return stream.str();
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 using Plane = std::vector<float>;
@@ -215,4 +215,4 @@ double mean_flip(const Image& reference, const Image& test, double pixels_per_de
   return errors.empty() ? 0 : sum / static_cast<double>(errors.size());
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

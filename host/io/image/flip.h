@@ -10,7 +10,7 @@
 
 #include "io/image/image.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 constexpr double kPixelsPerDegree = 67;
 
@@ -29,4 +29,4 @@ double redistribute(double hyab_to_the_07);   // to [0, 1]; the largest distance
 double largest_color_distance();              // of green and blue, to the power 0.7
 }  // namespace flip
 
-}  // namespace kdray::film
+}  // namespace kdray::image

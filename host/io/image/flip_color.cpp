@@ -4,7 +4,7 @@
 
 #include "io/image/flip.h"
 
-namespace kdray::film::flip {
+namespace kdray::image::flip {
 namespace {
 
 // Linear sRGB to CIE XYZ: the primaries and the D65 white of IEC 61966-2-1, white being (1, 1, 1) in RGB.
@@ -56,4 +56,4 @@ double redistribute(double distance) {
   return std::min(1.0, kKneeError + (distance - knee) / (largest - knee) * (1 - kKneeError));
 }
 
-}  // namespace kdray::film::flip
+}  // namespace kdray::image::flip

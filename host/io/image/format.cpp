@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 PictureFormat format_for_writing(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
@@ -25,4 +25,4 @@ PictureFormat format_of_content(std::string_view bytes, const std::filesystem::p
   throw input_error(file.string(), 0, "is neither a PNG nor an OpenEXR picture", "name a .png or .exr file");
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

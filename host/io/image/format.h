@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <string_view>
 
-namespace kdray::film {
+namespace kdray::image {
 
 enum class PictureFormat { png, exr };
 
 PictureFormat format_for_writing(const std::filesystem::path& file);
 PictureFormat format_of_content(std::string_view bytes, const std::filesystem::path& file);
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -5,7 +5,7 @@
 
 #include "io/image/transfer.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 vec3 heat(double share) {
   // Display values at equal steps, interpolated linearly as the eye sees them.
@@ -26,4 +26,4 @@ vec3 heat(double share) {
   return color;
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -4,8 +4,8 @@
 
 #include "base/vec.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 vec3 heat(double share);  // share in [0, 1], clamped; NaN is 0. Linear RGB.
 
-}  // namespace kdray::film
+}  // namespace kdray::image

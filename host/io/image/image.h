@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 struct Image {
   int width = 0, height = 0;
@@ -24,4 +24,4 @@ struct Channel {
   std::vector<float> values;
 };
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -10,7 +10,7 @@
 
 #include "io/image/write.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 struct PngPixels {
   int width = 0, height = 0;
@@ -33,4 +33,4 @@ std::string encode_png(const PngPixels& picture, const PngMeta& meta);
 // Palette, grey below 8 bits and grey itself become RGB; alpha stays; 16 bits stay 16.
 PngPixels decode_png(std::string_view bytes, const std::string& file);
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -6,7 +6,7 @@
 
 #include <csetjmp>
 
-namespace kdray::film {
+namespace kdray::image {
 
 // State is what the error pointer points to; it has a string `error`.
 template <class State>
@@ -17,4 +17,4 @@ template <class State>
 
 inline void ignore_warning(png_structp, png_const_charp) {}
 
-}  // namespace kdray::film
+}  // namespace kdray::image

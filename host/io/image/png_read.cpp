@@ -10,7 +10,7 @@
 #include "io/image/png.h"
 #include "io/image/png_errors.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 constexpr double kDeflateLimit = 1032;
@@ -104,4 +104,4 @@ PngPixels decode_png(std::string_view bytes, const std::string& file) {
   return unpack(reader, raw);
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

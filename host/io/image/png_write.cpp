@@ -8,7 +8,7 @@
 #include "io/image/png.h"
 #include "io/image/png_errors.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 struct Sink {
@@ -93,4 +93,4 @@ std::string encode_png(const PngPixels& picture, const PngMeta& meta) {
   return std::move(sink.bytes);
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kdray::film {
+namespace kdray::image {
 
 namespace {
 
@@ -38,4 +38,4 @@ std::array<std::uint8_t, 3> queue_color(std::size_t queue) {
                 queue % 3 == 0 ? 0.75 : 0.95);
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

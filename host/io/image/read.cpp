@@ -12,7 +12,7 @@
 #include "io/image/png.h"
 #include "io/image/transfer.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace fs = std::filesystem;
 namespace {
 
@@ -63,4 +63,4 @@ Image read_picture(const fs::path& file, const Transfer& transfer) {
   return to_linear(decode_png(bytes, file.string()), transfer);
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

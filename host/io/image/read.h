@@ -8,8 +8,8 @@
 #include "io/image/image.h"
 #include "io/image/write.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 Image read_picture(const std::filesystem::path& file, const Transfer& transfer);
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 void check(const Transfer& transfer) {
   if (!transfer.srgb && !(transfer.gamma > 0 && std::isfinite(transfer.gamma)))
@@ -50,4 +50,4 @@ std::uint32_t Quantizer::operator()(float linear) const {
   return static_cast<std::uint32_t>(std::upper_bound(first, last, linear) - begin_.data());
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

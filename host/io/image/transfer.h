@@ -10,7 +10,7 @@
 
 #include "io/image/write.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 double encode(const Transfer& transfer, double linear);   // linear -> display
 double decode(const Transfer& transfer, double display);  // display -> linear
@@ -33,4 +33,4 @@ class Quantizer {
   std::vector<std::uint32_t> bucket_code_;  // the code of the value b / kBuckets, b = 0 .. kBuckets
 };
 
-}  // namespace kdray::film
+}  // namespace kdray::image

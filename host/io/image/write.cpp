@@ -10,7 +10,7 @@
 #include "io/image/png.h"
 #include "io/image/transfer.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace fs = std::filesystem;
 namespace {
 
@@ -106,4 +106,4 @@ std::vector<fs::path> picture_files(const fs::path& file, std::span<const std::s
   return files;
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

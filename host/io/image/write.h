@@ -14,7 +14,7 @@
 #include "io/image/format.h"
 #include "io/image/image.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 using kdray::write_atomically;
 
@@ -55,4 +55,4 @@ std::vector<std::filesystem::path> picture_files(const std::filesystem::path& fi
                                                  std::span<const std::string> channels,
                                                  const WriteOptions& options);
 
-}  // namespace kdray::film
+}  // namespace kdray::image

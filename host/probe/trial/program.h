@@ -9,7 +9,7 @@
 
 namespace kdray::trial {
 
-// To be called by a program that does trials itself when it is told so (asked.h).
+// To be called by a program that does trials itself when it is told so (request.h).
 void this_program_tries();
 
 // This program, if it does trials; else the one that KDRAY_PROGRAM names; else `kdray`: beside the running

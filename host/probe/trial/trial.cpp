@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "probe/trial/asked.h"
 #include "probe/trial/program.h"
+#include "probe/trial/request.h"
 
 namespace kdray::trial {
 

@@ -1,6 +1,6 @@
 // What    A trial: a driver is asked for its devices, a device takes the self-test, in a child process that
 //         may crash or hang without harm.
-// Shape   The child reports first that it has begun, then what came of it (asked.h). What it leaves unsaid
+// Shape   The child reports first that it has begun, then what came of it (request.h). What it leaves unsaid
 //         is read off its end.
 #pragma once
 

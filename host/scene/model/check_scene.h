@@ -1,4 +1,4 @@
-// What    Holds a scene from any importer against what scene.h promises, so that no later room has to.
+// What    Holds a scene from any importer against what scene.h promises, so that no later module has to.
 // Errors  check_scene throws kdray::Error: ErrorCode::input for values a file can be at fault for (not
 //         finite, out of range, too many), ErrorCode::internal for indices, which only an importer can get
 //         wrong.

@@ -69,7 +69,7 @@ bool worth_keeping(std::uint64_t primitives, std::uint64_t copies) {
 
 namespace {
 
-void check_room(const Scene& mesh, const Scene& scene) {
+void check_capacity(const Scene& mesh, const Scene& scene) {
   if (std::uint64_t{scene.primitive_count()} + mesh.primitive_count() >= KDRAY_REF_INDEX_MASK ||
       scene.vertices.size() + mesh.vertices.size() >= kNone ||
       scene.normals.size() + mesh.normals.size() >= kNone)
@@ -86,7 +86,7 @@ dmat4 matrix_of(const Instance& instance) {
 }  // namespace
 
 void add_copy(const Scene& mesh, const Instance& instance, Scene& scene) {
-  check_room(mesh, scene);
+  check_capacity(mesh, scene);
   Scene part;
   part.vertices = mesh.vertices;
   part.normals = mesh.normals;

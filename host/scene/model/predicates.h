@@ -20,7 +20,7 @@ namespace exact {
 
 // A number as the exact sum of doubles that don't overlap, smallest first; zeros are left out. It has room
 // for as many as are added.
-template <int kRoom>
+template <int kCapacity>
 class Expansion {
  public:
   void add(double value) {
@@ -49,7 +49,7 @@ class Expansion {
   const double* end() const { return part_.data() + size_; }
 
  private:
-  std::array<double, kRoom> part_;
+  std::array<double, kCapacity> part_;
   int size_ = 0;
 };
 

@@ -36,7 +36,7 @@ std::uint8_t byte_of(std::uint32_t sample, int bits) {
 // The size stands at bytes 16 to 23 of every PNG.
 Picture decode_png(std::string_view bytes, const std::string& name) {
   if (bytes.size() >= 24) check_size(big_endian(bytes, 16), big_endian(bytes, 20), name);
-  const film::PngPixels png = film::decode_png(bytes, name);
+  const image::PngPixels png = image::decode_png(bytes, name);
   Picture picture =
       blank_picture(name, static_cast<std::uint32_t>(png.width), static_cast<std::uint32_t>(png.height));
   const auto step = static_cast<std::size_t>(png.channels);

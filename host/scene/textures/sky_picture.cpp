@@ -28,7 +28,7 @@ SkyPicture decode_eight_bits(std::string_view bytes, const std::string& name,
 
 SkyPicture decode_exr_sky(std::string_view bytes, const std::string& name,
                           std::vector<std::string>& warnings) {
-  const film::Image image = film::decode_exr(bytes, name, kMostTexels);
+  const image::Image image = image::decode_exr(bytes, name, kMostTexels);
   SkyPicture sky{name, static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), {}};
   check_sky_size(sky.width, sky.height, name);
   sky.rgb.reserve(3 * image.pixels.size());

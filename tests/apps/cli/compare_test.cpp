@@ -15,9 +15,9 @@ using Json = nlohmann::json;
 
 // 10 x 10 of 0.25 grey; `changed` pixels are 0.75.
 fs::path picture(const Folder& folder, const std::string& name, int changed, int height = 10) {
-  film::Image image{10, height, std::vector<vec3>(static_cast<std::size_t>(10 * height), vec3(0.25f))};
+  image::Image image{10, height, std::vector<vec3>(static_cast<std::size_t>(10 * height), vec3(0.25f))};
   for (int i = 0; i < changed; ++i) image.pixels[static_cast<std::size_t>(i)] = vec3(0.75f);
-  film::write_picture(folder / name, image, {}, {});
+  image::write_picture(folder / name, image, {}, {});
   return folder / name;
 }
 
@@ -58,10 +58,10 @@ TEST(CompareCommand, TheLimitDecidesTheExitCode) {
 TEST(CompareCommand, AlphaIsTakenIntoAccount) {
   const Folder folder;
   const fs::path opaque = picture(folder, "a.png", 0);
-  film::Image clear = film::read_picture(opaque, {});
+  image::Image clear = image::read_picture(opaque, {});
   clear.alpha.assign(100, 1.0f);
   clear.alpha[7] = 0, clear.pixels[7] = vec3(0);
-  film::write_picture(folder / "b.png", clear, {}, {});
+  image::write_picture(folder / "b.png", clear, {}, {});
   const Json d = Json::parse(kdray({"compare", opaque, folder / "b.png", "--json"}).out);
   EXPECT_EQ(d["max"], 1.0);
   EXPECT_EQ(d["differing_share"], 0.01);
@@ -69,10 +69,11 @@ TEST(CompareCommand, AlphaIsTakenIntoAccount) {
 
 TEST(CompareCommand, GammaChangesHowAPngIsRead) {
   const Folder folder;
-  film::Image image{2, 1, {vec3(0), vec3(1)}};
-  film::Image grey{2, 1, {vec3(0), vec3(0.5f)}};
-  film::write_picture(folder / "a.png", image, {}, {.transfer = {.srgb = false, .gamma = 1}, .png_bits = 16});
-  film::write_picture(folder / "b.png", grey, {}, {.transfer = {.srgb = false, .gamma = 1}, .png_bits = 16});
+  image::Image image{2, 1, {vec3(0), vec3(1)}};
+  image::Image grey{2, 1, {vec3(0), vec3(0.5f)}};
+  image::write_picture(folder / "a.png", image, {},
+                       {.transfer = {.srgb = false, .gamma = 1}, .png_bits = 16});
+  image::write_picture(folder / "b.png", grey, {}, {.transfer = {.srgb = false, .gamma = 1}, .png_bits = 16});
   const auto max = [&](const std::string& gamma) -> double {
     return Json::parse(
         kdray({"compare", folder / "a.png", folder / "b.png", "--json", "--gamma", gamma}).out)["max"];
@@ -86,7 +87,7 @@ TEST(CompareCommand, TheHeatMapShowsWhere) {
   const Folder folder;
   const fs::path a = picture(folder, "a.png", 0), b = picture(folder, "b.png", 1);
   ASSERT_TRUE(succeeds(kdray({"compare", a, b, "--diff", folder / "d.png"})));
-  const film::Image map = film::read_picture(folder / "d.png", {});
+  const image::Image map = image::read_picture(folder / "d.png", {});
   ASSERT_EQ(map.pixels.size(), 100u);
   EXPECT_GT(map.pixels[0].x + map.pixels[0].y, 0.5f);
   EXPECT_LT(map.pixels[50].x + map.pixels[50].y, 0.5f);

@@ -1,5 +1,6 @@
 // What    mpirun kdray render: pictures of any number of ranks and queues have the bytes of one process's;
-//         one rank speaks; a rank that fails ends the job with one line; a ledger goes on with other ranks.
+//         one rank speaks; a rank that fails ends the job with one line; a checkpoint goes on with other
+//         ranks.
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -109,13 +110,13 @@ TEST_F(MpirunTest, PicturesAreTheSameForAnyNumberOfRanks) {
   }
 }
 
-TEST_F(MpirunTest, TheSceneDividedWithChannelsAndALedger) {
+TEST_F(MpirunTest, TheSceneDividedWithChannelsAndACheckpoint) {
   const std::string scene = folder / "balls.nff";
   ASSERT_TRUE(succeeds(kdray({"generate", "balls", "--size", "3", "-o", scene})));
   const Arguments sampled{"--size", "120x90", "--samples", "adaptive:0.02", "--mode", "odprt"};
-  const std::string whole = alone(scene, sampled), ledger = folder / "ledger";
+  const std::string whole = alone(scene, sampled), checkpoint = folder / "checkpoint";
   Arguments kept = sampled;
-  kept.insert(kept.end(), {"--checkpoint", ledger, "--resume", "--checkpoint-every", "0.05"});
+  kept.insert(kept.end(), {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.05"});
   EXPECT_EQ(together(3, scene, kept), whole);
   EXPECT_EQ(together(2, scene, kept), whole);
   EXPECT_EQ(told()["ledger"]["rendered"], 0);
@@ -147,15 +148,16 @@ TEST_F(MpirunTest, SharesOfTheScene) {
   }
 }
 
-// One process begins a ledger with the whole scene, ranks go on from it with shares, and the other way round.
-TEST_F(MpirunTest, LedgersOfSharesAndOfWholeScenes) {
+// One process begins a checkpoint with the whole scene, ranks go on from it with shares, and the other way
+// round.
+TEST_F(MpirunTest, CheckpointsOfSharesAndOfWholeScenes) {
   const std::string scene = folder.put("ball.ply", ball_ply(30, {.colors = true})).string();
   const Arguments size{"--size", "200x150", "--samples", "4"};
-  const std::string whole = alone(scene, size), ledger = folder / "ledger";
-  const Arguments kept = with(size, {"--checkpoint", ledger, "--resume", "--checkpoint-every", "0.05"});
+  const std::string whole = alone(scene, size), checkpoint = folder / "checkpoint";
+  const Arguments kept = with(size, {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.05"});
   const Arguments in_shares = with(kept, {"--mode", "odprt", "--hold", "shares"});
   const auto lose_some = [&] {
-    for (const auto& entry : fs::directory_iterator(ledger))
+    for (const auto& entry : fs::directory_iterator(checkpoint))
       if (entry.path().extension() == ".tiles")
         fs::resize_file(entry.path(), fs::file_size(entry.path()) * 2 / 5);
   };
@@ -219,15 +221,15 @@ TEST_F(MpirunTest, AdaptiveSamplingSequencesAndCaches) {
   }
 }
 
-TEST_F(MpirunTest, ALedgerGoesOnWithOtherRanks) {
+TEST_F(MpirunTest, ACheckpointGoesOnWithOtherRanks) {
   const std::string scene = folder.put("ball.nff", kSphereOnSquare);
   const Arguments size{"--size", "300x200", "--samples", "4"};
-  const std::string whole = alone(scene, size), ledger = folder / "ledger";
-  const Arguments kept{"--size", "300x200",  "--samples",          "4",   "--checkpoint",
-                       ledger,   "--resume", "--checkpoint-every", "0.05"};
+  const std::string whole = alone(scene, size), checkpoint = folder / "checkpoint";
+  const Arguments kept{"--size",   "300x200",  "--samples",          "4",   "--checkpoint",
+                       checkpoint, "--resume", "--checkpoint-every", "0.05"};
   EXPECT_EQ(together(3, scene, kept), whole);
   EXPECT_EQ(told()["ledger"]["found"], 0);
-  for (const auto& entry : fs::directory_iterator(ledger))
+  for (const auto& entry : fs::directory_iterator(checkpoint))
     if (entry.path().extension() == ".tiles")
       fs::resize_file(entry.path(), fs::file_size(entry.path()) * 2 / 5);
   EXPECT_EQ(together(2, scene, kept), whole);
@@ -274,9 +276,9 @@ TEST_F(MpirunTest, WhateverRankIsKilledTheNextRunGoesOn) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     const auto pick = [&](int lo, int hi) { return std::uniform_int_distribution(lo, hi)(random); };
-    fs::remove_all(folder / "ledger");
+    fs::remove_all(folder / "checkpoint");
     Arguments kept = size;
-    kept.insert(kept.end(), {"--checkpoint", folder / "ledger", "--resume", "--checkpoint-every", "0.1",
+    kept.insert(kept.end(), {"--checkpoint", folder / "checkpoint", "--resume", "--checkpoint-every", "0.1",
                              "--mode", pick(0, 1) == 0 ? "pdprt" : "odprt"});
     {
       auto environment = mpirun_environment();

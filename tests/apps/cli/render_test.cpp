@@ -15,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-film::Image read(const fs::path& file) {
-  return film::read_picture(file, {});
+image::Image read(const fs::path& file) {
+  return image::read_picture(file, {});
 }
 
 TEST(RenderCommand, WritesAPictureNamedAfterTheSceneInTheCurrentFolder) {
@@ -29,7 +29,7 @@ TEST(RenderCommand, WritesAPictureNamedAfterTheSceneInTheCurrentFolder) {
   EXPECT_TRUE(run.out.empty()) << run.out;
   EXPECT_NE(run.err.find("ball.png"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("Mrays/s"), std::string::npos) << run.err;
-  const film::Image picture = read(folder / "ball.png");
+  const image::Image picture = read(folder / "ball.png");
   EXPECT_EQ(picture.width, 48);
   EXPECT_EQ(picture.height, 32);
   EXPECT_EQ(folder.n_entries(), 2u);  // nothing is left beside the picture
@@ -42,7 +42,7 @@ TEST(RenderCommand, TheSameOptionsInBothFormatsGiveTheSamePicture) {
   ASSERT_TRUE(succeeds(kdray({"render", scene, "--size=40x30", "-o", folder / "a.exr", "-q"})));
   ASSERT_TRUE(
       succeeds(kdray({"render", scene, "--size", "40x30", "-o", folder / "b.png", "--bits", "16", "-q"})));
-  const film::Image exr = read(folder / "a.exr"), png = read(folder / "b.png");
+  const image::Image exr = read(folder / "a.exr"), png = read(folder / "b.png");
   ASSERT_EQ(exr.pixels.size(), 1200u);
   ASSERT_EQ(png.pixels.size(), 1200u);
   for (std::size_t i = 0; i < exr.pixels.size(); ++i)

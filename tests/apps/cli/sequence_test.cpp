@@ -80,8 +80,8 @@ TEST_F(SequenceTest, ProcessesThatShareAFolderMakeAllFrames) {
   Arguments alone{"-o", folder / "a%d.png"};
   alone.insert(alone.end(), frames.begin(), frames.end());
   ASSERT_TRUE(succeeds(render(alone)));
-  Arguments shared{"render",           scene,     "--size",         "120x80", "-o",
-                   folder / "b%d.png", "--share", folder / "ledger"};
+  Arguments shared{
+      "render", scene, "--size", "120x80", "-o", folder / "b%d.png", "--share", folder / "checkpoint"};
   shared.insert(shared.end(), frames.begin(), frames.end());
   std::vector<Running> runs;
   for (int i = 0; i < 3; ++i) runs.emplace_back(shared, folder / "log");
@@ -103,30 +103,30 @@ TEST_F(SequenceTest, ProcessesThatShareAFolderMakeAllFrames) {
 // The same records twice are no fault; one whose sums differ is, however right its checksums are.
 TEST_F(SequenceTest, AMachineThatComputesWronglyIsToldOf) {
   KDRAY_NEED_DEVICE();
-  const Arguments share{"-o", folder / "a.png", "--share", folder / "ledger"};
+  const Arguments share{"-o", folder / "a.png", "--share", folder / "checkpoint"};
   ASSERT_TRUE(succeeds(render(share)));
-  for (const auto& entry : fs::directory_iterator(folder / "ledger"))
-    if (entry.path().extension() == ".tiles") fs::copy_file(entry.path(), folder / "ledger/copy.tiles");
+  for (const auto& entry : fs::directory_iterator(folder / "checkpoint"))
+    if (entry.path().extension() == ".tiles") fs::copy_file(entry.path(), folder / "checkpoint/copy.tiles");
   EXPECT_TRUE(succeeds(render(share)));
-  const std::string good = folder.get("ledger/copy.tiles");
-  std::string wrong = good.substr(0, ledger::kHeaderBytes);
-  const Hash frame = ledger::header_of(good)->frame();
-  const auto head = ledger::head_of(std::string_view(good).substr(ledger::kHeaderBytes), frame);
+  const std::string good = folder.get("checkpoint/copy.tiles");
+  std::string wrong = good.substr(0, checkpoint::kHeaderBytes);
+  const Hash frame = checkpoint::header_of(good)->frame();
+  const auto head = checkpoint::head_of(std::string_view(good).substr(checkpoint::kHeaderBytes), frame);
   ASSERT_TRUE(head);
-  std::vector<layout::i64> sums(head->piece.places.sums());
-  std::memcpy(sums.data(), good.data() + ledger::kHeaderBytes + ledger::kRecordHead, sums.size() * 8);
+  std::vector<layout::i64> sums(head->id.places.sums());
+  std::memcpy(sums.data(), good.data() + checkpoint::kHeaderBytes + checkpoint::kRecordHead, sums.size() * 8);
   ++sums.back();  // by 2^-36
-  ledger::append_record(wrong, frame, head->piece, sums, ledger::hash_of_sums(sums));
-  folder.put("ledger/wrong.tiles", wrong);
+  checkpoint::append_record(wrong, frame, head->id, sums, checkpoint::hash_of_sums(sums));
+  folder.put("checkpoint/wrong.tiles", wrong);
   EXPECT_TRUE(fails_with(render(share), 1, "was made twice, and the results differ: by "));
 }
 
 TEST_F(SequenceTest, RestartsEndWithTheRunsOwnCode) {
   KDRAY_NEED_DEVICE();
   EXPECT_TRUE(
-      succeeds(render({"-o", folder / "a.png", "--checkpoint", folder / "ledger", "--restarts", "3"})));
-  EXPECT_TRUE(fails_with(render({"--checkpoint", folder / "ledger", "--restarts=3"}), 2, "--resume"));
-  EXPECT_TRUE(succeeds(render({"--checkpoint", folder / "ledger", "--restarts=3", "--resume"})));
+      succeeds(render({"-o", folder / "a.png", "--checkpoint", folder / "checkpoint", "--restarts", "3"})));
+  EXPECT_TRUE(fails_with(render({"--checkpoint", folder / "checkpoint", "--restarts=3"}), 2, "--resume"));
+  EXPECT_TRUE(succeeds(render({"--checkpoint", folder / "checkpoint", "--restarts=3", "--resume"})));
 }
 
 TEST_F(SequenceTest, WhatMakesNoSequence) {

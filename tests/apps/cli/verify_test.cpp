@@ -131,7 +131,7 @@ TEST(VerifyCommand, WritesAPictureOfItsSize) {
                              {"-o", picture, "--size", "400x300"});
   ASSERT_TRUE(succeeds(run));
   EXPECT_NE(run.err.find("where.png; red: open edges\n"), std::string::npos) << run.err;
-  const film::Image image = film::read_picture(picture, {});
+  const image::Image image = image::read_picture(picture, {});
   EXPECT_EQ(image.width, 400);
   EXPECT_EQ(image.height, 300);
   int red = 0;

@@ -20,21 +20,21 @@ constexpr double kPi = 3.141592653589793;
 struct ViewTest : testing::Test {
   void SetUp() override { KDRAY_NEED_DEVICE(); }
   Folder folder;
-  film::Image rendered(const std::string& scene, const std::vector<std::string>& options = {},
-                       const std::string& size = "64x64") const {
+  image::Image rendered(const std::string& scene, const std::vector<std::string>& options = {},
+                        const std::string& size = "64x64") const {
     std::vector<std::string> arguments = {"render", folder / scene, "-o", folder / "out.exr",
                                           "-q",     "--size",       size};
     arguments.insert(arguments.end(), options.begin(), options.end());
     EXPECT_TRUE(succeeds(kdray(arguments)));
-    return film::read_picture(folder / "out.exr", {});
+    return image::read_picture(folder / "out.exr", {});
   }
 };
 
-bool same_bits(const film::Image& a, const film::Image& b) {
+bool same_bits(const image::Image& a, const image::Image& b) {
   return a.pixels == b.pixels && a.alpha == b.alpha;
 }
 
-double mean_alpha(const film::Image& image) {
+double mean_alpha(const image::Image& image) {
   double sum = 0;
   for (const float a : image.alpha) sum += a;
   return sum / static_cast<double>(image.alpha.size());
@@ -56,7 +56,7 @@ TEST_F(ViewTest, OptionsAreTheFilesCamera) {
   const std::string own = "from 0 -6 3\nat 0 0 1\nup 0 0 1\nangle 40\n";
   other.replace(other.find(own), own.size(), "from -3 4 2.5\nat 0.5 0 0\nup 1 0 1\nangle 55\n");
   folder.put("b.nff", other);
-  const film::Image wanted = rendered("b.nff");
+  const image::Image wanted = rendered("b.nff");
   EXPECT_TRUE(same_bits(
       rendered("a.nff", {"--from", "-3,4,2.5", "--at=0.5,0,0", "--up", "1,0,1", "--fov", "55"}), wanted));
   EXPECT_FALSE(same_bits(rendered("a.nff"), wanted));
@@ -66,17 +66,17 @@ TEST_F(ViewTest, UpAloneIsAsIfTheMeshWereTurned) {
   folder.put("y.obj", wedge([](const dvec3& v) { return v; }));
   folder.put("z.obj", wedge([](const dvec3& v) { return dvec3(v.x, -v.z, v.y); }));
   folder.put("down.obj", wedge([](const dvec3& v) { return dvec3(v.x, -v.y, -v.z); }));
-  const film::Image upright = rendered("y.obj");
+  const image::Image upright = rendered("y.obj");
   EXPECT_TRUE(same_bits(rendered("y.obj", {"--up", "y"}), upright));
-  EXPECT_LT(film::compare(rendered("z.obj", {"--up", "z"}), upright).rmse, 1e-3);
-  EXPECT_LT(film::compare(rendered("down.obj", {"--up", "-y"}), upright).rmse, 1e-3);
-  EXPECT_GT(film::compare(rendered("z.obj"), upright).rmse, 0.02) << "nothing was turned";
+  EXPECT_LT(image::compare(rendered("z.obj", {"--up", "z"}), upright).rmse, 1e-3);
+  EXPECT_LT(image::compare(rendered("down.obj", {"--up", "-y"}), upright).rmse, 1e-3);
+  EXPECT_GT(image::compare(rendered("z.obj"), upright).rmse, 0.02) << "nothing was turned";
 }
 
 TEST_F(ViewTest, LightsThatTheFileLacksFollowTheCamera) {
   folder.put("y.obj", wedge([](const dvec3& v) { return v; }));
   for (const char* const from : {"9,1,0", "-9,1,0", "0,1,9", "0,1,-9", "1,-9,1"}) {
-    const film::Image image = rendered("y.obj", {"--from", from, "--background", "transparent"});
+    const image::Image image = rendered("y.obj", {"--from", from, "--background", "transparent"});
     ASSERT_GT(mean_alpha(image), 0.01) << from;
     double brightest = 0;
     for (const vec3& p : image.pixels) brightest = std::max<double>(brightest, p.x);
@@ -89,22 +89,23 @@ TEST_F(ViewTest, ASphereInParallelRaysCoversItsCircle) {
              "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nresolution 64 64\nf 1 1 1 1 0 1 0 0\ns 0 0 0 1\n");
   const double circle = kPi / 16;
   for (const char* const from : {"0,0,5", "0,0,1.5", "0,0,100"}) {
-    const film::Image image =
+    const image::Image image =
         rendered("s.nff", {"--ortho", "4", "--from", from, "--samples", "64", "--background", "transparent"});
     EXPECT_NEAR(mean_alpha(image), circle, 0.002) << from;
     for (const float a : image.alpha) EXPECT_EQ(a * 64, std::round(a * 64)) << "no whole number of samples";
   }
   // As wide as the scene needs: 2, and a margin of a twentieth.
-  const film::Image fitted = rendered("s.nff", {"--samples", "64", "--background", "transparent", "--ortho"});
+  const image::Image fitted =
+      rendered("s.nff", {"--samples", "64", "--background", "transparent", "--ortho"});
   EXPECT_NEAR(mean_alpha(fitted), kPi / 4 / (1.05 * 1.05), 0.002);
   // Higher than wide: it is the width then that has to show all.
-  const film::Image high = rendered("s.nff", {"--background", "transparent", "--ortho"}, "32x128");
+  const image::Image high = rendered("s.nff", {"--background", "transparent", "--ortho"}, "32x128");
   EXPECT_NEAR(mean_alpha(high), kPi / 16 / (1.05 * 1.05), 0.01);
 }
 
 TEST_F(ViewTest, ParallelRaysAreTheSameInEveryMode) {
   folder.put("a.nff", kSphereOnSquare);
-  const film::Image plain = rendered("a.nff", {"--ortho"});
+  const image::Image plain = rendered("a.nff", {"--ortho"});
   EXPECT_FALSE(same_bits(plain, rendered("a.nff")));
   for (const std::vector<std::string>& mode : {std::vector<std::string>{"--mode=odprt", "--queues=2"},
                                                {"--traversal=binary"},
@@ -133,7 +134,7 @@ TEST_F(ViewTest, CamerasAreChosenByNumber) {
   };
   folder.put("a.gltf", with_nodes(0, 1));
   folder.put("b.gltf", with_nodes(1, 0));
-  const film::Image first = rendered("a.gltf"), second = rendered("b.gltf");
+  const image::Image first = rendered("a.gltf"), second = rendered("b.gltf");
   EXPECT_FALSE(same_bits(first, second));
   EXPECT_TRUE(same_bits(rendered("a.gltf", {"--camera", "0"}), first));
   EXPECT_TRUE(same_bits(rendered("a.gltf", {"--camera", "1"}), second));
@@ -144,8 +145,8 @@ TEST_F(ViewTest, CamerasAreChosenByNumber) {
 // What is over the background is what the opaque picture shows.
 TEST_F(ViewTest, ATransparentPictureOverItsBackgroundIsTheOpaqueOne) {
   folder.put("a.nff", kSphereOnSquare);  // its background is 0.1, 0.2, 0.4
-  const film::Image opaque = rendered("a.nff", {"--samples", "4"});
-  const film::Image clear = rendered("a.nff", {"--samples", "4", "--background", "transparent"});
+  const image::Image opaque = rendered("a.nff", {"--samples", "4"});
+  const image::Image clear = rendered("a.nff", {"--samples", "4", "--background", "transparent"});
   ASSERT_EQ(clear.alpha.size(), opaque.pixels.size());
   std::size_t n_clear = 0, n_partly = 0;
   for (std::size_t i = 0; i < clear.pixels.size(); ++i) {
@@ -160,7 +161,7 @@ TEST_F(ViewTest, ATransparentPictureOverItsBackgroundIsTheOpaqueOne) {
   EXPECT_GT(n_partly, 10u);
   ASSERT_TRUE(
       succeeds(kdray({"render", folder / "a.nff", "-o", folder / "a.png", "--background", "transparent"})));
-  EXPECT_EQ(film::read_picture(folder / "a.png", {}).alpha.size(), 48u * 32u);
+  EXPECT_EQ(image::read_picture(folder / "a.png", {}).alpha.size(), 48u * 32u);
 }
 
 TEST_F(ViewTest, TheBackgroundIsTheColourAskedFor) {
@@ -170,8 +171,8 @@ TEST_F(ViewTest, TheBackgroundIsTheColourAskedFor) {
       succeeds(kdray({"render", folder / "a.nff", "-o", folder / "a.png", "--background", "#2080fF"})));
   ASSERT_TRUE(
       succeeds(kdray({"render", folder / "a.nff", "-o", folder / "b.png", "--background", "0.014,0.216,1"})));
-  const film::Image a = film::read_picture(folder / "a.png", {}),
-                    b = film::read_picture(folder / "b.png", {});
+  const image::Image a = image::read_picture(folder / "a.png", {}),
+                     b = image::read_picture(folder / "b.png", {});
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.pixels[0][c], b.pixels[0][c], 0.005f);
 }
 

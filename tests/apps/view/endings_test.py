@@ -85,14 +85,14 @@ class Busy(threading.Thread):
 
     def run(self):
         try:
-            self.page.hear_until("scene")
+            self.page.receive_until("scene")
             while True:
                 for _ in range(self.random.randrange(6)):
                     self.page.look(True, width=self.random.randrange(16, 900))
-                    self.frames += self.page.hear().get("type") == "frame"
+                    self.frames += self.page.receive().get("type") == "frame"
                 self.page.look(False, width=self.random.randrange(16, 900))
                 if self.random.random() < 0.3:
-                    self.page.hear_until("final")
+                    self.page.receive_until("final")
         except (OSError, ConnectionError, TimeoutError):
             pass
 

@@ -1,4 +1,4 @@
-// What    Clients that mean harm, or are broken: whatever they do, a page that behaves goes on being heard,
+// What    Clients that mean harm, or are broken: whatever they do, a page that behaves goes on being served,
 //         and memory stays bounded.
 // Shape   The random tests print their seed; KDRAY_FUZZ says how many messages there are to be: 100000 were
 //         run, also under the address sanitizer (ASAN_OPTIONS=quarantine_size_mb=8: what was freed counts).
@@ -24,8 +24,7 @@ int n_messages() {
   return given ? std::atoi(given) : 3000;
 }
 
-// A busy machine may take its time to say what it has to say. (`request` is also what a farewell is waited
-// for.)
+// A busy machine may answer late. (`request` is also how long a close frame is waited for.)
 view::Limits patient() {
   view::Limits limits;
   limits.request = 5s;
@@ -37,10 +36,10 @@ struct Hostile : Served {
   explicit Hostile(const view::Limits& limits = patient()) : Served(limits) {}
 
   // The good page still is.
-  void expect_heard(Client& good) {
-    const int before = counter.heard;
+  void expect_served(Client& good) {
+    const int before = counter.n_received;
     ASSERT_TRUE(good.send(ws_frame(kLook)));
-    EXPECT_TRUE(comes_true([&] { return counter.heard > before; })) << "the good client is disturbed";
+    EXPECT_TRUE(comes_true([&] { return counter.n_received > before; })) << "the good client is disturbed";
   }
 };
 
@@ -88,7 +87,7 @@ TEST_F(Hostile, FuzzedRequests) {
   const auto seed = std::random_device()();
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   Mangler mangler(seed);
-  const auto good = enter();
+  const auto good = connect();
   const long before = resident_kib();
   for (int i = 0; i < n_messages() / 2; ++i) {
     Client client(port());
@@ -97,7 +96,7 @@ TEST_F(Hostile, FuzzedRequests) {
     client.send(mangler.below(10) == 0 ? mangler.noise(12000) : mangler.mangled(whole));
     if (mangler.below(50) == 0) client.read_until("\r\n", 0.02);
   }
-  expect_heard(*good);
+  expect_served(*good);
   EXPECT_LT(resident_kib() - before, 64 * 1024);
 }
 
@@ -105,7 +104,7 @@ TEST_F(Hostile, FuzzedWebSockets) {
   const auto seed = std::random_device()();
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   Mangler mangler(seed);
-  const auto good = enter();
+  const auto good = connect();
   const long before = resident_kib();
   const std::string hello = ws_frame(R"({"type":"hello","token":")" + token() + "\"}");
   for (int i = 0; i < n_messages() / 2;) {
@@ -134,12 +133,12 @@ TEST_F(Hostile, FuzzedWebSockets) {
       there = there && mangler.below(3) != 0;
     }
   }
-  expect_heard(*good);
+  expect_served(*good);
   EXPECT_LT(resident_kib() - before, 64 * 1024);
 }
 
 TEST_F(Hostile, WhatIsTooLargeIsNotTaken) {
-  const auto good = enter();
+  const auto good = connect();
   Client head(port());
   head.send("GET / HTTP/1.1\r\nHost: " + host() + "\r\nX: " + std::string(100000, 'x') + "\r\n\r\n");
   EXPECT_TRUE(head.is_closed());
@@ -151,20 +150,20 @@ TEST_F(Hostile, WhatIsTooLargeIsNotTaken) {
   for (int i = 0; i < 20000 && endless.send("X: y\r\n"); ++i) {
   }
   EXPECT_TRUE(endless.is_closed());
-  const auto text = enter();
+  const auto text = connect();
   text->send(ws_frame(std::string(100000, ' ')));
   EXPECT_TRUE(text->is_closed());
   // Of 2^63 bytes, as it says.
-  const auto huge = enter();
+  const auto huge = connect();
   huge->send(std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xffmask", 14));
   EXPECT_TRUE(huge->is_closed());
   // Never the last of its fragments.
-  const auto pieces = enter();
+  const auto pieces = connect();
   pieces->send(std::string("\x01\x81\0\0\0\0{", 7));
   for (int i = 0; i < 5000 && pieces->send(std::string("\0\x81\0\0\0\0 ", 7)); ++i) {
   }
   EXPECT_TRUE(pieces->is_closed());
-  expect_heard(*good);
+  expect_served(*good);
 }
 
 // Limits that a test can wait for.
@@ -193,17 +192,17 @@ TEST_F(Impatient, AHundredIdleClients) {
 }
 
 TEST_F(Hostile, AHundredIdleClientsDisturbNobody) {
-  const auto good = enter();
+  const auto good = connect();
   std::vector<std::unique_ptr<Client>> idle;
   for (int i = 0; i < 100; ++i) idle.push_back(std::make_unique<Client>(port()));
-  expect_heard(*good);
-  const auto another = enter();
-  expect_heard(*another);
+  expect_served(*good);
+  const auto another = connect();
+  expect_served(*another);
 }
 
 TEST_F(Hostile, AClientThatNeverReads) {
-  const auto good = enter();
-  const auto deaf = enter();
+  const auto good = connect();
+  const auto deaf = connect();
   counter.frame = std::string(4 << 20, 'x');
   const long before = resident_kib();
   bool there = true;
@@ -213,39 +212,39 @@ TEST_F(Hostile, AClientThatNeverReads) {
   }
   // 800 MB were for it.
   EXPECT_LT(resident_kib() - before, 160 * 1024);
-  EXPECT_TRUE(comes_true([&] { return counter.n_there() == 1; })) << "it was left";
+  EXPECT_TRUE(comes_true([&] { return counter.n_clients() == 1; })) << "it was disconnected";
   {
     const std::lock_guard lock(counter.mutex);
     counter.frame.clear();
   }
-  expect_heard(*good);
+  expect_served(*good);
 }
 
 TEST_F(Hostile, PagesHaveALimit) {
   std::vector<std::unique_ptr<Client>> pages;
   const std::size_t most = view::Limits{}.pages;
-  for (std::size_t i = 0; i < most; ++i) pages.push_back(enter());
+  for (std::size_t i = 0; i < most; ++i) pages.push_back(connect());
   Client more(port());
   more.upgrade(page());
   more.send(ws_frame(R"({"type":"hello","token":")" + token() + "\"}"));
   EXPECT_TRUE(more.is_closed());
-  EXPECT_EQ(counter.n_there(), most);
+  EXPECT_EQ(counter.n_clients(), most);
   pages.pop_back();
-  EXPECT_TRUE(comes_true([&] { return counter.n_there() == most - 1; }));
-  enter();
+  EXPECT_TRUE(comes_true([&] { return counter.n_clients() == most - 1; }));
+  connect();
 }
 
 // A machine that is gone doesn't say so.
-TEST_F(Impatient, APageThatDoesntAnswerPingsIsLeft) {
+TEST_F(Impatient, APageThatDoesntAnswerPingsIsDisconnected) {
   std::unique_ptr<Client> silent;
   EXPECT_TRUE(comes_true([&] {  // it has a second for its first words
     silent = std::make_unique<Client>(port());
     return silent->upgrade(page()) &&
            silent->send(ws_frame(R"({"type":"hello","token":")" + token() + "\"}")) &&
-           !silent->read_until("welcome").empty() && counter.entered > 0;
+           !silent->read_until("welcome").empty() && counter.n_connected > 0;
   }));
   EXPECT_TRUE(silent->is_closed());
-  EXPECT_TRUE(comes_true([&] { return counter.n_there() == 0; }));
+  EXPECT_TRUE(comes_true([&] { return counter.n_clients() == 0; }));
 }
 
 }  // namespace

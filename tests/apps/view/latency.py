@@ -4,7 +4,7 @@
     latency.py KDRAY [--moves N] [--size WxH] [--json FILE] [--strict] 'SCENE [OPTIONS]'...
 
 For each scene: a drag whose moves come one by one, each after the frame of the last one; a drag with a move every
-16 ms, as a hand makes them; the first move after each of some rests, while the picture is being refined; and from
+16 ms, as a user makes them; the first move after each of some rests, while the picture is being refined; and from
 the last move of a drag to the full picture and to its PNG, which must be the file that `kdray render` writes.
 
 The clock is the page's own, from the event's timestamp to the animation frame after the picture was drawn. What is
@@ -27,7 +27,7 @@ from browser import Browser  # noqa: E402
 from viewer import Viewer, compare, rest  # noqa: E402
 
 MOVE_BAR, REST_BAR = 100, 1000  # milliseconds
-HAND = 0.016  # seconds between two moves of a hand
+MOVE_INTERVAL = 0.016  # seconds between two moves of the mouse
 STRIP = 30  # pixels of the window that are not the picture's
 
 # A move waits until a look that was sent after it, or a later one, is on the screen.
@@ -115,7 +115,7 @@ def by_hand(browser, drag, moves):
     next_at = time.monotonic()
     for _ in range(moves):
         drag.move()
-        next_at += HAND
+        next_at += MOVE_INTERVAL
         time.sleep(max(0.0, next_at - time.monotonic()))
     done = take(browser)
     drag.release()
@@ -143,7 +143,7 @@ def at_rest(browser, drag, n):
         drag.press()
         for _ in range(10):
             drag.move()
-            time.sleep(HAND)
+            time.sleep(MOVE_INTERVAL)
         drag.release()
         rest(browser, 60)
         browser.wait("meter.rests.some(r => r.kind === 'final')")

@@ -26,13 +26,13 @@ TEST(Message, ALookIsTakenAsItIs) {
   const Look look = std::get<Look>(parse_message(json.dump()));
   EXPECT_EQ(look.number, 1u);
   EXPECT_TRUE(look.moving);
-  EXPECT_EQ(look.sight.camera.from, (Vec3{0.1, -1e-9, 3e200}));
-  EXPECT_EQ(look.sight.width, 64);
-  EXPECT_EQ(look.sight.samples, Samples::number);
-  EXPECT_EQ(look.sight.n_samples, 16);
-  EXPECT_EQ(look.sight.channel, "cost");
-  EXPECT_EQ(look.sight.mode, Mode::odprt);
-  EXPECT_EQ(look.sight.traversal, Traversal::batch);
+  EXPECT_EQ(look.request.camera.from, (Vec3{0.1, -1e-9, 3e200}));
+  EXPECT_EQ(look.request.width, 64);
+  EXPECT_EQ(look.request.samples, Samples::number);
+  EXPECT_EQ(look.request.n_samples, 16);
+  EXPECT_EQ(look.request.channel, "cost");
+  EXPECT_EQ(look.request.mode, Mode::odprt);
+  EXPECT_EQ(look.request.traversal, Traversal::batch);
   EXPECT_EQ(std::get<Shown>(parse_message(R"({"type":"shown","frame":7})")).frame, 7u);
   EXPECT_EQ(std::get<Cells>(parse_message(R"({"type":"cells","scene":0,"depth":9})")).depth, 9);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Looks that no hand would ask for: cameras that see nothing, channels, modes and sizes at random.
+"""Looks that no user would ask for: cameras that see nothing, channels, modes and sizes at random.
 
     odd_looks_test.py KDRAY SCENE [LOOKS]
 
@@ -12,7 +12,7 @@ import random
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from page_client import SIGHT, PageClient  # noqa: E402
+from page_client import VIEW_REQUEST, PageClient  # noqa: E402
 from viewer import Viewer  # noqa: E402
 
 kdray, scene = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
@@ -20,9 +20,9 @@ LOOKS = int(sys.argv[3]) if len(sys.argv) > 3 else 60
 NUMBERS = (0, 1, -1, 0.5, 1e-300, -1e-30, 1e-8, 3, 1e6, 1e30, -1e150, 1e300, 2.5)
 
 
-def odd_sight(random):
+def odd_request(random):
     vector = lambda: [random.choice(NUMBERS) for _ in range(3)]  # noqa: E731
-    camera = dict(SIGHT["camera"])
+    camera = dict(VIEW_REQUEST["camera"])
     for name in ("from", "at", "up"):
         if random.random() < 0.4:
             camera[name] = vector()
@@ -34,7 +34,7 @@ def odd_sight(random):
         camera["ortho"] = random.choice((1e-300, 1e-9, 1, 1e9, 1e300))
     width, height = (random.choice((1, 2, 15, 64, 333)) for _ in range(2))
     return {
-        **SIGHT, "camera": camera, "width": width, "height": height, "depth": random.choice((0, 1, 5, 64)),
+        **VIEW_REQUEST, "camera": camera, "width": width, "height": height, "depth": random.choice((0, 1, 5, 64)),
         "samples": random.choice((0, 1, 3, 16, "adaptive")), "weight": random.choice((-1, 0, 1e-6, 1)),
         "headlight": random.choice((0, 0.5, 1000)), "mode": random.choice(("auto", "pdprt", "odprt")),
         "channel": random.choice(("", "depth", "normal", "primitive", "cost", "samples", "queue")),
@@ -45,7 +45,7 @@ def odd_sight(random):
 def answer_to(page, number):
     """How a look ended: "final" or "moving", or what is wrong with it."""
     while True:
-        message = page.hear()
+        message = page.receive()
         if message["type"] == "problem":
             return message["text"]
         if message["type"] == "frame" and message["look"] == number and message["kind"] in ("final", "moving"):
@@ -59,22 +59,22 @@ def main():
     viewer = Viewer(kdray, scene)
     try:
         page = PageClient(viewer.address)
-        page.hear_until("scene")
+        page.receive_until("scene")
         for i in range(LOOKS):
             moving = odd.random() < 0.3
-            page.look(moving, **odd_sight(odd))
+            page.look(moving, **odd_request(odd))
             told = answer_to(page, page.number)
             assert "\n" not in told, told
             answers[told] = answers.get(told, 0) + 1
             x, y = odd.random(), odd.random()
-            page.send({"type": "pick", "number": i, "x": x, "y": y, "sight": odd_sight(odd)})
+            page.send({"type": "pick", "number": i, "x": x, "y": y, "sight": odd_request(odd)})
             while True:
-                message = page.hear()
+                message = page.receive()
                 if message["type"] == "picked" or message.get("about") == "pick":
                     break
             assert viewer.process.poll() is None
         good = PageClient(viewer.address)
-        good.hear_until("scene")
+        good.receive_until("scene")
         good.look(False)
         assert answer_to(good, good.number) == "final"
     finally:

@@ -96,7 +96,7 @@ def binds():
             assert status(page.replace("127.0.0.1", own), f"{own}:1234") == 200
         assert status(page, "evil.example") == 403
         client = PageClient(served.address)
-        client.hear_until("scene")
+        client.receive_until("scene")
         client.close()
     assert "warning: the page is served at 0.0.0.0" in served.said and "encrypted" in served.said, served.said
     print("ok  --bind 0.0.0.0 serves", own or "this machine")
@@ -104,7 +104,7 @@ def binds():
         with Served("--no-open", "--bind", "::1") as served:
             assert served.address.startswith("http://[::1]:"), served.address
             client = PageClient(served.address)
-            client.hear_until("scene")
+            client.receive_until("scene")
             client.close()
         assert "warning" not in served.said
         print("ok  --bind ::1")

@@ -10,7 +10,7 @@ import urllib.parse
 
 PATIENCE = 600  # seconds: nothing is expected of how long anything takes, but what hangs has to end as a failure
 
-SIGHT = {
+VIEW_REQUEST = {
     "scene": 0, "camera": {"from": [2.1, 1.3, 1.7], "at": [0, 0, 0], "up": [0, 0, 1], "fov": 45, "ortho": 0},
     "width": 640, "height": 480, "depth": 5, "samples": "adaptive", "weight": -1, "headlight": 0, "channel": "",
     "mode": "auto", "traversal": "auto", "queues": 0,
@@ -18,7 +18,7 @@ SIGHT = {
 
 
 class PageClient:
-    """A page that is in: it has said hello, and looks."""
+    """A page that has sent hello with its token, and then sends looks."""
 
     def __init__(self, address):
         url = urllib.parse.urlsplit(address)
@@ -44,7 +44,7 @@ class PageClient:
 
     def look(self, moving, **changes):
         self.number += 1
-        self.send({"type": "look", "number": self.number, "moving": moving, "sight": {**SIGHT, **changes}})
+        self.send({"type": "look", "number": self.number, "moving": moving, "sight": {**VIEW_REQUEST, **changes}})
 
     def _fill(self, limit):
         if not select.select([self.socket], [], [], limit)[0]:
@@ -54,7 +54,7 @@ class PageClient:
             raise ConnectionError("kdray has closed the connection")
         self.buffer += data
 
-    def hear(self, limit=PATIENCE):
+    def receive(self, limit=PATIENCE):
         """The next message, of a frame its head; frames are acknowledged."""
         end = time.monotonic() + limit
         while True:
@@ -75,11 +75,11 @@ class PageClient:
                 continue
             self._fill(max(0.0, end - time.monotonic()))
 
-    def hear_until(self, kind, limit=PATIENCE):
+    def receive_until(self, kind, limit=PATIENCE):
         """A message of this type, or a frame of this kind."""
         end = time.monotonic() + limit
         while True:
-            message = self.hear(max(0.0, end - time.monotonic()))
+            message = self.receive(max(0.0, end - time.monotonic()))
             if kind in (message["type"], message.get("kind")):
                 return message
 

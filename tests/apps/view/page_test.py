@@ -3,7 +3,7 @@
 
     page_test.py KDRAY SCENE [OTHER SCENE]
 
-Its pictures at rest are compared, byte for byte, with those that the page's own command renders; hands, picks,
+Its pictures at rest are compared, byte for byte, with those that the page's own command renders; mouse and keys, picks,
 channels, reload, resizing, and how the program ends, follow. Skips (status 77) where there is no Chromium.
 """
 
@@ -38,7 +38,7 @@ def check_picture(browser, folder, name):
     return hashlib.sha256(compare(kdray, browser, folder, name)).hexdigest()
 
 
-def hands(b, folder):
+def mouse_and_keys(b, folder):
     seen = {check_picture(b, folder, "as it opens")}
     start = camera(b)
 
@@ -284,7 +284,7 @@ def main():
                 b.open(viewer.address)
                 b.wait("window.kdray?.state.scene")
                 try:
-                    hands(b, folder)
+                    mouse_and_keys(b, folder)
                     picks(b)
                     touches(b)
                     channels(b, folder)

@@ -1,5 +1,4 @@
-// What    A server of the page with nobody behind it who renders: it counts who comes, what they say, and who
-//         goes.
+// What    A server of the page with a handler that renders nothing: it counts clients and their messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,33 +14,33 @@
 
 namespace kdray::test {
 
-class Counter : public view::Reception {
+class Counter : public view::ClientHandler {
  public:
-  void enter(const std::shared_ptr<view::Visitor>& visitor) override {
+  void connected(const std::shared_ptr<view::Client>& client) override {
     const std::lock_guard lock(mutex);
-    there[visitor.get()] = visitor;
-    ++entered;
-    visitor->send(R"({"type":"welcome"})");
+    clients[client.get()] = client;
+    ++n_connected;
+    client->send(R"({"type":"welcome"})");
   }
-  void hear(const view::Visitor& visitor, const view::Message& message) override {
+  void received(const view::Client& client, const view::Message& message) override {
     const std::lock_guard lock(mutex);
-    ++heard;
+    ++n_received;
     // A frame for each look, wanted or not, so that there is much to be sent.
     if (std::holds_alternative<view::Look>(message) && !frame.empty())
-      there.at(&visitor)->send(view::make_frame("{}", frame));
+      clients.at(&client)->send(view::make_frame("{}", frame));
   }
-  void leave(const view::Visitor& visitor) override {
+  void disconnected(const view::Client& client) override {
     const std::lock_guard lock(mutex);
-    there.erase(&visitor);
+    clients.erase(&client);
   }
-  std::size_t n_there() {
+  std::size_t n_clients() {
     const std::lock_guard lock(mutex);
-    return there.size();
+    return clients.size();
   }
 
   std::mutex mutex;
-  std::map<const view::Visitor*, std::shared_ptr<view::Visitor>> there;
-  std::atomic<int> entered{0}, heard{0};
+  std::map<const view::Client*, std::shared_ptr<view::Client>> clients;
+  std::atomic<int> n_connected{0}, n_received{0};
   std::string frame;
 };
 
@@ -65,8 +64,8 @@ struct Served : testing::Test {
     client.send(text);
     return client.read_until("\r\n").substr(0, 12);
   }
-  // A page that is in.
-  std::unique_ptr<Client> enter() {
+  // A page whose token was accepted.
+  std::unique_ptr<Client> connect() {
     auto client = std::make_unique<Client>(port());
     client->upgrade(page());
     client->send(ws_frame(R"({"type":"hello","token":")" + token() + "\"}"));
@@ -75,7 +74,7 @@ struct Served : testing::Test {
   }
 
   view::Server server;
-  Counter counter;  // goes first: it holds visitors
+  Counter counter;  // ends before the server: it holds clients
   std::thread thread;
 };
 

@@ -1,4 +1,4 @@
-// What    Who is let in, and what the page's files come with.
+// What    Which requests are refused, and what the page's files come with.
 #include "apps/view/served.h"
 
 namespace kdray::test {
@@ -87,7 +87,7 @@ TEST_F(Served, TheTokenIsExchangedForACookie) {
   EXPECT_NE(with_cookie.read_until("welcome").find("welcome"), std::string::npos);
 }
 
-TEST_F(Served, WithoutTheTokenNobodyIsHeard) {
+TEST_F(Served, WithoutTheTokenNoMessageIsHandled) {
   std::vector<std::unique_ptr<Client>> clients;
   for (const std::string& first :
        {std::string(R"({"type":"hello","token":""})"),
@@ -98,15 +98,15 @@ TEST_F(Served, WithoutTheTokenNobodyIsHeard) {
     clients.back()->send(ws_frame(first) + ws_frame(kLook));
   }
   for (const auto& client : clients) EXPECT_TRUE(client->is_closed());
-  EXPECT_EQ(counter.entered, 0);
-  EXPECT_EQ(counter.heard, 0);
+  EXPECT_EQ(counter.n_connected, 0);
+  EXPECT_EQ(counter.n_received, 0);
 }
 
-TEST_F(Served, APageIsHeard) {
-  const auto client = enter();
+TEST_F(Served, APagesMessagesAreHandled) {
+  const auto client = connect();
   for (int i = 0; i < 100; ++i) client->send(ws_frame(kLook));
-  EXPECT_TRUE(comes_true([&] { return counter.heard == 100; }));
-  EXPECT_EQ(counter.n_there(), 1u);
+  EXPECT_TRUE(comes_true([&] { return counter.n_received == 100; }));
+  EXPECT_EQ(counter.n_clients(), 1u);
 }
 
 TEST(Server, SaysWhenThePortIsTaken) {

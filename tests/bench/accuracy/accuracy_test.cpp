@@ -96,7 +96,7 @@ TEST(LightReach, ChangesOnlyWhatFadesAndNeverLengthensARange) {
 
 TEST(Shown, IsBetweenBlackAndWhite) {
   const Picture picture{2, 1, {-1, 0.5f, 7, kNoNumber, kEndless, -kEndless}, {}, {}};
-  const film::Image image = shown(image_of(picture));
+  const image::Image image = shown(image_of(picture));
   EXPECT_EQ(image.width, 2);
   EXPECT_EQ(image.height, 1);
   ASSERT_EQ(image.pixels.size(), 2u);
@@ -105,23 +105,23 @@ TEST(Shown, IsBetweenBlackAndWhite) {
 }
 
 TEST(Shown, ShrinksToTheMean) {
-  film::Image image{4, 2, {}};
+  image::Image image{4, 2, {}};
   for (int i = 0; i < 8; ++i) image.pixels.emplace_back(static_cast<float>(i), 1, 0);
-  const film::Image small = shrunk(image, 2);
+  const image::Image small = shrunk(image, 2);
   ASSERT_EQ(small.pixels.size(), 2u);
   EXPECT_EQ(small.pixels[0], vec3((0 + 1 + 4 + 5) / 4.0f, 1, 0));
   EXPECT_EQ(small.pixels[1], vec3((2 + 3 + 6 + 7) / 4.0f, 1, 0));
 }
 
 TEST(Shown, ErrorsAreBlackWhereThereAreNoneAndOnOneScale) {
-  const film::Image a{3, 1, {vec3(0.5f), vec3(0), vec3(0)}},
+  const image::Image a{3, 1, {vec3(0.5f), vec3(0), vec3(0)}},
       b{3, 1, {vec3(0.5f), vec3(0, 0.25f, 0), vec3(1)}};
-  const film::Image map = error_picture(a, b), same = error_picture(a, a);
+  const image::Image map = error_picture(a, b), same = error_picture(a, a);
   EXPECT_EQ(map.pixels[0], same.pixels[0]);
   EXPECT_EQ(map.pixels[0], vec3(0));
   EXPECT_LT(map.pixels[1].x, map.pixels[2].x);
   // The same difference has the same colour beside a smaller largest one.
-  const film::Image c{3, 1, {vec3(0.5f), vec3(0, 0.25f, 0), vec3(0)}};
+  const image::Image c{3, 1, {vec3(0.5f), vec3(0, 0.25f, 0), vec3(0)}};
   EXPECT_EQ(error_picture(a, c).pixels[1], map.pixels[1]);
 }
 

@@ -16,7 +16,7 @@ double mean_over(int column, int row, int n, const Value& value) {
   return sum / n / n;
 }
 
-float at(const film::Image& image, int column, int row) {
+float at(const image::Image& image, int column, int row) {
   return image.pixels[static_cast<std::size_t>(row * image.width + column)].x;
 }
 

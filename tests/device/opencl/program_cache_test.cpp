@@ -117,7 +117,7 @@ class ProgramCacheTest : public test::EachDevice {
     return x.back();
   }
 
-  const Opened& opened() const { return context_.opened(); }
+  const OpenDevice& opened() const { return context_.opened(); }
   fs::path only_entry() const { return fs::directory_iterator(folder_.path())->path(); }
 
   const Context context_{GetParam(), 1};

@@ -29,7 +29,7 @@ class SimdTest : public test::EachDevice {
  protected:
   const Variable nothing_asked_for_{"KDRAY_SIMD"};
   FoundDevice found_ = choose_device(GetParam());
-  const Opened& opened_ = Context(GetParam(), 1).opened();  // open until the process ends
+  const OpenDevice& opened_ = Context(GetParam(), 1).opened();  // open until the process ends
 
   bool works(Simd form) const { return why_not(form, found_, opened_).empty(); }
 

@@ -81,7 +81,7 @@ class VariantTest : public test::EachDevice {
   Told build(const Variant& variant, bool exact = false) {
     const Builds builds{
         .cache = std::make_shared<ProgramCache>(folder_), .watch = {}, .remember = false, .exact = exact};
-    const Opened& opened = context_.opened();
+    const OpenDevice& opened = context_.opened();
     const BuiltVariant built = build_variant(opened.context, opened.devices, "mask.cl", variant, builds);
     const Told told = run(built);
     EXPECT_EQ(told.mask, built.mask);
@@ -228,7 +228,7 @@ TEST_P(VariantTest, OneThatIsGoneIsNone) {
 }
 
 TEST_P(VariantTest, WithoutACacheThereIsNothingToFind) {
-  const Opened& opened = context_.opened();
+  const OpenDevice& opened = context_.opened();
   expect(run(build_variant(opened.context, opened.devices, "mask.cl", wanted(kA), {})), kA, true);
 }
 

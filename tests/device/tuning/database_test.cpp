@@ -13,9 +13,9 @@
 namespace kdray::test {
 namespace {
 
-const tune::Key kKey = {"cpu, 2 units", "PoCL 3.1", "00ff", "slices", "0x00000102"};
+const tuning::Key kKey = {"cpu, 2 units", "PoCL 3.1", "00ff", "slices", "0x00000102"};
 
-tune::Entry entry(const tune::Key& key, int batch, std::int64_t when) {
+tuning::Entry entry(const tuning::Key& key, int batch, std::int64_t when) {
   return {.key = key,
           .settings = {.batch = batch},
           .ratio = 0.9,
@@ -24,8 +24,8 @@ tune::Entry entry(const tune::Key& key, int batch, std::int64_t when) {
           .scenes = {"a \"b\"\n"}};
 }
 
-tune::Key with_features(const std::string& features) {
-  tune::Key key = kKey;
+tuning::Key with_features(const std::string& features) {
+  tuning::Key key = kKey;
   key.features = features;
   return key;
 }
@@ -33,14 +33,14 @@ tune::Key with_features(const std::string& features) {
 TEST(Database, ThereAndBackIsTheSame) {
   const Folder folder;
   const std::filesystem::path file = folder.path() / "new" / "tune.json";
-  tune::Database database;
+  tuning::Database database;
   database.put(entry(kKey, 1024, 5));
-  database.put(entry(with_features(tune::kAnyFeatures), 256, 6));
+  database.put(entry(with_features(tuning::kAnyFeatures), 256, 6));
   database.write(file);
-  const tune::Database read = tune::Database::read(file);
+  const tuning::Database read = tuning::Database::read(file);
   ASSERT_EQ(read.entries().size(), 2u);
   EXPECT_EQ(read.text(), database.text());
-  const tune::Entry& e = read.entries().front();
+  const tuning::Entry& e = read.entries().front();
   EXPECT_EQ(e.key, kKey);
   EXPECT_EQ(e.settings, Tuning{.batch = 1024});
   EXPECT_EQ(e.ratio, 0.9);
@@ -48,26 +48,26 @@ TEST(Database, ThereAndBackIsTheSame) {
 }
 
 TEST(Database, NoFileIsAnEmptyOne) {
-  EXPECT_TRUE(tune::Database::read("no/such/file").entries().empty());
+  EXPECT_TRUE(tuning::Database::read("no/such/file").entries().empty());
 }
 
 TEST(Database, AForeignKeyFindsNothingAndAnyFeaturesServeTheRest) {
-  tune::Database database;
+  tuning::Database database;
   database.put(entry(kKey, 1024, 5));
-  for (std::string tune::Key::*member : {&tune::Key::device, &tune::Key::driver, &tune::Key::kernels,
-                                         &tune::Key::schedule, &tune::Key::features}) {
-    tune::Key other = kKey;
+  for (std::string tuning::Key::*member : {&tuning::Key::device, &tuning::Key::driver, &tuning::Key::kernels,
+                                           &tuning::Key::schedule, &tuning::Key::features}) {
+    tuning::Key other = kKey;
     other.*member += "x";
     EXPECT_EQ(database.find(other), nullptr);
   }
   EXPECT_EQ(database.find(kKey)->settings.batch, 1024);
-  database.put(entry(with_features(tune::kAnyFeatures), 256, 5));
+  database.put(entry(with_features(tuning::kAnyFeatures), 256, 5));
   EXPECT_EQ(database.find(kKey)->settings.batch, 1024) << "its own entry comes first";
   EXPECT_EQ(database.find(with_features("0x1"))->settings.batch, 256);
 }
 
 TEST(Database, MergingKeepsTheNewerOfTwoAndAllOthers) {
-  tune::Database a, b;
+  tuning::Database a, b;
   a.put(entry(kKey, 1024, 5));
   a.put(entry(with_features("0x1"), 1024, 9));
   b.put(entry(kKey, 256, 6));
@@ -81,7 +81,7 @@ TEST(Database, MergingKeepsTheNewerOfTwoAndAllOthers) {
 }
 
 TEST(Database, WhatIsNoFileOfTuningsIsRefusedInOneLine) {
-  tune::Database database;
+  tuning::Database database;
   database.put(entry(kKey, 1024, 5));
   const std::string good = database.text();
   const auto with = [&](const std::string& what, const std::string& by) {
@@ -104,7 +104,7 @@ TEST(Database, WhatIsNoFileOfTuningsIsRefusedInOneLine) {
                                         with("\"driver\"", "\"drover\"")};
   for (const std::string& text : bad) {
     try {
-      tune::Database::parse(text, "tune.json");
+      tuning::Database::parse(text, "tune.json");
       ADD_FAILURE() << "taken: " << text;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::input);
@@ -115,25 +115,25 @@ TEST(Database, WhatIsNoFileOfTuningsIsRefusedInOneLine) {
 }
 
 TEST(Database, EveryCutOfAFileIsRefusedOrTheWhole) {
-  tune::Database database;
+  tuning::Database database;
   database.put(entry(kKey, 1024, 5));
   const std::string good = database.text();
   for (std::size_t n = 0; n + 2 < good.size(); ++n)
-    EXPECT_THROW(tune::Database::parse(good.substr(0, n), "cut"), Error) << n;
+    EXPECT_THROW(tuning::Database::parse(good.substr(0, n), "cut"), Error) << n;
 }
 
 TEST(Database, TheEnvironmentNamesTheFile) {
   ::setenv("XDG_DATA_HOME", "/data", 1);
   ::unsetenv("KDRAY_TUNE_FILE");
-  EXPECT_EQ(tune::default_file(), "/data/kdray/tune.json");
+  EXPECT_EQ(tuning::default_file(), "/data/kdray/tune.json");
   ::setenv("KDRAY_TUNE_FILE", "own.json", 1);
-  EXPECT_EQ(tune::default_file(), "own.json");
+  EXPECT_EQ(tuning::default_file(), "own.json");
   ::setenv("KDRAY_TUNE_FILE", "", 1);
-  EXPECT_TRUE(tune::default_file().empty());
+  EXPECT_TRUE(tuning::default_file().empty());
   ::unsetenv("KDRAY_TUNE_FILE");
   ::unsetenv("XDG_DATA_HOME");
   ::setenv("HOME", "/home/someone", 1);
-  EXPECT_EQ(tune::default_file(), "/home/someone/.local/share/kdray/tune.json");
+  EXPECT_EQ(tuning::default_file(), "/home/someone/.local/share/kdray/tune.json");
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ constexpr Tuning kOptimum = {.tile = 16, .batch = 1024, .packets = 4, .spread = 
 
 TEST(Search, FindsTheOptimumWithinTheBudgetAndWithFewerFramesThanASweep) {
   Synthetic machine(kFactors);
-  const tune::Lab lab = machine.lab();
-  const tune::Found found = tune::search(lab, {}, {.budget = 20});
-  EXPECT_EQ(found.best, kOptimum) << tune::in_words(found.best);
+  const tuning::Lab lab = machine.lab();
+  const tuning::Found found = tuning::search(lab, {}, {.budget = 20});
+  EXPECT_EQ(found.best, kOptimum) << tuning::in_words(found.best);
   EXPECT_FALSE(found.kept_start);
   EXPECT_NEAR(found.ratio, 0.92 * 0.9 * 0.85 * 0.94, 0.01);
   EXPECT_LE(machine.now, 20);
@@ -32,10 +32,10 @@ TEST(Search, FindsItInNoiseForMostSeedsAndIsNeverWorseThanTheStart) {
   constexpr unsigned kSeeds = 50;
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     Synthetic machine(kFactors, 0.02, seed);
-    const tune::Lab lab = machine.lab();
-    const tune::Found found = tune::search(lab, {}, {.budget = 30});
+    const tuning::Lab lab = machine.lab();
+    const tuning::Found found = tuning::search(lab, {}, {.budget = 30});
     const double ratio = machine.exact(found.best) / machine.exact({});
-    EXPECT_LE(ratio, 1.02) << "seed " << seed << ": " << tune::in_words(found.best);
+    EXPECT_LE(ratio, 1.02) << "seed " << seed << ": " << tuning::in_words(found.best);
     near += ratio < 1.05 * machine.exact(kOptimum) / machine.exact({});
   }
   EXPECT_GE(near, 45) << "of " << kSeeds;
@@ -44,8 +44,8 @@ TEST(Search, FindsItInNoiseForMostSeedsAndIsNeverWorseThanTheStart) {
 TEST(Search, KeepsTheStartWhereNothingIsFaster) {
   for (unsigned seed = 0; seed < 30; ++seed) {
     Synthetic machine({{"batch", {{256, 1.1}, {1024, 1.05}, {2048, 1.2}}}}, 0.02, seed);
-    const tune::Lab lab = machine.lab();
-    const tune::Found found = tune::search(lab, {}, {});
+    const tuning::Lab lab = machine.lab();
+    const tuning::Found found = tuning::search(lab, {}, {});
     EXPECT_LE(machine.exact(found.best) / machine.exact({}), 1.02) << "seed " << seed;
     EXPECT_TRUE(!found.kept_start || found.best == Tuning{}) << "seed " << seed;
   }
@@ -54,8 +54,8 @@ TEST(Search, KeepsTheStartWhereNothingIsFaster) {
 TEST(Search, NeverTakesAWrongCandidate) {
   Synthetic machine(kFactors);
   machine.wrong = [](const Tuning& t) { return t.packets == 4; };
-  const tune::Lab lab = machine.lab();
-  const tune::Found found = tune::search(lab, {}, {.budget = 20});
+  const tuning::Lab lab = machine.lab();
+  const tuning::Found found = tuning::search(lab, {}, {.budget = 20});
   EXPECT_EQ(found.best.packets, 0);
   EXPECT_EQ(found.best.batch, 1024);
   EXPECT_FALSE(machine.timed_wrong);
@@ -64,14 +64,14 @@ TEST(Search, NeverTakesAWrongCandidate) {
 TEST(Search, RefusesAWrongStart) {
   Synthetic machine(kFactors);
   machine.wrong = [](const Tuning& t) { return t == Tuning{}; };
-  const tune::Lab lab = machine.lab();
-  EXPECT_THROW(tune::search(lab, {}, {}), Error);
+  const tuning::Lab lab = machine.lab();
+  EXPECT_THROW(tuning::search(lab, {}, {}), Error);
 }
 
 TEST(Search, TriesNothingThatTakesLongerThanItCanSave) {
   Synthetic machine(kFactors);
-  const tune::Lab lab = machine.lab();
-  const tune::Found found = tune::search(lab, {}, {.budget = 1000, .frames = 10});
+  const tuning::Lab lab = machine.lab();
+  const tuning::Found found = tuning::search(lab, {}, {.budget = 1000, .frames = 10});
   EXPECT_TRUE(found.steps.empty());
   EXPECT_TRUE(found.kept_start);
   EXPECT_NE(found.ended_by.find("take longer"), std::string::npos) << found.ended_by;
@@ -81,8 +81,8 @@ TEST(Search, TriesNothingThatTakesLongerThanItCanSave) {
 TEST(Search, ASmallBudgetGoesToWhatNeedsNoCompiler) {
   Synthetic machine(kFactors);
   machine.compile = 5;
-  const tune::Lab lab = machine.lab();
-  const tune::Found found = tune::search(lab, {}, {.budget = 12});
+  const tuning::Lab lab = machine.lab();
+  const tuning::Found found = tuning::search(lab, {}, {.budget = 12});
   EXPECT_EQ(found.best.batch, 1024);
   EXPECT_EQ(found.best.tile, 16);
   EXPECT_EQ(found.best.packets, 0);
@@ -91,8 +91,8 @@ TEST(Search, ASmallBudgetGoesToWhatNeedsNoCompiler) {
 
 TEST(Search, LooksOnlyAtWhatTheScheduleUses) {
   Synthetic machine(kFactors);
-  const tune::Lab lab = machine.lab();
-  for (const tune::Step& step : tune::search(lab, {}, {.global = true}).steps)
+  const tuning::Lab lab = machine.lab();
+  for (const tuning::Step& step : tuning::search(lab, {}, {.global = true}).steps)
     EXPECT_TRUE(step.setting->global) << step.setting->name;
 }
 

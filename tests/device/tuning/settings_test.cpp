@@ -12,7 +12,7 @@ namespace {
 TEST(Settings, TheTableNamesEveryMemberOfTuningOnce) {
   Tuning all;
   std::set<std::string_view> names;
-  for (const tune::Setting& s : tune::settings()) {
+  for (const tuning::Setting& s : tuning::settings()) {
     EXPECT_TRUE(names.insert(s.name).second) << s.name;
     EXPECT_EQ(all.*s.value, 0) << s.name;
     all.*s.value = s.values.front();
@@ -23,24 +23,24 @@ TEST(Settings, TheTableNamesEveryMemberOfTuningOnce) {
 }
 
 TEST(Settings, AreFoundByName) {
-  EXPECT_EQ(tune::find_setting("packets")->value, &Tuning::packets);
-  EXPECT_EQ(tune::find_setting("colour"), nullptr);
+  EXPECT_EQ(tuning::find_setting("packets")->value, &Tuning::packets);
+  EXPECT_EQ(tuning::find_setting("colour"), nullptr);
 }
 
 TEST(Settings, MergedTakesWhatIsSet) {
-  const Tuning both = tune::merged({.tile = 16, .batch = 256}, {.batch = 1024, .waves = 32});
+  const Tuning both = tuning::merged({.tile = 16, .batch = 256}, {.batch = 1024, .waves = 32});
   EXPECT_EQ(both, (Tuning{.tile = 16, .batch = 1024, .waves = 32}));
 }
 
 TEST(Settings, WordsNameWhatIsSet) {
-  EXPECT_EQ(tune::in_words({}), "kdray's own");
-  EXPECT_EQ(tune::in_words({.batch = 1024, .packets = 4}), "batch 1024, packets 4");
+  EXPECT_EQ(tuning::in_words({}), "kdray's own");
+  EXPECT_EQ(tuning::in_words({.batch = 1024, .packets = 4}), "batch 1024, packets 4");
 }
 
 TEST(Settings, EveryKindOfDeviceHasDefaultsOfTheTable) {
   for (const char* const kind : {"cpu", "gpu", "accelerator", "unheard of"}) {
-    const Tuning tuning = tune::shipped(kind);
-    for (const tune::Setting& s : tune::settings())
+    const Tuning tuning = tuning::shipped(kind);
+    for (const tuning::Setting& s : tuning::settings())
       EXPECT_TRUE(tuning.*s.value == 0 || std::ranges::count(s.values, tuning.*s.value) == 1)
           << kind << " " << s.name;
   }

@@ -26,14 +26,14 @@ class Synthetic {
   double exact(const Tuning& t) const {
     double seconds = frame;
     for (const auto& [name, values] : factors_) {
-      const auto found = values.find(t.*tune::find_setting(name)->value);
+      const auto found = values.find(t.*tuning::find_setting(name)->value);
       if (found != values.end()) seconds *= found->second;
     }
     return seconds;
   }
 
-  tune::Lab lab() {
-    tune::Lab lab;
+  tuning::Lab lab() {
+    tuning::Lab lab;
     lab.fault = [this](const Tuning& t) {
       if (compiles(t)) now += compile;
       now += exact(t);
@@ -60,7 +60,7 @@ class Synthetic {
  private:
   bool compiles(const Tuning& t) {
     std::string constants;
-    for (const tune::Setting& s : tune::settings())
+    for (const tuning::Setting& s : tuning::settings())
       if (s.compiles()) constants += std::to_string(t.*s.value) + " ";
     return built_.insert(constants).second;
   }

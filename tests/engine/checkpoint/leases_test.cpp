@@ -16,7 +16,7 @@
 #include "support/folder.h"
 #include "support/patience.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 namespace {
 
 using test::Folder;
@@ -156,4 +156,4 @@ TEST(Leases, FilesOfOtherThingsAreLetBe) {
 }
 
 }  // namespace
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -10,7 +10,7 @@
 #include "engine/checkpoint/tile_file.h"
 #include "support/folder.h"
 
-namespace kdray::ledger {
+namespace kdray::checkpoint {
 namespace {
 
 using test::Folder;
@@ -27,10 +27,10 @@ struct RecordTest : testing::Test {
   void SetUp() override {
     std::mt19937_64 random(7);
     for (std::uint32_t i = 0; i < kRecords; ++i) {
-      const Piece piece{i % 3, i, {8 * i, 0, 1 + i % 4, 2}};
-      std::vector<layout::i64> sums(piece.places.sums());
+      const RecordId id{i % 3, i, {8 * i, 0, 1 + i % 4, 2}};
+      std::vector<layout::i64> sums(id.places.sums());
       for (layout::i64& sum : sums) sum = static_cast<layout::i64>(random());
-      append_record(bytes, header.frame(), piece, sums, hash_of_sums(sums));
+      append_record(bytes, header.frame(), id, sums, hash_of_sums(sums));
       written[i] = sums;
       ends.push_back(bytes.size());
     }
@@ -46,9 +46,9 @@ struct RecordTest : testing::Test {
   std::vector<std::uint32_t> read(RecordFile& file) const {
     std::vector<std::uint32_t> numbers;
     file.read_on([&](const RecordHead& head, std::uint64_t offset, Sums sums) {
-      const std::uint32_t i = head.piece.number;
+      const std::uint32_t i = head.id.number;
       EXPECT_EQ(std::vector(sums.begin(), sums.end()), written.at(i));
-      EXPECT_EQ(head.piece.places, (Rectangle{8 * i, 0, 1 + i % 4, 2}));
+      EXPECT_EQ(head.id.places, (Rectangle{8 * i, 0, 1 + i % 4, 2}));
       std::vector<layout::i64> again(sums.size());
       EXPECT_TRUE(file.load(offset, head.content, again));
       EXPECT_EQ(again, written.at(i));
@@ -143,4 +143,4 @@ TEST_F(RecordTest, AHeaderComesBackWhole) {
 }
 
 }  // namespace
-}  // namespace kdray::ledger
+}  // namespace kdray::checkpoint

@@ -1,5 +1,5 @@
-// What    Parts that come and go: a device holds the one that was asked for, word for word, in room that is
-//         made once.
+// What    Parts that come and go: a device holds the one that was asked for, word for word, in buffers that
+//         are made once.
 #include "engine/odprt/part_store.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(PartStore, HoldsThePartThatWasAskedForLast) {
     costs[0] = static_cast<double>(costs.size());  // parts of unequal size
     const odprt::Division division =
         odprt::divide(scene.flat, scene.wide, cut, costs, {.n_parts = 4, .spare = 1});
-    const std::size_t room = odprt::room_bytes(division);
+    const std::size_t bytes = odprt::buffer_bytes(division);
     for (const bool streamed : {true, false}) {
       PartStore store(context, queue, division, cut, streamed);
       EXPECT_EQ(store.bytes(), 0u);
@@ -52,12 +52,12 @@ TEST(PartStore, HoldsThePartThatWasAskedForLast) {
         const odprt::LoadedPart& loaded = store.get(part);
         EXPECT_EQ(loaded.number, part);
         EXPECT_TRUE(holds(queue, loaded.scene, division.parts[part])) << name << " part " << part;
-        EXPECT_EQ(store.bytes(), streamed ? room : division.parts[part].geometry_bytes());
+        EXPECT_EQ(store.bytes(), streamed ? bytes : division.parts[part].geometry_bytes());
       }
       EXPECT_EQ(store.n_loads(), 6u) << "one was there already";
     }
-    EXPECT_GE(room, odprt::largest_bytes(division)) << name;
-    EXPECT_LT(room, 2 * odprt::largest_bytes(division) + 4096) << name;
+    EXPECT_GE(bytes, odprt::largest_bytes(division)) << name;
+    EXPECT_LT(bytes, 2 * odprt::largest_bytes(division) + 4096) << name;
   }
 }
 

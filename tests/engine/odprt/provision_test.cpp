@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "device/opencl/context.h"
-#include "engine/odprt/crew.h"
 #include "engine/odprt/prepared_scenes.h"
+#include "engine/odprt/worker_pool.h"
 #include "kdray/error.h"
 #include "layout/features.h"
 
@@ -39,7 +39,7 @@ odprt::Request request_of(std::size_t n_queues, std::uint64_t device_memory) {
 }
 
 std::size_t work_of(const odprt::Provision& p) {
-  return odprt::work_bytes(p.frame, p.plan, p.room.places, p.n_outboxes);
+  return odprt::work_bytes(p.frame, p.plan, p.capacity.places, p.n_outboxes);
 }
 
 TEST(Provision, WithoutALimitThereIsAPartForEachQueue) {
@@ -96,9 +96,9 @@ TEST(Provision, WorkersTakeWhatWasComputed) {
     const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 16);
     const std::vector<double> costs(cut.subtrees.size(), 1.0);
     const odprt::Division division = odprt::divide(scene.flat, scene.wide, cut, costs, {});
-    const odprt::Crew crew = odprt::make_crew(request, p, division, cut);
+    const odprt::WorkerPool pool = odprt::make_worker_pool(request, p, division, cut);
     const auto computed = static_cast<double>(work_of(p)),
-               taken = static_cast<double>(crew.reports[0].work_bytes);
+               taken = static_cast<double>(pool.reports[0].work_bytes);
     EXPECT_GE(taken, 0.98 * computed);
     EXPECT_LE(taken, computed + 65536) << "ray buffer " << ray_buffer;
   }

@@ -25,7 +25,7 @@ using test::Hall;
 const wavefront::Schedule kTiles{
     .tile_width = 8, .tile_height = 4, .batch_size = 64, .n_slices = 3, .fused_waves = 2};
 
-struct Asked {
+struct FrameSettings {
   std::vector<int> queues_of = {1};  // of each rank
   std::uint32_t n_slices = 4, ray_buffer = 0;
   double adaptive_target = 0;
@@ -41,10 +41,10 @@ class OdprtRanksTest : public test::EachDevice {
   const Hall hall;
 
   Request request_of(const device::Context& context, wavefront::Programs& programs,
-                     const Asked& asked) const {
+                     const FrameSettings& settings) const {
     Request request;
     RenderOptions options = Hall::options();
-    if (asked.small) options.width = 16, options.height = 12, options.depth = 3;
+    if (settings.small) options.width = 16, options.height = 12, options.depth = 3;
     const pdprt::Task task = hall.task(options);
     request.frame = task.frame;
     request.features = task.features;
@@ -52,41 +52,42 @@ class OdprtRanksTest : public test::EachDevice {
     for (const cl::CommandQueue& queue : context.queues())
       request.queues.push_back({&context, queue, &programs, request.queues.size()});
     request.table = alone(request.queues.size());
-    request.balance = asked.balance;
-    request.n_slices = asked.n_slices;
-    request.ray_buffer = asked.ray_buffer;
-    request.adaptive_target = asked.adaptive_target;
-    if (asked.adaptive_target > 0) request.features |= flatten::features_of_samples(1, true);
+    request.balance = settings.balance;
+    request.n_slices = settings.n_slices;
+    request.ray_buffer = settings.ray_buffer;
+    request.adaptive_target = settings.adaptive_target;
+    if (settings.adaptive_target > 0) request.features |= flatten::features_of_samples(1, true);
     return request;
   }
 
-  Result render_one(transport::Ranks* ranks, const Asked& asked, const std::function<void()>& ready) const {
+  Result render_one(transport::Ranks* ranks, const FrameSettings& settings,
+                    const std::function<void()>& ready) const {
     const auto rank = static_cast<std::size_t>(ranks ? ranks->rank() : 0);
-    const device::Context context(GetParam(), asked.queues_of[rank], 0, test::kept_programs());
+    const device::Context context(GetParam(), settings.queues_of[rank], 0, test::kept_programs());
     wavefront::Programs programs(context, hall.tree.max_depth, hall.wide);
-    Request request = request_of(context, programs, asked);
-    if (rank < asked.faults.size()) request.faults = asked.faults[rank];
+    Request request = request_of(context, programs, settings);
+    if (rank < settings.faults.size()) request.faults = settings.faults[rank];
     DividedScene scene(hall.flat, hall.wide);
     ready();
     if (ranks) request.table = join(*ranks, request.queues.size(), request.n_slices).table;
     return scene.render(request);
   }
 
-  Result alone_with(Asked asked) const {
-    asked.queues_of = {1};
-    return render_one(nullptr, asked, [] {});
+  Result alone_with(FrameSettings settings) const {
+    settings.queues_of = {1};
+    return render_one(nullptr, settings, [] {});
   }
 
   // What rank 0 has.
-  Result render(const Asked& asked) const {
-    auto transports = transport::in_process(static_cast<int>(asked.queues_of.size()));
-    if (asked.link.latency > 0)
+  Result render(const FrameSettings& settings) const {
+    auto transports = transport::in_process(static_cast<int>(settings.queues_of.size()));
+    if (settings.link.latency > 0)
       for (auto& transport : transports)
-        transport = transport::delayed(std::move(transport), asked.link,
-                                       asked.seed + static_cast<std::uint64_t>(transport->rank()));
-    std::vector<Result> results(asked.queues_of.size());
+        transport = transport::delayed(std::move(transport), settings.link,
+                                       settings.seed + static_cast<std::uint64_t>(transport->rank()));
+    std::vector<Result> results(settings.queues_of.size());
     test::run_ranks(std::move(transports), [&](transport::Ranks& ranks, const std::function<void()>& ready) {
-      results[static_cast<std::size_t>(ranks.rank())] = render_one(&ranks, asked, ready);
+      results[static_cast<std::size_t>(ranks.rank())] = render_one(&ranks, settings, ready);
     });
     return std::move(results.front());
   }
@@ -144,23 +145,23 @@ TEST_P(OdprtRanksTest, AnyNetwork) {
   for (int seed = 1; seed <= n; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     const auto up_to = [&](std::uint32_t most) { return static_cast<std::uint32_t>(random() % (most + 1)); };
-    Asked asked{.small = true};
+    FrameSettings settings{.small = true};
     for (std::uint32_t ranks = up_to(6) + 1; ranks > 0; --ranks)
-      asked.queues_of.push_back(static_cast<int>(up_to(1)) + 1);
+      settings.queues_of.push_back(static_cast<int>(up_to(1)) + 1);
     constexpr std::uint32_t kBuffers[] = {0, 0, 1, 2, 5, 33};
-    asked.ray_buffer = kBuffers[up_to(5)];
-    asked.n_slices = up_to(7) + 1;
-    asked.balance = up_to(1) == 0 ? Balance::sah : Balance::pilot;
+    settings.ray_buffer = kBuffers[up_to(5)];
+    settings.n_slices = up_to(7) + 1;
+    settings.balance = up_to(1) == 0 ? Balance::sah : Balance::pilot;
     // With few rays to a message each costs its time on the way.
-    const bool few = asked.ray_buffer > 0 && asked.ray_buffer < 33;
+    const bool few = settings.ray_buffer > 0 && settings.ray_buffer < 33;
     constexpr double kLatencies[] = {1e-6, 2e-5, 1e-3};
-    asked.link = {
+    settings.link = {
         .latency = kLatencies[up_to(few ? 0 : 2)], .jitter = 10, .bandwidth = up_to(1) == 0 ? 1e9 : 2e7};
-    asked.seed = static_cast<std::uint64_t>(seed);
+    settings.seed = static_cast<std::uint64_t>(seed);
     SCOPED_TRACE(testing::Message() << "seed " << seed << ", queues "
-                                    << testing::PrintToString(asked.queues_of) << ", buffers of "
-                                    << asked.ray_buffer << ", latency " << asked.link.latency);
-    expect_same(render(asked), reference);
+                                    << testing::PrintToString(settings.queues_of) << ", buffers of "
+                                    << settings.ray_buffer << ", latency " << settings.link.latency);
+    expect_same(render(settings), reference);
     if (HasFailure()) return;
   }
 }

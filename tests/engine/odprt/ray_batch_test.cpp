@@ -28,9 +28,9 @@ float as_float(std::uint32_t word) {
   return std::bit_cast<float>(word);
 }
 
-std::vector<Mail> some_mail(unsigned seed, int n) {
+std::vector<HostRayQueue> some_host_rays(unsigned seed, int n) {
   std::mt19937 random(seed);
-  std::vector<Mail> mail(2, Mail(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
+  std::vector<HostRayQueue> host_rays(2, HostRayQueue(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
   for (int i = 0; i < n; ++i) {
     float ray[KDRAY_TRAVEL_RAY_FIELDS];
     for (float& word : ray) word = static_cast<float>(random() % 1000);
@@ -39,13 +39,13 @@ std::vector<Mail> some_mail(unsigned seed, int n) {
     if (random() % 2 == 0) {
       ray[KDRAY_RAY_PIXEL] = as_float(pixel);
       ray[KDRAY_RAY_FINDER] = as_float(KDRAY_FINDER_TO(KDRAY_FINDER(up_to(5), 1 + up_to(kDepth)), part + 2));
-      mail[part].put_ray(slice, ray, 1, 0);
+      host_rays[part].put_ray(slice, ray, 1, 0);
     } else {
       ray[KDRAY_SHADOW_PIXEL] = as_float(pixel);
-      mail[part].put_shadow_ray(slice, ray, 1, 0);
+      host_rays[part].put_shadow_ray(slice, ray, 1, 0);
     }
   }
-  return mail;
+  return host_rays;
 }
 
 transport::Message message_of(transport::Bytes bytes) {
@@ -70,8 +70,9 @@ std::vector<std::vector<float>> sorted(const Pile& pile, std::size_t n_fields) {
 
 TEST(RayBatchTest, ComesOutAsItWentIn) {
   for (const std::size_t most : {std::size_t{1}, std::size_t{500}, std::size_t{1} << 20}) {
-    const std::vector<Mail> reference = some_mail(7, 200);
-    std::vector<Mail> from = some_mail(7, 200), to(2, Mail(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
+    const std::vector<HostRayQueue> reference = some_host_rays(7, 200);
+    std::vector<HostRayQueue> from = some_host_rays(7, 200),
+                              to(2, HostRayQueue(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
     std::vector<std::uint32_t> sent(kKnown.n_counts()), come(kKnown.n_counts());
     int n_messages = 0;
     while (from[0].n + from[1].n > 0) {
@@ -94,7 +95,7 @@ TEST(RayBatchTest, ComesOutAsItWentIn) {
 }
 
 bool is_refused(transport::Bytes bytes) {
-  std::vector<Mail> to(2, Mail(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
+  std::vector<HostRayQueue> to(2, HostRayQueue(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
   std::vector<std::uint32_t> counts(kKnown.n_counts());
   try {
     unpack_rays(message_of(std::move(bytes)), kKnown, to, counts);
@@ -105,13 +106,13 @@ bool is_refused(transport::Bytes bytes) {
 }
 
 TEST(RayBatchTest, RefusesWhatKernelsCouldNotTake) {
-  std::vector<Mail> mail(2, Mail(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
+  std::vector<HostRayQueue> host_rays(2, HostRayQueue(kSlices, KDRAY_TRAVEL_RAY_FIELDS));
   float ray[KDRAY_TRAVEL_RAY_FIELDS] = {};
   ray[KDRAY_RAY_PIXEL] = as_float(149);
   ray[KDRAY_RAY_FINDER] = as_float(KDRAY_FINDER(KDRAY_NO_PART, 4u));
-  mail[1].put_ray(2, ray, 1, 0);
+  host_rays[1].put_ray(2, ray, 1, 0);
   std::vector<std::uint32_t> counts(kKnown.n_counts());
-  const transport::Bytes good = pack_rays(9, 2, mail, 1 << 20, counts);
+  const transport::Bytes good = pack_rays(9, 2, host_rays, 1 << 20, counts);
   EXPECT_FALSE(is_refused(good));
   for (std::size_t n = 0; n < good.size(); ++n) EXPECT_TRUE(is_refused(good.substr(0, n))) << n;
   EXPECT_TRUE(is_refused(good + "1234"));

@@ -12,7 +12,7 @@ namespace kdray::test {
 namespace {
 
 using odprt::Cut;
-using odprt::Opened;
+using odprt::OpenedNode;
 
 // Counts the leaves below a child, by their word.
 void count_leaves(const flatten::WideForm& form, layout::u32 child, std::map<layout::u32, int>& leaves) {
@@ -61,12 +61,12 @@ TEST(Subtrees, TheTopNamesEachOnce) {
   for (const auto& [name, scene] : prepared_scenes()) {
     const Cut cut = odprt::cut(scene.flat, scene.wide, 50);
     std::vector<int> named(cut.subtrees.size()), opened(cut.top.size());
-    for (const Opened& top : cut.top)
+    for (const OpenedNode& top : cut.top)
       for (std::uint32_t slot = 0; slot < 8; ++slot) {
         const std::int32_t below = top.below[slot];
         const layout::WideNode& node = scene.wide.nodes[top.node];
-        EXPECT_EQ(below == Opened::kEmpty, odprt::bounds_of_child(node, slot).empty()) << name;
-        if (below == Opened::kEmpty) continue;
+        EXPECT_EQ(below == OpenedNode::kEmpty, odprt::bounds_of_child(node, slot).empty()) << name;
+        if (below == OpenedNode::kEmpty) continue;
         if (below >= 0) {
           ++opened[static_cast<std::size_t>(below)];
           EXPECT_EQ(cut.top[static_cast<std::size_t>(below)].node, node.child[slot]);

@@ -22,22 +22,22 @@ struct Candidate {
 };
 
 template <class Visit>
-void for_each_primitive(const DeviceScene& asked, const Visit& visit) {
+void for_each_primitive(const DeviceScene& queried, const Visit& visit) {
   primitives::for_each_kind([&](auto kind) {
-    for (const auto& primitive : decltype(kind)::of(asked.prepared().flat)) visit(primitive);
+    for (const auto& primitive : decltype(kind)::of(queried.prepared().flat)) visit(primitive);
   });
 }
 
 // The primitives that may be closest, by their exact distances; the closest first, of equal ones the smallest
 // number.
-std::vector<Candidate> candidates(const DeviceScene& asked, const dvec3& local, double allowed) {
+std::vector<Candidate> candidates(const DeviceScene& queried, const dvec3& local, double allowed) {
   std::vector<std::pair<long double, std::uint32_t>> rough;
-  for_each_primitive(asked, [&](const auto& p) { rough.emplace_back(rough_distance(local, p), p.number); });
+  for_each_primitive(queried, [&](const auto& p) { rough.emplace_back(rough_distance(local, p), p.number); });
   const long double least = std::min_element(rough.begin(), rough.end())->first;
   const long double margin = 0x1p-48L * (largest_component(local) + 0x1p11L) + 2 * allowed;
   std::vector<Candidate> found;
   std::size_t i = 0;
-  for_each_primitive(asked, [&](const auto& p) {
+  for_each_primitive(queried, [&](const auto& p) {
     if (rough[i++].first <= least + margin) found.push_back({p.number, exact_distance(local, p)});
   });
   std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {

@@ -32,7 +32,7 @@ struct Errors {
 
 class Judge {
  public:
-  Judge(const DeviceScene& asked, const Promise& promise) : asked_(asked), promise_(promise) {}
+  Judge(const DeviceScene& queried, const Promise& promise) : asked_(queried), promise_(promise) {}
 
   void judge(std::size_t i, const dvec3& point, const query::ClosestPoint& answer);
 

@@ -24,11 +24,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 void expect_exact(const std::string& name, const scene::Scene& scene, const std::string& device,
                   std::size_t n, const std::string& build_options = "", const Promise& promise = kInDoubles) {
   set_exact_precision();
-  DeviceScene asked(scene, device, build_options);
-  const std::vector<dvec3> points = points_for(asked, n);
-  const query::ClosestPoints answers = query::closest_points(asked.target(), points, kInfinity);
+  DeviceScene queried(scene, device, build_options);
+  const std::vector<dvec3> points = points_for(queried, n);
+  const query::ClosestPoints answers = query::closest_points(queried.target(), points, kInfinity);
   ASSERT_EQ(answers.points.size(), points.size());
-  Judge judge(asked, promise);
+  Judge judge(queried, promise);
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     if (!testing::Test::HasFailure()) judge.judge(i, points[i], answers.points[i]);
   });

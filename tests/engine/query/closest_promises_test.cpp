@@ -21,9 +21,9 @@ using query::ClosestPoint;
 constexpr double kInfinity = std::numeric_limits<double>::infinity(),
                  kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<ClosestPoint> ask(DeviceScene& asked, const std::vector<dvec3>& points,
+std::vector<ClosestPoint> ask(DeviceScene& queried, const std::vector<dvec3>& points,
                               double radius = kInfinity) {
-  return query::closest_points(asked.target(), points, radius).points;
+  return query::closest_points(queried.target(), points, radius).points;
 }
 
 bool same(const ClosestPoint& a, const ClosestPoint& b) {
@@ -35,9 +35,9 @@ class ClosestPromises : public EachDevice {};
 
 TEST_P(ClosestPromises, TheSameBitsByAnyTree) {
   for (const scene::Scene& scene : {soup(400, 3), grid(12), ball(10), all_kinds()}) {
-    DeviceScene asked(scene, GetParam());
-    const std::vector<dvec3> points = points_for(asked, 4000);
-    const std::vector<ClosestPoint> usual = ask(asked, points);
+    DeviceScene queried(scene, GetParam());
+    const std::vector<dvec3> points = points_for(queried, 4000);
+    const std::vector<ClosestPoint> usual = ask(queried, points);
     for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::best})
       for (const int depth : {-1, 3}) {
         DeviceScene other(scene, GetParam(), "", {.quality = quality, .max_depth = depth});
@@ -47,18 +47,18 @@ TEST_P(ClosestPromises, TheSameBitsByAnyTree) {
 }
 
 TEST_P(ClosestPromises, TheSameBitsByPlainVectors) {
-  DeviceScene asked(all_kinds(), GetParam()), plain(all_kinds(), GetParam(), "-DKDRAY_SIMD=0");
-  const std::vector<dvec3> points = points_for(asked, 4000);
-  EXPECT_TRUE(std::ranges::equal(ask(asked, points), ask(plain, points), same));
+  DeviceScene queried(all_kinds(), GetParam()), plain(all_kinds(), GetParam(), "-DKDRAY_SIMD=0");
+  const std::vector<dvec3> points = points_for(queried, 4000);
+  EXPECT_TRUE(std::ranges::equal(ask(queried, points), ask(plain, points), same));
 }
 
 TEST_P(ClosestPromises, TheSameBitsInAnyOrderAndManyChunks) {
-  DeviceScene asked(soup(100, 1), GetParam());
-  const std::vector<dvec3> some = points_for(asked, 1000);
-  const std::vector<ClosestPoint> usual = ask(asked, some);
+  DeviceScene queried(soup(100, 1), GetParam());
+  const std::vector<dvec3> some = points_for(queried, 1000);
+  const std::vector<ClosestPoint> usual = ask(queried, some);
   std::vector<dvec3> many;
   while (many.size() < 700000) many.insert(many.end(), some.rbegin(), some.rend());
-  const std::vector<ClosestPoint> answers = ask(asked, many);
+  const std::vector<ClosestPoint> answers = ask(queried, many);
   ASSERT_EQ(answers.size(), many.size());
   for (std::size_t i = 0; i < answers.size(); ++i)
     ASSERT_TRUE(same(answers[i], usual[some.size() - 1 - i % some.size()])) << i;
@@ -66,12 +66,12 @@ TEST_P(ClosestPromises, TheSameBitsInAnyOrderAndManyChunks) {
 
 TEST_P(ClosestPromises, ARadiusLeavesOutWhatIsFarther) {
   for (const scene::Scene& scene : {soup(200, 1), all_kinds()}) {
-    DeviceScene asked(scene, GetParam());
-    const std::vector<dvec3> points = points_for(asked, 4000);
-    const std::vector<ClosestPoint> all = ask(asked, points);
+    DeviceScene queried(scene, GetParam());
+    const std::vector<dvec3> points = points_for(queried, 4000);
+    const std::vector<ClosestPoint> all = ask(queried, points);
     // As far as some of them are: these are found.
     for (const double radius : {0.0, all[1].distance, all[300].distance, all[900].distance, 1e5, 1e200}) {
-      const std::vector<ClosestPoint> near = ask(asked, points, radius);
+      const std::vector<ClosestPoint> near = ask(queried, points, radius);
       for (std::size_t i = 0; i < points.size(); ++i) {
         if (all[i].distance <= radius) {
           ASSERT_TRUE(same(near[i], all[i])) << i << ", radius " << radius;
@@ -87,9 +87,9 @@ TEST_P(ClosestPromises, ARadiusLeavesOutWhatIsFarther) {
 TEST_P(ClosestPromises, WeightsAreExactAtCornersAndOnEdges) {
   scene::Scene s = empty_scene();
   add_triangle(s, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});
-  DeviceScene asked(s, GetParam());
+  DeviceScene queried(s, GetParam());
   const std::vector<ClosestPoint> found = ask(
-      asked,
+      queried,
       {{-1, -1, 3}, {5, -0.5, 1}, {-0.5, 5, -1}, {1, -2, 0.5}, {-2, 3, 0}, {3, 3, 1}, {1, 2, 7}, {1, 1, 0}});
   const float weights[][2] = {{0, 0},     {1, 0},       {0, 1},        {0.25f, 0},
                               {0, 0.75f}, {0.5f, 0.5f}, {0.25f, 0.5f}, {0.25f, 0.25f}};
@@ -113,8 +113,8 @@ TEST_P(ClosestPromises, OfAllEquallyFarTheSmallestNumber) {
       add_triangle(s, {0, 0, side}, {std::cos(a), std::sin(a), 2 * side},
                    {-std::sin(a), std::cos(a), 2 * side});
     }
-  DeviceScene asked(s, GetParam());
-  for (const ClosestPoint& found : ask(asked, {{0, 0, 0}, {0, 0, -0.25}, {0, 0, 0.25}})) {
+  DeviceScene queried(s, GetParam());
+  for (const ClosestPoint& found : ask(queried, {{0, 0, 0}, {0, 0, -0.25}, {0, 0, 0.25}})) {
     EXPECT_EQ(found.primitive, found.point.z > 0 ? 0 : 1);
     EXPECT_EQ(std::abs(found.point.z), 1);
   }
@@ -132,10 +132,10 @@ TEST_P(ClosestPromises, OfNothingThereIsNothing) {
 
 TEST_P(ClosestPromises, PointsAtTheEndOfDoublesAreAnswered) {
   for (const double size : {1e-300, 1.0, 1e300}) {
-    DeviceScene asked(moved(soup(20, 0), size, dvec3(0)), GetParam());
+    DeviceScene queried(moved(soup(20, 0), size, dvec3(0)), GetParam());
     const std::vector<dvec3> points = {
         {1e308, 0, 0}, {-0.9e308, 0.9e308, 0.9e308}, {1e20, 0, 1e19}, {0, 0, 1e-308}, {0, 0, 0}};
-    const std::vector<ClosestPoint> found = ask(asked, points);
+    const std::vector<ClosestPoint> found = ask(queried, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_GE(found[i].primitive, 0) << i << " at size " << size;
       EXPECT_FALSE(std::isnan(found[i].distance));
@@ -147,9 +147,9 @@ TEST_P(ClosestPromises, PointsAtTheEndOfDoublesAreAnswered) {
 
 // Where the way from the scene's centre is no double.
 TEST_P(ClosestPromises, ScenesAtTheEndOfDoublesAreToo) {
-  DeviceScene asked(moved(soup(20, 0), 1e307, {-1e308, 0, 0}), GetParam());
+  DeviceScene queried(moved(soup(20, 0), 1e307, {-1e308, 0, 0}), GetParam());
   const std::vector<dvec3> points = {{0.5e308, 0, 0}, {1.6e308, 1e307, 0}, {-1e308, 1e306, 3e306}};
-  const std::vector<ClosestPoint> found = ask(asked, points);
+  const std::vector<ClosestPoint> found = ask(queried, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_GE(found[i].primitive, 0) << i;
     const double expected = safe_length(0.25 * points[i] - 0.25 * found[i].point);
@@ -160,9 +160,9 @@ TEST_P(ClosestPromises, ScenesAtTheEndOfDoublesAreToo) {
 }
 
 TEST_P(ClosestPromises, WhatIsNoPointIsRefused) {
-  DeviceScene asked(soup(3, 0), GetParam());
+  DeviceScene queried(soup(3, 0), GetParam());
   const auto with = [&](const dvec3& point, double radius) {
-    return [&, point, radius] { ask(asked, {{0, 0, 0}, point}, radius); };
+    return [&, point, radius] { ask(queried, {{0, 0, 0}, point}, radius); };
   };
   EXPECT_TRUE(fails(with({kNan, 0, 0}, kInfinity), "point 1: it is not finite"));
   EXPECT_TRUE(fails(with({0, kInfinity, 0}, kInfinity), "point 1: it is not finite"));
@@ -188,9 +188,9 @@ int needed(const flatten::WideForm& wide, std::uint32_t index) {
 TEST_P(ClosestPromises, TheStackHoldsTheDeepestTree) {
   for (const scene::Scene& scene : {soup(1, 0), soup(3000, 5), slivers(2000), all_kinds(), grid(40)})
     for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::best}) {
-      DeviceScene asked(scene, GetParam(), "", {.quality = quality});
-      EXPECT_LE(needed(asked.prepared().wide, 0),
-                wavefront::any_order_stack_size(asked.prepared().tree_depth));
+      DeviceScene queried(scene, GetParam(), "", {.quality = quality});
+      EXPECT_LE(needed(queried.prepared().wide, 0),
+                wavefront::any_order_stack_size(queried.prepared().tree_depth));
     }
 }
 

@@ -208,11 +208,11 @@ dvec3 place_of(const layout::Torus& t, Random& random) {
          t.minor_radius * std::sin(angle) * axis;
 }
 
-std::vector<dvec3> places_on(const DeviceScene& asked, std::size_t n, Random& random) {
+std::vector<dvec3> places_on(const DeviceScene& queried, std::size_t n, Random& random) {
   std::vector<dvec3> places;
   while (places.size() < n)
     primitives::for_each_kind([&](auto kind) {
-      const auto& all = decltype(kind)::of(asked.prepared().flat);
+      const auto& all = decltype(kind)::of(queried.prepared().flat);
       if (all.size() > 0) places.push_back(place_of(all[random.below(all.size())], random));
     });
   places.resize(n);
@@ -221,10 +221,10 @@ std::vector<dvec3> places_on(const DeviceScene& asked, std::size_t n, Random& ra
 
 }  // namespace
 
-std::vector<dvec3> points_for(const DeviceScene& asked, std::size_t n) {
+std::vector<dvec3> points_for(const DeviceScene& queried, std::size_t n) {
   Random random(kClosestSeed + 1);
-  const LocalSpace& space = asked.space();
-  const Box& bounds = asked.prepared().geometry.bounds;
+  const LocalSpace& space = queried.space();
+  const Box& bounds = queried.prepared().geometry.bounds;
   const dvec3 middle(bounds.center());
   const double half = 0.5 * largest_component(dvec3(bounds.extent()));
   std::vector<dvec3> points;
@@ -234,8 +234,8 @@ std::vector<dvec3> points_for(const DeviceScene& asked, std::size_t n) {
     add(middle + half * std::pow(10.0, random.between(0, 4)) * random.direction());
   for (std::size_t i = 0; i < n / 20; ++i)
     add(middle + half * std::pow(10.0, random.between(4, 11)) * random.direction());
-  for (const dvec3& p : places_on(asked, n / 10, random)) add(p);
-  for (const dvec3& p : places_on(asked, n / 3, random))
+  for (const dvec3& p : places_on(queried, n / 10, random)) add(p);
+  for (const dvec3& p : places_on(queried, n / 3, random))
     add(p + half * std::pow(10.0, random.between(-16, -1)) * random.direction());
   // Whole numbers and halves of the world, which lie above edges and corners of grids.
   for (std::size_t i = 0; i < n / 20; ++i) {

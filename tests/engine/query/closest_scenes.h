@@ -39,6 +39,6 @@ scene::Scene all_kinds();
 scene::Scene moved(scene::Scene s, double scale, const dvec3& by);
 
 // They are in the world.
-std::vector<dvec3> points_for(const DeviceScene& asked, std::size_t n);
+std::vector<dvec3> points_for(const DeviceScene& queried, std::size_t n);
 
 }  // namespace kdray::test

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "engine/query/asked.h"
 #include "engine/query/meshes.h"
+#include "engine/query/queried_scene.h"
 
 namespace kdray::test {
 namespace {
@@ -71,8 +71,8 @@ TEST_F(Exact, HitsAreThoseOfGeometry) {
     for (const Whole& p : t) v.emplace_back(p);
     faces.push_back({first, first + 1, first + 2});
   }
-  Asked asked(mesh_of(v, faces), Space::worlds);
-  ASSERT_EQ(asked.triangles().size(), triangles.size());
+  QueriedScene queried(mesh_of(v, faces), Space::worlds);
+  ASSERT_EQ(queried.triangles().size(), triangles.size());
   std::vector<Ray> rays;
   std::vector<Answer> answers;
   for (int i = 0; i < 20000; ++i) {
@@ -82,7 +82,7 @@ TEST_F(Exact, HitsAreThoseOfGeometry) {
     answers.push_back(ask_exactly(triangles, o, d));
     rays.push_back(ray_from(vec3(o), vec3(d)));
   }
-  const query::LocalHits all = asked.all(rays);
+  const query::LocalHits all = queried.all(rays);
   int sure = 0;
   std::size_t hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -192,8 +192,8 @@ KDRAY_FOR_EACH_DEVICE(InstanceQueries);
 void InstanceQueries::expect_right(const scene::Scene& s, unsigned seed) {
   Random random(seed);
   const std::vector<Ray> rays = rays_about(s, random, 4000);
-  DeviceScene asked(s, GetParam());
-  const query::Traced first = traced(asked, rays, Traversal::wide);
+  DeviceScene queried(s, GetParam());
+  const query::Traced first = traced(queried, rays, Traversal::wide);
   const InstanceJudge judge(s);
   std::size_t n_hits = 0, n_in_instances = 0, n_wrong = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -206,8 +206,8 @@ void InstanceQueries::expect_right(const scene::Scene& s, unsigned seed) {
   EXPECT_GT(n_hits, rays.size() / 5);
   EXPECT_GT(n_in_instances, rays.size() / 10);
   for (const Traversal walk : kWalks) {
-    EXPECT_TRUE(same(first, traced(asked, rays, walk))) << "walk " << static_cast<int>(walk);
-    const query::Traced any = traced(asked, rays, walk, true);
+    EXPECT_TRUE(same(first, traced(queried, rays, walk))) << "walk " << static_cast<int>(walk);
+    const query::Traced any = traced(queried, rays, walk, true);
     for (std::size_t i = 0; i < rays.size(); ++i)
       ASSERT_EQ(any.hits[i].t == 0, first.hits[i].primitive >= 0) << "ray " << i << " of seed " << seed;
   }
@@ -240,10 +240,10 @@ KDRAY_FOR_EACH_DEVICE(AllHitsOfInstances);
 void AllHitsOfInstances::expect_right(const scene::Scene& s, unsigned seed, bool closed) {
   Random random(seed);
   const std::vector<Ray> rays = rays_about(s, random, 3000);
-  DeviceScene asked(s, GetParam());
-  const query::LocalHits all = query::all_hits(asked.target(), rays);
+  DeviceScene queried(s, GetParam());
+  const query::LocalHits all = query::all_hits(queried.target(), rays);
   ASSERT_EQ(all.instance.size(), all.t.size());
-  const query::Traced closest = traced(asked, rays, Traversal::wide);
+  const query::Traced closest = traced(queried, rays, Traversal::wide);
   const InstanceJudge judge(s);
   const DBox box = s.bounds();
   std::size_t n_wrong = 0, n_through = 0, first = 0, n_hits = 0;
@@ -268,8 +268,8 @@ void AllHitsOfInstances::expect_right(const scene::Scene& s, unsigned seed, bool
     EXPECT_GT(n_through, rays.size() / 4);
   }
   EXPECT_GE(first, n_hits * 99 / 100) << "of " << n_hits << " the closest hit comes first";
-  const std::vector<std::uint32_t> counts = query::count_hits(asked.target(), rays);
-  const query::LocalHits three = query::all_hits(asked.target(), rays, {.max_hits = 3});
+  const std::vector<std::uint32_t> counts = query::count_hits(queried.target(), rays);
+  const query::LocalHits three = query::all_hits(queried.target(), rays, {.max_hits = 3});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(counts[i], all.splits[i + 1] - all.splits[i]) << i;
     const auto whole = crossings_of(all, i), some = crossings_of(three, i);
@@ -307,9 +307,9 @@ TEST_P(AllHitsOfInstances, OfOneTComeInTheOrderOfInstances) {
   const std::uint32_t mesh = add_mesh(s, icosphere(1));
   const dmat4 place = anywhere(random, {0.7, 0.9, -1.1}, 0.5);
   for (int i = 0; i < 100; ++i) add(s, mesh, place);
-  DeviceScene asked(s, GetParam());
+  DeviceScene queried(s, GetParam());
   const std::vector<Ray> rays = rays_about(s, random, 400);
-  const query::LocalHits all = query::all_hits(asked.target(), rays);
+  const query::LocalHits all = query::all_hits(queried.target(), rays);
   std::size_t n_many = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto crossings = crossings_of(all, i);
@@ -336,8 +336,8 @@ TEST_P(InstanceQueries, CloseTogether) {
   for (unsigned seed = kSeed; seed < kSeed + 2; ++seed) {
     Random random(seed);
     const scene::Scene s = close_together(random);
-    DeviceScene asked(s, GetParam());
-    EXPECT_TRUE(are_opened(asked));
+    DeviceScene queried(s, GetParam());
+    EXPECT_TRUE(are_opened(queried));
     expect_right(s, seed);
   }
 }
@@ -362,13 +362,13 @@ void InstanceQueries::expect_same_with_every_form(const scene::Scene& s) {
   const query::Traced first = traced(best, rays, Traversal::automatic);
   for (const char* const form : {"portable", "avx2"}) {
     const Variable asked_for("KDRAY_SIMD", form);
-    std::unique_ptr<DeviceScene> asked;
+    std::unique_ptr<DeviceScene> queried;
     try {
-      asked = std::make_unique<DeviceScene>(s, GetParam());
+      queried = std::make_unique<DeviceScene>(s, GetParam());
     } catch (const Error&) {
       continue;  // this device can't have it
     }
-    EXPECT_TRUE(same(first, traced(*asked, rays, Traversal::automatic))) << form;
+    EXPECT_TRUE(same(first, traced(*queried, rays, Traversal::automatic))) << form;
   }
 }
 
@@ -383,8 +383,8 @@ TEST_P(InstanceQueries, AreJudgedStrictly) {
   Random random(kSeed);
   const scene::Scene s = turned_and_scaled(random);
   const std::vector<Ray> rays = rays_about(s, random, 2000);
-  DeviceScene asked(s, GetParam());
-  const query::Traced all = traced(asked, rays, Traversal::wide);
+  DeviceScene queried(s, GetParam());
+  const query::Traced all = traced(queried, rays, Traversal::wide);
   const InstanceJudge judge(s);
   int n = 0, moved = 0, swapped = 0, lost = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -410,10 +410,10 @@ TEST_P(InstanceQueries, OfEqualHitsTheFirstIsTold) {
   const std::uint32_t twin = add_mesh(s, doubled()), ball = add_mesh(s, icosphere(2));
   const dmat4 place = anywhere(random, {0.7, 0.9, -1.1}, 0.5);
   for (const std::uint32_t mesh : {twin, ball, twin, ball, ball, twin}) add(s, mesh, place);
-  DeviceScene asked(s, GetParam());
+  DeviceScene queried(s, GetParam());
   const std::vector<Ray> rays = rays_about(s, random, 3000);
   for (const Traversal walk : kWalks) {
-    const query::Traced all = traced(asked, rays, walk);
+    const query::Traced all = traced(queried, rays, walk);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (all.hits[i].primitive < 0) continue;
       ASSERT_LT(all.instances[i], 2u) << i;
@@ -440,9 +440,9 @@ TEST_P(InstanceQueries, OfEqualHitsTheFirstIsTold) {
 }
 
 TEST_P(InstanceQueries, ScenesWithoutInstancesTellNone) {
-  DeviceScene asked(icosphere(2), GetParam());
+  DeviceScene queried(icosphere(2), GetParam());
   const Ray ray{{0, 0, 5}, 0, {0, 0, -1}, 100};
-  EXPECT_TRUE(traced(asked, std::span(&ray, 1), Traversal::automatic).instances.empty());
+  EXPECT_TRUE(traced(queried, std::span(&ray, 1), Traversal::automatic).instances.empty());
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 //         directions of any length, rays from far off, and scenes that no float can scale to their size.
 #include <cmath>
 
-#include "engine/query/asked.h"
 #include "engine/query/meshes.h"
+#include "engine/query/queried_scene.h"
 
 namespace kdray::test {
 namespace {
@@ -11,9 +11,9 @@ namespace {
 // The cube from -1 to 1, in the world's coordinates.
 class Intervals : public OnDevice {
  protected:
-  static Asked& cube() {
-    static Asked asked(stress::cube(), Space::worlds);
-    return asked;
+  static QueriedScene& cube() {
+    static QueriedScene queried(stress::cube(), Space::worlds);
+    return queried;
   }
   static std::uint32_t count(const Ray& ray) { return cube().count({&ray, 1})[0]; }
   static std::vector<float> distances(const Ray& ray) {
@@ -89,10 +89,10 @@ TEST_F(Intervals, ReachFarRaysBesideOthers) {
 
 TEST_F(Intervals, ReachScenesThatNoFloatScales) {
   for (const double scale : {1e-36, 1e36}) {
-    Asked asked(stress::placed(stress::cube(), scale, dvec3(0)), Space::worlds);
+    QueriedScene queried(stress::placed(stress::cube(), scale, dvec3(0)), Space::worlds);
     const auto s = static_cast<float>(scale);
     const Ray ray = ray_from({0.25f * s, 0.5f * s, -3 * s}, {0, 0, s});
-    const query::LocalHits all = asked.all({&ray, 1});
+    const query::LocalHits all = queried.all({&ray, 1});
     ASSERT_EQ(all.t.size(), 2) << scale;
     EXPECT_NEAR(all.t[0], 2, 1e-5);
     EXPECT_NEAR(all.t[1], 4, 1e-5);

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "engine/query/asked.h"
 #include "engine/query/meshes.h"
+#include "engine/query/queried_scene.h"
 
 namespace kdray::test {
 namespace {
@@ -52,12 +52,12 @@ class Lists : public OnDevice {};
 TEST_F(Lists, HoldMoreThanOnePassFinds) {
   constexpr int kStack = 100;
   const scene::Scene s = stack(kStack, 0);
-  Asked asked(s);
+  QueriedScene queried(s);
   const Own own(s);
   // Inside of a triangle, exactly on the diagonal, at the corner where four triangles of two squares meet no
   // other: each square once or not at all; and beside the stack.
   const std::vector<Ray> rays{own.upward(5.3, 1.7), own.upward(4, 4), own.upward(20, 4), own.upward(1.25, 6)};
-  const LocalHits all = asked.all(rays);
+  const LocalHits all = queried.all(rays);
   for (const std::size_t i : {0u, 1u, 3u}) {
     ASSERT_EQ(all.splits[i + 1] - all.splits[i], kStack) << i;
     for (std::uint32_t k = 0; k < kStack; ++k) {
@@ -71,7 +71,7 @@ TEST_F(Lists, HoldMoreThanOnePassFinds) {
 
 TEST_F(Lists, GiveTheFirstSoManyAndSayWhetherThereAreMore) {
   const scene::Scene s = stack(100, 300);
-  Asked asked(s);
+  QueriedScene queried(s);
   const Own own(s);
   std::vector<Ray> rays;
   for (int i = 0; i < 200; ++i) {
@@ -81,13 +81,13 @@ TEST_F(Lists, GiveTheFirstSoManyAndSayWhetherThereAreMore) {
     r.t_max = static_cast<float>(random.uniform(0, 110));
     rays.push_back(r);
   }
-  const LocalHits all = asked.all(rays);
+  const LocalHits all = queried.all(rays);
   EXPECT_GT(all.t.size(), 8000);
   LocalHits some;  // used again each time
   for (const std::uint32_t most : {0u, 1000u, 1u, 2u, 7u, 8u, 9u, 16u, 63u, 64u, 65u, 100u}) {
     SCOPED_TRACE(most);
-    query::all_hits(asked.target(), rays, {.max_hits = most}, some);
-    const std::vector<std::uint32_t> counts = asked.count(rays, {.max_hits = most});
+    query::all_hits(queried.target(), rays, {.max_hits = most}, some);
+    const std::vector<std::uint32_t> counts = queried.count(rays, {.max_hits = most});
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const std::uint64_t n = all.splits[i + 1] - all.splits[i], kept = some.splits[i + 1] - some.splits[i];
       ASSERT_EQ(kept, std::min<std::uint64_t>(n, most)) << i;
@@ -108,10 +108,10 @@ TEST_F(Lists, HoldAThousandTrianglesThatCoincide) {
     std::vector<std::array<std::uint32_t, 3>> faces(1000, {0, 1, 2});
     for (std::size_t i = 0; turned && i < faces.size(); ++i)
       std::rotate(faces[i].begin(), faces[i].begin() + i % 3, faces[i].end());
-    Asked asked(mesh_of({{-1, -1, 0.1}, {1, -1, 0.3}, {0, 1, -0.2}}, faces));
-    const float far = 4 * asked.reach();
+    QueriedScene queried(mesh_of({{-1, -1, 0.1}, {1, -1, 0.3}, {0, 1, -0.2}}, faces));
+    const float far = 4 * queried.reach();
     const std::vector<Ray> rays(40, ray_from({0.1f, 0.2f, far}, {0, 0, -1}));
-    const LocalHits all = asked.all(rays);
+    const LocalHits all = queried.all(rays);
     ASSERT_EQ(all.t.size(), 40 * faces.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
       std::vector<std::uint32_t> numbers(all.primitive.begin() + static_cast<long>(all.splits[i]),
@@ -121,19 +121,19 @@ TEST_F(Lists, HoldAThousandTrianglesThatCoincide) {
       for (std::uint32_t k = 0; k < numbers.size(); ++k) ASSERT_EQ(numbers[k], k);
     }
     EXPECT_TRUE(turned || all.t.front() == all.t.back());
-    EXPECT_EQ(asked.count(rays), std::vector<std::uint32_t>(40, 1000));
+    EXPECT_EQ(queried.count(rays), std::vector<std::uint32_t>(40, 1000));
   }
 }
 
 // Large triangles across many leaves.
 TEST_F(Lists, HoldAHitOnceHoweverManyLeavesItLiesIn) {
   const scene::Scene s = stack(3, 20000);
-  Asked asked(s);
-  EXPECT_GT(asked.prepared().tree.references, s.triangles.size() + 500);
+  QueriedScene queried(s);
+  EXPECT_GT(queried.prepared().tree.references, s.triangles.size() + 500);
   const Own own(s);
   std::vector<Ray> rays;
   for (int i = 0; i < 400; ++i) rays.push_back(own.upward(0.02 * i, 0.013 * i));
-  const LocalHits all = asked.all(rays);
+  const LocalHits all = queried.all(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto first = all.primitive.begin() + static_cast<long>(all.splits[i]);
     const auto end = all.primitive.begin() + static_cast<long>(all.splits[i + 1]);
@@ -146,11 +146,11 @@ TEST_F(Lists, HoldAHitOnceHoweverManyLeavesItLiesIn) {
 }
 
 TEST_F(Lists, AreEmptyWhereThereIsNothing) {
-  Asked nothing(mesh_of({}, {}));
+  QueriedScene nothing(mesh_of({}, {}));
   const std::vector<Ray> rays(100, ray_from({0, 0, 0}, {1, 2, 3}));
   EXPECT_TRUE(nothing.all(rays).t.empty());
   EXPECT_EQ(nothing.count(rays), std::vector<std::uint32_t>(100, 0));
-  Asked cube(stress::cube());
+  QueriedScene cube(stress::cube());
   EXPECT_TRUE(cube.count({}).empty());
   const LocalHits none = cube.all({});
   EXPECT_EQ(none.splits.size(), 1);
@@ -158,7 +158,7 @@ TEST_F(Lists, AreEmptyWhereThereIsNothing) {
 }
 
 TEST_F(Lists, RefuseRaysThatAreNoneOrLetThemMiss) {
-  Asked cube(stress::cube());
+  QueriedScene cube(stress::cube());
   const float nan = std::nanf("");
   const Ray good = ray_from({0, 0, 0}, {1, 2, 3});
   for (int field = 0; field < 9; ++field) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "conformance/all_kinds.h"
-#include "engine/query/asked.h"
+#include "engine/query/queried_scene.h"
 #include "oracle/primitives.h"
 #include "stress/random.h"
 
@@ -41,9 +41,9 @@ std::vector<Ray> rays_through(std::size_t n, std::uint64_t seed) {
 
 void expect_as_oracle(const scene::Scene& s, std::size_t least_sure) {
   constexpr double kTolerance = 2e-5;
-  Asked asked(s, Space::worlds);
+  QueriedScene queried(s, Space::worlds);
   const std::vector<Ray> rays = rays_through(2000, kSeed);
-  const query::LocalHits all = asked.all(rays);
+  const query::LocalHits all = queried.all(rays);
   const oracle::World world(s);
   std::size_t sure = 0, found = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -83,7 +83,7 @@ TEST_F(AgainstOracle, HitsOfAllKindsTogether) {
 TEST_F(AgainstOracle, SpheresAreCrossedTwiceOrNotAtAll) {
   oracle::SceneBuilder builder;
   builder.sphere({0.3, -0.2, 0.1}, 1, {}).sphere({0, 0, 0}, 1e-3, {}).sphere({5, 5, 5}, 2, {});
-  Asked asked(builder.scene(), Space::worlds);
+  QueriedScene queried(builder.scene(), Space::worlds);
   std::vector<Ray> rays;
   for (std::uint64_t i = 0; i < 50000; ++i) {
     stress::Random random(kSeed + 1, i);
@@ -94,7 +94,7 @@ TEST_F(AgainstOracle, SpheresAreCrossedTwiceOrNotAtAll) {
     const dvec3 d = to * std::sqrt(1 - sine * sine) + aside * (1 + off) * distance * sine;
     rays.push_back(ray_from(vec3(o), vec3(d)));
   }
-  const std::vector<std::uint32_t> counts = asked.count(rays);
+  const std::vector<std::uint32_t> counts = queried.count(rays);
   int crossed = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(counts[i] % 2, 0) << in_words(rays[i]);
@@ -110,7 +110,7 @@ TEST_F(AgainstOracle, AConeWithCapsIsCrossedAnEvenNumberOfTimes) {
   builder.cone({0, 0, -1}, 1, {0, 0, 1}, 0.5, {})
       .disc({0, 0, -1}, {0, 0, -1}, 1, {})
       .disc({0, 0, 1}, {0, 0, 1}, 0.5, {});
-  Asked asked(builder.scene(), Space::worlds);
+  QueriedScene queried(builder.scene(), Space::worlds);
   std::vector<Ray> rays;
   for (std::uint64_t i = 0; i < 50000; ++i) {
     stress::Random random(kSeed + 2, i);
@@ -118,7 +118,7 @@ TEST_F(AgainstOracle, AConeWithCapsIsCrossedAnEvenNumberOfTimes) {
                 at(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     rays.push_back(ray_from(vec3(o), vec3(at - o)));
   }
-  const std::vector<std::uint32_t> counts = asked.count(rays);
+  const std::vector<std::uint32_t> counts = queried.count(rays);
   int odd = 0, crossed = 0;
   for (const std::uint32_t n : counts) {
     odd += n % 2;

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "engine/query/asked.h"
 #include "engine/query/meshes.h"
+#include "engine/query/queried_scene.h"
 #include "engine/query/rule.h"
 
 namespace kdray::test {
@@ -22,19 +22,19 @@ constexpr std::uint64_t kSeed = 20261124;
 
 // KDRAY_STRESS: unset, the quick part; a number, about so many rays for each family of a mesh.
 std::size_t rays_of_a_family() {
-  const char* asked = std::getenv("KDRAY_STRESS");
-  if (!asked || !*asked) return 2000;
-  const double n = std::atof(asked);
+  const char* queried = std::getenv("KDRAY_STRESS");
+  if (!queried || !*queried) return 2000;
+  const double n = std::atof(queried);
   return n > 0 ? static_cast<std::size_t>(n) : 200000;
 }
 
-vec3 corner(const Asked& mesh, Random& random) {
+vec3 corner(const QueriedScene& mesh, Random& random) {
   const layout::Triangle& t = mesh.triangles()[random.below(mesh.triangles().size())];
   const auto& v = t.v[random.below(3)];
   return {v[0], v[1], v[2]};
 }
 
-vec3 on_edge(const Asked& mesh, Random& random) {
+vec3 on_edge(const QueriedScene& mesh, Random& random) {
   const layout::Triangle& t = mesh.triangles()[random.below(mesh.triangles().size())];
   const unsigned k = random.below(3), j = (k + 1) % 3;
   // A half is exact where the corners' sum is.
@@ -50,17 +50,17 @@ Ray from_outside(const vec3& at, const vec3& d, float reach) {
   return ray_from(at - d * (4 * reach / largest), d);
 }
 
-using Make = Ray (*)(const Asked&, Random&);
+using Make = Ray (*)(const QueriedScene&, Random&);
 
-Ray at_random(const Asked& mesh, Random& random) {
+Ray at_random(const QueriedScene& mesh, Random& random) {
   const dvec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
   return from_outside(vec3(p * double{mesh.reach()}), vec3(random.direction()), mesh.reach());
 }
-Ray at_a_vertex(const Asked& mesh, Random& random) {
+Ray at_a_vertex(const QueriedScene& mesh, Random& random) {
   const vec3 o(random.direction() * (4.0 * mesh.reach()));
   return ray_from(o, corner(mesh, random) - o);
 }
-Ray at_an_edge(const Asked& mesh, Random& random) {
+Ray at_an_edge(const QueriedScene& mesh, Random& random) {
   const vec3 o(random.direction() * (4.0 * mesh.reach()));
   return ray_from(o, on_edge(mesh, random) - o);
 }
@@ -70,12 +70,12 @@ vec3 axis(Random& random) {
   return d;
 }
 // Through a vertex or a point of an edge, whose other two coordinates it then has exactly.
-Ray along_an_axis(const Asked& mesh, Random& random) {
+Ray along_an_axis(const QueriedScene& mesh, Random& random) {
   return from_outside(random.below(2) ? corner(mesh, random) : on_edge(mesh, random), axis(random),
                       mesh.reach());
 }
 // Two coordinates of one vertex and of another: along grids, in planes of faces across an axis.
-Ray on_the_grid(const Asked& mesh, Random& random) {
+Ray on_the_grid(const QueriedScene& mesh, Random& random) {
   const vec3 one = corner(mesh, random), other = corner(mesh, random);
   const vec3 at(one.x, random.below(2) ? one.y : other.y, other.z);
   vec3 d = axis(random);
@@ -84,7 +84,7 @@ Ray on_the_grid(const Asked& mesh, Random& random) {
   return from_outside(at, d, mesh.reach());
 }
 // Along an edge, or from point to point of a face's plane.
-Ray in_a_face(const Asked& mesh, Random& random) {
+Ray in_a_face(const QueriedScene& mesh, Random& random) {
   const layout::Triangle& t = mesh.triangles()[random.below(mesh.triangles().size())];
   const auto at = [&](std::size_t k) { return dvec3(t.v[k][0], t.v[k][1], t.v[k][2]); };
   const dvec3 ab = at(1) - at(0), ac = at(2) - at(0);
@@ -97,7 +97,7 @@ Ray in_a_face(const Asked& mesh, Random& random) {
   return ray_from(vec3(at(0) + 0.3 * (ab + ac) * random.uniform() - away * d), vec3(d));
 }
 // The same from so near that the mesh lies on both sides of the ray's start, but not at it.
-Ray in_a_face_from_near(const Asked& mesh, Random& random) {
+Ray in_a_face_from_near(const QueriedScene& mesh, Random& random) {
   const layout::Triangle& t = mesh.triangles()[random.below(mesh.triangles().size())];
   const auto at = [&](std::size_t k) { return dvec3(t.v[k][0], t.v[k][1], t.v[k][2]); };
   const dvec3 ab = at(1) - at(0), ac = at(2) - at(0);
@@ -119,7 +119,8 @@ constexpr Family kFamilies[] = {{"at random", at_random, true},
                                 {"in faces", in_a_face, true},
                                 {"in faces, from near", in_a_face_from_near, false}};
 
-std::vector<Ray> make_rays(const Asked& mesh, const Family& family, std::uint64_t seed, std::size_t n) {
+std::vector<Ray> make_rays(const QueriedScene& mesh, const Family& family, std::uint64_t seed,
+                           std::size_t n) {
   std::vector<Ray> rays(n);
   for (std::size_t i = 0; i < n; ++i) {
     Random random(seed, i);
@@ -154,7 +155,7 @@ bool is_sorted(const query::LocalHits& all, std::size_t i) {
   return true;
 }
 
-void ask(Asked& mesh, const Family& family, std::uint64_t seed, std::size_t n) {
+void ask(QueriedScene& mesh, const Family& family, std::uint64_t seed, std::size_t n) {
   SCOPED_TRACE(testing::Message() << family.name << ", seed " << seed);
   const std::vector<Ray> rays = make_rays(mesh, family, seed, n);
   const query::LocalHits all = mesh.all(rays);
@@ -188,7 +189,7 @@ TEST_F(Parity, IsEvenThroughClosedMeshes) {
   for (const NamedMesh& m : closed_meshes()) {
     SCOPED_TRACE(m.name);
     ASSERT_TRUE(edges_are_even(m.scene));
-    Asked mesh(m.scene);
+    QueriedScene mesh(m.scene);
     for (const Family& family : kFamilies) ask(mesh, family, kSeed, rays_of_a_family());
   }
 }
@@ -199,8 +200,8 @@ TEST_F(Parity, IsRightAtTheLimitOfDoubt) {
   for (const double h : {0x1p-72, 0x1p-71, 0x1p-70})
     for (const double side : {1.0, -1.0}) {
       SCOPED_TRACE(testing::Message() << "the edge passes at " << side * h);
-      Asked mesh(mesh_of({{1024, side * h, 0}, {-1024, side * h, 0}, {0, -1024, 0}, {0, 1024, 0}},
-                         {{0, 1, 2}, {0, 1, 3}}));
+      QueriedScene mesh(mesh_of({{1024, side * h, 0}, {-1024, side * h, 0}, {0, -1024, 0}, {0, 1024, 0}},
+                                {{0, 1, 2}, {0, 1, 3}}));
       for (const std::size_t n : {1, 64}) {  // alone, and as packets
         const std::vector<Ray> rays(n, ray_from({0, 0, -8}, {0, 0, 1}));
         const query::LocalHits all = mesh.all(rays);
@@ -215,7 +216,7 @@ TEST_F(Parity, IsEvenAtAnyScaleAndPlace) {
     for (const double move : {0.0, 1e3, 1e6})
       for (const NamedMesh& m : {NamedMesh{"crumpled", stress::crumpled()}, {"torus", torus(12, 7)}}) {
         SCOPED_TRACE(testing::Message() << m.name << ", scale " << scale << ", moved by " << move);
-        Asked mesh(stress::placed(m.scene, scale, scale * move * dvec3(1, -0.7, 0.3)));
+        QueriedScene mesh(stress::placed(m.scene, scale, scale * move * dvec3(1, -0.7, 0.3)));
         for (const Family& family : kFamilies) ask(mesh, family, kSeed + 1, rays_of_a_family() / 4);
       }
 }

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "conformance/all_kinds.h"
-#include "engine/query/asked.h"
 #include "engine/query/meshes.h"
+#include "engine/query/queried_scene.h"
 #include "engine/query/trace.h"
 #include "stress/random.h"
 
@@ -56,7 +56,7 @@ std::vector<Ray> rays_at(const scene::Scene& scene, std::size_t n) {
   return rays;
 }
 
-void expect_same_hits(Asked& refitted, Asked& built, const std::vector<Ray>& rays) {
+void expect_same_hits(QueriedScene& refitted, QueriedScene& built, const std::vector<Ray>& rays) {
   const LocalHits all = built.all(rays, {.traversal = Traversal::wide});
   const std::vector<Hit> closest = query::trace(built.target(), rays, {.traversal = Traversal::wide}).hits;
   EXPECT_GT(all.t.size(), rays.size() / 8);
@@ -103,7 +103,7 @@ void expect_refits(scene::Scene scene, Blocks blocks) {
     prepare::Refitted made = prepare::refit(scene, first, fitting, std::numeric_limits<double>::infinity());
     if (!made.scene) continue;  // triangles have lost their area, or found one
     ++refits;
-    Asked refitted(std::move(*made.scene)), built(prepared_of(scene, blocks, first.geometry.space));
+    QueriedScene refitted(std::move(*made.scene)), built(prepared_of(scene, blocks, first.geometry.space));
     EXPECT_EQ(refitted.prepared().features, built.prepared().features);
     expect_same_hits(refitted, built, rays_at(scene, 1500));
   }

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "conformance/all_kinds.h"
-#include "engine/query/asked.h"
 #include "engine/query/meshes.h"
+#include "engine/query/queried_scene.h"
 #include "engine/query/trace.h"
 
 namespace kdray::test {
@@ -16,7 +16,7 @@ using query::LocalHits;
 constexpr std::uint64_t kSeed = 31;
 constexpr Traversal kWalks[] = {Traversal::wide, Traversal::packet, Traversal::batch, Traversal::automatic};
 
-std::vector<Ray> rays_about(const Asked& scene, std::size_t n) {
+std::vector<Ray> rays_about(const QueriedScene& scene, std::size_t n) {
   std::vector<Ray> rays;
   const float reach = scene.reach();
   for (std::size_t i = 0; rays.size() < n; ++i) {
@@ -45,15 +45,15 @@ bool same(const LocalHits& a, const LocalHits& b) {
          same_bits(a.u, b.u) && same_bits(a.v, b.v) && same_bits(a.more, b.more);
 }
 
-void expect_one_answer(Asked& asked) {
-  const std::vector<Ray> rays = rays_about(asked, 3000);
+void expect_one_answer(QueriedScene& queried) {
+  const std::vector<Ray> rays = rays_about(queried, 3000);
   for (const std::uint32_t max_hits : {0xffffffffu, 3u}) {
-    const LocalHits all = asked.all(rays, {.max_hits = max_hits, .traversal = Traversal::wide});
+    const LocalHits all = queried.all(rays, {.max_hits = max_hits, .traversal = Traversal::wide});
     EXPECT_GT(all.t.size(), 500);
     for (const Traversal walk : kWalks) {
       const query::CollectOptions options{.max_hits = max_hits, .traversal = walk};
-      EXPECT_TRUE(same(all, asked.all(rays, options))) << "walk " << static_cast<int>(walk);
-      const std::vector<std::uint32_t> counts = asked.count(rays, options);
+      EXPECT_TRUE(same(all, queried.all(rays, options))) << "walk " << static_cast<int>(walk);
+      const std::vector<std::uint32_t> counts = queried.count(rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i)
         ASSERT_EQ(counts[i], all.splits[i + 1] - all.splits[i]) << in_words(rays[i]);
     }
@@ -61,10 +61,10 @@ void expect_one_answer(Asked& asked) {
 }
 
 // Where no edge, rim or tangent is in play the first of all hits is the closest one, bit for bit.
-void expect_closest_first(Asked& asked, double share) {
-  const std::vector<Ray> rays = rays_about(asked, 3000);
-  const LocalHits all = asked.all(rays);
-  const std::vector<Hit> closest = query::trace(asked.target(), rays, {}).hits;
+void expect_closest_first(QueriedScene& queried, double share) {
+  const std::vector<Ray> rays = rays_about(queried, 3000);
+  const LocalHits all = queried.all(rays);
+  const std::vector<Hit> closest = query::trace(queried.target(), rays, {}).hits;
   std::size_t n = 0, first = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (closest[i].primitive < 0) {
@@ -87,16 +87,16 @@ TEST_F(Walks, FindTheSameInMeshes) {
   for (const NamedMesh& m :
        {NamedMesh{"torus", torus(24, 12)}, {"cubes", cubes(3, 6)}, {"fine", icosphere(4)}}) {
     SCOPED_TRACE(m.name);
-    Asked asked(m.scene);
-    EXPECT_EQ(asked.prepared().wide.block, 4);
-    expect_one_answer(asked);
-    expect_closest_first(asked, 0.999);
+    QueriedScene queried(m.scene);
+    EXPECT_EQ(queried.prepared().wide.block, 4);
+    expect_one_answer(queried);
+    expect_closest_first(queried, 0.999);
   }
 }
 
 TEST_F(Walks, FindTheSameInBlocksOfEight) {
   const scene::Scene fine = icosphere(4);
-  Asked eights(fine, Space::own, Blocks::of_eight), fours(fine);
+  QueriedScene eights(fine, Space::own, Blocks::of_eight), fours(fine);
   ASSERT_EQ(eights.prepared().wide.block, 8);
   expect_one_answer(eights);
   const std::vector<Ray> rays = rays_about(eights, 3000);
@@ -104,9 +104,9 @@ TEST_F(Walks, FindTheSameInBlocksOfEight) {
 }
 
 TEST_F(Walks, FindTheSameOfAllKinds) {
-  Asked asked(mixed_scene(100, kSeed));
-  expect_one_answer(asked);
-  expect_closest_first(asked, 1);
+  QueriedScene queried(mixed_scene(100, kSeed));
+  expect_one_answer(queried);
+  expect_closest_first(queried, 1);
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ scene::Scene scene_of(layout::Features mask) {
   return s;
 }
 
-struct Drawn {
+struct RenderedFrame {
   std::vector<layout::i64> film;
   Counters counters;
 };
@@ -169,7 +169,7 @@ class Subject {
 
   layout::Features features() const { return features_; }
 
-  Drawn draw(const Schedule& schedule) {
+  RenderedFrame draw(const Schedule& schedule) {
     layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
     schedule.apply(frame, features_);
     const std::vector<layout::u32> tiles = tile_curve(frame.n_tiles_x, 0, frame.n_tiles / frame.n_tiles_x);
@@ -179,17 +179,17 @@ class Subject {
     wavefront.begin(0);
     std::span<const layout::u32> left = tiles;
     wavefront.render([&](const Progress&) { return std::exchange(left, {}); });
-    Drawn drawn;
+    RenderedFrame rendered;
     wavefront.finish(0, n_pixels,
-                     [&](const FilmSums& film) { drawn.film.assign(film.sums.begin(), film.sums.end()); });
-    drawn.counters = wavefront.counters();
-    return drawn;
+                     [&](const FilmSums& film) { rendered.film.assign(film.sums.begin(), film.sums.end()); });
+    rendered.counters = wavefront.counters();
+    return rendered;
   }
 
   // The programs have all that they may have, the host goes by the scene as before.
   void have_everything() { programs_.have_everything(); }
 
-  std::vector<film::Channel> channels() {
+  std::vector<image::Channel> channels() {
     layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
     Schedule{}.apply(frame, features_);
     const std::vector<std::string> names = {"depth", "normal", "primitive", "cost"};
@@ -297,15 +297,15 @@ class FeaturesTest : public test::EachDevice {
       Subject subject(context_, mask);
       SCOPED_TRACE(fmt::format("{:#010x}: {}", mask, fmt::join(flatten::feature_names(mask).on, ", ")));
       ASSERT_EQ(subject.features(), mask);
-      const Drawn drawn = subject.draw(kByStages);
-      const Counters& n = drawn.counters;
+      const RenderedFrame rendered = subject.draw(kByStages);
+      const Counters& n = rendered.counters;
       EXPECT_EQ(n.primary, 63u * (has(mask, kSamples) ? 3 : 1));
       EXPECT_EQ(n.primary_hit > 0, has(mask, kKinds));
       EXPECT_EQ(n.shadow > 0, has(mask, kLights));
       // Glass reflects too, where refraction is impossible.
       EXPECT_EQ(n.reflected > 0, has(mask, kReflect | (n.reflected > 0 ? kTransmit : 0)));
       EXPECT_EQ(n.refracted > 0, has(mask, kTransmit));
-      const bool all_dark = std::ranges::all_of(drawn.film, [](layout::i64 sum) { return sum == 0; });
+      const bool all_dark = std::ranges::all_of(rendered.film, [](layout::i64 sum) { return sum == 0; });
       EXPECT_EQ(all_dark, !has(mask, kKinds | kBackground));
     }
   }
@@ -315,9 +315,9 @@ class FeaturesTest : public test::EachDevice {
     for (const layout::Features mask : masks) {
       Subject subject(context_, mask);
       SCOPED_TRACE(fmt::format("{:#010x}: {}", mask, fmt::join(flatten::feature_names(mask).on, ", ")));
-      const Drawn own = subject.draw(kByStages);
+      const RenderedFrame own = subject.draw(kByStages);
       subject.have_everything();
-      const Drawn everything = subject.draw(schedule);
+      const RenderedFrame everything = subject.draw(schedule);
       EXPECT_EQ(everything.film, own.film);
 #define KDRAY_EXPECT_THE_SAME(name, field, key) \
   EXPECT_EQ(everything.counters.name, own.counters.name) << (key);
@@ -396,12 +396,12 @@ TEST_P(FeaturesTest, FreshMemoryDoesNotShow) {
   for (const bool fused : {false, true}) {
     Schedule schedule = kByStages;
     schedule.fused = fused;
-    const Drawn zeros = subject.draw(schedule);
+    const RenderedFrame zeros = subject.draw(schedule);
     for (const cl_uint word :
          {0xffffffffu, 0x7fc00001u, 0x7f800000u, 0x3f800000u, 0x7f7fffffu, 0x00000001u}) {
       SCOPED_TRACE(fmt::format("{} {:#010x}", fused ? "one launch" : "stages", word));
       schedule.fill = word;
-      const Drawn other = subject.draw(schedule);
+      const RenderedFrame other = subject.draw(schedule);
       EXPECT_EQ(other.film, zeros.film);
       EXPECT_EQ(other.counters.total(), zeros.counters.total());
     }
@@ -409,7 +409,7 @@ TEST_P(FeaturesTest, FreshMemoryDoesNotShow) {
 }
 
 TEST_P(FeaturesTest, Channels) {
-  for (const film::Channel& channel : Subject(context_, kAll).channels()) {
+  for (const image::Channel& channel : Subject(context_, kAll).channels()) {
     EXPECT_EQ(channel.values.size(), 63u) << channel.name;
     EXPECT_TRUE(std::ranges::none_of(channel.values, [](float v) { return std::isnan(v); })) << channel.name;
   }

@@ -215,10 +215,10 @@ TEST(Schedule, FitsIntoWhatADeviceGivesInOnePiece) {
     EXPECT_GE(schedule.n_slices, 1u);
     EXPECT_GT(std::max(pool, shadow), limit / 4);
   }
-  Schedule roomy = wanted;
-  roomy.fit(scene_frame, hall.features, std::size_t{1} << 40);
-  EXPECT_EQ(roomy.n_slices, wanted.n_slices);
-  EXPECT_EQ(roomy.batch_size, wanted.batch_size);
+  Schedule ample = wanted;
+  ample.fit(scene_frame, hall.features, std::size_t{1} << 40);
+  EXPECT_EQ(ample.n_slices, wanted.n_slices);
+  EXPECT_EQ(ample.batch_size, wanted.batch_size);
 }
 
 KDRAY_FOR_EACH_DEVICE(ScheduleTest);

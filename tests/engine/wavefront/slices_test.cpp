@@ -76,8 +76,8 @@ TEST_P(SliceBuffersTest, HaveRoomForWhatTheKernelsWrite) {
   frame.batch_size = 50, frame.batch_capacity = capacity_for(50);
   frame.shadow_capacity = 2 * frame.batch_capacity;
   EXPECT_EQ(frame.batch_capacity, 80u);  // 50 rays to whole vectors, and a vector behind the last ray
-  const SliceRoom room{3, 10, 0, 100};
-  SliceBuffers alone(context, frame, room, StreamForm::of_device(frame, sizeof(double), 0));
+  const SliceCapacity capacity{3, 10, 0, 100};
+  SliceBuffers alone(context, frame, capacity, StreamForm::of_device(frame, sizeof(double), 0));
   SliceBuffers odprt(context, frame, {3, 10, 64, 100}, StreamForm::of_odprt(frame, 0));
   if (alone.film_made.valid()) alone.film_made.get();
   if (odprt.film_made.valid()) odprt.film_made.get();

@@ -11,7 +11,7 @@
 #include "support/errors.h"
 #include "support/folder.h"
 
-namespace kdray::rays {
+namespace kdray::array {
 namespace {
 
 using test::fails;
@@ -156,4 +156,4 @@ TEST(ReadRays, EveryTruncationAndDamageIsRefusedOrRead) {
 }
 
 }  // namespace
-}  // namespace kdray::rays
+}  // namespace kdray::array

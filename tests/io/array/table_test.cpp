@@ -11,7 +11,7 @@
 #include "support/errors.h"
 #include "support/folder.h"
 
-namespace kdray::rays {
+namespace kdray::array {
 namespace {
 
 std::string written(const std::vector<Column>& columns, TableFormat format) {
@@ -130,4 +130,4 @@ TEST(Table, AFileThatCannotBeWrittenIsNamedAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace kdray::rays
+}  // namespace kdray::array

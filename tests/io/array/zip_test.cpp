@@ -9,7 +9,7 @@
 
 #include "support/folder.h"
 
-namespace kdray::rays {
+namespace kdray::array {
 namespace {
 
 std::string zip_of(const std::map<std::string, std::string>& files, std::uint64_t zip64_from = 0xffffffffu) {
@@ -86,4 +86,4 @@ TEST(Zip, LargeFilesHaveTheirSizesBeside) {
 }
 
 }  // namespace
-}  // namespace kdray::rays
+}  // namespace kdray::array

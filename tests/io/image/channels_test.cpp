@@ -9,7 +9,7 @@
 #include "io/image/queue_colors.h"
 #include "support/errors.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 using Samples = std::vector<std::uint16_t>;
@@ -91,4 +91,4 @@ TEST(ChannelPictures, CostRunsFromBlackToTheHottest) {
 }
 
 }  // namespace
-}  // namespace kdray::film
+}  // namespace kdray::image

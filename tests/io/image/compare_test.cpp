@@ -8,7 +8,7 @@
 #include "pictures.h"
 #include "support/errors.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 TEST(Compare, EqualPicturesDoNotDiffer) {
@@ -91,4 +91,4 @@ TEST(DifferenceImage, EqualPicturesAreBlack) {
 }
 
 }  // namespace
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -8,7 +8,7 @@
 #include "pictures.h"
 #include "support/errors.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 bool same_bits(const Image& a, const Image& b) {
@@ -86,4 +86,4 @@ TEST(Exr, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace kdray::film
+}  // namespace kdray::image

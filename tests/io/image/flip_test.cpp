@@ -10,7 +10,7 @@
 
 #include "pictures.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
@@ -121,4 +121,4 @@ TEST(FlipParts, DistanceAndRedistribution) {
 }
 
 }  // namespace
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -5,7 +5,7 @@
 
 #include "io/image/image.h"
 
-namespace kdray::film {
+namespace kdray::image {
 
 inline Image flat(int width, int height, const vec3& color) {
   return {width, height, std::vector<vec3>(static_cast<std::size_t>(width * height), color)};
@@ -19,4 +19,4 @@ inline Image noise(int width, int height, unsigned seed, float low = 0, float hi
   return image;
 }
 
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -11,7 +11,7 @@
 #include "support/errors.h"
 #include "support/folder.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 PngPixels random_pixels(int channels, int bits, unsigned seed) {
@@ -130,4 +130,4 @@ TEST(ReadPicture, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -8,7 +8,7 @@
 #include "io/image/heat.h"
 #include "support/errors.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 const Transfer kCurves[] = {{true, 2.2}, {false, 1}, {false, 2.2}, {false, 0.5}, {false, 5}};
@@ -87,4 +87,4 @@ TEST(Heat, GrowsBrighterAndIsClamped) {
 }
 
 }  // namespace
-}  // namespace kdray::film
+}  // namespace kdray::image

@@ -9,7 +9,7 @@
 #include "support/errors.h"
 #include "support/folder.h"
 
-namespace kdray::film {
+namespace kdray::image {
 namespace {
 
 double largest_difference(const Image& a, const Image& b) {
@@ -123,4 +123,4 @@ TEST(WritePicture, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace kdray::film
+}  // namespace kdray::image

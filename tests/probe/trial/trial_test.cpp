@@ -6,8 +6,8 @@
 
 #include <array>
 
-#include "probe/trial/asked.h"
 #include "probe/trial/program.h"
+#include "probe/trial/request.h"
 #include "support/variable.h"
 
 namespace kdray::trial {
@@ -80,7 +80,7 @@ TEST(Trial, TheLimitCanBeChanged) {
 }
 
 TEST(Trial, ArgumentsAskForOneOrForNone) {
-  const auto asked = [](const std::vector<const char*>& arguments) { return asked_by(arguments); };
+  const auto asked = [](const std::vector<const char*>& arguments) { return request_of(arguments); };
   const auto device = asked({"kdray", "--try", "device", "0123", "77"});
   ASSERT_TRUE(device.has_value());
   EXPECT_EQ(device->subject, Subject::device);

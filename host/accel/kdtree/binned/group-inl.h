@@ -138,9 +138,9 @@ HWY_ATTR inline GroupSplit best_between_steps(std::span<const BoundedRef> refs, 
 // Appends a cell's references to the fragment: as a leaf, or as groups of them.
 class Grouper {
  public:
-  Grouper(const BuildConfig& config, int depth, std::vector<BoundedRef>& room, SweepRoom& sweep,
+  Grouper(const BuildConfig& config, int depth, std::vector<BoundedRef>& scratch, SweepBuffers& sweep,
           Fragment& out)
-      : config_(config), depth_(depth), room_(room), sweep_(sweep), out_(out) {}
+      : config_(config), depth_(depth), scratch_(scratch), sweep_(sweep), out_(out) {}
 
   // The references are left in another order. Returns `contents`, their hull.
   HWY_ATTR Box append(std::span<BoundedRef> refs, const Bounds& contents, int level = 0) {
@@ -184,25 +184,25 @@ class Grouper {
   // Keeps the order on both sides. A reference is asked for before its place is written.
   template <class IsFirst>
   std::size_t part(std::span<BoundedRef> refs, const IsFirst& is_first) {
-    if (room_.size() < refs.size() + 1) room_.resize(refs.size() + 1);
+    if (scratch_.size() < refs.size() + 1) scratch_.resize(refs.size() + 1);
     std::size_t n_first = 0, n_second = 0;
     for (std::size_t i = 0; i < refs.size(); ++i) {
       const bool first = is_first(i);
       const BoundedRef r = refs[i];
-      room_[n_second] = r;
+      scratch_[n_second] = r;
       refs[n_first] = r;
       n_first += first ? 1 : 0;
       n_second += first ? 0 : 1;
     }
-    std::copy_n(room_.begin(), n_second, refs.begin() + static_cast<std::ptrdiff_t>(n_first));
+    std::copy_n(scratch_.begin(), n_second, refs.begin() + static_cast<std::ptrdiff_t>(n_first));
     return n_first;
   }
 
   const BuildConfig& config_;
   const int depth_;
   int axis_ = 0;  // of the last that was parted
-  std::vector<BoundedRef>& room_;
-  SweepRoom& sweep_;
+  std::vector<BoundedRef>& scratch_;
+  SweepBuffers& sweep_;
   Fragment& out_;
 };
 

@@ -21,7 +21,7 @@ inline constexpr std::size_t kTaskRefs = 16384;  // references to a task, and to
 // have: partitions write there in vain.
 struct Piece {
   BoundedRef* first = nullptr;
-  std::size_t n = 0, room = 0;
+  std::size_t n = 0, capacity = 0;
   Bounds hull = no_bounds();
 
   std::span<BoundedRef> refs() const { return {first, n}; }
@@ -33,10 +33,10 @@ struct Piece {
 
 // What a division left below the plane stays in front; above it there may be as many as the rest holds.
 inline Piece rest_of(const Piece& whole, std::size_t n_below) {
-  return {whole.first + n_below + 1, 0, whole.room - n_below - 1, no_bounds()};
+  return {whole.first + n_below + 1, 0, whole.capacity - n_below - 1, no_bounds()};
 }
 inline std::size_t most_in(const Piece& piece) {
-  return piece.room == 0 ? 0 : piece.room - 1;
+  return piece.capacity == 0 ? 0 : piece.capacity - 1;
 }
 
 // Memory for pieces, for all threads; freed with the pool.

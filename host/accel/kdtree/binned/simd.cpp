@@ -49,9 +49,9 @@ HWY_ATTR Bounds Hull(std::span<const BoundedRef> refs) {
 
 HWY_ATTR void AppendGroups(std::span<BoundedRef> refs, const Bounds& contents, int depth,
                            const BuildConfig& config, Fragment& out) {
-  std::vector<BoundedRef> room;
-  SweepRoom sweep;
-  Grouper(config, depth, room, sweep, out).append(refs, contents);
+  std::vector<BoundedRef> scratch;
+  SweepBuffers sweep;
+  Grouper(config, depth, scratch, sweep, out).append(refs, contents);
 }
 
 HWY_ATTR void BuildSubtree(const scene::Geometry& geometry, const BuildConfig& config, int max_depth,

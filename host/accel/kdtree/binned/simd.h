@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "accel/kdtree/binned/bin_grid.h"
-#include "accel/kdtree/binned/sweep_room.h"
+#include "accel/kdtree/binned/sweep_buffers.h"
 #include "accel/kdtree/build.h"
 #include "accel/kdtree/fragment.h"
 #include "accel/kdtree/reference.h"
@@ -35,7 +35,7 @@ struct Plane {
 struct Workspace {
   std::vector<BoundedRef> stack, straddlers, above, others;
   Fragment fragment;
-  SweepRoom sweep;
+  SweepBuffers sweep;
 };
 
 // How far a piece of a cell's references was divided.

@@ -64,7 +64,7 @@ class SubtreeBuilder {
     if (is_leaf_anyway(n, config_) || cell.depth >= max_depth_) return append_leaf(refs, cell);
     const Plane plane = choose_plane(refs, cell.contents, config_);
     if (!plane.found()) return append_leaf(refs, cell);
-    make_room(first, n);
+    ensure_capacity(first, n);
     BoundedRef *const above = stack_.data() + first, *const below = above + n + 1;
     const Sorted sorted = sort_sides(above, n, plane, below, above, straddlers_.data());
     Divided sides{sorted.n_below, sorted.n_above};
@@ -108,7 +108,7 @@ class SubtreeBuilder {
 
   // The stack needs room behind the cell for all references that may go below the plane, and for one in each
   // place that is written in vain.
-  void make_room(std::size_t first, std::size_t n) {
+  void ensure_capacity(std::size_t first, std::size_t n) {
     if (stack_.size() < first + 2 * n + 2) stack_.resize(2 * (first + 2 * n + 2));
     if (straddlers_.size() < n + 1) straddlers_.resize(2 * n + 1);
   }
@@ -117,7 +117,7 @@ class SubtreeBuilder {
   const BuildConfig& config_;
   const int max_depth_;
   std::vector<BoundedRef>&stack_, &straddlers_;
-  SweepRoom& sweep_;
+  SweepBuffers& sweep_;
   Fragment& out_;
 };
 

@@ -29,8 +29,8 @@ inline constexpr std::size_t kPairs = 3;       // and up to here all parts are t
 
 class Sweep : private SweptCell {
  public:
-  Sweep(const BuildConfig& config, int depth, SweepRoom& room, Fragment& out)
-      : SweptCell(room),
+  Sweep(const BuildConfig& config, int depth, SweepBuffers& buffers, Fragment& out)
+      : SweptCell(buffers),
         config_(config),
         depth_(depth),
         traverse_(static_cast<float>(config.group_traverse)),
@@ -42,14 +42,15 @@ class Sweep : private SweptCell {
   HWY_ATTR void append(std::span<const BoundedRef> refs, const Bounds& hull, int level) {
     first_node_ = static_cast<std::uint32_t>(out_.nodes.size());
     first_ref_ = static_cast<std::uint32_t>(out_.refs.size());
-    room_.n_nodes = room_.n_refs = 0;
+    buffers_.n_nodes = buffers_.n_refs = 0;
     load(refs, hull);
     fill_tests(refs.size());
     build(0, refs.size(), 0, level);
-    out_.nodes.insert(out_.nodes.end(), room_.nodes.begin(), room_.nodes.begin() + at(room_.n_nodes));
-    out_.contents.insert(out_.contents.end(), room_.contents.begin(),
-                         room_.contents.begin() + at(room_.n_nodes));
-    out_.refs.insert(out_.refs.end(), room_.refs.begin(), room_.refs.begin() + at(room_.n_refs));
+    out_.nodes.insert(out_.nodes.end(), buffers_.nodes.begin(),
+                      buffers_.nodes.begin() + at(buffers_.n_nodes));
+    out_.contents.insert(out_.contents.end(), buffers_.contents.begin(),
+                         buffers_.contents.begin() + at(buffers_.n_nodes));
+    out_.refs.insert(out_.refs.end(), buffers_.refs.begin(), buffers_.refs.begin() + at(buffers_.n_refs));
     out_.max_depth = std::max(out_.max_depth, depth_);
   }
 
@@ -62,9 +63,9 @@ class Sweep : private SweptCell {
     const Floats d;
     for (std::size_t i = 0; i <= n; i += hn::Lanes(d)) {
       const V first = hn::Iota(d, static_cast<float>(i));
-      hn::StoreU(tests_(first), d, room_.tests.data() + i);
+      hn::StoreU(tests_(first), d, buffers_.tests.data() + i);
       const V second = hn::Max(hn::Sub(hn::Set(d, static_cast<float>(n)), first), hn::Zero(d));
-      hn::StoreU(tests_(second), d, room_.tests_backward.data() + (kSwept - n) + i);
+      hn::StoreU(tests_(second), d, buffers_.tests_backward.data() + (kSwept - n) + i);
     }
   }
 
@@ -79,13 +80,13 @@ class Sweep : private SweptCell {
     const Part part = best_part(begin, n, axis);
     if (part.n == 0) return append_leaf(begin, n, axis);
     if (n - part.n > most_unsorted() || part.n > most_unsorted()) keep_order(begin, end, part);
-    const std::size_t node = room_.n_nodes++, middle = begin + part.n;
+    const std::size_t node = buffers_.n_nodes++, middle = begin + part.n;
     Box hull = build(begin, middle, part.axis, level + 1);
-    const std::uint32_t second = first_node_ + static_cast<std::uint32_t>(room_.n_nodes);
+    const std::uint32_t second = first_node_ + static_cast<std::uint32_t>(buffers_.n_nodes);
     hull.grow(build(middle, end, part.axis, level + 1));
-    room_.nodes[node] = {Node::kGroups + static_cast<std::uint32_t>(part.axis), 0,
-                         first_node_ + static_cast<std::uint32_t>(node) + 1, second};
-    room_.contents[node] = hull;
+    buffers_.nodes[node] = {Node::kGroups + static_cast<std::uint32_t>(part.axis), 0,
+                            first_node_ + static_cast<std::uint32_t>(node) + 1, second};
+    buffers_.contents[node] = hull;
     return hull;
   }
 
@@ -96,9 +97,9 @@ class Sweep : private SweptCell {
   std::size_t most_unsorted() const { return std::max(most_whole(), kPairs); }
 
   HWY_ATTR Box append_leaf(std::size_t begin, std::size_t n, std::size_t axis) {
-    const std::uint16_t* const order = room_.order[axis].data() + begin;
-    const std::size_t node = room_.n_nodes++, ref = room_.n_refs;
-    room_.n_refs += n;
+    const std::uint16_t* const order = buffers_.order[axis].data() + begin;
+    const std::size_t node = buffers_.n_nodes++, ref = buffers_.n_refs;
+    buffers_.n_refs += n;
     const Axes d;
     P lo = hn::Inf(d), hi = hn::Neg(lo);
     alignas(64) std::array<Ref, kSwept> values;
@@ -108,19 +109,19 @@ class Sweep : private SweptCell {
       hi = hn::Max(hi, hn::Load(d, r.hi.data()));
       values[i] = r.ref;
     }
-    Ref* const refs = room_.refs.data() + ref;
+    Ref* const refs = buffers_.refs.data() + ref;
     if (n <= kMostRanked) {
       write_ascending(values.data(), n, refs);
     } else {
       std::copy_n(values.data(), n, refs);
       std::sort(refs, refs + n);
     }
-    room_.nodes[node] = {Node::kLeaf, 0, first_ref_ + static_cast<std::uint32_t>(ref),
-                         static_cast<std::uint32_t>(n)};
+    buffers_.nodes[node] = {Node::kLeaf, 0, first_ref_ + static_cast<std::uint32_t>(ref),
+                            static_cast<std::uint32_t>(n)};
     alignas(16) std::array<float, 4> l, h;
     hn::Store(lo, d, l.data());
     hn::Store(hi, d, h.data());
-    return room_.contents[node] = {{l[0], l[1], l[2]}, {h[0], h[1], h[2]}};
+    return buffers_.contents[node] = {{l[0], l[1], l[2]}, {h[0], h[1], h[2]}};
   }
 
   // The best place, where it is cheaper than a leaf; else nothing goes first.
@@ -135,7 +136,7 @@ class Sweep : private SweptCell {
   };
   HWY_ATTR Hull hull_of(std::size_t i) const {
     const Axes d;
-    return {hn::Load(d, room_.lo[i].data()), hn::Load(d, room_.hi[i].data())};
+    return {hn::Load(d, buffers_.lo[i].data()), hn::Load(d, buffers_.hi[i].data())};
   }
   HWY_ATTR static float size_of(const Hull& hull) {
     const Axes d;
@@ -148,15 +149,15 @@ class Sweep : private SweptCell {
   // apart, for their order.
   HWY_ATTR Part part_of_few(std::size_t begin, std::size_t n, std::size_t axis) {
     std::array<std::uint16_t, 3> refs;  // the one that is alone first
-    std::copy_n(room_.order[axis].data() + begin, n, refs.begin());
+    std::copy_n(buffers_.order[axis].data() + begin, n, refs.begin());
     const Hull a = hull_of(refs[0]), b = hull_of(refs[1]);
     Hull one = a, others = b;
-    float cost = (size_of(a) + (n == 2 ? size_of(b) : 0)) * room_.tests[1];
+    float cost = (size_of(a) + (n == 2 ? size_of(b) : 0)) * buffers_.tests[1];
     if (n == 3) {
       const Hull c = hull_of(refs[2]);
       others = b.with(c);
       const Hull ac = a.with(c), ab = a.with(b);
-      const float tests = room_.tests[1], pair = room_.tests[2];
+      const float tests = buffers_.tests[1], pair = buffers_.tests[2];
       cost += size_of(others) * pair;
       const float cost_b = size_of(b) * tests + size_of(ac) * pair;
       const float cost_c = size_of(c) * tests + size_of(ab) * pair;
@@ -181,7 +182,7 @@ class Sweep : private SweptCell {
     if (std::abs(apart[2]) > std::abs(apart[axis])) axis = 2;
     const bool one_first = apart[axis] >= 0;
     if (!one_first) std::rotate(refs.begin(), refs.begin() + 1, refs.begin() + at(n));
-    std::copy_n(refs.begin(), n, room_.order[axis].data() + begin);
+    std::copy_n(refs.begin(), n, buffers_.order[axis].data() + begin);
     return {axis, one_first ? 1 : n - 1};
   }
 
@@ -196,12 +197,12 @@ class Sweep : private SweptCell {
     if (widest == 0) return {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (2 * width[axis] < widest) continue;  // what is narrow is seldom best parted across
-      measure_hulls(room_.order[axis].data() + begin, n);
+      measure_hulls(buffers_.order[axis].data() + begin, n);
       const auto axis_bits = hn::Set(di, static_cast<std::int32_t>(axis << kAxisShift));
       for (std::size_t p = 1; p < n; p += hn::Lanes(d)) {
-        const auto first = hn::Mul(size_of(d, room_.first, p), hn::LoadU(d, &room_.tests[p]));
+        const auto first = hn::Mul(size_of(d, buffers_.first, p), hn::LoadU(d, &buffers_.tests[p]));
         const auto second =
-            hn::Mul(size_of(d, room_.second, p), hn::LoadU(d, &room_.tests_backward[kSwept - n + p]));
+            hn::Mul(size_of(d, buffers_.second, p), hn::LoadU(d, &buffers_.tests_backward[kSwept - n + p]));
         const auto cost = hn::And(hn::BitCast(di, hn::Add(first, second)), cost_bits);
         const auto place = hn::Iota(di, static_cast<std::int32_t>(p));
         const auto packed = hn::Or(cost, hn::Or(place, axis_bits));
@@ -210,12 +211,12 @@ class Sweep : private SweptCell {
     }
     const auto least = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(di, best)));
     const float cost = std::bit_cast<float>(least & ~((1u << kPlaceBits) - 1));
-    if (!is_cheaper(cost, hn::GetLane(size_of(d, room_.first, n)), n)) return {};
+    if (!is_cheaper(cost, hn::GetLane(size_of(d, buffers_.first, n)), n)) return {};
     return {least >> kAxisShift & 3u, least & ((1u << kAxisShift) - 1)};
   }
 
   bool is_cheaper(float tests, float whole, std::size_t n) const {
-    return traverse_ * whole + tests < room_.tests[n] * whole;
+    return traverse_ * whole + tests < buffers_.tests[n] * whole;
   }
 
   // What the hulls of n references, in that order, measure along the axes: of the first i in `first`, of the
@@ -224,8 +225,8 @@ class Sweep : private SweptCell {
     const Axes d;
     const P inf = hn::Inf(d);
     P first_lo = inf, second_lo = inf, first_hi = hn::Neg(inf), second_hi = first_hi;
-    const SweepRoom::Corner *const lo = room_.lo.data(), *const hi = room_.hi.data();
-    SweepRoom::Corner *const first = room_.first.data() + 1, *const second = room_.second.data();
+    const SweepBuffers::Corner *const lo = buffers_.lo.data(), *const hi = buffers_.hi.data();
+    SweepBuffers::Corner *const first = buffers_.first.data() + 1, *const second = buffers_.second.data();
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t j = n - 1 - i, f = order[i], s = order[j];
       first_lo = hn::Min(first_lo, hn::Load(d, lo[f].data()));
@@ -239,7 +240,7 @@ class Sweep : private SweptCell {
 
   // Half the surfaces of the hulls at [i, i + lanes).
   template <class D>
-  HWY_ATTR static hn::Vec<D> size_of(D d, const SweepRoom::Edges& edges, std::size_t i) {
+  HWY_ATTR static hn::Vec<D> size_of(D d, const SweepBuffers::Edges& edges, std::size_t i) {
     hn::Vec<D> x, y, z, nothing;
     hn::LoadInterleaved4(d, edges[i].data(), x, y, z, nothing);
     const auto c = hn::Set(d, kOfLength);

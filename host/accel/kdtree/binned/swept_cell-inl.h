@@ -11,7 +11,7 @@
 #endif
 
 #include "accel/kdtree/binned/cost-inl.h"
-#include "accel/kdtree/binned/sweep_room.h"
+#include "accel/kdtree/binned/sweep_buffers.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
@@ -26,7 +26,7 @@ class SweptCell {
   using Axes = hn::Full128<float>;
   using P = hn::Vec<Axes>;
 
-  explicit SweptCell(SweepRoom& room) : room_(room) {}
+  explicit SweptCell(SweepBuffers& buffers) : buffers_(buffers) {}
 
   HWY_ATTR void load(std::span<const BoundedRef> refs, const Bounds& hull) {
     refs_ = refs.data();
@@ -45,8 +45,8 @@ class SweptCell {
   std::array<int, 3> widths(std::size_t begin, std::size_t end) const {
     std::array<int, 3> width;
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto& order = room_.order[k];
-      width[k] = room_.center[k][order[end - 1]] - room_.center[k][order[begin]];
+      const auto& order = buffers_.order[k];
+      width[k] = buffers_.center[k][order[end - 1]] - buffers_.center[k][order[begin]];
     }
     return width;
   }
@@ -54,26 +54,26 @@ class SweptCell {
   // Gives a group, whose order is known along all axes, numbers of its own.
   HWY_ATTR void load_anew(std::size_t begin, std::size_t end) {
     Bounds hull = no_bounds();
-    for (std::size_t i = begin; i < end; ++i) hull = kdtree::hull(hull, refs_[room_.order[0][i]].bounds());
+    for (std::size_t i = begin; i < end; ++i) hull = kdtree::hull(hull, refs_[buffers_.order[0][i]].bounds());
     const Scale scale(hull);
     if (!scale.usable()) return;
-    for (std::size_t i = begin; i < end; ++i) put(room_.order[0][i], scale);
+    for (std::size_t i = begin; i < end; ++i) put(buffers_.order[0][i], scale);
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto& center = room_.center[k];
-      std::stable_sort(room_.order[k].begin() + at(begin), room_.order[k].begin() + at(end),
+      const auto& center = buffers_.center[k];
+      std::stable_sort(buffers_.order[k].begin() + at(begin), buffers_.order[k].begin() + at(end),
                        [&](std::uint16_t a, std::uint16_t b) { return center[a] < center[b]; });
     }
   }
 
   // The two others' orders, with what goes first in front; along the part's own axis it is there.
   HWY_ATTR void keep_order(std::size_t begin, std::size_t end, const Part& part) {
-    const std::uint16_t* const parted = room_.order[part.axis].data();
-    std::uint8_t* const sides = room_.is_second.data();
-    std::uint16_t* const others = room_.others.data();
+    const std::uint16_t* const parted = buffers_.order[part.axis].data();
+    std::uint8_t* const sides = buffers_.is_second.data();
+    std::uint16_t* const others = buffers_.others.data();
     for (std::size_t i = begin; i < end; ++i) sides[parted[i]] = i < begin + part.n ? 0 : 1;
     for (std::size_t k = 0; k < 3; ++k) {
       if (k == part.axis) continue;
-      std::uint16_t *const order = room_.order[k].data(), *first = order + begin, *second = others;
+      std::uint16_t *const order = buffers_.order[k].data(), *first = order + begin, *second = others;
       for (std::size_t i = begin; i < end; ++i) {
         const std::uint16_t r = order[i];
         const std::ptrdiff_t is_second = sides[r];
@@ -88,7 +88,7 @@ class SweptCell {
 
   static std::ptrdiff_t at(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
 
-  SweepRoom& room_;
+  SweepBuffers& buffers_;
   const BoundedRef* refs_ = nullptr;
 
  private:
@@ -113,20 +113,20 @@ class SweptCell {
     const P from = hn::LoadU(d, scale.from.data()), of = hn::Set(d, scale.of);
     const P lo = hn::Mul(hn::IfThenElseZero(xyz, hn::Sub(hn::Load(d, refs_[i].lo.data()), from)), of);
     const P hi = hn::Mul(hn::IfThenElseZero(xyz, hn::Sub(hn::Load(d, refs_[i].hi.data()), from)), of);
-    hn::Store(lo, d, room_.lo[i].data());
-    hn::Store(hi, d, room_.hi[i].data());
+    hn::Store(lo, d, buffers_.lo[i].data());
+    hn::Store(hi, d, buffers_.hi[i].data());
     alignas(16) std::array<std::int32_t, 4> center;
     hn::Store(hn::ConvertTo(di, hn::Mul(hn::Add(lo, hi), hn::Set(d, kSteps))), di, center.data());
-    for (std::size_t k = 0; k < 3; ++k) room_.center[k][i] = static_cast<std::int16_t>(center[k]);
+    for (std::size_t k = 0; k < 3; ++k) buffers_.center[k][i] = static_cast<std::int16_t>(center[k]);
   }
 
   // Each goes to the place of its rank. What has the same centre has the same rank, and comes in turn.
   HWY_ATTR void sort(std::size_t n, std::size_t axis) {
-    rank(n, room_.center[axis].data());
-    std::fill_n(room_.ties.begin(), n, std::uint16_t{0});
+    rank(n, buffers_.center[axis].data());
+    std::fill_n(buffers_.ties.begin(), n, std::uint16_t{0});
     for (std::size_t i = 0; i < n; ++i) {
-      const auto rank = static_cast<std::size_t>(room_.ranks[i]);
-      room_.order[axis][rank + room_.ties[rank]++] = static_cast<std::uint16_t>(i);
+      const auto rank = static_cast<std::size_t>(buffers_.ranks[i]);
+      buffers_.order[axis][rank + buffers_.ties[rank]++] = static_cast<std::uint16_t>(i);
     }
   }
 
@@ -139,7 +139,7 @@ class SweptCell {
       auto minus = hn::Zero(d);
       for (std::size_t i = 0; i < n; ++i)
         minus = hn::Add(minus, hn::ShiftRight<15>(hn::Sub(hn::Set(d, centers[i]), here)));
-      hn::Store(hn::Neg(minus), d, room_.ranks.data() + p);
+      hn::Store(hn::Neg(minus), d, buffers_.ranks.data() + p);
     }
   }
 };

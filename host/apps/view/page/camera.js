@@ -1,5 +1,5 @@
-// What    What hands do to a camera: {from, at, up, fov, ortho}, where fov is in degrees over the picture's full
-//         height and ortho, above 0, the picture's width in parallel rays. Every function returns another camera.
+// What    What mouse, keys and fingers do to a camera: {from, at, up, fov, ortho}, where fov is in degrees over the
+//         picture's full height and ortho, above 0, its width in parallel rays. Every function returns another camera.
 // Units   Shares of the picture's height for what is dragged (x to the right, y down), radians for what is turned.
 
 export const add = (a, b) => a.map((x, i) => x + b[i]);

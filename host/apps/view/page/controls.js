@@ -9,7 +9,7 @@ export class Controls {
     this.byId = byId;
     for (const id of ['channel', 'samples', 'mode', 'traversal', 'queues', 'depth', 'weight', 'headlight'])
       byId(id).addEventListener('input', () => {
-        this.tell();
+        this.showValues();
         changed(id);
       });
     for (const n of [0, 1, 2, 3, 4, 6, 8, 16]) byId('queues').add(new Option(n ? String(n) : 'as given', String(n)));
@@ -21,10 +21,10 @@ export class Controls {
     this.byId('samples').value = String(scene.samples);
     if (this.byId('samples').selectedIndex < 0) this.byId('samples').value = '0';
     this.byId('headlight').value = Math.round(scene.headlight * 10);
-    this.tell();
+    this.showValues();
   }
 
-  tell() {
+  showValues() {
     const {weight, headlight, depth} = this.values();
     this.byId('depth-out').value = depth;
     this.byId('weight-out').value = weight < 0 ? 'as given' : small.format(weight);

@@ -5,11 +5,11 @@ const FIRST_WAIT = 500, LONGEST_WAIT = 8000;  // milliseconds
 const NO_TOKEN = 4003;
 
 export class Link {
-  // hear(message, picture): what came; state(text): what is wrong, or nothing.
-  constructor(token, hear, state) {
+  // receive(message, picture): called for each message; status(text): what is wrong, or nothing.
+  constructor(token, receive, status) {
     this.token = token;
-    this.hear = hear;
-    this.state = state;
+    this.receive = receive;
+    this.status = status;
     this.wait = FIRST_WAIT;
     this.connect();
   }
@@ -19,7 +19,7 @@ export class Link {
     const socket = new WebSocket(`${scheme}//${location.host}/socket`);
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => this.send({type: 'hello', token: this.token});
-    socket.onmessage = (event) => this.take(event.data);
+    socket.onmessage = (event) => this.received(event.data);
     socket.onclose = (event) => this.closed(event);
     this.socket = socket;
   }
@@ -30,19 +30,19 @@ export class Link {
     if (this.open) this.socket.send(JSON.stringify(message));
   }
 
-  take(data) {
+  received(data) {
     this.wait = FIRST_WAIT;
-    this.state('');
-    if (typeof data === 'string') return this.hear(JSON.parse(data), null);
+    this.status('');
+    if (typeof data === 'string') return this.receive(JSON.parse(data), null);
     const n = new DataView(data).getUint32(0, true);
     const head = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, n)));
-    this.hear(head, new Blob([new Uint8Array(data, 4 + n)], {type: head.mime}));
+    this.receive(head, new Blob([new Uint8Array(data, 4 + n)], {type: head.mime}));
   }
 
   closed(event) {
     if (event.code === NO_TOKEN)
-      return this.state('This page needs its token: open the address that kdray view has printed.');
-    this.state(event.reason || 'kdray is not there any more, or the network is not. Trying again …');
+      return this.status('This page needs its token: open the address that kdray view has printed.');
+    this.status(event.reason || 'kdray is not there any more, or the network is not. Trying again …');
     setTimeout(() => this.connect(), this.wait);
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
   }

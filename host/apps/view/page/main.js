@@ -1,9 +1,9 @@
-// What    The page of kdray view: puts the parts together. A view is a camera and settings; whenever it changes kdray is
-//         told, at most once for each frame of the screen, and again when it has come to rest.
+// What    The page of kdray view: puts the parts together. A view is a camera and settings; whenever it changes kdray
+//         gets a look, at most one for each frame of the screen, and another one when it has come to rest.
 import * as address from './address.js';
 import {drawCells} from './cells.js';
 import {Controls, showPicked} from './controls.js';
-import {Hands} from './hands.js';
+import {InputController} from './input.js';
 import {Link} from './link.js';
 import {Screen} from './screen.js';
 import {showOwners, Strip} from './strip.js';
@@ -11,11 +11,11 @@ import {showOwners, Strip} from './strip.js';
 const REST = 140;  // milliseconds without a change
 const byId = (id) => document.getElementById(id);
 
-const screen = new Screen(byId('picture'), byId('lines'), byId('stage'));
+const screen = new Screen(byId('picture'), byId('lines'), byId('viewport'));
 const strip = new Strip(byId('figures'), byId('details'), byId('more'));
 const state = {
   scene: null, camera: null, number: 0, pick: 0, wanted: address.scene(), changed: false, moving: false, changedAt: 0, picks: new Map(), boxes: [],
-  command: '', png: null, sent: new Map(), latencies: [], frames: 0, final: null, handAt: 0, error: '', resizing: 0,
+  command: '', png: null, sent: new Map(), latencies: [], frames: 0, final: null, inputAt: 0, error: '', resizing: 0,
 };
 
 function show(id, text) {
@@ -25,30 +25,30 @@ function show(id, text) {
 
 // ---- What is wanted
 
-function sight() {
+function viewRequest() {
   const [width, height] = screen.size();
   return {scene: state.scene.scene, camera: state.camera, width, height, ...controls.values()};
 }
 
-// `at`: when the hand moved, for the time from there to the eye.
+// `at`: the time of the input, for the latency of its frame.
 function change(camera, at = performance.now()) {
   state.camera = camera;
   state.changed = state.moving = true;
   state.changedAt = performance.now();
-  if (!state.handAt) state.handAt = at;
+  if (!state.inputAt) state.inputAt = at;
   byId('mark').hidden = true;
   drawCells(screen.lines, state.boxes, state.camera, screen.aspect);
 }
 
 function ask(moving) {
   state.number += 1;
-  if (moving) state.sent.set(state.number, state.handAt);
-  state.handAt = 0;
+  if (moving) state.sent.set(state.number, state.inputAt);
+  state.inputAt = 0;
   state.changed = false;
   state.command = '';
   state.png = state.final = null;
   byId('copy').disabled = byId('save').disabled = true;
-  link.send({type: 'look', number: state.number, moving, sight: sight()});
+  link.send({type: 'look', number: state.number, moving, sight: viewRequest()});
 }
 
 // Settings have no way in between: the picture at rest is what is wanted.
@@ -60,7 +60,7 @@ function settle() {
 
 let last = performance.now();
 function tick(now) {
-  hands.fly(Math.min(0.1, (now - last) / 1000));
+  input.fly(Math.min(0.1, (now - last) / 1000));
   last = now;
   if (state.scene && link.open) {
     if (state.changed) ask(true);
@@ -72,9 +72,9 @@ function tick(now) {
   requestAnimationFrame(tick);
 }
 
-// ---- What comes
+// ---- Messages of kdray
 
-function takeScene(scene) {
+function handleScene(scene) {
   const other = state.scene?.scene !== scene.scene, first = !state.scene;
   // A connection begins with the first scene.
   if (scene.scene !== state.wanted && state.wanted < scene.names.length) {
@@ -102,25 +102,25 @@ function takeScene(scene) {
   settle();
 }
 
-// A look at another scene is answered with what there is to know of that; its camera comes along.
+// A look at another scene is answered by a message about that scene, with its camera.
 function askScene(number) {
   state.wanted = number;
   const [width, height] = screen.size();
-  const sight = {scene: number, camera: state.camera, width, height, ...controls.values()};
-  link.send({type: 'look', number: ++state.number, moving: false, sight});
+  const request = {scene: number, camera: state.camera, width, height, ...controls.values()};
+  link.send({type: 'look', number: ++state.number, moving: false, sight: request});
 }
 
-async function takeFrame(frame, picture) {
+async function handleFrame(frame, picture) {
   try {
     await screen.show(frame, picture);
   } finally {
     link.send({type: 'shown', frame: frame.frame});
   }
   state.frames += 1;
-  const hand = state.sent.get(frame.look);
+  const inputAt = state.sent.get(frame.look);
   let latency = 0;
-  if (frame.kind === 'moving' && hand) {
-    latency = performance.now() - hand;
+  if (frame.kind === 'moving' && inputAt) {
+    latency = performance.now() - inputAt;
     state.latencies.push(latency);
     if (state.latencies.length > 1000) state.latencies.shift();
   }
@@ -139,15 +139,15 @@ async function takeFrame(frame, picture) {
   }
 }
 
-function takePicked(message) {
+function handlePicked(message) {
   const then = state.picks.get(message.number);
   state.picks.delete(message.number);
   then?.(message);
 }
 
-function hear(message, picture) {
-  const take = {
-    scene: takeScene, frame: (m) => takeFrame(m, picture), picked: takePicked,
+function receive(message, picture) {
+  const handle = {
+    scene: handleScene, frame: (m) => handleFrame(m, picture), picked: handlePicked,
     cells: (m) => {
       state.boxes = m.boxes;
       drawCells(screen.lines, state.boxes, state.camera, screen.aspect);
@@ -158,23 +158,23 @@ function hear(message, picture) {
     },
     busy: (m) => show('busy', m.text && m.text + ' …'),
   }[message.type];
-  take?.(message);
+  handle?.(message);
 }
 
-// ---- What hands and buttons do
+// ---- What input and buttons do
 
 function pick(x, y, then) {
   if (!state.scene || x < 0 || y < 0 || x > 1 || y > 1) return;
   const number = ++state.pick;
   state.picks.set(number, then);
-  link.send({type: 'pick', number, x, y, sight: sight()});
+  link.send({type: 'pick', number, x, y, sight: viewRequest()});
 }
 
 function marked(x, y, message) {
   const box = byId('picture').getBoundingClientRect(), mark = byId('mark');
-  const stage = byId('stage').getBoundingClientRect();
-  mark.style.left = `${box.left - stage.left + x * box.width}px`;
-  mark.style.top = `${box.top - stage.top + y * box.height}px`;
+  const viewport = byId('viewport').getBoundingClientRect();
+  mark.style.left = `${box.left - viewport.left + x * box.width}px`;
+  mark.style.top = `${box.top - viewport.top + y * box.height}px`;
   mark.hidden = !message.hit;
   showPicked(byId('picked'), message);
 }
@@ -196,7 +196,7 @@ async function copy() {
   try {
     await navigator.clipboard.writeText(state.command);
   } catch {
-    getSelection().selectAllChildren(byId('said'));  // no clipboard here: it is there to be copied by hand
+    getSelection().selectAllChildren(byId('said'));  // no clipboard here: it is there to be copied by the user
   }
 }
 
@@ -227,10 +227,10 @@ const view = {
 
 const controls = new Controls(byId, () => settle());
 const token = address.token();
-const link = new Link(token, hear, (text) => {
+const link = new Link(token, receive, (text) => {
   if (text || !state.error) show('problem', text);
 });
-const hands = new Hands(byId('picture'), view);
+const input = new InputController(byId('picture'), view);
 
 byId('scene').onchange = () => askScene(Number(byId('scene').value));
 byId('cells').oninput = askCells;

@@ -3,15 +3,15 @@
 const MOST_PIXELS = 4 << 20;
 
 export class Screen {
-  constructor(picture, lines, stage) {
-    Object.assign(this, {picture, lines, stage, fixed: null, look: 0, shown: 0});
+  constructor(picture, lines, viewport) {
+    Object.assign(this, {picture, lines, viewport, fixed: null, look: 0, shown: 0});
     this.context = picture.getContext('2d', {alpha: false});
   }
 
   // Pixels of the picture, across and down. `fixed`: what kdray's --size says.
   size() {
     if (this.fixed) return this.fixed;
-    const {width, height} = this.stage.getBoundingClientRect();
+    const {width, height} = this.viewport.getBoundingClientRect();
     let by = Math.min(window.devicePixelRatio || 1, 2);
     if (width * height * by * by > MOST_PIXELS) by = Math.min(1, Math.sqrt(MOST_PIXELS / (width * height)));
     return [Math.max(16, Math.floor(width * by)), Math.max(16, Math.floor(height * by))];
@@ -25,9 +25,9 @@ export class Screen {
   // The canvases, in the middle of the window; what is on them stays.
   layout() {
     const [width, height] = this.size();
-    const room = this.stage.getBoundingClientRect();
-    const by = this.fixed ? Math.min(1, room.width / width, room.height / height)
-                          : Math.min(room.width / width, room.height / height);
+    const box = this.viewport.getBoundingClientRect();
+    const by = this.fixed ? Math.min(1, box.width / width, box.height / height)
+                          : Math.min(box.width / width, box.height / height);
     if (this.picture.width !== width || this.picture.height !== height) {
       const old = this.shown ? createImageBitmap(this.picture) : null;
       this.picture.width = this.lines.width = width;

@@ -27,7 +27,7 @@ function line(frame, f, latency) {
   const parts = [`<${ms(f.ms.render)}> a frame`, `${frame.width}×${frame.height}`, `<${digits.format(f.mrays)} Mrays/s>`,
                  `${count(f.rays.total)} rays`, f.mode + (f.queues?.length > 1 ? ` on ${f.queues.length} queues` : '')];
   if (f.samples > 1) parts.push(`${digits.format(f.samples)} samples a pixel`);
-  if (latency > 0) parts.push(`${Math.round(latency)} ms from hand to eye`);
+  if (latency > 0) parts.push(`${Math.round(latency)} ms from input to frame`);
   return parts;
 }
 

@@ -1,0 +1,46 @@
+// What    What a page asks to see: a scene, from where, how large, and how it is rendered; and the
+//         options that this is for kdray.
+// Units   The scene's own, degrees, pixels.
+// Shape   0, an empty name or a negative weight: as the command line or the scene has it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "kdray/kdray.h"
+
+namespace kdray::view {
+
+enum class Samples { as_given, number, adaptive };
+
+struct ViewRequest {
+  std::size_t scene = 0;
+  Camera camera;
+  int width = 1024, height = 768;
+  int depth = 0;
+  double min_weight = -1, headlight = 0;
+  Samples samples = Samples::as_given;
+  int n_samples = 1;    // Samples::number
+  std::string channel;  // empty: the picture itself
+  Mode mode = Mode::automatic;
+  Traversal traversal = Traversal::automatic;
+  int queues = 0;
+};
+
+// What the command line has said, for all requests.
+struct Settings {
+  View view;  // camera, background
+  RenderOptions render;
+  DeviceOptions device;
+  LoadOptions load;
+};
+
+View view_of(const ViewRequest& request, const Settings& settings);
+// What the finished picture is made with.
+RenderOptions render_of(const ViewRequest& request, const Settings& settings);
+int queues_of(const ViewRequest& request, const Settings& settings);
+
+// The command that renders just this picture: its bits, wherever it runs. `scene`: a file.
+std::string command_for(const ViewRequest& request, const Settings& settings, const std::string& scene);
+
+}  // namespace kdray::view

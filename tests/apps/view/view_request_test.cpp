@@ -1,0 +1,77 @@
+// What    The command for a request, eye rays, and the cells of a tree, against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "accel/prepare/prepared.h"
+#include "apps/view/cells.h"
+#include "apps/view/pick.h"
+#include "apps/view/view_request.h"
+#include "support/folder.h"
+
+namespace kdray::view {
+namespace {
+
+TEST(Command, HasTheNumbersWithAllTheirBits) {
+  ViewRequest request;
+  request.camera = {.from = {0.1, 1.0 / 3, -2e-7}, .at = {0, 0, 0}, .up = {0, 0, 1}, .fov = 33.3};
+  request.width = 64, request.height = 48;
+  request.samples = Samples::adaptive;
+  EXPECT_EQ(
+      command_for(request, {}, "a b's.nff"),
+      "kdray render 'a b'\\''s.nff' --from=0.1,0.3333333333333333,-2e-07 --at=0,0,0 --up=0,0,1 --fov 33.3 "
+      "--size 64x48 --samples adaptive");
+  request.camera.ortho_width = 2.5;
+  request.channel = "depth";
+  request.headlight = 0.5;
+  request.mode = Mode::odprt;
+  request.queues = 2;
+  Settings settings;
+  settings.load.smooth_degrees = 40;
+  settings.load.asset_root = "my textures";
+  settings.view.camera = 1;
+  EXPECT_EQ(
+      command_for(request, settings, "-x.nff"),
+      "kdray render './-x.nff' --smooth 40 --asset-root 'my textures' --from=0.1,0.3333333333333333,-2e-07 "
+      "--at=0,0,0 --up=0,0,1 "
+      "--camera 1 --ortho 2.5 --headlight 0.5 --size 64x48 --depth 1 --samples 1 --queues 2 --mode odprt "
+      "--aov depth");
+}
+
+TEST(EyeRay, GoesThroughThePicturesEdges) {
+  const Camera camera{.from = {0, 0, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 90};
+  const EyeRay middle = eye_ray(camera, 2, 0.5, 0.5);
+  EXPECT_EQ(middle.origin, camera.from);
+  EXPECT_EQ(middle.direction, (Vec3{0, 0, -1}));
+  const EyeRay corner = eye_ray(camera, 2, 1, 0);  // right, top: tan 45 degrees up, twice that to the right
+  EXPECT_NEAR(corner.direction[0] / -corner.direction[2], 2, 1e-12);
+  EXPECT_NEAR(corner.direction[1] / -corner.direction[2], 1, 1e-12);
+  Camera parallel = camera;
+  parallel.ortho_width = 8;
+  const EyeRay left = eye_ray(parallel, 2, 0, 0.5);
+  EXPECT_NEAR(left.origin[0], -4, 1e-12);
+  EXPECT_EQ(left.direction, (Vec3{0, 0, -1}));
+}
+
+TEST(Cells, FillTheBoundsAndDontOverlap) {
+  const test::Folder folder;
+  const Scene scene = Scene::load(std::string(KDRAY_SOURCE_DIR) + "/scenes/balls.nff");
+  const PreparedScene prepared(scene);
+  const auto volume = [](const DBox& b) { return b.extent().x * b.extent().y * b.extent().z; };
+  const std::vector<DBox> whole = cells_of(prepared.prepared(), 0);
+  ASSERT_EQ(whole.size(), 1u);
+  for (const int depth : {1, 2, 5, 8, 24}) {
+    const std::vector<DBox> cells = cells_of(prepared.prepared(), depth);
+    EXPECT_LE(cells.size(), kMostCells);
+    EXPECT_GE(cells.size(), depth > 4 ? 8u : 2u);
+    double sum = 0;
+    for (const DBox& cell : cells) {
+      EXPECT_TRUE(whole[0].contains(cell));
+      sum += volume(cell);
+    }
+    EXPECT_NEAR(sum, volume(whole[0]), 1e-6 * volume(whole[0])) << depth;
+  }
+}
+
+}  // namespace
+}  // namespace kdray::view
