@@ -33,29 +33,30 @@ std::shared_ptr<const scene::Picture> chessboard_picture() {
   return std::make_shared<const scene::Picture>(std::move(p));
 }
 
-void add_quad(scene::Scene& s, const std::array<dvec3, 4>& corners, bool painted) {
+void add_quad(scene::Scene& s, const std::array<dvec3, 4>& corners, bool textured) {
   const auto first = static_cast<std::uint32_t>(s.vertices.size());
   for (const dvec3& p : corners) s.vertices.push_back(p);
   for (const std::array<std::uint32_t, 3>& pick : {std::array{0u, 1u, 2u}, {0u, 2u, 3u}}) {
     scene::Triangle t{.vertex = {first + pick[0], first + pick[1], first + pick[2]}};
     t.number = static_cast<std::uint32_t>(s.triangles.size());
     s.triangles.push_back(t);
-    if (!painted) continue;
+    if (!textured) continue;
     layout::TexCoords at{};
     for (std::size_t k = 0; k < 3; ++k) {
       at.uv[k][0] = static_cast<float>(corners[pick[k]].x / 2);
       at.uv[k][1] = static_cast<float>(corners[pick[k]].z / 2);
     }
-    s.paint.texcoords[0].push_back(at);
+    s.texturing.texcoords[0].push_back(at);
   }
 }
 
 scene::Scene chessboard() {
   scene::Scene s;
-  s.paint.pictures = {chessboard_picture()};
-  const std::uint32_t texture = s.paint.add(scene::Texture{.minify = scene::Minify::linear_mipmap_linear});
-  const std::uint32_t coat = s.paint.add(scene::Coat{.emission = vec3(1), .base = texture});
-  s.materials = {scene::Material{.coat = coat}};
+  s.texturing.pictures = {chessboard_picture()};
+  const std::uint32_t texture =
+      s.texturing.add(scene::Texture{.minify = scene::Minify::linear_mipmap_linear});
+  const std::uint32_t maps = s.texturing.add(scene::MaterialMaps{.emission = vec3(1), .base = texture});
+  s.materials = {scene::Material{.maps = maps}};
   add_quad(s, {dvec3{-kHalfWidth, 0, 0}, {kHalfWidth, 0, 0}, {kHalfWidth, 0, kFar}, {-kHalfWidth, 0, kFar}},
            true);
   s.unlit = true;

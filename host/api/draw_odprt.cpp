@@ -55,7 +55,7 @@ odprt::Request request_for(State& state, Job& job) {
   request.ray_buffer = static_cast<std::uint32_t>(o.ray_buffer);
   request.device_memory = state.whole ? 0 : memory_limit(state, o);
   request.timeline = job.timeline;
-  request.faults = &state.faults;
+  request.fault_injector = &state.fault_injector;
   request.progress = o.progress;
   request.checkpoint = job.checkpoint.get();
   return request;

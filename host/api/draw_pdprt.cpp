@@ -54,7 +54,7 @@ FrameResult draw_pdprt(State& state, const Job& job) {
                                                                .adaptive_target = job.options.adaptive_target,
                                                                .division = job.options.division,
                                                                .progress = job.options.progress,
-                                                               .faults = &state.faults,
+                                                               .fault_injector = &state.fault_injector,
                                                                .timeline = job.timeline,
                                                                .max_film_bytes = max_film_bytes,
                                                                .checkpoint = job.checkpoint.get(),

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/timer.h"
-#include "device/opencl/faults.h"
+#include "device/opencl/fault_injector.h"
 #include "device/opencl/program_cache.h"
 #include "probe/selftest/self_test.h"
 #include "probe/trial/devices.h"
@@ -68,10 +68,10 @@ void tell_of_drivers(const DeviceOptions& o) {
 
 }  // namespace
 
-OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults_asked) {
+OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults) {
   check(o);
   device::refuse_after_fork();
-  const device::Faults faults(faults_asked);
+  const device::FaultInjector injector(faults);
   OpenedDevices opened;
   device::OpenOptions options;
   options.n_queues = o.queues;
@@ -87,7 +87,7 @@ OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults_ask
   };
   options.check = [&](const device::Context& context) {
     const Timer timer;
-    selftest::require(context, faults.fails_self_test(context.info().number));
+    selftest::require(context, injector.fails_self_test(context.info().number));
     opened.seconds.self_test += timer.seconds();
   };
   const Timer timer;

@@ -13,7 +13,7 @@ namespace {
 Statistics::Scene scene_told(const prepare::Prepared& scene) {
   Statistics::Scene told{.primitives = scene.counts.primitives,
                          .kinds = {},
-                         .stitches = scene.counts.stitches,
+                         .stitches = scene.counts.zero_area,
                          .lights = scene.settings.lights.size(),
                          .materials = scene.settings.materials.size(),
                          .dropped_degenerate = scene.geometry.dropped_degenerate};

@@ -18,7 +18,7 @@
 #include "scene/import/load.h"
 #include "scene/model/added_geometry.h"
 #include "scene/model/added_instances.h"
-#include "scene/model/added_paint.h"
+#include "scene/model/added_textures.h"
 #include "scene/model/check_scene.h"
 #include "scene/model/frame.h"
 
@@ -32,12 +32,12 @@ struct Scene::Impl {
   double load_seconds = 0;
   std::vector<std::optional<scene::AddedGeometry>> geometries;  // by id, after the file's; none: removed
   std::vector<scene::Material> materials;
-  scene::Paint paint;     // of these materials
-  bool changed = false;   // since `assembled` was made
-  bool touched = false;   // since the last commit(), but for masks
-  bool reshaped = false;  // since then: other geometries, not only other vertices or another look
-  bool bent = false;      // since then: other vertices, not only other transforms or another look
-  bool replaced = false;  // by the last commit(): instances alone were elsewhere
+  scene::Texturing texturing;  // of these materials
+  bool changed = false;        // since `assembled` was made
+  bool touched = false;        // since the last commit(), but for masks
+  bool reshaped = false;       // since then: other geometries, not only other vertices or another look
+  bool bent = false;           // since then: other vertices, not only other transforms or another look
+  bool replaced = false;       // by the last commit(): instances alone were elsewhere
 
   // Of prototypes, by their ids, the meshes that their instances are of: as they are in `assembled`.
   struct Prototype {
@@ -188,7 +188,7 @@ const scene::Scene& Scene::Impl::model() {
   scene::Scene all = with_file && !moved ? base : only_settings(base);
   if (with_file && moved) {
     all.materials = base.materials;
-    all.paint = base.paint;
+    all.texturing = base.texturing;
     all.meshes = base.meshes;
     all.instances = base.instances;
   }
@@ -200,7 +200,7 @@ const scene::Scene& Scene::Impl::model() {
   } else {
     scene::assemble(all, enabled, materials);
   }
-  scene::assemble_paint(all, enabled, paint, materials.size());
+  scene::assemble_textures(all, enabled, texturing, materials.size());
   put_instances(all, first_material);
   // It is the file's no more, and is not to be kept as the file's (host/accel/cache). What was made up for
   // the file alone is made up anew.
@@ -348,17 +348,17 @@ GeometryInfo Scene::info(GeometryId geometry) const {
 }
 
 MaterialId Scene::add_material(const Material& material) {
-  impl_->materials.push_back(scene::painted_material(material, impl_->paint));
+  impl_->materials.push_back(scene::textured_material(material, impl_->texturing));
   impl_->touch();
   return static_cast<MaterialId>(impl_->materials.size() - 1);
 }
 PictureId Scene::add_picture(const std::filesystem::path& file) {
-  impl_->paint.pictures.push_back(scene::picture_of(file, impl_->base.warnings));
-  return static_cast<PictureId>(impl_->paint.pictures.size() - 1);
+  impl_->texturing.pictures.push_back(scene::picture_of(file, impl_->base.warnings));
+  return static_cast<PictureId>(impl_->texturing.pictures.size() - 1);
 }
 PictureId Scene::add_picture(const Pixels& pixels) {
-  impl_->paint.pictures.push_back(scene::picture_of(pixels));
-  return static_cast<PictureId>(impl_->paint.pictures.size() - 1);
+  impl_->texturing.pictures.push_back(scene::picture_of(pixels));
+  return static_cast<PictureId>(impl_->texturing.pictures.size() - 1);
 }
 void Scene::add_light(const Light& light) {
   const scene::Light made = scene::light_of(light);

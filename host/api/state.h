@@ -13,7 +13,7 @@
 #include "api/whole_scene.h"
 #include "base/hash.h"
 #include "cluster/transport/ranks.h"
-#include "device/opencl/faults.h"
+#include "device/opencl/fault_injector.h"
 #include "engine/odprt/render.h"
 
 namespace kdray::api {
@@ -38,7 +38,7 @@ struct State {
         scene_bytes(scene.bytes()),
         devices(options, hooks, scene),
         scheduler(devices, hooks.ranks ? static_cast<std::uint32_t>(hooks.ranks->size()) : 1),
-        faults(hooks.faults),
+        fault_injector(hooks.faults),
         keep(hooks.keep),
         ranks(hooks.ranks),
         whole(hooks.whole) {
@@ -51,7 +51,7 @@ struct State {
   std::size_t scene_bytes;  // of its arrays, on a device that has all of it
   DeviceSet devices;
   Scheduler scheduler;
-  device::Faults faults;
+  device::FaultInjector fault_injector;
   std::unique_ptr<odprt::DividedScene> divided;  // once a frame was rendered in ODPRT
   Speeds speeds;
   std::uint64_t keep;                       // Hooks::keep

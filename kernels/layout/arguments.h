@@ -26,20 +26,20 @@
   KDRAY_KINDS_WITH(KDRAY_BLOCKS_OF_KIND, X)
 #define KDRAY_BLOCKS_OF_KIND(X, NAME, name, names, Struct) X(IN, float, name##_blocks)
 #define KDRAY_NORMAL_ARRAYS(X) X(IN, VertexNormals, normals)
-// How surfaces are painted.
-#define KDRAY_PAINT_ARRAYS(X) \
-  X(IN, Material, materials)  \
-  X(IN, Coat, coats)          \
-  X(IN, Texture, textures)    \
-  X(IN, u32, texels)          \
-  X(IN, TexCoords, texcoords) \
+// How surfaces are textured.
+#define KDRAY_TEXTURING_ARRAYS(X)    \
+  X(IN, Material, materials)         \
+  X(IN, MaterialMaps, material_maps) \
+  X(IN, Texture, textures)           \
+  X(IN, u32, texels)                 \
+  X(IN, TexCoords, texcoords)        \
   X(IN, CornerColors, corner_colors)
 // What rays that meet nothing see, where that is not one colour.
 #define KDRAY_SKY_ARRAYS(X) \
   X(IN, Sky, sky)           \
   X(IN, float, sky_colors)
 #define KDRAY_LOOK_ARRAYS(X) \
-  KDRAY_PAINT_ARRAYS(X)      \
+  KDRAY_TEXTURING_ARRAYS(X)  \
   X(IN, Light, lights)       \
   KDRAY_SKY_ARRAYS(X)
 
@@ -104,7 +104,7 @@
   F(CONSTANT, Frame, frame)                 \
   X(VALUE, u32, n_slices)                   \
   KDRAY_TRACED_ARRAYS(X)                    \
-  KDRAY_PAINT_ARRAYS(X)                     \
+  KDRAY_TEXTURING_ARRAYS(X)                 \
   X(IN, Slice, slices)                      \
   X(IN, real, batch)                        \
   X(OUT, real, hits)
@@ -126,7 +126,7 @@
   F(CONSTANT, Frame, frame)                \
   X(VALUE, u32, n_slices)                  \
   KDRAY_TRACED_ARRAYS(X)                   \
-  KDRAY_PAINT_ARRAYS(X)                    \
+  KDRAY_TEXTURING_ARRAYS(X)                \
   X(IN, Slice, slices)                     \
   X(IN, real, shadow_rays)                 \
   X(OUT, uchar, occluded)
@@ -145,7 +145,7 @@
   X(VALUE, u32, n_pixels)              \
   KDRAY_TREE_ARRAYS(X)                 \
   KDRAY_SURFACE_ARRAYS(X)              \
-  KDRAY_PAINT_ARRAYS(X)                \
+  KDRAY_TEXTURING_ARRAYS(X)            \
   X(OUT, float, channels)
 
 #define KDRAY_TRACE_QUERY_ARGUMENTS(F, X) \

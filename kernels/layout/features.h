@@ -18,18 +18,18 @@
 // Surfaces, bits 32-47.
 #define KDRAY_FEATURE_SMOOTH \
   KDRAY_FEATURE(32)  // vertex normals; removes interpolation, the terminator's shift
-// Stitches (primitives.layout.h), which have vertex normals; removes their distance and their shading.
-#define KDRAY_FEATURE_STITCHES KDRAY_FEATURE(34)
+// Zero-area triangles (primitives.layout.h), which have vertex normals; removes their distance and shading.
+#define KDRAY_FEATURE_ZERO_AREA KDRAY_FEATURE(34)
 // Numbers in file order that differ from indices; removes looking them up.
 #define KDRAY_FEATURE_NUMBERS KDRAY_FEATURE(33)
 // Rays and primitives of queries that meet only where their masks have a bit in common; removes looking at
 // them.
 #define KDRAY_FEATURE_MASKS KDRAY_FEATURE(35)
-// Materials with coats (paint.layout.h); removes all of it from shading, and the next three with it.
-#define KDRAY_FEATURE_COATS KDRAY_FEATURE(36)
+// Materials with maps (textures.layout.h); removes all of it from shading, and the next three with it.
+#define KDRAY_FEATURE_MATERIAL_MAPS KDRAY_FEATURE(36)
 #define KDRAY_FEATURE_CORNER_COLORS KDRAY_FEATURE(37)
 #define KDRAY_FEATURE_TEXTURES KDRAY_FEATURE(38)
-// Coats with holes in them; removes looking for holes from the walks.
+// Material maps with holes in them; removes looking for holes from the walks.
 #define KDRAY_FEATURE_CUTOUTS KDRAY_FEATURE(39)
 #define KDRAY_FEATURE_REFLECT KDRAY_FEATURE(40)   // removes reflected rays (and, with TRANSMIT, the pool)
 #define KDRAY_FEATURE_TRANSMIT KDRAY_FEATURE(41)  // removes refracted rays
@@ -55,7 +55,7 @@
 #define KDRAY_FEATURE_BACKGROUND KDRAY_FEATURE(56)   // a background other than black
 #define KDRAY_FEATURE_SUPERSAMPLE KDRAY_FEATURE(57)  // more than one sample per pixel
 #define KDRAY_FEATURE_ADAPTIVE KDRAY_FEATURE(58)     // rounds of single samples beside whole tiles
-// More of surfaces. Textures that are shown smaller otherwise than larger; removes rays' pencils and mipmaps.
+// More of surfaces. Textures that are shown smaller otherwise than larger; removes ray cones and mipmaps.
 #define KDRAY_FEATURE_FOOTPRINTS KDRAY_FEATURE(59)
 // Pictures of how metallic and rough surfaces are, of normals, and of emission, occlusion and highlights;
 // each removes looking for them.
@@ -72,25 +72,25 @@
 #define KDRAY_HAS_KIND(NAME) ((KDRAY_FEATURES & KDRAY_FEATURE_KIND(NAME)) != 0)
 // Kinds whose test asks for the square of the direction.
 #define KDRAY_HAS_CURVED (KDRAY_HAS_KIND(SPHERE) || KDRAY_HAS_KIND(CONE) || KDRAY_HAS_KIND(TORUS))
-#define KDRAY_HAS_STITCHES ((KDRAY_FEATURES & KDRAY_FEATURE_STITCHES) != 0)
-#define KDRAY_HAS_SMOOTH (KDRAY_HAS_STITCHES || (KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
+#define KDRAY_HAS_ZERO_AREA ((KDRAY_FEATURES & KDRAY_FEATURE_ZERO_AREA) != 0)
+#define KDRAY_HAS_SMOOTH (KDRAY_HAS_ZERO_AREA || (KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
 #define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
 #define KDRAY_HAS_MASKS ((KDRAY_FEATURES & KDRAY_FEATURE_MASKS) != 0)
-#define KDRAY_HAS_COATS ((KDRAY_FEATURES & KDRAY_FEATURE_COATS) != 0)
+#define KDRAY_HAS_MATERIAL_MAPS ((KDRAY_FEATURES & KDRAY_FEATURE_MATERIAL_MAPS) != 0)
 #define KDRAY_HAS_CORNER_COLORS ((KDRAY_FEATURES & KDRAY_FEATURE_CORNER_COLORS) != 0)
 #define KDRAY_HAS_TEXTURES ((KDRAY_FEATURES & KDRAY_FEATURE_TEXTURES) != 0)
 #define KDRAY_HAS_FOOTPRINTS ((KDRAY_FEATURES & KDRAY_FEATURE_FOOTPRINTS) != 0)
-#define KDRAY_HAS_METAL_MAPS (KDRAY_HAS_COATS && (KDRAY_FEATURES & KDRAY_FEATURE_METAL_MAPS) != 0)
-#define KDRAY_HAS_NORMAL_MAPS (KDRAY_HAS_COATS && (KDRAY_FEATURES & KDRAY_FEATURE_NORMAL_MAPS) != 0)
-#define KDRAY_HAS_LIGHT_MAPS (KDRAY_HAS_COATS && (KDRAY_FEATURES & KDRAY_FEATURE_LIGHT_MAPS) != 0)
+#define KDRAY_HAS_METAL_MAPS (KDRAY_HAS_MATERIAL_MAPS && (KDRAY_FEATURES & KDRAY_FEATURE_METAL_MAPS) != 0)
+#define KDRAY_HAS_NORMAL_MAPS (KDRAY_HAS_MATERIAL_MAPS && (KDRAY_FEATURES & KDRAY_FEATURE_NORMAL_MAPS) != 0)
+#define KDRAY_HAS_LIGHT_MAPS (KDRAY_HAS_MATERIAL_MAPS && (KDRAY_FEATURES & KDRAY_FEATURE_LIGHT_MAPS) != 0)
 // Queries, which ask for the shape, meet triangles whole.
 #ifdef KDRAY_WHOLE_TRIANGLES
 #define KDRAY_HAS_CUTOUTS 0
 #else
 #define KDRAY_HAS_CUTOUTS ((KDRAY_FEATURES & KDRAY_FEATURE_CUTOUTS) != 0)
 #endif
-// Looking at coats: when shading, or for holes.
-#define KDRAY_HAS_PAINT (KDRAY_HAS_COATS || KDRAY_HAS_CUTOUTS)
+// Looking at material maps: when shading, or for holes.
+#define KDRAY_HAS_TEXTURING (KDRAY_HAS_MATERIAL_MAPS || KDRAY_HAS_CUTOUTS)
 #define KDRAY_HAS_REFLECT ((KDRAY_FEATURES & KDRAY_FEATURE_REFLECT) != 0)
 #define KDRAY_HAS_TRANSMIT ((KDRAY_FEATURES & KDRAY_FEATURE_TRANSMIT) != 0)
 #define KDRAY_HAS_SPECULAR ((KDRAY_FEATURES & KDRAY_FEATURE_SPECULAR) != 0)

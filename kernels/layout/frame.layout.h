@@ -57,7 +57,7 @@ typedef struct Frame {
   u32 parallel;  // 1: an orthographic camera
   // The side of the square that a sample stands for: at the distance 1 along `forward`, or of a parallel
   // camera anywhere. In adaptive rounds a pixel's, of which samples have shares (raygen/sequence.clh).
-  float pencil;
+  float ray_cone;
   // A lens: eye rays start so far from `eye` at most, and are turned back by so much for what is in focus to
   // stay where it is; 0: a pinhole.
   float lens_radius, lens_slope;

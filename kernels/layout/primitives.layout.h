@@ -3,12 +3,11 @@
 #define KDRAY_LAYOUT_PRIMITIVES_H
 #include "layout/base.layout.h"
 
-// Triangle::normals: the index, and the bit of a stitch. A stitch is a triangle whose corners differ but
-// lie on one line: it has no area and no plane, but closes what would gape where a corner lies on a
-// neighbour's edge.
+// Triangle::normals: the index, and the bit of a zero-area triangle, whose corners differ but lie on one
+// line: it has no plane, but closes what would gape where a corner lies on a neighbour's edge.
 #define KDRAY_NO_NORMALS 0x7fffffffu
 #define KDRAY_NORMALS_MASK 0x7fffffffu
-#define KDRAY_STITCH 0x80000000u
+#define KDRAY_ZERO_AREA 0x80000000u
 
 KDRAY_LAYOUT_BEGIN
 typedef struct Triangle {

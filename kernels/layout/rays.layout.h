@@ -17,12 +17,12 @@
 #define KDRAY_ODPRT 0
 #endif
 
-// In scenes with footprints rays have a last field, u32: their pencil (paint/pencil.clh). The host counts it
-// by itself (host/engine/wavefront/slice_buffers.h).
+// In scenes with footprints rays have a last field, u32: their cone (textures/ray_cone.clh). The host counts
+// it by itself (host/engine/wavefront/slice_buffers.h).
 #ifdef __OPENCL_C_VERSION__
-#define KDRAY_PENCIL_FIELDS (KDRAY_HAS_FOOTPRINTS ? 1u : 0u)
+#define KDRAY_RAY_CONE_FIELDS (KDRAY_HAS_FOOTPRINTS ? 1u : 0u)
 #else
-#define KDRAY_PENCIL_FIELDS 0u
+#define KDRAY_RAY_CONE_FIELDS 0u
 #endif
 // Where a scene has instances, rays, hits and shadow rays have a field more: what the host adds.
 #if defined(KDRAY_HAS_INSTANCES) && KDRAY_HAS_INSTANCES
@@ -46,21 +46,21 @@
 #define KDRAY_RAY_FINDER 13u  // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)
 #define KDRAY_RAY_WAY 14u     // a float, u32: the parts that were asked (odprt/way.clh)
 // Where there are instances a ray has another word, the number in the whole scene of the one that the
-// primitive is in + 1; last are its pencil and its sample.
+// primitive is in + 1; last are its cone and its sample.
 #define KDRAY_TRAVEL_RAY_FIELDS 16u
 #if KDRAY_ODPRT
 #define KDRAY_RAY_SKIP 0u  // none: a part may not know another's triangle
 #define KDRAY_RAY_INSTANCE 16u
-#define KDRAY_RAY_PENCIL (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_INSTANCE_FIELDS)
-#define KDRAY_RAY_SAMPLE (KDRAY_RAY_PENCIL + KDRAY_PENCIL_FIELDS)
+#define KDRAY_RAY_CONE (KDRAY_TRAVEL_RAY_FIELDS + KDRAY_INSTANCE_FIELDS)
+#define KDRAY_RAY_SAMPLE (KDRAY_RAY_CONE + KDRAY_RAY_CONE_FIELDS)
 #define KDRAY_RAY_FIELDS (KDRAY_RAY_SAMPLE + KDRAY_TELLS_SAMPLE)
 #else
 // u32: the reference that can't be hit (the triangle that the ray leaves), or MISS.
 #define KDRAY_RAY_SKIP 12u
 #define KDRAY_RAY_SKIP_INSTANCE 13u  // where there are instances: the one that the triangle is in
 #define KDRAY_RAY_SAMPLE (13u + KDRAY_INSTANCE_FIELDS)
-#define KDRAY_RAY_PENCIL (13u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE)
-#define KDRAY_RAY_FIELDS (13u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
+#define KDRAY_RAY_CONE (13u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE)
+#define KDRAY_RAY_FIELDS (13u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE + KDRAY_RAY_CONE_FIELDS)
 #endif
 // With area lights a ray tells its pixel and sample: u32, 16 bits of the pixel's hash above the sample's
 // number.
@@ -114,12 +114,12 @@
 #define KDRAY_POOL_SKIP 10u
 #define KDRAY_POOL_SKIP_INSTANCE 11u
 #define KDRAY_POOL_SAMPLE (11u + KDRAY_INSTANCE_FIELDS)
-#define KDRAY_POOL_FIELDS (11u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE + KDRAY_PENCIL_FIELDS)
+#define KDRAY_POOL_FIELDS (11u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE + KDRAY_RAY_CONE_FIELDS)
 #endif
 #if KDRAY_ODPRT
-#define KDRAY_POOL_PENCIL KDRAY_RAY_PENCIL
+#define KDRAY_POOL_RAY_CONE KDRAY_RAY_CONE
 #else
-#define KDRAY_POOL_PENCIL (11u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE)
+#define KDRAY_POOL_RAY_CONE (11u + KDRAY_INSTANCE_FIELDS + KDRAY_TELLS_SAMPLE)
 #endif
 
 // Hits of a batch, with the batch's capacity.

@@ -3,7 +3,7 @@
 #define KDRAY_LAYOUT_SHADING_H
 #include "layout/base.layout.h"
 
-#define KDRAY_NO_COAT 0xffffffffu
+#define KDRAY_NO_MAPS 0xffffffffu
 
 #define KDRAY_LIGHT_POINT 0u
 #define KDRAY_LIGHT_DIRECTIONAL 1u
@@ -21,12 +21,12 @@ typedef struct Material {
   float transmit[3];
   float shine;
   float index;
-  u32 coat;  // into the coats (paint.layout.h), or KDRAY_NO_COAT
+  u32 maps;  // into the material maps (textures.layout.h), or KDRAY_NO_MAPS
   u32 pad[2];
 } Material;
 KDRAY_ASSERT_SIZE(Material, 80)
 KDRAY_ASSERT_OFFSET(Material, shine, 60)
-KDRAY_ASSERT_OFFSET(Material, coat, 68)
+KDRAY_ASSERT_OFFSET(Material, maps, 68)
 
 typedef struct Light {
   float position[3];

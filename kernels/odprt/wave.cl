@@ -24,7 +24,7 @@ typedef struct Streams {
 
 typedef struct Shaders {
   SurfaceArrays surfaces;
-  PaintArrays paint;
+  TexturingArrays texturing;
   SkyArrays sky;
   __global const Light* lights;
 } Shaders;
@@ -47,7 +47,7 @@ inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32
   u32 first_light = 0;
   do {
     const u32 before = t->slice->n_pool[t->slice->depth];
-    shade_batch(&shaders->surfaces, &shaders->paint, &shaders->sky, shaders->lights, frame, slice_id,
+    shade_batch(&shaders->surfaces, &shaders->texturing, &shaders->sky, shaders->lights, frame, slice_id,
                 first_light, t->slice, s->batch, s->hits, s->pool, s->shadow_rays, s->film);
     const u32 made = t->slice->depth < frame->max_depth ? t->slice->n_pool[t->slice->depth] - before : 0;
     if (made > 0) {
@@ -122,7 +122,7 @@ KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARG
                      io_credits + slice_id,
                      io_traffic + slice_id};
   const Shaders shaders = {KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS),
-                           KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_PAINT_ARRAYS),
+                           KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TEXTURING_ARRAYS),
                            KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SKY_ARRAYS), in_lights};
   const Streams streams = {io_pool, io_batch, io_hits, io_shadow_rays, io_shadow_pool, io_occluded, io_film};
   const Census census = {in_subtrees, travel->n_subtrees,

@@ -20,7 +20,7 @@ KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)
   __global Slice* slice = io_slices + slice_id;
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
-  const PaintArrays paint = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_PAINT_ARRAYS);
+  const TexturingArrays texturing = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TEXTURING_ARRAYS);
   const SkyArrays sky = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SKY_ARRAYS);
   const TileList list = {in_tiles, n_tiles};
   for (u32 k = 0; k < n_waves; ++k) {
@@ -36,8 +36,8 @@ KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)
     clock_stage(&slice->cycles_closest, &since);
     u32 first_light = 0;
     do {
-      shade_batch(&arrays, &paint, &sky, in_lights, frame, slice_id, first_light, slice, io_batch, io_hits,
-                  io_pool, io_shadow_rays, io_film);
+      shade_batch(&arrays, &texturing, &sky, in_lights, frame, slice_id, first_light, slice, io_batch,
+                  io_hits, io_pool, io_shadow_rays, io_film);
       clock_stage(&slice->cycles_shade, &since);
 #if KDRAY_HAS_LIGHTS
       const RaySource to_lights = shadow_rays(frame, slice_id, io_shadow_rays, io_occluded);

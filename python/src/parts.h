@@ -10,7 +10,7 @@ namespace kdray::python {
 using SceneClass = nanobind::class_<Scene>;
 
 SceneClass add_scene(nanobind::module_& module);
-void add_paint(SceneClass& scene);
+void add_textures(SceneClass& scene);
 void add_queries(SceneClass scene);
 void add_pictures(nanobind::module_& module, SceneClass scene);
 void add_devices(nanobind::module_& module);

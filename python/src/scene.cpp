@@ -159,7 +159,7 @@ SceneClass add_scene(nb::module_& module) {
       "asset_root"_a = "");
   add_geometries(scene);
   add_looks(scene);
-  add_paint(scene);
+  add_textures(scene);
   scene.def(
       "commit",
       [](Scene& s, const std::string& quality, const std::string& device, int compute_units,

@@ -128,7 +128,7 @@ const std::vector<std::pair<int, int>> kWays = {{1, 1}, {2, 1}, {3, 1}, {4, 1}, 
 // Between them all kinds, materials, lights and pictures; each scene in two ways.
 TEST_P(Holdings, OfScenesThatEveryRankHas) {
   std::vector<NamedScene> scenes = small_scenes();
-  for (const NamedScene& s : std::initializer_list<NamedScene>{{"painted", painted},
+  for (const NamedScene& s : std::initializer_list<NamedScene>{{"textured", textured},
                                                                {"mapped", mapped},
                                                                {"soft_light", soft_light},
                                                                {"under_a_sky", under_a_sky}})

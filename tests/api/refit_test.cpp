@@ -368,7 +368,7 @@ TEST_P(Refit, BuildsWhereRaysWouldCostTooMuch) {
   EXPECT_FALSE(kept.commit(options(1.5)).refitted) << "what was kept has grown by more than this";
 }
 
-// Triangles that come to be degenerate, or stitches, are other triangles; so is one that gets its area back.
+// Triangles that lose their area, degenerate or not, are other triangles; so is one that gets its area back.
 TEST_P(Refit, BuildsWhereOtherTrianglesAreLeft) {
   Arrays mesh = ball(8);
   Twins twins;
@@ -381,19 +381,19 @@ TEST_P(Refit, BuildsWhereOtherTrianglesAreLeft) {
     Asking(2000, vertices).expect_same(twins.fitted, twins.built);
     return refitted;
   };
-  std::vector<double> collapsed = mesh.vertices, stitched = mesh.vertices;
+  std::vector<double> collapsed = mesh.vertices, flattened = mesh.vertices;
   const std::array<std::uint32_t, 3> one = {mesh.triangles[300], mesh.triangles[301], mesh.triangles[302]};
   for (std::size_t k = 0; k < 3; ++k) {
     collapsed[3 * one[1] + k] = collapsed[3 * one[0] + k];
     for (std::size_t c = 0; c < 3; ++c)  // on a line, exactly
-      stitched[3 * one[c] + k] = 0.5 + 0.125 * static_cast<double>(c * (k + 1));
+      flattened[3 * one[c] + k] = 0.5 + 0.125 * static_cast<double>(c * (k + 1));
   }
   EXPECT_FALSE(commit(collapsed));
   EXPECT_TRUE(commit(collapsed)) << "what is gone stays gone";
   EXPECT_FALSE(commit(mesh.vertices));
-  EXPECT_FALSE(commit(stitched));
-  for (double& x : stitched) x *= 0.75;  // by which no line is bent
-  EXPECT_TRUE(commit(stitched));
+  EXPECT_FALSE(commit(flattened));
+  for (double& x : flattened) x *= 0.75;  // by which no line is bent
+  EXPECT_TRUE(commit(flattened));
   EXPECT_FALSE(commit(mesh.vertices));
   EXPECT_FALSE(commit(mesh.moved([](const dvec3&) { return dvec3(1, 2, 3); }))) << "nothing is left";
   EXPECT_FALSE(commit(mesh.vertices));

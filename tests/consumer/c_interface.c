@@ -166,7 +166,7 @@ static void commit_seen_from_above(kdray_scene* scene) {
 }
 
 /* Red by a picture, before a grey that is the middle of a gradient from below to above. */
-static void check_paint(void) {
+static void check_textures(void) {
   const unsigned char red[3] = {255, 0, 0};
   const float white[3] = {1, 1, 1}, stops[6] = {0, 0, 0, 1, 1, 1}, uv[16] = {0.5f, 0.5f};
   const double heights[2] = {-1, 1}, upwards[2] = {1, -1};
@@ -367,7 +367,7 @@ int main(void) {
   check_answers(scene, box);
   check_cancel_and_picture(scene);
   check_looks();
-  check_paint();
+  check_textures();
   check_metal();
   check_instances();
   check_tori();

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "layout/paint.layout.h"
+#include "layout/textures.layout.h"
 #include "support/device.h"
 #include "support/run_kernel.h"
 
@@ -18,9 +18,9 @@ namespace {
 constexpr std::size_t kTexels = KDRAY_TEXEL_CURVE + 32 * 32 * 4 / 3 + 1;
 
 constexpr const char* kPrelude = R"(#include "layout/base.layout.h"
-#include "layout/paint.layout.h"
+#include "layout/textures.layout.h"
 #include "layout/primitives.layout.h"
-#include "paint/footprint.clh"
+#include "textures/footprint.clh"
 )";
 
 struct Seen {
@@ -111,11 +111,11 @@ typedef struct Looked { float along[2], across[2]; Texture texture; u32 texels[)
 __kernel void test(__global const Looked* in, __global uint4* out, uint n) {
   const uint i = get_global_id(0);
   if (i >= n) return;
-  PaintArrays paint;
-  paint.texels = in[i].texels;
+  TexturingArrays texturing;
+  texturing.texels = in[i].texels;
   __global const Texture* t = &in[i].texture;
   const Axis a = axis_of(t, in[i].along[0], in[i].along[1]), b = axis_of(t, in[i].across[0], in[i].across[1]);
-  out[i] = sample_footprint(&paint, t, 0.37f, 0.61f, &a, &b);
+  out[i] = sample_footprint(&texturing, t, 0.37f, 0.61f, &a, &b);
 }
 )";
 

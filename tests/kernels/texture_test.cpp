@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "layout/paint.layout.h"
+#include "layout/textures.layout.h"
 #include "support/device.h"
 #include "support/run_kernel.h"
 
@@ -26,9 +26,9 @@ struct Case {
 };
 
 constexpr const char* kSource = R"(#include "layout/base.layout.h"
-#include "layout/paint.layout.h"
+#include "layout/textures.layout.h"
 #include "layout/primitives.layout.h"
-#include "paint/texture.clh"
+#include "textures/texture.clh"
 typedef struct Case {
   float u, v;
   Texture texture;
@@ -37,9 +37,9 @@ typedef struct Case {
 __kernel void test(__global const Case* in, __global uint4* out, uint n) {
   const uint i = get_global_id(0);
   if (i >= n) return;
-  PaintArrays paint;
-  paint.texels = in[i].texels;
-  out[i] = sample_texture(&paint, &in[i].texture, in[i].u, in[i].v);
+  TexturingArrays texturing;
+  texturing.texels = in[i].texels;
+  out[i] = sample_texture(&texturing, &in[i].texture, in[i].u, in[i].v);
 }
 )";
 

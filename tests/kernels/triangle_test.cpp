@@ -23,7 +23,7 @@ struct Found {
   float t, u, v;
 };
 
-// -DSTITCH=true: the triangles are stitches.
+// -DZERO_AREA=true: the triangles have no area.
 const char* const kSource =
     "#include \"intersect/triangle.clh\"\n"
     "typedef struct Case { float origin[3], direction[3]; float v[3][3]; } Case;\n"
@@ -34,7 +34,7 @@ const char* const kSource =
     "  Found f = {0, 0, 0, 0};\n"
     "  f.hit = intersect_triangle(make_shear(load3(in[i].direction)), load3(in[i].origin), "
     "load3(in[i].direction), &in[i].v[0][0], "
-    "STITCH, &f.t,\n"
+    "ZERO_AREA, &f.t,\n"
     "                             &f.u, &f.v);\n"
     "  out[i] = f;\n"
     "}\n";
@@ -84,7 +84,7 @@ TEST_P(TriangleTest, NoRayEscapesAtAVertexOrAnEdge) {
     const vec3 target = face[0] + s * (face[1] - face[0]);
     for (const auto& f : faces) in.push_back(make_case(origin, target - origin, f));
   }
-  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false");
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DZERO_AREA=false");
   for (int i = 0; i < kRays; ++i) {
     // A face seen edge-on may put its hit anywhere along the edge; another face has it at the target.
     float nearest_error = INFINITY;
@@ -118,7 +118,7 @@ TEST_P(TriangleTest, ARayInThePlaneItStartsFromDoesNotHitIt) {
     if (i % 5 == 0) direction[axis] *= 1e-6f;  // grazing
     in.push_back(make_case(origin, direction, triangle));
   }
-  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false");
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DZERO_AREA=false");
   int met = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     met += out[i].hit;
@@ -135,7 +135,7 @@ TEST_P(TriangleTest, AgreesWithDoubleAwayFromEdges) {
   const auto point = [&] { return vec3(coordinate(random), coordinate(random), coordinate(random)); };
   std::vector<Case> in;
   for (int i = 0; i < 100000; ++i) in.push_back(make_case(point(), point(), {point(), point(), point()}));
-  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false");
+  const std::vector<Found> out = test::run_kernel<Found>(GetParam(), kSource, in, "-DZERO_AREA=false");
   int compared = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
     const auto at = [](const float(&p)[3]) { return dvec3(p[0], p[1], p[2]); };
@@ -157,15 +157,15 @@ TEST_P(TriangleTest, AgreesWithDoubleAwayFromEdges) {
   EXPECT_GT(compared, 50000);
 }
 
-// ---- Stitches
+// ---- Zero-area triangles
 
 // Three points of a grid on a line, in any order, and a place between the outer two.
-struct StitchCase {
+struct ZeroAreaCase {
   std::array<vec3, 3> corners;
   vec3 place;
 };
 
-StitchCase make_stitch(std::mt19937& random) {
+ZeroAreaCase make_zero_area(std::mt19937& random) {
   std::uniform_int_distribution<int> step(-9, 9), start(-500, 500);
   std::uniform_real_distribution<float> unit(0, 1);
   const vec3 first(start(random), start(random), start(random));
@@ -175,7 +175,7 @@ StitchCase make_stitch(std::mt19937& random) {
   at[2] = at[1] + 1 + static_cast<int>(random() % 30);
   const vec3 place = first + unit(random) * static_cast<float>(at[2]) * way;
   std::shuffle(at.begin(), at.end(), random);
-  StitchCase c{{}, place};
+  ZeroAreaCase c{{}, place};
   for (std::size_t i = 0; i < 3; ++i) c.corners[i] = first + static_cast<float>(at[i]) * way;
   return c;
 }
@@ -192,18 +192,18 @@ float in_doubt(const Case& c) {
   return 16 * 0x1p-24f * reach;
 }
 
-TEST_P(TriangleTest, AStitchIsHitOnItsLine) {
+TEST_P(TriangleTest, AZeroAreaTriangleIsHitOnItsLine) {
   const unsigned seed = 25;
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> coordinate(-1000, 1000);
   std::vector<Case> in;
   for (int i = 0; i < 100000; ++i) {
-    const StitchCase s = make_stitch(random);
+    const ZeroAreaCase s = make_zero_area(random);
     const vec3 origin(coordinate(random), coordinate(random), coordinate(random));
     in.push_back(make_case(origin, s.place - origin, s.corners));
   }
-  const auto out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=true");
+  const auto out = test::run_kernel<Found>(GetParam(), kSource, in, "-DZERO_AREA=true");
   int hits = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!out[i].hit) continue;
@@ -219,7 +219,7 @@ TEST_P(TriangleTest, AStitchIsHitOnItsLine) {
   EXPECT_GT(hits, 1000) << "rays that corners rounded apart let through";
 }
 
-TEST_P(TriangleTest, ARayThatStartsAtAStitchHasLeftIt) {
+TEST_P(TriangleTest, ARayThatStartsAtAZeroAreaTriangleHasLeftIt) {
   const unsigned seed = 26;
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -227,7 +227,7 @@ TEST_P(TriangleTest, ARayThatStartsAtAStitchHasLeftIt) {
   const auto direction = [&] { return glm::normalize(vec3(unit(random), unit(random), unit(random))); };
   std::vector<Case> in;
   for (int i = 0; i < 400000; ++i) {
-    const StitchCase s = make_stitch(random);
+    const ZeroAreaCase s = make_zero_area(random);
     // The mean of the corners' distances is not below the least of them.
     const vec3 middle = 0.5f * s.corners[0] + 0.5f * s.corners[1];
     float least = INFINITY;
@@ -235,7 +235,7 @@ TEST_P(TriangleTest, ARayThatStartsAtAStitchHasLeftIt) {
     const vec3 origin = middle + 8 * 0x1p-24f * least * direction();
     in.push_back(make_case(origin, direction(), s.corners));
   }
-  const auto out = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=true");
+  const auto out = test::run_kernel<Found>(GetParam(), kSource, in, "-DZERO_AREA=true");
   int met = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     met += out[i].hit;
@@ -315,7 +315,7 @@ TEST_P(TriangleTest, SeenEdgeOnIsNoHitInAnyForm) {
   const unsigned seed = 10;
   SCOPED_TRACE(seed);
   const std::vector<Case> in = edge_on_cases(seed);
-  for (const Found& found : test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false"))
+  for (const Found& found : test::run_kernel<Found>(GetParam(), kSource, in, "-DZERO_AREA=false"))
     ASSERT_FALSE(found.hit);
   for (const int lanes : {1, 4, 8, 16}) {
     SCOPED_TRACE(lanes);
@@ -339,7 +339,7 @@ TEST_P(TriangleTest, ATriangleAheadIsMetByARayInItsPlane) {
   const vec3 origin(-0x1.d31ce6p+8f, 0x1.150df4p+7f, 0x1.c6977ep+8f),
       direction(-0x1.40634p+7f, -0x1.11be8p+6f, 0x1.68882p+8f);
   const std::vector<Case> in{make_case(origin, direction, triangle)};
-  const Found found = test::run_kernel<Found>(GetParam(), kSource, in, "-DSTITCH=false").front();
+  const Found found = test::run_kernel<Found>(GetParam(), kSource, in, "-DZERO_AREA=false").front();
   EXPECT_TRUE(found.hit);
   EXPECT_NEAR(found.t, 0.25748, 1e-5);
   for (const int lanes : {1, 4, 8, 16}) {

@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(
     Scenes, Identical,
     testing::Values(NamedScene{"spheres_and_glass", glass_and_mirror_balls},
                     NamedScene{"smooth_meshes", smooth_meshes}, NamedScene{"cones", cones_and_cylinders},
-                    NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
+                    NamedScene{"textured", textured}, NamedScene{"mapped", mapped},
                     NamedScene{"soft_light", soft_light}, NamedScene{"under_a_sky", under_a_sky},
                     NamedScene{"instanced", instanced}, NamedScene{"instanced_maps", instanced_maps}),
     [](const auto& info) { return info.param.name; });

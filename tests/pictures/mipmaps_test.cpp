@@ -1,5 +1,5 @@
 // What    A chessboard that reaches far away, each pixel against the exact mean of what it covers; and the
-//         same in a mirror and through a pane, whose rays bring their pencils along.
+//         same in a mirror and through a pane, whose rays bring their cones along.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,17 +43,17 @@ void add_quad(scene::Scene& s, const std::array<dvec3, 4>& corners, std::uint32_
       at.uv[k][0] = static_cast<float>(corners[pick[k]].x / 2);
       at.uv[k][1] = static_cast<float>(corners[pick[k]].z / 2);
     }
-    s.paint.texcoords[0].push_back(at);
+    s.texturing.texcoords[0].push_back(at);
   }
 }
 
 // The floor y = 0 from the plane z = 0 on, seen from a height of 1 along -z.
 scene::Scene floor_of(scene::Minify minify) {
   scene::Scene s;
-  s.paint.pictures = {chessboard()};
-  const std::uint32_t texture = s.paint.add(scene::Texture{.minify = minify});
-  const std::uint32_t coat = s.paint.add(scene::Coat{.emission = vec3(1), .base = texture});
-  s.materials = {scene::Material{.coat = coat}};
+  s.texturing.pictures = {chessboard()};
+  const std::uint32_t texture = s.texturing.add(scene::Texture{.minify = minify});
+  const std::uint32_t maps = s.texturing.add(scene::MaterialMaps{.emission = vec3(1), .base = texture});
+  s.materials = {scene::Material{.maps = maps}};
   add_quad(s, {dvec3{-4000, 0, 0}, {4000, 0, 0}, {4000, 0, kFar}, {-4000, 0, kFar}}, 0);
   s.unlit = true;
   s.camera = scene::Camera{

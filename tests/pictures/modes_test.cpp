@@ -139,8 +139,8 @@ TEST_P(Modes, ASequenceOfFramesThatMovesSubtrees) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Modes, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return info.param.name; });
-INSTANTIATE_TEST_SUITE_P(Painted, Modes,
-                         testing::Values(NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
+INSTANTIATE_TEST_SUITE_P(Textured, Modes,
+                         testing::Values(NamedScene{"textured", textured}, NamedScene{"mapped", mapped},
                                          NamedScene{"soft_light", soft_light},
                                          NamedScene{"under_a_sky", under_a_sky},
                                          NamedScene{"instanced", instanced},

@@ -167,16 +167,16 @@ std::shared_ptr<const scene::Picture> noise(std::uint32_t width, std::uint32_t h
   return std::make_shared<const scene::Picture>(std::move(p));
 }
 
-// Takes what the base colour multiplies over into a coat.
-void coat(scene::Scene& s, std::uint32_t material, scene::Coat c) {
+// Takes what the base colour multiplies over into material maps.
+void add_maps(scene::Scene& s, std::uint32_t material, scene::MaterialMaps c) {
   scene::Material& m = s.materials[material];
   c.ambient = m.ambient, c.diffuse = m.diffuse, c.reflect = m.reflect;
   m.ambient = m.diffuse = m.reflect = vec3(0);
-  m.coat = s.paint.add(c);
+  m.maps = s.texturing.add(c);
 }
 
 // Coordinates by where the corners are, two sets of them, and colours by chance.
-void paint_corners(scene::Scene& s, std::mt19937& random) {
+void color_corners(scene::Scene& s, std::mt19937& random) {
   for (const scene::Triangle& t : s.triangles) {
     layout::CornerColors colors{};
     std::array<layout::TexCoords, 2> at{};
@@ -186,8 +186,8 @@ void paint_corners(scene::Scene& s, std::mt19937& random) {
       at[1].uv[k][0] = 0.7f * p.y + 0.2f * p.x, at[1].uv[k][1] = 0.5f * p.x + 0.3f * p.z;
       for (auto& word : colors.c[k]) word = static_cast<layout::u32>(random());
     }
-    s.paint.colors.push_back(colors);
-    for (std::size_t set = 0; set < 2; ++set) s.paint.texcoords[set].push_back(at[set]);
+    s.texturing.colors.push_back(colors);
+    for (std::size_t set = 0; set < 2; ++set) s.texturing.texcoords[set].push_back(at[set]);
   }
 }
 
@@ -195,7 +195,7 @@ void paint_corners(scene::Scene& s, std::mt19937& random) {
 
 // A floor by a repeated picture, a screen with holes before it, a veil, a mirror in colours, a ball whose
 // shading is smooth, and one that is no triangle.
-scene::Scene painted() {
+scene::Scene textured() {
   SceneBuilder b = with_floor();
   b.quad({-2.5, -0.9, 2}, {2.4, 0, 0.3}, {0.1, 2, 0}, plastic({0.8f, 0.9f, 0.7f}, 9));
   b.quad({0.2, -0.8, 2.5}, {1.7, 0, -0.3}, {0, 1.8, 0.1}, plastic(vec3(0.7f), 9));
@@ -204,46 +204,47 @@ scene::Scene painted() {
   scene::Scene s = b.scene();
   add_smooth_ball(s, {-0.6, 0, -0.4}, 0.9, 9, plastic(vec3(0.9f), 20, 0.2f));
   std::mt19937 random(28);
-  const std::uint32_t small = s.paint.add(noise(7, 5, random)), large = s.paint.add(noise(32, 16, random));
+  const std::uint32_t small = s.texturing.add(noise(7, 5, random)),
+                      large = s.texturing.add(noise(32, 16, random));
   using scene::Alpha, scene::Texture, scene::Wrap;
-  const std::uint32_t floor = s.paint.add(Texture{.picture = large});
-  const std::uint32_t screen = s.paint.add(Texture{.picture = small,
-                                                   .across = {2, 0.3f, 0.1f},
-                                                   .down = {-0.2f, 2, 0},
-                                                   .wrap_across = Wrap::mirror,
-                                                   .wrap_down = Wrap::clamp,
-                                                   .nearest = true});
-  const std::uint32_t veil = s.paint.add(Texture{.picture = large, .curved = false, .set = 1});
+  const std::uint32_t floor = s.texturing.add(Texture{.picture = large});
+  const std::uint32_t screen = s.texturing.add(Texture{.picture = small,
+                                                       .across = {2, 0.3f, 0.1f},
+                                                       .down = {-0.2f, 2, 0},
+                                                       .wrap_across = Wrap::mirror,
+                                                       .wrap_down = Wrap::clamp,
+                                                       .nearest = true});
+  const std::uint32_t veil = s.texturing.add(Texture{.picture = large, .curved = false, .set = 1});
   for (const std::uint32_t half : {0u, 1u}) {  // a square's triangles have a material each
-    coat(s, half, {.base = floor});
-    coat(s, 2 + half, {.alpha = 0.9f, .cutoff = 0.4f, .base = screen, .mode = Alpha::mask});
-    coat(s, 4 + half, {.alpha = 0.8f, .base = veil, .colored = 1, .mode = Alpha::blend});
-    coat(s, 6 + half, {.colored = 1});
+    add_maps(s, half, {.base = floor});
+    add_maps(s, 2 + half, {.alpha = 0.9f, .cutoff = 0.4f, .base = screen, .mode = Alpha::mask});
+    add_maps(s, 4 + half, {.alpha = 0.8f, .base = veil, .colored = 1, .mode = Alpha::blend});
+    add_maps(s, 6 + half, {.colored = 1});
   }
-  coat(s, 8, {.base = floor, .colored = 1});
-  coat(s, 9, {.cutoff = 0.3f, .base = veil, .colored = 1, .mode = Alpha::mask});
-  paint_corners(s, random);
+  add_maps(s, 8, {.base = floor, .colored = 1});
+  add_maps(s, 9, {.cutoff = 0.3f, .base = veil, .colored = 1, .mode = Alpha::mask});
+  color_corners(s, random);
   return s;
 }
 
 // The same with mipmaps, and with more pictures: a floor of metal and glass here and there, bent normals on
 // what is flat and what is smooth, a screen that shines, and a mirror whose reflection a picture scales.
 scene::Scene mapped() {
-  scene::Scene s = painted();
+  scene::Scene s = textured();
   std::mt19937 random(59);
-  const std::uint32_t picture = s.paint.add(noise(64, 64, random));
+  const std::uint32_t picture = s.texturing.add(noise(64, 64, random));
   using scene::Minify, scene::Texture;
-  for (Texture& t : s.paint.textures)
+  for (Texture& t : s.texturing.textures)
     t.minify = t.nearest ? Minify::nearest_mipmap_nearest : Minify::linear_mipmap_linear;
   const auto plain = [&](std::array<float, 3> across, std::array<float, 3> down, Minify minify) {
-    return s.paint.add(
+    return s.texturing.add(
         Texture{.picture = picture, .across = across, .down = down, .minify = minify, .curved = false});
   };
   const std::uint32_t fine = plain({3, 1, 0}, {0, 4, 0}, Minify::linear_mipmap_linear);
   const std::uint32_t coarse = plain({0.5f, 0, 0.2f}, {0.1f, 0.7f, 0}, Minify::linear_mipmap_nearest);
   const std::uint32_t sharp = plain({9, 0, 0}, {0, 9, 0}, Minify::nearest_mipmap_linear);
-  const auto of = [&](std::uint32_t material) -> scene::Coat& {
-    return s.paint.coats[s.materials[material].coat];
+  const auto of = [&](std::uint32_t material) -> scene::MaterialMaps& {
+    return s.texturing.material_maps[s.materials[material].maps];
   };
   for (const std::uint32_t half : {0u, 1u}) {
     of(half).metal_map = fine;
@@ -310,10 +311,13 @@ scene::Scene under_a_sky() {
 
 std::uint32_t add_mesh(scene::Scene& scene, const scene::Scene& part) {
   const auto first = static_cast<std::uint32_t>(scene.materials.size());
-  const std::vector<std::uint32_t> coats = scene.paint.append(
-      {.coats = part.paint.coats, .textures = part.paint.textures, .pictures = part.paint.pictures}, 0, 0);
+  const std::vector<std::uint32_t> material_maps =
+      scene.texturing.append({.material_maps = part.texturing.material_maps,
+                              .textures = part.texturing.textures,
+                              .pictures = part.texturing.pictures},
+                             0, 0);
   for (scene::Material m : part.materials) {
-    if (m.coat != scene::kNone) m.coat = coats[m.coat];
+    if (m.maps != scene::kNone) m.maps = material_maps[m.maps];
     scene.materials.push_back(m);
   }
   auto mesh = std::make_shared<scene::Scene>();
@@ -321,8 +325,8 @@ std::uint32_t add_mesh(scene::Scene& scene, const scene::Scene& part) {
   mesh->normals = part.normals;
   mesh->triangles = part.triangles;
   primitives::for_each_shape([&](auto kind) { decltype(kind)::of(*mesh) = decltype(kind)::of(part); });
-  mesh->paint.colors = part.paint.colors;
-  mesh->paint.texcoords = part.paint.texcoords;
+  mesh->texturing.colors = part.texturing.colors;
+  mesh->texturing.texcoords = part.texturing.texcoords;
   for (auto& t : mesh->triangles) t.material += first;
   primitives::for_each_shape([&](auto kind) {
     for (auto& shape : decltype(kind)::of(*mesh)) shape.material += first;
@@ -339,7 +343,7 @@ void add_instance(scene::Scene& scene, std::uint32_t mesh, const dmat4& to_world
 
 namespace {
 
-// `picture` is painted() or mapped().
+// `picture` is textured() or mapped().
 scene::Scene instanced_with(scene::Scene picture) {
   using scene::rotation, scene::scaling, scene::translation;
   scene::Scene s = with_floor().scene();
@@ -356,11 +360,11 @@ scene::Scene instanced_with(scene::Scene picture) {
     if (items.size() > 2) items.erase(items.begin(), items.begin() + 2);
   };
   drop_floor(picture.triangles);
-  drop_floor(picture.paint.colors);
-  for (auto& set : picture.paint.texcoords) drop_floor(set);
+  drop_floor(picture.texturing.colors);
+  for (auto& set : picture.texturing.texcoords) drop_floor(set);
   for (auto& t : picture.triangles) t.number -= 2;
   const std::uint32_t balls = add_mesh(s, ball), glass = add_mesh(s, glass_ball),
-                      mixed = add_mesh(s, shapes.scene()), painted_part = add_mesh(s, picture);
+                      mixed = add_mesh(s, shapes.scene()), textured_part = add_mesh(s, picture);
   const auto own = static_cast<std::uint32_t>(s.materials.size());
   s.materials.push_back(plastic({0.3f, 0.7f, 0.3f}, 30, 0.3f));
   const dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
@@ -371,7 +375,7 @@ scene::Scene instanced_with(scene::Scene picture) {
   add_instance(s, mixed, translation({1.7, -0.3, 1.5}) * rotation(y, 1) * scaling(dvec3(1.2)));
   add_instance(s, mixed, translation({1.7, -0.3, 1.5}) * rotation(y, 1) * scaling(dvec3(1.2)), own);
   add_instance(s, mixed, translation({-2.5, 0.8, -1}) * rotation(z, 2) * scaling({0.9, -0.9, 0.9}));
-  add_instance(s, painted_part, translation({0.2, 0.9, -2.5}) * rotation(y, 0.2) * scaling(dvec3(0.6)));
+  add_instance(s, textured_part, translation({0.2, 0.9, -2.5}) * rotation(y, 0.2) * scaling(dvec3(0.6)));
   for (int i = 0; i < 40; ++i)
     add_instance(s, i % 2 ? mixed : balls,
                  translation({-3 + 0.15 * i, -0.85, 2.6 + 0.02 * i}) * rotation(y, i) *
@@ -382,14 +386,14 @@ scene::Scene instanced_with(scene::Scene picture) {
 }  // namespace
 
 scene::Scene instanced() {
-  return instanced_with(painted());
+  return instanced_with(textured());
 }
 
 scene::Scene instanced_maps() {
   using scene::rotation, scene::scaling, scene::translation;
   scene::Scene s = instanced_with(mapped());
-  const auto painted_part = static_cast<std::uint32_t>(s.meshes.size() - 1);
-  add_instance(s, painted_part,
+  const auto textured_part = static_cast<std::uint32_t>(s.meshes.size() - 1);
+  add_instance(s, textured_part,
                translation({-2.4, 0.3, -1}) * rotation({0, 1, 0}, -0.4) * scaling({-0.4, 0.4, 0.4}));
   return s;
 }

@@ -22,7 +22,7 @@ scene::Scene every_kind();              // random ones of each kind: matte, mirr
 scene::Scene every_light();             // point with attenuation, range, directional, spots; emission
 scene::Scene flat_glass();              // a slab, a prism with total reflection, index 1, a box of mirrors
 
-scene::Scene painted();      // pictures, colours at corners, holes, veils
+scene::Scene textured();     // pictures, colours at corners, holes, veils
 scene::Scene mapped();       // mipmaps, and pictures of metal, normals, emission, occlusion and highlights
 scene::Scene soft_light();   // lights of each kind that has an area, before a gradient
 scene::Scene under_a_sky();  // a picture all around, seen through a lens

@@ -76,8 +76,8 @@ TEST_P(AllRules, ChangeNoBit) {
 
 INSTANTIATE_TEST_SUITE_P(Skipping, AllRules, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return info.param.name; });
-INSTANTIATE_TEST_SUITE_P(Painted, AllRules,
-                         testing::Values(NamedScene{"painted", painted}, NamedScene{"mapped", mapped},
+INSTANTIATE_TEST_SUITE_P(Textured, AllRules,
+                         testing::Values(NamedScene{"textured", textured}, NamedScene{"mapped", mapped},
                                          NamedScene{"soft_light", soft_light},
                                          NamedScene{"under_a_sky", under_a_sky},
                                          NamedScene{"instanced", instanced},

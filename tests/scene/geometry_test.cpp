@@ -108,12 +108,12 @@ TEST(MakeGeometry, DropsTrianglesOfEqualCornersAndKeepsThoseOnALine) {
   EXPECT_EQ(std::vector<std::uint32_t>(g.sources.begin(), g.sources.end()),
             (std::vector<std::uint32_t>{0, 2, 3, 4}));
   EXPECT_EQ(g.dropped_degenerate, 1u);
-  ASSERT_EQ(g.stitches.size(), 2u);
-  EXPECT_EQ(g.stitches[0].triangle, 1u);
-  EXPECT_EQ(g.stitches[1].triangle, 3u);
+  ASSERT_EQ(g.zero_area.size(), 2u);
+  EXPECT_EQ(g.zero_area[0].triangle, 1u);
+  EXPECT_EQ(g.zero_area[1].triangle, 3u);
   for (const std::size_t i : {0u, 2u}) EXPECT_EQ(g.triangles[i].normals, KDRAY_NO_NORMALS);
-  EXPECT_EQ(g.triangles[1].normals, KDRAY_STITCH | 0u) << "which has vertex normals of its own";
-  EXPECT_EQ(g.triangles[3].normals, KDRAY_STITCH | 1u);
+  EXPECT_EQ(g.triangles[1].normals, KDRAY_ZERO_AREA | 0u) << "which has vertex normals of its own";
+  EXPECT_EQ(g.triangles[3].normals, KDRAY_ZERO_AREA | 1u);
   EXPECT_EQ(g.n_smooth, 2u);
 }
 
@@ -128,7 +128,7 @@ TEST(MakeGeometry, DropsCornersThatAreEqualAfterRounding) {
                                                    {1e9, 5e8 + 100, 0},
                                                    {1e9, 0, 0}}));
   EXPECT_EQ(g.dropped_degenerate, 1u);
-  EXPECT_EQ(g.stitches.size(), 1u);
+  EXPECT_EQ(g.zero_area.size(), 1u);
   EXPECT_EQ(g.lost, 0u) << "they had no area to lose";
 }
 
@@ -173,12 +173,12 @@ TEST(MakeGeometry, DecidesFlatnessExactly) {
   const double x = 1 + 0x1p-23;
   for (const double third : {std::nextafter(3.0f, 0.0f) * 1.0, 3.0, std::nextafter(3.0f, 4.0f) * 1.0}) {
     const Geometry g = make_geometry(triangle_scene({{-1, -1, 5}, {1, 1, 5}, {3, third, 5}}));
-    EXPECT_EQ(g.stitches.size(), third == 3.0 ? 1u : 0u) << third;
+    EXPECT_EQ(g.zero_area.size(), third == 3.0 ? 1u : 0u) << third;
     EXPECT_EQ(g.triangles.size(), 1u);
   }
   const Geometry g = make_geometry(triangle_scene({{0, 0, 0}, {x, 1, 0}, {x * x, x, 0}}));
   // x * x needs more bits than float has: in float the third corner is off the line.
-  EXPECT_EQ(g.stitches.size(), 0u);
+  EXPECT_EQ(g.zero_area.size(), 0u);
 }
 
 TEST(MakeGeometry, DropsSpheresAndConesThatVanishInFloat) {
@@ -268,7 +268,7 @@ TEST(RangeWarning, CountsWhatFloatsLose) {
                                                       {1, 1, 1},
                                                       {0, 0, 1}}));
   EXPECT_EQ(flat.dropped_degenerate, 1u);
-  EXPECT_EQ(flat.stitches.size(), 1u);
+  EXPECT_EQ(flat.zero_area.size(), 1u);
   EXPECT_EQ(flat.lost, 0u);
   EXPECT_EQ(range_warning(flat), "");
 }

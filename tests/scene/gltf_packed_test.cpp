@@ -50,8 +50,8 @@ void expect_sheet(const Scene& s, double error) {
   ASSERT_EQ(3 * s.triangles.size(), sheet.corners.size());
   EXPECT_EQ(test::triangles_of(place, sheet.corners.size()),
             test::triangles_of(wanted, sheet.corners.size()));
-  ASSERT_EQ(s.paint.texcoords[0].size(), s.triangles.size());
-  ASSERT_EQ(s.paint.colors.size(), s.triangles.size());
+  ASSERT_EQ(s.texturing.texcoords[0].size(), s.triangles.size());
+  ASSERT_EQ(s.texturing.colors.size(), s.triangles.size());
   for (std::size_t i = 0; i < sheet.corners.size(); ++i) {
     const auto& t = s.triangles[i / 3];
     const auto at = static_cast<std::size_t>(place(i));
@@ -61,9 +61,9 @@ void expect_sheet(const Scene& s, double error) {
       EXPECT_NEAR(s.vertices[t.vertex[i % 3]][part], sheet.positions[3 * at + c], error);
       EXPECT_NEAR(s.normals[t.normal[i % 3]][part], sheet.normals[3 * at + c], 8 * error + 1e-6);
     }
-    EXPECT_NEAR(s.paint.texcoords[0][i / 3].uv[i % 3][0], sheet.coordinates[2 * at], error);
-    EXPECT_NEAR(s.paint.texcoords[0][i / 3].uv[i % 3][1], sheet.coordinates[2 * at + 1], error);
-    const auto& rg = s.paint.colors[i / 3].c[i % 3][0];
+    EXPECT_NEAR(s.texturing.texcoords[0][i / 3].uv[i % 3][0], sheet.coordinates[2 * at], error);
+    EXPECT_NEAR(s.texturing.texcoords[0][i / 3].uv[i % 3][1], sheet.coordinates[2 * at + 1], error);
+    const auto& rg = s.texturing.colors[i / 3].c[i % 3][0];
     EXPECT_EQ(rg & 0xffff, linear_unit(sheet.colors[4 * at] / 255.0));
     EXPECT_EQ(rg >> 16, linear_unit(sheet.colors[4 * at + 1] / 255.0));
   }
@@ -160,7 +160,7 @@ GltfSample packed_by_draco(const std::string& stream) {
   sample.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view},
                                                                     {"attributes", attributes}};
   sample.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-  paint(sample);
+  add_picture(sample);
   return sample;
 }
 

@@ -321,7 +321,7 @@ TEST(Gltf, LeavesOutWhatIsNotFinite) {
   EXPECT_SAYS(normals.warnings[0], "1 triangles have a corner normal without a direction");
   attributes["COLOR_0"] = sample.vectors(ups);
   const Scene colors = read(sample);
-  EXPECT_TRUE(colors.paint.colors.empty());
+  EXPECT_TRUE(colors.texturing.colors.empty());
   ASSERT_EQ(colors.warnings.size(), 2u);
   EXPECT_SAYS(colors.warnings[0], "1 primitives have colours that are not finite: they are left out");
   sample = square();
@@ -507,16 +507,16 @@ TEST(Gltf, ReadsTangentsWhereNormalsAreBent) {
   attributes["TANGENT"] = sample.accessor(view, 5126, "VEC4", 4);
   const Scene s = read(sample);
   EXPECT_TRUE(s.warnings.empty());
-  ASSERT_EQ(s.paint.tangents.size(), 2u);
-  const Tangent t = unpacked_tangent(s.paint.tangents[1].uv[2]);
+  ASSERT_EQ(s.texturing.tangents.size(), 2u);
+  const Tangent t = unpacked_tangent(s.texturing.tangents[1].uv[2]);
   EXPECT_LT(glm::length(t.direction - dvec3(0, 1, 0)), 1e-6);
   EXPECT_EQ(t.hand, -1);
-  EXPECT_EQ(s.paint.coats.at(s.materials.at(0).coat).tangents, 1u);
+  EXPECT_EQ(s.texturing.material_maps.at(s.materials.at(0).maps).tangents, 1u);
   attributes["TANGENT"] = sample.accessor(view, 5126, "VEC4", 3);
   const Scene few = read(sample);
   ASSERT_EQ(few.warnings.size(), 1u);
   EXPECT_NE(few.warnings[0].find("tangents that are not as many"), std::string::npos);
-  EXPECT_EQ(few.paint.tangents.size(), 2u);  // those of the coordinates, of which there are none
+  EXPECT_EQ(few.texturing.tangents.size(), 2u);  // those of the coordinates, of which there are none
 }
 
 }  // namespace

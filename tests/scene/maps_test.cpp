@@ -11,7 +11,7 @@
 #include "scene/import/import.h"
 #include "scene/import/importers.h"
 #include "scene/import/load.h"
-#include "scene/model/added_paint.h"
+#include "scene/model/added_textures.h"
 #include "scene/model/check_scene.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
@@ -30,8 +30,8 @@ Scene checked(Scene s) {
   return s;
 }
 
-const Coat& coat_of(const Scene& s, std::size_t triangle) {
-  return s.paint.coats.at(s.materials.at(s.triangles.at(triangle).material).coat);
+const MaterialMaps& maps_of(const Scene& s, std::size_t triangle) {
+  return s.texturing.material_maps.at(s.materials.at(s.triangles.at(triangle).material).maps);
 }
 
 template <class Change>
@@ -61,7 +61,7 @@ const json kAllMaps = {{"normalTexture", {{"index", 0}, {"scale", 0.5}}},
 TEST(Maps, OfGltf) {
   const Scene s = gltf_with(kAllMaps, kNothing);
   EXPECT_EQ(s.warnings, std::vector<std::string>{});
-  const Coat& c = coat_of(s, 0);
+  const MaterialMaps& c = maps_of(s, 0);
   EXPECT_EQ(c.base, kNone);
   EXPECT_EQ(c.normal_scale, 0.5f);
   EXPECT_EQ(c.occlusion, 0.25f);
@@ -70,10 +70,10 @@ TEST(Maps, OfGltf) {
   EXPECT_EQ(c.metal.metallic, 1);
   EXPECT_EQ(c.metal.roughness, 0.75f);
   for (const std::uint32_t linear : {c.normal_map, c.occlusion_map, c.metal_map})
-    EXPECT_FALSE(s.paint.textures.at(linear).curved);
-  EXPECT_TRUE(s.paint.textures.at(c.emission_map).curved);
-  EXPECT_EQ(s.paint.pictures.size(), 1u);
-  EXPECT_EQ(s.paint.textures.size(), 2u);
+    EXPECT_FALSE(s.texturing.textures.at(linear).curved);
+  EXPECT_TRUE(s.texturing.textures.at(c.emission_map).curved);
+  EXPECT_EQ(s.texturing.pictures.size(), 1u);
+  EXPECT_EQ(s.texturing.textures.size(), 2u);
   EXPECT_EQ(s.materials[0].emission, vec3(0));
   EXPECT_EQ(s.materials[0].diffuse, vec3(0));
 }
@@ -81,7 +81,7 @@ TEST(Maps, OfGltf) {
 TEST(Maps, OfGltfThatCantBeReadAreLeftOutAndTold) {
   const Scene s = gltf_with(kAllMaps, [](test::GltfSample& f) { f.json["images"][0]["uri"] = "gone.png"; });
   EXPECT_EQ(s.warnings.size(), 1u);
-  EXPECT_TRUE(s.paint.coats.empty());
+  EXPECT_TRUE(s.texturing.material_maps.empty());
   EXPECT_EQ(s.materials[0].emission, vec3(0));
   EXPECT_EQ(s.materials[0].reflect, vec3(0));  // no mirror, though its factor says metal
 }
@@ -92,7 +92,7 @@ TEST(Maps, OfGltfSamplersMinify) {
       f.json["samplers"] = {{{"minFilter", filter}}};
       f.json["textures"][0]["sampler"] = 0;
     });
-    return s.paint.textures.empty() ? Minify::as_magnified : s.paint.textures[0].minify;
+    return s.texturing.textures.empty() ? Minify::as_magnified : s.texturing.textures[0].minify;
   };
   EXPECT_EQ(minify(9728), Minify::nearest);
   EXPECT_EQ(minify(9729), Minify::linear);
@@ -115,21 +115,22 @@ TEST(Maps, OfMtl) {
   const Scene s =
       obj_with(folder, "Kd 1 1 1\nKs 0.5 0.5 0.5\nNs 20\nKe 0 0 0\nmap_Ke p.png\nmap_Ks p.png\nnorm p.png\n");
   EXPECT_EQ(s.warnings, std::vector<std::string>{});
-  const Coat& c = coat_of(s, 0);
+  const MaterialMaps& c = maps_of(s, 0);
   EXPECT_EQ(c.base, kNone);
   EXPECT_EQ(c.emissive, vec3(1));
   EXPECT_EQ(c.specular, vec3(0.5f));
   EXPECT_EQ(s.materials[0].specular, vec3(0));
   EXPECT_EQ(s.materials[0].shine, 20);
   EXPECT_NE(c.highlight_map, kNone);
-  EXPECT_FALSE(s.paint.textures.at(c.normal_map).curved);
+  EXPECT_FALSE(s.texturing.textures.at(c.normal_map).curved);
 }
 
 TEST(Maps, OfMtlReliefsBecomeNormals) {
   const test::ScratchFolder folder;
   folder.write("h.png", test::png(4, 1, 1, {0, 0, 255, 255}));
   const Scene s = obj_with(folder, "map_Bump -bm 2 h.png\n");
-  const Picture& normals = *s.paint.pictures.at(s.paint.textures.at(coat_of(s, 0).normal_map).picture);
+  const Picture& normals =
+      *s.texturing.pictures.at(s.texturing.textures.at(maps_of(s, 0).normal_map).picture);
   // From the second texel to the fourth it rises by 1, of which half counts for one texel: a slope of 1.
   const double lean = std::sqrt(0.5);
   EXPECT_NEAR(normals.texels[4 * 1 + 0], (1 - lean) / 2 * 255, 0.6);
@@ -143,13 +144,13 @@ TEST(Maps, OfMtlDissolveAreHolesOrVeils) {
   folder.write("cut.png", test::png(2, 1, 1, {0, 255}));
   folder.write("half.png", test::png(1, 1, 1, {127}));
   const Scene cut = obj_with(folder, "map_Kd p.png\nmap_d cut.png\n");
-  EXPECT_EQ(coat_of(cut, 0).mode, Alpha::mask);
-  const Picture& shown = *cut.paint.pictures.at(cut.paint.textures.at(coat_of(cut, 0).base).picture);
+  EXPECT_EQ(maps_of(cut, 0).mode, Alpha::mask);
+  const Picture& shown = *cut.texturing.pictures.at(cut.texturing.textures.at(maps_of(cut, 0).base).picture);
   EXPECT_EQ(shown.texels[0], 255);  // red, cut out
   EXPECT_EQ(shown.texels[3], 0);
   EXPECT_EQ(shown.texels[7], 255);
   const Scene veil = obj_with(folder, "map_d half.png\n");
-  EXPECT_EQ(coat_of(veil, 0).mode, Alpha::blend);
+  EXPECT_EQ(maps_of(veil, 0).mode, Alpha::blend);
 }
 
 // A scene of kdray's own with a picture on a square.
@@ -166,18 +167,18 @@ TEST(Maps, OfJson) {
       "normal_picture": "p.png", "emission_picture": "p.png", "alpha": "mask"})"));
   const Scene s = checked(import_scene(file));
   EXPECT_EQ(s.warnings, std::vector<std::string>{});
-  const Coat& c = coat_of(s, 1);
+  const MaterialMaps& c = maps_of(s, 1);
   EXPECT_EQ(c.diffuse, vec3(0.45f));
   EXPECT_EQ(c.mode, Alpha::mask);
   EXPECT_EQ(c.emissive, vec3(1));
-  EXPECT_EQ(s.paint.pictures.size(), 1u);
-  EXPECT_EQ(s.paint.textures.size(), 2u);  // as colours and as normals
-  ASSERT_EQ(s.paint.texcoords[0].size(), 2u);
+  EXPECT_EQ(s.texturing.pictures.size(), 1u);
+  EXPECT_EQ(s.texturing.textures.size(), 2u);  // as colours and as normals
+  ASSERT_EQ(s.texturing.texcoords[0].size(), 2u);
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const dvec3& at = s.vertices[s.triangles[i].vertex[k]];
-      EXPECT_EQ(s.paint.texcoords[0][i].uv[k][0], at.x);
-      EXPECT_EQ(s.paint.texcoords[0][i].uv[k][1], 1 - at.y);
+      EXPECT_EQ(s.texturing.texcoords[0][i].uv[k][0], at.x);
+      EXPECT_EQ(s.texturing.texcoords[0][i].uv[k][1], 1 - at.y);
     }
 }
 
@@ -219,8 +220,8 @@ TEST(Maps, OfJsonOnAMeshFile) {
       {"type": "mesh", "file": "a.obj", "material": "m"},
       {"type": "mesh", "file": "b.obj", "material": "m"}]})");
   const Scene s = checked(import_scene(file));
-  EXPECT_EQ(coat_of(s, 0).base, coat_of(s, 1).base);
-  EXPECT_EQ(s.paint.texcoords[0].at(0).uv[1][0], 1);
+  EXPECT_EQ(maps_of(s, 0).base, maps_of(s, 1).base);
+  EXPECT_EQ(s.texturing.texcoords[0].at(0).uv[1][0], 1);
   ASSERT_EQ(s.warnings.size(), 1u);
   EXPECT_SAYS(s.warnings[0], "has no texture coordinates");
 }
@@ -230,10 +231,10 @@ TEST(Maps, OfAProgram) {
   const auto picture =
       picture_of(Pixels{.data = grey, .width = 2, .height = 1, .channels = 2, .row_bytes = 4});
   EXPECT_EQ(test::bytes_of(*picture), (std::vector<std::uint8_t>{0, 0, 0, 255, 7, 7, 7, 7}));
-  Paint paint;
-  paint.pictures = {picture};
+  Texturing texturing;
+  texturing.pictures = {picture};
   kdray::Material m{.diffuse = {0.5f, 0.5f, 0.5f}, .picture = 0, .alpha = AlphaMode::blend};
-  const Material painted = painted_material(m, paint);
+  const Material mapped = textured_material(m, texturing);
   const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   const std::uint32_t triangles[] = {0, 1, 2};
   const float uv[] = {0, 0, 1, 0, 0, 1};
@@ -241,16 +242,16 @@ TEST(Maps, OfAProgram) {
   const AddedGeometry bare = make_added(Mesh{{corners, 3}, {triangles, 1}});
   const std::vector<const AddedGeometry*> geometries{&bare, &mesh};
   Scene s = gltf_with(kAllMaps, kNothing);
-  const std::size_t n_coats = s.paint.coats.size();
-  assemble(s, geometries, std::vector{painted});
-  assemble_paint(s, geometries, paint, 1);
+  const std::size_t n_maps = s.texturing.material_maps.size();
+  assemble(s, geometries, std::vector{mapped});
+  assemble_textures(s, geometries, texturing, 1);
   check_scene(s);
-  EXPECT_EQ(s.paint.coats.size(), n_coats + 1);
-  EXPECT_EQ(coat_of(s, 3).mode, Alpha::blend);
-  EXPECT_EQ(coat_of(s, 3).diffuse, vec3(0.5f));
-  ASSERT_EQ(s.paint.texcoords[0].size(), 4u);
-  EXPECT_EQ(s.paint.texcoords[0][3].uv[1][0], 1);
-  EXPECT_EQ(s.paint.texcoords[0][2].uv[1][0], 0);
+  EXPECT_EQ(s.texturing.material_maps.size(), n_maps + 1);
+  EXPECT_EQ(maps_of(s, 3).mode, Alpha::blend);
+  EXPECT_EQ(maps_of(s, 3).diffuse, vec3(0.5f));
+  ASSERT_EQ(s.texturing.texcoords[0].size(), 4u);
+  EXPECT_EQ(s.texturing.texcoords[0][3].uv[1][0], 1);
+  EXPECT_EQ(s.texturing.texcoords[0][2].uv[1][0], 0);
 }
 
 TEST(Maps, OfAProgramAreRefused) {
@@ -268,13 +269,14 @@ TEST(Maps, OfAProgramAreRefused) {
   refuses([&] { picture_of(Pixels{&byte, 1u << 20, 1u << 20, 1}); }, "textures have");
   refuses([&] { picture_of(Pixels{nullptr, 1, 1, 1}); }, "no data");
   refuses([&] { picture_of(Pixels{&byte, 1, 2, 1, static_cast<std::size_t>(-1)}); }, "beyond any memory");
-  Paint paint;
-  refuses([&] { painted_material({.picture = 3}, paint); }, "there is no picture 3");
-  refuses([&] { painted_material({.alpha = AlphaMode::mask}, paint); }, "no picture whose alpha");
-  refuses([&] { painted_material({.metal_picture = 3}, paint); }, "metal_picture: there is no picture 3");
-  refuses([&] { painted_material({.metallic = 1.5f}, paint); }, "metallic may be 0 to 1");
-  refuses([&] { painted_material({.roughness = NAN}, paint); }, "roughness may be 0 to 1");
-  refuses([&] { painted_material({.occlusion = -1}, paint); }, "occlusion may be 0 to 1");
+  Texturing texturing;
+  refuses([&] { textured_material({.picture = 3}, texturing); }, "there is no picture 3");
+  refuses([&] { textured_material({.alpha = AlphaMode::mask}, texturing); }, "no picture whose alpha");
+  refuses([&] { textured_material({.metal_picture = 3}, texturing); },
+          "metal_picture: there is no picture 3");
+  refuses([&] { textured_material({.metallic = 1.5f}, texturing); }, "metallic may be 0 to 1");
+  refuses([&] { textured_material({.roughness = NAN}, texturing); }, "roughness may be 0 to 1");
+  refuses([&] { textured_material({.occlusion = -1}, texturing); }, "occlusion may be 0 to 1");
   const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   const std::uint32_t triangles[] = {0, 1, 2};
   const float uv[] = {0, 0, 1, 0, 0, NAN};
@@ -289,22 +291,22 @@ std::shared_ptr<const Picture> even(std::uint32_t width, std::uint32_t height, s
 }
 
 TEST(PictureLimit, HalvesTheLargestUntilAllFit) {
-  Paint paint;
-  paint.pictures = {even(64, 64, 9), even(16, 16, 200), even(128, 128, 1)};
-  paint.add(Texture{.picture = 0, .minify = Minify::linear_mipmap_linear});
-  paint.add(Texture{.picture = 1});  // the third isn't shown
+  Texturing texturing;
+  texturing.pictures = {even(64, 64, 9), even(16, 16, 200), even(128, 128, 1)};
+  texturing.add(Texture{.picture = 0, .minify = Minify::linear_mipmap_linear});
+  texturing.add(Texture{.picture = 1});  // the third isn't shown
   const std::uint64_t with = 4 * (64 * 64 + 32 * 32 + 16 * 16 + 64 + 16 + 4 + 1);
-  EXPECT_EQ(picture_bytes(paint), with + 4 * 256);
-  EXPECT_EQ(limit_pictures(paint, picture_bytes(paint)).n_halved, 0u);
-  const LimitedPictures limited = limit_pictures(paint, 7000);
+  EXPECT_EQ(picture_bytes(texturing), with + 4 * 256);
+  EXPECT_EQ(limit_pictures(texturing, picture_bytes(texturing)).n_halved, 0u);
+  const LimitedPictures limited = limit_pictures(texturing, 7000);
   EXPECT_EQ(limited.n_halved, 1u);
   EXPECT_EQ(limited.bytes_before, with + 1024);
   EXPECT_EQ(limited.bytes, with - 4 * 64 * 64 + 1024);
-  EXPECT_EQ(limited.bytes, picture_bytes(paint));
-  EXPECT_EQ(paint.pictures[0]->width, 32u);
-  EXPECT_EQ(test::bytes_of(*paint.pictures[0]), std::vector<std::uint8_t>(32 * 32 * 4, 9));
-  EXPECT_EQ(paint.pictures[1]->width, 16u);
-  EXPECT_EQ(limit_pictures(paint, 0).bytes, 8u);  // a texel each is the least
+  EXPECT_EQ(limited.bytes, picture_bytes(texturing));
+  EXPECT_EQ(texturing.pictures[0]->width, 32u);
+  EXPECT_EQ(test::bytes_of(*texturing.pictures[0]), std::vector<std::uint8_t>(32 * 32 * 4, 9));
+  EXPECT_EQ(texturing.pictures[1]->width, 16u);
+  EXPECT_EQ(limit_pictures(texturing, 0).bytes, 8u);  // a texel each is the least
 }
 
 TEST(PictureLimit, IsToldInOneLine) {
@@ -315,7 +317,7 @@ TEST(PictureLimit, IsToldInOneLine) {
   const Scene s = load(file, {.texture_bytes = 4});
   ASSERT_EQ(s.warnings.size(), 1u);
   EXPECT_SAYS(s.warnings[0], "1 of 1 pictures are made smaller");
-  EXPECT_EQ(s.paint.pictures[0]->width, 1u);
+  EXPECT_EQ(s.texturing.pictures[0]->width, 1u);
 }
 
 }  // namespace

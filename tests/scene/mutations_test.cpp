@@ -124,7 +124,7 @@ TEST(Mutations, OfOddObj) {
          kRounds);
 }
 
-TEST(Mutations, OfPaintedPly) {
+TEST(Mutations, OfTexturedPly) {
   const test::ScratchFolder folder;
   folder.write("a", test::four_colors());
   const Reader beside = [&](std::string_view text, const std::filesystem::path&) {
@@ -171,7 +171,7 @@ TEST(Mutations, OfGltf) {
   mutate(read_gltf_at_rest, sample.glb(test::bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})), kRounds);
 }
 
-TEST(Mutations, OfPaintedGltf) {
+TEST(Mutations, OfTexturedGltf) {
   test::GltfSample sample = test::square();
   auto& j = sample.json;
   j["images"] = {{{"uri", "data:image/png;base64," + test::base64(test::four_colors())}}};
@@ -211,13 +211,13 @@ TEST(Mutations, OfGltfWithBentNormals) {
   mutate(read_gltf_at_rest, sample.text(), kRounds);
 }
 
-TEST(Mutations, OfPaintedObj) {
+TEST(Mutations, OfTexturedObj) {
   mutate(read_obj, "mtllib a\nv 0 0 0 1 0.5 0\nv 1 0 0 1\nv 1 1 0 0 0 1\nvt 0 0.5\nvt 1\nf 1/1 2/2 3/-1\n",
          kRounds);
 }
 
 // Materials with pictures of kdray's own; the picture is there, and everything else may be wrong.
-TEST(Mutations, OfPaintedJson) {
+TEST(Mutations, OfTexturedJson) {
   const test::ScratchFolder folder;
   folder.write("p", test::four_colors());
   const std::string good =

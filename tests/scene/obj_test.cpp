@@ -56,7 +56,7 @@ TEST(Obj, SaysWhatIsNoColour) {
   for (const char* plain : {"v 0 0 0 1\n", "v 0 0 0\n"}) {
     const Scene s = read(plain + rest);
     EXPECT_TRUE(s.warnings.empty());
-    EXPECT_TRUE(s.paint.colors.empty());
+    EXPECT_TRUE(s.texturing.colors.empty());
   }
   const Scene s = read("v 0 0 0 1 0.5\n" + rest);
   ASSERT_EQ(s.warnings.size(), 1u);
@@ -225,19 +225,19 @@ TEST(Obj, FindsPicturesInOtherCapitalsAndBelowTheAssetRoot) {
   folder.write("a.mtl", "newmtl a\nMAP_KD \"textures\\brick wall.png\"\n");
   const std::string text = "mtllib a.mtl\nusemtl a\n" + kSquare + "f 1 2 3\n";
   const Scene s = read(text, folder / "a.obj");
-  EXPECT_EQ(s.paint.pictures.size(), 1u);
+  EXPECT_EQ(s.texturing.pictures.size(), 1u);
   EXPECT_TRUE(s.warnings.empty()) << s.warnings[0];
   // Of two that differ in capitals neither is meant.
   folder.write("B.png", test::four_colors());
   folder.write("b.PNG", test::four_colors());
   folder.write("a.mtl", "newmtl a\nmap_Kd b.png\n");
-  EXPECT_TRUE(read(text, folder / "a.obj").paint.pictures.empty());
+  EXPECT_TRUE(read(text, folder / "a.obj").texturing.pictures.empty());
   folder.write("a.mtl", "newmtl a\nmap_Kd " + (folder / "elsewhere/a.png").string() + "\n");
   const Scene none = read(text, folder / "a.obj");
   ASSERT_EQ(none.warnings.size(), 1u);
   EXPECT_SAYS(none.warnings[0], "--asset-root DIR");
   const AssetRoot root(folder / "elsewhere");
-  EXPECT_EQ(read(text, folder / "a.obj").paint.pictures.size(), 1u);
+  EXPECT_EQ(read(text, folder / "a.obj").texturing.pictures.size(), 1u);
 }
 
 }  // namespace

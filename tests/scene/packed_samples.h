@@ -52,7 +52,7 @@ struct Sheet {
 };
 
 // A material with a picture, so that coordinates and colours are read.
-inline void paint(GltfSample& sample) {
+inline void add_picture(GltfSample& sample) {
   sample.json["images"] = {{{"uri", "data:image/png;base64," + base64(four_colors())}}};
   sample.json["textures"] = {{{"source", 0}}};
   sample.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
@@ -71,7 +71,7 @@ inline GltfSample plain(const Sheet& sheet) {
   sample.json["accessors"][static_cast<std::size_t>(colors)]["normalized"] = true;
   attributes["COLOR_0"] = colors;
   sample.primitive()["indices"] = sample.indices(sheet.corners);
-  paint(sample);
+  add_picture(sample);
   return sample;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/image/png.h"
-#include "scene/textures/paint.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::test {
 

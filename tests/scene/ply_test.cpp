@@ -302,7 +302,7 @@ TEST(Ply, LeavesOutWhatIsNotFinite) {
 }
 
 std::array<std::uint32_t, 3> color_at(const Scene& s, std::size_t triangle, std::size_t k) {
-  const auto& corner = s.paint.colors.at(triangle).c[k];
+  const auto& corner = s.texturing.colors.at(triangle).c[k];
   return {corner[0] & 0xffff, corner[0] >> 16, corner[1] & 0xffff};
 }
 
@@ -319,7 +319,7 @@ TEST(Ply, ReadsColoursOfVerticesUnderAllNamesAndOfFaces) {
   ASSERT_EQ(faces.triangles.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(color_at(faces, 0, k), (Rgb{65535, 0, 0}));
   for (const std::size_t t : {1, 2}) EXPECT_EQ(color_at(faces, t, 2), (Rgb{0, 0, 65535}));
-  EXPECT_EQ(faces.paint.coats.at(faces.materials[0].coat).colored, 1u);
+  EXPECT_EQ(faces.texturing.material_maps.at(faces.materials[0].maps).colored, 1u);
   EXPECT_TRUE(faces.warnings.empty());
   // Those of vertices say more.
   const Scene both = read(text_header("", rgb, rgb) + corners + "3 0 1 2 9 9 9\n3 0 2 3 9 9 9\n");
@@ -331,15 +331,15 @@ TEST(Ply, ReadsColoursOfVerticesUnderAllNamesAndOfFaces) {
 // The corners' places on the picture, from its upper left corner, as they come to the device.
 void expect_square_on_picture(const Scene& s) {
   EXPECT_TRUE(s.warnings.empty()) << s.warnings[0];
-  ASSERT_EQ(s.paint.pictures.size(), 1u);
-  const Coat& coat = s.paint.coats.at(s.materials.at(s.triangles.at(0).material).coat);
-  ASSERT_EQ(s.paint.textures.at(coat.base).picture, 0u);
-  ASSERT_EQ(s.paint.texcoords[0].size(), s.triangles.size());
+  ASSERT_EQ(s.texturing.pictures.size(), 1u);
+  const MaterialMaps& maps = s.texturing.material_maps.at(s.materials.at(s.triangles.at(0).material).maps);
+  ASSERT_EQ(s.texturing.textures.at(maps.base).picture, 0u);
+  ASSERT_EQ(s.texturing.texcoords[0].size(), s.triangles.size());
   for (std::size_t i = 0; i < s.triangles.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const dvec3& at = s.vertices[s.triangles[i].vertex[k]];
-      EXPECT_EQ(s.paint.texcoords[0][i].uv[k][0], at.x);
-      EXPECT_EQ(s.paint.texcoords[0][i].uv[k][1], 1 - at.y);
+      EXPECT_EQ(s.texturing.texcoords[0][i].uv[k][0], at.x);
+      EXPECT_EQ(s.texturing.texcoords[0][i].uv[k][1], 1 - at.y);
     }
 }
 
@@ -379,10 +379,12 @@ TEST(Ply, ChoosesAmongPicturesAndTellsOfWrongOnes) {
       read_ply(text_header(two, "", of_face) + kSquare + "3 0 1 2 6 0 0 1 0 1 1 1\n3 0 2 3 4 0 0 nan 0 7\n",
                folder / "a.ply");
   check_scene(s);
-  ASSERT_EQ(s.paint.pictures.size(), 2u);
+  ASSERT_EQ(s.texturing.pictures.size(), 2u);
   EXPECT_EQ(
-      s.paint
-          .pictures[s.paint.textures[s.paint.coats[s.materials[s.triangles[0].material].coat].base].picture]
+      s.texturing
+          .pictures[s.texturing
+                        .textures[s.texturing.material_maps[s.materials[s.triangles[0].material].maps].base]
+                        .picture]
           ->width,
       1u);
   EXPECT_EQ(s.triangles[1].material, 0u);

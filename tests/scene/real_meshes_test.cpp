@@ -93,14 +93,14 @@ TEST(RealMeshes, TheDamagedHelmetCanBeSeen) {
   KDRAY_NEED_DATA(file);
   const Scene s = load(file);
   ASSERT_EQ(s.materials.size(), 1u);
-  ASSERT_LT(s.materials[0].coat, s.paint.coats.size());
-  const Coat& coat = s.paint.coats[s.materials[0].coat];
-  EXPECT_GT(largest_terms(coat).diffuse.y, 0.5f);
-  ASSERT_EQ(s.paint.pictures.size(), 5u);  // JPEGs in the file itself
-  for (const std::uint32_t map : {coat.metal_map, coat.normal_map, coat.emission_map, coat.occlusion_map})
-    EXPECT_LT(map, s.paint.textures.size());
-  EXPECT_EQ(s.paint.pictures[0]->width, 2048u);
-  EXPECT_EQ(s.paint.texcoords[0].size(), s.triangles.size());
+  ASSERT_LT(s.materials[0].maps, s.texturing.material_maps.size());
+  const MaterialMaps& maps = s.texturing.material_maps[s.materials[0].maps];
+  EXPECT_GT(largest_terms(maps).diffuse.y, 0.5f);
+  ASSERT_EQ(s.texturing.pictures.size(), 5u);  // JPEGs in the file itself
+  for (const std::uint32_t map : {maps.metal_map, maps.normal_map, maps.emission_map, maps.occlusion_map})
+    EXPECT_LT(map, s.texturing.textures.size());
+  EXPECT_EQ(s.texturing.pictures[0]->width, 2048u);
+  EXPECT_EQ(s.texturing.texcoords[0].size(), s.triangles.size());
   EXPECT_EQ(s.materials[0].reflect, vec3(0));
   EXPECT_EQ(s.materials[0].emission, vec3(0));
   EXPECT_NE(s.triangles[0].normal[0], kNone);

@@ -75,7 +75,7 @@ TEST(Stl, ReadsAsciiBehindComments) {
 
 // Red, green and blue of a facet in 65535ths.
 std::array<std::uint32_t, 3> color_of(const Scene& s, std::size_t facet) {
-  const auto& corner = s.paint.colors.at(facet).c[0];
+  const auto& corner = s.texturing.colors.at(facet).c[0];
   return {corner[0] & 0xffff, corner[0] >> 16, corner[1] & 0xffff};
 }
 
@@ -85,7 +85,7 @@ void set_attribute(std::string& file, std::size_t facet, std::uint32_t bits) {
 }
 
 TEST(Stl, ReadsColoursOfFacets) {
-  EXPECT_TRUE(read(binary("", 3)).paint.colors.empty());
+  EXPECT_TRUE(read(binary("", 3)).texturing.colors.empty());
   using Rgb = std::array<std::uint32_t, 3>;
   const std::uint32_t grey = linear_unit(0.7f), half = linear_unit_of_srgb(16 / 31.0);
   std::string viscam = binary("", 3), materialise = binary(std::string("a COLOR=\xff\x80\0\xff", 12), 3);
@@ -99,7 +99,7 @@ TEST(Stl, ReadsColoursOfFacets) {
   EXPECT_EQ(color_of(b, 1), (Rgb{65535, half, 0}));
   for (const Scene* s : {&a, &b}) {
     EXPECT_TRUE(s->warnings.empty());
-    EXPECT_EQ(s->paint.coats.at(s->materials[0].coat).colored, 1u);
+    EXPECT_EQ(s->texturing.material_maps.at(s->materials[0].maps).colored, 1u);
   }
 }
 

@@ -48,7 +48,7 @@ void add_triangle(Scene& s, const std::array<dvec3, 3>& places, const std::array
     at.uv[k][0] = uv[k][0], at.uv[k][1] = uv[k][1];
   }
   s.triangles.push_back(t);
-  s.paint.texcoords[0].push_back(at);
+  s.texturing.texcoords[0].push_back(at);
 }
 
 // Its picture goes round eastwards, with north at the top, or westwards.
@@ -79,13 +79,13 @@ TEST(SmoothTangents, OfABallAreItsParallels) {
   for (const bool westwards : {false, true}) {
     Scene s = ball(westwards);
     smooth_tangents(s, 0, 0);
-    ASSERT_EQ(s.paint.tangents.size(), s.triangles.size());
+    ASSERT_EQ(s.texturing.tangents.size(), s.triangles.size());
     for (std::size_t i = 0; i < s.triangles.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
         const dvec3& p = s.vertices[s.triangles[i].vertex[k]];
         const bool seam = p.x > 0 && std::abs(p.y) < 1e-9;
         const dvec3 east = glm::normalize(dvec3(-p.y, p.x, 0));
-        const Tangent t = unpacked_tangent(s.paint.tangents[i].uv[k]);
+        const Tangent t = unpacked_tangent(s.texturing.tangents[i].uv[k]);
         if (!seam) worst = std::min(worst, glm::dot(t.direction, westwards ? -east : east));
         ASSERT_EQ(t.hand, westwards ? -1 : 1);
       }
@@ -100,7 +100,7 @@ Tangent by_definition(const Scene& s, std::size_t triangle, std::size_t corner) 
     return dvec3(s.normals[s.triangles[i].normal[k]]);
   };
   const auto uv = [&](std::size_t i, std::size_t k) {
-    const auto& at = s.paint.texcoords[0][i].uv[k];
+    const auto& at = s.texturing.texcoords[0][i].uv[k];
     return glm::dvec2(at[0], at[1]);
   };
   const auto area = [&](std::size_t i) {
@@ -168,7 +168,7 @@ TEST(SmoothTangents, AreThoseOfTheirDefinition) {
     smooth_tangents(s, 0, 0);
     for (std::size_t i = 0; i < s.triangles.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
-        const Tangent wanted = by_definition(s, i, k), got = unpacked_tangent(s.paint.tangents[i].uv[k]);
+        const Tangent wanted = by_definition(s, i, k), got = unpacked_tangent(s.texturing.tangents[i].uv[k]);
         ASSERT_LT(glm::length(got.direction - wanted.direction), 1e-5) << i << " " << k;
         ASSERT_EQ(got.hand, wanted.hand);
       }
@@ -187,8 +187,8 @@ TEST(SmoothTangents, MoveWithTheirScene) {
     smooth_tangents(after, 0, 0);
     for (std::size_t i = 0; i < before.triangles.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
-        const Tangent a = unpacked_tangent(before.paint.tangents[i].uv[k]),
-                      b = unpacked_tangent(after.paint.tangents[i].uv[k]);
+        const Tangent a = unpacked_tangent(before.texturing.tangents[i].uv[k]),
+                      b = unpacked_tangent(after.texturing.tangents[i].uv[k]);
         ASSERT_LT(glm::length(a.direction - b.direction), 1e-5);
         ASSERT_EQ(a.hand, b.hand);
       }
@@ -203,8 +203,8 @@ TEST(SmoothTangents, NeedAreaAndCoordinates) {
   add_triangle(s, {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)}, {vec3(NAN), vec3(NAN), vec3(NAN)},
                {{{0, 0}, {1, 0}, {0, 1}}});
   smooth_tangents(s, 0, 0);
-  ASSERT_EQ(s.paint.tangents.size(), 3u);
-  for (const layout::TexCoords& at : s.paint.tangents)
+  ASSERT_EQ(s.texturing.tangents.size(), 3u);
+  for (const layout::TexCoords& at : s.texturing.tangents)
     for (const auto& corner : at.uv) EXPECT_EQ(corner[1], 0);
 }
 

@@ -89,8 +89,8 @@ TEST(WebpPicture, IsATextureOfGltf) {
   const std::string bytes = packed(pixels(true), kWidth, kHeight, -1);
   const Scene s = read_gltf(square_with(bytes, webp_source()).text(), "a.gltf");
   EXPECT_TRUE(s.warnings.empty());
-  ASSERT_EQ(s.paint.pictures.size(), 1u);
-  EXPECT_EQ(test::bytes_of(*s.paint.pictures[0]), pixels(true));
+  ASSERT_EQ(s.texturing.pictures.size(), 1u);
+  EXPECT_EQ(test::bytes_of(*s.texturing.pictures[0]), pixels(true));
 }
 
 TEST(WebpPicture, DamagedOnesAreRefusedOrRead) {
@@ -146,8 +146,8 @@ TEST(WebpPicture, ThePngBesideItIsTaken) {
   texture["source"] = 1;
   const Scene s = read_gltf(square_with("no picture", texture).text(), "a.gltf");
   EXPECT_TRUE(s.warnings.empty());
-  ASSERT_EQ(s.paint.pictures.size(), 1u);
-  EXPECT_EQ(s.paint.pictures[0]->width, 2u);
+  ASSERT_EQ(s.texturing.pictures.size(), 1u);
+  EXPECT_EQ(s.texturing.pictures[0]->width, 2u);
 }
 
 }  // namespace

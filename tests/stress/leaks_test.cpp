@@ -9,7 +9,7 @@
 #include "stress/leaks.h"
 #include "stress/table.h"
 #include "support/data.h"
-#include "support/stitched_meshes.h"
+#include "support/zero_area_meshes.h"
 
 namespace kdray::stress {
 namespace {
@@ -124,15 +124,15 @@ TEST_P(Leaks, RealMeshes) {
 // Where the sizes are powers of two or the place is a whole number, the grid's numbers are the kernels' and
 // what was made without area has none; elsewhere rounding bends it. The quick part has every mesh as it is,
 // and each somewhere else.
-TEST_P(Leaks, Stitched) {
+TEST_P(Leaks, ZeroArea) {
   struct Place {
     double scale, sizes_away;
   };
   const std::vector<Place> places{{1, 0}, {0x1p-40, 0}, {1, 1e6}, {1e-6, 3}};
-  const std::vector<test::LatticeMesh> meshes = test::stitched_meshes();
+  const std::vector<test::LatticeMesh> meshes = test::zero_area_meshes();
   const double n_cases = static_cast<double>(meshes.size() * (is_full() ? places.size() : 2));
   const auto rays = rays_to_trace(0.3 / static_cast<double>(kFamilies.size()) / n_cases / kTraces);
-  Tally tally("leaks", std::string("stitched, ") + GetParam().name);
+  Tally tally("leaks", std::string("divided, ") + GetParam().name);
   for (std::size_t m = 0; m < meshes.size(); ++m)
     for (std::size_t p = 0; p < places.size(); ++p) {
       if (!is_full() && p != 0 && p != 1 + m % 3) continue;

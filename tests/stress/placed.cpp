@@ -7,7 +7,7 @@
 
 #include "engine/query/meshes.h"
 #include "stress/table.h"
-#include "support/stitched_meshes.h"
+#include "support/zero_area_meshes.h"
 
 namespace kdray::stress {
 
@@ -36,7 +36,7 @@ double ClosedShape::extent() const {
 }
 
 std::vector<ClosedShape> ten_closed_shapes() {
-  const std::vector<test::LatticeMesh> stitched = test::stitched_meshes();
+  const std::vector<test::LatticeMesh> divided = test::zero_area_meshes();
   std::vector<ClosedShape> shapes{shape_of("cube", cube()),
                                   shape_of("icosphere", test::icosphere(4)),
                                   shape_of("crumpled ball", crumpled()),
@@ -45,8 +45,8 @@ std::vector<ClosedShape> ten_closed_shapes() {
                                   shape_of("cubes", test::cubes(7, 6)),
                                   shape_of("slivers", test::slivers(200)),
                                   shape_of("nested boxes", test::nested()),
-                                  shape_of("stitched box", test::scene_of(stitched[1])),
-                                  shape_of("stitched ball", test::scene_of(stitched[4]))};
+                                  shape_of("divided box", test::scene_of(divided[1])),
+                                  shape_of("divided ball", test::scene_of(divided[4]))};
   for (ClosedShape& shape : shapes) set_bounds(shape);
   return shapes;
 }

@@ -24,7 +24,7 @@ constexpr std::uint32_t kVersion = 7;  // of the form of entries
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kPiece = std::size_t{1} << 20;  // hashed by one thread
 
-// The facts; materials, coats, lights and the arrays of the flat form but for the shapes' own; the wide
+// The facts; materials, their maps, lights and the arrays of the flat form but for the shapes' own; the wide
 // form's nodes; and for each shape its array, for each kind its blocks.
 constexpr std::size_t kSections = 1 + 3 + 14 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
 
@@ -48,7 +48,7 @@ static_assert(sizeof(Header) <= kPage && std::is_trivially_copyable_v<Header>);
 template <class Prepared, class Visit>
 void for_each_array(Prepared& p, const Visit& visit) {
   visit(p.settings.materials);
-  visit(p.settings.paint.coats);
+  visit(p.settings.texturing.material_maps);
   visit(p.settings.lights);
   flatten::for_each_flat_array(p.flat, visit);
   flatten::for_each_wide_array(p.wide, visit);

@@ -1,7 +1,7 @@
 // What    An entry of the scene cache: a prepared scene in a file, which is mapped to be used as it is
 //         (docs/design/cache.md).
 // Shape   A header of a page: magic, version, key, size, and a table of sections with the checksum of each;
-//         then the sections, each from the start of a page: the facts (facts.h), materials, coats, lights,
+//         then the sections, each from the start of a page: the facts (facts.h), materials, maps, lights,
 //         and the arrays of FlatScene and WideForm.
 // Why     Kernels follow the indices in these arrays without a further look, so nothing is used that is not
 //         byte for byte what was written: every section has a checksum, and so has the header.

@@ -133,7 +133,7 @@ void get(const Json& from, kdtree::Statistics& s) {
 Json of(const prepare::Counts& c) {
   Json counts = {c.primitives};
   primitives::for_each_kind([&](auto kind) { counts.push_back(decltype(kind)::of(c)); });
-  counts.push_back(c.stitches);
+  counts.push_back(c.zero_area);
   counts.push_back(c.instances);
   counts.push_back(c.instanced);
   return counts;
@@ -142,7 +142,7 @@ Json of(const prepare::Counts& c) {
 void get(const Json& from, prepare::Counts& c) {
   from.at(0).get_to(c.primitives);
   primitives::for_each_kind([&](auto kind) { from.at(1 + kind.kNumber).get_to(decltype(kind)::of(c)); });
-  from.at(1 + primitives::kKinds).get_to(c.stitches);
+  from.at(1 + primitives::kKinds).get_to(c.zero_area);
   from.at(2 + primitives::kKinds).get_to(c.instances);
   from.at(3 + primitives::kKinds).get_to(c.instanced);
 }
@@ -151,8 +151,8 @@ void get(const Json& from, prepare::Counts& c) {
 
 std::string to_bytes(const prepare::Prepared& p) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
-               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
-               warnings, files, load_options] = p.settings;
+               materials, texturing, lights, unlit, camera, cameras, framing, background, sky, ambient,
+               settings, warnings, files, load_options] = p.settings;
   const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, placed_meshes,
                tree_options, seconds] = p;
   static_cast<void>(placed_meshes);  // of scenes that programs make, which are kept in no file

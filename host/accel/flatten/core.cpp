@@ -50,10 +50,10 @@ Box bounds_of_all(const Items& items) {
 
 }  // namespace
 
-// A stitch in a plane may be hit from either side of it: it is no part of a face.
+// A zero-area triangle in a plane may be hit from either side of it: it is no part of a face.
 void Sides::add(const layout::Triangle& t, const Box& all) {
   const Box triangle = bounds_of(t);
-  for (int k = 0; k < 3 && !scene::is_stitch(t); ++k) {
+  for (int k = 0; k < 3 && !scene::is_zero_area(t); ++k) {
     if (triangle.lo[k] != triangle.hi[k]) continue;
     if (triangle.lo[k] == all.lo[k]) return at[k][0].grow(triangle);
     if (triangle.hi[k] == all.hi[k]) return at[k][1].grow(triangle);

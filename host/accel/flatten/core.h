@@ -1,6 +1,6 @@
 // What    A scene's faces and its core. A *face* is a plane that bounds the scene's triangles along an axis
 //         and has some lying in it, as a floor does; the *core* is the box of everything else, and of
-//         stitches (scene/stitches.h) wherever they lie.
+//         zero-area triangles (scene/model/zero_area.h) wherever they lie.
 // Why     What is on the inner side of the faces and stays there can only meet the core: one box tells that
 //         nothing is in the way of a ray (kernels/shade/open.clh, docs/design/skipping.md).
 #pragma once

@@ -14,9 +14,9 @@ constexpr Feature kFeatures[] = {
     KDRAY_KINDS(KDRAY_NAMED_KIND)
 #undef KDRAY_NAMED_KIND
         {KDRAY_FEATURE_SMOOTH, "smooth normals"},
-    {KDRAY_FEATURE_STITCHES, "stitches"},
+    {KDRAY_FEATURE_ZERO_AREA, "stitches"},
     {KDRAY_FEATURE_NUMBERS, "primitive numbers"},
-    {KDRAY_FEATURE_COATS, "coats"},
+    {KDRAY_FEATURE_MATERIAL_MAPS, "coats"},
     {KDRAY_FEATURE_CORNER_COLORS, "corner colours"},
     {KDRAY_FEATURE_TEXTURES, "textures"},
     {KDRAY_FEATURE_CUTOUTS, "cut-outs"},
@@ -72,33 +72,33 @@ bool numbers_are_indices(const scene::Scene& scene, const scene::Geometry& geome
 
 Features geometry_features(const scene::Scene& scene, const scene::Geometry& geometry) {
   Features mask = when(!numbers_are_indices(scene, geometry), KDRAY_FEATURE_NUMBERS) |
-                  when(geometry.n_smooth > geometry.stitches.size(), KDRAY_FEATURE_SMOOTH) |
-                  when(!geometry.stitches.empty(), KDRAY_FEATURE_STITCHES);
+                  when(geometry.n_smooth > geometry.zero_area.size(), KDRAY_FEATURE_SMOOTH) |
+                  when(!geometry.zero_area.empty(), KDRAY_FEATURE_ZERO_AREA);
   primitives::for_each_kind([&](auto kind) {
     mask |= when(!decltype(kind)::of(geometry).empty(), KDRAY_FEATURE_OF_KIND(decltype(kind)::kNumber));
   });
   return mask;
 }
 
-bool in_footprints(const scene::Paint& paint, const scene::Coat& c) {
-  const auto maps = {c.base, c.normal_map, c.emission_map, c.occlusion_map, c.highlight_map, c.metal_map};
-  return some(maps, [&](std::uint32_t number) {
+bool in_footprints(const scene::Texturing& texturing, const scene::MaterialMaps& c) {
+  const auto used = {c.base, c.normal_map, c.emission_map, c.occlusion_map, c.highlight_map, c.metal_map};
+  return some(used, [&](std::uint32_t number) {
     if (number == scene::kNone) return false;
-    const scene::Texture& texture = paint.textures[number];
-    return scene::needs_footprints(texture, *paint.pictures[texture.picture]);
+    const scene::Texture& texture = texturing.textures[number];
+    return scene::needs_footprints(texture, *texturing.pictures[texture.picture]);
   });
 }
 
-Features coat_features(const scene::Paint& paint, const scene::Coat& coat) {
-  const scene::Coat c = scene::largest_terms(coat);
+Features features_of_maps(const scene::Texturing& texturing, const scene::MaterialMaps& maps) {
+  const scene::MaterialMaps c = scene::largest_terms(maps);
   const bool lit =
       c.emission_map != scene::kNone || c.occlusion_map != scene::kNone || c.highlight_map != scene::kNone;
-  const Features maps = when(c.metal_map != scene::kNone, KDRAY_FEATURE_METAL_MAPS) |
-                        when(c.normal_map != scene::kNone, KDRAY_FEATURE_NORMAL_MAPS) |
-                        when(lit, KDRAY_FEATURE_LIGHT_MAPS);
-  return KDRAY_FEATURE_COATS | maps | when(c.colored != 0, KDRAY_FEATURE_CORNER_COLORS) |
-         when(maps != 0 || c.base != scene::kNone, KDRAY_FEATURE_TEXTURES) |
-         when(in_footprints(paint, c), KDRAY_FEATURE_FOOTPRINTS) |
+  const Features of_maps = when(c.metal_map != scene::kNone, KDRAY_FEATURE_METAL_MAPS) |
+                           when(c.normal_map != scene::kNone, KDRAY_FEATURE_NORMAL_MAPS) |
+                           when(lit, KDRAY_FEATURE_LIGHT_MAPS);
+  return KDRAY_FEATURE_MATERIAL_MAPS | of_maps | when(c.colored != 0, KDRAY_FEATURE_CORNER_COLORS) |
+         when(of_maps != 0 || c.base != scene::kNone, KDRAY_FEATURE_TEXTURES) |
+         when(in_footprints(texturing, c), KDRAY_FEATURE_FOOTPRINTS) |
          when(c.mode == scene::Alpha::mask, KDRAY_FEATURE_CUTOUTS) |
          when(any(c.reflect), KDRAY_FEATURE_REFLECT) |
          when(any(c.transmit) || c.mode == scene::Alpha::blend, KDRAY_FEATURE_TRANSMIT) |
@@ -124,7 +124,8 @@ Features material_features(const scene::Scene& scene, const std::vector<bool>& u
     const scene::Material& m = scene.materials[i];
     mask |= when(any(m.reflect), KDRAY_FEATURE_REFLECT) | when(any(m.transmit), KDRAY_FEATURE_TRANSMIT) |
             when(any(m.specular), KDRAY_FEATURE_SPECULAR) | when(any(m.diffuse), KDRAY_FEATURE_DIFFUSE);
-    if (m.coat != scene::kNone) mask |= coat_features(scene.paint, scene.paint.coats[m.coat]);
+    if (m.maps != scene::kNone)
+      mask |= features_of_maps(scene.texturing, scene.texturing.material_maps[m.maps]);
   }
   return mask;
 }

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "accel/flatten/paint.h"
 #include "accel/flatten/sky.h"
+#include "accel/flatten/textures.h"
 #include "base/error.h"
 #include "scene/primitives/pack.h"
 #include "scene/primitives/shapes.h"
@@ -75,14 +75,14 @@ layout::VertexNormals pack_normals(const scene::Scene& scene, const scene::Trian
   return n;
 }
 
-// A stitch to which the file gives none has its neighbour's everywhere.
-void pack_stitches(const scene::Scene& scene, const scene::Geometry& geometry,
-                   Array<layout::VertexNormals>& normals) {
-  for (const scene::Stitch& stitch : geometry.stitches) {
-    if (scene.triangles[geometry.sources[stitch.triangle]].normal[0] != scene::kNone) continue;
+// A zero-area triangle to which the file gives none has its neighbour's everywhere.
+void pack_zero_area(const scene::Scene& scene, const scene::Geometry& geometry,
+                    Array<layout::VertexNormals>& normals) {
+  for (const scene::ZeroAreaTriangle& found : geometry.zero_area) {
+    if (scene.triangles[geometry.sources[found.triangle]].normal[0] != scene::kNone) continue;
     layout::VertexNormals n{};
-    for (auto& at_corner : n.n) set(at_corner, stitch.normal);
-    normals[geometry.triangles[stitch.triangle].normals & KDRAY_NORMALS_MASK] = n;
+    for (auto& at_corner : n.n) set(at_corner, found.normal);
+    normals[geometry.triangles[found.triangle].normals & KDRAY_NORMALS_MASK] = n;
   }
 }
 
@@ -95,7 +95,7 @@ layout::Material pack(const scene::Material& m, const vec3& ambient_light) {
   set(out.transmit, m.transmit);
   out.shine = m.shine;
   out.index = m.index;
-  out.coat = m.coat;
+  out.maps = m.maps;
   return out;
 }
 
@@ -207,7 +207,7 @@ FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, co
     });
   });
   flat.materials = pack_materials(scene);
-  pack_paint(scene, geometry, flat);
+  pack_textures_of(scene, geometry, flat);
   flat.lights = pack_lights(scene, geometry.space);
   pack_sky(scene.sky, flat);
   return flat;
@@ -225,7 +225,7 @@ Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene
                           normals[place] = pack_normals(scene, source);
                       }
                     });
-  pack_stitches(scene, geometry, normals);
+  pack_zero_area(scene, geometry, normals);
   return normals;
 }
 

@@ -10,10 +10,10 @@
 #include "base/array.h"
 #include "layout/instances.layout.h"
 #include "layout/kinds.h"
-#include "layout/paint.layout.h"
 #include "layout/primitives.layout.h"
 #include "layout/shading.layout.h"
 #include "layout/sky.layout.h"
+#include "layout/textures.layout.h"
 #include "layout/tree.layout.h"
 #include "scene/model/geometry.h"
 #include "scene/model/scene.h"
@@ -31,7 +31,7 @@ struct FlatScene {
   Array<layout::Instance>
       instances;  // made by prepare/instanced.h, as what is of their meshes in the arrays above
   Array<layout::Material> materials;
-  Array<layout::Coat> coats;
+  Array<layout::MaterialMaps> material_maps;
   Array<layout::Texture> textures;
   Array<layout::u32> texels;
   Array<layout::TexCoords> texcoords;
@@ -47,23 +47,23 @@ struct FlatScene {
 // added can't be forgotten.
 template <class Flat, class Visit>
 void for_each_flat_array(Flat& flat, const Visit& visit) {
-  auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, coats,
+  auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, material_maps,
          textures, texels, texcoords, corner_colors, lights, sky, sky_colors] = flat;
   const auto visit_all = [&visit](auto&... arrays) { (visit(arrays), ...); };
-  visit_all(nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, coats,
-            textures, texels, texcoords, corner_colors, lights, sky, sky_colors);
+  visit_all(nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials,
+            material_maps, textures, texels, texcoords, corner_colors, lights, sky, sky_colors);
 }
 
 // The binary form, `nodes` and `refs`, is for the binary walk alone: without it these are empty.
 FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree,
                   bool binary_form = true);
 
-// Of the triangles that have some, in their order; a stitch has those of its neighbour.
+// Of the triangles that have some, in their order; a zero-area triangle has those of its neighbour.
 Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene::Geometry& geometry);
 
 // What of it can change without the geometry.
 Array<layout::Material> pack_materials(const scene::Scene& scene);
-Array<layout::Coat> pack_coats(const scene::Scene& scene);
+Array<layout::MaterialMaps> pack_material_maps(const scene::Scene& scene);
 Array<layout::Light> pack_lights(const scene::Scene& scene, const LocalSpace& space);
 
 }  // namespace kdray::flatten

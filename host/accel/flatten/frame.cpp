@@ -83,14 +83,15 @@ double radiance_bound(const scene::Scene& scene, int depth) {
   double shown = sky ? scene.sky.brightest : largest(scene.background), passed = 0;
   for (const scene::Material& m : scene.materials) {
     // Base colours are 1 at most; what a veil takes of a term it passes on.
-    const scene::Coat coat =
-        m.coat == scene::kNone ? scene::Coat{} : scene::largest_terms(scene.paint.coats[m.coat]);
-    const double lit = largest(m.diffuse + coat.diffuse) + largest(m.specular + coat.specular);
-    shown = std::max(shown, largest(m.emission + coat.emission) +
-                                largest(m.ambient + coat.ambient) * largest(scene.ambient) +
+    const scene::MaterialMaps maps = m.maps == scene::kNone
+                                         ? scene::MaterialMaps{}
+                                         : scene::largest_terms(scene.texturing.material_maps[m.maps]);
+    const double lit = largest(m.diffuse + maps.diffuse) + largest(m.specular + maps.specular);
+    shown = std::max(shown, largest(m.emission + maps.emission) +
+                                largest(m.ambient + maps.ambient) * largest(scene.ambient) +
                                 (lit > 0 ? incident * lit : 0));
-    const double sent = largest(m.reflect + coat.reflect) + largest(m.transmit + coat.transmit);
-    passed = std::max(passed, coat.mode == scene::Alpha::blend ? std::max(sent, 1.0) : sent);
+    const double sent = largest(m.reflect + maps.reflect) + largest(m.transmit + maps.transmit);
+    passed = std::max(passed, maps.mode == scene::Alpha::blend ? std::max(sent, 1.0) : sent);
   }
   double sum = 0, share = 1;
   for (int d = 0; d < depth; ++d, share *= passed) sum += share;
@@ -143,7 +144,7 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
   f.corner_grid = corners ? 1 : 0;
   f.parallel = parallel ? 1 : 0;
   // The samples of a pixel share it.
-  f.pencil = static_cast<float>(
+  f.ray_cone = static_cast<float>(
       std::sqrt(std::abs(double{f.x_scale} * double{f.y_scale}) / static_cast<double>(o.samples)));
   set_lens(f, camera, geometry.space);
   return f;

@@ -24,7 +24,7 @@ void append_triangle(std::string& bytes, const FlatScene& flat, std::size_t i) {
   const layout::u32 normals = t.normals & KDRAY_NORMALS_MASK;
   if (t.normals != KDRAY_NO_NORMALS) {
     append(bytes, &flat.normals[normals], 1);
-    t.normals &= KDRAY_STITCH;
+    t.normals &= KDRAY_ZERO_AREA;
   }
   append(bytes, &t, 1);
   const auto append_rows = [&](const auto& rows) {

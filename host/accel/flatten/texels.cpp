@@ -39,16 +39,16 @@ void set_levels(const scene::Picture& picture, Chain& chain) {
 }  // namespace
 
 // Textures with mipmaps come first, so that others find their chains.
-TexelPlan plan_texels(const scene::Paint& paint) {
+TexelPlan plan_texels(const scene::Texturing& texturing) {
   TexelPlan plan;
-  plan.chain_of.resize(paint.textures.size());
+  plan.chain_of.resize(texturing.textures.size());
   for (const bool mipmaps : {true, false})
-    for (std::size_t i = 0; i < paint.textures.size(); ++i)
-      if (scene::has_mipmaps(paint.textures[i].minify) == mipmaps)
-        plan.chain_of[i] = add_chain(plan.chains, paint.textures[i]);
+    for (std::size_t i = 0; i < texturing.textures.size(); ++i)
+      if (scene::has_mipmaps(texturing.textures[i].minify) == mipmaps)
+        plan.chain_of[i] = add_chain(plan.chains, texturing.textures[i]);
   plan.n_texels = KDRAY_TEXEL_CURVE;
   for (Chain& chain : plan.chains) {
-    set_levels(*paint.pictures[chain.picture], chain);
+    set_levels(*texturing.pictures[chain.picture], chain);
     chain.first = plan.n_texels;
     plan.n_texels += chain.n_texels;
   }
@@ -57,13 +57,13 @@ TexelPlan plan_texels(const scene::Paint& paint) {
   return plan;
 }
 
-Array<layout::u32> pack_texels(const scene::Paint& paint, const TexelPlan& plan) {
+Array<layout::u32> pack_texels(const scene::Texturing& texturing, const TexelPlan& plan) {
   Array<layout::u32> texels = paged_array<layout::u32>(plan.n_texels);
   for (layout::u32 code = 0; code < KDRAY_TEXEL_CURVE; ++code)
     texels[code] = scene::linear_unit_of_srgb(code / 255.0);
   tbb::parallel_for(std::size_t{0}, plan.chains.size(), [&](std::size_t i) {
     const Chain& chain = plan.chains[i];
-    scene::write_levels(*paint.pictures[chain.picture], chain.curved, 0, chain.n_levels,
+    scene::write_levels(*texturing.pictures[chain.picture], chain.curved, 0, chain.n_levels,
                         std::span(texels.data() + chain.first, chain.n_texels));
   });
   return texels;

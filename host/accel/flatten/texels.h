@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "base/array.h"
-#include "layout/paint.layout.h"
+#include "layout/textures.layout.h"
 #include "scene/textures/mipmaps.h"
-#include "scene/textures/paint.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::flatten {
 
@@ -30,8 +30,8 @@ struct TexelPlan {
   std::size_t n_texels = 0;           // with the curve
 };
 
-TexelPlan plan_texels(const scene::Paint& paint);
+TexelPlan plan_texels(const scene::Texturing& texturing);
 
-Array<layout::u32> pack_texels(const scene::Paint& paint, const TexelPlan& plan);
+Array<layout::u32> pack_texels(const scene::Texturing& texturing, const TexelPlan& plan);
 
 }  // namespace kdray::flatten

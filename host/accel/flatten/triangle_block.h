@@ -13,7 +13,7 @@
 #include "layout/primitives.layout.h"
 #include "layout/tree.layout.h"
 #include "layout/wide.layout.h"
-#include "scene/model/stitches.h"
+#include "scene/model/zero_area.h"
 
 namespace kdray::flatten {
 
@@ -88,15 +88,15 @@ inline void clear_lanes(std::uint32_t first, std::uint32_t block, std::size_t n_
   std::fill(words + n_rows * block + first, words + (n_rows + 1) * block, KDRAY_WIDE_LAST);
 }
 
-// The row of limits, where all others are written and the first n lanes hold triangles. A stitch has no
-// normal: all that is asked near t = 0 is how far it is from the ray's origin (stitch_t).
+// The row of limits, where all others are written and the first n lanes hold triangles. A zero-area
+// triangle has no normal: all that is asked near t = 0 is how far it is from the ray's origin (zero_area_t).
 inline void finish_triangles(const Array<layout::Triangle>& triangles, std::uint32_t n, std::uint32_t block,
                              layout::u32* words) {
   block == 8 ? write_limits<8>(words) : write_limits<4>(words);
   layout::u32* const limits = words + KDRAY_ROW_TRIANGLE_LIMIT * block;
   const layout::u32* const indices = words + KDRAY_ROW_TRIANGLE_INDEX * block;
   for (std::uint32_t lane = 0; lane < n; ++lane)
-    if (scene::is_stitch(triangles[indices[lane] & KDRAY_REF_INDEX_MASK])) limits[lane] = bits(INFINITY);
+    if (scene::is_zero_area(triangles[indices[lane] & KDRAY_REF_INDEX_MASK])) limits[lane] = bits(INFINITY);
   std::fill(limits + n, limits + block, bits(NAN));
 }
 

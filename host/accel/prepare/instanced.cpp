@@ -14,8 +14,8 @@
 #include "accel/flatten/instance_tree.h"
 #include "accel/flatten/instances.h"
 #include "accel/flatten/mesh_parts.h"
-#include "accel/flatten/paint.h"
 #include "accel/flatten/sky.h"
+#include "accel/flatten/textures.h"
 #include "base/error.h"
 #include "base/timer.h"
 
@@ -66,7 +66,7 @@ void check(std::size_t n, std::size_t most, const char* what) {
 
 constexpr auto kAsItIs = [](const auto& value, std::size_t) { return value; };
 
-void join_normals_and_paint(FlatScene& flat, const std::vector<Part>& parts) {
+void join_normals_and_textures(FlatScene& flat, const std::vector<Part>& parts) {
   flat.normals = joined(
       flat.normals, parts, [](const Part& p) -> auto& { return p.flat.normals; }, kAsItIs);
   flat.texcoords = joined(
@@ -88,7 +88,8 @@ std::vector<std::size_t> join_primitives(Kind, FlatScene& flat, const std::vecto
     if constexpr (!Kind::kIsShape) {
       const layout::u32 mine = primitive.normals & KDRAY_NORMALS_MASK;
       if (mine != KDRAY_NO_NORMALS)
-        primitive.normals = (primitive.normals & KDRAY_STITCH) | static_cast<layout::u32>(mine + normals[i]);
+        primitive.normals =
+            (primitive.normals & KDRAY_ZERO_AREA) | static_cast<layout::u32>(mine + normals[i]);
     }
     return primitive;
   });
@@ -246,7 +247,7 @@ void Meshes::join(Prepared& made) const {
     Part& part = parts[i];
     const Mesh& mesh = meshes_[i];
     part.flat = flatten::flatten(*scene_.meshes[i], mesh.geometry, mesh.tree, false);
-    flatten::pack_corners_of(scene_.paint, *scene_.meshes[i], mesh.geometry, part.flat);
+    flatten::pack_corners_of(scene_.texturing, *scene_.meshes[i], mesh.geometry, part.flat);
     part.wide = flatten::make_wide(mesh.tree, part.flat, made.wide.block);
     part.form = {mesh.geometry.space, mesh.tree.bounds, flatten::parts_of(part.wide)};
     made.features |= flatten::features_of_mesh(scene_, *scene_.meshes[i], mesh.geometry);
@@ -264,7 +265,7 @@ void Meshes::join(Prepared& made) const {
     const auto blocks = join_blocks(kind, made.wide, parts, places);
     for (std::size_t i = 0; i < parts.size(); ++i) shifts[i].blocks[kind.kNumber] = blocks[i];
   });
-  join_normals_and_paint(made.flat, parts);
+  join_normals_and_textures(made.flat, parts);
 
   // Where meshes' roots come to lie depends on the tree over the instances.
   RawVector<layout::WideNode> own, of_meshes;

@@ -38,8 +38,8 @@ kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
 #define KDRAY_NO_SHAPES(NAME, name, names, Struct) .names = {},
 scene::Scene settings_of(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
-               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
-               warnings, files, load_options] = scene;
+               materials, texturing, lights, unlit, camera, cameras, framing, background, sky, ambient,
+               settings, warnings, files, load_options] = scene;
   scene::Sky without_picture = sky;
   without_picture.picture.reset();
   return {.name = name,
@@ -49,7 +49,7 @@ scene::Scene settings_of(const scene::Scene& scene) {
           KDRAY_SHAPES(KDRAY_NO_SHAPES).meshes = {},
           .instances = {},
           .materials = materials,
-          .paint = {.coats = paint.coats},
+          .texturing = {.material_maps = texturing.material_maps},
           .lights = lights,
           .unlit = unlit,
           .camera = camera,
@@ -111,7 +111,7 @@ void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& 
   made.counts.primitives = scene.primitive_count();
   primitives::for_each_kind(
       [&](auto kind) { decltype(kind)::of(made.counts) = decltype(kind)::of(geometry).size(); });
-  made.counts.stitches = geometry.stitches.size();
+  made.counts.zero_area = geometry.zero_area.size();
 }
 
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,

@@ -27,7 +27,7 @@ struct Counts {
 #define KDRAY_COUNT(NAME, name, names, Struct) std::uint64_t names = 0;
   KDRAY_KINDS(KDRAY_COUNT)
 #undef KDRAY_COUNT
-  std::uint64_t stitches = 0;   // of the triangles, those without area (scene/stitches.h)
+  std::uint64_t zero_area = 0;  // of the triangles, those without area (scene/model/zero_area.h)
   std::uint64_t instances = 0;  // of meshes
   std::uint64_t instanced = 0;  // primitives in all of them
 };

@@ -57,7 +57,7 @@ Refitted refit(const scene::Scene& scene, const Prepared& last, const Fitting& f
   out.flat.triangles = geometry.triangles;
   out.flat.normals = flatten::pack_normals(scene, geometry);
   out.flat.materials = flatten::pack_materials(scene);
-  out.flat.coats = flatten::pack_coats(scene);
+  out.flat.material_maps = flatten::pack_material_maps(scene);
   out.flat.lights = flatten::pack_lights(scene, geometry.space);
   out.flat.sky = {}, out.flat.sky_colors = {};
   flatten::pack_sky(scene.sky, out.flat);

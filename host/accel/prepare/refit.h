@@ -26,7 +26,7 @@ struct Refitted {
 };
 
 // `last` is the scene as it was built, or a refit of that. Nothing comes of it where the scene doesn't keep
-// its space, where a triangle has come to be degenerate or a stitch, or is so no more, and where the cost has
+// its space, where a triangle has lost its area (degenerate or not) or got it back, and where the cost has
 // grown by more than `most_growth`. (Of shapes it is taken for granted that they are the same.)
 Refitted refit(const scene::Scene& scene, const Prepared& last, const Fitting& fitting, double most_growth);
 

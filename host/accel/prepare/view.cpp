@@ -18,9 +18,9 @@ void take_out_sky(Prepared& scene) {
   scene.flat.sky = {}, scene.flat.sky_colors = {};
 }
 
-// What is cut out covers nothing. Of other coats nothing is left.
+// What is cut out covers nothing. Of other maps nothing is left.
 void keep_holes(Prepared& white) {
-  for (scene::Coat& c : white.settings.paint.coats)
+  for (scene::MaterialMaps& c : white.settings.texturing.material_maps)
     c = {.alpha = c.alpha,
          .cutoff = c.cutoff,
          .base = c.base,
@@ -43,13 +43,13 @@ Prepared coverage_of(const Prepared& prepared) {
   constexpr flatten::Features kOfMaterials =
       KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE;
   Prepared white = prepared;
-  for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1), .coat = m.coat};
+  for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1), .maps = m.maps};
   white.settings.background = vec3(0);
   take_out_sky(white);
   white.settings.lights.clear();
   keep_holes(white);
   white.flat.materials = flatten::pack_materials(white.settings);
-  white.flat.coats = flatten::pack_coats(white.settings);
+  white.flat.material_maps = flatten::pack_material_maps(white.settings);
   white.features &= ~kOfMaterials;
   light_anew(white);
   return white;

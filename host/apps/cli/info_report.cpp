@@ -23,34 +23,34 @@ void add_kinds(const Holder& holder, Json& arrays) {
 
 // The structs are taken apart into all their arrays, so that one that is added can't be forgotten.
 
-Json paint_arrays(const scene::Paint& paint) {
-  const auto& [colors, texcoords, tangents, coats, textures, pictures] = paint;
+Json texturing_arrays(const scene::Texturing& texturing) {
+  const auto& [colors, texcoords, tangents, material_maps, textures, pictures] = texturing;
   std::uint64_t texels = 0;
   for (const auto& picture : pictures) texels += picture->texels.bytes();
   return {{"corner_colors", bytes_of(colors)},
           {"texcoords", bytes_of(texcoords[0]) + bytes_of(texcoords[1]) + bytes_of(tangents)},
-          {"coats", bytes_of(coats)},
+          {"coats", bytes_of(material_maps)},
           {"textures", bytes_of(textures)},
           {"pictures", texels}};
 }
 
 Json scene_arrays(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
-               materials, paint, lights, unlit, camera, cameras, framing, background, sky, ambient, settings,
-               warnings, files, load_options] = scene;
+               materials, texturing, lights, unlit, camera, cameras, framing, background, sky, ambient,
+               settings, warnings, files, load_options] = scene;
   Json arrays = {{"vertices", bytes_of(vertices)}, {"normals", bytes_of(normals)}};
   add_kinds(scene, arrays);
   arrays.update({{"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
-  if (!paint.coats.empty()) arrays.update(paint_arrays(paint));
+  if (!texturing.material_maps.empty()) arrays.update(texturing_arrays(texturing));
   if (sky.picture) arrays["sky"] = bytes_of(sky.picture->rgb);
   return arrays;
 }
 
 Json geometry_arrays(const scene::Geometry& geometry) {
-  const auto& [space, triangles, sources, n_smooth, stitches, KDRAY_SHAPES(KDRAY_KIND_PLURAL) bounds, dropped,
-               lost, fine] = geometry;
+  const auto& [space, triangles, sources, n_smooth, zero_area, KDRAY_SHAPES(KDRAY_KIND_PLURAL) bounds,
+               dropped, lost, fine] = geometry;
   // Its triangles are the flat form's.
-  Json arrays = {{"sources", bytes_of(sources)}, {"stitches", bytes_of(stitches)}};
+  Json arrays = {{"sources", bytes_of(sources)}, {"stitches", bytes_of(zero_area)}};
   primitives::for_each_shape(
       [&](auto kind) { arrays[kind.kNames] = bytes_of(decltype(kind)::of(geometry)); });
   return arrays;
@@ -62,14 +62,14 @@ Json tree_arrays(const kdtree::Tree& tree) {
 }
 
 Json flat_arrays(const flatten::FlatScene& flat) {
-  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, coats,
-               textures, texels, texcoords, corner_colors, lights, sky, sky_colors] = flat;
+  const auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials,
+               material_maps, textures, texels, texcoords, corner_colors, lights, sky, sky_colors] = flat;
   Json arrays = {{"nodes", bytes_of(nodes)}, {"references", bytes_of(refs)}};
   add_kinds(flat, arrays);
   arrays.update(
       {{"normals", bytes_of(normals)}, {"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
-  if (!coats.empty())
-    arrays.update({{"coats", bytes_of(coats)},
+  if (!material_maps.empty())
+    arrays.update({{"coats", bytes_of(material_maps)},
                    {"textures", bytes_of(textures)},
                    {"texels", bytes_of(texels)},
                    {"texcoords", bytes_of(texcoords)},
@@ -173,7 +173,7 @@ Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
   report["scene"] = scene.name;
   Json counts = {{"total", scene.primitive_count()}};
   primitives::for_each_kind([&](auto kind) { counts[kind.kNames] = decltype(kind)::of(scene).size(); });
-  counts.update({{"stitches", geometry.stitches.size()},
+  counts.update({{"stitches", geometry.zero_area.size()},
                  {"dropped_degenerate", geometry.dropped_degenerate},
                  {"vertices", scene.vertices.size()},
                  {"normals", scene.normals.size()}});

@@ -34,11 +34,11 @@ std::string color_text(const char* name, const Json& v) {
 }
 
 std::string primitives_text(const Json& p) {
-  const std::uint64_t stitches = p["stitches"], dropped = p["dropped_degenerate"];
+  const std::uint64_t zero_area = p["stitches"], dropped = p["dropped_degenerate"];
   std::string text = fmt::format(
       "{}: {}", p["total"].get<std::uint64_t>(),
       primitives::counts_in_words([&](auto kind) { return p[kind.kNames].template get<std::uint64_t>(); }));
-  if (stitches > 0) text += fmt::format("; {} of the triangles without area", stitches);
+  if (zero_area > 0) text += fmt::format("; {} of the triangles without area", zero_area);
   if (dropped > 0) text += fmt::format("; {} degenerate dropped", dropped);
   return text;
 }

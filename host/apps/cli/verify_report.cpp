@@ -185,7 +185,7 @@ Json mesh_json(const Findings& f) {
   Json json = {{"sound", f.mesh_is_sound()},
                {"points", f.mesh.points.size()},
                {"edges", f.topology.n_edges},
-               {"stitches", f.counts.stitches},
+               {"stitches", f.counts.zero_area},
                {"dropped_degenerate", f.dropped},
                {"open_edges", edges_json(f, f.topology.open)},
                {"open_pieces", f.topology.loops},
@@ -246,11 +246,11 @@ std::string findings_in_words(const Findings& f) {
   words.plain("scene",
               fmt::format("{}; {} points, {} edges", counted(f), f.mesh.points.size(), f.topology.n_edges));
   if (f.counts.triangles > 0) tell_mesh(f, words);
-  if (f.counts.stitches > 0)
+  if (f.counts.zero_area > 0)
     words.plain("stitches",
                 fmt::format("{} without area, of three corners on a line: they close gaps at corners that "
                             "lie on other faces' edges",
-                            counted(f.counts.stitches, "triangle")));
+                            counted(f.counts.zero_area, "triangle")));
   words.note(f.dropped, "degenerate",
              fmt::format("{} with corners in one place, which no ray can hit", f.dropped));
   if (f.probes.rays() > 0) tell_tracing(f, words);

@@ -36,7 +36,7 @@ Crossing crossing(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c
   return (volume > 0) == (ab > 0) ? Crossing::one : Crossing::none;
 }
 
-// From the line of a stitch's corners, which differ.
+// From the line of a zero-area triangle's corners, which differ.
 double distance_from_line(const dvec3& p, const dvec3& a, const dvec3& b) {
   return glm::length(glm::cross(b - a, p - a)) / glm::length(b - a);
 }
@@ -48,8 +48,8 @@ bool Insides::near(const dvec3& p, std::uint32_t component, double clearance) co
   boxes_.touching({p - clearance, p + clearance}, [&](std::uint32_t face) {
     if (topology_.component_of[face] != component) return true;
     const dvec3 a(mesh_.corner(face, 0)), n = mesh_.normal(face);
-    near = mesh_.stitch[face] != 0 ? !(distance_from_line(p, a, dvec3(mesh_.corner(face, 1))) > clearance)
-                                   : !(std::abs(glm::dot(n, p - a)) > clearance * glm::length(n));
+    near = mesh_.zero_area[face] != 0 ? !(distance_from_line(p, a, dvec3(mesh_.corner(face, 1))) > clearance)
+                                      : !(std::abs(glm::dot(n, p - a)) > clearance * glm::length(n));
     return !near;
   });
   return near;

@@ -35,7 +35,7 @@ std::vector<std::uint32_t> weld(const scene::Scene& scene, const LocalSpace& spa
 }  // namespace
 
 dvec3 Mesh::normal(std::size_t triangle) const {
-  if (stitch[triangle] != 0) return dvec3(0);
+  if (zero_area[triangle] != 0) return dvec3(0);
   const dvec3 a(corner(triangle, 0)), b(corner(triangle, 1)), c(corner(triangle, 2));
   return glm::cross(b - a, c - a);
 }
@@ -56,8 +56,8 @@ Mesh make_mesh(const scene::Scene& scene, const scene::Geometry& geometry) {
     for (std::size_t k = 0; k < 3; ++k) mesh.triangles[i][k] = point_of[from.vertex[k]];
     mesh.numbers[i] = from.number;
   });
-  mesh.stitch.resize(mesh.triangles.size());
-  for (const scene::Stitch& s : geometry.stitches) mesh.stitch[s.triangle] = 1;
+  mesh.zero_area.resize(mesh.triangles.size());
+  for (const scene::ZeroAreaTriangle& s : geometry.zero_area) mesh.zero_area[s.triangle] = 1;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) mesh.bounds.grow(mesh.bounds_of(i));
   return mesh;
 }

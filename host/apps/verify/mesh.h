@@ -17,14 +17,14 @@ namespace kdray::verify {
 using Corners = std::array<std::uint32_t, 3>;  // into Mesh::points
 
 struct Mesh {
-  std::vector<vec3> points;            // all different
-  std::vector<Corners> triangles;      // corners
-  std::vector<std::uint32_t> numbers;  // of each triangle, in file order over all kinds of primitives
-  std::vector<std::uint8_t> stitch;    // of each: 1 where it has no area (scene/stitches.h)
-  Box bounds;                          // of the points
+  std::vector<vec3> points;             // all different
+  std::vector<Corners> triangles;       // corners
+  std::vector<std::uint32_t> numbers;   // of each triangle, in file order over all kinds of primitives
+  std::vector<std::uint8_t> zero_area;  // of each: 1 where it has no area (scene/model/zero_area.h)
+  Box bounds;                           // of the points
 
   const vec3& corner(std::size_t triangle, std::size_t k) const { return points[triangles[triangle][k]]; }
-  // Twice the area long; from the front, counter-clockwise. 0 of a stitch, whatever rounding says.
+  // Twice the area long; from the front, counter-clockwise. 0 where it has no area, whatever rounding says.
   dvec3 normal(std::size_t triangle) const;
   Box bounds_of(std::size_t triangle) const;
 };

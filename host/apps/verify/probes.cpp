@@ -303,7 +303,7 @@ class Prober {
   // A closed component is not entered twice, nor left twice, in one place.
   void check_twice(const Hit& first, const Ray& through, const Hit& second) {
     const std::optional<std::uint32_t> a = face_of(first), b = face_of(second);
-    if (!a || !b || *a == *b || s_.mesh.stitch[*a] != 0 || s_.mesh.stitch[*b] != 0) return;
+    if (!a || !b || *a == *b || s_.mesh.zero_area[*a] != 0 || s_.mesh.zero_area[*b] != 0) return;
     const Line line = line_of(through);
     const double gap = second.t * glm::length(line.direction);
     if (gap > clearance()) return;

@@ -12,7 +12,7 @@ void Facts::add(const scene::Scene& scene, const scene::Geometry& geometry) {
   part.dropped = geometry.dropped_degenerate;
   part.lost = geometry.lost;
   part.fine = geometry.fine;
-  part.stitches = geometry.stitches.size();
+  part.zero_area = geometry.zero_area.size();
   primitives::for_each_kind(
       [&](auto kind) { part.counts[kind.kNumber] = decltype(kind)::of(geometry).size(); });
   if (!geometry.triangles.empty())
@@ -23,7 +23,8 @@ void Facts::add(const scene::Scene& scene, const scene::Geometry& geometry) {
 }
 
 void Facts::add(const Facts& o) {
-  dropped += o.dropped, lost += o.lost, fine += o.fine, stitches += o.stitches, shaded_flat += o.shaded_flat;
+  dropped += o.dropped, lost += o.lost, fine += o.fine, zero_area += o.zero_area,
+      shaded_flat += o.shaded_flat;
   for (std::size_t kind = 0; kind < counts.size(); ++kind) counts[kind] += o.counts[kind];
   last_number = std::max(last_number, o.last_number);
   features |= o.features;
@@ -39,7 +40,7 @@ void tell(const Facts& facts, prepare::Prepared& whole) {
   whole.counts.primitives = kept + facts.dropped;
   primitives::for_each_kind(
       [&](auto kind) { decltype(kind)::of(whole.counts) = facts.counts[kind.kNumber]; });
-  whole.counts.stitches = facts.stitches;
+  whole.counts.zero_area = facts.zero_area;
   // Numbers ascend, so that they are the places of what is kept if the last one is.
   const bool numbers = kept > 0 && facts.last_number != kept - 1;
   const layout::Features mask = facts.features | (numbers ? KDRAY_FEATURE_NUMBERS : layout::Features{0});

@@ -14,7 +14,7 @@
 namespace kdray::partition {
 
 struct Facts {
-  std::uint64_t dropped = 0, lost = 0, fine = 0, stitches = 0, shaded_flat = 0;
+  std::uint64_t dropped = 0, lost = 0, fine = 0, zero_area = 0, shaded_flat = 0;
   std::array<std::uint64_t, primitives::kKinds> counts{};
   std::uint64_t last_number = 0;  // of the triangles
   layout::Features features = 0;  // but for KDRAY_FEATURE_NUMBERS and those of light

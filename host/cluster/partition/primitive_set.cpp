@@ -12,7 +12,7 @@ void add_rows(RawVector<T>& rows, const Array<T>& all, std::size_t n, const Slic
 }
 
 bool is_bare(const scene::Scene& scene, const scene::Geometry& geometry, std::size_t i) {
-  return scene::is_stitch(geometry.triangles[i]) &&
+  return scene::is_zero_area(geometry.triangles[i]) &&
          scene.triangles[geometry.sources[i]].normal[0] == scene::kNone;
 }
 
@@ -21,11 +21,11 @@ void add_triangles(PrimitiveSet& set, const scene::Scene& scene, const scene::Ge
   for (std::size_t i = slice.first; i < slice.last; ++i) {
     layout::Triangle t = flat.triangles[i];
     if (is_bare(scene, geometry, i))
-      set.bare_stitches.push_back(static_cast<std::uint32_t>(set.triangles.size()));
+      set.bare_zero_area.push_back(static_cast<std::uint32_t>(set.triangles.size()));
     if (t.normals != KDRAY_NO_NORMALS) {
       const auto place = static_cast<layout::u32>(set.normals.size());
       set.normals.push_back(flat.normals[t.normals & KDRAY_NORMALS_MASK]);
-      t.normals = (t.normals & KDRAY_STITCH) | place;
+      t.normals = (t.normals & KDRAY_ZERO_AREA) | place;
     }
     set.triangles.push_back(t);
   }

@@ -33,8 +33,8 @@ struct PrimitiveSet {
 #define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Placed<primitives::Struct##Geometry>> names;
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
-  // Places of stitches to which the file gives no normals.
-  std::vector<std::uint32_t> bare_stitches;
+  // Places of zero-area triangles to which the file gives no normals.
+  std::vector<std::uint32_t> bare_zero_area;
 
   std::size_t size() const {
     return primitives::count_primitives(*this);

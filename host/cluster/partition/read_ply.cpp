@@ -10,9 +10,9 @@
 
 #include "cluster/partition/facts.h"
 #include "cluster/partition/share.h"
-#include "cluster/partition/stitches.h"
 #include "cluster/partition/vertices.h"
 #include "cluster/partition/wire.h"
+#include "cluster/partition/zero_area.h"
 #include "scene/import/files_read.h"
 #include "scene/import/load.h"
 #include "scene/import/ply/ply_rows.h"
@@ -79,7 +79,7 @@ class PlyReader {
     frame(bounds);
     tell(facts_, whole);
     whole.flat.lights = flatten::pack_lights(whole.settings, whole.geometry.space);
-    if (facts_.stitches > 0) settle_stitches(share_.primitives, all_);
+    if (facts_.zero_area > 0) settle_zero_area(share_.primitives, all_);
     return std::move(share_);
   }
 
@@ -89,7 +89,7 @@ class PlyReader {
     return std::span(faces_).subspan(first, std::min(kBatchOfFaces, faces_.size() - first));
   }
 
-  // Material and coat are those of a file without faces: they follow from the vertices' properties.
+  // Material and maps are those of a file without faces: they follow from the vertices' properties.
   void describe_settings(const LoadOptions& options, std::vector<scene::FileRead> files) {
     const std::uint32_t n = rows_.n_vertices() > 0 ? 1 : 0;
     scene::ply::Mesh mesh(n);
@@ -103,7 +103,7 @@ class PlyReader {
     prepare::Prepared& whole = share_.whole;
     whole.settings = prepare::settings_of(empty);
     whole.flat.materials = flatten::pack_materials(empty);
-    if (!empty.paint.coats.empty()) whole.flat.coats = flatten::pack_coats(empty);
+    if (!empty.texturing.material_maps.empty()) whole.flat.material_maps = flatten::pack_material_maps(empty);
   }
 
   void make_triangles(std::span<const Corners> faces) {

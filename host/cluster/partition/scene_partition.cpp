@@ -59,15 +59,15 @@ std::vector<std::uint32_t> ranks_of_primitives(const Cells& cells, std::span<con
   return ranks;
 }
 
-std::size_t count_of_coats_with_colors(const scene::Scene& settings) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(settings.paint.coats, [](const scene::Coat& c) { return c.colored != 0; }));
+std::size_t count_of_maps_with_colors(const scene::Scene& settings) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      settings.texturing.material_maps, [](const scene::MaterialMaps& c) { return c.colored != 0; }));
 }
 
 // CornerRows that triangles have.
 CornerRows rows_of(const prepare::Prepared& whole) {
   CornerRows rows;
-  rows.colors = count_of_coats_with_colors(whole.settings) > 0 ? 1 : 0;
+  rows.colors = count_of_maps_with_colors(whole.settings) > 0 ? 1 : 0;
   if (!whole.flat.textures.empty()) rows.texcoords = KDRAY_TEXTURE_SETS(whole.flat.textures[0].how);
   return rows;
 }

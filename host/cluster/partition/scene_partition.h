@@ -24,7 +24,7 @@ namespace kdray::partition {
 
 struct ScenePartition {
   // `flat` and `wide` are the rank's own: primitives with their numbers in the file, for programs with
-  // KDRAY_FEATURE_NUMBERS; settings, space, bounds, counts, features, materials, coats, pictures and lights
+  // KDRAY_FEATURE_NUMBERS; settings, space, bounds, counts, features, materials, maps, pictures and lights
   // are the whole scene's. So are tree_nodes (the sum), tree_depth and wide.stack_size (the most) and the
   // size of blocks. `tree` is of the rank's own tree.
   prepare::Prepared prepared;

@@ -140,7 +140,7 @@ class Carrier {
       if (!has_normals(t)) continue;
       if (next == end_[from].normals) transport::throw_odd_message(static_cast<int>(from));
       here_.normals[next] = reader.get<layout::VertexNormals>();
-      t.normals = (t.normals & KDRAY_STITCH) | static_cast<layout::u32>(next++);
+      t.normals = (t.normals & KDRAY_ZERO_AREA) | static_cast<layout::u32>(next++);
     }
   }
 

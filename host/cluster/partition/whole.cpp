@@ -39,7 +39,7 @@ Share share_of(const scene::Scene& scene, transport::Together& all) {
   flatten::FlatScene flat = flatten::flatten(scene, geometry, kdtree::Tree(), false);
   check_same(scene, flat, all);
   add_slice(share.primitives, scene, geometry, flat, all.rank(), all.size());
-  share.primitives.bare_stitches.clear();  // they have their neighbours' normals, which are here
+  share.primitives.bare_zero_area.clear();  // they have their neighbours' normals, which are here
   flat.triangles = {}, flat.normals = {}, flat.corner_colors = {}, flat.texcoords = {};
   primitives::for_each_shape([&](auto kind) { decltype(kind)::of(flat) = {}; });
   share.whole.flat = std::move(flat);

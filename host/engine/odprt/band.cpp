@@ -166,7 +166,7 @@ void BandRun::change_part(std::size_t queue, std::uint32_t part, QueueState& sta
 
 void BandRun::launch(std::size_t queue, const Turn& turn, QueueState& state) {
   Worker& worker = *pool_.workers[queue];
-  if (request_.faults) request_.faults->launch(request_.queues[queue].number);
+  if (request_.fault_injector) request_.fault_injector->launch(request_.queues[queue].number);
   worker.launch(turn.credits, *turn.outbox);
   QueueReport& report = pool_.reports[queue];
   const std::uint64_t n_waves = sum_of(worker.traffic(), &layout::Traffic::n_waves);

@@ -34,7 +34,7 @@ std::vector<SubtreeUse> probe_costs(const Request& request, const Division& whol
   probe.census_every = 1;
   probe.device_memory = 0;
   probe.timeline = nullptr;
-  probe.faults = nullptr;
+  probe.fault_injector = nullptr;
   probe.progress = {};
   probe.checkpoint = nullptr;
   return render_frame(probe, provide(probe, 0), whole, cut).visits;

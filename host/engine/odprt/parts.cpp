@@ -315,7 +315,7 @@ flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numb
     decltype(kind)::of(flat) = select(decltype(kind)::of(scene), n.members[kind.kNumber]);
   });
   flat.materials = scene.materials;
-  flat.coats = scene.coats;
+  flat.material_maps = scene.material_maps;
   flat.textures = scene.textures;
   flat.texels = scene.texels;
   const auto& triangles = n.members[KDRAY_KIND_TRIANGLE];
@@ -328,7 +328,7 @@ flatten::FlatScene select_primitives(const flatten::FlatScene& scene, const Numb
   for (layout::Triangle& t : flat.triangles) {
     if (t.normals == KDRAY_NO_NORMALS) continue;
     normals.push_back(t.normals & KDRAY_NORMALS_MASK);
-    t.normals = (t.normals & KDRAY_STITCH) | static_cast<layout::u32>(normals.size() - 1);
+    t.normals = (t.normals & KDRAY_ZERO_AREA) | static_cast<layout::u32>(normals.size() - 1);
   }
   flat.normals = select(scene.normals, normals);
   return flat;

@@ -17,7 +17,7 @@
 
 #include "base/timeline.h"
 #include "cluster/transport/together.h"
-#include "device/opencl/faults.h"
+#include "device/opencl/fault_injector.h"
 #include "engine/adaptive/report.h"
 #include "engine/checkpoint/frame_checkpoint.h"
 #include "engine/odprt/division.h"
@@ -51,7 +51,7 @@ struct Request {
   std::uint64_t device_memory = 0;
   std::uint32_t census_every = 0;  // visits to subtrees are counted in one wave of so many
   timeline::Timeline* timeline = nullptr;
-  device::Faults* faults = nullptr;
+  device::FaultInjector* fault_injector = nullptr;
   std::function<void(double)> progress;
   // What is finished already, and where it goes; its tiles are the frame's. Null: there is none.
   checkpoint::FrameCheckpoint* checkpoint = nullptr;

@@ -36,7 +36,7 @@ class Loads {
   Loads(const flatten::FlatScene& scene, const flatten::WideForm& form)
       : scene_(scene), form_(form), nodes_(form.nodes.size()) {
     for (const layout::Instance& instance : scene.instances) ++n_placed_[instance.root];
-    // A smooth triangle has its normals beside it, a painted one what is at its corners.
+    // A smooth triangle has its normals beside it, a textured one what is at its corners.
     const std::uint64_t beside =
         scene.normals.bytes() + scene.texcoords.bytes() + scene.corner_colors.bytes();
     const std::uint64_t each = scene.triangles.empty() ? 0 : beside / scene.triangles.size();

@@ -63,7 +63,8 @@ Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& q
       wavefront_(*device.context, queue, *device.scene, *device.programs, frame_, device.schedule,
                  task.features, capacity) {
   wavefront::Watch watch;
-  if (task.faults) watch.before = [faults = task.faults, number] { faults->launch(number); };
+  if (task.fault_injector)
+    watch.before = [injector = task.fault_injector, number] { injector->launch(number); };
   if (task.timeline) {
     device::checked("comparing clocks", [&] { clock_.emplace(device.context->get(), queue); });
     watch.after = [this, timeline = task.timeline](const wavefront::LaunchDone& done) {

@@ -19,7 +19,7 @@
 
 #include "base/timeline.h"
 #include "cluster/transport/ranks.h"
-#include "device/opencl/faults.h"
+#include "device/opencl/fault_injector.h"
 #include "engine/adaptive/report.h"
 #include "engine/checkpoint/frame_checkpoint.h"
 #include "engine/pdprt/tile_hierarchy.h"
@@ -51,7 +51,7 @@ struct Task {
   double adaptive_target = 0;
   Division division = Division::bag;
   std::function<void(double)> progress = {};  // called from render()'s thread with the share done
-  device::Faults* faults = nullptr;
+  device::FaultInjector* fault_injector = nullptr;
   timeline::Timeline* timeline = nullptr;               // also asks for Result::tile_seconds
   std::size_t max_film_bytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
   // What is finished already, and where it goes; its tiles are those of the schedule. Null: there is none.

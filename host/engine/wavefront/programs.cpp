@@ -16,15 +16,15 @@ namespace kdray::wavefront {
 namespace {
 
 // What pictures and colours at corners need. Programs that have this though they needn't would be slower.
-constexpr layout::Features kPaint =
-    KDRAY_FEATURE_COATS | KDRAY_FEATURE_CORNER_COLORS | KDRAY_FEATURE_TEXTURES | KDRAY_FEATURE_CUTOUTS;
+constexpr layout::Features kTexturing = KDRAY_FEATURE_MATERIAL_MAPS | KDRAY_FEATURE_CORNER_COLORS |
+                                        KDRAY_FEATURE_TEXTURES | KDRAY_FEATURE_CUTOUTS;
 // What they need in shading alone.
-constexpr layout::Features kLooks = kPaint | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_METAL_MAPS |
+constexpr layout::Features kLooks = kTexturing | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_METAL_MAPS |
                                     KDRAY_FEATURE_NORMAL_MAPS | KDRAY_FEATURE_LIGHT_MAPS;
 // What lights with an area add to rays, and what else a scene has to have for its code to be of use.
 constexpr layout::Features kSamples = KDRAY_FEATURES_NOISY;
 constexpr layout::Features kGeometry = KDRAY_FEATURE_ALL_KINDS | KDRAY_FEATURE_NUMBERS |
-                                       KDRAY_FEATURE_STITCHES | KDRAY_FEATURE_INSTANCES | KDRAY_KEEP_TRACING;
+                                       KDRAY_FEATURE_ZERO_AREA | KDRAY_FEATURE_INSTANCES | KDRAY_KEEP_TRACING;
 constexpr layout::Features kShading =
     kGeometry | kLooks | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT |
     KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
@@ -49,20 +49,20 @@ layout::Features bits_read_by(const std::string& file) {
     return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_FOOTPRINTS | kSamples |
            KDRAY_FEATURE_INSTANCES;
   if (file == "film/add.cl") return KDRAY_FEATURE_INSTANCES;
-  if (file == "film/channels.cl") return kGeometry | kPaint | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
+  if (file == "film/channels.cl") return kGeometry | kTexturing | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
   if (file == "shade/shade.cl") return kShading;
   if (file == "wave/wave.cl" || file == "odprt/wave.cl")
     return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | kSamples;
   if (file == "odprt/receive.cl")
     return KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_INSTANCES;
   if (file == "traverse/trace_closest.cl")
-    return kGeometry | kPaint | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS;
-  if (file == "traverse/trace_shadow.cl") return kGeometry | kPaint;
+    return kGeometry | kTexturing | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS;
+  if (file == "traverse/trace_shadow.cl") return kGeometry | kTexturing;
   return kGeometry;
 }
 
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
-// rays are counted; not masks, which a scene has to have, nor paint, nor a sky, whose arrays would be read,
+// rays are counted; not masks, which a scene has to have, nor textures or a sky, whose arrays would be read,
 // nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
 // (odprt/admit.clh).
 layout::Features spare_bits_of(const std::string& file) {

@@ -20,7 +20,7 @@ std::uint32_t spawned_per_ray(layout::Features features) {
   return features & KDRAY_FEATURE_REFLECT ? 1 : 0;
 }
 
-std::uint32_t pencil_fields(layout::Features features) {
+std::uint32_t ray_cone_fields(layout::Features features) {
   return features & KDRAY_FEATURE_FOOTPRINTS ? 1 : 0;
 }
 
@@ -30,7 +30,7 @@ std::uint32_t instance_fields(layout::Features features) {
 
 std::uint32_t travel_ray_fields(layout::Features features) {
   const std::uint32_t of_sample = features & KDRAY_FEATURE_AREA_LIGHTS ? 1 : 0;
-  return KDRAY_TRAVEL_RAY_FIELDS + instance_fields(features) + pencil_fields(features) + of_sample;
+  return KDRAY_TRAVEL_RAY_FIELDS + instance_fields(features) + ray_cone_fields(features) + of_sample;
 }
 
 std::uint32_t capacity_for(std::uint32_t n) {
@@ -40,7 +40,7 @@ std::uint32_t capacity_for(std::uint32_t n) {
 // Rays and hits name an instance where there are some (rays.layout.h).
 StreamForm StreamForm::of_device(const layout::Frame& frame, std::size_t word, layout::Features features) {
   const std::uint32_t instance = instance_fields(features);
-  const std::uint32_t of_ray = instance + frame.tells_sample + pencil_fields(features);
+  const std::uint32_t of_ray = instance + frame.tells_sample + ray_cone_fields(features);
   StreamForm form;
   form.word = word;
   form.pools = frame.pool_size > 0 ? frame.max_depth - 1 : 0;

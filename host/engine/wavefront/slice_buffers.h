@@ -24,8 +24,8 @@ namespace kdray::wavefront {
 // Rays that one ray can put into the pool. Where one is refracted another may be reflected, if of no weight.
 std::uint32_t spawned_per_ray(layout::Features features);
 
-// The words of a ray that its pencil takes: rays that wait, travel, or are in work have it.
-std::uint32_t pencil_fields(layout::Features features);
+// The words of a ray that its cone takes: rays that wait, travel, or are in work have it.
+std::uint32_t ray_cone_fields(layout::Features features);
 
 // The words by which hits, and rays that carry one, name an instance.
 std::uint32_t instance_fields(layout::Features features);

@@ -116,15 +116,15 @@ void check(const LoadOptions& options) {
 
 // Said in one line, since the picture looks coarser for it.
 void fit_pictures(Scene& scene, std::uint64_t most_bytes) {
-  const LimitedPictures limited = limit_pictures(scene.paint, most_bytes);
+  const LimitedPictures limited = limit_pictures(scene.texturing, most_bytes);
   if (limited.n_halved == 0) return;
   const auto megabytes = [](std::uint64_t bytes) {
     return fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
   };
   scene.warnings.push_back(
       fmt::format("{}: {} of {} pictures are made smaller, from {} to {} in all; the limit of textures is {}",
-                  scene.name, limited.n_halved, scene.paint.pictures.size(), megabytes(limited.bytes_before),
-                  megabytes(limited.bytes), megabytes(most_bytes)));
+                  scene.name, limited.n_halved, scene.texturing.pictures.size(),
+                  megabytes(limited.bytes_before), megabytes(limited.bytes), megabytes(most_bytes)));
 }
 
 Scene finished(Scene&& scene, const std::filesystem::path& file, const LoadOptions& options) {

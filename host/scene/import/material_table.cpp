@@ -28,7 +28,7 @@ std::size_t MaterialHash::operator()(const Material& m) const {
   }
   mix(hash, m.shine);
   mix(hash, m.index);
-  hash = (hash ^ m.coat) * 0x100000001b3u;
+  hash = (hash ^ m.maps) * 0x100000001b3u;
   return static_cast<std::size_t>(hash);
 }
 

@@ -217,9 +217,9 @@ std::size_t read_count(std::string_view text, const std::string& file, std::vect
   return bytes / kFacetBytes;
 }
 
-void paint_facet(Scene& scene, const std::array<std::uint32_t, 4>& color) {
-  scene.paint.colors.emplace_back();
-  for (std::size_t corner = 0; corner < 3; ++corner) set_corner(scene.paint.colors.back(), corner, color);
+void color_facet(Scene& scene, const std::array<std::uint32_t, 4>& color) {
+  scene.texturing.colors.emplace_back();
+  for (std::size_t corner = 0; corner < 3; ++corner) set_corner(scene.texturing.colors.back(), corner, color);
 }
 
 Scene read_binary(std::string_view text, const std::string& file) {
@@ -249,7 +249,7 @@ Scene read_binary(std::string_view text, const std::string& file) {
     const auto first = static_cast<std::uint32_t>(3 * i);
     scene.triangles.push_back(
         {.vertex = {first, first + 1, first + 2}, .number = static_cast<std::uint32_t>(i)});
-    if (colored) paint_facet(scene, colors.of(i));
+    if (colored) color_facet(scene, colors.of(i));
   }
   settle_vertices(scene, [&](std::size_t v) { return file + ": facet " + std::to_string(v / 3); });
   return scene;
@@ -263,10 +263,10 @@ Scene read_stl(std::string_view text, const std::filesystem::path& path) {
   const bool ascii = !exact && looks_like_text(text);
   Scene scene = ascii ? AsciiReader(text, file).read() : read_binary(text, file);
   scene.materials = {mesh_material()};
-  if (!scene.paint.colors.empty()) {
-    Coat coat;
-    scene.materials = {colored_mesh_material(coat)};
-    scene.materials[0].coat = scene.paint.add(coat);
+  if (!scene.texturing.colors.empty()) {
+    MaterialMaps maps;
+    scene.materials = {colored_mesh_material(maps)};
+    scene.materials[0].maps = scene.texturing.add(maps);
   }
   return scene;
 }

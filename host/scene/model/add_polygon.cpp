@@ -14,7 +14,7 @@ void add_texcoords(Scene& scene, std::span<const std::array<float, 2>> texcoords
   layout::TexCoords at{};
   for (std::size_t i = 0; i < 3; ++i)
     at.uv[i][0] = texcoords[pick[i]][0], at.uv[i][1] = texcoords[pick[i]][1];
-  auto& all = scene.paint.texcoords[0];
+  auto& all = scene.texturing.texcoords[0];
   all.resize(scene.triangles.size() - 1);  // those of earlier triangles that had none
   all.push_back(at);
 }

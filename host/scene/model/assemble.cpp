@@ -92,7 +92,7 @@ Scene mesh_of(const AddedGeometry& geometry, std::uint32_t first_material) {
   mesh.normals.resize(geometry.normals.size());
   mesh.triangles.resize(geometry.triangles.size());
   put(mesh, geometry, {0, 0, 0, 0, first_material});
-  mesh.paint.texcoords[0] = geometry.texcoords;
+  mesh.texturing.texcoords[0] = geometry.texcoords;
   return mesh;
 }
 

@@ -27,7 +27,7 @@ class Checker {
     check_values();
     check_triangles();
     primitives::for_each_shape([this](auto kind) { check_shapes(kind); });
-    check_paint();
+    check_textures();
     check_instances();
   }
 
@@ -101,18 +101,20 @@ class Checker {
   }
 
   // Kernels follow these without a further look.
-  void check_paint() const {
-    const Paint& paint = scene_.paint;
+  void check_textures() const {
+    const Texturing& texturing = scene_.texturing;
     for (const Material& m : scene_.materials)
-      require_internal(m.coat == kNone || m.coat < paint.coats.size(), "a material without its coat");
-    for (const Coat& c : paint.coats) check_coat(c);
-    for (const Texture& t : paint.textures) {
-      bool good = t.picture < paint.pictures.size() && t.set < 2 && t.minify <= Minify::linear_mipmap_linear;
+      require_internal(m.maps == kNone || m.maps < texturing.material_maps.size(),
+                       "a material without its maps");
+    for (const MaterialMaps& c : texturing.material_maps) check_maps(c);
+    for (const Texture& t : texturing.textures) {
+      bool good =
+          t.picture < texturing.pictures.size() && t.set < 2 && t.minify <= Minify::linear_mipmap_linear;
       for (const float f : t.across) good = good && std::isfinite(f);
       for (const float f : t.down) good = good && std::isfinite(f);
       require_internal(good, "a texture without its picture");
     }
-    for (const auto& p : paint.pictures)
+    for (const auto& p : texturing.pictures)
       require_internal(
           p && p->width > 0 && p->height > 0 && p->texels.size() == std::size_t{4} * p->width * p->height,
           "a picture without its texels");
@@ -120,10 +122,10 @@ class Checker {
   }
 
   void check_corners() const {
-    const Paint& paint = scene_.paint;
+    const Texturing& texturing = scene_.texturing;
     const std::size_t n = scene_.triangles.size();
-    require_internal(paint.colors.size() <= n && paint.texcoords[0].size() <= n &&
-                         paint.texcoords[1].size() <= n && paint.tangents.size() <= n,
+    require_internal(texturing.colors.size() <= n && texturing.texcoords[0].size() <= n &&
+                         texturing.texcoords[1].size() <= n && texturing.tangents.size() <= n,
                      "colours, texture coordinates or tangents of more triangles than there are");
   }
 
@@ -143,10 +145,11 @@ class Checker {
     }
   }
 
-  void check_coat(const Coat& c) const {
+  void check_maps(const MaterialMaps& c) const {
     for (const std::uint32_t map :
          {c.base, c.normal_map, c.emission_map, c.occlusion_map, c.highlight_map, c.metal_map})
-      require_internal(map == kNone || map < scene_.paint.textures.size(), "a coat without its texture");
+      require_internal(map == kNone || map < scene_.texturing.textures.size(),
+                       "material maps without their texture");
     bool good = c.alpha >= 0 && c.alpha <= 1 && std::isfinite(c.cutoff) && std::isfinite(c.normal_scale);
     for (const float share :
          {c.occlusion, c.metal.metallic, c.metal.roughness, c.metal.transmission, c.metal.mirrored})
@@ -154,7 +157,7 @@ class Checker {
     for (const vec3* term : {&c.emission, &c.ambient, &c.diffuse, &c.specular, &c.reflect, &c.transmit,
                              &c.emissive, &c.metal.base})
       good = good && at_least_zero(*term);
-    require_internal(good, "a coat with a term that is not finite, or below 0");
+    require_internal(good, "material maps with a term that is not finite, or below 0");
   }
 
   const Scene& scene_;

@@ -106,36 +106,36 @@ class Maker {
         if (is_flat(t)) {
           found.lost += has_area(i);
           if (has_equal_corners(t)) continue;
-          t.normals |= KDRAY_STITCH;
-          found.has_stitches = true;
+          t.normals |= KDRAY_ZERO_AREA;
+          found.has_zero_area = true;
         }
         out_.triangles[end] = t;
         out_.sources[end++] = static_cast<std::uint32_t>(i);
         const Box box = bounds_of(t);
         found.bounds.grow(box);
-        found.fine += !is_stitch(t) && is_fine(box);  // a stitch has no shadow to lose
+        found.fine += !is_zero_area(t) && is_fine(box);  // without area there is no shadow to lose
       }
       kept[first / kGrain] = end - first;
       facts[first / kGrain] = found;
     });
     close_gaps(kept);
     out_.dropped_degenerate += static_cast<std::uint32_t>(n - out_.triangles.size());
-    bool has_stitches = false;
+    bool has_zero_area = false;
     for (const GrainFacts& found : facts) {
       out_.bounds.grow(found.bounds);
       out_.lost += found.lost;
       out_.fine += found.fine;
-      has_stitches |= found.has_stitches;
+      has_zero_area |= found.has_zero_area;
     }
-    if (has_stitches) out_.stitches = find_stitches(out_.triangles);
-    if (has_stitches || !scene_.normals.empty()) number_normals();
+    if (has_zero_area) out_.zero_area = find_zero_area(out_.triangles);
+    if (has_zero_area || !scene_.normals.empty()) number_normals();
   }
 
   // What is known of a grain of triangles, and added up afterwards.
   struct GrainFacts {
     Box bounds;
     std::uint32_t lost = 0, fine = 0;
-    bool has_stitches = false;
+    bool has_zero_area = false;
   };
 
   bool has_area(std::size_t i) const {
@@ -162,7 +162,7 @@ class Maker {
   }
 
   bool has_normals(std::size_t i) const {
-    return is_stitch(out_.triangles[i]) || scene_.triangles[out_.sources[i]].normal[0] != kNone;
+    return is_zero_area(out_.triangles[i]) || scene_.triangles[out_.sources[i]].normal[0] != kNone;
   }
 
   void number_normals() {
@@ -177,7 +177,7 @@ class Maker {
       for (std::size_t i = first; i < last; ++i) {
         if (!has_normals(i)) continue;
         layout::u32& normals = out_.triangles[i].normals;
-        normals = (normals & KDRAY_STITCH) | next++;
+        normals = (normals & KDRAY_ZERO_AREA) | next++;
       }
     });
     out_.n_smooth = before.back();

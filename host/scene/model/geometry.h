@@ -5,7 +5,7 @@
 // Shape   One array per kind, in file order; `number` maps back to the file. Degenerate triangles (two equal
 //         corners after rounding: their other edges cover each other) and shapes that rounding leaves none
 //         (a radius of 0) are dropped and counted. Triangles of three corners on a line (after rounding,
-//         exactly decided) have no area but may close a gap: they are kept as stitches (scene/stitches.h).
+//         exactly decided) have no area but may close a gap: they are kept (scene/model/zero_area.h).
 //         Triangles are as the kernels read them: a device that shares memory takes them from here, without a
 //         copy. Copies of a Geometry share them.
 #pragma once
@@ -21,7 +21,7 @@
 #include "base/raw_vector.h"
 #include "layout/primitives.layout.h"
 #include "scene/model/scene.h"
-#include "scene/model/stitches.h"
+#include "scene/model/zero_area.h"
 #include "scene/primitives/shapes.h"
 
 namespace kdray::scene {
@@ -42,13 +42,13 @@ struct Geometry {
   Array<TriangleGeometry> triangles;
   RawVector<std::uint32_t> sources;  // of each triangle, the index into Scene::triangles
   std::uint32_t n_smooth = 0;        // triangles with vertex normals, which their `normals` number in order
-  std::vector<Stitch> stitches;      // all of these have vertex normals
+  std::vector<ZeroAreaTriangle> zero_area;  // all of these have vertex normals
 #define KDRAY_SHAPE_ARRAY(NAME, name, names, Struct) std::vector<Struct##Geometry> names;
   KDRAY_SHAPES(KDRAY_SHAPE_ARRAY)
 #undef KDRAY_SHAPE_ARRAY
   Box bounds;  // contains every primitive
   std::uint32_t dropped_degenerate = 0;
-  std::uint32_t lost = 0;  // of the dropped and the stitches, those that have an area before rounding
+  std::uint32_t lost = 0;  // of the dropped and those without area, how many have one before rounding
   std::uint32_t fine = 0;  // of the others, those smaller than what floats tell apart over the whole scene
 
   std::size_t size() const {

@@ -92,7 +92,7 @@ void add_copy(const Scene& mesh, const Instance& instance, Scene& scene) {
   part.normals = mesh.normals;
   part.triangles = mesh.triangles;
   primitives::for_each_shape([&](auto kind) { decltype(kind)::of(part) = decltype(kind)::of(mesh); });
-  part.paint = mesh.paint;  // of which what is at corners goes with them
+  part.texturing = mesh.texturing;  // of which what is at corners goes with them
   apply_transform(matrix_of(instance), part);
   const std::uint32_t number = scene.primitive_count();
   const auto first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
@@ -102,7 +102,7 @@ void add_copy(const Scene& mesh, const Instance& instance, Scene& scene) {
     primitive.number += number;
     return primitive;
   };
-  scene.paint.append(part.paint, scene.triangles.size(), mesh.triangles.size());
+  scene.texturing.append(part.texturing, scene.triangles.size(), mesh.triangles.size());
   scene.vertices.insert(scene.vertices.end(), part.vertices.begin(), part.vertices.end());
   scene.normals.insert(scene.normals.end(), part.normals.begin(), part.normals.end());
   for (Triangle t : part.triangles) {

@@ -22,8 +22,8 @@
 #include "scene/import/files_read.h"
 #include "scene/model/instances.h"
 #include "scene/primitives/shapes.h"
-#include "scene/textures/paint.h"
 #include "scene/textures/sky.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 
@@ -41,7 +41,7 @@ struct Material {
   vec3 transmit{0};
   float shine = 1;             // exponent of (R.V), >= 0
   float index = 1;             // index of refraction of the inside against the outside, > 0
-  std::uint32_t coat = kNone;  // into Scene::paint.coats, whose terms come to these
+  std::uint32_t maps = kNone;  // into Scene::texturing.material_maps, whose terms come to these
   bool operator==(const Material&) const = default;
 };
 
@@ -113,7 +113,7 @@ struct Scene {
   std::vector<std::shared_ptr<const Scene>> meshes;  // of primitives alone
   PageVector<Instance> instances;                    // of these, in file order
   std::vector<Material> materials;                   // at least one when there is a primitive
-  Paint paint;
+  Texturing texturing;
   std::vector<Light> lights;
   bool unlit = false;  // the file says that there are no lights; else frame_scene() adds some where none are
   std::optional<Camera> camera;  // loaders leave it empty when the file has none; frame_scene() fills it

@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "base/local_space.h"
-#include "scene/model/stitches.h"
+#include "scene/model/zero_area.h"
 
 namespace kdray::scene {
 

@@ -42,7 +42,7 @@ dvec3 onto_plane(const dvec3& v, const dvec3& normal) {
 class Smoother {
  public:
   Smoother(Scene& scene, std::size_t first, std::size_t set)
-      : scene_(scene), first_(first), uv_(scene.paint.texcoords[set]), out_(scene.paint.tangents) {}
+      : scene_(scene), first_(first), uv_(scene.texturing.texcoords[set]), out_(scene.texturing.tangents) {}
 
   void run() {
     out_.resize(scene_.triangles.size());

@@ -16,7 +16,7 @@
 
 namespace kdray::scene {
 
-// Of the triangles from `first` on, into paint.tangents; `set` is that of the coordinates.
+// Of the triangles from `first` on, into texturing.tangents; `set` is that of the coordinates.
 void smooth_tangents(Scene& scene, std::size_t first, std::size_t set);
 
 }  // namespace kdray::scene

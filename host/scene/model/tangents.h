@@ -1,5 +1,5 @@
-// What    Tangents at triangles' corners as they are kept, in a set of coordinates of their own (paint.h):
-//         a direction in two numbers, and which way round the picture lies.
+// What    Tangents at triangles' corners as they are kept, in a set of coordinates of their own
+//         (texturing.h): a direction in two numbers, and which way round the picture lies.
 // Shape   The direction on an octahedron, laid flat into the square from -1 to 1; the second number is moved
 //         off 0 by kdray's KDRAY_TANGENT_OFFSET, to the side of handedness. So 0, 0 is no tangent.
 // Source  Meyer, Suessmuth, Sussner, Stamminger, Greiner, "On floating-point normal vectors", EGSR 2010.
@@ -8,7 +8,7 @@
 #include <array>
 
 #include "base/vec.h"
-#include "scene/textures/paint.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 

@@ -40,8 +40,9 @@ void turn_round(Scene& scene) {
     std::swap(t.vertex[1], t.vertex[2]);
     std::swap(t.normal[1], t.normal[2]);
   }
-  for (layout::CornerColors& colors : scene.paint.colors) std::swap(colors.c[1], colors.c[2]);
-  for (auto* const set : {&scene.paint.texcoords[0], &scene.paint.texcoords[1], &scene.paint.tangents})
+  for (layout::CornerColors& colors : scene.texturing.colors) std::swap(colors.c[1], colors.c[2]);
+  for (auto* const set :
+       {&scene.texturing.texcoords[0], &scene.texturing.texcoords[1], &scene.texturing.tangents})
     for (layout::TexCoords& at : *set) std::swap(at.uv[1], at.uv[2]);
 }
 
@@ -54,7 +55,7 @@ void apply_transform(const dmat4& m, Scene& scene) {
     const dmat3 of_normals = glm::transpose(glm::inverse(linear));
     for (vec3& n : scene.normals) n = vec3(glm::normalize(of_normals * dvec3(n)));
   }
-  move_tangents(linear, scene.paint.tangents);
+  move_tangents(linear, scene.texturing.tangents);
   if (glm::determinant(linear) < 0) turn_round(scene);
   primitives::for_each_shape([&](auto kind) {
     auto& shapes = decltype(kind)::of(scene);

@@ -1,4 +1,4 @@
-// What    Pictures that are made of others, since a coat asks for one where a file has two: normals from
+// What    Pictures that are made of others, since a map is one picture where a file has two: normals from
 //         heights, and colours with the alpha of another picture.
 // Units   As Picture has them: bytes. Heights and alpha are from 0 to 255.
 #pragma once
@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "scene/textures/paint.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 

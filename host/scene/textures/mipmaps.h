@@ -5,14 +5,14 @@
 // Why     Whole numbers from the bytes on, so that they are the same on every machine: means are taken of
 //         65535ths of linear light, rounded to the nearest; of these the next level is made, and the nearest
 //         byte of each is stored.
-// Units   Texels are words, as kernels/layout/paint.layout.h has them.
+// Units   Texels are words, as kernels/layout/textures.layout.h has them.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "scene/textures/paint.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/textures/paint.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 

@@ -17,9 +17,9 @@ struct Use {
   bool mipmaps[2] = {false, false};  // of linear colours, of codes
 };
 
-std::vector<Use> uses_of(const Paint& paint) {
-  std::vector<Use> uses(paint.pictures.size());
-  for (const Texture& t : paint.textures) {
+std::vector<Use> uses_of(const Texturing& texturing) {
+  std::vector<Use> uses(texturing.pictures.size());
+  for (const Texture& t : texturing.textures) {
     Use& use = uses[t.picture];
     if (!use.shown) use.curved = t.curved;
     use.shown = true;
@@ -48,21 +48,22 @@ std::shared_ptr<const Picture> reduced(const Picture& picture, bool curved, std:
 
 }  // namespace
 
-std::uint64_t picture_bytes(const Paint& paint) {
-  const std::vector<Use> uses = uses_of(paint);
+std::uint64_t picture_bytes(const Texturing& texturing) {
+  const std::vector<Use> uses = uses_of(texturing);
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < uses.size(); ++i)
-    sum += bytes_of({paint.pictures[i]->width, paint.pictures[i]->height}, uses[i]);
+    sum += bytes_of({texturing.pictures[i]->width, texturing.pictures[i]->height}, uses[i]);
   return sum;
 }
 
-LimitedPictures limit_pictures(Paint& paint, std::uint64_t most_bytes) {
+LimitedPictures limit_pictures(Texturing& texturing, std::uint64_t most_bytes) {
   LimitedPictures out;
-  out.bytes = out.bytes_before = picture_bytes(paint);
+  out.bytes = out.bytes_before = picture_bytes(texturing);
   if (out.bytes <= most_bytes) return out;
-  const std::vector<Use> uses = uses_of(paint);
+  const std::vector<Use> uses = uses_of(texturing);
   std::vector<std::vector<LevelSize>> sizes;
-  for (const auto& picture : paint.pictures) sizes.push_back(level_sizes(picture->width, picture->height));
+  for (const auto& picture : texturing.pictures)
+    sizes.push_back(level_sizes(picture->width, picture->height));
   std::vector<std::size_t> level(uses.size(), 0);
   const auto size_of = [&](std::size_t i) {
     return level[i] + 1 < sizes[i].size() && uses[i].shown ? sizes[i][level[i]].texels() : 0;
@@ -78,7 +79,7 @@ LimitedPictures limit_pictures(Paint& paint, std::uint64_t most_bytes) {
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (level[i] == 0) continue;
     ++out.n_halved;
-    paint.pictures[i] = reduced(*paint.pictures[i], uses[i].curved, level[i], sizes[i][level[i]]);
+    texturing.pictures[i] = reduced(*texturing.pictures[i], uses[i].curved, level[i], sizes[i][level[i]]);
   }
   return out;
 }

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scene/textures/paint.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 
@@ -17,8 +17,8 @@ struct LimitedPictures {
   std::uint64_t bytes_before = 0, bytes = 0;
 };
 
-std::uint64_t picture_bytes(const Paint& paint);
+std::uint64_t picture_bytes(const Texturing& texturing);
 
-LimitedPictures limit_pictures(Paint& paint, std::uint64_t most_bytes);
+LimitedPictures limit_pictures(Texturing& texturing, std::uint64_t most_bytes);
 
 }  // namespace kdray::scene

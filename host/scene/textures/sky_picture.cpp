@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "io/image/exr.h"
 #include "scene/import/read_file.h"
-#include "scene/textures/paint.h"
 #include "scene/textures/picture.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/textures/paint.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 

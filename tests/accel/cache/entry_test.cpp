@@ -18,7 +18,7 @@ constexpr Hash kKey{0x123456789abcdef0, 0x0fedcba987654321};
 constexpr std::size_t kPage = 4096;
 
 // The header's checksum lies behind the bytes that it is of; entry.cpp.
-// The facts, materials, coats and lights, fourteen arrays of the flat form, the wide form's nodes; each
+// The facts, materials, maps and lights, fourteen arrays of the flat form, the wide form's nodes; each
 // shape's own array, and each kind's blocks.
 constexpr std::size_t kSections = 1 + 3 + 14 + 1 + (primitives::kKinds - 1) + primitives::kKinds;
 constexpr std::size_t kHeaderBytes = 8 + 8 + 8 + 16 + kSections * 40;
@@ -66,20 +66,20 @@ TEST_F(EntryTest, GivesBackWhatWasWritten) {
   EXPECT_GT(made.flat.triangles.size(), 0u);
 }
 
-TEST_F(EntryTest, GivesBackWhatIsPainted) {
-  const prepare::Prepared painted = test::prepared_from(folder.put(
+TEST_F(EntryTest, GivesBackWhatIsTextured) {
+  const prepare::Prepared textured = test::prepared_from(folder.put(
       "a.ply",
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list "
       "uchar int vertex_indices\nend_header\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n"));
-  ASSERT_EQ(painted.flat.corner_colors.size(), 1u);
-  write_entry(file, kKey, painted);
+  ASSERT_EQ(textured.flat.corner_colors.size(), 1u);
+  write_entry(file, kKey, textured);
   const std::optional<prepare::Prepared> found = read_entry(file, kKey);
   ASSERT_TRUE(found);
-  EXPECT_EQ(test::everything(*found), test::everything(painted));
+  EXPECT_EQ(test::everything(*found), test::everything(textured));
   ASSERT_EQ(found->flat.corner_colors.size(), 1u);
-  EXPECT_EQ(found->settings.paint.coats, painted.settings.paint.coats);
-  EXPECT_EQ(found->features, painted.features);
+  EXPECT_EQ(found->settings.texturing.material_maps, textured.settings.texturing.material_maps);
+  EXPECT_EQ(found->features, textured.features);
 }
 
 TEST_F(EntryTest, ArraysStartAtPagesOfTheMapping) {

@@ -85,10 +85,10 @@ TEST(Core, FaceCountsWhereTheCoreTouchesIt) {
 }
 
 // One that lies in the floor's plane may be hit from above all the same.
-TEST(Core, AStitchIsNoPartOfAFace) {
-  layout::Triangle stitch = triangle({-6, 0, 0}, {0, 0, 0}, {6, 0, 0});
-  stitch.normals = KDRAY_STITCH;
-  const Core core = core_of(flat_of({floor_at(0), stitch}, {}));
+TEST(Core, AZeroAreaTriangleIsNoPartOfAFace) {
+  layout::Triangle zero_area = triangle({-6, 0, 0}, {0, 0, 0}, {6, 0, 0});
+  zero_area.normals = KDRAY_ZERO_AREA;
+  const Core core = core_of(flat_of({floor_at(0), zero_area}, {}));
   EXPECT_TRUE(core.has_faces);
   EXPECT_EQ(core.lo, vec3(-6, 0, 0));
   EXPECT_EQ(core.hi, vec3(6, 0, 0));

@@ -68,13 +68,13 @@ TEST(Features, SmoothNormalsBackgroundAndSamples) {
   EXPECT_EQ(features_of_samples(4), KDRAY_FEATURE_SUPERSAMPLE);
 }
 
-TEST(Features, StitchesAndSmoothNormalsAreApart) {
+TEST(Features, ZeroAreaAndSmoothNormalsAreApart) {
   scene::Scene s = triangle_scene();
-  EXPECT_FALSE(mask_of(s) & KDRAY_FEATURE_STITCHES);
+  EXPECT_FALSE(mask_of(s) & KDRAY_FEATURE_ZERO_AREA);
   const auto first = static_cast<std::uint32_t>(s.vertices.size());
   for (const double x : {0, 1, 3}) s.vertices.push_back(dvec3(x, 0, 0));
   s.triangles.push_back({.vertex = {first, first + 1, first + 2}, .number = 1});
-  EXPECT_TRUE(mask_of(s) & KDRAY_FEATURE_STITCHES);
+  EXPECT_TRUE(mask_of(s) & KDRAY_FEATURE_ZERO_AREA);
   EXPECT_FALSE(mask_of(s) & KDRAY_FEATURE_SMOOTH);
 }
 

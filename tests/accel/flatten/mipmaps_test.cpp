@@ -116,19 +116,19 @@ TEST(Mipmaps, TheLaterLevelsAreTheSameWithoutTheFirst) {
 
 // One with mipmaps serves one without; of both kinds of colours there are two.
 TEST(Texels, EachPictureLiesThereOnce) {
-  scene::Paint paint;
-  paint.add(std::make_shared<const scene::Picture>(noise(8, 8)));
-  paint.add(scene::Texture{});
-  paint.add(scene::Texture{.minify = scene::Minify::linear_mipmap_linear});
-  paint.add(scene::Texture{.nearest = true, .minify = scene::Minify::nearest_mipmap_nearest});
-  paint.add(scene::Texture{.minify = scene::Minify::linear_mipmap_linear, .curved = false});
-  paint.add(scene::Texture{.curved = false});
-  const TexelPlan plan = plan_texels(paint);
+  scene::Texturing texturing;
+  texturing.add(std::make_shared<const scene::Picture>(noise(8, 8)));
+  texturing.add(scene::Texture{});
+  texturing.add(scene::Texture{.minify = scene::Minify::linear_mipmap_linear});
+  texturing.add(scene::Texture{.nearest = true, .minify = scene::Minify::nearest_mipmap_nearest});
+  texturing.add(scene::Texture{.minify = scene::Minify::linear_mipmap_linear, .curved = false});
+  texturing.add(scene::Texture{.curved = false});
+  const TexelPlan plan = plan_texels(texturing);
   EXPECT_EQ(plan.chains.size(), 2u);
   EXPECT_EQ(plan.chain_of, (std::vector<std::size_t>{0, 0, 0, 1, 0}));
   EXPECT_EQ(plan.n_texels, KDRAY_TEXEL_CURVE + 2 * (64u + 16 + 4 + 1));
   EXPECT_EQ(plan.chains[1].first, KDRAY_TEXEL_CURVE + 85u);
-  EXPECT_EQ(pack_texels(paint, plan).size(), plan.n_texels);
+  EXPECT_EQ(pack_texels(texturing, plan).size(), plan.n_texels);
 }
 
 }  // namespace

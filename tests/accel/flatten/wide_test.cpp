@@ -575,18 +575,18 @@ TEST(Wide, NormalBoundIsNotBelowWhatFloatsGive) {
 }
 
 // Among others in a block, and alone in a plane across an axis.
-TEST(Wide, AStitchHasAnInfiniteBound) {
+TEST(Wide, AZeroAreaTriangleHasAnInfiniteBound) {
   Random random(kSeed + 5);
   FlatScene flat = shapes_at_scale(random, 1, 20);
   for (layout::Triangle& t : flat.triangles) t.normals = KDRAY_NO_NORMALS;
   for (const std::size_t i : {3u, 9u, 19u}) {
-    flat.triangles[i].normals = KDRAY_STITCH | 7u;
+    flat.triangles[i].normals = KDRAY_ZERO_AREA | 7u;
     for (auto& corner : flat.triangles[i].v) corner[0] = 5;
   }
   const WideForm wide = make_wide(leaf_of_triangles(20), flat, 8);
   for (u32 i = 0; i < 20; ++i) {
-    const bool stitch = i == 3 || i == 9 || i == 19;
-    EXPECT_EQ(Lane(wide, 0, i).number(9) == INFINITY, stitch) << i;
+    const bool zero_area = i == 3 || i == 9 || i == 19;
+    EXPECT_EQ(Lane(wide, 0, i).number(9) == INFINITY, zero_area) << i;
   }
 }
 

@@ -94,7 +94,7 @@ TEST(Hostile, NeedlesInOnePlane) {
 }
 
 // Triangles without area: anywhere, along the axes, and all on one line.
-TEST(Hostile, Stitches) {
+TEST(Hostile, ZeroAreaTriangles) {
   Random random(28);
   for (int sort = 0; sort < 3; ++sort) {
     SCOPED_TRACE(sort);

@@ -84,13 +84,13 @@ TEST(VerifyCommand, FlippedAndDoubledFacesByTheirNumbers) {
 
 // A side has a corner more on the edge to the bottom; a triangle without area is in between, another has two
 // corners in one.
-TEST(VerifyCommand, StitchesCloseAndAreCounted) {
+TEST(VerifyCommand, ZeroAreaClosesAndIsCounted) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   const fs::path scene =
-      folder.put("stitched.obj", std::string(kCorners) +
-                                     "v 0.5 0 0\nf 5 6 7 8\nf 1 9 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n" +
-                                     kBottom + "f 1 2 9\nf 9 9 2\n");
+      folder.put("divided.obj", std::string(kCorners) +
+                                    "v 0.5 0 0\nf 5 6 7 8\nf 1 9 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n" +
+                                    kBottom + "f 1 2 9\nf 9 9 2\n");
   const Outcome run = verify(scene, {"--stats", "-"});
   ASSERT_TRUE(succeeds(run));
   EXPECT_TRUE(says(run, "1, 1 of them watertight")) << run.err;

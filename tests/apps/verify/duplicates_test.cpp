@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/verify/meshes.h"
-#include "support/stitched_meshes.h"
+#include "support/zero_area_meshes.h"
 
 namespace kdray::verify {
 namespace {
@@ -40,7 +40,7 @@ TEST(Duplicates, TheSameFaceTwiceOrTurnedOver) {
 }
 
 // They lie in their neighbours' planes, along their edges.
-TEST(Duplicates, StitchesOverlapNothing) {
+TEST(Duplicates, ZeroAreaOverlapsNothing) {
   for (test::LatticeMesh& m : std::vector{test::lattice_box(60), test::lattice_ball(6, 20, 12, 3)}) {
     test::divide_edges(m, 100, 2);
     const Meshed meshed(test::scene_of(m));

@@ -7,7 +7,7 @@
 #include "apps/verify/inside.h"
 #include "apps/verify/meshes.h"
 #include "apps/verify/random.h"
-#include "support/stitched_meshes.h"
+#include "support/zero_area_meshes.h"
 
 namespace kdray::verify {
 namespace {
@@ -64,9 +64,9 @@ TEST(Inside, ComponentsAreToldApartAndTurnsDoNotMatter) {
   }
 }
 
-// A box with many stitches is where the box is, but in the planes of its edges: the stitches part nothing.
+// A box with many zero-area triangles is where the box is, but in the planes of its edges: they part nothing.
 // (Seed 3.)
-TEST(Inside, StitchesDoNotMatter) {
+TEST(Inside, ZeroAreaDoesNotMatter) {
   test::LatticeMesh box = test::lattice_box(60);
   test::divide_edges(box, 40, 1);
   const Meshed m(test::scene_of(box));

@@ -8,7 +8,7 @@
 #include "apps/verify/tracer.h"
 #include "apps/verify/verify.h"
 #include "support/device.h"
-#include "support/stitched_meshes.h"
+#include "support/zero_area_meshes.h"
 
 namespace kdray::verify {
 namespace {
@@ -44,15 +44,15 @@ TEST_P(Verify, ClosedMeshesDoNotLeak) {
 }
 
 // T-junctions that are closed by triangles without area: those are hit, left and shaded like others.
-TEST_P(Verify, StitchesCloseAndAreLeft) {
-  for (const test::LatticeMesh& m : test::stitched_meshes()) {
+TEST_P(Verify, ZeroAreaClosesAndIsLeft) {
+  for (const test::LatticeMesh& m : test::zero_area_meshes()) {
     SCOPED_TRACE(m.name);
     Builder b;
     b.scene() = test::scene_of(m);
     const Findings f = check(b, 40000);
     expect_sound(f);
     EXPECT_EQ(f.topology.count([](const Component& c) { return c.watertight; }), 1u);
-    EXPECT_EQ(f.counts.stitches, m.n_without_area());
+    EXPECT_EQ(f.counts.zero_area, m.n_without_area());
     EXPECT_GT(f.probes.from_inside, 10000u);
   }
 }

@@ -18,7 +18,7 @@
 #include "scene/import/load.h"
 #include "scene/primitives/shapes.h"
 #include "scene/scratch.h"
-#include "support/stitched_meshes.h"
+#include "support/zero_area_meshes.h"
 
 namespace kdray::test {
 namespace {
@@ -44,7 +44,7 @@ void add_words(Words& words, const flatten::FlatScene& flat) {
       if constexpr (!Kind::kIsShape) {
         if (item.normals != KDRAY_NO_NORMALS)
           append(bytes, &flat.normals[item.normals & KDRAY_NORMALS_MASK], 1);
-        item.normals = item.normals == KDRAY_NO_NORMALS ? item.normals : item.normals & KDRAY_STITCH;
+        item.normals = item.normals == KDRAY_NO_NORMALS ? item.normals : item.normals & KDRAY_ZERO_AREA;
         const auto rows = [&](const auto& all) {
           const std::size_t each = all.size() / flat.triangles.size();
           append(bytes, all.data() + i * each, each);
@@ -67,7 +67,7 @@ void expect_same_whole(const prepare::Prepared& one, const prepare::Prepared& he
   EXPECT_EQ(held.settings.warnings, one.settings.warnings);
   EXPECT_EQ(held.settings.name, one.settings.name);
   EXPECT_EQ(held.settings.materials, one.settings.materials);
-  EXPECT_EQ(held.settings.paint.coats, one.settings.paint.coats);
+  EXPECT_EQ(held.settings.texturing.material_maps, one.settings.texturing.material_maps);
   EXPECT_EQ(held.geometry.space, one.geometry.space);
   EXPECT_EQ(held.geometry.bounds.lo, one.geometry.bounds.lo);
   EXPECT_EQ(held.geometry.bounds.hi, one.geometry.bounds.hi);
@@ -75,7 +75,7 @@ void expect_same_whole(const prepare::Prepared& one, const prepare::Prepared& he
   EXPECT_EQ(held.counts.primitives, one.counts.primitives);
   EXPECT_EQ(held.counts.triangles, one.counts.triangles);
   EXPECT_EQ(held.counts.spheres, one.counts.spheres);
-  EXPECT_EQ(held.counts.stitches, one.counts.stitches);
+  EXPECT_EQ(held.counts.zero_area, one.counts.zero_area);
   EXPECT_EQ(held.features, one.features);
   ASSERT_EQ(held.settings.camera.has_value(), one.settings.camera.has_value());
   if (one.settings.camera) {
@@ -83,7 +83,7 @@ void expect_same_whole(const prepare::Prepared& one, const prepare::Prepared& he
     EXPECT_EQ(held.settings.camera->at, one.settings.camera->at);
   }
   EXPECT_EQ(bytes_of(held.flat.materials), bytes_of(one.flat.materials));
-  EXPECT_EQ(bytes_of(held.flat.coats), bytes_of(one.flat.coats));
+  EXPECT_EQ(bytes_of(held.flat.material_maps), bytes_of(one.flat.material_maps));
   EXPECT_EQ(bytes_of(held.flat.textures), bytes_of(one.flat.textures));
   EXPECT_EQ(bytes_of(held.flat.texels), bytes_of(one.flat.texels));
   EXPECT_EQ(bytes_of(held.flat.lights), bytes_of(one.flat.lights));
@@ -190,10 +190,10 @@ TEST(ScenePartition, OfPlyFilesReadInShares) {
     }
 }
 
-TEST(ScenePartition, OfMeshesWithStitches) {
+TEST(ScenePartition, OfMeshesWithZeroArea) {
   const ScratchFolder folder;
   int i = 0;
-  for (const LatticeMesh& mesh : stitched_meshes()) {
+  for (const LatticeMesh& mesh : zero_area_meshes()) {
     SCOPED_TRACE(mesh.name);
     PlyWriter ply(mesh.vertices.size(), mesh.triangles.size(), {});
     for (const auto& v : mesh.vertices)

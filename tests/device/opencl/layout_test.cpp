@@ -7,12 +7,12 @@
 #include "layout/closest.layout.h"
 #include "layout/frame.layout.h"
 #include "layout/kinds.h"
-#include "layout/paint.layout.h"
 #include "layout/primitives.layout.h"
 #include "layout/rays.layout.h"
 #include "layout/shading.layout.h"
 #include "layout/simd_test.layout.h"
 #include "layout/sky.layout.h"
+#include "layout/textures.layout.h"
 #include "layout/tree.layout.h"
 #include "layout/verify.layout.h"
 #include "layout/wide.layout.h"
@@ -42,11 +42,11 @@ const std::vector<Probe> kProbes = {KDRAY_KINDS(PRIMITIVE) SIZE(KdNode),
                                     SIZE(VertexNormals),
                                     SIZE(Material),
                                     SIZE(Light),
-                                    SIZE(Coat),
+                                    SIZE(MaterialMaps),
                                     SIZE(Texture),
                                     SIZE(CornerColors),
                                     SIZE(TexCoords),
-                                    OFFSET(Coat, how),
+                                    OFFSET(MaterialMaps, how),
                                     OFFSET(Texture, how),
                                     SIZE(Sky),
                                     OFFSET(Sky, height),
@@ -148,8 +148,8 @@ class LayoutTest : public test::EachDevice {};
 
 TEST_P(LayoutTest, TheDeviceSeesTheSameStructs) {
   std::string source;
-  for (const char* header : {"closest", "frame", "paint", "primitives", "rays", "shading", "simd_test", "sky",
-                             "tree", "verify", "wide"})
+  for (const char* header : {"closest", "frame", "textures", "primitives", "rays", "shading", "simd_test",
+                             "sky", "tree", "verify", "wide"})
     source += "#include \"layout/" + std::string(header) + ".layout.h\"\n";
   source += "__kernel void probe(__global uint* out) {\n";
   for (std::size_t i = 0; i < kProbes.size(); ++i)

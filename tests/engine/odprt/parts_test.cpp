@@ -175,7 +175,7 @@ TEST_F(Parts, NormalsFollowTheirTriangles) {
         EXPECT_EQ(t.material, same.material);
         ASSERT_EQ(t.normals == KDRAY_NO_NORMALS, same.normals == KDRAY_NO_NORMALS);
         if (t.normals == KDRAY_NO_NORMALS) continue;
-        ASSERT_EQ(t.normals & KDRAY_STITCH, same.normals & KDRAY_STITCH);
+        ASSERT_EQ(t.normals & KDRAY_ZERO_AREA, same.normals & KDRAY_ZERO_AREA);
         const layout::VertexNormals &a = part.flat.normals[t.normals & KDRAY_NORMALS_MASK],
                                     &b = scene.flat.normals[same.normals & KDRAY_NORMALS_MASK];
         EXPECT_TRUE(std::equal(&a.n[0][0], &a.n[0][0] + 9, &b.n[0][0])) << name;

@@ -32,7 +32,7 @@ struct FrameSettings {
   Balance balance = Balance::pilot;
   transport::Link link = {.latency = 0, .jitter = 0};
   std::uint64_t seed = 1;
-  std::vector<device::Faults*> faults = {};
+  std::vector<device::FaultInjector*> fault_injector = {};
   bool small = false;  // a frame of few rays
 };
 
@@ -66,7 +66,7 @@ class OdprtRanksTest : public test::EachDevice {
     const device::Context context(GetParam(), settings.queues_of[rank], 0, test::kept_programs());
     wavefront::Programs programs(context, hall.tree.max_depth, hall.wide);
     Request request = request_of(context, programs, settings);
-    if (rank < settings.faults.size()) request.faults = settings.faults[rank];
+    if (rank < settings.fault_injector.size()) request.fault_injector = settings.fault_injector[rank];
     DividedScene scene(hall.flat, hall.wide);
     ready();
     if (ranks) request.table = join(*ranks, request.queues.size(), request.n_slices).table;
@@ -167,14 +167,14 @@ TEST_P(OdprtRanksTest, AnyNetwork) {
 }
 
 TEST_P(OdprtRanksTest, ARankThatFailsEndsAll) {
-  device::Faults second("0@1");
+  device::FaultInjector second("0@1");
   EXPECT_TRUE(test::fails(
       [&] {
-        render({.queues_of = {1, 1, 1}, .faults = {nullptr, &second}});
+        render({.queues_of = {1, 1, 1}, .fault_injector = {nullptr, &second}});
       },
       "rank 1: ", ErrorCode::no_device));
-  device::Faults first("0@1");
-  EXPECT_THROW(render({.queues_of = {1, 1, 1}, .faults = {&first}}), Error);
+  device::FaultInjector first("0@1");
+  EXPECT_THROW(render({.queues_of = {1, 1, 1}, .fault_injector = {&first}}), Error);
 }
 
 KDRAY_FOR_EACH_DEVICE(OdprtRanksTest);

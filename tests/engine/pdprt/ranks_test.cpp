@@ -29,7 +29,7 @@ class RanksTest : public test::EachDevice {
 
   // `queues_of`: of each rank. What rank 0 has; what the ranks throw is thrown, rank 0's first.
   Result render(const std::vector<int>& queues_of, const Task& wanted,
-                const std::vector<device::Faults*>& faults = {}) const {
+                const std::vector<device::FaultInjector*>& faults = {}) const {
     std::vector<Result> results(queues_of.size());
     test::run_ranks(transport::in_process(static_cast<int>(queues_of.size())),
                     [&](transport::Ranks& ranks, const std::function<void()>& ready) {
@@ -37,7 +37,7 @@ class RanksTest : public test::EachDevice {
                       Task task = wanted;
                       task.ranks = &ranks;
                       task.shared_frame = hash_of(std::string("a frame"));
-                      if (rank < faults.size()) task.faults = faults[rank];
+                      if (rank < faults.size()) task.fault_injector = faults[rank];
                       const device::Context context(GetParam(), queues_of[rank], 0, test::kept_programs());
                       ready();
                       results[rank] = hall.render({context}, kOfRanks, task);
@@ -108,20 +108,20 @@ TEST_P(RanksTest, BandsAndAdaptiveSampling) {
 }
 
 TEST_P(RanksTest, AQueueThatFailsCostsNothing) {
-  device::Faults second("1@2");
+  device::FaultInjector second("1@2");
   const Result result = render({1, 2, 1}, long_task(), {nullptr, &second});
   EXPECT_EQ(result.image.pixels, alone(long_task()).image.pixels);
   EXPECT_NE(result.queues[2].failure, "");
 }
 
 TEST_P(RanksTest, ARankThatFailsEndsAll) {
-  device::Faults second("0@1");
+  device::FaultInjector second("0@1");
   EXPECT_TRUE(test::fails(
       [&] {
         render({1, 1, 1}, long_task(), {nullptr, &second});
       },
       "rank 1: ", ErrorCode::no_device));
-  device::Faults first("0@1");
+  device::FaultInjector first("0@1");
   EXPECT_THROW(render({1, 1, 1}, long_task(), {&first}), Error);
 }
 

@@ -118,10 +118,10 @@ TEST_P(RenderTest, AQueueThatFailsIsReplaced) {
         for (const int launch : {1, 2, 3}) {
           SCOPED_TRACE(fmt::format("division {}, queue {} of {}, launch {}", static_cast<int>(division),
                                    queue, n_queues, launch));
-          device::Faults faults(fmt::format("{}@{}", queue, launch));
+          device::FaultInjector faults(fmt::format("{}@{}", queue, launch));
           Task task = hall.task();
           task.division = division;
-          task.faults = &faults;
+          task.fault_injector = &faults;
           const Result result = render(n_queues, kSmall, task);
           expect_whole(result);
           for (int q = 0; q < n_queues; ++q)
@@ -140,9 +140,9 @@ TEST_P(RenderTest, AQueueThatFailsIsReplaced) {
 TEST_P(RenderTest, SoItIsWithABagAndManyFaults) {
   for (const int launch : {1, 2, 3, 5, 9}) {
     SCOPED_TRACE(launch);
-    device::Faults faults(fmt::format("0@{},2@{}", launch, launch + 1));
+    device::FaultInjector faults(fmt::format("0@{},2@{}", launch, launch + 1));
     Task task = hall.task();
-    task.faults = &faults;
+    task.fault_injector = &faults;
     expect_whole(render(3, kSmall, task));
   }
 }
@@ -150,9 +150,9 @@ TEST_P(RenderTest, SoItIsWithABagAndManyFaults) {
 TEST_P(RenderTest, AndInLaterBands) {
   for (const int launch : {4, 8, 20}) {
     SCOPED_TRACE(launch);
-    device::Faults faults(fmt::format("1@{}", launch));
+    device::FaultInjector faults(fmt::format("1@{}", launch));
     Task task = hall.task();
-    task.faults = &faults;
+    task.fault_injector = &faults;
     task.division = Division::interleaved;
     task.max_film_bytes = 61 * 12 * 24;
     const Result result = render(2, kSmall, task);
@@ -163,9 +163,9 @@ TEST_P(RenderTest, AndInLaterBands) {
 
 TEST_P(RenderTest, WhenAllQueuesFailSoDoesTheFrame) {
   for (const int n_queues : {1, 3}) {
-    device::Faults faults("0@1,1@2,2@3");
+    device::FaultInjector faults("0@1,1@2,2@3");
     Task task = hall.task();
-    task.faults = &faults;
+    task.fault_injector = &faults;
     task.division = Division::interleaved;
     try {
       (void)render(n_queues, kSmall, task);
@@ -179,25 +179,25 @@ TEST_P(RenderTest, WhenAllQueuesFailSoDoesTheFrame) {
 }
 
 TEST_P(RenderTest, OtherQueuesTakeOverWhereMemoryIsTooLittle) {
-  device::Faults faults("0@2:memory");
+  device::FaultInjector faults("0@2:memory");
   Task task = hall.task();
-  task.faults = &faults;
+  task.fault_injector = &faults;
   task.division = Division::interleaved;
   const Result result = render(2, kSmall, task);
   expect_whole(result);
   EXPECT_NE(result.queues[0].failure.find("memory does not suffice"), std::string::npos)
       << result.queues[0].failure;
-  device::Faults on_all("0@2:memory,1@1:memory");
-  task.faults = &on_all;
+  device::FaultInjector on_all("0@2:memory,1@1:memory");
+  task.fault_injector = &on_all;
   EXPECT_TRUE(test::fails([&] { (void)render(2, kSmall, task); }, "memory does not suffice",
                           ErrorCode::out_of_memory));
 }
 
 TEST_P(RenderTest, ABugOrAnErrorOfKdraysOwnEndsTheFrame) {
   const auto ends = [&](const std::string& specification, const std::string& text, ErrorCode code) {
-    device::Faults faults(specification);
+    device::FaultInjector faults(specification);
     Task task = hall.task();
-    task.faults = &faults;
+    task.fault_injector = &faults;
     task.division = Division::interleaved;
     return test::fails([&] { (void)render(3, kSmall, task); }, text, code);
   };

@@ -37,15 +37,15 @@ constexpr layout::Features kT = KDRAY_FEATURE_KIND(TRIANGLE), kSmooth = KDRAY_FE
                            kDiffuse = KDRAY_FEATURE_DIFFUSE, kLights = KDRAY_FEATURE_LIGHTS,
                            kFallOff = KDRAY_FEATURE_ATTENUATION, kDirectional = KDRAY_FEATURE_DIRECTIONAL,
                            kSpot = KDRAY_FEATURE_SPOT, kBackground = KDRAY_FEATURE_BACKGROUND,
-                           kSamples = KDRAY_FEATURE_SUPERSAMPLE, kStitches = KDRAY_FEATURE_STITCHES,
-                           kCoats = KDRAY_FEATURE_COATS, kColors = KDRAY_FEATURE_CORNER_COLORS,
+                           kSamples = KDRAY_FEATURE_SUPERSAMPLE, kZeroArea = KDRAY_FEATURE_ZERO_AREA,
+                           kMaps = KDRAY_FEATURE_MATERIAL_MAPS, kColors = KDRAY_FEATURE_CORNER_COLORS,
                            kTextures = KDRAY_FEATURE_TEXTURES, kCutouts = KDRAY_FEATURE_CUTOUTS,
                            kSky = KDRAY_FEATURE_SKY, kArea = KDRAY_FEATURE_AREA_LIGHTS,
                            kLens = KDRAY_FEATURE_LENS;
 constexpr layout::Features kKinds = (KDRAY_FEATURE_OF_KIND(primitives::kKinds) - 1) & KDRAY_FEATURE_ALL_KINDS;
 constexpr layout::Features kLit = kDiffuse | kLights,
-                           kAll = kKinds | kStitches | kSmooth | kNumbers | kReflect | kTransmit | kSpecular |
-                                  kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples | kCoats |
+                           kAll = kKinds | kZeroArea | kSmooth | kNumbers | kReflect | kTransmit | kSpecular |
+                                  kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples | kMaps |
                                   kColors | kTextures | kCutouts | kSky | kArea | kLens;
 
 constexpr std::uint64_t kSeed = 3;
@@ -98,31 +98,31 @@ void add_triangles(scene::Scene& s, layout::Features mask, std::uint32_t first_n
     if (i == 1 && has(mask, kSmooth)) t.normal = {0, 1, 2};
     s.triangles.push_back(t);
   }
-  if (!has(mask, kStitches)) return;
+  if (!has(mask, kZeroArea)) return;
   // An edge of the first, and its middle.
   s.vertices.push_back({0, -1, -2});
   s.triangles.push_back({.vertex = {0, 6, 1}, .number = first_number + 2});
 }
 
 // A picture of three by two, more than half there, on all triangles.
-void add_coat(scene::Scene& s, layout::Features mask) {
-  scene::Coat coat{.diffuse = std::exchange(s.materials[0].diffuse, vec3(0))};
+void add_maps(scene::Scene& s, layout::Features mask) {
+  scene::MaterialMaps maps{.diffuse = std::exchange(s.materials[0].diffuse, vec3(0))};
   if (has(mask, kTextures)) {
     auto picture = std::make_shared<scene::Picture>(scene::blank_picture("p", 3, 2));
     std::uint8_t* to = picture->texels.data();
     for (int i = 0; i < 6; ++i)
       for (const int byte : {40 * i, 200, 90, i == 2 ? 0 : 255}) *to++ = static_cast<std::uint8_t>(byte);
-    s.paint.pictures = {picture};
-    coat.base = s.paint.add(scene::Texture{});
-    s.paint.texcoords[0].assign(s.triangles.size(), {{{0, 0}, {2, 0}, {1, 1.5f}}});
+    s.texturing.pictures = {picture};
+    maps.base = s.texturing.add(scene::Texture{});
+    s.texturing.texcoords[0].assign(s.triangles.size(), {{{0, 0}, {2, 0}, {1, 1.5f}}});
   }
   if (has(mask, kColors)) {
-    coat.colored = 1;
-    s.paint.colors.assign(s.triangles.size(),
-                          {{{0xffff8000u, 0xffff4000u}, {0x1234ffffu, 0xffffffffu}, {0, ~0u}}});
+    maps.colored = 1;
+    s.texturing.colors.assign(s.triangles.size(),
+                              {{{0xffff8000u, 0xffff4000u}, {0x1234ffffu, 0xffffffffu}, {0, ~0u}}});
   }
-  if (has(mask, kCutouts)) coat.mode = scene::Alpha::mask;
-  s.materials[0].coat = s.paint.add(coat);
+  if (has(mask, kCutouts)) maps.mode = scene::Alpha::mask;
+  s.materials[0].maps = s.texturing.add(maps);
 }
 
 scene::Scene scene_of(layout::Features mask) {
@@ -131,7 +131,7 @@ scene::Scene scene_of(layout::Features mask) {
   s.lights = lights_of(mask);
   const std::uint32_t first_number = has(mask, kNumbers) ? 3 : 0;
   if (has(mask, kT)) add_triangles(s, mask, first_number);
-  if (has(mask, kCoats)) add_coat(s, mask);
+  if (has(mask, kMaps)) add_maps(s, mask);
   test::Draw draw(kSeed);
   primitives::for_each_shape([&](auto kind) {
     if (!has(mask, KDRAY_FEATURE_OF_KIND(kind.kNumber))) return;
@@ -229,7 +229,7 @@ std::vector<layout::Features> kinds() {
 
 // Each kind alone and with each other.
 std::vector<layout::Features> geometry_masks() {
-  std::vector<layout::Features> masks{0, kT, kT | kSmooth | kLit, kT | kStitches | kLit,
+  std::vector<layout::Features> masks{0, kT, kT | kSmooth | kLit, kT | kZeroArea | kLit,
                                       kKinds | kNumbers | kLit};
   for (const layout::Features a : kinds()) {
     masks.push_back(a | kNumbers | kLit);
@@ -257,15 +257,16 @@ std::vector<layout::Features> materials_masks() {
   return masks;
 }
 
-const std::vector<layout::Features> kPaintMasks = {kT | kLit | kCoats,
-                                                   kT | kLit | kCoats | kColors,
-                                                   kT | kLit | kCoats | kTextures,
-                                                   kT | kLit | kCoats | kTextures | kColors,
-                                                   kT | kLit | kCoats | kTextures | kCutouts,
-                                                   kT | kLit | kCoats | kColors | kCutouts,
-                                                   kT | kSmooth | kLit | kCoats | kTextures,
-                                                   kT | kTransmit | kLit | kCoats | kTextures | kCutouts,
-                                                   kKinds | kNumbers | kLit | kCoats | kTextures | kCutouts};
+const std::vector<layout::Features> kTexturingMasks = {
+    kT | kLit | kMaps,
+    kT | kLit | kMaps | kColors,
+    kT | kLit | kMaps | kTextures,
+    kT | kLit | kMaps | kTextures | kColors,
+    kT | kLit | kMaps | kTextures | kCutouts,
+    kT | kLit | kMaps | kColors | kCutouts,
+    kT | kSmooth | kLit | kMaps | kTextures,
+    kT | kTransmit | kLit | kMaps | kTextures | kCutouts,
+    kKinds | kNumbers | kLit | kMaps | kTextures | kCutouts};
 const std::vector<layout::Features> kLightsMasks = {kT | kLit | kFallOff,
                                                     kT | kLit | kDirectional,
                                                     kT | kLit | kSpot,
@@ -344,8 +345,8 @@ TEST_P(FeaturesTest, Materials) {
   draw(materials_masks());
 }
 
-TEST_P(FeaturesTest, Paint) {
-  draw(kPaintMasks);
+TEST_P(FeaturesTest, Texturing) {
+  draw(kTexturingMasks);
 }
 
 TEST_P(FeaturesTest, Lights) {
@@ -386,7 +387,7 @@ TEST_P(FeaturesTest, EverythingStageByStage) {
 TEST_P(FeaturesTest, EverythingInOneLaunch) {
   Schedule fused = kByStages;
   fused.fused = true;
-  for (const auto& masks : {geometry_masks(), materials_masks(), kPaintMasks, kLightsMasks, kFilmMasks})
+  for (const auto& masks : {geometry_masks(), materials_masks(), kTexturingMasks, kLightsMasks, kFilmMasks})
     expect_the_same_with_everything(masks, fused);
 }
 

@@ -73,7 +73,7 @@ class Batch {
                                  {0.5f, 0.4f, 0.3f},
                                  10,
                                  1.5f,
-                                 KDRAY_NO_COAT,
+                                 KDRAY_NO_MAPS,
                                  {}};
     std::array<layout::Light, kManyLights> lights{};
     for (cl_uint k = 0; k < kManyLights; ++k) {
@@ -132,7 +132,7 @@ class Batch {
                                                    KDRAY_FEATURE_INSTANCES | KDRAY_FEATURE_FOOTPRINTS))));
 #define KDRAY_SET_NONE(access, type, name) kernel.set(K::name, none);
     KDRAY_SURFACE_ARRAYS(KDRAY_SET_NONE)
-    KDRAY_PAINT_ARRAYS(KDRAY_SET_NONE)
+    KDRAY_TEXTURING_ARRAYS(KDRAY_SET_NONE)
     KDRAY_SKY_ARRAYS(KDRAY_SET_NONE)
 #undef KDRAY_SET_NONE
     kernel.set(K::triangles, floors).set(K::materials, glasses).set(K::lights, lamps).set(K::frame, frame);

@@ -38,7 +38,7 @@ std::optional<RawVector<std::array<float, 4>>> MeshReader::colors_of(const JsonN
 // The triangles, which are the scene's last ones, are named by their vertices within the primitive.
 void MeshReader::add_colors(const RawVector<std::array<float, 4>>& values,
                             std::span<const std::array<std::uint32_t, 3>> triangles) {
-  auto& colors = into_->paint.colors;
+  auto& colors = into_->texturing.colors;
   reserve_more(colors, into_->triangles.size() - colors.size());
   colors.resize(into_->triangles.size() - triangles.size(), kWhiteCorners);
   for (const auto& corners : triangles) {
@@ -60,7 +60,7 @@ void MeshReader::add_texcoords(const JsonNode& attributes,
     if (!index) continue;
     const auto values = read_pairs(document_, document_.entry("accessors", *index), NotFinite::nan);
     if (!are_good(values, "texture coordinates", n_vertices)) continue;
-    auto& out = into_->paint.texcoords[set];
+    auto& out = into_->texturing.texcoords[set];
     reserve_more(out, into_->triangles.size() - out.size());
     out.resize(into_->triangles.size() - triangles.size());
     for (const auto& corners : triangles) {
@@ -94,7 +94,7 @@ void MeshReader::add_tangents(const RawVector<std::array<double, 4>>& values, co
     const double side = glm::determinant(m) < 0 ? -1 : 1;
     packed[i] = packed_tangent({safe_normalize(m * ways[i]), values[i][3] < 0 ? -side : side});
   }
-  auto& out = into_->paint.tangents;
+  auto& out = into_->texturing.tangents;
   reserve_more(out, into_->triangles.size() - out.size());
   out.resize(into_->triangles.size() - triangles.size());
   for (const auto& corners : triangles) {

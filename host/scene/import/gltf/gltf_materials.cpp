@@ -135,8 +135,9 @@ Material specular_glossiness(const JsonNode& node, const Surface& s) {
 }
 
 // The terms of a surface whose base colour is multiplied by something else at each place: what doesn't depend
-// on it stays the material's, the rest is its coat's.
-Material coated(const Surface& s, const std::function<Material(const Surface&)>& terms, Coat& coat) {
+// on it stays the material's, the rest goes to its maps.
+Material with_maps(const Surface& s, const std::function<Material(const Surface&)>& terms,
+                   MaterialMaps& maps) {
   Surface opaque = s, black = s;
   opaque.alpha = black.alpha = 1;
   black.base = vec3(0);
@@ -145,32 +146,32 @@ Material coated(const Surface& s, const std::function<Material(const Surface&)>&
   plain.transmit = glm::min(plain.transmit, all.transmit);
   plain.reflect = glm::min(plain.reflect, all.reflect);
   plain.index = all.index;
-  coat.emission = all.emission - plain.emission;
-  coat.ambient = all.ambient - plain.ambient;
-  coat.diffuse = all.diffuse - plain.diffuse;
-  coat.specular = all.specular - plain.specular;
-  coat.reflect = all.reflect - plain.reflect;
-  coat.transmit = all.transmit - plain.transmit;
-  coat.alpha = s.alpha;
-  coat.cutoff = s.cutoff;
-  coat.mode = s.mode;
+  maps.emission = all.emission - plain.emission;
+  maps.ambient = all.ambient - plain.ambient;
+  maps.diffuse = all.diffuse - plain.diffuse;
+  maps.specular = all.specular - plain.specular;
+  maps.reflect = all.reflect - plain.reflect;
+  maps.transmit = all.transmit - plain.transmit;
+  maps.alpha = s.alpha;
+  maps.cutoff = s.cutoff;
+  maps.mode = s.mode;
   return plain;
 }
 
 // What a surface is made of where a picture says how metallic and rough it is.
-Material metal(const Surface& s, Coat& coat) {
-  coat.metal = {.base = s.base,
+Material metal(const Surface& s, MaterialMaps& maps) {
+  maps.metal = {.base = s.base,
                 .metallic = s.metallic,
                 .roughness = s.roughness,
                 .transmission = s.transmission,
                 .mirrored = s.transmission > 0 ? mean_fresnel(s.index) : 0};
-  coat.alpha = s.alpha;
-  coat.cutoff = s.cutoff;
-  coat.mode = s.mode;
+  maps.alpha = s.alpha;
+  maps.cutoff = s.cutoff;
+  maps.mode = s.mode;
   return {.emission = s.emission, .index = s.is_body ? s.index : 1};
 }
 
-bool shows_pictures(const Coat& c) {
+bool shows_pictures(const MaterialMaps& c) {
   return std::ranges::any_of(std::array{c.base, c.normal_map, c.emission_map, c.occlusion_map, c.metal_map},
                              [](std::uint32_t map) { return map != kNone; });
 }
@@ -218,29 +219,29 @@ std::uint32_t Materials::map_of(const JsonNode& holder, std::string_view key, bo
 
 // Emission comes with a picture nearly always with the factor 1: where the picture can't be read, that would
 // make the whole object a lamp.
-void Materials::read_maps(const JsonNode& node, bool has_metal, Coat& coat, vec3& emission) {
-  coat.normal_map = map_of(node, "normalTexture", false);
-  coat.occlusion_map = map_of(node, "occlusionTexture", false);
+void Materials::read_maps(const JsonNode& node, bool has_metal, MaterialMaps& maps, vec3& emission) {
+  maps.normal_map = map_of(node, "normalTexture", false);
+  maps.occlusion_map = map_of(node, "occlusionTexture", false);
   const auto scale = [&node](std::string_view key, std::string_view factor, double least, double most) {
     const auto info = node.find(key);
     return static_cast<float>(info ? std::clamp(number_or(*info, factor, 1), least, most) : 1.0);
   };
-  coat.normal_scale = scale("normalTexture", "scale", -1e3, 1e3);
-  coat.occlusion = scale("occlusionTexture", "strength", 0, 1);
+  maps.normal_scale = scale("normalTexture", "scale", -1e3, 1e3);
+  maps.occlusion = scale("occlusionTexture", "strength", 0, 1);
   if (node.find("emissiveTexture")) {
-    coat.emission_map = map_of(node, "emissiveTexture", true);
-    if (coat.emission_map != kNone) coat.emissive = emission;
+    maps.emission_map = map_of(node, "emissiveTexture", true);
+    if (maps.emission_map != kNone) maps.emissive = emission;
     emission = vec3(0);
   }
   if (const auto pbr = node.find("pbrMetallicRoughness"); pbr && has_metal)
-    coat.metal_map = map_of(*pbr, "metallicRoughnessTexture", false);
+    maps.metal_map = map_of(*pbr, "metallicRoughnessTexture", false);
 }
 
 Material Materials::read(const JsonNode* node, Corners at) {
   Surface s;
   std::function<Material(const Surface&)> terms = whitted;
   const bool colored = at.colors;
-  Coat coat{.colored = colored};
+  MaterialMaps maps{.colored = colored};
   if (node) {
     count_left_out(*node);
     const bool flat = extension(*node, "KHR_materials_unlit").has_value();
@@ -250,23 +251,23 @@ Material Materials::read(const JsonNode* node, Corners at) {
     read_transparency(*node, s);
     read_alpha(*node, s);
     s.emission = emission_of(*node);
-    if (!flat) read_maps(*node, !glossy, coat, s.emission);
-    coat.tangents = at.tangents && coat.normal_map != kNone;
-    if (pbr && pbr->find("metallicRoughnessTexture") && coat.metal_map == kNone)
+    if (!flat) read_maps(*node, !glossy, maps, s.emission);
+    maps.tangents = at.tangents && maps.normal_map != kNone;
+    if (pbr && pbr->find("metallicRoughnessTexture") && maps.metal_map == kNone)
       s.metallic = 0, s.roughness = kUnknownRoughness;
     if (glossy) {
       read_glossiness(*glossy, s);
       terms = [glossy = *glossy](const Surface& surface) { return specular_glossiness(glossy, surface); };
     }
     if (flat) terms = unlit;
-    if (const auto base = base_texture(*node)) coat.base = *base;
+    if (const auto base = base_texture(*node)) maps.base = *base;
   }
   const bool has_hole = s.mode == Alpha::mask && s.alpha < s.cutoff;
-  const bool coats = shows_pictures(coat) || colored || has_hole;
-  if (s.mode != Alpha::blend && coat.base == kNone && !colored && !has_hole) s.alpha = 1;
-  if (!coats) return terms(s);
-  Material m = coat.metal_map != kNone ? metal(s, coat) : coated(s, terms, coat);
-  m.coat = scene_.paint.add(coat);
+  const bool has_maps = shows_pictures(maps) || colored || has_hole;
+  if (s.mode != Alpha::blend && maps.base == kNone && !colored && !has_hole) s.alpha = 1;
+  if (!has_maps) return terms(s);
+  Material m = maps.metal_map != kNone ? metal(s, maps) : with_maps(s, terms, maps);
+  m.maps = scene_.texturing.add(maps);
   return m;
 }
 

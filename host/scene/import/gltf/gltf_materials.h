@@ -33,7 +33,7 @@ class Materials {
   Material read(const JsonNode* node, Corners at);
   std::optional<std::uint32_t> base_texture(const JsonNode& node);
   std::uint32_t map_of(const JsonNode& holder, std::string_view key, bool curved);
-  void read_maps(const JsonNode& node, bool has_metal, Coat& coat, vec3& emission);
+  void read_maps(const JsonNode& node, bool has_metal, MaterialMaps& maps, vec3& emission);
   void count_left_out(const JsonNode& node);
 
   Document& document_;

@@ -163,8 +163,8 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world,
   // By the specification tangents count only where there are normals.
   const std::uint32_t material = materials_.number_of(primitive, {colors.has_value(), smooth});
   std::vector<std::array<std::uint32_t, 3>> picks;
-  const std::uint32_t coat = scene_.materials[material].coat;
-  const bool painted = coat != kNone;
+  const std::uint32_t maps = scene_.materials[material].maps;
+  const bool textured = maps != kNone;
   reserve_more(into_->triangles, mode == kTriangles ? corners.size() / 3 : corners.size());
   for_each_triangle(mode, corners, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (mirrored) std::swap(b, c);
@@ -173,15 +173,15 @@ void MeshReader::add_primitive(const JsonNode& primitive, const dmat4& to_world,
     t.material = material;
     t.number = static_cast<std::uint32_t>(into_->triangles.size());
     into_->triangles.push_back(t);
-    if (painted) picks.push_back({a, b, c});
+    if (textured) picks.push_back({a, b, c});
   });
-  if (!painted) return;
+  if (!textured) return;
   add_texcoords(attributes, picks, n_vertices);
   if (colors) add_colors(*colors, picks);
-  if (!scene_.paint.coats[coat].tangents) return;
+  if (!scene_.texturing.material_maps[maps].tangents) return;
   const auto tangents = tangents_of(attributes, n_vertices);
   if (tangents) return add_tangents(*tangents, primitive, matrices, deformation, picks);
-  const Texture& normals = scene_.paint.textures[scene_.paint.coats[coat].normal_map];
+  const Texture& normals = scene_.texturing.textures[scene_.texturing.material_maps[maps].normal_map];
   smooth_tangents(*into_, into_->triangles.size() - picks.size(), normals.set);
 }
 

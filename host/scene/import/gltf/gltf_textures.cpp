@@ -84,7 +84,7 @@ std::uint32_t Textures::decode(const JsonNode& image, std::uint64_t number) {
   } else {
     bytes = document_.view_bytes(document_.entry("bufferViews", image["bufferView"]));
   }
-  return scene_.paint.add(decode_picture(bytes, name, scene_.warnings));
+  return scene_.texturing.add(decode_picture(bytes, name, scene_.warnings));
 }
 
 // Said once for each picture, however many textures show it.
@@ -134,7 +134,7 @@ std::optional<std::uint32_t> Textures::read(const JsonNode& info, bool curved) {
   }
   if (set > 1) throw info.error("uses TEXCOORD_" + std::to_string(set) + "; two sets are read");
   out.set = static_cast<std::uint32_t>(set);
-  return scene_.paint.add(out);
+  return scene_.texturing.add(out);
 }
 
 }  // namespace kdray::scene::gltf

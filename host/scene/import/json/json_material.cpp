@@ -6,8 +6,8 @@
 #include "scene/import/json/json_keys.h"
 #include "scene/import/read_file.h"
 #include "scene/model/check_scene.h"
+#include "scene/textures/mapped_material.h"
 #include "scene/textures/picture.h"
-#include "scene/textures/picture_coat.h"
 
 namespace kdray::scene {
 
@@ -66,7 +66,7 @@ std::uint32_t JsonMaterials::picture_of(const JsonNode& file) {
   const std::filesystem::path path = folder_ / name;
   try {
     const auto picture = decode_picture(read_file(path), path.string(), scene_.warnings);
-    return pictures_[name] = scene_.paint.add(picture);
+    return pictures_[name] = scene_.texturing.add(picture);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::input) throw;
     throw file.error(error.what());
@@ -76,7 +76,7 @@ std::uint32_t JsonMaterials::picture_of(const JsonNode& file) {
 std::uint32_t JsonMaterials::texture_of(const JsonNode& material, std::string_view key, bool curved) {
   const auto file = material.find(key);
   if (!file) return kNone;
-  return scene_.paint.add(
+  return scene_.texturing.add(
       Texture{.picture = picture_of(*file), .minify = Minify::linear_mipmap_linear, .curved = curved});
 }
 
@@ -84,7 +84,7 @@ std::uint32_t JsonMaterials::texture_of(const JsonNode& material, std::string_vi
 Material JsonMaterials::read(const JsonNode& node) {
   node.expect_keys(json_keys::kMaterial);
   const Material terms = read_terms(node);
-  Coat maps;
+  MaterialMaps maps;
   maps.base = texture_of(node, "picture", true);
   maps.normal_map = texture_of(node, "normal_picture", false);
   maps.emission_map = texture_of(node, "emission_picture", true);
@@ -99,7 +99,7 @@ Material JsonMaterials::read(const JsonNode& node) {
                 .roughness = factor_of(node, "roughness", "metal_picture")};
   maps.occlusion = factor_of(node, "occlusion", "occlusion_picture");
   if (maps.emission_map != kNone) maps.emissive = node.find("emission") ? terms.emission : vec3(1);
-  return with_pictures(terms, maps, scene_.paint);
+  return with_pictures(terms, maps, scene_.texturing);
 }
 
 }  // namespace kdray::scene

@@ -1,6 +1,6 @@
 // What    A material of kdray's JSON: its terms, and the pictures that it names beside the scene.
-// Shape   A material with pictures has a coat in the scene's paint. Pictures are read once each, as codes of
-//         sRGB but for normals.
+// Shape   A material with pictures has maps in the scene's texturing. Pictures are read once each, as codes
+//         of sRGB but for normals.
 // Errors  kdray::Error with the path in the file: what is wrong in it, and a picture that is missing or can't
 //         be decoded, since the scene was written with it in mind.
 #pragma once
@@ -16,7 +16,7 @@ namespace kdray::scene {
 
 class JsonMaterials {
  public:
-  // `folder` is where pictures are looked for; `scene` gets their paint.
+  // `folder` is where pictures are looked for; `scene` gets their textures.
   JsonMaterials(Scene& scene, std::filesystem::path folder) : scene_(scene), folder_(std::move(folder)) {}
 
   Material read(const JsonNode& node);

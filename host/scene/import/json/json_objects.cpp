@@ -141,13 +141,13 @@ void JsonObjects::read(const JsonNode& object) {
   if (!found) throw type.expected("one of " + known);
 }
 
-// A part's materials have their coats in the part's own paint.
+// A part's materials have their maps in the part's own texturing.
 void JsonObjects::wear(Scene& part, const Material& material) const {
   part.materials = {material};
-  if (material.coat == kNone) return;
-  part.paint.coats = scene_.paint.coats;
-  part.paint.textures = scene_.paint.textures;
-  part.paint.pictures = scene_.paint.pictures;
+  if (material.maps == kNone) return;
+  part.texturing.material_maps = scene_.texturing.material_maps;
+  part.texturing.textures = scene_.texturing.textures;
+  part.texturing.pictures = scene_.texturing.pictures;
 }
 
 Material JsonObjects::material_of(const JsonNode& object) const {
@@ -180,10 +180,10 @@ void JsonObjects::read_mesh(const JsonNode& object) {
   if (const auto smooth = object.find("smooth")) smooth_normals(part, smooth->number_between(0, 180));
   place(object, part);
   if (object.find("material")) {
-    part.paint = {.texcoords = std::move(part.paint.texcoords)};
+    part.texturing = {.texcoords = std::move(part.texturing.texcoords)};
     wear(part, material_of(object));
-    if (part.materials[0].coat == kNone) part.paint = {};
-    if (part.materials[0].coat != kNone && part.paint.texcoords[0].empty())
+    if (part.materials[0].maps == kNone) part.texturing = {};
+    if (part.materials[0].maps != kNone && part.texturing.texcoords[0].empty())
       scene_.warnings.push_back(
           object["file"].error("has no texture coordinates, so pictures show one place").what());
     for (Triangle& t : part.triangles) t.material = 0;
@@ -197,12 +197,14 @@ void JsonObjects::read_mesh(const JsonNode& object) {
 
 // The part with the scene's materials in place of its own.
 Scene JsonObjects::adopted(Scene&& part) {
-  const std::vector<std::uint32_t> coats = scene_.paint.append(
-      {.coats = part.paint.coats, .textures = part.paint.textures, .pictures = part.paint.pictures},
-      scene_.triangles.size(), 0);
+  const std::vector<std::uint32_t> material_maps =
+      scene_.texturing.append({.material_maps = part.texturing.material_maps,
+                               .textures = part.texturing.textures,
+                               .pictures = part.texturing.pictures},
+                              scene_.triangles.size(), 0);
   std::vector<std::uint32_t> numbers;
   for (Material material : part.materials) {
-    if (material.coat != kNone) material.coat = coats[material.coat];
+    if (material.maps != kNone) material.maps = material_maps[material.maps];
     numbers.push_back(materials_.add(material));
   }
   for (Triangle& t : part.triangles) t.material = numbers[t.material];
@@ -216,8 +218,8 @@ Scene JsonObjects::adopted(Scene&& part) {
   mesh.triangles = std::move(part.triangles);
   primitives::for_each_shape(
       [&](auto kind) { decltype(kind)::of(mesh) = std::move(decltype(kind)::of(part)); });
-  mesh.paint.colors = std::move(part.paint.colors);
-  mesh.paint.texcoords = std::move(part.paint.texcoords);
+  mesh.texturing.colors = std::move(part.texturing.colors);
+  mesh.texturing.texcoords = std::move(part.texturing.texcoords);
   return mesh;
 }
 
@@ -281,7 +283,7 @@ void JsonObjects::read_triangles(const JsonNode& object) {
       layout::TexCoords at{};
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t c = 0; c < 2; ++c) at.uv[i][c] = texcoords[t.vertex[i]][c];
-      part.paint.texcoords[0].push_back(at);
+      part.texturing.texcoords[0].push_back(at);
     }
   }
   place(object, part);
@@ -341,14 +343,14 @@ void JsonObjects::append(const Scene& part, const JsonNode& object) {
       scene_.normals.size() + part.normals.size() >= kNone) {
     throw object.error("2^28 primitives or more in all", "leave some out");
   }
-  const std::vector<std::uint32_t> coats =
-      scene_.paint.append(part.paint, scene_.triangles.size(), part.triangles.size());
+  const std::vector<std::uint32_t> material_maps =
+      scene_.texturing.append(part.texturing, scene_.triangles.size(), part.triangles.size());
   std::vector<std::uint32_t> material(part.materials.size(), kNone);
   const auto take = [&](auto primitive) {  // numbers within the part become numbers within the scene
     std::uint32_t& m = material[primitive.material];
     if (m == kNone) {
       Material added = part.materials[primitive.material];
-      if (added.coat != kNone) added.coat = coats[added.coat];
+      if (added.maps != kNone) added.maps = material_maps[added.maps];
       m = materials_.add(added);
     }
     primitive.material = m;

@@ -76,9 +76,9 @@ class ObjReader {
   Scene finish() {
     if (n_statements_ > 0 && scene_.vertices.empty() && left_out_.count(kNoStatement) == n_statements_)
       throw input_error(in_.file(), 0, "not an OBJ file: no line of it is an OBJ statement");
-    paint_corners();
-    materials_.finish(!scene_.paint.colors.empty());
-    if (scene_.paint.textures.empty()) scene_.paint.texcoords[0] = {};
+    color_corners();
+    materials_.finish(!scene_.texturing.colors.empty());
+    if (scene_.texturing.textures.empty()) scene_.texturing.texcoords[0] = {};
     settle_vertices(scene_, [&](std::size_t) { return in_.file() + ":" + std::to_string(bad_vertex_line_); });
     settle_normals(scene_, in_.file());
     left_out_.warn(in_.file(), scene_.warnings);
@@ -166,7 +166,7 @@ class ObjReader {
   }
 
   // Codes of sRGB, from 0 to 1; in files that have larger ones, to 255.
-  void paint_corners() {
+  void color_corners() {
     if (colors_.empty()) return;
     colors_.resize(scene_.vertices.size(), {1, 1, 1});
     float most = 1;
@@ -177,10 +177,10 @@ class ObjReader {
       for (std::size_t c = 0; c < 3; ++c) linear[i][c] = linear_unit_of_srgb(colors_[i][c] * scale);
       linear[i][3] = 65535;
     }
-    scene_.paint.colors.resize(scene_.triangles.size());
+    scene_.texturing.colors.resize(scene_.triangles.size());
     for (std::size_t i = 0; i < scene_.triangles.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k)
-        set_corner(scene_.paint.colors[i], k, linear[scene_.triangles[i].vertex[k]]);
+        set_corner(scene_.texturing.colors[i], k, linear[scene_.triangles[i].vertex[k]]);
   }
 
   // v goes upwards in the file, downwards in textures.

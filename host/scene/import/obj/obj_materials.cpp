@@ -45,7 +45,7 @@ vec3 factor_of_picture(const vec3& color) {
   return color == vec3(0) ? vec3(1) : color;
 }
 
-bool says_something(const Coat& c) {
+bool says_something(const MaterialMaps& c) {
   return c.base != kNone || c.emission_map != kNone || c.highlight_map != kNone || c.normal_map != kNone ||
          c.colored != 0;
 }
@@ -136,7 +136,7 @@ std::optional<std::uint32_t> ObjMaterials::picture_of(const std::string& name) {
     if (path.empty())
       throw input_error(file_.string(), 0, "no picture '" + printable(name) + "'",
                         std::string("put it beside the scene; ") + kAllowAFolder);
-    it->second = scene_.paint.add(decode_picture(read_file(path), path.string(), scene_.warnings));
+    it->second = scene_.texturing.add(decode_picture(read_file(path), path.string(), scene_.warnings));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::input) throw;
     scene_.warnings.push_back(std::string(error.what()) + " (the picture is left out)");
@@ -150,14 +150,14 @@ std::optional<std::uint32_t> ObjMaterials::normals_of(const MtlMaterial& mtl) {
   if (!mtl.relief) return std::nullopt;
   const auto picture = picture_of(mtl.relief->file);
   if (!picture) return std::nullopt;
-  const Picture& shown = *scene_.paint.pictures[*picture];
+  const Picture& shown = *scene_.texturing.pictures[*picture];
   if (!is_grey(shown)) return add_texture(*picture, *mtl.relief, false);
   const auto normals = normals_of_heights(shown, mtl.relief->strength);
-  return add_texture(scene_.paint.add(normals), *mtl.relief, false);
+  return add_texture(scene_.texturing.add(normals), *mtl.relief, false);
 }
 
 // The picture of `map_d` becomes the alpha of that of `map_Kd`, which is laid on as it is.
-std::optional<std::uint32_t> ObjMaterials::veiled(const MtlMaterial& mtl, Coat& coat) {
+std::optional<std::uint32_t> ObjMaterials::veiled(const MtlMaterial& mtl, MaterialMaps& maps) {
   const auto base = mtl.map_kd ? picture_of(mtl.map_kd->file) : std::nullopt;
   const auto alpha = picture_of(mtl.map_d->file);
   if (!alpha) return mtl.map_kd ? texture_of(*mtl.map_kd, true) : std::nullopt;
@@ -166,9 +166,9 @@ std::optional<std::uint32_t> ObjMaterials::veiled(const MtlMaterial& mtl, Coat& 
     scene_.warnings.push_back(file_.string() + ": map_d of '" + printable(mtl.name) +
                               "' is laid on as map_Kd is, whose options are others");
   const auto mixed =
-      with_alpha(base ? scene_.paint.pictures[*base].get() : nullptr, *scene_.paint.pictures[*alpha]);
-  coat.mode = is_cut_out(*mixed) ? Alpha::mask : Alpha::blend;
-  return add_texture(scene_.paint.add(mixed), laid, true);
+      with_alpha(base ? scene_.texturing.pictures[*base].get() : nullptr, *scene_.texturing.pictures[*alpha]);
+  maps.mode = is_cut_out(*mixed) ? Alpha::mask : Alpha::blend;
+  return add_texture(scene_.texturing.add(mixed), laid, true);
 }
 
 // In MTL, v goes upwards from the picture's lower edge; in textures downwards from the upper one, which
@@ -176,13 +176,13 @@ std::optional<std::uint32_t> ObjMaterials::veiled(const MtlMaterial& mtl, Coat& 
 std::uint32_t ObjMaterials::add_texture(std::uint32_t picture, const MtlPicture& map, bool curved) {
   const auto f = [](double v) { return static_cast<float>(v); };
   const Wrap wrap = map.clamp ? Wrap::clamp : Wrap::repeat;
-  return scene_.paint.add(Texture{.picture = picture,
-                                  .across = {f(map.scale[0]), 0, f(map.offset[0])},
-                                  .down = {0, f(map.scale[1]), f(1 - map.scale[1] - map.offset[1])},
-                                  .wrap_across = wrap,
-                                  .wrap_down = wrap,
-                                  .minify = Minify::linear_mipmap_linear,
-                                  .curved = curved});
+  return scene_.texturing.add(Texture{.picture = picture,
+                                      .across = {f(map.scale[0]), 0, f(map.offset[0])},
+                                      .down = {0, f(map.scale[1]), f(1 - map.scale[1] - map.offset[1])},
+                                      .wrap_across = wrap,
+                                      .wrap_down = wrap,
+                                      .minify = Minify::linear_mipmap_linear,
+                                      .curved = curved});
 }
 
 std::optional<std::uint32_t> ObjMaterials::texture_of(const MtlPicture& map, bool curved) {
@@ -190,44 +190,44 @@ std::optional<std::uint32_t> ObjMaterials::texture_of(const MtlPicture& map, boo
   return picture ? std::optional(add_texture(*picture, map, curved)) : std::nullopt;
 }
 
-// Emission, highlights and normals by pictures, which go over from the material into its coat.
-void ObjMaterials::add_maps(const MtlMaterial& mtl, Material& m, Coat& coat) {
+// Emission, highlights and normals by pictures, which go over from the material into its maps.
+void ObjMaterials::add_maps(const MtlMaterial& mtl, Material& m, MaterialMaps& maps) {
   if (const auto map = mtl.map_ke ? texture_of(*mtl.map_ke, true) : std::nullopt) {
-    coat.emission_map = *map;
-    coat.emissive = factor_of_picture(mtl.ke);
+    maps.emission_map = *map;
+    maps.emissive = factor_of_picture(mtl.ke);
     m.emission = vec3(0);
   }
   if (const auto map = mtl.map_ks ? texture_of(*mtl.map_ks, true) : std::nullopt) {
-    coat.highlight_map = *map;
-    coat.specular = m.specular;
-    coat.reflect = m.reflect;
+    maps.highlight_map = *map;
+    maps.specular = m.specular;
+    maps.reflect = m.reflect;
     m.specular = m.reflect = vec3(0);
   }
-  if (const auto map = normals_of(mtl)) coat.normal_map = *map;
+  if (const auto map = normals_of(mtl)) maps.normal_map = *map;
 }
 
 Material ObjMaterials::material_of(const MtlMaterial* mtl, bool colored) {
-  Coat coat;
+  MaterialMaps maps;
   Material m;
   if (!mtl && !colored) return mesh_material();
   if (!mtl) {
-    m = colored_mesh_material(coat);
+    m = colored_mesh_material(maps);
   } else {
     std::optional<std::uint32_t> texture;
     if (mtl->map_d) {
-      texture = veiled(*mtl, coat);
+      texture = veiled(*mtl, maps);
     } else if (mtl->map_kd) {
       texture = texture_of(*mtl->map_kd, true);
     }
     m = whitted_from_mtl(*mtl, texture.has_value());
-    if (texture) coat.base = *texture;
-    coat.colored = colored;
-    add_maps(*mtl, m, coat);
-    if (!says_something(coat)) return m;
-    coat.ambient = m.ambient, coat.diffuse = m.diffuse;
+    if (texture) maps.base = *texture;
+    maps.colored = colored;
+    add_maps(*mtl, m, maps);
+    if (!says_something(maps)) return m;
+    maps.ambient = m.ambient, maps.diffuse = m.diffuse;
     m.ambient = m.diffuse = vec3(0);
   }
-  m.coat = scene_.paint.add(coat);
+  m.maps = scene_.texturing.add(maps);
   return m;
 }
 

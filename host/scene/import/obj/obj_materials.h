@@ -32,9 +32,9 @@ class ObjMaterials {
   std::filesystem::path find_last_part(const std::string& name) const;
   bool read_library(const std::filesystem::path& path);
   Material material_of(const MtlMaterial* mtl, bool colored);
-  void add_maps(const MtlMaterial& mtl, Material& m, Coat& coat);
+  void add_maps(const MtlMaterial& mtl, Material& m, MaterialMaps& maps);
   std::optional<std::uint32_t> normals_of(const MtlMaterial& mtl);
-  std::optional<std::uint32_t> veiled(const MtlMaterial& mtl, Coat& coat);
+  std::optional<std::uint32_t> veiled(const MtlMaterial& mtl, MaterialMaps& maps);
   std::optional<std::uint32_t> texture_of(const MtlPicture& map, bool curved);
   std::uint32_t add_texture(std::uint32_t picture, const MtlPicture& map, bool curved);
   std::optional<std::uint32_t> picture_of(const std::string& name);

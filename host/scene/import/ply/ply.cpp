@@ -192,7 +192,7 @@ class BodyReader {
     }
     const std::size_t first = mesh_.triangles().size();
     if (!mesh_.add_face(corners_, texcoords_)) throw bad_corner(corners_);
-    if (columns.color[0]) mesh_.paint_face(first, color);
+    if (columns.color[0]) mesh_.color_face(first, color);
     if (!columns.texture) return;
     const bool known = texture >= 0 && static_cast<std::uint64_t>(texture) < header_.textures.size();
     n_odd_textures_ += !known;

@@ -34,7 +34,7 @@ bool Mesh::add_face(std::span<const std::int64_t> corners, std::span<const TexCo
 // In textures v goes downwards.
 void Mesh::set_texcoords(std::size_t triangle, std::span<const TexCoord> of,
                          const std::array<std::uint32_t, 3>& pick) {
-  auto& all = scene_.paint.texcoords[0];
+  auto& all = scene_.texturing.texcoords[0];
   if (all.size() <= triangle) all.resize(triangle + 1);
   for (std::size_t k = 0; k < 3; ++k) {
     const double u = of[pick[k]][0], v = of[pick[k]][1];
@@ -46,11 +46,11 @@ void Mesh::set_texcoords(std::size_t triangle, std::span<const TexCoord> of,
   }
 }
 
-void Mesh::paint_face(std::size_t first, const VertexColor& color) {
+void Mesh::color_face(std::size_t first, const VertexColor& color) {
   const LinearColor of_face = linear(color);
-  scene_.paint.colors.resize(scene_.triangles.size(), kWhiteCorners);
+  scene_.texturing.colors.resize(scene_.triangles.size(), kWhiteCorners);
   for (std::size_t i = first; i < scene_.triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) set_corner(scene_.paint.colors[i], k, of_face);
+    for (std::size_t k = 0; k < 3; ++k) set_corner(scene_.texturing.colors[i], k, of_face);
 }
 
 void Mesh::set_texture(std::size_t first, std::uint32_t texture) {
@@ -104,13 +104,13 @@ Mesh::LinearColor Mesh::linear(const VertexColor& color) {
   return out;
 }
 
-void Mesh::paint_corners() {
+void Mesh::color_corners() {
   RawVector<LinearColor> of_vertex(vertices_.colors.size());
   for (std::size_t i = 0; i < of_vertex.size(); ++i) of_vertex[i] = linear(vertices_.colors[i]);
-  scene_.paint.colors.resize(scene_.triangles.size());
+  scene_.texturing.colors.resize(scene_.triangles.size());
   for (std::size_t i = 0; i < scene_.triangles.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k)
-      set_corner(scene_.paint.colors[i], k, of_vertex[scene_.triangles[i].vertex[k]]);
+      set_corner(scene_.texturing.colors[i], k, of_vertex[scene_.triangles[i].vertex[k]]);
 }
 
 void Mesh::lay_corners() {
@@ -123,7 +123,7 @@ Scene Mesh::finish(const std::string& file) {
   scene_.normals = std::move(vertices_.normals);
   cut_polygons();
   if (!vertices_.texcoords.empty()) lay_corners();
-  if (!vertices_.colors.empty()) paint_corners();
+  if (!vertices_.colors.empty()) color_corners();
   const auto warn_of = [&](std::size_t n, const char* what) {
     if (n > 0) warn(std::to_string(n) + " " + what);
   };
@@ -132,10 +132,10 @@ Scene Mesh::finish(const std::string& file) {
   warn_of(n_bad_texcoords_, "texture coordinates are not finite: they are taken for 0");
   for (std::string& warning : scene_.warnings) warning = file + ": " + warning;
   scene_.materials = {mesh_material()};
-  if (!scene_.paint.colors.empty() || !vertices_.colors.empty()) {
-    Coat coat;
-    scene_.materials = {colored_mesh_material(coat)};
-    scene_.materials[0].coat = scene_.paint.add(coat);
+  if (!scene_.texturing.colors.empty() || !vertices_.colors.empty()) {
+    MaterialMaps maps;
+    scene_.materials = {colored_mesh_material(maps)};
+    scene_.materials[0].maps = scene_.texturing.add(maps);
   }
   settle_vertices(scene_, [&](std::size_t i) { return file + ": element 'vertex' " + std::to_string(i); });
   if (!scene_.normals.empty()) {

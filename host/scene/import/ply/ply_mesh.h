@@ -42,7 +42,7 @@ class Mesh {
   // that is no vertex. One of fewer than three corners is counted and left out.
   bool add_face(std::span<const std::int64_t> corners, std::span<const TexCoord> texcoords = {});
   // What the triangles from `first` on, of one face, have in common.
-  void paint_face(std::size_t first, const VertexColor& color);
+  void color_face(std::size_t first, const VertexColor& color);
   void set_texture(std::size_t first, std::uint32_t texture);
   // Triangles over each three neighbours, every second one turned over; -1 starts a new strip.
   bool add_strip(std::span<const std::int64_t> corners);
@@ -64,7 +64,7 @@ class Mesh {
 
   bool is_vertex(std::int64_t index) const { return index >= 0 && index < n_vertices_; }
   void cut_polygons();
-  void paint_corners();
+  void color_corners();
   void lay_corners();
   LinearColor linear(const VertexColor& color);
   void set_texcoords(std::size_t triangle, std::span<const TexCoord> of,

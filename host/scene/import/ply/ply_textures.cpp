@@ -29,7 +29,7 @@ std::optional<std::uint32_t> picture_of(Scene& scene, const std::string& name, c
     if (path.empty())
       throw input_error(file, 0, "no picture '" + printable(name) + "'",
                         std::string("put it beside the scene; ") + kAllowAFolder);
-    return scene.paint.add(decode_picture(read_file(path), path.string(), scene.warnings));
+    return scene.texturing.add(decode_picture(read_file(path), path.string(), scene.warnings));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::input) throw;
     scene.warnings.push_back(std::string(error.what()) + " (the picture is left out)");
@@ -39,11 +39,11 @@ std::optional<std::uint32_t> picture_of(Scene& scene, const std::string& name, c
 
 // The same as without a picture, which the base colour is looked up in.
 Material textured(Scene& scene, std::uint32_t picture) {
-  Coat coat;
-  Material m = colored_mesh_material(coat);
-  coat.base = scene.paint.add(Texture{.picture = picture, .minify = Minify::linear_mipmap_linear});
-  coat.colored = !scene.paint.colors.empty();
-  m.coat = scene.paint.add(coat);
+  MaterialMaps maps;
+  Material m = colored_mesh_material(maps);
+  maps.base = scene.texturing.add(Texture{.picture = picture, .minify = Minify::linear_mipmap_linear});
+  maps.colored = !scene.texturing.colors.empty();
+  m.maps = scene.texturing.add(maps);
   return m;
 }
 
@@ -57,7 +57,7 @@ void lay_on_textures(Scene& scene, const Header& header, const std::string& file
   if (header.textures.size() > n)
     scene.warnings.push_back(file + ": " + std::to_string(header.textures.size() - n) +
                              " further pictures are left out: no face has their texnumber");
-  if (scene.paint.texcoords[0].empty()) {
+  if (scene.texturing.texcoords[0].empty()) {
     scene.warnings.push_back(file + ": its picture '" + printable(header.textures[0]) +
                              "' is left out: there are no texture coordinates");
     for (Triangle& t : scene.triangles) t.material = 0;
