@@ -1,5 +1,8 @@
 #include "api/committed.h"
 
+#include "api/hooks.h"
+#include "api/open_devices.h"
+#include "api/precision.h"
 #include "api/record.h"
 #include "base/median.h"
 
@@ -21,39 +24,50 @@ Committed::Committed(const PreparedScene& scene, query::GeometryTable table, con
     : scene_(scene),
       table_(std::move(table)),
       frame_(scene_.prepared().geometry),
-      devices_(device, {}, scene_.prepared()),
-      target_(target()),
-      sessions_(target_),
-      device_options_(device) {}
+      devices_(open_scene(scene_.prepared(), device)) {
+  open_places({});
+}
 
-Committed::Committed(const PreparedScene& scene, const DeviceOptions& device)
-    : Committed(scene, table_of_one(scene.prepared()), device) {}
+Committed::Committed(const PreparedScene& scene, const DeviceOptions& device, const RayWalk& walk)
+    : scene_(scene),
+      table_(table_of_one(scene_.prepared())),
+      frame_(scene_.prepared().geometry),
+      devices_(open_scene(scene_.prepared(), device)) {
+  open_places(walk);
+}
+
+void Committed::open_places(const RayWalk& walk) {
+  const Traversal traversal = traversal_of_rays(walk.precision, walk.traversal, *devices_);
+  std::vector<std::uint32_t> instances;
+  for (const layout::Instance& instance : scene_.prepared().flat.instances)
+    instances.push_back(instance.number);
+  const std::vector<std::uint32_t> masks = table_.masks(instances);
+  for (query::Target& target : query::targets_of(*devices_, traversal, walk.precision)) {
+    target.space = LocalSpace();
+    if (!masks.empty())
+      target.masks = target.sub_device > 0 ? places_.back().target.masks
+                                           : target.context.upload_copy(
+                                                 masks.data(), masks.size() * sizeof masks[0], "the masks");
+    places_.emplace_back(target);
+  }
+}
 
 Statistics Committed::statistics(std::uint64_t n_asked, std::span<const double> seconds) const {
-  Statistics statistics = first_statistics(scene_.prepared(), devices_);
-  record_query(
-      statistics, devices_,
-      {.rays = n_asked, .repeat = seconds.size(), .seconds = median({seconds.begin(), seconds.end()})});
+  Statistics statistics = first_statistics(*devices_);
+  const query::Target& first = places_.front().target;
+  record_query(statistics, *devices_,
+               {.rays = n_asked,
+                .repeat = seconds.size(),
+                .seconds = median({seconds.begin(), seconds.end()}),
+                .traversal = first.walk(),
+                .precision = first.precision});
   return statistics;
 }
 
 Picture Committed::render(const RenderOptions& options) {
   const std::lock_guard lock(rendering_);
-  if (!renderer_) renderer_.emplace(scene_, device_options_);
+  if (!renderer_) renderer_.emplace(make_renderer(devices_));
   return renderer_->render(options);
-}
-
-query::Target Committed::target() {
-  Device& first = devices_.first();
-  query::Target target{first.context,     first.buffers(),  first.programs,
-                       scene_.prepared(), first.work_group, first.global};
-  target.space = LocalSpace();
-  std::vector<std::uint32_t> instances;
-  for (const layout::Instance& instance : scene_.prepared().flat.instances)
-    instances.push_back(instance.number);
-  if (const std::vector<std::uint32_t> masks = table_.masks(instances); !masks.empty())
-    target.masks = first.context.upload_copy(masks.data(), masks.size() * sizeof masks[0], "the masks");
-  return target;
 }
 
 }  // namespace kdray::api

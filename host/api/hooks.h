@@ -11,6 +11,9 @@
 namespace kdray::transport {
 class Ranks;
 }
+namespace kdray::engine {
+class DeviceScene;
+}
 
 namespace kdray::api {
 
@@ -33,6 +36,8 @@ struct Hooks {
   std::shared_ptr<const WholeScene> whole = {};
 };
 
+// On devices that have the scene already, and may answer queries meanwhile.
+Renderer make_renderer(std::shared_ptr<engine::DeviceScene> devices);
 Renderer make_renderer(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks);
 Renderer make_renderer(const Scene& scene, const TreeOptions& tree, const DeviceOptions& device,
                        const Hooks& hooks);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 
+#include "api/tuning.h"
 #include "base/error.h"
 #include "base/timer.h"
 #include "device/opencl/fault_injector.h"
@@ -97,11 +98,34 @@ OpenedDevices open_devices(const DeviceOptions& o, const std::string& faults) {
   return opened;
 }
 
+std::shared_ptr<engine::DeviceScene> open_scene(const prepare::Prepared& scene, const DeviceOptions& options,
+                                                const Hooks& hooks) {
+  const OpenedDevices opened = open_devices(options, hooks.faults);
+  const tuning::Database tunings = read_tunings(options);
+  const auto tuned = [&](const device::Context& context, bool global) {
+    return tuned_for(context, global, scene.features, tunings, options.tunings.string());
+  };
+  const auto devices =
+      std::make_shared<engine::DeviceScene>(scene, opened.contexts, options, hooks.build_options, tuned);
+  devices->open_seconds = opened.seconds;
+  return devices;
+}
+
+OpenSeconds open_device(const DeviceOptions& options, const Hooks& hooks) {
+  const OpenedDevices opened = open_devices(options, hooks.faults);
+  for (const device::Context& context : opened.contexts) engine::work_group_of(options, context);
+  return opened.seconds;
+}
+
 }  // namespace kdray::api
 
 namespace kdray {
 
 namespace fs = std::filesystem;
+
+OpenSeconds open_device(const DeviceOptions& options) {
+  return api::open_device(options, {});
+}
 
 fs::path default_program_folder() {
   const fs::path scenes = SceneCache::default_folder();

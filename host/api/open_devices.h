@@ -1,12 +1,15 @@
 // What    Opens the devices that DeviceOptions names: each has passed the self-test, and keeps what it builds
-//         in the folder that the options name.
+//         in the folder that the options name. And a scene on them.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "api/hooks.h"
 #include "device/opencl/context.h"
 #include "device/opencl/verdicts.h"
+#include "engine/device_scene/device_scene.h"
 #include "kdray/kdray.h"
 
 namespace kdray::api {
@@ -28,5 +31,9 @@ struct OpenedDevices {
 
 // `faults` as in Hooks. Throws ErrorCode::usage, or ErrorCode::no_device where none is usable.
 OpenedDevices open_devices(const DeviceOptions& options, const std::string& faults = {});
+
+// The scene on these devices, with the settings that were found for them. It is not uploaded yet.
+std::shared_ptr<engine::DeviceScene> open_scene(const prepare::Prepared& scene, const DeviceOptions& options,
+                                                const Hooks& hooks = {});
 
 }  // namespace kdray::api

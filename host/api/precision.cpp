@@ -21,6 +21,14 @@ Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& 
   return Traversal::binary;
 }
 
+Traversal traversal_of_rays(Precision precision, Traversal wanted, const engine::DeviceScene& devices) {
+  Traversal traversal = wanted;
+  for (const engine::Device& device : devices)
+    traversal = traversal_in(precision, wanted, device.context.info());
+  check_form(takes_binary_form(traversal, precision), devices.scene());
+  return traversal;
+}
+
 void check_form(bool is_walked, const prepare::Prepared& scene) {
   if (is_walked) prepare::refuse_instances(scene, "the binary walk, which double takes,");
   if (is_walked && scene.flat.nodes.empty())

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "accel/prepare/prepared.h"
+#include "engine/device_scene/device_scene.h"
 #include "kdray/kdray.h"
 
 namespace kdray::api {
@@ -10,6 +11,9 @@ namespace kdray::api {
 // The walk of that precision. Throws ErrorCode::usage when there is no such walk in it, ErrorCode::no_device
 // when the device doesn't compute in it.
 Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& device);
+
+// The same of rays from outside, for all devices; and the scene has to have the form that is walked.
+Traversal traversal_of_rays(Precision precision, Traversal wanted, const engine::DeviceScene& devices);
 
 // Throws ErrorCode::usage where the binary form is walked and the scene was prepared without it.
 void check_form(bool is_walked, const prepare::Prepared& scene);

@@ -82,15 +82,15 @@ std::optional<Statistics::Ledger> checkpoint_told(const Job& job) {
                             r.seconds};
 }
 
-void record_preparations(Statistics& statistics, const DeviceSet& devices) {
+void record_preparations(Statistics& statistics, const engine::DeviceScene& devices) {
   statistics.seconds.compile = devices.build_seconds();
   statistics.seconds.upload = devices.upload_seconds();
   const wavefront::ProgramsUsed used = devices.programs_used();
   statistics.programs = {used.compiled, used.found, used.covering, flatten::feature_names(used.spare).on};
 }
 
-void add_devices(Statistics::Division& division, const DeviceSet& devices) {
-  for (const Device& d : devices) {
+void add_devices(Statistics::Division& division, const engine::DeviceScene& devices) {
+  for (const engine::Device& d : devices) {
     division.sub_devices += d.context.n_sub_devices();
     division.programs += d.programs.n_built();
     division.devices.push_back(d.context.info().name);
@@ -105,29 +105,30 @@ Statistics::Features features_told(layout::Features mask) {
   return {std::move(names.on), std::move(names.off)};
 }
 
-Statistics::DeviceTuning tuning_told(const Tuned& tuned) {
+Statistics::DeviceTuning tuning_told(const engine::Tuned& tuned) {
   const tuning::Key& k = tuned.key;
   return {tuned.from, tuned.settings, k.device, k.driver, k.kernels, k.schedule, k.features};
 }
 
-Statistics first_statistics(const prepare::Prepared& scene, const DeviceSet& devices) {
+Statistics first_statistics(const engine::DeviceScene& devices) {
+  const prepare::Prepared& scene = devices.scene();
   Statistics s;
-  s.seconds.start = devices.open_seconds().start;
-  s.seconds.self_test = devices.open_seconds().self_test;
+  s.seconds.start = devices.open_seconds.start;
+  s.seconds.self_test = devices.open_seconds.self_test;
   s.seconds.build = scene.seconds.build;
   s.seconds.flatten = scene.seconds.flatten;
   s.scene = scene_told(scene);
   s.tree = tree_told(scene);
   s.memory.scene_bytes = scene.bytes();
   s.device = devices.first().context.info();
-  s.tuning = tuning_told(devices.first().tuned);
+  s.tuning = tuning_told(devices.first().tuned());
   s.features = features_told(scene.features);
   return s;
 }
 
 void record_frame(Statistics& statistics, const State& state, const Job& job, FrameResult& frame_result,
                   const std::string& why) {
-  const Device& first = state.devices.first();
+  const engine::Device& first = state.devices.first();
   const auto stage = [&](const char* name) {
     const auto found = frame_result.stage_seconds.find(name);
     return found == frame_result.stage_seconds.end() ? 0.0 : found->second;
@@ -166,13 +167,15 @@ void record_frame(Statistics& statistics, const State& state, const Job& job, Fr
                      .repeat = {}};
 }
 
-void record_query(Statistics& statistics, const DeviceSet& devices, const Query& query) {
+void record_query(Statistics& statistics, const engine::DeviceScene& devices, const Query& query) {
   record_preparations(statistics, devices);
   statistics.seconds.trace = query.seconds;
   statistics.rays = {.total = query.rays, .kinds = {}};
   statistics.mrays_per_s = mrays_per_s(query.rays, query.seconds);
+  std::size_t n_places = 0;
+  for (const engine::Device& device : devices) n_places += device.context.n_sub_devices();
   statistics.mode = {.name = "query",
-                     .queues = 1,
+                     .queues = n_places,
                      .work_group = devices.first().work_group,
                      .traversal = name_of(query.traversal),
                      .precision = name_of(query.precision),

@@ -17,10 +17,10 @@
 namespace kdray::api {
 
 // What is known before the first frame.
-Statistics first_statistics(const prepare::Prepared& scene, const DeviceSet& devices);
+Statistics first_statistics(const engine::DeviceScene& devices);
 
 Statistics::Features features_told(layout::Features mask);
-Statistics::DeviceTuning tuning_told(const Tuned& tuned);
+Statistics::DeviceTuning tuning_told(const engine::Tuned& tuned);
 
 // How a frame was divided among the queues, as far as the mode knows.
 Statistics::Division division_of(const pdprt::Result& result, const Job& job, bool global);
@@ -45,6 +45,6 @@ struct Query {
   Traversal traversal = Traversal::automatic;
   Precision precision = Precision::float32;
 };
-void record_query(Statistics& statistics, const DeviceSet& devices, const Query& query);
+void record_query(Statistics& statistics, const engine::DeviceScene& devices, const Query& query);
 
 }  // namespace kdray::api

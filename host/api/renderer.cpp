@@ -11,6 +11,7 @@
 #include "api/draw_pdprt.h"
 #include "api/hooks.h"
 #include "api/job.h"
+#include "api/open_devices.h"
 #include "api/precision.h"
 #include "api/record.h"
 #include "api/state.h"
@@ -40,7 +41,7 @@ Picture to_picture(const image::Image& image, std::vector<image::Channel> channe
 // Times what is done on the way to a frame or a query, beside what the statistics tell of by other names.
 class Preparing {
  public:
-  explicit Preparing(const api::DeviceSet& devices) : devices_(devices), before_(told()) {}
+  explicit Preparing(const engine::DeviceScene& devices) : devices_(devices), before_(told()) {}
 
   // `work`: the frame or the query itself.
   double beside(double work) const { return std::max(0.0, timer_.seconds() - work - (told() - before_)); }
@@ -48,7 +49,7 @@ class Preparing {
  private:
   double told() const { return devices_.build_seconds() + devices_.upload_seconds(); }
 
-  const api::DeviceSet& devices_;
+  const engine::DeviceScene& devices_;
   double before_;
   Timer timer_;
 };
@@ -56,9 +57,10 @@ class Preparing {
 }  // namespace
 
 struct Renderer::Impl {
+  Impl(std::shared_ptr<engine::DeviceScene> devices, const api::Hooks& hooks)
+      : state(std::move(devices), hooks), statistics(api::first_statistics(state.devices)) {}
   Impl(const PreparedScene& prepared, const DeviceOptions& options, const api::Hooks& hooks)
-      : state(prepared.prepared(), options, hooks),
-        statistics(api::first_statistics(state.scene, state.devices)) {}
+      : Impl(api::open_scene(prepared.prepared(), options, hooks), hooks) {}
 
   Picture render(const RenderOptions& options);
   std::vector<Hit> trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
@@ -74,15 +76,12 @@ struct Renderer::Impl {
 void Renderer::Impl::tune(const Tuning& tuning) {
   state.devices.tune(tuning);
   state.scheduler.forget();
-  statistics.tuning = api::tuning_told(state.devices.first().tuned);
+  statistics.tuning = api::tuning_told(state.devices.first().tuned());
 }
 
 // The trees and primitives of `seen` are this scene's own.
 void Renderer::Impl::look(const prepare::Prepared& seen) {
-  state.scene.settings = seen.settings;
-  state.scene.features = seen.features;
-  state.scene.flat.lights = seen.flat.lights;
-  for (api::Device& device : state.devices) device.light_anew();
+  state.devices.look(seen);
   if (state.divided) state.divided->light(seen.flat.lights);
 }
 
@@ -110,22 +109,17 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
 
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,
                                        Precision precision, std::vector<std::uint32_t>* instances) {
-  api::Device& first = state.devices.first();
-  Traversal traversal = api::traversal_in(precision, wanted, first.context.info());
-  api::check_form(takes_binary_form(traversal, precision), state.scene);
-  // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
-  if (traversal == Traversal::automatic && first.global) traversal = Traversal::wide;
+  const Traversal traversal = api::traversal_of_rays(precision, wanted, state.devices);
   const Preparing preparing(state.devices);
-  query::Traced result = query::trace(
-      {first.context, first.buffers(), first.programs, state.scene, first.work_group, first.global}, rays,
-      {.any_hit = any_hit, .traversal = traversal, .precision = precision, .repeat = repeat});
+  const std::vector<query::Target> targets = query::targets_of(state.devices, traversal, precision);
+  query::Traced result = query::trace(targets, rays, {.any_hit = any_hit, .repeat = repeat});
   statistics.seconds.prepare =
       preparing.beside(std::accumulate(result.seconds.begin(), result.seconds.end(), 0.0));
   api::record_query(statistics, state.devices,
                     {.rays = rays.size(),
                      .repeat = result.seconds.size(),
                      .seconds = median(result.seconds),
-                     .traversal = traversal,
+                     .traversal = targets.front().walk(),
                      .precision = precision});
   if (instances) *instances = std::move(result.instances);
   return std::move(result.hits);
@@ -181,9 +175,15 @@ struct HookedRenderer {
   static Renderer make(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks) {
     return Renderer(std::make_unique<Renderer::Impl>(scene, device, hooks));
   }
+  static Renderer make(std::shared_ptr<engine::DeviceScene> devices) {
+    return Renderer(std::make_unique<Renderer::Impl>(std::move(devices), Hooks()));
+  }
   static void keep(Renderer& renderer, std::uint64_t bits) { renderer.impl_->state.keep = bits; }
 };
 
+Renderer make_renderer(std::shared_ptr<engine::DeviceScene> devices) {
+  return HookedRenderer::make(std::move(devices));
+}
 Renderer make_renderer(const PreparedScene& scene, const DeviceOptions& device, const Hooks& hooks) {
   return HookedRenderer::make(scene, device, hooks);
 }

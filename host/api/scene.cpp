@@ -11,6 +11,7 @@
 #include "accel/prepare/instanced.h"
 #include "accel/prepare/refit.h"
 #include "api/committed.h"
+#include "api/hooks.h"
 #include "base/timer.h"
 #include "engine/query/crossings.h"
 #include "engine/query/points.h"

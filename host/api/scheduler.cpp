@@ -17,7 +17,7 @@ std::uint32_t Scheduler::tile_side(const layout::Frame& frame) const {
     measured = last_.cost;
   const std::uint32_t units =
       n_ranks_ * std::max(devices_.n_units(), static_cast<std::uint32_t>(devices_.n_queues()));
-  const int tuned = devices_.first().tuned.settings.tile;  // tiles are the frame's, whatever the device
+  const int tuned = devices_.first().tuned().settings.tile;  // tiles are the frame's, whatever the device
   const std::uint32_t largest = tuned > 0 ? static_cast<std::uint32_t>(tuned) : pdprt::kLargestTile;
   return pdprt::choose_tile_side(frame.width, frame.height, units, measured, largest);
 }
@@ -35,7 +35,7 @@ void Scheduler::choose_tiles(wavefront::Schedule& schedule, const Job& job) cons
     throw Error(ErrorCode::usage, "a tile holds over 2^32 samples; take smaller tiles (--tile)");
 }
 
-void Scheduler::choose_slices(wavefront::Schedule& schedule, const Device& device) const {
+void Scheduler::choose_slices(wavefront::Schedule& schedule, const engine::Device& device) const {
   const bool one_queue = devices_.n_queues() * n_ranks_ == 1;
   // There are enough slices that the last ones to end leave no core idle for long; each has a pool and
   // streams of its own.
@@ -47,14 +47,14 @@ void Scheduler::choose_slices(wavefront::Schedule& schedule, const Device& devic
     schedule.n_slices = units == 1 ? 1 : 16 * units;
     schedule.fused_waves = units == 1 ? 128 : 32;
   }
-  const Tuning& tuned = device.tuned.settings;
+  const Tuning& tuned = device.tuned().settings;
   if (tuned.batch > 0) schedule.batch_size = static_cast<std::uint32_t>(tuned.batch);
   // These were found with a single queue; several need the rule above.
   if (one_queue && tuned.slices > 0) schedule.n_slices = static_cast<std::uint32_t>(tuned.slices) * units;
   if (one_queue && tuned.waves > 0) schedule.fused_waves = static_cast<std::uint32_t>(tuned.waves);
 }
 
-wavefront::Schedule Scheduler::schedule_for(const Device& device, const Job& job) const {
+wavefront::Schedule Scheduler::schedule_for(const engine::Device& device, const Job& job) const {
   wavefront::Schedule schedule;
   choose_tiles(schedule, job);
   schedule.work_group = device.work_group;

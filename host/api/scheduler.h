@@ -7,8 +7,8 @@
 
 #include <cstdint>
 
-#include "api/device.h"
 #include "api/job.h"
+#include "engine/device_scene/device_scene.h"
 #include "engine/pdprt/tile_size.h"
 #include "engine/wavefront/wavefront.h"
 
@@ -17,9 +17,10 @@ namespace kdray::api {
 class Scheduler {
  public:
   // `devices` have to outlive the scheduler. `n_ranks` processes share the frames.
-  Scheduler(const DeviceSet& devices, std::uint32_t n_ranks) : devices_(devices), n_ranks_(n_ranks) {}
+  Scheduler(const engine::DeviceScene& devices, std::uint32_t n_ranks)
+      : devices_(devices), n_ranks_(n_ranks) {}
 
-  wavefront::Schedule schedule_for(const Device& device, const Job& job) const;
+  wavefront::Schedule schedule_for(const engine::Device& device, const Job& job) const;
 
   // What the tiles of a frame cost.
   void remember(const layout::Frame& frame, const pdprt::TileCost& cost);
@@ -28,9 +29,9 @@ class Scheduler {
  private:
   void choose_tiles(wavefront::Schedule& schedule, const Job& job) const;
   std::uint32_t tile_side(const layout::Frame& frame) const;
-  void choose_slices(wavefront::Schedule& schedule, const Device& device) const;
+  void choose_slices(wavefront::Schedule& schedule, const engine::Device& device) const;
 
-  const DeviceSet& devices_;
+  const engine::DeviceScene& devices_;
   std::uint32_t n_ranks_;
   struct {
     std::uint32_t width = 0, height = 0;

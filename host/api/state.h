@@ -7,16 +7,18 @@
 
 #include "accel/flatten/core.h"
 #include "accel/prepare/prepared.h"
-#include "api/device.h"
 #include "api/hooks.h"
 #include "api/scheduler.h"
 #include "api/whole_scene.h"
 #include "base/hash.h"
 #include "cluster/transport/ranks.h"
 #include "device/opencl/fault_injector.h"
+#include "engine/device_scene/device_scene.h"
 #include "engine/odprt/render.h"
 
 namespace kdray::api {
+
+using engine::Device;
 
 // Mrays/s of the last frames of one size, by mode; 0: not measured.
 struct Speeds {
@@ -33,10 +35,11 @@ struct Speeds {
 
 // Its parts refer to each other, so it stays where it was made.
 struct State {
-  State(const prepare::Prepared& prepared, const DeviceOptions& options, const Hooks& hooks)
-      : scene(prepared),
+  State(std::shared_ptr<engine::DeviceScene> shared, const Hooks& hooks)
+      : shared_devices(std::move(shared)),
+        devices(*shared_devices),
+        scene(devices.scene()),
         scene_bytes(scene.bytes()),
-        devices(options, hooks, scene),
         scheduler(devices, hooks.ranks ? static_cast<std::uint32_t>(hooks.ranks->size()) : 1),
         fault_injector(hooks.faults),
         keep(hooks.keep),
@@ -47,9 +50,10 @@ struct State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  prepare::Prepared scene;
+  const std::shared_ptr<engine::DeviceScene> shared_devices;
+  engine::DeviceScene& devices;
+  const prepare::Prepared& scene;
   std::size_t scene_bytes;  // of its arrays, on a device that has all of it
-  DeviceSet devices;
   Scheduler scheduler;
   device::FaultInjector fault_injector;
   std::unique_ptr<odprt::DividedScene> divided;  // once a frame was rendered in ODPRT

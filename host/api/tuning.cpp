@@ -28,9 +28,9 @@ tuning::Database read_tunings(const DeviceOptions& options) {
   }
 }
 
-Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
-                const tuning::Database& tunings, const std::string& file) {
-  Tuned tuned{tuning::shipped(context.info().kind), tuning_key(context, global, features), "shipped"};
+engine::Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
+                        const tuning::Database& tunings, const std::string& file) {
+  engine::Tuned tuned{tuning::shipped(context.info().kind), tuning_key(context, global, features), "shipped"};
   if (const tuning::Entry* const entry = tunings.find(tuned.key)) {
     tuned.settings = tuning::merged(tuned.settings, entry->settings);
     tuned.from = fmt::format("{}, features {}", file, entry->key.features);

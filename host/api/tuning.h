@@ -8,22 +8,17 @@
 
 #include "device/opencl/context.h"
 #include "device/tuning/database.h"
+#include "engine/device_scene/device.h"
 #include "layout/features.h"
 
 namespace kdray::api {
 
 tuning::Key tuning_key(const device::Context& context, bool global, layout::Features features);
 
-struct Tuned {
-  Tuning settings;
-  tuning::Key key;
-  std::string from;  // "shipped", "given", or the file and the features of its entry
-};
-
 // The file's entries; none where it is of no use, of which the options' tunings_ignored is told.
 tuning::Database read_tunings(const DeviceOptions& options);
 
-Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
-                const tuning::Database& tunings, const std::string& file);
+engine::Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
+                        const tuning::Database& tunings, const std::string& file);
 
 }  // namespace kdray::api

@@ -10,9 +10,9 @@
 #include "accel/flatten/frame.h"
 #include "accel/kdtree/build.h"
 #include "accel/prepare/prepared.h"
-#include "api/device.h"
 #include "api/open_devices.h"
 #include "api/precision.h"
+#include "api/tuning.h"
 #include "base/timer.h"
 #include "device/opencl/program_cache.h"
 #include "engine/query/trace.h"
@@ -45,8 +45,8 @@ class Warming {
           const wavefront::TreeForm& form, const Tuning& tuning)
       : context_(context),
         scene_(scene),
-        work_group_(work_group_of(options, context)),
-        global_(runs_globally(options, context)),
+        work_group_(engine::work_group_of(options, context)),
+        global_(engine::runs_globally(options, context)),
         buffers_(context, scene.flat, scene.wide),
         programs_(context, form) {
     programs_.use(tuning);
@@ -68,9 +68,8 @@ class Warming {
 
   void queries() {
     const Ray ray{{0, 0, 0}, 0, {0, 0, -1}, 1};
-    const Traversal traversal = global_ ? Traversal::wide : Traversal::automatic;
-    (void)query::trace({context_, buffers_, programs_, scene_, work_group_, global_}, std::span(&ray, 1),
-                       {.traversal = traversal});
+    const query::Target target{context_, buffers_, programs_, scene_, work_group_, global_};
+    (void)query::trace(target, std::span(&ray, 1), {});
   }
 
   bool compiled() const { return programs_.used().compiled > 0; }
@@ -121,8 +120,8 @@ std::vector<WarmProgram> warm_up(const DeviceOptions& options,
   for (const device::Context& context : opened.contexts)
     for (const auto& [form, scenes] : wavefront::Programs::usual_forms()) {
       const prepare::Prepared scene = scene_in_blocks(form.block);
-      const Tuning tuning = tuned_for(context, runs_globally(options, context), scene.features, tunings,
-                                      options.tunings.string())
+      const Tuning tuning = tuned_for(context, engine::runs_globally(options, context), scene.features,
+                                      tunings, options.tunings.string())
                                 .settings;
       const auto make = [&](const std::string& work, void (Warming::*launch)()) {
         const Timer timer;

@@ -86,16 +86,20 @@ array::TableFormat format_of(const std::string& output, Question question) {
   return array::TableFormat::npz;
 }
 
-bool is_for_renderer(const TraceRequest& request, bool in_double, Traversal traversal, Precision precision) {
-  const bool plain = request.question == Question::closest || request.question == Question::any;
-  if (plain && !in_double) return true;
-  const char* const option = traversal != Traversal::automatic ? "--traversal"
-                             : precision != Precision::float32 ? "--precision"
-                                                               : nullptr;
-  if (option == nullptr) return false;
-  refuse(fmt::format(
-      "{} is for the closest and any hits of float32 rays; leave it out{}", option,
-      plain ? fmt::format(", or save rays.astype('<f4') ({} holds float64)", request.file) : std::string()));
+void check_walk(Question question, Traversal traversal, Precision precision) {
+  const bool is_closest_point = question == Question::closest_point;
+  if (traversal != Traversal::automatic && is_closest_point)
+    refuse("--traversal is how rays walk the tree, and --closest-point has a walk of its own; leave it out");
+  if (traversal == Traversal::binary && !is_plain(question))
+    refuse(
+        fmt::format("the binary walk finds closest and any hits alone, and {} needs all; take another "
+                    "--traversal",
+                    name_of(question)));
+  if (precision == Precision::float64 && !is_plain(question))
+    refuse(
+        fmt::format("--precision double is for closest and any hits; {} decides in double by itself what "
+                    "float leaves open; leave it out",
+                    name_of(question)));
 }
 
 }  // namespace kdray::cli

@@ -18,6 +18,11 @@ inline bool is_of_points(Question question) {
   return question >= Question::closest_point;
 }
 
+// Whether one hit of each ray is asked for, which all walks find.
+inline bool is_plain(Question question) {
+  return question == Question::closest || question == Question::any;
+}
+
 // "closest_point", for statistics.
 const char* name_of(Question question);
 
@@ -40,8 +45,7 @@ TraceRequest request_of(const QuestionArgs& args);
 // By the ending of the file's name; to stdout ("-") an .npy where it holds the answers.
 array::TableFormat format_of(const std::string& output, Question question);
 
-// Whether a Renderer traces the rays, which have been on the device before the time counts: the closest or
-// any hits of float rays. Throws where it is not, and options ask for what a Renderer alone has.
-bool is_for_renderer(const TraceRequest& request, bool in_double, Traversal traversal, Precision precision);
+// Throws for a walk or a precision in which there is no answer to that question.
+void check_walk(Question question, Traversal traversal, Precision precision);
 
 }  // namespace kdray::cli

@@ -48,18 +48,6 @@ struct Traced {
   std::uint64_t n_found = 0;
 };
 
-// On several queues the first one alone would be asked, which has a part of a device.
-void check_device(const DeviceOptions& device) {
-  const char* const option = device.queues > 1                              ? "--queues"
-                             : device.device.find(',') != std::string::npos ? "--device"
-                                                                            : nullptr;
-  if (option == nullptr) return;
-  throw Error(ErrorCode::usage,
-              std::string(option) +
-                  ": trace asks one queue of one device, which takes all of its cores; leave " +
-                  (device.queues > 1 ? "it out" : "the others out"));
-}
-
 void check_files(const TraceArgs& o, const TraceRequest& request, RunFiles& files) {
   check_scene_input(o.scene);
   files.read("SCENE", o.scene.file);
@@ -93,7 +81,6 @@ auto naming_file(const std::string& file, const Work& work) {
   }
 }
 
-// Closest and any hits of floats, which are on the device before the time counts.
 Traced trace(const OpenedScene& scene, const TraceArgs& o, const TraceRequest& request,
              const RequestedRows& rows) {
   Renderer renderer(scene.scene(), scene.device());
@@ -115,7 +102,7 @@ constexpr std::size_t kWarmUp = std::size_t{1} << 17;
 // All else. Before the time counts the first row is asked about alone.
 Traced ask(const OpenedScene& scene, const TraceArgs& o, const TraceRequest& request,
            const RequestedRows& rows) {
-  api::Committed committed(scene.scene(), scene.device());
+  api::Committed committed(scene.scene(), scene.device(), {o.traversal, o.precision});
   const query::QueryContext of = committed.query_context();
   const int max_hits = o.question.max_hits;
   Answers answers(request.question, max_hits > 0 ? static_cast<std::uint32_t>(max_hits) : 0xffffffffu);
@@ -147,13 +134,14 @@ Json answers_told(const TraceArgs& o, const TraceRequest& request, std::size_t n
 int run(const TraceArgs& o) {
   const Timer total;
   const TraceRequest request = request_of(o.question);
-  check_device(o.device);
+  check_walk(request.question, o.traversal, o.precision);
   static_cast<void>(format_of(o.output, request.question));
   RunFiles files;
   check_files(o, request, files);
   const Timer step;
   array::RowsFile file(request.file, request.wanted());
-  const bool by_renderer = is_for_renderer(request, file.in_double(), o.traversal, o.precision);
+  // Closest and any hits of floats, which are on the devices before the time counts.
+  const bool by_renderer = is_plain(request.question) && !file.in_double();
   const RequestedRows rows(file, request, free_memory());
   const double read_rays = step.seconds();
 

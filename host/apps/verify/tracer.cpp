@@ -51,8 +51,9 @@ std::vector<Hit> Tracer::closest(std::span<const Ray> rays, Traversal wanted) {
   // Packets and batches are explicit vectors, for CPUs.
   const bool vectors = context_.info().kind == "cpu";
   const Traversal traversal = !vectors && wanted != Traversal::binary ? Traversal::wide : wanted;
-  return query::trace({context_, buffers_, programs_, scene_, kWorkGroup}, rays, {.traversal = traversal})
-      .hits;
+  query::Target target{context_, buffers_, programs_, scene_, kWorkGroup};
+  target.traversal = traversal;
+  return query::trace(target, rays, {}).hits;
 }
 
 std::vector<layout::Departure> Tracer::departures(std::span<const Ray> rays, std::span<const Hit> hits) {

@@ -2,7 +2,7 @@
 
 #include <map>
 #include <mutex>
-#include <vector>
+#include <utility>
 
 #include "device/opencl/opencl_error.h"
 
@@ -13,7 +13,7 @@ namespace {
 // Contexts are never destroyed (context.h), so their addresses name them. Neither are these, on purpose.
 struct Spares {
   std::mutex mutex;
-  std::map<cl_context, std::vector<cl::CommandQueue>> of;
+  std::map<std::pair<cl_context, std::size_t>, std::vector<cl::CommandQueue>> of;
 };
 Spares& spares() {
   static auto* all = new Spares;
@@ -22,23 +22,23 @@ Spares& spares() {
 
 }  // namespace
 
-SpareQueue::SpareQueue(const Context& context) : context_(context.get()()) {
+SpareQueue::SpareQueue(const Context& context, std::size_t sub_device) {
   Spares& all = spares();
   const std::lock_guard lock(all.mutex);
-  std::vector<cl::CommandQueue>& free = all.of[context_];
-  if (free.empty()) {
-    queue_ = checked("opening a queue",
-                     [&] { return cl::CommandQueue(context.get(), context.opened().devices.front(), 0); });
+  free_ = &all.of[{context.get()(), sub_device}];
+  if (free_->empty()) {
+    queue_ = checked("opening a queue", [&] {
+      return cl::CommandQueue(context.get(), context.opened().devices.at(sub_device), 0);
+    });
   } else {
-    queue_ = free.back();
-    free.pop_back();
+    queue_ = free_->back();
+    free_->pop_back();
   }
 }
 
 SpareQueue::~SpareQueue() {
-  Spares& all = spares();
-  const std::lock_guard lock(all.mutex);
-  all.of[context_].push_back(queue_);
+  const std::lock_guard lock(spares().mutex);
+  free_->push_back(queue_);
 }
 
 }  // namespace kdray::device

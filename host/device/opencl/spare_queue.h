@@ -4,6 +4,9 @@
 //         and given to the next who asks.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "device/opencl/context.h"
 #include "device/opencl/opencl.h"
 
@@ -11,8 +14,8 @@ namespace kdray::device {
 
 class SpareQueue {
  public:
-  // On the context's first device.
-  explicit SpareQueue(const Context& context);
+  // On one of the context's devices, by its place among them.
+  explicit SpareQueue(const Context& context, std::size_t sub_device = 0);
   ~SpareQueue();
   SpareQueue(const SpareQueue&) = delete;
   SpareQueue& operator=(const SpareQueue&) = delete;
@@ -20,7 +23,7 @@ class SpareQueue {
   cl::CommandQueue& get() { return queue_; }
 
  private:
-  cl_context context_;
+  std::vector<cl::CommandQueue>* free_;  // where it goes back to
   cl::CommandQueue queue_;
 };
 

@@ -10,12 +10,13 @@
 
 #include "base/error.h"
 #include "engine/query/grains.h"
+#include "engine/query/shared_rows.h"
 #include "engine/query/write_hits.h"
 
 namespace kdray::query {
 
-void check_invalid(const LocalRays& rays, const QueryOptions& options) {
-  if (options.invalid == InvalidRays::error && rays.first_invalid())
+void check_invalid(const LocalRays& rays, InvalidRays invalid) {
+  if (invalid == InvalidRays::error && rays.first_invalid())
     throw Error(ErrorCode::input, *rays.first_invalid());
 }
 
@@ -28,58 +29,61 @@ namespace {
 
 // A chunk that is being traced.
 struct Chunk {
-  explicit Chunk(const QueryContext& context, const RayArrays& rays)
-      : session(context.sessions.rays.borrow()), local(rays, context.frame) {}
+  Chunk(const QueryContext& context, Place& place, const RayArrays& rays)
+      : session(place.sessions.rays.borrow()), local(rays, context.frame) {}
 
   Sessions<Session>::Borrowed session;
   LocalRays local;
   std::size_t first = 0, n = 0;  // 0: none
 };
 
-// Rays of a chunk: so many that the device has chunks to work at while the host works at others.
+// Calls of fewer rays go to one place alone.
+constexpr std::size_t kFewRays = std::size_t{1} << 14;
+
+// Rays of a chunk of the n that a place has: so many that the device has chunks to work at while the host
+// works at others.
 std::size_t chunk_for(std::size_t n, std::size_t most) {
-  constexpr std::size_t kLeast = std::size_t{1} << 14, kChunks = 8;
-  return std::min(most, std::max(kLeast, n / kChunks));
+  constexpr std::size_t kChunks = 8;
+  return std::min(most, std::max(kFewRays, n / kChunks));
 }
 
-// Calls take(chunk, hits, begin, end) for grains of the hits of each chunk, in turn. While two chunks are
-// traced the next one's rays are made ready.
+// Calls take(chunk, hits, begin, end) for grains of the hits of each chunk of a place, in turn. While two
+// chunks are traced the next one's rays are made ready.
 template <class Take>
 class ChunkTracer {
  public:
-  ChunkTracer(const QueryContext& context, const RayArrays& rays, bool any_hit, bool as_refs,
+  ChunkTracer(const QueryContext& context, Place& place, const RayArrays& rays, bool any_hit, bool as_refs,
               const Take& take)
-      : context_(context), rays_(rays), any_hit_(any_hit), as_refs_(as_refs), take_(take) {}
+      : context_(context), place_(place), rays_(rays), any_hit_(any_hit), as_refs_(as_refs), take_(take) {}
 
-  QueryReport run(const QueryOptions& options) {
-    if (rays_.size() == 0) return {};
-    chunks_[0].emplace(context_, rays_);
-    const std::size_t at_once = chunk_for(rays_.size(), chunks_[0]->session->chunk());
-    for (std::size_t first = 0, turn = 0; first < rays_.size(); first += at_once, turn ^= 1) {
-      throw_if_cancelled(options.cancel);
-      if (!chunks_[turn]) chunks_[turn].emplace(context_, rays_);
+  QueryReport run(RowTaker& rows, InvalidRays invalid, const std::optional<Cancel>& cancel) {
+    chunks_[0].emplace(context_, place_, rays_);
+    const std::size_t at_once = chunk_for(rows.fair_share(), chunks_[0]->session->chunk());
+    std::size_t turn = 0;
+    for (RowRange taken = rows.take(at_once); taken.n > 0; taken = rows.take(at_once), turn ^= 1) {
+      throw_if_cancelled(cancel);
+      if (!chunks_[turn]) chunks_[turn].emplace(context_, place_, rays_);
       finish(*chunks_[turn]);
-      start(*chunks_[turn], first, std::min(at_once, rays_.size() - first), options);
-      last_ = turn;
+      start(*chunks_[turn], taken, invalid);
     }
     QueryReport report;
-    for (const std::size_t turn : {last_ ^ 1, last_}) {
-      if (!chunks_[turn]) continue;
-      finish(*chunks_[turn]);
-      report.invalid += chunks_[turn]->local.n_invalid();
+    for (const std::size_t t : {turn, turn ^ 1}) {
+      if (!chunks_[t]) continue;
+      finish(*chunks_[t]);
+      report.invalid += chunks_[t]->local.n_invalid();
     }
     return report;
   }
 
  private:
-  void start(Chunk& chunk, std::size_t first, std::size_t n, const QueryOptions& options) {
-    chunk.local.fill(first, n, chunk.session->rays());
-    check_invalid(chunk.local, options);
-    if (context_.target.masks() != nullptr)
-      for (std::size_t i = 0; i < n; ++i) chunk.session->ray_masks()[i] = rays_.mask(first + i);
-    chunk.session->start(n, any_hit_, as_refs_);
-    chunk.first = first;
-    chunk.n = n;
+  void start(Chunk& chunk, const RowRange& taken, InvalidRays invalid) {
+    chunk.local.fill(taken.first, taken.n, chunk.session->rays());
+    check_invalid(chunk.local, invalid);
+    if (context_.has_masks())
+      for (std::size_t i = 0; i < taken.n; ++i) chunk.session->ray_masks()[i] = rays_.mask(taken.first + i);
+    chunk.session->start(taken.n, any_hit_, as_refs_);
+    chunk.first = taken.first;
+    chunk.n = taken.n;
   }
 
   void finish(Chunk& chunk) {
@@ -97,17 +101,22 @@ class ChunkTracer {
   }
 
   const QueryContext& context_;
+  Place& place_;
   const RayArrays& rays_;
   bool any_hit_, as_refs_;
   const Take& take_;
   std::optional<Chunk> chunks_[2];
-  std::size_t last_ = 0;
 };
 
 template <class Take>
 QueryReport trace_chunks(const QueryContext& context, const RayArrays& rays, bool any_hit, bool as_refs,
                          const QueryOptions& options, const Take& take) {
-  return ChunkTracer<Take>(context, rays, any_hit, as_refs, take).run(options);
+  if (rays.size() == 0) return {};
+  return share_rows(context, rays.size(), kFewRays, options.cancel,
+                    [&](Place& place, RowTaker& rows, const std::optional<Cancel>& cancel) {
+                      return ChunkTracer<Take>(context, place, rays, any_hit, as_refs, take)
+                          .run(rows, options.invalid, cancel);
+                    });
 }
 
 }  // namespace

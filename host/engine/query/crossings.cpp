@@ -12,6 +12,7 @@
 #include "engine/query/exact_rays.h"
 #include "engine/query/grains.h"
 #include "engine/query/pace.h"
+#include "engine/query/shared_rows.h"
 #include "engine/query/surface.h"
 
 namespace kdray::query {
@@ -29,15 +30,15 @@ constexpr std::uint64_t kSmallAnswer = std::uint64_t{1} << 26;
 class CollectedRays {
  public:
   CollectedRays(const QueryContext& context, const RayArrays& rays)
-      : rays_(&rays), local_(rays, context.frame), masked_(context.target.masks() != nullptr) {}
+      : rays_(&rays), local_(rays, context.frame), masked_(context.has_masks()) {}
 
-  std::span<const Ray> take(std::size_t first, std::size_t most, const QueryOptions& options) {
-    throw_if_cancelled(options.cancel);
-    const std::size_t n = std::min(most, rays_->size() - first);
+  std::span<const Ray> take(std::size_t first, std::size_t n, InvalidRays invalid,
+                            const std::optional<Cancel>& cancel) {
+    throw_if_cancelled(cancel);
     taken_.resize(n);
     static_assert(sizeof(Ray) == sizeof(layout::QueryRay));
     local_.fill(first, n, reinterpret_cast<layout::QueryRay*>(taken_.data()));
-    check_invalid(local_, options);
+    check_invalid(local_, invalid);
     masks_.resize(masked_ ? n : 0);
     for (std::size_t i = 0; i < masks_.size(); ++i) masks_[i] = rays_->mask(first + i);
     return taken_;
@@ -176,68 +177,118 @@ QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut&
                   const QueryOptions& options) {
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "counts");
-  CollectedRays collected(context, arrays);
-  const Sessions<Passes>::Borrowed passes = context.sessions.crossings.borrow();
-  std::vector<std::uint32_t> counts;
-  Pace pace(kFirstRays, kCollected, context.sessions.counted_at_once);
-  for (std::size_t first = 0; first < arrays.size();) {
-    const std::span<const Ray> taken = collected.take(first, pace.take(), options);
-    counts.resize(taken.size());
-    count_hits(*passes, taken, {.masks = collected.masks(), .cancel = options.cancel}, counts);
-    if (arrays.in_double()) ExactRays(context, arrays).count(first, counts, options.cancel);
-    if (!out.empty())
-      out.fill(first, counts.size(), [&](std::size_t ray) { return std::array{counts[ray - first]}; });
-    first += taken.size();
-    pace.done(taken.size());
-  }
-  return {collected.local().n_invalid()};
+  const auto work = [&](Place& place, RowTaker& rows, const std::optional<Cancel>& cancel) {
+    CollectedRays collected(context, arrays);
+    const Sessions<Passes>::Borrowed passes = place.sessions.crossings.borrow();
+    std::vector<std::uint32_t> counts;
+    Pace pace(kFirstRays, kCollected, place.sessions.counted_at_once);
+    for (RowRange next = rows.take(pace.take()); next.n > 0; next = rows.take(pace.take())) {
+      const std::span<const Ray> taken = collected.take(next.first, next.n, options.invalid, cancel);
+      counts.resize(taken.size());
+      count_hits(*passes, taken, {.masks = collected.masks(), .cancel = cancel}, counts);
+      if (arrays.in_double()) ExactRays(context, arrays).count(next.first, counts, cancel);
+      if (!out.empty())
+        out.fill(next.first, next.n, [&](std::size_t ray) { return std::array{counts[ray - next.first]}; });
+      pace.done(next.n);
+    }
+    return QueryReport{collected.local().n_invalid()};
+  };
+  return share_rows(context, arrays.size(), kFirstRays, options.cancel, work);
 }
 
-// While a chunk is traced, the hits of the one before it are added to the answer.
-AllHits all(const QueryContext& context, const Rays& rays, const AllHitsOptions& options) {
-  const RayArrays arrays(rays);
-  const bool exact = arrays.in_double();
-  const ExactRays in_double(context, arrays);
+namespace {
+
+// All hits of the rays that a place takes. While a chunk is traced, the hits of the one before it are added
+// to the answer, in the rays' order.
+class Collector {
+ public:
+  Collector(const QueryContext& context, Place& place, const RayArrays& rays, const AllHitsOptions& options,
+            Answer& answer)
+      : options_(options),
+        answer_(answer),
+        exact_(rays.in_double()),
+        in_double_(context, rays),
+        chunks_{{context, rays}, {context, rays}},
+        passes_(place.sessions.crossings.borrow()),
+        pace_(kFirstRays, kCollected, place.sessions.collected_at_once) {}
+  Collector(const Collector&) = delete;
+  Collector& operator=(const Collector&) = delete;
+  ~Collector() {
+    adding_.cancel();
+    adding_.wait();
+  }
+
+  QueryReport run(RowTaker& rows, const std::optional<Cancel>& cancel) {
+    for (RowRange next = rows.take(pace_.take()); next.n > 0; next = rows.take(pace_.take()))
+      while (next.n > 0) {
+        const std::size_t n = trace(next.first, std::min(next.n, pace_.take()), cancel);
+        if (n == 0) continue;  // too many hits: fewer rays at a time
+        adding_.wait();
+        if (!rows.all().wait_for_turn(next.first)) return {};
+        add(rows.all(), n, next.first + n == rows.all().size());
+        next = {next.first + n, next.n - n};
+      }
+    adding_.wait();
+    return {chunks_[0].rays.local().n_invalid() + chunks_[1].rays.local().n_invalid()};
+  }
+
+ private:
   struct Chunk {
     Chunk(const QueryContext& context, const RayArrays& rays) : rays(context, rays) {}
     CollectedRays rays;
     LocalHits found;
     ExactHits exact;
   };
-  Chunk chunks[2] = {{context, arrays}, {context, arrays}};
-  Answer answer(context, arrays.size(), options.max_bytes);
-  const Sessions<Passes>::Borrowed passes = context.sessions.crossings.borrow();
-  tbb::task_group adding;
-  Pace pace(kFirstRays, kCollected, context.sessions.collected_at_once);
-  try {
-    for (std::size_t first = 0, turn = 0; first < arrays.size();) {
-      Chunk& chunk = chunks[turn];
-      const std::span<const Ray> taken = chunk.rays.take(first, pace.take(), options);
-      const CollectOptions collect{.max_hits = options.max_hits,
-                                   .masks = chunk.rays.masks(),
-                                   .as_refs = exact,
-                                   .cancel = options.cancel,
-                                   .at_once = taken.size() > 1 ? kTooMany : SIZE_MAX};
-      if (!all_hits(*passes, taken, collect, chunk.found)) {
-        pace.done(taken.size(), taken.size() / 8);
-        continue;
-      }
-      pace.done(taken.size(), kHitsAtOnce * taken.size() / std::max<std::size_t>(chunk.found.t.size(), 1));
-      if (exact) chunk.exact = in_double.settle(first, chunk.found, options.max_hits, options.cancel);
-      adding.wait();
-      const auto add = [&answer, &chunk, exact] {
-        exact ? answer.add(chunk.exact) : answer.add(chunk.rays.local(), chunk.found);
-      };
-      first += taken.size();
-      first < arrays.size() ? adding.run(add) : add();
-      turn ^= 1;
+
+  // Returns 0 where they have more hits than fit.
+  std::size_t trace(std::size_t first, std::size_t n, const std::optional<Cancel>& cancel) {
+    Chunk& chunk = chunks_[turn_];
+    const std::span<const Ray> taken = chunk.rays.take(first, n, options_.invalid, cancel);
+    const CollectOptions collect{.max_hits = options_.max_hits,
+                                 .masks = chunk.rays.masks(),
+                                 .as_refs = exact_,
+                                 .cancel = cancel,
+                                 .at_once = n > 1 ? kTooMany : SIZE_MAX};
+    if (!query::all_hits(*passes_, taken, collect, chunk.found)) {
+      pace_.done(n, n / 8);
+      return 0;
     }
-  } catch (...) {
-    adding.cancel();
-    adding.wait();
-    throw;
+    pace_.done(n, kHitsAtOnce * n / std::max<std::size_t>(chunk.found.t.size(), 1));
+    if (exact_) chunk.exact = in_double_.settle(first, chunk.found, options_.max_hits, cancel);
+    return n;
   }
-  return answer.take(chunks[0].rays.local().n_invalid() + chunks[1].rays.local().n_invalid());
+
+  void add(SharedRows& rows, std::size_t n, bool are_last) {
+    const auto work = [this, &rows, n, &chunk = chunks_[turn_]] {
+      exact_ ? answer_.add(chunk.exact) : answer_.add(chunk.rays.local(), chunk.found);
+      rows.put_together(n);
+    };
+    are_last ? work() : adding_.run(work);
+    turn_ ^= 1;
+  }
+
+  const AllHitsOptions& options_;
+  Answer& answer_;
+  bool exact_;
+  ExactRays in_double_;
+  Chunk chunks_[2];
+  std::size_t turn_ = 0;
+  Sessions<Passes>::Borrowed passes_;
+  Pace pace_;
+  tbb::task_group adding_;
+};
+
+}  // namespace
+
+AllHits all(const QueryContext& context, const Rays& rays, const AllHitsOptions& options) {
+  const RayArrays arrays(rays);
+  Answer answer(context, arrays.size(), options.max_bytes);
+  const QueryReport report =
+      share_rows(context, arrays.size(), kFirstRays, options.cancel,
+                 [&](Place& place, RowTaker& rows, const std::optional<Cancel>& cancel) {
+                   return Collector(context, place, arrays, options, answer).run(rows, cancel);
+                 });
+  return answer.take(report.invalid);
 }
 
 }  // namespace kdray::query

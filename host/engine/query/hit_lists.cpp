@@ -36,7 +36,7 @@ HitLists::HitLists(const Target& target, const Walk& walk, const LocalSpace& spa
       pack_(target.programs.kernel<kernels::PackHits>(features_of(target, walk), walk.traversal)),
       masked_(walk.masked),
       placed_(!target.scene.flat.instances.empty()),
-      spare_(target.context),
+      spare_(target.context, target.sub_device),
       queue_(spare_.get()),
       scale_(static_cast<float>(space.scale)) {
   using C = kernels::CollectHits;

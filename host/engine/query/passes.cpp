@@ -24,6 +24,10 @@ std::size_t launch_hits(const Target& target) {
 }
 
 Traversal walk_for(const Target& target, Traversal asked) {
+  if (target.precision != Precision::float32)
+    throw Error(ErrorCode::usage,
+                "all hits are found in float, and those of double rays that float leaves undecided in double "
+                "anyway; leave the precision out");
   if (asked == Traversal::binary)
     throw Error(ErrorCode::usage,
                 "all hits are found in the wide tree; ask for another traversal than binary");

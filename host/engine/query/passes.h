@@ -37,7 +37,8 @@ struct Hits {
 
 class Passes {
  public:
-  explicit Passes(const Target& target, Traversal traversal = Traversal::automatic);
+  explicit Passes(const Target& target) : Passes(target, target.traversal) {}
+  Passes(const Target& target, Traversal traversal);
   bool settle() noexcept;
 
   // A call about so many rays. (Its traversal has been chosen.)

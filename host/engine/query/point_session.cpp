@@ -60,7 +60,7 @@ PointSession::PointSession(const Target& target)
     : target_(target),
       places_{target.scene.geometry.space},
       stage_(target.programs.kernel<K>(target.scene.features, Traversal::wide)),
-      queue_(target.context),
+      queue_(target.context, target.sub_device),
       order_(target.scene.geometry.bounds) {
   const Box& bounds = target.scene.geometry.bounds;
   device::checked("getting ready to find closest points", [&] {

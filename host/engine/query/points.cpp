@@ -13,6 +13,7 @@
 #include "engine/query/exact_scene.h"
 #include "engine/query/grains.h"
 #include "engine/query/pace.h"
+#include "engine/query/shared_rows.h"
 
 namespace kdray::query {
 
@@ -26,9 +27,7 @@ class PointChunks {
  public:
   PointChunks(const Points& points, const PointOptions& options) : points_(points), options_(&options) {}
 
-  std::span<const dvec3> take(std::size_t first, std::size_t most) {
-    throw_if_cancelled(options_->cancel);
-    const std::size_t n = std::min(most, points_.size() - first);
+  std::span<const dvec3> take(std::size_t first, std::size_t n) {
     first_ = first;
     taken_.resize(n);
     invalid_.clear();
@@ -75,8 +74,9 @@ class PointChunks {
 constexpr float kUp[3] = {0.1803f, 0.2741f, 1};
 
 // How many surfaces each point has above it. Masks are for rays: points see every geometry.
-std::vector<std::uint32_t> crossings_above(const QueryContext& context, std::span<const dvec3> points,
-                                           const PointOptions& options) {
+std::vector<std::uint32_t> crossings_above(const QueryContext& context, Place& place,
+                                           std::span<const dvec3> points,
+                                           const std::optional<Cancel>& cancel) {
   std::vector<Ray> rays(points.size());
   for_each_index(points.size(), [&](std::size_t i) {
     const dvec3 local = context.frame.space().local(points[i]);
@@ -86,27 +86,26 @@ std::vector<std::uint32_t> crossings_above(const QueryContext& context, std::spa
     rays[i] = {{at.x, at.y, at.z}, 0, {kUp[0], kUp[1], kUp[2]}, outside ? -end : end};
   });
   std::vector<std::uint32_t> counts(points.size());
-  AllSessions& all = context.sessions;
-  const bool masked = context.target.masks() != nullptr;
-  count_hits(*(masked ? all.of_all : all.crossings).borrow(), rays, {.cancel = options.cancel}, counts);
+  AllSessions& all = place.sessions;
+  count_hits(*(context.has_masks() ? all.of_all : all.crossings).borrow(), rays, {.cancel = cancel}, counts);
   return counts;
 }
 
 // Whether each point has an odd number of surfaces above it: it is inside of closed ones. Points of doubles
 // so near to a surface that floats can't tell are looked at in double.
-std::vector<std::uint8_t> are_inside(const QueryContext& context, std::span<const dvec3> points,
-                                     bool in_double, const PointOptions& options) {
-  const std::vector<std::uint32_t> counts = crossings_above(context, points, options);
+std::vector<std::uint8_t> are_inside(const QueryContext& context, Place& place, std::span<const dvec3> points,
+                                     bool in_double, const std::optional<Cancel>& cancel) {
+  const std::vector<std::uint32_t> counts = crossings_above(context, place, points, cancel);
   std::vector<std::uint8_t> inside(points.size());
   for_each_index(points.size(), [&](std::size_t i) { inside[i] = counts[i] % 2; });
   if (!in_double) return inside;
   const ExactScene exact(context.scene());
-  for_each_slow_grain(points.size(), options.cancel, [&](std::size_t begin, std::size_t end) {
+  for_each_slow_grain(points.size(), cancel, [&](std::size_t begin, std::size_t end) {
     std::vector<ExactHit> hits;
     for (std::size_t i = begin; i < end; ++i) {
-      const dvec3 place = context.frame.space().local(points[i]);
-      if (context.frame.is_outside(place) || !exact.is_near(place)) continue;
-      exact.cross(place, dvec3(kUp[0], kUp[1], kUp[2]), hits);
+      const dvec3 local = context.frame.space().local(points[i]);
+      if (context.frame.is_outside(local) || !exact.is_near(local)) continue;
+      exact.cross(local, dvec3(kUp[0], kUp[1], kUp[2]), hits);
       inside[i] = hits.size() % 2;
     }
   });
@@ -120,11 +119,11 @@ bool are_doubles(const Points& points) {
 // What lies nearest to points: asked for when it is made, so that the device works at it meanwhile.
 class Nearest {
  public:
-  Nearest(const QueryContext& context, std::span<const dvec3> points, double radius)
+  Nearest(const QueryContext& context, Place& place, std::span<const dvec3> points, double radius)
       : found_(points.size(), kNoClosestPoint) {
     check_points(points, radius);
     if (points.empty() || context.scene().geometry.bounds.empty()) return;
-    session_ = context.sessions.points.borrow();
+    session_ = place.sessions.points.borrow();
     session_->start(points, radius);
   }
 
@@ -139,18 +138,40 @@ class Nearest {
   Sessions<PointSession>::Borrowed session_;
 };
 
+// Some points that a place has taken.
+struct TakenPoints {
+  const QueryContext& context;
+  Place& place;
+  const PointOptions& options;
+  const std::optional<Cancel>& cancel;
+  std::size_t first;  // of the points
+  std::span<const dvec3> points;
+  const PointChunks& all;
+
+  std::vector<std::uint8_t> are_inside(bool in_double) const {
+    return query::are_inside(context, place, points, in_double, cancel);
+  }
+  template <class Column, class ValueOf>
+  void fill(const Column& column, const ValueOf& value_of) const {
+    if (column.empty()) return;
+    column.fill(first, points.size(), [&](std::size_t i) { return std::array{value_of(i - first)}; });
+  }
+};
+
 template <class Take>
 QueryReport for_each_chunk(const QueryContext& context, const Points& points, const PointOptions& options,
                            const Take& take) {
-  PointChunks chunks(points, options);
-  Pace pace(kFirstPoints, kPointsAtOnce, context.sessions.points_at_once);
-  for (std::size_t first = 0; first < points.size();) {
-    const std::span<const dvec3> some = chunks.take(first, pace.take());
-    take(first, some, chunks);
-    first += some.size();
-    pace.done(some.size());
-  }
-  return {chunks.n_invalid()};
+  const auto work = [&](Place& place, RowTaker& rows, const std::optional<Cancel>& cancel) {
+    PointChunks chunks(points, options);
+    Pace pace(kFirstPoints, kPointsAtOnce, place.sessions.points_at_once);
+    for (RowRange next = rows.take(pace.take()); next.n > 0; next = rows.take(pace.take())) {
+      throw_if_cancelled(cancel);
+      take({context, place, options, cancel, next.first, chunks.take(next.first, next.n), chunks});
+      pace.done(next.n);
+    }
+    return QueryReport{chunks.n_invalid()};
+  };
+  return share_rows(context, points.size(), kFirstPoints, options.cancel, work);
 }
 
 }  // namespace
@@ -165,61 +186,56 @@ QueryReport closest_points(const QueryContext& context, const Points& points, co
   check_out(out.primitive.size(), n, "primitive");
   check_out(out.u.size(), n, "u");
   check_out(out.v.size(), n, "v");
-  return for_each_chunk(
-      context, points, options,
-      [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        Nearest nearest(context, some, options.radius);
-        const std::vector<ClosestPoint>& found = nearest.wait();
-        const auto fill = [&](const auto& column, const auto& value_of) {
-          if (column.empty()) return;
-          column.fill(first, some.size(), [&](std::size_t i) {
-            return value_of(chunks.is_invalid(i - first) ? kNoClosestPoint : found[i - first]);
-          });
-        };
-        const auto place_of = [&](const ClosestPoint& p) {
-          return p.primitive < 0 ? GeometryTable::Place{kNoGeometry, kNoPrimitive}
-                                 : context.table.of(static_cast<std::uint32_t>(p.primitive));
-        };
-        fill(out.distance, [](const ClosestPoint& p) { return std::array{p.distance}; });
-        fill(out.point, [](const ClosestPoint& p) { return std::array{p.point.x, p.point.y, p.point.z}; });
-        fill(out.geometry, [&](const ClosestPoint& p) { return std::array{place_of(p).geometry}; });
-        fill(out.primitive, [&](const ClosestPoint& p) { return std::array{place_of(p).primitive}; });
-        fill(out.u, [](const ClosestPoint& p) { return std::array{p.u}; });
-        fill(out.v, [](const ClosestPoint& p) { return std::array{p.v}; });
+  return for_each_chunk(context, points, options, [&](const TakenPoints& chunk) {
+    Nearest nearest(context, chunk.place, chunk.points, options.radius);
+    const std::vector<ClosestPoint>& found = nearest.wait();
+    const auto fill = [&](const auto& column, const auto& value_of) {
+      chunk.fill(column, [&](std::size_t i) {
+        return value_of(chunk.all.is_invalid(i) ? kNoClosestPoint : found[i]);
       });
+    };
+    const auto place_of = [&](const ClosestPoint& p) {
+      return p.primitive < 0 ? GeometryTable::Place{kNoGeometry, kNoPrimitive}
+                             : context.table.of(static_cast<std::uint32_t>(p.primitive));
+    };
+    fill(out.distance, [](const ClosestPoint& p) { return p.distance; });
+    if (!out.point.empty())
+      out.point.fill(chunk.first, chunk.points.size(), [&](std::size_t i) {
+        const std::size_t at = i - chunk.first;
+        const ClosestPoint& p = chunk.all.is_invalid(at) ? kNoClosestPoint : found[at];
+        return std::array{p.point.x, p.point.y, p.point.z};
+      });
+    fill(out.geometry, [&](const ClosestPoint& p) { return place_of(p).geometry; });
+    fill(out.primitive, [&](const ClosestPoint& p) { return place_of(p).primitive; });
+    fill(out.u, [](const ClosestPoint& p) { return p.u; });
+    fill(out.v, [](const ClosestPoint& p) { return p.v; });
+  });
 }
 
 QueryReport inside(const QueryContext& context, const Points& points, const BytesOut& out,
                    const PointOptions& options) {
   check_out(out.size(), points.size(), "inside");
-  return for_each_chunk(
-      context, points, options,
-      [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-        const std::vector<std::uint8_t> found = are_inside(context, some, are_doubles(points), options);
-        if (out.empty()) return;
-        out.fill(first, some.size(), [&](std::size_t i) {
-          return std::array{std::uint8_t(chunks.is_invalid(i - first) ? 0 : found[i - first])};
-        });
-      });
+  const bool in_double = are_doubles(points);
+  return for_each_chunk(context, points, options, [&](const TakenPoints& chunk) {
+    const std::vector<std::uint8_t> found = chunk.are_inside(in_double);
+    chunk.fill(out, [&](std::size_t i) { return chunk.all.is_invalid(i) ? std::uint8_t{0} : found[i]; });
+  });
 }
 
 QueryReport signed_distance(const QueryContext& context, const Points& points, const ValuesOut& out,
                             const PointOptions& options) {
   prepare::refuse_instances(context.scene(), "signed distances");
   check_out(out.size(), points.size(), "distance");
-  return for_each_chunk(context, points, options,
-                        [&](std::size_t first, std::span<const dvec3> some, const PointChunks& chunks) {
-                          Nearest nearest(context, some, options.radius);
-                          const std::vector<std::uint8_t> inside =
-                              are_inside(context, some, are_doubles(points), options);
-                          const std::vector<ClosestPoint>& found = nearest.wait();
-                          if (out.empty()) return;
-                          out.fill(first, some.size(), [&](std::size_t i) {
-                            const std::size_t at = i - first;
-                            if (chunks.is_invalid(at)) return std::array{chunks.signed_distance(at)};
-                            return std::array{inside[at] ? -found[at].distance : found[at].distance};
-                          });
-                        });
+  const bool in_double = are_doubles(points);
+  return for_each_chunk(context, points, options, [&](const TakenPoints& chunk) {
+    Nearest nearest(context, chunk.place, chunk.points, options.radius);
+    const std::vector<std::uint8_t> inside = chunk.are_inside(in_double);
+    const std::vector<ClosestPoint>& found = nearest.wait();
+    chunk.fill(out, [&](std::size_t i) {
+      if (chunk.all.is_invalid(i)) return chunk.all.signed_distance(i);
+      return inside[i] ? -found[i].distance : found[i].distance;
+    });
+  });
 }
 
 }  // namespace kdray::query

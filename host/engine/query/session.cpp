@@ -12,12 +12,6 @@ namespace kdray::query {
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 16, kGlobalChunk = std::size_t{1} << 20;
-
-Traversal traversal_of(const Target& target) {
-  return target.global ? Traversal::wide : Traversal::automatic;
-}
-
 layout::Features features_to_trace(const Target& target) {
   return target.scene.features | (target.masks() != nullptr ? KDRAY_FEATURE_MASKS : 0);
 }
@@ -29,16 +23,21 @@ void throw_failed_walk() {
               "a ray met a primitive of a kind that its kernel lacks; please report it with the scene");
 }
 
-Session::Session(const Target& target)
+std::size_t Session::usual_chunk(const Target& target) {
+  constexpr std::size_t kChunk = std::size_t{1} << 16, kGlobalChunk = std::size_t{1} << 20;
+  return target.global ? kGlobalChunk : kChunk;
+}
+
+Session::Session(const Target& target, std::size_t chunk)
     : masked_(target.masks() != nullptr),
       placed_(!target.scene.flat.instances.empty()),
-      queue_(target.context),
-      stage_(target.programs.kernel<kernels::TraceQuery>(features_to_trace(target), traversal_of(target))),
+      queue_(target.context, target.sub_device),
+      stage_(target.programs.kernel<kernels::TraceQuery>(features_to_trace(target), target.walk(),
+                                                         target.precision)),
       work_group_(target.work_group),
-      chunked_(!target.global) {
+      chunked_(target.walk() != Traversal::binary && target.walk() != Traversal::wide) {
   using K = kernels::TraceQuery;
   device::checked("getting ready to trace rays", [&] {
-    const std::size_t chunk = target.global ? kGlobalChunk : kChunk;
     rays_ = {target.context, CL_MEM_READ_ONLY, chunk, "the rays"};
     hits_ = {target.context, CL_MEM_WRITE_ONLY, chunk, "the hits"};
     masks_ = {target.context, CL_MEM_READ_ONLY, masked_ ? chunk : 1, "the rays' masks"};
@@ -49,28 +48,30 @@ Session::Session(const Target& target)
     stage_.set(K::hit_instances, instances_.buffer());
     stage_.set(K::primitive_masks, masked_ ? target.masks : masks_.buffer());
     stage_.set(K::ray_masks, masks_.buffer());
-    // PoCL compiles a kernel for good at its first launch.
-    const device::AtWork compiling(target.context.builds());
     stage_.set(K::any_hit, cl_uint{0}).set(K::as_refs, cl_uint{0});
-    launch(0);
-    queue_.get().finish();
-    stage_.forget_launches();
   });
+  const device::AtWork compiling(target.context.builds());
+  warm_up(1);
+}
+
+void Session::warm_up(std::size_t n) {
+  std::fill_n(hits_.data(), n, layout::QueryHit{});
+  device::checked("getting ready to trace rays", [&] { enqueue(0, n); });
+  finish();
 }
 
 bool Session::settle() noexcept {
   return !started_ || clFinish(queue_.get()()) == CL_SUCCESS;
 }
 
-void Session::launch(std::size_t n) {
+void Session::enqueue(std::size_t n, std::size_t n_items) {
   using K = kernels::TraceQuery;
   stage_.set(K::n_rays, static_cast<cl_uint>(n));
-  const std::size_t items = std::max<std::size_t>(n, 1);
-  chunked_ ? stage_.launch(queue_.get(), (items + KDRAY_CHUNK - 1) / KDRAY_CHUNK, 1)
-           : stage_.launch(queue_.get(), items, work_group_);
+  chunked_ ? stage_.launch(queue_.get(), (n_items + KDRAY_CHUNK - 1) / KDRAY_CHUNK, 1)
+           : stage_.launch(queue_.get(), n_items, work_group_);
 }
 
-void Session::start(std::size_t n, bool any_hit, bool as_refs) {
+void Session::load(std::size_t n, bool any_hit, bool as_refs) {
   using K = kernels::TraceQuery;
   started_ = true;
   n_started_ = n;
@@ -78,17 +79,28 @@ void Session::start(std::size_t n, bool any_hit, bool as_refs) {
     stage_.set(K::any_hit, cl_uint{any_hit}).set(K::as_refs, cl_uint{as_refs});
     rays_.send(queue_.get(), n);
     if (masked_) masks_.send(queue_.get(), n);
-    launch(n);
+  });
+}
+
+void Session::launch() {
+  device::checked("tracing rays", [&] {
+    enqueue(n_started_, n_started_);
     queue_.get().flush();
   });
 }
 
-std::span<const layout::QueryHit> Session::wait() {
+void Session::finish() {
   device::checked("tracing rays", [&] {
     queue_.get().finish();
+    stage_.forget_launches();
+  });
+}
+
+std::span<const layout::QueryHit> Session::wait() {
+  finish();
+  device::checked("tracing rays", [&] {
     hits_.fetch(queue_.get(), n_started_);
     if (placed_) instances_.fetch(queue_.get(), n_started_);
-    stage_.forget_launches();
   });
   started_ = false;
   return hits_.first(n_started_);

@@ -1,4 +1,6 @@
-// What    Traces rays from outside (kdray trace): closest hits or occlusion, in chunks that fit the device.
+// What    Traces rays so that the launches alone are timed (kdray trace, benches): closest hits or occlusion,
+//         in chunks that fit the devices, each of which has the rays before the time counts.
+// Shape   Each of several targets takes a part of a chunk that its compute units have a share in.
 // Errors  ErrorCode::input for a ray that is not one (check_rays.h); the message has the ray's number.
 #pragma once
 
@@ -7,15 +9,12 @@
 #include <vector>
 
 #include "engine/query/target.h"
-#include "kdray/options.h"
 #include "kdray/ray.h"
 
 namespace kdray::query {
 
 struct TraceOptions {
   bool any_hit = false;
-  Traversal traversal = Traversal::automatic;  // on a target that is global: binary or wide
-  Precision precision = Precision::float32;
   int repeat = 1;
 };
 
@@ -27,6 +26,8 @@ struct Traced {
   std::vector<double> seconds;  // wall time of each repetition, rays already on the device
 };
 
+// `targets` are of one scene.
+Traced trace(std::span<const Target> targets, std::span<const Ray> rays, const TraceOptions& options);
 Traced trace(const Target& target, std::span<const Ray> rays, const TraceOptions& options);
 
 }  // namespace kdray::query

@@ -86,8 +86,7 @@ struct DeviceOptions {
   // "auto", "cpu", "gpu", a number from `kdray devices`, or a part of a name; several with commas between
   // them
   std::string device = "auto";
-  int queues = 1;         // one per sub-device of equal size when > 1; dealt out over several devices.
-                          // Queries ask the first one alone: leave it 1 for them.
+  int queues = 1;         // one per sub-device of equal size when > 1; dealt out over several devices
   int work_group = 0;     // local size of the per-ray kernels; 0: chosen for the device
   int compute_units = 0;  // that many of the device's, as a sub-device; 0: all of them
   Schedule schedule = Schedule::automatic;

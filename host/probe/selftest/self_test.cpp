@@ -82,10 +82,10 @@ class Known {
   std::vector<Hit> trace(bool any_hit) {
     constexpr std::size_t kWorkGroup = 16;
     const bool cpu = context_.info().kind == "cpu";
-    const query::Target target{context_, buffers_, programs_, scene_,
-                               std::min(kWorkGroup, context_.max_work_group())};
-    const Traversal traversal = cpu ? Traversal::automatic : Traversal::wide;
-    return query::trace(target, known_rays(), {.any_hit = any_hit, .traversal = traversal}).hits;
+    query::Target target{context_, buffers_, programs_, scene_,
+                         std::min(kWorkGroup, context_.max_work_group())};
+    target.traversal = cpu ? Traversal::automatic : Traversal::wide;
+    return query::trace(target, known_rays(), {.any_hit = any_hit}).hits;
   }
 
  private:

@@ -19,7 +19,11 @@ class DeviceScene {
   DeviceScene(const scene::Scene& scene, const std::string& device, const std::string& build_options = "",
               const TreeOptions& tree = {});
 
-  query::Target target() { return {context_, buffers_, programs_, prepared_, work_group_, !is_cpu_}; }
+  query::Target target(Traversal walk = Traversal::automatic) {
+    query::Target target{context_, buffers_, programs_, prepared_, work_group_, !is_cpu_};
+    target.traversal = walk;
+    return target;
+  }
   const prepare::Prepared& prepared() const { return prepared_; }
   const LocalSpace& space() const { return prepared_.geometry.space; }
 

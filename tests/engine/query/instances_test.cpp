@@ -182,7 +182,7 @@ bool same(const query::Traced& a, const query::Traced& b) {
 class InstanceQueries : public EachDevice {
  protected:
   query::Traced traced(DeviceScene& scene, std::span<const Ray> rays, Traversal walk, bool any_hit = false) {
-    return query::trace(scene.target(), rays, {.any_hit = any_hit, .traversal = walk});
+    return query::trace(scene.target(walk), rays, {.any_hit = any_hit});
   }
   void expect_right(const scene::Scene& s, unsigned seed);
   void expect_same_with_every_form(const scene::Scene& s);

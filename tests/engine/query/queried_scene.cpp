@@ -48,8 +48,11 @@ QueriedScene::QueriedScene(prepare::Prepared&& prepared)
       buffers_(context(), prepared_.flat, prepared_.wide),
       programs_(programs_of(prepared_)) {}
 
-query::Target QueriedScene::target() {
-  return {context(), buffers_, *programs_, prepared_, std::min<std::size_t>(16, context().max_work_group())};
+query::Target QueriedScene::target(Traversal walk) {
+  query::Target target{context(), buffers_, *programs_, prepared_,
+                       std::min<std::size_t>(16, context().max_work_group())};
+  target.traversal = walk;
+  return target;
 }
 
 float QueriedScene::reach() const {

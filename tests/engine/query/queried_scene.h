@@ -29,7 +29,7 @@ class QueriedScene {
   explicit QueriedScene(const scene::Scene& scene, Space space = Space::own, Blocks blocks = Blocks::suited);
   explicit QueriedScene(prepare::Prepared&& prepared);
 
-  query::Target target();
+  query::Target target(Traversal walk = Traversal::automatic);
   std::span<const layout::Triangle> triangles() const { return prepared_.flat.triangles; }
   const prepare::Prepared& prepared() const { return prepared_; }
   float reach() const;  // the largest coordinate

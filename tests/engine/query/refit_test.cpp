@@ -58,16 +58,16 @@ std::vector<Ray> rays_at(const scene::Scene& scene, std::size_t n) {
 
 void expect_same_hits(QueriedScene& refitted, QueriedScene& built, const std::vector<Ray>& rays) {
   const LocalHits all = built.all(rays, {.traversal = Traversal::wide});
-  const std::vector<Hit> closest = query::trace(built.target(), rays, {.traversal = Traversal::wide}).hits;
+  const std::vector<Hit> closest = query::trace(built.target(Traversal::wide), rays, {}).hits;
   EXPECT_GT(all.t.size(), rays.size() / 8);
   for (const Traversal walk : kWalks) {
     EXPECT_TRUE(same(all, refitted.all(rays, {.traversal = walk}))) << "walk " << static_cast<int>(walk);
     const std::vector<std::uint32_t> counts = refitted.count(rays, {.traversal = walk});
     for (std::size_t i = 0; i < rays.size(); ++i)
       ASSERT_EQ(counts[i], all.splits[i + 1] - all.splits[i]) << in_words(rays[i]);
-    const std::vector<Hit> hits = query::trace(refitted.target(), rays, {.traversal = walk}).hits;
+    const std::vector<Hit> hits = query::trace(refitted.target(walk), rays, {}).hits;
     const std::vector<Hit> any =
-        query::trace(refitted.target(), rays, {.any_hit = true, .traversal = walk}).hits;
+        query::trace(refitted.target(walk), rays, {.any_hit = true}).hits;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       ASSERT_EQ(std::memcmp(&hits[i], &closest[i], sizeof hits[i]), 0) << in_words(rays[i]);
       ASSERT_EQ(any[i].t == 0, closest[i].primitive >= 0) << in_words(rays[i]);

@@ -1,0 +1,83 @@
+// What    The rays or points of one call, which all places share: each takes the next rows when it has none
+//         left. A small call goes to the first place alone.
+// Errors  Of several places' errors the one of the first rows is thrown, whichever came first; then nobody
+//         takes further rows.
+// Threads With several places each has a thread of its own, and the caller's looks for cancellation.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+
+#include "engine/query/query_context.h"
+#include "kdray/cancel.h"
+#include "kdray/query.h"
+
+namespace kdray::query {
+
+struct RowRange {
+  std::size_t first, n;  // n is 0: none are left
+};
+
+class SharedRows {
+ public:
+  explicit SharedRows(std::size_t n) : n_(n) {}
+
+  std::size_t size() const { return n_; }
+
+  // At most so many; they are handed out in ascending order.
+  RowRange take(std::size_t most);
+
+  // For answers that have to be put together in the rows' order: waits until those of all rows before `first`
+  // have been. False where another place has failed, so that they never will be.
+  bool wait_for_turn(std::size_t first);
+  void put_together(std::size_t n);
+
+  // Notes that a place has failed, which had last taken these rows.
+  void fail(std::size_t first, std::exception_ptr error);
+  void stop();
+  void rethrow() const;  // if anyone has failed
+
+ private:
+  const std::size_t n_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::size_t next_ = 0, n_together_ = 0;
+  bool stopped_ = false;
+  std::size_t first_failed_ = 0;
+  std::exception_ptr error_;
+};
+
+// What one place takes of them.
+class RowTaker {
+ public:
+  RowTaker(SharedRows& rows, std::size_t n_places) : rows_(rows), n_places_(n_places) {}
+
+  RowRange take(std::size_t most) {
+    const RowRange taken = rows_.take(most);
+    if (taken.n > 0) last_ = taken.first;
+    return taken;
+  }
+  std::size_t last() const { return last_; }
+  // How many rows each place has to do, about.
+  std::size_t fair_share() const { return rows_.size() / n_places_; }
+  SharedRows& all() const { return rows_; }
+
+ private:
+  SharedRows& rows_;
+  std::size_t n_places_;
+  std::size_t last_ = 0;
+};
+
+// What one place does: takes rows until none are left, and looks for cancellation in between.
+using PlaceWork =
+    std::function<QueryReport(Place& place, RowTaker& rows, const std::optional<Cancel>& cancel)>;
+
+// Has all places work at n rows; `few` and fewer go to the first one alone. Returns their reports' sum.
+QueryReport share_rows(const QueryContext& context, std::size_t n, std::size_t few,
+                       const std::optional<Cancel>& cancel, const PlaceWork& work);
+
+}  // namespace kdray::query
