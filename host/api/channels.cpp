@@ -29,10 +29,12 @@ std::vector<image::Channel> channels_of(State& state, const Job& job, FrameResul
   if (only_for_that) traced.insert(traced.begin(), "depth");
   std::vector<image::Channel> channels;
   if (!traced.empty()) {
-    Device& device = state.devices.first();
-    channels =
-        wavefront::render_channels(device.context, device.buffers(), device.programs, job.frame,
-                                   state.scene.geometry.space, job.features, job.options.precision, traced);
+    std::vector<wavefront::ChannelQueue> queues;
+    for (Device& device : state.devices)
+      for (const cl::CommandQueue& queue : device.context.queues())
+        queues.push_back({device.context, device.buffers(), device.programs, queue});
+    channels = wavefront::render_channels(queues, job.frame, state.scene.geometry.space, job.features,
+                                          job.options.precision, traced);
   }
   if (owned) {
     const auto depth = std::ranges::find(channels, "depth", &image::Channel::name);

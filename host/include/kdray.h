@@ -259,7 +259,7 @@ typedef struct kdray_query_options {
   uint64_t* n_invalid;        /* NULL, or told how many meant nothing */
 } kdray_query_options;
 
-/* Of each ray what it hits first, in floats, for rays of doubles too. */
+/* Of each ray what it hits first; t of rays of doubles is that of this surface in double. */
 typedef struct kdray_hits {
   size_t size;
   kdray_out t;                   /* floats of either kind; infinity: a miss */

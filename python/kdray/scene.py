@@ -459,9 +459,11 @@ class Scene:
     ) -> Hits:
         """What each ray hits first.
 
-        It is found in floats about the scene's centre, t of float64 rays too: a ray that is asked again with its t as
-        t_min, which is exclusive, finds what comes after just that hit (`all_hits` finds t in double). Results are
-        float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted
+        A ray that is asked again with its t as t_min, which is exclusive, finds what comes after just that hit. Which
+        surface comes first is decided in floats about the scene's centre; t of a float64 ray is that of this surface
+        in double, and a surface whose t is then not above t_min is none. (What remains: one within some 4e-6 of the
+        scene's size ahead of the start may be passed by, and of two as near to each other the farther one be found;
+        `all_hits` decides the former in double.) Results are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted
         (all but `point`, and `instance` only where the scene has instances, if you say nothing): fewer are faster;
         `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or with `strict` an
         InputError that names the first.

@@ -3,6 +3,7 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -263,8 +264,81 @@ TEST_P(Doubles, DistancesAreThoseOfDoubles) {
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double expected = (500 - origins[i][2]) / directions[i][2];
     ASSERT_NEAR(all.t[all.splits[i]], expected, 1e-15 * 1000) << "seed " << kSeed << ", ray " << i;
-    ASSERT_NEAR(t[i], expected, 1e-4) << "closest is in float";
-    ASSERT_NEAR(point[i][2], 500, 1e-4);
+    ASSERT_NEAR(t[i], expected, 1e-15 * 1000) << "seed " << kSeed << ", ray " << i;
+    ASSERT_NEAR(point[i][2], 500, 1e-12);
+  }
+}
+
+// Asks for closest hits with the t of the last one as t_min, until all rays have missed: t of each.
+std::vector<std::vector<double>> followed(const Scene& scene, const std::vector<Point>& origins,
+                                          const std::vector<Point>& directions) {
+  const std::size_t n = origins.size();
+  std::vector<std::vector<double>> all(n);
+  std::vector<double> t_min(n, 0), t(n);
+  std::vector<Point> normal(n);
+  for (bool any = true; any; t_min = t) {
+    any = false;
+    scene.closest(
+        {{&origins.front()[0], n, sizeof(Point)}, {&directions.front()[0], n, sizeof(Point)}, t_min},
+        {.t = t, .normal = {&normal.front()[0], n, sizeof(Point)}});
+    for (std::size_t i = 0; i < n; ++i) {
+      any |= t[i] < kInfinity;
+      if (t[i] == kInfinity)
+        t[i] = t_min[i];  // and misses again
+      else if (all[i].push_back(t[i]); all[i].size() > 100)
+        return all;
+    }
+  }
+  return all;
+}
+
+// Each is met once, at the t that exact arithmetic gives it.
+TEST_P(Doubles, ClosestHitsFollowEachOther) {
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> way(-1, 1);
+  const Mesh mesh = torus(13, 9, random);
+  const Scene scene = scene_of(mesh.vertices, mesh.triangles);
+  std::vector<Point> origins(1000), directions(1000);
+  for (Point& p : origins) p = {way(random), way(random), 0.3 * way(random)};
+  for (Point& d : directions) d = {way(random), way(random), 0.1 * way(random)};
+  const auto all = followed(scene, origins, directions);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    const auto expected = crossed(mesh, origins[i], directions[i]);
+    if (!expected) continue;
+    ASSERT_EQ(all[i].size(), expected->size()) << "seed " << kSeed << ", ray " << i;
+    for (std::size_t k = 0; k < expected->size(); ++k, ++n) {
+      const double t = (*expected)[k].get_d();
+      ASSERT_NEAR(all[i][k], t, 1e-11 + 1e-13 * t) << "seed " << kSeed << ", ray " << i;
+    }
+  }
+  EXPECT_GT(n, origins.size());
+}
+
+// Whether floats put the start before or behind the surface: what lies behind it in double is none.
+TEST_P(Doubles, NoClosestHitLiesBehindTheStart) {
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> way(-1, 1);
+  for (const Mesh& mesh : {cube(), torus(11, 7, random)}) {
+    const Scene scene = scene_of(mesh.vertices, mesh.triangles);
+    std::vector<Point> origins(2000), directions(2000);
+    for (Point& p : origins) p = near_surface(mesh, random);
+    for (Point& d : directions) d = {way(random), way(random), way(random)};
+    const std::size_t n = origins.size();
+    std::vector<double> t(n);
+    scene.closest({{&origins.front()[0], n, sizeof(Point)}, {&directions.front()[0], n, sizeof(Point)}},
+                  {.t = t});
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto expected = crossed(mesh, origins[i], directions[i]);
+      if (!expected) continue;
+      const bool is_one = std::ranges::any_of(
+          *expected, [&](const mpq_class& e) { return std::abs(e.get_d() - t[i]) <= 1e-11 + 1e-13 * t[i]; });
+      ASSERT_TRUE(t[i] == kInfinity || is_one) << "seed " << kSeed << ", ray " << i << " at " << t[i];
+      // What it may pass by is a surface so near that floats don't tell.
+      const auto first = std::ranges::find_if(*expected, [](const mpq_class& e) { return e.get_d() > 1e-4; });
+      const double most = first == expected->end() ? kInfinity : first->get_d() * (1 + 1e-12);
+      ASSERT_LE(t[i], most) << "seed " << kSeed << ", ray " << i;
+    }
   }
 }
 

@@ -49,8 +49,41 @@ void ExactRays::all_hits(std::size_t i, std::vector<ExactHit>& hits) const {
 double ExactRays::distance(std::size_t i, std::uint32_t ref, std::uint32_t instance, float t) const {
   const std::optional<LocalLine> line = context_->frame.line(rays_->origin(i), rays_->direction(i), true);
   if (!line) return t;  // it meets nothing
-  const double at = scene_.distance(line->origin, line->direction, ref, instance, t);
-  return std::max(std::scalbn(line->ahead + at, line->exponent), rays_->t_min(i));
+  return distance(i, *line, {t, 0, 0, ref, instance});
+}
+
+double ExactRays::distance(std::size_t i, const LocalLine& line, const ExactHit& about) const {
+  const double at = scene_.distance(line.origin, line.direction, about.ref, about.instance, about.t);
+  return std::max(std::scalbn(line.ahead + at, line.exponent), rays_->t_min(i));
+}
+
+std::optional<ExactHit> ExactRays::closest(std::size_t i, const ExactHit& found) const {
+  const std::optional<LocalLine> line = context_->frame.line(rays_->origin(i), rays_->direction(i), true);
+  if (!line) return std::nullopt;
+  ExactHit hit = found;
+  hit.t = distance(i, *line, found);
+  const double from_start = std::scalbn(hit.t - rays_->t_min(i), -line->exponent);
+  const bool is_near = !(from_start * largest_component(line->direction) > ExactScene::kNear);
+  return is_near || !allows(i, hit.t) ? closest_anew(i, *line) : hit;
+}
+
+std::optional<ExactHit> ExactRays::closest_anew(std::size_t i, const LocalLine& line) const {
+  // From a little before t_min, since the place there is rounded.
+  constexpr double kBefore = 0x1p-20;
+  const double start = std::max(std::scalbn(rays_->t_min(i), -line.exponent) - line.ahead - kBefore, 0.0);
+  std::vector<ExactHit> hits;
+  scene_.cross(line.origin + start * line.direction, line.direction, hits);
+  for (ExactHit& hit : hits) {
+    hit.t += start;
+    hit.t = distance(i, line, hit);
+  }
+  const std::uint32_t mask = rays_->mask(i);
+  std::erase_if(hits, [&](const ExactHit& hit) {
+    return !allows(i, hit.t) || (mask != 0xffffffffu && !is_seen(hit, mask));
+  });
+  if (hits.empty()) return std::nullopt;
+  scene_.sort(hits);
+  return hits.front();
 }
 
 void ExactRays::count(std::size_t first, std::span<std::uint32_t> counts,

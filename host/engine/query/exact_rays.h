@@ -1,5 +1,6 @@
 // What    Of a program's rays of doubles, what floats leave undecided: all hits of those that begin so near
-//         to a surface that floats can't tell whether it lies ahead, and t in double of all others.
+//         to a surface that floats can't tell whether it lies ahead, t in double of all others, and closest
+//         hits whose t is none that the ray allows.
 // Shape   Rays of floats are none of its business. t is in the units of the caller's rays.
 // Threads As many calls at once as there are threads.
 #pragma once
@@ -36,10 +37,18 @@ class ExactRays {
   // t in double of a hit of ray i that floats have found at `t`, in multiples of the local direction.
   double distance(std::size_t i, std::uint32_t ref, std::uint32_t instance, float t) const;
 
+  // The closest hit of ray i from the one that floats have found: with t in double; and found anew, by a walk
+  // on the host, where that t is none that the ray allows, or so near to the start that floats can't tell
+  // what lies ahead. None: there is none.
+  std::optional<ExactHit> closest(std::size_t i, const ExactHit& found) const;
+
  private:
   std::optional<LocalLine> line_of(std::size_t i) const;
   bool begins_near(std::size_t i) const;
   void all_hits(std::size_t i, std::vector<ExactHit>& hits) const;
+  double distance(std::size_t i, const LocalLine& line, const ExactHit& about) const;
+  bool allows(std::size_t i, double t) const { return t > rays_->t_min(i) && t < rays_->t_max(i); }
+  std::optional<ExactHit> closest_anew(std::size_t i, const LocalLine& line) const;
   bool is_seen(const ExactHit& hit, std::uint32_t mask) const;
 
   const QueryContext* context_;

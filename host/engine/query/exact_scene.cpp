@@ -22,7 +22,7 @@ constexpr double kConesBeyondBoxes = 0x1p-19;
 constexpr double kRounding = 0x1p-12;      // between a place and its floats, in a scene of 2^11
 constexpr double kFloatsUnsure = 0x1p-19;  // of the reach
 // The same within a scene's bounds, whose reach is below 2^12 from either end, vertices that move included.
-constexpr double kNear = 0x1p13 * kFloatsUnsure + kRounding;
+static_assert(ExactScene::kNear == 0x1p13 * kFloatsUnsure + kRounding);
 
 bool is_instance(std::uint32_t child) {
   return flatten::leaf_kind(child) == KDRAY_KIND_INSTANCE;

@@ -30,6 +30,9 @@ class ExactScene {
  public:
   explicit ExactScene(const prepare::Prepared& scene);
 
+  // What is nearer than that to a surface floats may see on its other side: see above.
+  static constexpr double kNear = 0x1p-6 + 0x1p-12;
+
   // Whether a surface lies so near that floats can't tell which side of it the place is on. It depends on the
   // primitives alone, not on the tree. The place lies within the scene's bounds.
   bool is_near(const dvec3& place) const;

@@ -66,8 +66,7 @@ class PlaceThreads {
     constexpr auto kLook = std::chrono::milliseconds(5);
     bool cancelled = false;
     std::unique_lock lock(mutex_);
-    while (n_working_ > 0) {
-      done_.wait_for(lock, kLook);
+    for (; n_working_ > 0; done_.wait_for(lock, kLook)) {
       if (cancelled || !cancel || !cancel->is_cancelled()) continue;
       cancelled = true;
       cancel_.cancel();
@@ -107,6 +106,7 @@ class PlaceThreads {
 
 QueryReport share_rows(const QueryContext& context, std::size_t n, std::size_t few,
                        const std::optional<Cancel>& cancel, const PlaceWork& work) {
+  throw_if_cancelled(cancel);
   SharedRows rows(n);
   if (context.places.size() > 1 && n > few) return PlaceThreads(context, rows, work).wait(cancel);
   RowTaker taker(rows, 1);

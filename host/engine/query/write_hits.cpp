@@ -84,6 +84,7 @@ HitWriter::HitWriter(const QueryContext& context, const RayArrays& rays, const H
   check_out(out.normal.size(), n, "normal");
   check_out(out.point.size(), n, "point");
   check_out(out.instance.size(), n, "instance");
+  if (rays.in_double()) exact_.emplace(context, rays);
   const double unit = context.frame.unit();
   dense_ = is_dense<float>(out.t) && is_dense<std::uint32_t>(out.geometry) &&
            is_dense<std::uint32_t>(out.primitive) && is_dense<float>(out.u) && is_dense<float>(out.v) &&
@@ -93,16 +94,33 @@ HitWriter::HitWriter(const QueryContext& context, const RayArrays& rays, const H
 
 void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, const FoundHits& found,
                       const LocalRays& local) const {
-  Numbered numbered;
+  Changed changed;
   for (; begin < end; begin += kRows) {
     const FoundHits part = found.part(begin, std::min(kRows, end - begin));
     Some some{first + begin, begin, part.hits, part.instances, local};
-    if (wants_refs()) {
-      write_normals(some, numbered);
-      some.hits = std::span(numbered).first(some.hits.size());
-    }
+    if (exact_) settle(some, changed);
+    if (wants_refs()) name(some, changed);
     write_columns(some, write_dense(some));
   }
+}
+
+// Looks at the hits of rays of doubles in double.
+void HitWriter::settle(Some& some, Changed& changed) const {
+  for (std::size_t i = 0; i < some.hits.size(); ++i) {
+    constexpr ExactHit kMiss{HUGE_VAL, 0, 0, kNoPrimitive, kNoInstance};
+    const QueryHit& hit = some.hits[i];
+    ExactHit exact = kMiss;
+    if (!missed(hit)) {
+      const auto ref = static_cast<std::uint32_t>(hit.primitive);
+      exact = exact_->closest(some.ray + i, {hit.t, hit.u, hit.v, ref, some.instance(i)}).value_or(kMiss);
+    }
+    changed.hits[i] = {static_cast<float>(exact.t), static_cast<std::int32_t>(exact.ref), exact.u, exact.v};
+    changed.instances[i] = exact.instance;
+    changed.t[i] = exact.t;
+  }
+  some.hits = std::span(changed.hits).first(some.hits.size());
+  if (!some.instances.empty()) some.instances = std::span(changed.instances).first(some.hits.size());
+  some.t = std::span(changed.t).first(some.hits.size());
 }
 
 // Of a hit that is named by a reference, which gets its number.
@@ -111,8 +129,7 @@ dvec3 HitWriter::normal_of(const Some& some, std::size_t i, QueryHit& hit) const
   const std::uint32_t index = some.instance(i);
   const layout::Instance* const instance = index == kNoInstance ? nullptr : &flat.instances[index];
   const auto point = [&] {
-    const dvec3 local =
-        context_->frame.space().local(point_of(some.ray + i, some.local.world_t(some.at + i, hit.t)));
+    const dvec3 local = context_->frame.space().local(point_of(some.ray + i, some.t_of(i, hit)));
     return instance ? in_mesh(*instance, local) : local;
   };
   const Surface surface = surface_at(flat, static_cast<std::uint32_t>(hit.primitive), point);
@@ -120,18 +137,28 @@ dvec3 HitWriter::normal_of(const Some& some, std::size_t i, QueryHit& hit) const
   return instance ? normal_in_scene(*instance, surface.normal) : surface.normal;
 }
 
-// The normals of hits that are named by references; `numbered`: the same hits named by numbers.
-void HitWriter::write_normals(const Some& some, Numbered& numbered) const {
+// Names hits by their numbers, which are named by references, and writes their normals.
+void HitWriter::name(Some& some, Changed& changed) const {
+  const std::size_t n = some.hits.size();
+  if (out_.normal.empty()) {
+    for (std::size_t i = 0; i < n; ++i) {
+      QueryHit& hit = changed.hits[i] = some.hits[i];
+      if (!missed(hit))
+        hit.primitive = static_cast<std::int32_t>(
+            number_of(context_->scene().flat, static_cast<std::uint32_t>(hit.primitive)));
+    }
+  }
   fill(out_.normal, some, 0, [&](std::size_t i, QueryHit hit) {
     const dvec3 normal = missed(hit) ? dvec3(0) : normal_of(some, i, hit);
-    numbered[i] = hit;
+    changed.hits[i] = hit;
     return array(normal);
   });
+  some.hits = std::span(changed.hits).first(n);
 }
 
 // How many of them were written.
 std::size_t HitWriter::write_dense(const Some& some) const {
-  if (!dense_ || some.local.has_moved()) return 0;
+  if (!dense_ || some.local.has_moved() || exact_) return 0;
   const DenseColumns columns(out_);
   const auto unit = static_cast<float>(context_->frame.unit());
   const GeometryId id = *context_->table.only();
@@ -160,10 +187,6 @@ void HitWriter::fill(const Column& column, const Some& some, std::size_t from,
 
 // Those from `from` on.
 void HitWriter::write_columns(const Some& some, std::size_t from) const {
-  // The t of a miss is infinite, and stays so.
-  const auto t_of = [&](std::size_t i, const QueryHit& hit) {
-    return some.local.world_t(some.at + i, hit.t);
-  };
   const auto place_of = [&](std::size_t i, const QueryHit& hit) {
     if (missed(hit)) return GeometryTable::Place{kNoGeometry, kNoPrimitive};
     const auto number = static_cast<std::uint32_t>(hit.primitive);
@@ -172,7 +195,7 @@ void HitWriter::write_columns(const Some& some, std::size_t from) const {
     const std::uint32_t place = context_->scene().flat.instances[index].number;
     return GeometryTable::Place{context_->table.of_instance(place).geometry, number};
   };
-  fill(out_.t, some, from, [&](std::size_t i, const auto& hit) { return std::array{t_of(i, hit)}; });
+  fill(out_.t, some, from, [&](std::size_t i, const auto& hit) { return std::array{some.t_of(i, hit)}; });
   fill(out_.geometry, some, from,
        [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).geometry}; });
   fill(out_.primitive, some, from,
@@ -181,7 +204,7 @@ void HitWriter::write_columns(const Some& some, std::size_t from) const {
   fill(out_.u, some, from, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
   fill(out_.v, some, from, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
   fill(out_.point, some, 0,
-       [&](std::size_t i, const auto& hit) { return array(point_of(some.ray + i, t_of(i, hit))); });
+       [&](std::size_t i, const auto& hit) { return array(point_of(some.ray + i, some.t_of(i, hit))); });
 }
 
 dvec3 HitWriter::point_of(std::size_t ray, double t) const {

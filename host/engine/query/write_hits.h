@@ -6,9 +6,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "engine/query/ask.h"
+#include "engine/query/exact_rays.h"
 
 namespace kdray::query {
 
@@ -26,7 +28,8 @@ class HitWriter {
  public:
   HitWriter(const QueryContext& context, const RayArrays& rays, const HitsOut& out);
 
-  bool wants_refs() const { return !out_.normal.empty(); }
+  // Whether hits are to be named by references: for their normals, or to look at them in double.
+  bool wants_refs() const { return !out_.normal.empty() || exact_; }
 
   // Of rays first + begin to first + end, of which hits[begin] is the first's.
   void write(std::size_t first, std::size_t begin, std::size_t end, const FoundHits& found,
@@ -39,13 +42,24 @@ class HitWriter {
     std::span<const layout::QueryHit> hits;
     std::span<const std::uint32_t> instances;
     const LocalRays& local;
+    std::span<const double> t = {};  // of rays of doubles
 
     std::uint32_t instance(std::size_t i) const { return instances.empty() ? kNoInstance : instances[i]; }
+    // The t of a miss is infinite, and stays so.
+    double t_of(std::size_t i, const layout::QueryHit& hit) const {
+      return t.empty() ? local.world_t(at + i, hit.t) : t[i];
+    }
   };
   static constexpr std::size_t kRows = 512;  // these stay in the nearest cache for all columns
-  using Numbered = std::array<layout::QueryHit, kRows>;
+  // Hits that are changed on their way: named by their numbers, or looked at in double.
+  struct Changed {
+    std::array<layout::QueryHit, kRows> hits;
+    std::array<std::uint32_t, kRows> instances;
+    std::array<double, kRows> t;
+  };
 
-  void write_normals(const Some& some, Numbered& numbered) const;
+  void settle(Some& some, Changed& changed) const;
+  void name(Some& some, Changed& changed) const;
   std::size_t write_dense(const Some& some) const;
   void write_columns(const Some& some, std::size_t from) const;
   template <class Column, class ValueOf>
@@ -57,7 +71,8 @@ class HitWriter {
   const QueryContext* context_;
   const RayArrays* rays_;
   HitsOut out_;
-  bool dense_;  // columns without gaps, of one geometry
+  std::optional<ExactRays> exact_;  // of rays of doubles
+  bool dense_;                      // columns without gaps, of one geometry
 };
 
 }  // namespace kdray::query

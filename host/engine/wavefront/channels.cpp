@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <utility>
 
 #include "device/opencl/opencl_error.h"
 #include "engine/wavefront/stage.h"
@@ -43,10 +45,61 @@ std::vector<Plane> wanted_planes(std::span<const std::string> names) {
   return planes;
 }
 
+// A queue with its kernel and buffers, which renders one run of pixels after the other.
+class PixelRuns {
+ public:
+  PixelRuns(const ChannelQueue& on, const layout::Frame& frame, layout::Features features,
+            Precision precision, std::size_t most)
+      : queue_(on.queue),
+        // The binary tree has no instances.
+        stage_(on.programs.kernel<K>(features | KDRAY_FEATURE_COST,
+                                     features & KDRAY_FEATURE_INSTANCES ? Traversal::wide : Traversal::binary,
+                                     precision)),
+        frame_(on.context.buffer(CL_MEM_READ_ONLY, sizeof frame, "the frame")),
+        out_(on.context.buffer(CL_MEM_WRITE_ONLY, most * kPlanes * sizeof(float), "the channels")),
+        values_(most * kPlanes) {
+    queue_.enqueueWriteBuffer(frame_, CL_TRUE, 0, sizeof frame, &frame);
+    on.scene.set_arguments(stage_);
+    stage_.set(K::frame, frame_).set(K::channels, out_);
+  }
+
+  void start(std::size_t first, std::size_t n) {
+    first_ = first;
+    n_ = n;
+    stage_.set(K::first_pixel, static_cast<cl_uint>(first)).set(K::n_pixels, static_cast<cl_uint>(n));
+    stage_.launch(queue_, (n + KDRAY_LANES - 1) / KDRAY_LANES, kWorkGroup);
+    queue_.flush();
+  }
+
+  // Waits for what was started, if anything was.
+  void take(const LocalSpace& space, std::span<const Plane> planes, std::vector<image::Channel>& channels) {
+    const std::size_t n = std::exchange(n_, 0);
+    if (n == 0) return;
+    queue_.enqueueReadBuffer(out_, CL_TRUE, 0, n * kPlanes * sizeof(float), values_.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      float& depth = values_[i * kPlanes];
+      if (std::isnan(depth))
+        throw Error(ErrorCode::internal,
+                    "a ray overflowed the traversal's stack; please report it with the scene");
+      depth = static_cast<float>(space.world_length(depth));
+    }
+    for (std::size_t c = 0; c < planes.size(); ++c)
+      for (std::size_t i = 0; i < n; ++i)
+        channels[c].values[first_ + i] = values_[i * kPlanes + planes[c].index];
+  }
+
+ private:
+  using K = kernels::Channels;
+  cl::CommandQueue queue_;
+  Stage<K> stage_;
+  cl::Buffer frame_, out_;
+  std::vector<float> values_;
+  std::size_t first_ = 0, n_ = 0;
+};
+
 }  // namespace
 
-std::vector<image::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
-                                            Programs& programs, const layout::Frame& frame,
+std::vector<image::Channel> render_channels(std::span<const ChannelQueue> queues, const layout::Frame& frame,
                                             const LocalSpace& space, layout::Features features,
                                             Precision precision, std::span<const std::string> names) {
   const std::vector<Plane> planes = wanted_planes(names);
@@ -55,34 +108,17 @@ std::vector<image::Channel> render_channels(const device::Context& context, cons
   for (const Plane& p : planes) channels.push_back({p.name, std::vector<float>(n_pixels)});
   if (planes.empty()) return channels;
 
-  const std::size_t chunk = std::min(n_pixels, kPixelsPerLaunch);
-  const cl::Buffer out = context.buffer(CL_MEM_WRITE_ONLY, chunk * kPlanes * sizeof(float), "the channels");
-  const cl::Buffer frame_buffer = context.buffer(CL_MEM_READ_ONLY, sizeof frame, "the frame");
-  using K = kernels::Channels;
-  // The binary tree has no instances.
-  const Traversal walk = features & KDRAY_FEATURE_INSTANCES ? Traversal::wide : Traversal::binary;
-  Stage stage(programs.kernel<K>(features | KDRAY_FEATURE_COST, walk, precision));
-  cl::CommandQueue queue = context.queues().front();
-  std::vector<float> values(chunk * kPlanes);
+  const std::size_t at_once = std::min((n_pixels + queues.size() - 1) / queues.size(), kPixelsPerLaunch);
   device::checked("rendering the channels", [&] {
-    queue.enqueueWriteBuffer(frame_buffer, CL_TRUE, 0, sizeof frame, &frame);
-    scene.set_arguments(stage);
-    stage.set(K::frame, frame_buffer).set(K::channels, out);
-    for (std::size_t first = 0; first < n_pixels; first += chunk) {
-      const std::size_t n = std::min(chunk, n_pixels - first);
-      stage.set(K::first_pixel, static_cast<cl_uint>(first)).set(K::n_pixels, static_cast<cl_uint>(n));
-      stage.launch(queue, (n + KDRAY_LANES - 1) / KDRAY_LANES, kWorkGroup);
-      queue.enqueueReadBuffer(out, CL_TRUE, 0, n * kPlanes * sizeof(float), values.data());
-      for (std::size_t i = 0; i < n; ++i) {
-        float& depth = values[i * kPlanes];
-        if (std::isnan(depth))
-          throw Error(ErrorCode::internal,
-                      "a ray overflowed the traversal's stack; please report it with the scene");
-        depth = static_cast<float>(space.world_length(depth));
+    std::deque<PixelRuns> all;
+    for (const ChannelQueue& queue : queues) all.emplace_back(queue, frame, features, precision, at_once);
+    for (std::size_t first = 0; first < n_pixels;) {
+      for (PixelRuns& runs : all) {
+        const std::size_t n = std::min(at_once, n_pixels - first);
+        if (n > 0) runs.start(first, n);
+        first += n;
       }
-      for (std::size_t c = 0; c < planes.size(); ++c)
-        for (std::size_t i = 0; i < n; ++i)
-          channels[c].values[first + i] = values[i * kPlanes + planes[c].index];
+      for (PixelRuns& runs : all) runs.take(space, planes, channels);
     }
   });
   return channels;

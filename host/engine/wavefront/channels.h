@@ -13,10 +13,18 @@
 
 namespace kdray::wavefront {
 
+// A queue of a device that has the scene.
+struct ChannelQueue {
+  const device::Context& context;
+  const SceneBuffers& scene;
+  Programs& programs;
+  cl::CommandQueue queue;
+};
+
 // `names` of "depth", "normal", "primitive", "cost"; throws ErrorCode::usage, naming what there is, for
-// others. Depths are the world's; the frame's lengths are those of `space`.
-std::vector<image::Channel> render_channels(const device::Context& context, const SceneBuffers& scene,
-                                            Programs& programs, const layout::Frame& frame,
+// others. Depths are the world's; the frame's lengths are those of `space`. The queues, of one scene, share
+// the pixels.
+std::vector<image::Channel> render_channels(std::span<const ChannelQueue> queues, const layout::Frame& frame,
                                             const LocalSpace& space, layout::Features features,
                                             Precision precision, std::span<const std::string> names);
 

@@ -41,7 +41,7 @@ void set_texture_cache(std::uint64_t bytes);
 
 struct CommitOptions {
   TreeOptions tree = {.binary_form = false};
-  DeviceOptions device = {.remember_programs = true};  // the first device answers queries
+  DeviceOptions device = {.remember_programs = true};
   // Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has
   // grown by more than this since it was built. 0: it is always built anew (docs/embed.md).
   double refit_growth = 1.5;
@@ -142,8 +142,11 @@ class Scene {
   // walk ask for CommitOptions::tree.binary_form.
   Picture render(const RenderOptions& options = {}) const;
 
-  // What each ray hits first, in floats about the scene's centre, for rays of doubles too: with the t of a
-  // hit as t_min the same ray finds what comes after just that hit.
+  // What each ray hits first. With the t of a hit as t_min the same ray finds what comes after just that hit.
+  // Which surface comes first is decided in floats about the scene's centre; t of a ray of doubles is that of
+  // this surface in double, and a surface whose t is then not above t_min is none. (What remains: a surface
+  // within some 4e-6 of the scene's size ahead of the start of a ray of doubles may be passed, and of two
+  // that are as near to each other the farther one be found. count() and all() decide the former in double.)
   QueryReport closest(const Rays& rays, const HitsOut& out, const QueryOptions& options = {}) const;
   // 1 for each ray that hits anything between t_min and t_max, else 0.
   QueryReport any(const Rays& rays, const BytesOut& out, const QueryOptions& options = {}) const;

@@ -193,8 +193,8 @@ class Subject {
     layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
     Schedule{}.apply(frame, features_);
     const std::vector<std::string> names = {"depth", "normal", "primitive", "cost"};
-    return render_channels(context_, buffers_, programs_, frame, geometry_.space, features_,
-                           Precision::float32, names);
+    const ChannelQueue queue{context_, buffers_, programs_, context_.queues().front()};
+    return render_channels({&queue, 1}, frame, geometry_.space, features_, Precision::float32, names);
   }
 
  private:
