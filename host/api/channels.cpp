@@ -1,13 +1,70 @@
 #include "api/channels.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <cmath>
 #include <string>
 
-#include "api/owners.h"
-
+#include "engine/odprt/locate.h"
+#include "engine/odprt/replicate.h"
+#include "engine/pdprt/render.h"
 #include "engine/wavefront/channels.h"
+#include "io/image/queue_colors.h"
 
 namespace kdray::api {
+
+namespace {
+
+dvec3 vector_of(const float (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+// The kernels' eye ray through a pixel's centre (raygen/primary.clh), in double.
+dvec3 point_at(const layout::Frame& frame, std::uint32_t column, std::uint32_t row, double distance) {
+  const double middle = frame.corner_grid ? 0 : 0.5;
+  const double x = (column + middle) * frame.x_scale + frame.x_offset;
+  const double y = (row + middle) * frame.y_scale + frame.y_offset;
+  const dvec3 eye = vector_of(frame.eye), forward = vector_of(frame.forward);
+  const dvec3 aside = vector_of(frame.right) * x + vector_of(frame.up) * y;
+  if (frame.parallel) return eye + aside + safe_normalize(forward) * distance;
+  return eye + safe_normalize(forward + aside) * distance;
+}
+
+float channel_of(std::uint32_t queue) {
+  return queue == odprt::kEveryPart ? image::kEveryQueue : static_cast<float>(queue);
+}
+
+}  // namespace
+
+std::vector<float> queues_by_tiles(const layout::Frame& frame, const Owners& owners) {
+  const std::uint32_t n_tiles_x = (frame.width + owners.tile_width - 1) / owners.tile_width;
+  std::vector<float> queues;
+  queues.reserve(std::size_t{frame.width} * frame.height);
+  for (std::uint32_t row = 0; row < frame.height; ++row)
+    for (std::uint32_t column = 0; column < frame.width; ++column) {
+      const std::uint32_t queue =
+          owners.of_tiles[row / owners.tile_height * n_tiles_x + column / owners.tile_width];
+      queues.push_back(queue == pdprt::kNobody ? image::kNoQueue : static_cast<float>(queue));
+    }
+  return queues;
+}
+
+std::vector<float> queues_by_subtrees(const State& state, const layout::Frame& frame, const Owners& owners,
+                                      std::span<const float> depths) {
+  const odprt::Locator locator(state.scene.wide, state.divided->cut());
+  std::vector<float> queues(depths.size(), image::kNoQueue);
+  tbb::parallel_for(std::uint32_t{0}, frame.height, [&](std::uint32_t row) {
+    for (std::uint32_t column = 0; column < frame.width; ++column) {
+      const std::size_t pixel = std::size_t{row} * frame.width + column;
+      if (!std::isfinite(depths[pixel])) continue;
+      const double distance = state.scene.geometry.space.local_length(depths[pixel]);
+      const auto subtree = locator.find(vec3(point_at(frame, column, row, distance)));
+      if (subtree) queues[pixel] = channel_of(owners.of_subtrees[*subtree]);
+    }
+  });
+  return queues;
+}
 
 namespace {
 

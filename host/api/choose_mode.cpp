@@ -5,9 +5,49 @@
 #include <algorithm>
 #include <optional>
 
-#include "api/film_memory.h"
+#include "engine/pdprt/render.h"
 
 namespace kdray::api {
+
+const Device* too_small_for_an_array(const State& state) {
+  for (const Device& d : state.devices)
+    if (state.scene.largest_array() > d.context.info().max_allocation) return &d;
+  return nullptr;
+}
+
+std::optional<std::size_t> film_left_by_limit(const State& state, const Device& device, const Job& job) {
+  // A place of the film holds three sums; adaptive sampling lists each of its places twice.
+  constexpr std::size_t kPlace = 3 * sizeof(layout::i64), kListed = 2 * sizeof(layout::u32);
+  const wavefront::Schedule schedule = state.scheduler.schedule_for(device, job);
+  layout::Frame frame = job.frame;
+  schedule.apply(frame, job.features);
+  const bool adaptive = job.options.adaptive_target > 0;
+  const std::size_t row = std::size_t{frame.tile_height} * frame.width;
+  const std::size_t least = (adaptive ? std::max(row, pdprt::kLeastSamples) : row) * kPlace;
+  const std::size_t n_queues = device.context.queues().size();
+  const std::size_t taken = state.scene_bytes + n_queues * schedule.stream_bytes(frame, job.features);
+  if (taken > job.options.device_memory) return std::nullopt;
+  std::size_t left = (job.options.device_memory - taken) / n_queues;
+  if (adaptive) left = left / (kPlace + kListed) * kPlace;
+  return left < least ? std::nullopt : std::optional(left);
+}
+
+std::size_t film_bytes(const State& state, const Job& job) {
+  std::size_t bytes = pdprt::Task().max_film_bytes;
+  for (const Device& d : state.devices) {
+    bytes = std::min<std::size_t>(bytes, d.context.info().max_allocation);
+    if (job.options.device_memory == 0) continue;
+    const std::optional<std::size_t> left = film_left_by_limit(state, d, job);
+    if (!left)
+      throw Error(
+          ErrorCode::out_of_memory,
+          fmt::format("--device-memory {} is too little for pdprt, which has the whole scene ({}M) on "
+                      "every device; take more, or --mode odprt",
+                      job.options.device_memory, (state.scene_bytes >> 20) + 1));
+    bytes = std::min(bytes, *left);
+  }
+  return bytes;
+}
 
 namespace {
 

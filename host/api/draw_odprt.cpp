@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "api/film_memory.h"
+#include "api/choose_mode.h"
 #include "api/record.h"
 
 namespace kdray::api {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "api/film_memory.h"
+#include "api/choose_mode.h"
 #include "api/record.h"
 #include "engine/pdprt/render.h"
 

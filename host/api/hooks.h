@@ -6,6 +6,9 @@
 #include <memory>
 #include <string>
 
+#include "accel/flatten/core.h"
+#include "base/hash.h"
+#include "cluster/transport/together.h"
 #include "kdray/kdray.h"
 
 namespace kdray::transport {
@@ -17,7 +20,13 @@ class DeviceScene;
 
 namespace kdray::api {
 
-struct WholeScene;
+// What is known of a whole scene where a Renderer is made of a part of it: the partition of a rank
+// (host/cluster/partition).
+struct WholeScene {
+  flatten::Core core;
+  Hash primitives;                             // the sum of all ranks' (flatten/scene_hash.h)
+  std::shared_ptr<transport::Together> ranks;  // by which they are joined, for the whole run
+};
 
 struct Hooks {
   // "1@5,0@9" makes the fifth launch on queue 1 and the ninth on queue 0 fail as if the device had;

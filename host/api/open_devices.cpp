@@ -1,20 +1,58 @@
 #include "api/open_devices.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
 
-#include "api/tuning.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/timer.h"
+#include "device/opencl/context.h"
 #include "device/opencl/fault_injector.h"
+#include "device/opencl/program.h"
 #include "device/opencl/program_cache.h"
+#include "kdray/error.h"
+#include "kdray/kdray.h"
 #include "probe/selftest/self_test.h"
 #include "probe/trial/devices.h"
 #include "probe/trial/listing.h"
 
 namespace kdray::api {
+
+tuning::Key tuning_key(const device::Context& context, bool global, layout::Features features) {
+  const DeviceInfo& info = context.info();
+  return {.device = fmt::format("{}, {} units", info.name, info.compute_units),
+          .driver = fmt::format("{}, {}, {}", info.platform, info.version, info.driver),
+          .kernels = in_hex(
+              hash_of(device::expand_source("wave/wave.cl") + device::expand_source("traverse/query.cl"))),
+          .schedule = global ? "global" : "slices",
+          .features = tuning::features_text(features)};
+}
+
+tuning::Database read_tunings(const DeviceOptions& options) {
+  if (options.tunings.empty()) return {};
+  try {
+    return tuning::Database::read(options.tunings);
+  } catch (const Error& error) {
+    if (options.tunings_ignored) options.tunings_ignored(fmt::format("{}; it is ignored", error.what()));
+    return {};
+  }
+}
+
+engine::Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
+                        const tuning::Database& tunings, const std::string& file) {
+  engine::Tuned tuned{tuning::shipped(context.info().kind), tuning_key(context, global, features), "shipped"};
+  if (const tuning::Entry* const entry = tunings.find(tuned.key)) {
+    tuned.settings = tuning::merged(tuned.settings, entry->settings);
+    tuned.from = fmt::format("{}, features {}", file, entry->key.features);
+  }
+  return tuned;
+}
 
 namespace {
 
@@ -143,6 +181,46 @@ void require_device(const DeviceOptions& options) {
 void keep_programs(const DeviceOptions& options) {
   if (device::is_forked_off()) return;  // nothing was built here
   if (const auto cache = api::cache_in(options.programs)) cache->keep();
+}
+
+namespace {
+
+DeviceInfo unusable(DeviceInfo info, const std::string& why) {
+  info.usable = false;
+  info.why_not = why;
+  return info;
+}
+
+// Adds what only an opened device can tell: the form of its vectors, and whether it computes rightly at all.
+DeviceInfo opened(const DeviceInfo& listed, const DeviceOptions& options) {
+  try {
+    DeviceOptions one = options;
+    one.device = std::to_string(listed.number);
+    one.queues = 1;
+    return api::open_devices(one).contexts.front().info();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::no_device) throw;
+    return unusable(listed, error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> devices(const DeviceOptions& options) {
+  device::refuse_after_fork();
+  for (const std::string& why : api::leave_out_drivers(options))
+    if (options.left_out) options.left_out(why);
+  std::vector<DeviceInfo> infos;
+  const std::vector<device::FoundDevice> found = device::find_devices();
+  std::vector<device::FoundDevice> usable;
+  std::ranges::copy_if(found, std::back_inserter(usable), [](const auto& d) { return d.info.usable; });
+  trial::DeviceTrials trials(api::verdicts_of(options), true, options.building);
+  for (std::size_t i = 0, u = 0; i < found.size(); ++i) {
+    const DeviceInfo& info = found[i].info;
+    const std::string why = info.usable ? trials.why_not(usable, u++) : "";
+    infos.push_back(!info.usable ? info : why.empty() ? opened(info, options) : unusable(info, why));
+  }
+  return infos;
 }
 
 }  // namespace kdray

@@ -1,7 +1,10 @@
-// What    Opens the devices that DeviceOptions names: each has passed the self-test, and keeps what it builds
-//         in the folder that the options name. And a scene on them.
+// What    Opens the devices that DeviceOptions names: each has passed the self-test, keeps what it builds in the
+//         folder that the options name, and works with the settings that were found for it
+//         (device/tuning/database.h), or that kdray ships with for its kind. And a scene on them.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,10 +12,21 @@
 #include "api/hooks.h"
 #include "device/opencl/context.h"
 #include "device/opencl/verdicts.h"
+#include "device/tuning/database.h"
+#include "engine/device_scene/device.h"
 #include "engine/device_scene/device_scene.h"
 #include "kdray/kdray.h"
+#include "layout/features.h"
 
 namespace kdray::api {
+
+tuning::Key tuning_key(const device::Context& context, bool global, layout::Features features);
+
+// The file's entries; none where it is of no use, of which the options' tunings_ignored is told.
+tuning::Database read_tunings(const DeviceOptions& options);
+
+engine::Tuned tuned_for(const device::Context& context, bool global, layout::Features features,
+                        const tuning::Database& tunings, const std::string& file);
 
 device::Builds builds_of(const DeviceOptions& options);
 

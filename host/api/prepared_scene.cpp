@@ -1,7 +1,12 @@
-#include "accel/prepare/prepared.h"
+#include <cstdlib>
 
+#include "accel/cache/cache.h"
+#include "accel/prepare/prepared.h"
 #include "accel/prepare/view.h"
+#include "base/cache_folder.h"
+#include "base/paged.h"
 #include "kdray/kdray.h"
+#include "kdray/scene.h"
 #include "scene/model/frame.h"
 
 namespace kdray {
@@ -62,6 +67,27 @@ void check_view(const scene::Scene& scene, const View& view) {
 }
 const scene::Scene& PreparedScene::settings() const {
   return prepared_->settings;
+}
+
+std::filesystem::path SceneCache::default_folder() {
+  if (const char* const own = std::getenv("KDRAY_CACHE_DIR")) return own;
+  const std::filesystem::path caches = user_cache_folder();
+  return caches.empty() ? caches : caches / "scenes";
+}
+
+std::optional<PreparedScene> SceneCache::find(const std::filesystem::path& file, const TreeOptions& tree,
+                                              const LoadOptions& load) const {
+  std::optional<prepare::Prepared> found = cache::find(options_, file, tree, load);
+  if (!found) return std::nullopt;
+  return PreparedScene(std::move(*found));
+}
+
+bool SceneCache::keep(const PreparedScene& scene) const {
+  return cache::keep(options_, scene.prepared());
+}
+
+void set_texture_cache(std::uint64_t bytes) {
+  set_paged_budget(bytes);
 }
 
 }  // namespace kdray

@@ -9,7 +9,6 @@
 #include "accel/prepare/prepared.h"
 #include "api/hooks.h"
 #include "api/scheduler.h"
-#include "api/whole_scene.h"
 #include "base/hash.h"
 #include "cluster/transport/ranks.h"
 #include "device/opencl/fault_injector.h"

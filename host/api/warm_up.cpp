@@ -12,7 +12,6 @@
 #include "accel/prepare/prepared.h"
 #include "api/open_devices.h"
 #include "api/precision.h"
-#include "api/tuning.h"
 #include "base/timer.h"
 #include "device/opencl/program_cache.h"
 #include "engine/query/trace.h"

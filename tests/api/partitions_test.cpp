@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "api/whole_scene.h"
+#include "api/hooks.h"
 #include "cluster/partition/ply_files.h"
 #include "cluster/partition/scene_partition.h"
 #include "cluster/transport/delayed.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "conformance/all_kinds.h"
-#include "engine/query/closest_point.h"
+#include "engine/query/point_session.h"
 #include "engine/query/device_scene.h"
 #include "support/device.h"
 

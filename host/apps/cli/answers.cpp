@@ -5,8 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "engine/query/crossings.h"
-#include "engine/query/points.h"
+#include "engine/query/queries.h"
 
 namespace kdray::cli {
 

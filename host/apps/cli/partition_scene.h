@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "accel/prepare/prepared.h"
-#include "api/whole_scene.h"
+#include "api/hooks.h"
 #include "apps/cli/render_frame.h"
 
 namespace kdray::cli {

@@ -5,7 +5,7 @@
 
 #include "api/committed.h"
 #include "base/local_space.h"
-#include "engine/query/ask.h"
+#include "engine/query/queries.h"
 #include "layout/kinds.h"
 
 namespace kdray::view {

@@ -1,4 +1,4 @@
-#include "engine/query/crossings.h"
+#include "engine/query/queries.h"
 
 #include <fmt/format.h>
 #include <tbb/task_group.h>
@@ -11,7 +11,6 @@
 #include "engine/query/all_hits.h"
 #include "engine/query/exact_rays.h"
 #include "engine/query/grains.h"
-#include "engine/query/pace.h"
 #include "engine/query/shared_rows.h"
 #include "engine/query/surface.h"
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "engine/query/all_hits.h"
-#include "engine/query/ask.h"
 #include "engine/query/exact_scene.h"
+#include "engine/query/queries.h"
 
 namespace kdray::query {
 

@@ -1,7 +1,7 @@
 // What    The passes in which all hits of rays are found, chunk by chunk: a first one with short lists, which
 //         are enough for nearly all rays, and further ones for the rays that have more.
 // Shape   begin() a call; for each chunk first(), then others(), and pack() of first_lists() for the hits of
-//         the first pass. Kernels and buffers serve the next call too (sessions.h).
+//         the first pass. Kernels and buffers serve the next call too (query_context.h).
 #pragma once
 
 #include <cstdint>

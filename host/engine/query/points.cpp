@@ -1,4 +1,4 @@
-#include "engine/query/points.h"
+#include "engine/query/queries.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,9 @@
 #include "accel/prepare/instanced.h"
 #include "base/error.h"
 #include "engine/query/all_hits.h"
-#include "engine/query/closest_point.h"
 #include "engine/query/exact_scene.h"
 #include "engine/query/grains.h"
-#include "engine/query/pace.h"
+#include "engine/query/point_session.h"
 #include "engine/query/shared_rows.h"
 
 namespace kdray::query {

@@ -1,4 +1,4 @@
-// What    Kernels with their queue and buffers, ready to trace a chunk of rays (sessions.h): closest hits or
+// What    Kernels with their queue and buffers, ready to trace a chunk of rays (query_context.h): closest hits or
 //         any hits.
 // Shape   Chunks are so small that rays and hits stay in a cache between host and kernel, and so large
 //         that a launch is of no account; a GPU's are larger. A chunk is started, and waited for later: two
@@ -12,7 +12,6 @@
 
 #include "device/opencl/spare_queue.h"
 #include "engine/query/device_array.h"
-#include "engine/query/sessions.h"
 #include "engine/query/target.h"
 #include "engine/wavefront/stage.h"
 #include "layout/rays.layout.h"

@@ -9,8 +9,8 @@
 #include <optional>
 #include <span>
 
-#include "engine/query/ask.h"
 #include "engine/query/exact_rays.h"
+#include "engine/query/queries.h"
 
 namespace kdray::query {
 

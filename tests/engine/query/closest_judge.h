@@ -9,7 +9,7 @@
 #include <mutex>
 #include <string>
 
-#include "engine/query/closest_point.h"
+#include "engine/query/point_session.h"
 #include "engine/query/device_scene.h"
 
 namespace kdray::test {

@@ -1,6 +1,6 @@
 // Closest points against exact arithmetic, and what is promised of them whatever the tree and the device's
 // vectors.
-#include "engine/query/closest_point.h"
+#include "engine/query/point_session.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/query/closest_point.h"
+#include "engine/query/point_session.h"
 #include "engine/query/closest_scenes.h"
 #include "engine/query/device_scene.h"
 #include "support/device.h"

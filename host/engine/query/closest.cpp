@@ -1,4 +1,4 @@
-#include "engine/query/ask.h"
+#include "engine/query/queries.h"
 
 #include <fmt/format.h>
 
