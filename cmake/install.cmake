@@ -39,7 +39,7 @@ install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
 # The program holds the kernels; as text they are there to be read, and to be changed under KDRAY_KERNEL_DIR.
 install(DIRECTORY kernels/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kdray/kernels
-        FILES_MATCHING PATTERN "*.cl" PATTERN "*.clh" PATTERN "layout/*.h")
+        FILES_MATCHING PATTERN "*.cl" PATTERN "*.clh" PATTERN "layout/*.h" PATTERN "primitives/*.h")
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kdray/scenes)
 foreach(document README.md LICENSE CHANGELOG.md docs)
   if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${document})

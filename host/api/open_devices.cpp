@@ -145,7 +145,7 @@ std::shared_ptr<engine::DeviceScene> open_scene(const prepare::Prepared& scene, 
   };
   const auto devices =
       std::make_shared<engine::DeviceScene>(scene, opened.contexts, options, hooks.build_options, tuned);
-  devices->open_seconds = opened.seconds;
+  devices->open_seconds = {opened.seconds.start, opened.seconds.self_test};
   return devices;
 }
 

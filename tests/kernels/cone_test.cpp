@@ -81,7 +81,7 @@ int crossings(const Case& c, bool* clear) {
 std::vector<Found> roots_of(const std::string& device, const std::vector<Case>& in) {
   return test::run_kernel<Found>(
       device,
-      "#include \"intersect/cone.clh\"\n"
+      "#include \"primitives/cone/intersect.clh\"\n"
       "typedef struct Case { Cone cone; float origin[3], direction[3]; } Case;\n"
       "typedef struct Found { int hit; float t[2]; } Found;\n"
       "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"
@@ -223,7 +223,7 @@ TEST_P(ConeTest, NearnessKeepsEveryLineThatHits) {
   };
   const std::vector<Answer> out = test::run_kernel<Answer>(
       GetParam(),
-      "#include \"intersect/cone.clh\"\n"
+      "#include \"primitives/cone/intersect.clh\"\n"
       "typedef struct Case { Cone cone; float origin[3], direction[3]; } Case;\n"
       "__kernel void test(__global const Case* in, __global int2* out, uint n) {\n"
       "  const uint i = get_global_id(0);\n"
@@ -271,7 +271,7 @@ TEST_P(ConeTest, TheFirstHitBeyondAnyDistanceIsOneOfTheSameTwo) {
   };
   const std::vector<Answer> out = test::run_kernel<Answer>(
       GetParam(),
-      "#include \"intersect/cone.clh\"\n"
+      "#include \"primitives/cone/intersect.clh\"\n"
       "typedef struct Case { Cone cone; float origin[3], direction[3]; } Case;\n"
       "typedef struct Answer { int asked, wrong, second; } Answer;\n"
       "__kernel void test(__global const Case* in, __global Answer* out, uint n) {\n"

@@ -21,7 +21,7 @@ struct Found {
 };
 
 const char* const kSource =
-    "#include \"intersect/sphere.clh\"\n"
+    "#include \"primitives/sphere/intersect.clh\"\n"
     "typedef struct Case { float origin[3], direction[3], center[3], radius; } Case;\n"
     "typedef struct Found { int hit; float t_near, t_far; } Found;\n"
     "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"

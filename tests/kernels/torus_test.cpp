@@ -46,7 +46,7 @@ RealVec real(const float (&v)[3]) {
 // For vectors of so many lanes; from the start, or, where t_min is -INFINITY, of the whole line.
 std::string kernel_of(const std::string& type, int lanes, const std::string& t_min) {
   return fmt::format(
-      "#include \"intersect/torus.clh\"\n"
+      "#include \"primitives/torus/intersect.clh\"\n"
       "typedef struct Case {{ Torus torus; float origin[3], direction[3]; }} Case;\n"
       "typedef struct Found {{ float t[4]; }} Found;\n"
       "#define ROW(name, what) float name##s[{1}]; \\\n"
@@ -85,7 +85,7 @@ std::vector<Found> crossings_of(const std::string& device, const std::vector<Cas
 std::vector<Found> firsts_of(const std::string& device, const std::vector<Case>& in) {
   return test::run_kernel<Found>(
       device,
-      "#include \"intersect/torus.clh\"\n"
+      "#include \"primitives/torus/intersect.clh\"\n"
       "typedef struct Case { Torus torus; float origin[3], direction[3]; } Case;\n"
       "typedef struct Found { float t[4]; } Found;\n"
       "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"
@@ -106,7 +106,7 @@ struct FoundInDouble {
 std::vector<FoundInDouble> firsts_in_double(const std::string& device, const std::vector<Case>& in) {
   return test::run_kernel<FoundInDouble>(
       device,
-      "#include \"intersect/torus.clh\"\n"
+      "#include \"primitives/torus/intersect.clh\"\n"
       "typedef struct Case { Torus torus; float origin[3], direction[3]; } Case;\n"
       "typedef struct Found { double t[4]; } Found;\n"
       "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"

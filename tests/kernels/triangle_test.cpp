@@ -25,7 +25,7 @@ struct Found {
 
 // -DZERO_AREA=true: the triangles have no area.
 const char* const kSource =
-    "#include \"intersect/triangle.clh\"\n"
+    "#include \"primitives/triangle/intersect.clh\"\n"
     "typedef struct Case { float origin[3], direction[3]; float v[3][3]; } Case;\n"
     "typedef struct Found { int hit; float t, u, v; } Found;\n"
     "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"
@@ -249,7 +249,7 @@ TEST_P(TriangleTest, ARayThatStartsAtAZeroAreaTriangleHasLeftIt) {
 // t as the wide form's walks find it, in the lanes of a vector: NaN is in no interval. Both decisions on its
 // sign.
 const char* const kLanesSource =
-    "#include \"intersect/triangle.clh\"\n"
+    "#include \"primitives/triangle/intersect.clh\"\n"
     "typedef struct Case { float origin[3], direction[3]; float v[3][3]; } Case;\n"
     "typedef struct Found { int met; float det, t, settled_t; } Found;\n"
     "__kernel void test(__global const Case* in, __global Found* out, uint n) {\n"

@@ -11,7 +11,6 @@
 
 #include "accel/prepare/prepared.h"
 #include "engine/device_scene/device.h"
-#include "kdray/kdray.h"
 
 namespace kdray::engine {
 
@@ -46,7 +45,10 @@ class DeviceScene {
   double upload_seconds() const;
   wavefront::ProgramsUsed programs_used() const;
 
-  OpenSeconds open_seconds;  // that the devices took
+  // Wall time that opening the devices took.
+  struct {
+    double start = 0, self_test = 0;
+  } open_seconds;
 
  private:
   prepare::Prepared scene_;

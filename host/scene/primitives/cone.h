@@ -1,5 +1,5 @@
 // What    Truncated cones and cylinders on the host: all of them but how they are drawn
-//         (kernels/intersect/cone.clh).
+//         (kernels/primitives/cone/intersect.clh).
 #pragma once
 
 #include <array>

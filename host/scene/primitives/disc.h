@@ -1,4 +1,4 @@
-// What    Flat discs on the host: all of them but how they are drawn (kernels/intersect/disc.clh).
+// What    Flat discs on the host: all of them but how they are drawn (kernels/primitives/disc/intersect.clh).
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What    Spheres on the host: all of them but how they are drawn (kernels/intersect/sphere.clh).
+// What    Spheres on the host: all of them but how they are drawn (kernels/primitives/sphere/intersect.clh).
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What    Ring tori on the host: all of them but how they are drawn (kernels/intersect/torus.clh).
+// What    Ring tori on the host: all of them but how they are drawn (kernels/primitives/torus/intersect.clh).
 #pragma once
 
 #include <array>

@@ -515,7 +515,7 @@ float diff_of_products(float a, float b, float c, float d) {
   return std::fma(a, b, -w) + std::fma(-c, d, w);
 }
 
-// The normal is computed as sign_limit in kernels/intersect/triangle.clh does it.
+// The normal is computed as sign_limit in kernels/primitives/triangle/intersect.clh does it.
 float normal_in_float(const layout::Triangle& t) {
   float e[3], f[3];
   for (int k = 0; k < 3; ++k) {
