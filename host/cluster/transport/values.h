@@ -26,9 +26,22 @@ class Writer {
     put(kept.size());
     bytes_.append(kept);
   }
+  // All of them, as Reader reads them.
+  template <class... T>
+  void operator()(const T&... values) {
+    (put_any(values), ...);
+  }
   Bytes take() { return std::move(bytes_); }
 
  private:
+  template <class T>
+  void put_any(const T& value) {
+    if constexpr (std::is_same_v<T, std::string>)
+      put_text(value);
+    else
+      put(value);
+  }
+
   Bytes bytes_;
 };
 
@@ -54,7 +67,20 @@ class Reader {
     return text;
   }
 
+  template <class... T>
+  void operator()(T&... values) {
+    ((values = get_any<T>()), ...);
+  }
+
  private:
+  template <class T>
+  T get_any() {
+    if constexpr (std::is_same_v<T, std::string>)
+      return get_text();
+    else
+      return get<T>();
+  }
+
   const Message& message_;
   std::string_view rest_;
 };

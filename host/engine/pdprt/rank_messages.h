@@ -46,7 +46,9 @@ struct SharedFrame {
   std::uint32_t width = 0, height = 0, tile_width = 0, tile_height = 0;
 
   // Nowhere (no width): there is no such entry.
-  checkpoint::Rectangle places_of(bool of_runs, layout::u32 entry) const;
+  checkpoint::Rectangle places_of(bool of_runs, layout::u32 entry) const {
+    return checkpoint::places_of({width, height, tile_width, tile_height}, of_runs ? 1 : 0, entry);
+  }
 };
 
 using transport::head_of, transport::refuse, transport::to_bytes, transport::words_behind;

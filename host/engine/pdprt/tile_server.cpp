@@ -25,7 +25,7 @@ void TileServer::tell(transport::Tag tag, const transport::Bytes& bytes) {
   for (const int rank : clients_) ranks_.send(rank, tag, bytes);
 }
 
-void TileServer::start(const Begin& head, std::span<const layout::u32> samples, Take take) {
+void TileServer::start(const Begin& head, std::span<const layout::u32> samples, frame::Sink& sink) {
   list_ = head.list;
   of_runs_ = head.of_runs != 0;
   bag_.clear();
@@ -35,20 +35,20 @@ void TileServer::start(const Begin& head, std::span<const layout::u32> samples, 
   waiting_.clear();
   own_prefetch_ = {};
   own_wants_.reset();
-  take_ = std::move(take);
+  sink_ = &sink;
   tell(kBegin, to_bytes(head, samples));
 }
 
 void TileServer::begin(Begin head, std::vector<layout::u32> entries, std::span<const layout::u32> samples,
-                       Take take) {
+                       frame::Sink& sink) {
   head.list = ranks_.next_number();
   head.n_entries = entries.size();
-  start(head, samples, std::move(take));
+  start(head, samples, sink);
   bag_ = std::move(entries);
 }
 
-void TileServer::pass_on(const Begin& head, std::span<const layout::u32> samples, Take take) {
-  start(head, samples, std::move(take));
+void TileServer::pass_on(const Begin& head, std::span<const layout::u32> samples, frame::Sink& sink) {
+  start(head, samples, sink);
   is_open_ = true;
 }
 
@@ -119,7 +119,7 @@ void TileServer::take_records(const transport::Message& message) {
     const checkpoint::Sums sums(reinterpret_cast<const layout::i64*>(bytes.data() + checkpoint::kRecordHead),
                                 head->id.places.sums());
     if (checkpoint::hash_of_sums(sums) != head->content) refuse(message);
-    take_(entry, sums);
+    sink_->take_sums(entry, sums);
     assigned_to_.erase(assigned);
     --n_assigned_;
     bytes.remove_prefix(head->bytes);

@@ -89,12 +89,20 @@ class Developer {
   explicit Developer(std::uint32_t samples)
       : scale_(1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples)) {}
 
-  void operator()(std::span<const layout::i64> sums, std::span<vec3> pixels) const {
+  // The films' sums from `first` on.
+  void operator()(Films films, std::size_t first, std::span<vec3> pixels) const {
+    if (films.size() == 1) return develop(films.front().subspan(first, 3 * pixels.size()), pixels);
+    std::vector<layout::i64> sums(3 * pixels.size());
+    add_pieces(films, first, sums);
+    develop(sums, pixels);
+  }
+
+ private:
+  void develop(std::span<const layout::i64> sums, std::span<vec3> pixels) const {
     static_assert(sizeof(vec3) == 3 * sizeof(float));
     if (!pixels.empty()) scale_sums(sums.data(), 3 * pixels.size(), scale_, &pixels.front().x);
   }
 
- private:
   double scale_;
 };
 
@@ -103,11 +111,7 @@ class Developer {
 void develop(Films films, int samples, std::span<vec3> pixels) {
   const Developer developer(static_cast<std::uint32_t>(samples));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kGrain), [&](const auto& range) {
-    const auto to = pixels.subspan(range.begin(), range.size());
-    if (films.size() == 1) return developer(films.front().subspan(3 * range.begin(), 3 * range.size()), to);
-    std::vector<layout::i64> sums(3 * range.size());
-    add_pieces(films, 3 * range.begin(), sums);
-    developer(sums, to);
+    developer(films, 3 * range.begin(), pixels.subspan(range.begin(), range.size()));
   });
 }
 
@@ -117,20 +121,29 @@ void add_up(Films films, std::span<layout::i64> sums) {
   });
 }
 
-void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+void develop_tiles(Films films, std::size_t first_pixel, const layout::Frame& frame,
                    std::span<const layout::u32> tiles, std::span<vec3> picture) {
   const Developer developer(frame.n_samples);
   for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
-    developer(sums.subspan(3 * (pixel - first_pixel), 3 * n), picture.subspan(pixel, n));
+    developer(films, 3 * (pixel - first_pixel), picture.subspan(pixel, n));
   });
 }
 
-void copy_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+void copy_tiles(Films films, std::size_t first_pixel, const layout::Frame& frame,
                 std::span<const layout::u32> tiles, std::span<layout::i64> picture_sums) {
   for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
-    const auto from = sums.subspan(3 * (pixel - first_pixel), 3 * n);
-    std::copy(from.begin(), from.end(), picture_sums.subspan(3 * pixel).begin());
+    add_pieces(films, 3 * (pixel - first_pixel), picture_sums.subspan(3 * pixel, 3 * n));
   });
+}
+
+void copy_runs(Films films, std::size_t first_place, std::span<const layout::u32> runs,
+               std::span<layout::i64> sums) {
+  constexpr std::size_t kSums = 3 * KDRAY_SAMPLE_RUN;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, runs.size(), kGrain / KDRAY_SAMPLE_RUN), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          add_pieces(films, runs[i] * kSums - 3 * first_place, sums.subspan(runs[i] * kSums, kSums));
+      });
 }
 
 }  // namespace kdray::wavefront

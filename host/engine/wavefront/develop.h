@@ -22,13 +22,17 @@ void develop(Films films, int samples, std::span<vec3> pixels);
 void add_up(Films films, std::span<layout::i64> sums);
 
 // The same for the pixels of some tiles of a picture (entries of a list: KDRAY_TILE), the others left as they
-// are. `sums` begin with the picture's pixel `first_pixel`, the first of its row, and reach over all rows of
-// the tiles.
-void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+// are. The films begin with the picture's pixel `first_pixel`, the first of its row, and reach over all rows
+// of the tiles.
+void develop_tiles(Films films, std::size_t first_pixel, const layout::Frame& frame,
                    std::span<const layout::u32> tiles, std::span<vec3> picture);
 
 // The sums themselves, to where the picture's are: three for each pixel.
-void copy_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
+void copy_tiles(Films films, std::size_t first_pixel, const layout::Frame& frame,
                 std::span<const layout::u32> tiles, std::span<layout::i64> picture_sums);
+
+// Sums of runs of samples, to where those of all runs are. The films begin with the sample `first_place`.
+void copy_runs(Films films, std::size_t first_place, std::span<const layout::u32> runs,
+               std::span<layout::i64> sums);
 
 }  // namespace kdray::wavefront

@@ -114,7 +114,7 @@ TEST_P(OdprtRanksTest, AnyNumberOfRanksAndQueues) {
     ASSERT_EQ(result.queues.size(), n_queues);
     EXPECT_EQ(result.queues.back().rank, static_cast<int>(queues.size()) - 1);
     std::uint64_t traced = 0, travelled = 0;
-    for (const QueueReport& queue : result.queues) traced += queue.traced;
+    for (const QueueReport& queue : result.queues) traced += queue.rays;
     for (const auto& row : result.exchange.rays) travelled += std::accumulate(row.begin(), row.end(), 0ull);
     // A ray that looks for its hit in several parts is traced in each.
     EXPECT_GE(traced, result.counters.total());
