@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -19,11 +18,12 @@ namespace {
 constexpr std::size_t kWordsOfRun = 2 * KDRAY_SAMPLE_RUN, kSumsOfRun = 3 * KDRAY_SAMPLE_RUN;
 constexpr std::size_t kLeastTiles = 4, kLeastRuns = 64;  // of a chunk: 64 runs are 16384 samples
 
+// What the films have places for at a time.
 struct Stretch {
   Entries entries;        // numbered as in the round
   List list;              // without entries
   layout::u32 first = 0;  // run of the round, from which the list's are numbered
-  std::shared_ptr<Sink> sink;
+  Sink sink;
 };
 
 struct Round {
@@ -42,7 +42,7 @@ class Driver {
  private:
   void render_uniform();
   void render_adaptive();
-  Round round_of_tiles(const std::shared_ptr<Sink>& sink, std::span<layout::i64> sums) const;
+  Round round_of_tiles(const Sink& sink, std::span<layout::i64> sums) const;
   Round round_of_runs(std::span<const layout::u32> samples, std::span<layout::i64> sums);
   void render_tiles(std::span<layout::i64> sums);
   void render(Round round);
@@ -83,7 +83,7 @@ void Driver::tell(double n_of_list) const {
 }
 
 // `sums` are the picture's, for the checkpoint.
-Round Driver::round_of_tiles(const std::shared_ptr<Sink>& sink, std::span<layout::i64> sums) const {
+Round Driver::round_of_tiles(const Sink& sink, std::span<layout::i64> sums) const {
   const std::span<const wavefront::Band> bands = executor_.bands();
   Round round{.stretch_of = [of_band = bands.front().n_rows](layout::u32 tile) {
     return std::size_t{KDRAY_TILE_ROW(tile) / of_band};
@@ -116,7 +116,8 @@ Round Driver::round_of_runs(std::span<const layout::u32> samples, std::span<layo
     std::iota(stretch.entries.begin(), stretch.entries.end(), stretch.first);
     stretch.list.n_places = n * KDRAY_SAMPLE_RUN;
     stretch.list.samples = samples.subspan(first * kWordsOfRun, n * kWordsOfRun);
-    stretch.sink = std::make_shared<RunSums>(sums.subspan(first * kSumsOfRun, n * kSumsOfRun));
+    stretch.sink = [of_stretch = sums.subspan(first * kSumsOfRun, n * kSumsOfRun)](
+                       const auto& films, auto runs) { wavefront::copy_runs(films, runs, of_stretch); };
   }
   const std::uint32_t number = n_rounds_++;
   round.kept = {.number = number,
@@ -167,18 +168,24 @@ Entries Driver::render_some(const Stretch& stretch, Entries entries, double seco
   list.seconds = seconds;
   list.entries = std::move(entries);
   for (layout::u32& entry : list.entries) entry -= stretch.first;
-  Entries left = executor_.render(std::move(list), *stretch.sink, [this](double done) { tell(done); });
+  Entries left = executor_.render(std::move(list), stretch.sink, [this](double done) { tell(done); });
   for (layout::u32& entry : left) entry += stretch.first;
   return left;
 }
 
 void Driver::render_tiles(std::span<layout::i64> sums) {
-  render(round_of_tiles(std::make_shared<TileSums>(frame_, sums), sums));
+  const Sink sink = [this, sums](const auto& films, auto tiles) {
+    wavefront::copy_tiles(films, frame_, tiles, sums);
+  };
+  render(round_of_tiles(sink, sums));
 }
 
 void Driver::render_uniform() {
-  if (!request_.checkpoint)
-    return render(round_of_tiles(std::make_shared<PictureSink>(frame_, image_.pixels), {}));
+  // Without sums of the whole picture where nobody wants them.
+  const Sink sink = [this](const auto& films, auto tiles) {
+    wavefront::develop_tiles(films, frame_, tiles, image_.pixels);
+  };
+  if (!request_.checkpoint) return render(round_of_tiles(sink, {}));
   RawVector<layout::i64> sums(3 * image_.pixels.size());  // each is written
   render_tiles(sums);
   const std::span<const layout::i64> film = sums;

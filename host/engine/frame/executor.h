@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -13,8 +14,8 @@
 #include "base/timeline.h"
 #include "device/opencl/fault_injector.h"
 #include "engine/checkpoint/frame_checkpoint.h"
-#include "engine/frame/sink.h"
 #include "engine/wavefront/bands.h"
+#include "engine/wavefront/develop.h"
 #include "layout/features.h"
 #include "layout/frame.layout.h"
 
@@ -43,6 +44,8 @@ struct List {
   std::size_t first_place = 0, n_places = 0;  // of the films: the picture's pixels, or samples
   std::span<const layout::u32> samples = {};  // two words for each place; empty: tiles
   double seconds = kForever;                  // for which entries are begun; the others are left
+
+  std::uint32_t of_runs() const { return samples.empty() ? 0 : 1; }
 };
 
 // Those of `all` that are not in `left`, in their order.
@@ -51,6 +54,9 @@ inline Entries without(Entries all, Entries left) {
   std::erase_if(all, [&](layout::u32 entry) { return std::ranges::binary_search(left, entry); });
   return all;
 }
+
+// Takes the sums of entries that are finished, of each once, perhaps from several threads at a time.
+using Sink = std::function<void(const wavefront::PlacedFilms&, std::span<const layout::u32> entries)>;
 
 class Executor {
  public:
@@ -61,9 +67,9 @@ class Executor {
   virtual std::span<const wavefront::Band> bands() const = 0;
   virtual std::size_t n_samples() const = 0;
 
-  // Returns the entries that nobody had begun when the time was over. `progress` hears how many are done,
-  // about.
-  virtual Entries render(List list, Sink& sink, const std::function<void(double)>& progress) = 0;
+  // Returns the entries that nobody had begun when the time was over; the sink has the sums of the others.
+  // `progress` hears about how many are done.
+  virtual Entries render(List list, const Sink& sink, const std::function<void(double)>& progress) = 0;
 
   virtual bool leads() const { return true; }
   // On ranks other than 0: renders what rank 0 has begun, until it says that the frame is finished.

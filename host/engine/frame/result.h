@@ -1,5 +1,5 @@
-// What    What both schemes tell of a frame, and of the queues that have rendered it; and how a rank's share of
-//         it comes to rank 0.
+// What    What both schemes tell of a frame, and of the queues that have rendered it; and how another rank's
+//         share of it comes to rank 0.
 // Shape   A scheme's own structures are these and more.
 // Errors  ErrorCode::internal: bytes that are no result.
 #pragma once
@@ -42,7 +42,16 @@ void pass_queue(Stream& stream, Queue& queue) {
 }
 
 // What another rank adds to the result.
-void put_share(const Result& result, transport::Writer& writer);
-void add_share(transport::Reader& reader, Result& result);
+inline void put_share(const Result& result, transport::Writer& writer) {
+  writer(result.counters, result.stage_seconds.size());
+  for (const auto& [stage, seconds] : result.stage_seconds) writer(stage, seconds);
+}
+inline void add_share(transport::Reader& reader, Result& result) {
+  result.counters.add(reader.get<wavefront::Counters>());
+  for (auto n = reader.get<std::size_t>(); n > 0; --n) {
+    const auto stage = reader.get<std::string>();
+    result.stage_seconds[stage] += reader.get<double>();
+  }
+}
 
 }  // namespace kdray::frame

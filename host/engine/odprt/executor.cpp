@@ -111,7 +111,7 @@ class Executor final : public frame::Executor {
   const layout::Frame& frame() const override { return provision_.frame; }
   std::span<const wavefront::Band> bands() const override { return provision_.bands; }
   std::size_t n_samples() const override { return provision_.capacity.samples; }
-  frame::Entries render(frame::List list, frame::Sink& sink,
+  frame::Entries render(frame::List list, const frame::Sink& sink,
                         const std::function<void(double)>& progress) override;
   bool leads() const override { return request_.table.leads(); }
   void follow() override;
@@ -171,11 +171,11 @@ void Executor::run(BandWork& work, const std::function<void(double)>& progress) 
   add_band(pool_, run.exchange(), result_);
 }
 
-frame::Entries Executor::render(frame::List list, frame::Sink& sink,
+frame::Entries Executor::render(frame::List list, const frame::Sink& sink,
                                 const std::function<void(double)>& progress) {
-  BandWork work = work_of(
-      {.of_runs = list.samples.empty() ? 0u : 1u, .first_pixel = list.first_place, .n_places = list.n_places},
-      list.entries, list.samples);
+  BandWork work =
+      work_of({.of_runs = list.of_runs(), .first_pixel = list.first_place, .n_places = list.n_places},
+              list.entries, list.samples);
   work.seconds = list.seconds;
   // How many will be left when the time is over can't be told before.
   const bool all = list.seconds >= frame::kForever;
@@ -186,7 +186,7 @@ frame::Entries Executor::render(frame::List list, frame::Sink& sink,
     gather_sums(*request_.table.ranks, work.list, of_others, work.left);
   }
   const frame::Entries done = frame::without(std::move(list.entries), work.left);
-  take_films(pool_, of_others, [&](Films films) { sink.take_films(films, list.first_place, done); });
+  take_films(pool_, of_others, [&](Films films) { sink({films, list.first_place, frame().width}, done); });
   if (request_.census_every > 0) add_visits(pool_, division_, result_);
   return work.left;
 }

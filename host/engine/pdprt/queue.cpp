@@ -127,7 +127,7 @@ void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared
   const Extent extent = work.samples.empty() ? extent_of(tiles, frame_) : extent_of_runs(tiles);
   // Last: what it adds to the counters counts.
   wavefront_.finish(extent.first, extent.n, [&](const wavefront::FilmSums& film) {
-    work.sink.take_films({&film.sums, 1}, film.first, tiles);
+    work.sink({{&film.sums, 1}, film.first, frame_.width}, tiles);
   });
   if (work.samples.empty()) {
     n_tiles_ += tiles.size();

@@ -21,7 +21,7 @@ namespace kdray::pdprt {
 // What a list's tiles are: the picture's, of which the film begins with `first_pixel`, or runs of samples
 // (frame.layout.h).
 struct Work {
-  frame::Sink& sink;  // of the tiles that are done: each is handed over by one queue's thread
+  const frame::Sink& sink;  // of the tiles that are done: each is handed over by one queue's thread
   std::size_t first_pixel = 0;
   std::span<const layout::u32> samples = {};  // empty: tiles
   // A queue delivers what it has when a list has taken so long, and begins another.

@@ -61,7 +61,7 @@ class Executor final : public frame::Executor {
   const layout::Frame& frame() const override { return frame_; }
   std::span<const wavefront::Band> bands() const override { return bands_; }
   std::size_t n_samples() const override { return capacity_.samples; }
-  frame::Entries render(frame::List list, frame::Sink& sink, const Progress& progress) override;
+  frame::Entries render(frame::List list, const frame::Sink& sink, const Progress& progress) override;
   bool leads() const override { return !task_.ranks || task_.ranks->leads(); }
   void follow() override;
 
@@ -69,8 +69,8 @@ class Executor final : public frame::Executor {
   void collect(Result& result);
 
  private:
-  frame::Entries render_alone(frame::List list, frame::Sink& sink, const Progress& progress);
-  frame::Entries serve(frame::List list, frame::Sink& sink, const Progress& progress);
+  frame::Entries render_alone(frame::List list, const frame::Sink& sink, const Progress& progress);
+  frame::Entries serve(frame::List list, const frame::Sink& sink, const Progress& progress);
   void check_entries(const Begin& list) const;
   SharedFrame shared_frame() const;
   TileHierarchy hierarchy() const { return TileHierarchy(task_.ranks->size(), task_.ranks_to_a_bag); }
@@ -103,12 +103,12 @@ SharedFrame Executor::shared_frame() const {
   return {task_.shared_frame, frame_.width, frame_.height, frame_.tile_width, frame_.tile_height};
 }
 
-frame::Entries Executor::render(frame::List list, frame::Sink& sink, const Progress& progress) {
+frame::Entries Executor::render(frame::List list, const frame::Sink& sink, const Progress& progress) {
   pool_->shared().tiles_done = 0;
   return server_ ? serve(std::move(list), sink, progress) : render_alone(std::move(list), sink, progress);
 }
 
-frame::Entries Executor::render_alone(frame::List list, frame::Sink& sink, const Progress& progress) {
+frame::Entries Executor::render_alone(frame::List list, const frame::Sink& sink, const Progress& progress) {
   // A single queue takes everything at once.
   const Division division = pool_->size() == 1 ? Division::contiguous : task_.division;
   Tiles tiles(std::move(list.entries), division, pool_->size(), task_.checkpoint != nullptr);
@@ -121,10 +121,10 @@ frame::Entries Executor::render_alone(frame::List list, frame::Sink& sink, const
   return tiles.left_over();
 }
 
-frame::Entries Executor::serve(frame::List list, frame::Sink& sink, const Progress& progress) {
+frame::Entries Executor::serve(frame::List list, const frame::Sink& sink, const Progress& progress) {
   Tiles own = Tiles::open(pool_->size(), list.entries.size());
-  server_->begin({.of_runs = list.samples.empty() ? 0u : 1u, .first_pixel = list.first_place},
-                 std::move(list.entries), list.samples, sink);
+  server_->begin({.of_runs = list.of_runs(), .first_pixel = list.first_place}, std::move(list.entries),
+                 list.samples, sink);
   const Timer timer;
   frame::Entries left;
   const auto beside = [&] {
@@ -149,6 +149,7 @@ void Executor::check_entries(const Begin& list) const {
 
 void Executor::follow() {
   TileClient client(*task_.ranks, shared_frame(), hierarchy());
+  const frame::Sink sink = [&](const auto& films, auto entries) { client.take(films, entries); };
   while (!client.is_finished()) {
     const auto list = client.next_list();
     if (!list) {
@@ -161,7 +162,7 @@ void Executor::follow() {
     const auto beside = [&] { client.step(tiles, pool_->shared().tiles_done); };
     beside();
     pool_->render(tiles,
-                  {.sink = client,
+                  {.sink = sink,
                    .first_pixel = list->head.first_pixel,
                    .samples = list->samples,
                    .seconds = kDeliverEvery},

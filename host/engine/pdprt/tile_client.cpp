@@ -56,7 +56,9 @@ std::optional<TileClient::List> TileClient::next_list() {
   is_over_ = false;
   prefetch_ = {};
   List list{list_, words_behind<Begin>(*message)};
-  if (below_) below_->pass_on(list.head, list.samples, *this);
+  if (below_)
+    below_->pass_on(list.head, list.samples,
+                    [this](const auto& films, auto entries) { take(films, entries); });
   return list;
 }
 
@@ -113,30 +115,18 @@ checkpoint::Rectangle TileClient::places_of(layout::u32 entry) const {
   return frame_.places_of(list_.of_runs != 0, entry);
 }
 
-void TileClient::append(layout::u32 entry, checkpoint::Sums sums, std::string& records) const {
-  checkpoint::append_record(records, frame_.frame, {list_.of_runs, entry, places_of(entry)}, sums,
-                            checkpoint::hash_of_sums(sums));
-}
-
-void TileClient::take_sums(layout::u32 entry, checkpoint::Sums sums) {
-  const std::lock_guard lock(mutex_);
-  append(entry, sums, records_);
-}
-
-void TileClient::take_films(wavefront::Films films, std::size_t first_place,
-                            std::span<const layout::u32> entries) {
+void TileClient::take(const wavefront::PlacedFilms& films, std::span<const layout::u32> entries) {
   std::string records;
   std::vector<layout::i64> sums;
   for (const layout::u32 entry : entries) {
     const checkpoint::Rectangle r = places_of(entry);
     sums.clear();
-    for (std::size_t row = 0; row < r.height; ++row) {
-      const std::size_t place = list_.of_runs != 0 ? r.x : (r.y + row) * frame_.width + r.x;
-      const checkpoint::Sums from =
-          films.front().subspan(3 * (place - first_place), std::size_t{3} * r.width);
-      sums.insert(sums.end(), from.begin(), from.end());
+    for (std::size_t y = r.y; y < r.y + r.height; ++y) {
+      const checkpoint::Sums row = films.films.front().subspan(films.at(r.x, y), std::size_t{3} * r.width);
+      sums.insert(sums.end(), row.begin(), row.end());
     }
-    append(entry, sums, records);
+    checkpoint::append_record(records, frame_.frame, {list_.of_runs, entry, r}, sums,
+                              checkpoint::hash_of_sums(sums));
   }
   const std::lock_guard lock(mutex_);
   records_ += records;

@@ -2,10 +2,10 @@
 //         wanted, and sends their sums home as they are done. Where this rank serves others
 //         (tile_hierarchy.h), it passes on to them what they want, and home what they have done.
 // Shape   next_list(), then step() until the queues have rendered what there is of it and is_done(), then
-//         finish_list(); until there is no list any more. It is the sink of its queues; what their threads
-//         hand over is sent by step(), in messages of some hundred KiB.
+//         finish_list(); until there is no list any more. What the queues' threads hand to take() is sent
+//         by step(), in messages of some hundred KiB.
 // Errors  ErrorCode::internal: messages that make no sense. transport::Ended.
-// Threads One calls all but take_films(), which is for any.
+// Threads One calls all but take(), which is for any.
 #pragma once
 
 #include <mutex>
@@ -20,7 +20,7 @@
 
 namespace kdray::pdprt {
 
-class TileClient final : public frame::Sink {
+class TileClient {
  public:
   TileClient(transport::Ranks& ranks, const SharedFrame& frame, const TileHierarchy& hierarchy);
 
@@ -37,11 +37,8 @@ class TileClient final : public frame::Sink {
   bool is_done() const { return !below_ || below_->is_done(); }  // with this rank's own clients
   void finish_list();
 
-  // Of this rank's queues.
-  void take_films(wavefront::Films films, std::size_t first_place,
-                  std::span<const layout::u32> entries) override;
-  // Of its clients.
-  void take_sums(layout::u32 entry, checkpoint::Sums sums) override;
+  // Sends home what this rank's queues have rendered, or its clients.
+  void take(const wavefront::PlacedFilms& films, std::span<const layout::u32> entries);
 
  private:
   std::optional<transport::Message> next_message();
@@ -50,7 +47,6 @@ class TileClient final : public frame::Sink {
   void take_grant(const transport::Message& message, Tiles& tiles);
   void ask(const Tiles& tiles, std::size_t n_rendered);
   checkpoint::Rectangle places_of(layout::u32 entry) const;
-  void append(layout::u32 entry, checkpoint::Sums sums, std::string& records) const;
   void send_pieces(std::size_t least_bytes);
 
   transport::Ranks& ranks_;

@@ -14,7 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "engine/frame/sink.h"
+#include "engine/frame/executor.h"
 #include "engine/pdprt/prefetch_policy.h"
 #include "engine/pdprt/rank_messages.h"
 #include "engine/pdprt/tile_hierarchy.h"
@@ -28,11 +28,11 @@ class TileServer {
 
   // `samples` of the list's runs. `sink` gets the sums of a record. Rank 0's, which numbers the list.
   void begin(Begin head, std::vector<layout::u32> entries, std::span<const layout::u32> samples,
-             frame::Sink& sink);
+             frame::Sink sink);
 
   // The others': a list that has been begun, with nothing of it yet. `elsewhere`: how many tiles there are
   // that nobody has, for each rank.
-  void pass_on(const Begin& head, std::span<const layout::u32> samples, frame::Sink& sink);
+  void pass_on(const Begin& head, std::span<const layout::u32> samples, frame::Sink sink);
   void add(std::span<const layout::u32> entries, std::size_t elsewhere);
   void end();
   std::size_t stock() const { return bag_.size() - next_; }
@@ -61,7 +61,7 @@ class TileServer {
     std::size_t least;
   };
 
-  void start(const Begin& head, std::span<const layout::u32> samples, frame::Sink& sink);
+  void start(const Begin& head, std::span<const layout::u32> samples, frame::Sink sink);
   void tell(transport::Tag tag, const transport::Bytes& bytes);
   bool can_assign() const { return stock() > 0 || !is_open_; }
   std::span<const layout::u32> assign(std::size_t least, int n_served);
@@ -85,7 +85,7 @@ class TileServer {
   std::deque<Request> waiting_;                       // for something to be assigned
   PrefetchPolicy own_prefetch_;
   std::optional<std::size_t> own_wants_;
-  frame::Sink* sink_ = nullptr;  // of the list
+  frame::Sink sink_;  // of the list
   std::vector<transport::Message> reports_;
 };
 

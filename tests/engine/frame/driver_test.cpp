@@ -13,12 +13,14 @@
 #include <thread>
 #include <vector>
 
-#include "engine/frame/frames.h"
 #include "engine/wavefront/curve.h"
+#include "engine/wavefront/random_frame.h"
 #include "support/folder.h"
 
 namespace kdray::frame {
 namespace {
+
+using test::Random, test::random_frame;
 
 // Of a sample of a pixel: between 0 and 1. Some pixels are even, others noisy.
 layout::i64 light(std::uint32_t x, std::uint32_t y, std::uint32_t sample, std::size_t channel) {
@@ -26,6 +28,10 @@ layout::i64 light(std::uint32_t x, std::uint32_t y, std::uint32_t sample, std::s
   std::uint64_t h = (x / 8) * 31 + (y / 8) * 977 + noise * 7919 + channel * 104729;
   h = (h ^ (h >> 7)) * 0x9e3779b97f4a7c15u;
   return static_cast<layout::i64>(h >> 28);
+}
+
+checkpoint::Cut cut_of(const layout::Frame& frame) {
+  return {frame.width, frame.height, frame.tile_width, frame.tile_height};
 }
 
 struct Interrupted {};
@@ -44,7 +50,7 @@ class Pretender final : public Executor {
   bool leads() const override { return !follows; }
   void follow() override { ++n_followed; }
 
-  Entries render(List list, Sink& sink, const std::function<void(double)>& progress) override {
+  Entries render(List list, const Sink& sink, const std::function<void(double)>& progress) override {
     if (lists.size() == interrupt_at) throw Interrupted();
     lists.push_back(list);
     check(list);
@@ -101,7 +107,7 @@ class Pretender final : public Executor {
   }
 
   // By two films, of which both have something of each place, those of other entries too; or one by one.
-  void hand_over(const List& list, Sink& sink) {
+  void hand_over(const List& list, const Sink& sink) {
     std::vector<layout::i64> one(3 * list.n_places), other(3 * list.n_places);
     for (std::size_t i = 0; i < one.size(); ++i) {
       one[i] = random_.sum();
@@ -120,9 +126,10 @@ class Pretender final : public Executor {
         for (std::size_t x = r.x; x < r.x + r.width; ++x)
           for (std::size_t c = 0; c < 3; ++c)
             sums.push_back(sum_at(list, list.samples.empty() ? y * frame_.width + x : x, c));
-      sink.take_sums(entry, sums);
+      const std::span<const layout::i64> film = sums;
+      sink({{&film, 1}, std::size_t{r.y} * r.width + r.x, r.width}, {&entry, 1});
     }
-    sink.take_films(films, list.first_place, by_films);
+    sink({films, list.first_place, frame_.width}, by_films);
   }
 
   layout::Frame frame_;

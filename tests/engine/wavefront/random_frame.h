@@ -1,13 +1,12 @@
-// What    Frames of random sizes for tests without a device, and what a film has of each place.
+// What    Frames of random sizes, for tests without a device.
 #pragma once
 
 #include <cstdint>
 #include <random>
 
-#include "engine/checkpoint/header.h"
 #include "layout/frame.layout.h"
 
-namespace kdray::frame {
+namespace kdray::test {
 
 class Random {
  public:
@@ -31,8 +30,4 @@ inline layout::Frame random_frame(Random& random) {
   return frame;
 }
 
-inline checkpoint::Cut cut_of(const layout::Frame& frame) {
-  return {frame.width, frame.height, frame.tile_width, frame.tile_height};
-}
-
-}  // namespace kdray::frame
+}  // namespace kdray::test
