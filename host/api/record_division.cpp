@@ -125,12 +125,13 @@ FrameResult frame_result_of(odprt::Result&& result, const State& state, const Jo
   }
   told.owners.of_subtrees = std::move(result.subtree_queues);
   told.divide_seconds = result.divide_seconds;
-  Statistics::Odprt& odprt = told.division.odprt.emplace();
+  Statistics::Odprt odprt;
   odprt.balance = name_of(job.options.balance);
   odprt.parts = result.n_parts;
   odprt.directory_cells = result.n_cells;
   odprt.whole_geometry_bytes = state.divided->geometry_bytes();
   add_exchange(odprt, result.exchange);
+  told.division.odprt = std::move(odprt);
   if (told.division.ranks) {
     told.division.ranks->whole = state.whole == nullptr;
     told.division.ranks->peak_bytes = std::move(result.peak_bytes);
