@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/image/heat.h"
+#include "io/image/color.h"
 
 namespace kdray::bench {
 

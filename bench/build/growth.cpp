@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/peak_memory.h"
+#include "base/process_memory.h"
 #include "bench/build/bench.h"
 #include "bench/build/builders.h"
 #include "bench/embree/build.h"

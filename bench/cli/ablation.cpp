@@ -7,8 +7,8 @@
 
 #include <memory>
 
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
+#include "apps/cli/output.h"
 #include "bench/ablation/bench.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"

@@ -8,9 +8,8 @@
 
 #include <memory>
 
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
-#include "apps/cli/parse.h"
+#include "apps/cli/output.h"
 #include "bench/accuracy/bench.h"
 #include "bench/accuracy/exact.h"
 #include "bench/accuracy/reference.h"
@@ -18,7 +17,7 @@
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
 #include "bench/povray/povray.h"
-#include "io/image/write.h"
+#include "io/image/picture_file.h"
 
 namespace kdray::cli {
 

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
+#include "apps/cli/output.h"
 #include "bench/build/report.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"

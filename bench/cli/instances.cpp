@@ -11,9 +11,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
-#include "apps/cli/parse.h"
+#include "apps/cli/output.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "apps/cli/command_line.h"
+#include "apps/cli/command.h"
 #include "bench/cli/commands.h"
 
 int main(int argc, char** argv) {

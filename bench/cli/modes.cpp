@@ -9,10 +9,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
-#include "apps/cli/parse.h"
-#include "apps/cli/rank_cores.h"
+#include "apps/cli/output.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/limits.h"
 #include "bench/cli/report_files.h"
@@ -88,7 +86,7 @@ int run_ranks(const ModesCommand& c) {
                   [&](bench::Team& team) {
                     if (over_mpi) {
                       transport::Ranks all(team.group(team.size()));
-                      share_cores(all);
+                      transport::share_cores(all);
                     }
                     auto of_member = bench::bench_ranks(
                         team, shelf, over_mpi, asked,

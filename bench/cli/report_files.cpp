@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "apps/cli/message.h"
+#include "apps/cli/output.h"
 #include "base/write_file.h"
 #include "bench/embree/embree.h"
 #include "bench/measure/run_program.h"

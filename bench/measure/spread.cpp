@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/median.h"
+#include "base/timer.h"
 
 namespace kdray::bench {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "scene/generate/displaced_sphere.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 
 namespace kdray {
 namespace {

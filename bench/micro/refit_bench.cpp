@@ -11,7 +11,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "base/median.h"
 #include "base/timer.h"
 #include "kdray/kdray.h"
 #include "scene/generate/displaced_sphere.h"

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "bench/measure/run_program.h"
 #include "bench/povray/pov_writer.h"
-#include "io/image/read.h"
+#include "io/image/picture_file.h"
 
 namespace kdray::bench {
 

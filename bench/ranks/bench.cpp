@@ -8,7 +8,7 @@
 
 #include "api/hooks.h"
 #include "api/statistics_json.h"
-#include "base/median.h"
+#include "base/timer.h"
 #include "cluster/transport/ranks.h"
 #include "scene/generate/built_in.h"
 

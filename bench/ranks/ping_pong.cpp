@@ -4,7 +4,6 @@
 #include <chrono>
 #include <thread>
 
-#include "base/median.h"
 #include "base/timer.h"
 #include "bench/measure/spread.h"
 

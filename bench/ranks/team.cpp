@@ -10,9 +10,9 @@
 #include <thread>
 #include <utility>
 
-#include "cluster/transport/delayed.h"
 #include "cluster/transport/in_process.h"
-#include "cluster/transport/words.h"
+#include "cluster/transport/message_bytes.h"
+#include "cluster/transport/simulated.h"
 #include "kdray/error.h"
 
 namespace kdray::bench {

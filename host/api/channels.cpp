@@ -10,7 +10,7 @@
 #include "engine/odprt/replicate.h"
 #include "engine/pdprt/render.h"
 #include "engine/wavefront/channels.h"
-#include "io/image/queue_colors.h"
+#include "io/image/color.h"
 
 namespace kdray::api {
 

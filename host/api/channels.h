@@ -1,6 +1,6 @@
-// What    The channels that a frame is to have beside its colours. Channel "queue" tells of each pixel who traced
-//         it. Of PDPRT that is the queue that rendered its tile, of ODPRT the one whose subtree the eye ray
-//         through its centre ends in: a queue's number, image::kNoQueue or image::kEveryQueue.
+// What    The channels that a frame is to have beside its colours. Channel "queue" tells of each pixel who
+//         traced it. Of PDPRT that is the queue that rendered its tile, of ODPRT the one whose subtree the
+//         eye ray through its centre ends in: a queue's number, image::kNoQueue or image::kEveryQueue.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// What    What fits on the devices, and so the choice between PDPRT and ODPRT for a frame that leaves it open; or
-//         by what was measured, where this Renderer has rendered such a frame in both modes.
+// What    What fits on the devices, and so the choice between PDPRT and ODPRT for a frame that leaves it
+//         open; or by what was measured, where this Renderer has rendered such a frame in both modes.
 // Units   Bytes.
 #pragma once
 

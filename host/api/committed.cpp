@@ -4,7 +4,7 @@
 #include "api/open_devices.h"
 #include "api/precision.h"
 #include "api/record.h"
-#include "base/median.h"
+#include "base/timer.h"
 
 namespace kdray::api {
 

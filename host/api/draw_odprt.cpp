@@ -1,8 +1,7 @@
 #include "api/draw_odprt.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <utility>
 
 #include "api/choose_mode.h"
 #include "api/record.h"
@@ -34,15 +33,12 @@ odprt::Request request_for(State& state, Job& job) {
   const RenderOptions& o = job.options;
   wavefront::Schedule schedule = state.scheduler.schedule_for(state.devices.first(), job);
   schedule.apply(job.frame, job.features);
-  odprt::Request request;
+  odprt::Request request{request_of(state, job)};
   for (Device& d : state.devices) {
     schedule.n_slices = std::max(schedule.n_slices, state.scheduler.schedule_for(d, job).n_slices);
     for (const cl::CommandQueue& queue : d.context.queues())
       request.queues.push_back({&d.context, queue, &d.programs, request.queues.size()});
   }
-  request.frame = job.frame;
-  request.features = job.features;
-  request.adaptive_target = o.adaptive_target;
   request.traversal = traversal_of(o.traversal, !state.devices.first().global);
   request.balance = o.balance;
   request.n_slices = schedule.n_slices;
@@ -54,20 +50,7 @@ odprt::Request request_for(State& state, Job& job) {
   }
   request.ray_buffer = static_cast<std::uint32_t>(o.ray_buffer);
   request.device_memory = state.whole ? 0 : memory_limit(state, o);
-  request.timeline = job.timeline;
-  request.fault_injector = &state.fault_injector;
-  request.progress = o.progress;
-  request.checkpoint = job.checkpoint.get();
   return request;
-}
-
-// One line for each queue that failed.
-std::vector<std::string> warnings_of(const odprt::Result& r) {
-  std::vector<std::string> warnings;
-  for (const odprt::Quarantined& q : r.quarantined)
-    warnings.push_back(
-        fmt::format("queue {} failed: {}; its subtrees went to the other queues", q.queue, q.what));
-  return warnings;
 }
 
 }  // namespace
@@ -86,24 +69,7 @@ FrameResult draw_odprt(State& state, Job& job) {
                                                           state.whole ? state.whole->ranks : nullptr);
   odprt::Result result = state.divided->render(request);
   state.speeds.take(job.frame).odprt = mrays_per_s(result.counters.total(), result.render_seconds);
-  FrameResult frame_result;
-  frame_result.division = division_of(result, job, state.divided->geometry_bytes());
-  if (state.ranks) {
-    tell_of_ranks(frame_result.division, result.queues, *state.ranks);
-    frame_result.division.ranks->whole = state.whole == nullptr;
-    frame_result.division.ranks->peak_bytes = result.peak_bytes;
-  }
-  for (const odprt::QueueReport& queue : result.queues)
-    frame_result.memory_of_queues.push_back({queue.geometry_bytes, queue.work_bytes});
-  frame_result.divide_seconds = result.divide_seconds;
-  frame_result.warnings = warnings_of(result);
-  frame_result.owners.of_subtrees = std::move(result.subtree_queues);
-  frame_result.image = std::move(result.image);
-  frame_result.samples = std::move(result.samples);
-  frame_result.counters = result.counters;
-  frame_result.stage_seconds = std::move(result.stage_seconds);
-  frame_result.render_seconds = result.render_seconds;
-  return frame_result;
+  return frame_result_of(std::move(result), state, job);
 }
 
 }  // namespace kdray::api

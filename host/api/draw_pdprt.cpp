@@ -1,8 +1,7 @@
 #include "api/draw_pdprt.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "api/choose_mode.h"
@@ -24,56 +23,18 @@ std::vector<pdprt::Device> places_on(State& state, const Job& job) {
   return places;
 }
 
-// One line for each queue that failed.
-std::vector<std::string> warnings_of(const pdprt::Result& result) {
-  std::vector<std::string> warnings;
-  for (std::size_t i = 0; i < result.queues.size(); ++i)
-    if (const pdprt::QueueResult& queue = result.queues[i]; !queue.failure.empty())
-      warnings.push_back(
-          fmt::format("queue {} ({}){} failed: {}; the other queues rendered the {} tiles it had taken", i,
-                      queue.device, queue.rank > 0 ? fmt::format(", which is rank {}'s,", queue.rank) : "",
-                      queue.failure, queue.tiles_lost));
-  return warnings;
-}
-
-// Each queue sees the whole scene.
-void add_memory(FrameResult& frame_result, const pdprt::Result& result, std::uint64_t scene_bytes) {
-  frame_result.frame_bytes = 0;
-  for (const pdprt::QueueResult& queue : result.queues) {
-    *frame_result.frame_bytes += queue.device_bytes;
-    frame_result.memory_of_queues.push_back({scene_bytes, queue.device_bytes});
-  }
-}
-
 }  // namespace
 
 FrameResult draw_pdprt(State& state, const Job& job) {
-  const std::size_t max_film_bytes = state.ranks ? job.film_of_ranks : film_bytes(state, job);
-  pdprt::Result result = pdprt::render(places_on(state, job), {.frame = job.frame,
-                                                               .features = job.features,
-                                                               .adaptive_target = job.options.adaptive_target,
-                                                               .division = job.options.division,
-                                                               .progress = job.options.progress,
-                                                               .fault_injector = &state.fault_injector,
-                                                               .timeline = job.timeline,
-                                                               .max_film_bytes = max_film_bytes,
-                                                               .checkpoint = job.checkpoint.get(),
-                                                               .ranks = state.ranks.get(),
-                                                               .shared_frame = job.shared_frame});
+  pdprt::Task task{request_of(state, job)};
+  task.division = job.options.division;
+  task.max_film_bytes = state.ranks ? job.film_of_ranks : film_bytes(state, job);
+  task.ranks = state.ranks.get();
+  task.shared_frame = job.shared_frame;
+  pdprt::Result result = pdprt::render(places_on(state, job), task);
   state.scheduler.remember(job.frame, result.tile_cost);
   state.speeds.take(job.frame).pdprt = mrays_per_s(result.counters.total(), result.render_seconds);
-  FrameResult frame_result;
-  frame_result.division = division_of(result, job, state.devices.first().global);
-  if (state.ranks) tell_of_ranks(frame_result.division, result.queues, *state.ranks);
-  add_memory(frame_result, result, state.scene_bytes);
-  frame_result.warnings = warnings_of(result);
-  frame_result.owners = {result.tile_width, result.tile_height, std::move(result.tile_queues)};
-  frame_result.image = std::move(result.image);
-  frame_result.samples = std::move(result.samples);
-  frame_result.counters = result.counters;
-  frame_result.stage_seconds = std::move(result.stage_seconds);
-  frame_result.render_seconds = result.render_seconds;
-  return frame_result;
+  return frame_result_of(std::move(result), state, job);
 }
 
 }  // namespace kdray::api

@@ -1,5 +1,5 @@
-// What    What tells a frame from others: for the checkpoint that is opened for it, and for ranks that render it
-//         together and agree on it beforehand.
+// What    What tells a frame from others: for the checkpoint that is opened for it, and for ranks that render
+//         it together and agree on it beforehand.
 // Shape   A checkpoint's header says all that matters for the bits of a picture. Rank 0 sends it, and decides
 //         the mode and how the frame is cut into tiles and bands.
 // Errors  kdray::Error of a rank that has another scene, other settings or another build than rank 0, or less

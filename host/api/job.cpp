@@ -61,4 +61,14 @@ Job make_job(State& state, const RenderOptions& options, timeline::Timeline* tim
   return job;
 }
 
+frame::Request request_of(State& state, const Job& job) {
+  return {.frame = job.frame,
+          .features = job.features,
+          .adaptive_target = job.options.adaptive_target,
+          .progress = job.options.progress,
+          .fault_injector = &state.fault_injector,
+          .timeline = job.timeline,
+          .checkpoint = job.checkpoint.get()};
+}
+
 }  // namespace kdray::api

@@ -2,17 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/timeline.h"
-#include "engine/adaptive/report.h"
 #include "engine/checkpoint/frame_checkpoint.h"
-#include "engine/wavefront/wavefront.h"
-#include "io/image/image.h"
+#include "engine/frame/executor.h"
+#include "engine/frame/result.h"
 #include "kdray/kdray.h"
 #include "kdray/statistics.h"
 #include "layout/frame.layout.h"
@@ -36,13 +34,8 @@ struct Owners {
   std::vector<std::uint32_t> of_tiles = {}, of_subtrees = {};
 };
 
-struct FrameResult {
-  image::Image image;
-  std::optional<adaptive::Report> samples;
+struct FrameResult : frame::Result {
   std::vector<std::string> warnings;
-  wavefront::Counters counters;
-  std::map<std::string, double> stage_seconds;  // device time, added over the queues
-  double render_seconds = 0;
   std::optional<double> divide_seconds;  // of ODPRT
   Owners owners;
   // For the statistics: how the frame was divided, and what it took of memory.
@@ -56,6 +49,9 @@ struct State;
 // Fills in what the options leave open. Throws ErrorCode::usage for options that don't go together, or with
 // the scene as it was prepared.
 Job make_job(State& state, const RenderOptions& options, timeline::Timeline* timeline);
+
+// What the job asks for in either mode.
+frame::Request request_of(State& state, const Job& job);
 
 inline double mrays_per_s(std::uint64_t rays, double seconds) {
   return seconds > 0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0;

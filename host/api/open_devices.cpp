@@ -20,7 +20,7 @@
 #include "kdray/kdray.h"
 #include "probe/selftest/self_test.h"
 #include "probe/trial/devices.h"
-#include "probe/trial/listing.h"
+#include "probe/trial/drivers.h"
 
 namespace kdray::api {
 

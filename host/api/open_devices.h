@@ -1,6 +1,6 @@
-// What    Opens the devices that DeviceOptions names: each has passed the self-test, keeps what it builds in the
-//         folder that the options name, and works with the settings that were found for it
-//         (device/tuning/database.h), or that kdray ships with for its kind. And a scene on them.
+// What    Opens the devices that DeviceOptions names, and a scene on them. Each has passed the self-test,
+//         keeps what it builds in the folder that the options name, and works with the settings that were
+//         found for it (device/tuning/database.h), or that kdray ships with for its kind.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ device::Builds builds_of(const DeviceOptions& options);
 // what other runs have found out in the default one counts.
 device::Verdicts verdicts_of(const DeviceOptions& options);
 
-// Leaves out drivers that can't even be asked for their devices (trial/listing.h), before OpenCL's first
-// call, and says why, a line for each.
+// Leaves out drivers that can't even be asked for their devices (probe/trial/drivers.h), before OpenCL's
+// first call, and says why, a line for each.
 std::vector<std::string> leave_out_drivers(const DeviceOptions& options);
 
 struct OpenedDevices {

@@ -22,18 +22,9 @@ Statistics first_statistics(const engine::DeviceScene& devices);
 Statistics::Features features_told(layout::Features mask);
 Statistics::DeviceTuning tuning_told(const engine::Tuned& tuned);
 
-// How a frame was divided among the queues, as far as the mode knows.
-Statistics::Division division_of(const pdprt::Result& result, const Job& job, bool global);
-// `bytes_of_whole` is the scene's geometry.
-Statistics::Division division_of(const odprt::Result& result, const Job& job, std::uint64_t bytes_of_whole);
-
-// What this rank has sent, and whose each queue is.
-template <class Queues>
-void tell_of_ranks(Statistics::Division& division, const Queues& queues, const transport::Ranks& ranks) {
-  const transport::Counters& c = ranks.counters();
-  division.ranks = Statistics::Ranks{ranks.size(), c.sent, c.received, c.bytes_sent, c.bytes_received};
-  for (std::size_t i = 0; i < queues.size(); ++i) division.per_queue[i].rank = queues[i].rank;
-}
+// What a mode tells of a frame: the picture, how it was divided among the queues, what failed.
+FrameResult frame_result_of(pdprt::Result&& result, const State& state, const Job& job);
+FrameResult frame_result_of(odprt::Result&& result, const State& state, const Job& job);
 
 // What all modes tell of a frame.
 void record_frame(Statistics& statistics, const State& state, const Job& job, FrameResult& frame_result,

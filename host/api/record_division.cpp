@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 #include "api/names.h"
 #include "api/record.h"
@@ -23,37 +26,29 @@ std::uint64_t moved(const odprt::ExchangeCounts& exchange, std::size_t queue, bo
   return n;
 }
 
-Statistics::Queue queue_told(const odprt::Result& r, std::size_t q) {
-  const odprt::QueueReport& queue = r.queues[q];
-  return {.number = queue.number,
-          .device = queue.device,
-          .busy_seconds = queue.busy_seconds,
-          .idle_share = r.render_seconds > 0 ? 1 - queue.busy_seconds / r.render_seconds : 0.0,
-          .rays = queue.traced,
-          .tiles = {},
-          .travel = Statistics::Travel{.parts = queue.n_parts,
-                                       .subtrees = queue.n_subtrees,
-                                       .part_loads = queue.n_loads,
-                                       .launches = queue.launches,
-                                       .rays_in = moved(r.exchange, q, false, 1, 1),
-                                       .rays_out = moved(r.exchange, q, true, 1, 1),
-                                       .bytes_in = moved(r.exchange, q, false, kRayBytes, kShadowBytes),
-                                       .bytes_out = moved(r.exchange, q, true, kRayBytes, kShadowBytes)},
-          .rank = {}};
-}
-
-Statistics::Queue queue_told(const pdprt::Result& r, std::size_t q) {
-  const pdprt::QueueResult& queue = r.queues[q];
+Statistics::Queue queue_told(const frame::QueueReport& queue, double render_seconds) {
   const double idle =
-      r.render_seconds > 0 ? std::clamp(1 - queue.busy_seconds / r.render_seconds, 0.0, 1.0) : 0.0;
-  return {.number = q,
+      render_seconds > 0 ? std::clamp(1 - queue.busy_seconds / render_seconds, 0.0, 1.0) : 0.0;
+  return {.number = queue.number,
           .device = queue.device,
           .busy_seconds = queue.busy_seconds,
           .idle_share = idle,
           .rays = queue.rays,
-          .tiles = queue.tiles,
+          .tiles = {},
           .travel = {},
           .rank = {}};
+}
+
+Statistics::Travel travel_told(const odprt::Result& r, std::size_t q) {
+  const odprt::QueueReport& queue = r.queues[q];
+  return {.parts = queue.n_parts,
+          .subtrees = queue.n_subtrees,
+          .part_loads = queue.n_loads,
+          .launches = queue.launches,
+          .rays_in = moved(r.exchange, q, false, 1, 1),
+          .rays_out = moved(r.exchange, q, true, 1, 1),
+          .bytes_in = moved(r.exchange, q, false, kRayBytes, kShadowBytes),
+          .bytes_out = moved(r.exchange, q, true, kRayBytes, kShadowBytes)};
 }
 
 void add_exchange(Statistics::Odprt& told, const odprt::ExchangeCounts& exchange) {
@@ -70,43 +65,78 @@ void add_exchange(Statistics::Odprt& told, const odprt::ExchangeCounts& exchange
   }
 }
 
-}  // namespace
-
-Statistics::Division division_of(const pdprt::Result& result, const Job& job, bool global) {
-  Statistics::Division division;
+// What both modes tell. Takes the picture.
+template <class Result>
+FrameResult common_result_of(Result& result, const State& state) {
+  FrameResult told;
+  Statistics::Division& division = told.division;
   division.tile_width = result.tile_width;
   division.tile_height = result.tile_height;
   division.tiles = result.n_tiles;
   division.bands = result.n_bands;
   division.launches = result.counters.launches;
   division.waves = result.counters.waves;
-  division.pdprt =
-      Statistics::Pdprt{name_of(job.options.division), global ? "global" : "slices", result.tile_seconds};
-  for (std::size_t i = 0; i < result.queues.size(); ++i) {
-    division.per_queue.push_back(queue_told(result, i));
-    if (const std::string& what = result.queues[i].failure; !what.empty())
-      division.quarantined.push_back({i, what});
+  for (const frame::QueueReport& queue : result.queues) {
+    division.per_queue.push_back(queue_told(queue, result.render_seconds));
+    if (state.ranks) division.per_queue.back().rank = queue.rank;
   }
-  return division;
+  if (state.ranks) {
+    const transport::Counters& c = state.ranks->counters();
+    division.ranks =
+        Statistics::Ranks{state.ranks->size(), c.sent, c.received, c.bytes_sent, c.bytes_received};
+  }
+  static_cast<frame::Result&>(told) = std::move(result);
+  return told;
 }
 
-Statistics::Division division_of(const odprt::Result& result, const Job& job, std::uint64_t bytes_of_whole) {
-  Statistics::Division division;
-  division.tile_width = job.frame.tile_width;
-  division.tile_height = job.frame.tile_height;
-  division.tiles = job.frame.n_tiles;
-  division.bands = result.n_bands;
-  division.waves = result.counters.waves;
-  for (const odprt::QueueReport& queue : result.queues) division.launches += queue.launches;
-  for (std::size_t q = 0; q < result.queues.size(); ++q) division.per_queue.push_back(queue_told(result, q));
-  for (const odprt::Quarantined& q : result.quarantined) division.quarantined.push_back({q.queue, q.what});
-  Statistics::Odprt& told = division.odprt.emplace();
-  told.balance = name_of(job.options.balance);
-  told.parts = result.n_parts;
-  told.directory_cells = result.n_cells;
-  told.whole_geometry_bytes = bytes_of_whole;
-  add_exchange(told, result.exchange);
-  return division;
+}  // namespace
+
+FrameResult frame_result_of(pdprt::Result&& result, const State& state, const Job& job) {
+  FrameResult told = common_result_of(result, state);
+  told.frame_bytes = 0;
+  for (const pdprt::QueueResult& queue : result.queues) {
+    told.division.per_queue[queue.number].tiles = queue.tiles;
+    *told.frame_bytes += queue.device_bytes;
+    told.memory_of_queues.push_back({state.scene_bytes, queue.device_bytes});  // each sees the whole scene
+    if (queue.failure.empty()) continue;
+    told.division.quarantined.push_back({queue.number, queue.failure});
+    told.warnings.push_back(fmt::format(
+        "queue {} ({}){} failed: {}; the other queues rendered the {} tiles it had taken", queue.number,
+        queue.device, queue.rank > 0 ? fmt::format(", which is rank {}'s,", queue.rank) : "", queue.failure,
+        queue.tiles_lost));
+  }
+  told.owners = {result.tile_width, result.tile_height, std::move(result.tile_queues)};
+  told.division.pdprt =
+      Statistics::Pdprt{name_of(job.options.division), state.devices.first().global ? "global" : "slices",
+                        std::move(result.tile_seconds)};
+  return told;
+}
+
+FrameResult frame_result_of(odprt::Result&& result, const State& state, const Job& job) {
+  FrameResult told = common_result_of(result, state);
+  for (std::size_t q = 0; q < result.queues.size(); ++q) {
+    told.division.per_queue[q].travel = travel_told(result, q);
+    told.memory_of_queues.push_back({result.queues[q].geometry_bytes, result.queues[q].device_bytes});
+  }
+  for (const odprt::Quarantined& q : result.quarantined) {
+    told.division.quarantined.push_back({q.queue, q.what});
+    told.warnings.push_back(
+        fmt::format("queue {} failed: {}; its subtrees went to the other queues", q.queue, q.what));
+  }
+  told.owners.of_subtrees = std::move(result.subtree_queues);
+  told.divide_seconds = result.divide_seconds;
+  Statistics::Odprt odprt;
+  odprt.balance = name_of(job.options.balance);
+  odprt.parts = result.n_parts;
+  odprt.directory_cells = result.n_cells;
+  odprt.whole_geometry_bytes = state.divided->geometry_bytes();
+  add_exchange(odprt, result.exchange);
+  told.division.odprt = std::move(odprt);
+  if (told.division.ranks) {
+    told.division.ranks->whole = state.whole == nullptr;
+    told.division.ranks->peak_bytes = std::move(result.peak_bytes);
+  }
+  return told;
 }
 
 }  // namespace kdray::api

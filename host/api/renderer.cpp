@@ -16,7 +16,6 @@
 #include "api/state.h"
 
 #include "accel/prepare/instanced.h"
-#include "base/median.h"
 #include "base/timeline.h"
 #include "base/timer.h"
 #include "engine/query/trace.h"

@@ -9,8 +9,7 @@
 #include "device/opencl/platform.h"
 #include "engine/query/queries.h"
 #include "scene/import/load.h"
-#include "scene/model/added_instances.h"
-#include "scene/model/added_textures.h"
+#include "scene/model/added_geometry.h"
 
 namespace kdray {
 

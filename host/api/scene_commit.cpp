@@ -7,7 +7,7 @@
 #include "api/hooks.h"
 #include "base/error.h"
 #include "device/opencl/platform.h"
-#include "scene/model/added_instances.h"
+#include "scene/model/added_geometry.h"
 #include "scene/model/check_scene.h"
 #include "scene/model/frame.h"
 

@@ -1,5 +1,5 @@
-// What    What a Scene keeps: the file that it is of and the geometries that were added, what has changed since
-//         the last commit(), and what was committed.
+// What    What a Scene keeps: the file that it is of and the geometries that were added, what has changed
+//         since the last commit(), and what was committed.
 // Shape   scene.cpp has the interface, scene_commit.cpp makes the model and commits it.
 #pragma once
 
@@ -14,7 +14,6 @@
 #include "api/committed.h"
 #include "kdray/kdray.h"
 #include "scene/model/added_geometry.h"
-#include "scene/model/added_textures.h"
 #include "scene/model/scene.h"
 
 namespace kdray {

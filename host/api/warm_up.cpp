@@ -17,7 +17,7 @@
 #include "engine/query/trace.h"
 #include "engine/wavefront/channels.h"
 #include "engine/wavefront/wavefront.h"
-#include "probe/selftest/known_case.h"
+#include "probe/selftest/self_test.h"
 #include "scene/model/geometry.h"
 
 namespace kdray::api {

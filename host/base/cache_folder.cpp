@@ -27,8 +27,8 @@ bool is_entry(const std::string& name, std::string_view ending) {
          name.find_first_not_of("0123456789abcdef") == 32;
 }
 
-// Temporaries are named by write_atomically. One that has not changed for an hour is nobody's any more, since
-// no writer takes that long.
+// Temporaries are named by write_atomically. One that has not changed for an hour was left behind, since no
+// writer takes that long.
 bool is_left_behind(const std::string& name, std::string_view ending, fs::file_time_type changed) {
   return name.starts_with(".kdray-") && name.ends_with(ending) &&
          fs::file_time_type::clock::now() - changed > std::chrono::hours(1);

@@ -28,12 +28,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-// How often a child is looked at that keeps its pipe open, and how long one may take to go after SIGKILL: a
+// How often a child that keeps its pipe open is looked at, and how long one may take to end after SIGKILL: a
 // call into a graphics driver that hangs in the kernel can't be ended at all.
 constexpr milliseconds kStep{20}, kLastPatience{1000};
 constexpr std::size_t kLongestReport = 1 << 16;
 
-// This process' environment, with these variables in place of its own.
+// Returns this process' environment, with these variables in place of its own.
 std::vector<std::string> environment_with(const std::map<std::string, std::string>& set) {
   std::vector<std::string> all;
   for (char** variable = environ; variable && *variable; ++variable) {
@@ -44,7 +44,7 @@ std::vector<std::string> environment_with(const std::map<std::string, std::strin
   return all;
 }
 
-// What exec takes: pointers, and a null behind them.
+// Returns what exec takes: pointers, and a null behind them.
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
@@ -52,8 +52,8 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-// Seconds for which the cores that this process may use have had nothing to do since the machine started,
-// summed over them; without end where the system doesn't tell.
+// Returns the seconds for which the cores that this process may use have had nothing to do since the machine
+// started, summed over them; infinite where the system doesn't say.
 double idle_seconds() {
   cpu_set_t mine;
   CPU_ZERO(&mine);
@@ -73,7 +73,7 @@ double idle_seconds() {
   return any ? sum : std::numeric_limits<double>::infinity();
 }
 
-// Seconds of a core that the process has used, with those of its children that have ended.
+// Returns the seconds of a core that the process has used, with those of its children that have ended.
 double used_seconds(pid_t process) {
   std::ifstream in("/proc/" + std::to_string(process) + "/stat");
   std::string text;
@@ -175,7 +175,8 @@ const ChildEnd& Child::wait() {
   return end_;
 }
 
-// Waits that long for something to come, or for the pipe's end; where it has ended already, a little.
+// Waits so long for bytes or for the end of the pipe; where the pipe has ended already, a millisecond at
+// most.
 void Child::read_report(int most_milliseconds) {
   if (report_ < 0) return std::this_thread::sleep_for(milliseconds(std::min(most_milliseconds, 1)));
   pollfd waiting{report_, POLLIN, 0};
@@ -190,7 +191,7 @@ void Child::read_report(int most_milliseconds) {
   report_ = -1;
 }
 
-// The child stays a zombie for the moment, so that its group's number is nobody else's. Where this program
+// The child stays a zombie for the moment, so that no other group can get its number. Where this program
 // ignores SIGCHLD, or waits for every child elsewhere, nothing can be known of its end.
 bool Child::has_ended() {
   siginfo_t info{};
@@ -201,7 +202,7 @@ bool Child::has_ended() {
   return true;
 }
 
-// It could have run while a core was idle, and has run for as long as it has used one.
+// Counts the time in which the child ran, and in which it could have run since a core was idle.
 bool Child::is_late() const {
   const double elapsed = since_start_.seconds();
   if (elapsed < limit_) return false;

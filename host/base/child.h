@@ -64,11 +64,11 @@ class Child {
   ChildEnd end_;
 };
 
-// To be called by a program that was started as a Child, before all else: it goes with `parent`, the process
-// that started it, and leaves no core file behind when it crashes.
+// Makes this program end with `parent`, the process that started it as a Child, and leave no core file behind
+// when it crashes. A child calls this before all else.
 void live_as_child_of(pid_t parent);
 
-// "SIGSEGV" for 11; "signal 99" for what has no name.
+// Returns "SIGSEGV" for 11, "signal 99" for a signal without a name.
 std::string signal_name(int signal);
 
 }  // namespace kdray

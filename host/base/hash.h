@@ -1,4 +1,4 @@
-// What    128-bit hashes of bytes, to tell contents apart and to find damage. Not against forgery.
+// What    128-bit hashes of bytes, to tell contents apart and to find damage; not safe against forgery.
 // Source  XXH3 (Collet), at memory speed.
 #pragma once
 

@@ -32,14 +32,14 @@ inline double largest_component(const dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// The power of two that takes `size` into [1, 2); 1 for a size of 0 or infinity. Its own inverse is a double
-// too.
+// Returns the power of two that takes `size` into [1, 2); 1 for a size of 0 or infinity. Its own inverse is a
+// double too.
 inline double scale_to_one(double size) {
   if (!(size > 0) || !std::isfinite(size)) return 1;
   return std::ldexp(1.0, std::clamp(-std::ilogb(size), -1022, 1022));
 }
 
-// A vector's length and its direction, where its components' squares may leave the range of double.
+// Return a vector's length and its direction, where its components' squares may leave the range of double.
 inline double safe_length(const dvec3& v) {
   const double scale = scale_to_one(largest_component(v));
   return glm::length(v * scale) / scale;

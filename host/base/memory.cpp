@@ -66,7 +66,7 @@ class Kept {
 
 }  // namespace
 
-// Large pages are taken whole; the hint may be refused, and small ones do as well.
+// Large pages are taken whole; the system may refuse the hint, and small pages do as well.
 void* allocate_pages(std::size_t bytes) {
   const bool large = bytes >= kLargePages;
   const std::size_t alignment = large ? kPage : kAlignment;

@@ -1,27 +1,121 @@
 #include "base/paged.h"
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cinttypes>
 #include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "base/error.h"
-#include "base/free_memory.h"
 #include "base/memory.h"
-#include "base/nameless_file.h"
-#include "base/resident.h"
+#include "base/process_memory.h"
 
 namespace kdray {
+
+// ---- files without a name: memory whose pages the system may write out at any time
+
+namespace {
+
+// Not every file system knows files that never had a name; there one is removed at once.
+int open_nameless(const std::filesystem::path& folder) {
+  const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (file >= 0 || errno == ENOENT || errno == EACCES || errno == ENOTDIR) return file;
+  std::string name = (folder / "kdray-XXXXXX").string();
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
+
+void* map_space(int file, std::size_t bytes) {
+  if (const int error = ::posix_fallocate(file, 0, static_cast<off_t>(bytes)); error != 0) {
+    errno = error;
+    return nullptr;
+  }
+  void* const memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  return memory == MAP_FAILED ? nullptr : memory;
+}
+
+// Returns zeroed memory from the start of a page; null, with errno, where there can be none. The file's space
+// is taken at once, so that a full disk is an error here and ends no process later.
+std::shared_ptr<void> map_nameless_file(const std::filesystem::path& folder, std::size_t bytes) {
+  const int file = open_nameless(folder);
+  if (file < 0) return nullptr;
+  void* const memory = map_space(file, bytes);
+  const int error = errno;
+  ::close(file);
+  errno = error;
+  if (memory == nullptr) return nullptr;
+  return {memory, [bytes](void* p) { ::munmap(p, bytes); }};
+}
+
+}  // namespace
+
+// ---- how much of mapped files this process has in memory: proc(5), statm and smaps
+
+namespace {
+
+using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+Stream open_own(const char* name) {
+  return {std::fopen(name, "re"), std::fclose};
+}
+
+// Returns the bytes of the ranges that lie from `begin` to `end`.
+std::uint64_t within(const std::map<void*, std::size_t>& ranges, std::uintptr_t begin, std::uintptr_t end) {
+  std::uint64_t sum = 0;
+  for (auto r = ranges.lower_bound(reinterpret_cast<void*>(begin)); r != ranges.end(); ++r) {
+    if (reinterpret_cast<std::uintptr_t>(r->first) >= end) break;
+    sum += r->second;
+  }
+  return sum;
+}
+
+// Returns the bytes of all mapped files; takes microseconds. 0 where the system doesn't say.
+std::uint64_t resident_of_files() {
+  const Stream file = open_own("/proc/self/statm");
+  std::uint64_t pages = 0;
+  if (!file || std::fscanf(file.get(), "%*u %*u %" SCNu64, &pages) != 1) return 0;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// Returns the bytes of these ranges, each given by its first byte and its size: a whole mapping or the inner
+// part of one (which counts by what the whole has, and no more than its size). Takes milliseconds for many
+// gigabytes.
+std::uint64_t resident_of(const std::map<void*, std::size_t>& ranges) {
+  const Stream file = open_own("/proc/self/smaps");
+  if (!file) return 0;
+  std::uint64_t sum = 0, ours = 0;
+  char line[4096];
+  while (std::fgets(line, sizeof line, file.get()) != nullptr) {
+    std::uintptr_t begin = 0, end = 0;
+    std::uint64_t kilobytes = 0;
+    if (std::sscanf(line, "%" SCNxPTR "-%" SCNxPTR " ", &begin, &end) == 2)
+      ours = within(ranges, begin, end);
+    else if (ours > 0 && std::sscanf(line, "Rss: %" SCNu64, &kilobytes) == 1)
+      sum += std::min(ours, kilobytes * 1024);
+  }
+  return sum;
+}
+
+}  // namespace
+
+// ---- the budget, and what is let go
 
 namespace {
 
@@ -47,7 +141,7 @@ class Pages {
     return is_set_;
   }
 
-  // Whether plain memory may have so much more.
+  // Returns whether plain memory may have so much more.
   bool fits(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     const std::uint64_t most = budget() / 4 * 3;
@@ -69,7 +163,7 @@ class Pages {
     watched_ = true;
     changed_.notify_one();
   }
-  // Once this returns, nobody here touches that memory any more.
+  // Once this returns, nothing here touches that memory any more.
   void remove_file(void* memory) {
     const std::lock_guard lock(mutex_);
     files_.erase(memory);
@@ -98,8 +192,8 @@ class Pages {
     }
   }
 
-  // All mapped files together take a moment to ask for, and these alone much longer: they are looked at when
-  // all have become enough more for them to have come near their share.
+  // The size of all mapped files is quick to get, that of these alone much slower: so these are measured only
+  // when all have grown by enough for these to have come near their share.
   void let_go_of_many() {
     const std::uint64_t share = budget() / 4, now = resident_of_files();
     if (now < seen_ + share / 8) {
@@ -135,7 +229,7 @@ std::shared_ptr<void> allocate_plain(std::size_t bytes) {
           }};
 }
 
-// The whole pages of it, which are let go from time to time.
+// Returns `memory` as an owner whose whole pages are let go from time to time.
 std::shared_ptr<void> watched(std::shared_ptr<void> owner, void* memory, std::size_t bytes) {
   const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
   const auto begin = reinterpret_cast<std::uintptr_t>(memory);

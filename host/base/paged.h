@@ -1,10 +1,10 @@
 // What    Memory for what is large and looked at here and there, as the texels of pictures are: plain memory
 //         as far as a budget of the process goes, and beyond it pages of a nameless file, which the system
 //         writes out and reads back as they are needed.
-// Shape   Of the budget plain memory has three quarters. When pages of files have more than the last quarter
+// Shape   Plain memory has three quarters of the budget. When pages of files have more than the last quarter
 //         in memory they are let go, all at once: those that are still looked at come back from the system's
-//         file cache, which it frees as it likes. A thread looks after that while there are such pages.
-//         Files lie in $TMPDIR, or else in /var/tmp, and are gone when their memory is, or the process.
+//         file cache, which it frees as it likes. A thread watches this while there are such pages. Files lie
+//         in $TMPDIR, or else in /var/tmp, and are gone when their memory is, or the process.
 // Threads Any. Pages may be let go while others read and write them.
 // Errors  kdray::Error, ErrorCode::input, when a budget was set and there is no space for a file. Otherwise
 //         plain memory serves.
@@ -14,15 +14,15 @@
 #include <cstdint>
 #include <memory>
 
-#include "base/array.h"
+#include "base/memory.h"
 
 namespace kdray {
 
-// In bytes. Where none is set, half of the memory that is free when one is first asked for. Holds for what is
-// allocated from now on.
+// Sets the budget, in bytes, for what is allocated from now on. Without this it is half of the memory that is
+// free when it is first needed.
 void set_paged_budget(std::uint64_t bytes);
 
-// Zeroed or not; aligned as allocate()'s is.
+// Returns memory, zeroed or not, that is aligned as allocate()'s is.
 std::shared_ptr<void> allocate_paged(std::size_t bytes);
 
 template <class T>
@@ -32,8 +32,8 @@ Array<T> paged_array(std::size_t n) {
   return {memory, static_cast<T*>(memory.get()), n};
 }
 
-// Memory of a mapped file is let go as if it had been allocated here, where it has more bytes than plain
-// memory would have been left. `owner` keeps it there.
+// Returns the memory of a mapped file as an owner that lets its pages go as if they had been allocated here,
+// where it has more bytes than plain memory has left. `owner` keeps it there.
 std::shared_ptr<void> page_mapped(std::shared_ptr<void> owner, void* memory, std::size_t bytes);
 
 struct PagedBytes {

@@ -13,7 +13,8 @@ namespace kdray {
 
 namespace {
 
-// Those that the program was not told to ignore, as nohup does with SIGHUP.
+// Returns the signals that end the program, but for those that it was told to ignore, as nohup does with
+// SIGHUP.
 sigset_t ending_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -56,7 +57,7 @@ void mind_signals() {
   } catch (const std::system_error&) {  // too little memory for a thread: signals do as they ever did
     unblock(set);
   }
-  // A file that gets larger than `ulimit -f` allows is then an error of writing, which is told.
+  // A file that gets larger than `ulimit -f` allows is then an error of writing, which is reported.
   ::signal(SIGXFSZ, SIG_IGN);
 }
 

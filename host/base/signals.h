@@ -7,11 +7,13 @@
 
 namespace kdray {
 
-// To be called by the first thread before there are others, which inherit what it blocks. So do child
-// processes, which must be started with an empty mask (POSIX_SPAWN_SETSIGMASK).
+// Blocks the signals and starts the thread that waits for them. The first thread calls this before there are
+// others, which inherit what it blocks. Child processes inherit it too, and must be started with an empty
+// mask (POSIX_SPAWN_SETSIGMASK).
 void mind_signals();
 
-// For a program that is about to take this one's place, and would inherit the block.
+// Unblocks the signals, for a program that is about to take this one's place (exec) and would inherit the
+// block.
 void leave_signals_alone();
 
 }  // namespace kdray

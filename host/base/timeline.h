@@ -28,7 +28,7 @@ class Timeline {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Seconds since the timeline was made.
+  // Returns seconds since the timeline was made.
   double now() const { return seconds_at(Clock::now()); }
   double seconds_at(Clock::time_point time) const {
     return std::chrono::duration<double>(time - start_).count();
@@ -37,7 +37,7 @@ class Timeline {
   void name_row(int row, const std::string& name);
   void add(int row, const std::string& name, double start, double end, Numbers numbers = {});
 
-  // The spans of a row, in the order of their beginnings.
+  // Returns the spans of a row, in the order of their beginnings.
   std::vector<Span> spans(int row) const;
 
   std::string json() const;

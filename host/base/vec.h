@@ -1,5 +1,5 @@
 // What    The vector types of the host: GLM's, under kdray's names. Positions in files are double, positions
-//         on the device are float about the scene's centre (see scene/geometry.h).
+//         on the device are float about the scene's centre (see scene/model/geometry.h).
 #pragma once
 
 #include <cmath>

@@ -49,7 +49,7 @@ fs::path folder_of(const fs::path& file) {
   return parent.empty() ? fs::path(".") : parent;
 }
 
-// An existing target must be a file that its owner left writable: a rename would not ask.
+// An existing target must be a file that its owner left writable: a rename would not check that.
 void check_target(const fs::path& file, const fs::path& target, const fs::file_status& status) {
   if (target.filename().empty() || fs::is_directory(status))
     throw input_error(file.string(), 0, "is a folder", "name a file in it");

@@ -11,15 +11,15 @@
 
 namespace kdray {
 
-// Where the bytes of `file` will go at last: to `file`, or to what the symbolic links that it is made of
-// point to (which need not exist).
+// Returns where the bytes of `file` will go in the end: `file` itself, or what its symbolic links point to
+// (which need not exist).
 std::filesystem::path where_written(std::filesystem::path file);
 
 // Calls `write(temporary)` and renames the temporary onto `file`; removes it if `write` throws.
 void write_atomically(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path&)>& write);
 
-// The usual case: the content is in memory.
+// Writes content that is in memory: the usual case.
 void write_file(const std::filesystem::path& file, std::string_view content);
 
 // Throws what write_atomically would throw for this name, so that a long job can fail before it starts.

@@ -1,8 +1,8 @@
 // What    Every operation of simd.clh on given cases: the probe build and self-test of
 //         host/device/opencl/simd.h, and the test of all forms.
 // Shape   One work-item goes through all cases: the kernels that use simd.clh run one work-item to a vector,
-//         too. A compiler that says itself that its target lacks the form's instructions gets no kernel
-//         rather than a failed build, about which PoCL's would print a line.
+//         too. For a compiler that says that its target lacks the form's instructions there is no kernel
+//         here, rather than a failed build, about which PoCL would print a line.
 #include "layout/simd.h"
 #ifndef KDRAY_SIMD
 #define KDRAY_SIMD KDRAY_SIMD_PORTABLE
@@ -42,7 +42,7 @@ inline void answer16(__global const SimdCase* in, __global SimdAnswers* out) {
   out->negative16 = negative16(a);
   vstore16(as_uint16(select16(mask, a, b)), 0, out->select16);
   vstore16(selectu16(mask, ua, ub), 0, out->selectu16);
-  // What lies behind the packed lanes is anything.
+  // What lies behind the packed lanes is unspecified.
   pack16(mask, a, (__global float*)out->pack16);
   for (u32 i = count_lanes(mask); i < 16; ++i) out->pack16[i] = 0;
   prefetch_line(in->b);

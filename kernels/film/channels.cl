@@ -2,8 +2,8 @@
 // Shape   One work-item per sixteen pixels; out_channels[pixel*7]: depth, normal x y z, primitive number,
 //         cost, the instance's place in the scene's list. Nothing hit: depth inf, normal 0, primitive -1,
 //         instance -1, as for the scene's own primitives. A failed walk: depth NaN, which the host takes for
-//         an error. The binary tree is walked, but where there are instances, which the wide form alone has;
-//         that walk has no cost.
+//         an error. The binary tree is walked, except where there are instances, which only the wide form
+//         has; that walk counts no cost.
 #include "layout/arguments.h"
 #include "layout/features.h"
 #include "layout/rays.layout.h"
@@ -12,7 +12,7 @@
 #include "traverse/closest.clh"
 #include "traverse/wide.clh"
 
-// Sixteen numbers in turn, by lane.
+// Sixteen numbers that are accessed one by one, by lane.
 typedef struct Row {
   real lane[KDRAY_LANES];
 } Row;
@@ -68,7 +68,7 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   const Row ox = row_of(rays.origin.x), oy = row_of(rays.origin.y), oz = row_of(rays.origin.z);
   const Row dx = row_of(d.x), dy = row_of(d.y), dz = row_of(d.z);
   const Row t_min = row_of(frame->hither / dot3(d, splat3(load3_constant(frame->forward))));
-  // Lanes behind the last pixel are computed with: as a miss.
+  // Lanes behind the last pixel take part in vectors as misses.
   Row t = row_of((real16)(INFINITY)), u = row_of((real16)(0.0f)), v = u, number = u, cost = u;
   word refs[KDRAY_LANES], instances[KDRAY_LANES];
   for (u32 i = 0; i < KDRAY_LANES; ++i) {

@@ -1,5 +1,4 @@
-// What    The ground that every shared struct stands on: fixed-width names and size checks for both
-//         compilers.
+// What    What every shared struct needs: fixed-width names and size checks for both compilers.
 // Shape   Structs that cross between host and device live in kernels/layout/*.layout.h and nowhere else:
 //         scalars of fixed width and arrays of them, indices for addresses, padding spelled out and zero.
 #ifndef KDRAY_LAYOUT_BASE_H

@@ -1,6 +1,6 @@
 // What    The feature mask: what a scene needs. The host ORs it together (host/accel/flatten/features.h) and
-//         passes it as KDRAY_FEATURES; here it becomes KDRAY_HAS_X = 0 or 1, to be tested with #if.
-//         Undefined: everything on, so that each kernel compiles alone.
+//         passes it as KDRAY_FEATURES; here it becomes KDRAY_HAS_X = 0 or 1, to be tested with #if. Where
+//         that is undefined everything is on, so that each kernel compiles alone.
 // Shape   64 bits, 16 for each of four groups: the rules that are off (rules.h), the kinds of primitives
 //         (kinds.h), what surfaces need, what light and film need. Bits that have no name here are free.
 #ifndef KDRAY_LAYOUT_FEATURES_H
@@ -40,14 +40,14 @@
 // Lights with an area; removes choosing a place on them, and the word by which rays tell their sample.
 #define KDRAY_FEATURE_AREA_LIGHTS KDRAY_FEATURE(45)
 #define KDRAY_FEATURE_LENS KDRAY_FEATURE(46)  // removes choosing a place on the camera's lens
-// What makes samples differ where the picture is even.
+// What makes a pixel's samples differ even where the picture is uniform.
 #define KDRAY_FEATURES_NOISY (KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_LENS)
 // Light, bits 48-55, and film, bits 56-63.
 #define KDRAY_FEATURE_LIGHTS KDRAY_FEATURE(48)       // removes shadow rays, their buffers and launches
 #define KDRAY_FEATURE_ATTENUATION KDRAY_FEATURE(49)  // removes fall-off and range
 #define KDRAY_FEATURE_DIRECTIONAL KDRAY_FEATURE(50)
 #define KDRAY_FEATURE_SPOT KDRAY_FEATURE(51)
-// A core with faces around it; removes looking whether rays pass it by.
+// A core with faces around it; removes testing whether rays pass it by.
 #define KDRAY_FEATURE_FACES KDRAY_FEATURE(52)
 // Instances of meshes (instances.layout.h); removes walks and surfaces in other spaces, and the instance from
 // rays and hits.
@@ -83,13 +83,13 @@
 #define KDRAY_HAS_METAL_MAPS (KDRAY_HAS_MATERIAL_MAPS && (KDRAY_FEATURES & KDRAY_FEATURE_METAL_MAPS) != 0)
 #define KDRAY_HAS_NORMAL_MAPS (KDRAY_HAS_MATERIAL_MAPS && (KDRAY_FEATURES & KDRAY_FEATURE_NORMAL_MAPS) != 0)
 #define KDRAY_HAS_LIGHT_MAPS (KDRAY_HAS_MATERIAL_MAPS && (KDRAY_FEATURES & KDRAY_FEATURE_LIGHT_MAPS) != 0)
-// Queries, which ask for the shape, meet triangles whole.
+// In queries, which ask for the shape, triangles have no holes.
 #ifdef KDRAY_WHOLE_TRIANGLES
 #define KDRAY_HAS_CUTOUTS 0
 #else
 #define KDRAY_HAS_CUTOUTS ((KDRAY_FEATURES & KDRAY_FEATURE_CUTOUTS) != 0)
 #endif
-// Looking at material maps: when shading, or for holes.
+// Whether material maps are read: when shading, or for holes.
 #define KDRAY_HAS_TEXTURING (KDRAY_HAS_MATERIAL_MAPS || KDRAY_HAS_CUTOUTS)
 #define KDRAY_HAS_REFLECT ((KDRAY_FEATURES & KDRAY_FEATURE_REFLECT) != 0)
 #define KDRAY_HAS_TRANSMIT ((KDRAY_FEATURES & KDRAY_FEATURE_TRANSMIT) != 0)

@@ -9,15 +9,15 @@
 //         node that is an instance is KDRAY_WIDE_LEAF | KDRAY_KIND_INSTANCE << KDRAY_WIDE_KIND_SHIFT | its
 //         index. Rays and hits name an instance by index + 1; 0 is the scene itself. Behind all instances lie
 //         pieces of some (host/accel/flatten/instance_openings.h), the same but for `root`, which is a node
-//         below the mesh's: leaves of the tree over instances that have their hits under the whole one's
-//         name.
+//         below the mesh's: they are leaves of the tree over instances, and the whole instance names their
+//         hits.
 // Errors  All are rounded once from double. host/accel/flatten/instances.h has the bounds that follow.
 #ifndef KDRAY_LAYOUT_INSTANCES_H
 #define KDRAY_LAYOUT_INSTANCES_H
 #include "layout/base.layout.h"
 #include "layout/wide.layout.h"
 
-// The kind of a leaf that is an instance: none that primitives have, nor that of what is no reference.
+// The kind of a leaf that is an instance: it differs from primitives' kinds and from KDRAY_REF_NO_KIND.
 #define KDRAY_KIND_INSTANCE 14u
 #define KDRAY_INSTANCE_LEAF (KDRAY_WIDE_LEAF | KDRAY_KIND_INSTANCE << KDRAY_WIDE_KIND_SHIFT)
 #define KDRAY_MESH_MATERIAL 0xffffffffu

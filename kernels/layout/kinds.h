@@ -2,9 +2,9 @@
 //         the sections of files follow from this list. docs/add-a-primitive.md leads through adding a kind.
 // Shape   KDRAY_KINDS(X) is X(NAME, name, names, Struct) for each kind, in the order of their numbers;
 //         KDRAY_KINDS_WITH hands another macro on as well. A triangle is part of a mesh; the shapes stand for
-//         themselves. A kind with the number KDRAY_KIND_X has in primitives/x/x.layout.h a struct and KDRAY_X_ROWS
-//         rows of KDRAY_BLOCK words in a block of the wide form, the last of them the index; and it has a bit
-//         of the feature mask (features.h).
+//         themselves. A kind with the number KDRAY_KIND_X has a struct and, in a block of the wide form,
+//         KDRAY_X_ROWS rows of KDRAY_BLOCK words, the last of them the index (primitives/x/x.layout.h); and
+//         it has a bit of the feature mask (features.h).
 #ifndef KDRAY_LAYOUT_KINDS_H
 #define KDRAY_LAYOUT_KINDS_H
 

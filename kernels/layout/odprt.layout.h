@@ -1,4 +1,4 @@
-// What    ODPRT: what a queue knows of the division of the scene, and what a slice keeps account of.
+// What    ODPRT: what a queue knows of the division of the scene, and what a slice counts.
 // Shape   The scene is divided into parts; a ray carries how far it has come on its way through them, in two
 //         words (odprt/way.clh).
 #ifndef KDRAY_LAYOUT_ODPRT_H
@@ -40,8 +40,8 @@ typedef struct Travel {
 } Travel;
 KDRAY_ASSERT_SIZE(Travel, 64)
 
-// What a slice may make in a launch beyond what it ends: [0] shadow rays that leave the part where they
-// begin, [d] rays of depth d.
+// How many rays a slice may make in a launch beyond those that it ends: [0] shadow rays that leave the part
+// where they begin, [d] rays of depth d.
 typedef struct Credits {
   u32 rays[KDRAY_MAX_DEPTH + 1];
 } Credits;

@@ -130,7 +130,7 @@
 #define KDRAY_HIT_INSTANCE 4u  // u32: 1 + the instance's index, or 0
 #define KDRAY_HIT_FIELDS (4u + KDRAY_INSTANCE_FIELDS)
 
-// What became of a shadow ray: one byte for each.
+// What became of each shadow ray, in one byte.
 #define KDRAY_CLEAR 0u
 #define KDRAY_OCCLUDED 1u
 #define KDRAY_OCCLUSION_INVALID 2u  // the stack was too small

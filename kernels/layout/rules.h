@@ -3,8 +3,8 @@
 //         are, holds no switch.
 // Shape   KDRAY_SKIPS(BEHIND) is 1 where the rule holds, a constant. The rules that are numbers of Frame
 //         (least weight, depth) have no bit.
-// Why     They change time alone: no bit of a picture depends on them, but for LEFT with shadow rays of
-//         smooth triangles, which may start behind the triangle. docs/design/skipping.md tells why, and what
+// Why     They change time alone: no bit of a picture depends on them, except for LEFT with shadow rays of
+//         smooth triangles, which may start behind the triangle. docs/design/skipping.md says why, and what
 //         each is worth.
 #ifndef KDRAY_LAYOUT_RULES_H
 #define KDRAY_LAYOUT_RULES_H

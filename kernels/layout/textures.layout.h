@@ -18,15 +18,15 @@
 #define KDRAY_TEXTURE_NEAREST 16u                 // one texel; else four, by how near they are
 #define KDRAY_TEXTURE_CURVED 32u                  // red, green and blue are codes of sRGB; else linear
 #define KDRAY_TEXTURE_SET(how) ((how) >> 6 & 1u)  // of the coordinates at a triangle's corners
-// How many triangles have, one behind the other; the last one's may be tangents.
+// How many sets triangles have, one behind the other; the last one may be tangents.
 #define KDRAY_TEXTURE_SETS(how) (((how) >> 7 & 1u) + ((how) >> 11 & 1u) + 1)
 #define KDRAY_TEXTURE_TANGENTS 2048u
 
-// The same where the picture is shown smaller than it is, and how its smaller forms take part.
+// How it is looked up where it is shown smaller than it is, and how its mipmaps take part.
 #define KDRAY_TEXTURE_MIN_NEAREST 256u
 #define KDRAY_TEXTURE_MIPMAPS 512u      // it has some; else only the picture itself is looked at
 #define KDRAY_TEXTURE_MIP_LINEAR 1024u  // two of them are mixed; else the nearer one is taken
-// The most places along a footprint at which one is looked at.
+// The most places along a footprint at which a texture is looked up.
 #define KDRAY_MOST_PROBES 8u
 
 // MaterialMaps::how.
@@ -36,11 +36,11 @@
 #define KDRAY_MAPS_METAL 8u      // its terms follow from how metallic and rough the place is (see below)
 #define KDRAY_MAPS_TANGENTS 16u  // triangles have tangents at their corners, for the picture of normals
 
-// A corner's tangent: a unit vector on an octahedron that is laid flat, and to its second number is added
-// this, both negative where the picture is mirrored. 0, 0: none.
+// A corner's tangent: a unit vector on an unfolded octahedron. This is added to its second number, and the
+// sum is negative where the picture is mirrored. 0, 0: none.
 #define KDRAY_TANGENT_OFFSET 2.0f
 
-// What metal by maps takes for ambient light, and the strength of a smooth dielectric's highlight.
+// The ambient light that metal by maps counts with, and the strength of a smooth dielectric's highlight.
 #define KDRAY_METAL_AMBIENT 0.1f
 #define KDRAY_METAL_HIGHLIGHT 0.25f
 
@@ -72,9 +72,9 @@ typedef struct MaterialMaps {
   u32 base;  // into the textures, or KDRAY_NO_TEXTURE; and so are the other maps
   u32 how;
   u32 normal_map;
-  // By light maps: emission is `emissive` times one; `ambient` times the base colour comes to what is
-  // unshadowed, less what occlusion takes; highlights and mirrors are multiplied by one instead of by the
-  // base colour.
+  // By light maps: emission is `emissive` times a map's colour; `ambient` times the base colour, less what
+  // occlusion takes, is added to what is unshadowed; highlights and mirrors are multiplied by a map's colour
+  // instead of the base colour.
   u32 emission_map, occlusion_map, highlight_map;
   float occlusion;  // its strength
   float emissive[3];
@@ -93,7 +93,7 @@ KDRAY_ASSERT_SIZE(MaterialMaps, 160)
 KDRAY_ASSERT_OFFSET(MaterialMaps, alpha, 60)
 KDRAY_ASSERT_OFFSET(MaterialMaps, metallic, 124)
 
-// Of a triangle's corners, linear, in 65535ths: red and in the upper half green, then blue and alpha.
+// Colours of a triangle's corners, linear, in 65535ths: red and in the upper half green, then blue and alpha.
 typedef struct CornerColors {
   u32 c[3][2];
 } CornerColors;

@@ -79,7 +79,7 @@ inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32
   shade_and_light(t, frame, slice_id, shaders, census, s, since);
 }
 
-// False when nothing could be done.
+// Returns false when nothing could be done.
 inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* frame, u32 slice_id,
                      const Shaders* shaders, const Census* census, const Streams* s) {
   u64 since = cycles();

@@ -1,5 +1,4 @@
-// What    The origins of the rays that leave hits, by the code that shades: kdray verify and the tests ask
-//         where they lie.
+// What    The origins of the rays that leave hits, by the code that shades, for kdray verify and the tests.
 // Shape   in_rays[n], in_hits[n] (t, u, v and references) -> out_departures[n]; one work-item to sixteen
 //         hits. All hits are hits.
 // Cost    reads 48 B of ray and hit and the primitive, writes 40 B.

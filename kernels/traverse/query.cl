@@ -9,7 +9,7 @@
 #include "traverse/any.clh"
 #include "traverse/query.clh"
 #include "traverse/query16.clh"
-// After the source of rays, which they use.
+// Included after the source of rays, which they use.
 #include "traverse/walk.clh"
 #include "traverse/wide.clh"
 

@@ -7,7 +7,7 @@
 //         stages.
 // Cost    io_slices tells the cycles that each stage took, where the device has a cycle counter, and
 //         io_tile_cycles those of each entry of the list: a wave is charged to the tile that its slice had
-//         come to.
+//         reached.
 #include "film/add.clh"
 #include "layout/arguments.h"
 #include "raygen/admit.clh"
@@ -26,7 +26,7 @@ KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)
   for (u32 k = 0; k < n_waves; ++k) {
     u64 since = cycles();
     const u64 start = since;
-    // Behind the list's end a slice is still at work on what the last tile left in the pool.
+    // Behind the list's end a slice still works on what its last tile left in the pool.
     const u32 tile = slice->tile < n_tiles ? slice->tile : slice->tile - slice->tile_stride;
     admit_batch(frame, slice_id, slice, list, io_pool, io_batch, io_film);
     clock_stage(&slice->cycles_admit, &since);

@@ -10,8 +10,8 @@
 #include <cstring>
 
 #include "arrays.h"
-#include "io/image/write.h"
 #include "interrupt.h"
+#include "io/image/picture_file.h"
 #include "parts.h"
 
 namespace kdray::python {

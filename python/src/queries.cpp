@@ -1,4 +1,5 @@
-// What can be asked of a scene. Results go into arrays that Python made, but for those whose size is not known
+// What can be asked of a scene. Results go into arrays that Python made, but for those whose size is not
+//         known
 // before.
 #include <nanobind/stl/optional.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "io/image/queue_colors.h"
+#include "io/image/color.h"
 #include "kdray/kdray.h"
 #include "scene/model/scene.h"
 #include "support/device.h"

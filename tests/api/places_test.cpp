@@ -1,5 +1,5 @@
-// Queries on several queues: the answers are those of one queue, bit for bit and in the rays' order, whichever
-// queue has given them; and of several invalid rays the first is named.
+// Queries on several queues: the answers are those of one queue, bit for bit and in the rays' order,
+// whichever queue has given them; and of several invalid rays the first is named.
 #include <gtest/gtest.h>
 
 #include <atomic>

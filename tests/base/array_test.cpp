@@ -1,4 +1,4 @@
-#include "base/array.h"
+#include "base/memory.h"
 
 #include <gtest/gtest.h>
 

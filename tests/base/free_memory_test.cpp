@@ -1,6 +1,6 @@
 // What    How much memory a process may still take, by what the system's files say: version 1 and 2 of
 //         control groups, limits of the group itself and of those above it.
-#include "base/free_memory.h"
+#include "base/process_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What is used and given back again is still counted; what was held before is not.
-#include "base/peak_memory.h"
+#include "base/process_memory.h"
 
 #include <gtest/gtest.h>
 

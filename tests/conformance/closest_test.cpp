@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "conformance/all_kinds.h"
-#include "engine/query/point_session.h"
 #include "engine/query/device_scene.h"
+#include "engine/query/point_session.h"
 #include "support/device.h"
 
 namespace kdray::test {

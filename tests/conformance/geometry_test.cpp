@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "conformance/all_kinds.h"
 #include "scene/model/check_scene.h"
-#include "scene/model/transform.h"
+#include "scene/model/instances.h"
 #include "support/scene_fields.h"
 
 namespace kdray::test {

@@ -92,7 +92,7 @@ def run(command, folder, environment):
     done = subprocess.run(["sh", "-c", command], cwd=folder, env=environment, capture_output=True, text=True,
                           stdin=subprocess.DEVNULL, timeout=PATIENCE)  # fmt: skip
     assert done.returncode == 0, f"{command}: status {done.returncode}: {done.stderr}"
-    for output in re.findall(r" (?:-o|--diff|>) (\S+)", command):
+    for output in re.findall(r" (?:-o|--diff|>) ([^\s-]\S*)", command):
         assert (folder / output).exists(), f"{command}: no {output}"
 
 

@@ -6,7 +6,7 @@
 
 #include "device/opencl/context.h"
 #include "device/opencl/opencl_error.h"
-#include "device/opencl/simd_answers.h"
+#include "device/opencl/simd.h"
 #include "support/device.h"
 
 namespace kdray {

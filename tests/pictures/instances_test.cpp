@@ -15,7 +15,6 @@
 #include "pictures/scenes.h"
 #include "scene/model/check_scene.h"
 #include "scene/model/instances.h"
-#include "scene/model/transform.h"
 
 namespace kdray::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "io/image/compare.h"
-#include "io/image/read.h"
+#include "io/image/picture_file.h"
 #include "pictures/render.h"
 #include "support/data.h"
 

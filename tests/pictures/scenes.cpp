@@ -7,8 +7,8 @@
 
 #include "conformance/all_kinds.h"
 #include "oracle/build_scene.h"
-#include "scene/model/smooth_tangents.h"
-#include "scene/model/transform.h"
+#include "scene/model/instances.h"
+#include "scene/model/tangents.h"
 #include "support/scene_fields.h"
 
 namespace kdray::test {

@@ -10,7 +10,7 @@
 
 #include "pictures/render.h"
 #include "scene/gltf_samples.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/pictures.h"
 
 namespace kdray::test {

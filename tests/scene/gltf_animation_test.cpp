@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "scene/gltf_samples.h"
-#include "scene/import/importers.h"
 #include "scene/import/load.h"
 #include "scene/model/check_scene.h"
 #include "scene/scratch.h"

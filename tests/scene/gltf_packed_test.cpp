@@ -5,8 +5,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "scene/import/gltf/gltf_uri.h"
-#include "scene/import/importers.h"
+#include "scene/import/gltf/gltf_document.h"
 #include "scene/import/load.h"
 #include "scene/model/check_scene.h"
 #include "scene/packed_samples.h"

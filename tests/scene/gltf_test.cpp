@@ -5,8 +5,8 @@
 #include <string>
 
 #include "scene/gltf_samples.h"
-#include "scene/import/find_file.h"
-#include "scene/import/importers.h"
+#include "scene/import/files.h"
+#include "scene/import/load.h"
 #include "scene/model/check_scene.h"
 #include "scene/model/instances.h"
 #include "scene/model/tangents.h"

@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "scene/import/importers.h"
 #include "scene/import/json/json_keys.h"
+#include "scene/import/load.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
 #include "support/data.h"

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {

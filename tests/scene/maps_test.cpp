@@ -8,15 +8,13 @@
 
 #include "base/error.h"
 #include "scene/gltf_samples.h"
-#include "scene/import/import.h"
-#include "scene/import/importers.h"
 #include "scene/import/load.h"
-#include "scene/model/added_textures.h"
+#include "scene/model/added_geometry.h"
 #include "scene/model/check_scene.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
-#include "scene/textures/derived_pictures.h"
-#include "scene/textures/picture_limit.h"
+#include "scene/textures/mipmaps.h"
+#include "scene/textures/picture.h"
 
 namespace kdray::scene {
 namespace {

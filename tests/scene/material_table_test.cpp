@@ -1,4 +1,4 @@
-#include "scene/import/material_table.h"
+#include "scene/import/materials.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "scene/import/obj/whitted_from_mtl.h"
 #include "scene/model/check_scene.h"
 #include "scene/scratch.h"
 

@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "scene/gltf_samples.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/import/obj/mtl.h"
 #include "scene/model/check_scene.h"
 #include "scene/model/instances.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <string>
 
-#include "scene/import/importers.h"
 #include "scene/import/load.h"
 #include "scene/scratch.h"
 #include "support/data.h"

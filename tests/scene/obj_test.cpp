@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "scene/import/find_file.h"
-#include "scene/import/importers.h"
+#include "scene/import/files.h"
+#include "scene/import/load.h"
 #include "scene/model/check_scene.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"

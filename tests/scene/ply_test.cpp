@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/model/check_scene.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"

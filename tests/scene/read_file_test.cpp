@@ -1,4 +1,4 @@
-#include "scene/import/read_file.h"
+#include "scene/import/files.h"
 
 #include <lzma.h>
 #include <zlib.h>

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "scene/import/files.h"
 #include "scene/import/load.h"
-#include "scene/import/read_file.h"
 #include "support/data.h"
 
 namespace kdray::scene {

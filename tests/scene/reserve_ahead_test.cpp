@@ -1,4 +1,4 @@
-#include "scene/import/reserve_ahead.h"
+#include "scene/import/text_scanner.h"
 
 #include <gtest/gtest.h>
 

@@ -12,10 +12,9 @@
 
 #include "base/error.h"
 #include "io/image/exr.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
-#include "scene/textures/sky_picture.h"
 #include "support/seed.h"
 
 namespace kdray::scene {

@@ -1,5 +1,5 @@
 // Normals from neighbours, against surfaces whose normals are known.
-#include "scene/model/smooth_normals.h"
+#include "scene/model/normals.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "scene/model/smooth_tangents.h"
+#include "scene/model/instances.h"
 #include "scene/model/tangents.h"
-#include "scene/model/transform.h"
 
 namespace kdray::scene {
 namespace {

@@ -8,8 +8,7 @@
 #include <string>
 
 #include "scene/gltf_samples.h"
-#include "scene/import/import.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/model/check_scene.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"

@@ -1,4 +1,4 @@
-#include "scene/model/triangulate.h"
+#include "scene/model/polygon.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "scene/gltf_samples.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/pictures.h"
 #include "scene/scratch.h"
 #include "scene/textures/picture.h"

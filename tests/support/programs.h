@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "device/opencl/builds.h"
+#include "device/opencl/program.h"
 #include "device/opencl/program_cache.h"
 
 namespace kdray::test {

@@ -1,6 +1,6 @@
 // What    The points and lengths of a scene's primitives changed one by one, whatever their kinds: moved,
 //         scaled, rounded.
-// Shape   Which is which, the shapes' own fields tell (primitives/fields.h).
+// Shape   Which is which, the shapes' own fields tell (primitives/shape_tools.h).
 #pragma once
 
 #include <tuple>

@@ -1,6 +1,10 @@
 #include "accel/cache/entry.h"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include <array>
 #include <bit>
@@ -8,12 +12,33 @@
 #include <string_view>
 #include <vector>
 
-#include "accel/cache/facts.h"
-#include "accel/cache/mapped_file.h"
 #include "base/paged.h"
 #include "base/write_file.h"
 
 namespace kdray::cache {
+
+namespace {
+
+std::optional<MappedFile> map(int descriptor) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return MappedFile{};  // mmap refuses to map nothing
+  void* const memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (memory == MAP_FAILED) return std::nullopt;
+  return MappedFile{{memory, [size](void* p) { ::munmap(p, size); }}, size};
+}
+
+}  // namespace
+
+std::optional<MappedFile> map_file(const std::filesystem::path& file) {
+  // O_NONBLOCK: the file may be a pipe, whose other end would be waited for.
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return std::nullopt;
+  std::optional<MappedFile> mapped = map(descriptor);
+  ::close(descriptor);
+  return mapped;
+}
 
 namespace {
 
@@ -58,7 +83,7 @@ std::size_t to_page(std::size_t bytes) {
   return (bytes + kPage - 1) / kPage * kPage;
 }
 
-// The hash of the hashes of the pieces, which all cores work on.
+// Returns the hash of the pieces' hashes, which all cores work on.
 Hash checksum(std::string_view bytes) {
   std::vector<Hash> pieces((bytes.size() + kPiece - 1) / kPiece);
   tbb::parallel_for(std::size_t{0}, pieces.size(),

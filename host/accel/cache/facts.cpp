@@ -1,4 +1,4 @@
-#include "accel/cache/facts.h"
+#include "accel/cache/entry.h"
 
 #include <nlohmann/json.hpp>
 

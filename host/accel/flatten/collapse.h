@@ -1,6 +1,6 @@
 // What    Binary nodes collapsed into nodes of up to eight children: which nodes become children of which, in
-//         what order for each octant of directions, and where leaves' blocks go. Bounds and blocks are not
-//         here: they are written once, when all places are known (wide.cpp).
+//         what order for each octant of directions, and where leaves' blocks go. Bounds and blocks are
+//         written elsewhere, when all places are known (wide.cpp).
 // Shape   openings.h says which nodes become children; empty leaves are dropped. A leaf of several kinds of
 //         primitives becomes a child for each.
 // Source  Dammertz, Hanika, Keller, EGSR 2008; Wald, Benthin, Boulos, RT 2008.
@@ -47,11 +47,11 @@ struct CollapsedPart {
 CollapsedPart collapse(const kdtree::Tree& tree, const Openings& openings, const Subtree& root,
                        std::uint32_t block, std::uint32_t only_kind, std::uint32_t cut_at);
 
-// For a walk that pushes all children of a node, then pops the nearest; `cuts` are those of the parts cut
-// off.
+// Returns the needs of a walk that pushes all children of a node, then pops the nearest; `cuts` are those of
+// the parts cut off.
 StackNeeds stack_needs(const CollapsedPart& part, const std::vector<StackNeeds>& cuts);
 
-// The same for one node: `order` as in layout::WideNode, `below` what each of its n children needs.
+// Does the same for one node: `order` as in layout::WideNode, `below` what each of its n children needs.
 template <class Order>
 StackNeeds needs_of_node(const Order& order, std::uint32_t n,
                          const std::array<const StackNeeds*, kWidth>& below) {
@@ -68,7 +68,15 @@ StackNeeds needs_of_node(const Order& order, std::uint32_t n,
   return needs;
 }
 
-// A leaf's references of one kind. Within a leaf references ascend, so kinds follow each other.
+// Returns a leaf's references of one kind. Within a leaf references ascend, so kinds follow each other.
 kdtree::RefRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind);
+
+// Rewrites the order words of a node of n children whose bounds are set, where these are no longer cells of a
+// plane: in a refitted form. Of two boxes that one goes first which lies before the other along the axis that
+// parts them most, or along which they overlap least. Children move forward, from the order that there was,
+// past those that they go before: what is still right stays, and where no ray meets both of two boxes, either
+// order will do. An order changes no hit, but a mesh that is turned round would be walked from back to front
+// by the orders that it was built with, which takes rays twice as long.
+void order_anew(layout::WideNode& node, std::uint32_t n);
 
 }  // namespace kdray::flatten

@@ -50,7 +50,7 @@ Box bounds_of_all(const Items& items) {
 
 }  // namespace
 
-// A zero-area triangle in a plane may be hit from either side of it: it is no part of a face.
+// A zero-area triangle in a plane may be hit from either side of the plane, so it is no part of a face.
 void Sides::add(const layout::Triangle& t, const Box& all) {
   const Box triangle = bounds_of(t);
   for (int k = 0; k < 3 && !scene::is_zero_area(t); ++k) {
@@ -88,7 +88,7 @@ Core core_of(const Box& all, Sides sides) {
   Core core;
   if (sides.inner.empty()) return core;
   core.lo = sides.inner.lo, core.hi = sides.inner.hi;
-  // All triangles in one plane: a face on the side that the core is not.
+  // Where all triangles are in one plane, the face is on the side where the core is not.
   for (int k = 0; k < 3; ++k)
     if (all.lo[k] == all.hi[k] && all.lo[k] > 0.5f * (core.lo[k] + core.hi[k]))
       std::swap(sides.at[k][0], sides.at[k][1]);

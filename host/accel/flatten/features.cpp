@@ -54,7 +54,8 @@ bool some(const Items& items, Predicate predicate) {
   return std::any_of(items.begin(), items.end(), predicate);
 }
 
-// True when each primitive's place in the file is its index in its kind's array: one kind, and none dropped.
+// Returns whether each primitive's place in the file is its index in its kind's array: one kind, and none
+// dropped.
 bool numbers_are_indices(const scene::Scene& scene, const scene::Geometry& geometry) {
   const auto in_order = [](const auto& kept, const auto& number_of) {
     for (std::size_t i = 0; i < kept.size(); ++i)
@@ -105,7 +106,7 @@ Features features_of_maps(const scene::Texturing& texturing, const scene::Materi
          when(any(c.specular), KDRAY_FEATURE_SPECULAR) | when(any(c.diffuse), KDRAY_FEATURE_DIFFUSE);
 }
 
-// A material counts only when a primitive wears it. `scene` has the materials, `part` the geometry's shapes.
+// A material counts only when a primitive has it. `scene` has the materials, `part` the geometry's shapes.
 std::vector<bool> materials_worn(const scene::Scene& scene, const scene::Scene& part,
                                  const scene::Geometry& geometry) {
   std::vector<bool> used(scene.materials.size(), false);
@@ -149,7 +150,7 @@ Features features_of_mesh(const scene::Scene& scene, const scene::Scene& mesh,
       scene);
 }
 
-// Numbers are those within a mesh, and its primitives lie behind others'.
+// Numbers are needed, since they count within a mesh, whose primitives lie behind others'.
 Features features_of_instances(const scene::Scene& scene) {
   std::vector<bool> used(scene.materials.size(), false);
   for (const scene::Instance& instance : scene.instances)

@@ -14,18 +14,18 @@ namespace kdray::flatten {
 
 using layout::Features;
 
-// What the scene needs, whatever the render's settings.
+// Returns what the scene needs, whatever the render's settings.
 Features features_of(const scene::Scene& scene, const scene::Geometry& geometry);
 
-// What a mesh of the scene needs besides, and what its instances do.
+// Return what a mesh of the scene needs besides, and what its instances need.
 Features features_of_mesh(const scene::Scene& scene, const scene::Scene& mesh,
                           const scene::Geometry& geometry);
 Features features_of_instances(const scene::Scene& scene);
 
-// The same mask for a scene that has the background and the lights of `scene` instead.
+// Returns the mask for a scene that has the background and the lights of `scene` instead.
 Features features_in_light(Features mask, const scene::Scene& scene);
 
-// What a render adds.
+// Returns what a render adds.
 Features features_of_samples(int samples, bool adaptive = false);
 
 // A bit of the mask that a scene may do without.

@@ -8,10 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "accel/flatten/sky.h"
 #include "accel/flatten/textures.h"
 #include "base/error.h"
-#include "scene/primitives/pack.h"
+#include "scene/primitives/shape_tools.h"
 #include "scene/primitives/shapes.h"
 
 namespace kdray::flatten {
@@ -22,7 +21,7 @@ constexpr std::size_t kGrain = 8192;  // items that one task packs
 
 using primitives::pack, primitives::set;
 
-// The nodes that this form has, which knows planes alone: a cell's groups are one leaf.
+// The nodes of the binary form, which knows planes alone: a cell's groups are one leaf.
 struct BinaryNodes {
   RawVector<std::uint32_t> nodes;   // of the tree, in its order
   RawVector<std::uint32_t> places;  // of the tree's nodes among them
@@ -75,7 +74,7 @@ layout::VertexNormals pack_normals(const scene::Scene& scene, const scene::Trian
   return n;
 }
 
-// A zero-area triangle to which the file gives none has its neighbour's everywhere.
+// A zero-area triangle to which the file gives no normals has its neighbour's at all corners.
 void pack_zero_area(const scene::Scene& scene, const scene::Geometry& geometry,
                     Array<layout::VertexNormals>& normals) {
   for (const scene::ZeroAreaTriangle& found : geometry.zero_area) {

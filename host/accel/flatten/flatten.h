@@ -7,7 +7,7 @@
 #pragma once
 
 #include "accel/kdtree/tree.h"
-#include "base/array.h"
+#include "base/memory.h"
 #include "layout/instances.layout.h"
 #include "layout/kinds.h"
 #include "layout/primitives.layout.h"
@@ -43,8 +43,8 @@ struct FlatScene {
   std::size_t bytes() const;
 };
 
-// visit(array) for each of them, in the order of the members. The struct is taken apart, so that one that is
-// added can't be forgotten.
+// Calls visit(array) for each of them, in the order of the members. The struct is taken apart, so that an
+// added member can't be forgotten.
 template <class Flat, class Visit>
 void for_each_flat_array(Flat& flat, const Visit& visit) {
   auto& [nodes, refs, triangles, normals, KDRAY_SHAPES(KDRAY_KIND_PLURAL) instances, materials, material_maps,
@@ -58,10 +58,11 @@ void for_each_flat_array(Flat& flat, const Visit& visit) {
 FlatScene flatten(const scene::Scene& scene, const scene::Geometry& geometry, const kdtree::Tree& tree,
                   bool binary_form = true);
 
-// Of the triangles that have some, in their order; a zero-area triangle has those of its neighbour.
+// Packs the normals of the triangles that have some, in their order; a zero-area triangle has those of its
+// neighbour.
 Array<layout::VertexNormals> pack_normals(const scene::Scene& scene, const scene::Geometry& geometry);
 
-// What of it can change without the geometry.
+// Pack what can change without the geometry.
 Array<layout::Material> pack_materials(const scene::Scene& scene);
 Array<layout::MaterialMaps> pack_material_maps(const scene::Scene& scene);
 Array<layout::Light> pack_lights(const scene::Scene& scene, const LocalSpace& space);

@@ -27,7 +27,7 @@ double largest(const vec3& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-// The brightest that a light can arrive: fall-off is smallest at distance 0.
+// Returns the most light that can arrive from a light: fall-off is smallest at distance 0.
 double brightest(const scene::Light& light) {
   const double color = largest(light.color);
   return color > 0 ? color / light.attenuation.x : 0;
@@ -37,8 +37,8 @@ void set(float (&out)[3], const dvec3& v) {
   for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(v[k]);
 }
 
-// From farther off than this, in local lengths, no direction that floats tell from the next one meets another
-// part of the scene: the eye is taken to be there, since products of larger distances leave the range of
+// From farther off than this, in local lengths, floats can't tell apart directions to different parts of the
+// scene: an eye beyond is moved to this distance, since products of larger distances leave the range of
 // float.
 constexpr double kFarthestEye = 0x1p60;
 
@@ -82,7 +82,7 @@ double radiance_bound(const scene::Scene& scene, int depth) {
   const bool sky = scene.sky.kind != scene::SkyKind::none;
   double shown = sky ? scene.sky.brightest : largest(scene.background), passed = 0;
   for (const scene::Material& m : scene.materials) {
-    // Base colours are 1 at most; what a veil takes of a term it passes on.
+    // Base colours are 1 at most; what blending takes from a term it passes on.
     const scene::MaterialMaps maps = m.maps == scene::kNone
                                          ? scene::MaterialMaps{}
                                          : scene::largest_terms(scene.texturing.material_maps[m.maps]);

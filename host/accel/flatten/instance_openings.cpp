@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "accel/flatten/instance_tree.h"
 #include "accel/flatten/leaf_block.h"
 
 namespace kdray::flatten {
@@ -29,7 +28,7 @@ Box core_of(const Box& box) {
   return {box.lo + quarter, box.hi - quarter};
 }
 
-// Pieces, and a tree over them to ask.
+// Pieces, and a tree that finds their neighbours.
 class Neighbours {
  public:
   explicit Neighbours(std::span<const Piece> pieces) : pieces_(pieces) {
@@ -38,7 +37,7 @@ class Neighbours {
     nodes_ = build_instance_tree(boxes).nodes;
   }
 
-  // Whether a box of another instance reaches into the middle of its box.
+  // Returns whether a box of another instance reaches into the middle of its box.
   bool near_another(const Piece& piece) const { return meets_another(core_of(piece.box), piece.instance, 0); }
 
  private:
@@ -65,8 +64,8 @@ class Opener {
          const LocalSpace& scene, std::size_t most)
       : instances_(instances), meshes_(meshes), scene_(scene), most_(most) {}
 
-  // Opens what lies close, and of what that becomes again what lies close, until nothing does that can be
-  // opened or there would be too many.
+  // Opens what lies close to others, then those of its pieces that still do, until none is left that can be
+  // opened, or there would be too many.
   std::vector<Piece> run(std::span<const Box> bounds) {
     for (std::uint32_t i = 0; i < bounds.size(); ++i) pieces_.push_back({bounds[i], i, 0});
     while (open_once()) continue;
@@ -77,7 +76,7 @@ class Opener {
   const MeshForm& mesh_of(const Piece& piece) const { return meshes_[instances_[piece.instance].mesh]; }
   const MeshPart& part_of(const Piece& piece) const { return mesh_of(piece).parts[piece.part]; }
 
-  // The largest first. False: there were none.
+  // Opens the largest first. Returns false where there were none to open.
   bool open_once() {
     std::vector<std::uint32_t> chosen = find_close();
     std::ranges::stable_sort(chosen, std::greater<>(),
@@ -169,7 +168,8 @@ int most_of(const StackNeeds& needs) {
   return *std::max_element(needs.begin(), needs.end());
 }
 
-// Where the scene has primitives of its own, the root has two children: these, and the tree over instances.
+// Finds the tree over instances. Where the scene has primitives of its own, the root has two children: these,
+// and that tree.
 OverInstances find_tree(const FlatScene& flat, const WideForm& wide, std::size_t n_wholes) {
   OverInstances over;
   over.boxes.resize(n_wholes);
@@ -184,7 +184,7 @@ InstanceLeaves open_instances(PlacedInstances& placed, std::span<const scene::In
                               std::span<const MeshForm> meshes, const LocalSpace& scene, std::size_t most) {
   const std::size_t n = instances.size();
   InstanceLeaves leaves{placed.bounds, {}};
-  if (n < 2 || n > most / kWidth) return leaves;  // of many, each would get a few pieces at the most
+  if (n < 2 || n > most / kWidth) return leaves;  // with so many, each would get a few pieces at most
   const std::vector<Piece> pieces = Opener(instances, meshes, scene, most).run(placed.bounds);
   if (pieces.size() == n) return leaves;
   leaves = {};

@@ -1,12 +1,12 @@
-#include "accel/flatten/instance_tree.h"
+#include "accel/flatten/instance_openings.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <numeric>
 
+#include "accel/flatten/collapse.h"
 #include "accel/flatten/leaf_block.h"
-#include "accel/flatten/orders.h"
 #include "layout/instances.layout.h"
 
 namespace kdray::flatten {
@@ -53,7 +53,7 @@ class Builder {
     return part;
   }
 
-  // Parts of one are instances; of the others each becomes a node.
+  // Adds a node: a part of one box is an instance, any other part becomes a node.
   StackNeeds add_node(const Part& whole) {
     std::array<Part, kWidth> parts{whole};
     std::uint32_t n = 1;
@@ -95,7 +95,7 @@ class Builder {
     return dearest;
   }
 
-  // Where the second half of the part begins, which has been put in order.
+  // Puts the part in order and returns where its second half begins.
   std::size_t divide(const Part& part) {
     Box middles;
     for (std::size_t i = part.first; i < part.end; ++i)

@@ -9,17 +9,74 @@
 #include <cmath>
 #include <limits>
 
+#include "accel/flatten/leaf_block.h"
 #include "base/error.h"
-#include "scene/primitives/pack.h"
+#include "layout/wide.layout.h"
+#include "scene/primitives/shape_tools.h"
 
 namespace kdray::flatten {
+
+namespace {
+
+constexpr int kLevels = 3;  // 8, 64, 512 parts
+
+struct Child {
+  Box box;
+  layout::u32 word;
+};
+
+std::vector<Child> children_of(const WideForm& mesh, layout::u32 root) {
+  const layout::WideNode& node = mesh.nodes[root];
+  std::vector<Child> children;
+  for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+    const Box box = bounds_of_child(node, slot);
+    if (!box.empty()) children.push_back({box, node.child[slot]});
+  }
+  return children;
+}
+
+// Returns the boxes of a node's children and their children: they cover all that is below it, and more
+// tightly than its own box when turned.
+std::vector<Box> boxes_below(const WideForm& mesh, layout::u32 root) {
+  std::vector<Box> boxes;
+  for (const Child& child : children_of(mesh, root)) {
+    if (is_leaf(child.word)) {
+      boxes.push_back(child.box);
+      continue;
+    }
+    for (const Child& below : children_of(mesh, child.word)) boxes.push_back(below.box);
+  }
+  return boxes;
+}
+
+bool all_nodes(const std::vector<Child>& children) {
+  return std::ranges::none_of(children, [](const Child& c) { return is_leaf(c.word); });
+}
+
+}  // namespace
+
+std::vector<MeshPart> parts_of(const WideForm& mesh) {
+  std::vector<MeshPart> parts{{boxes_below(mesh, 0)}};
+  for (std::size_t level = 0, begin = 0; level < kLevels; ++level) {
+    const std::size_t end = parts.size();
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::vector<Child> children = children_of(mesh, parts[i].root);
+      if (!all_nodes(children)) continue;
+      parts[i].first = static_cast<std::uint32_t>(parts.size());
+      parts[i].n = static_cast<std::uint32_t>(children.size());
+      for (const Child& child : children) parts.push_back({boxes_below(mesh, child.word), child.word});
+    }
+    begin = end;
+  }
+  return parts;
+}
 
 namespace {
 
 constexpr double kRoundoff = 0x1p-24;
 constexpr std::size_t kGrain = 4096;
 
-// This takes what is in a mesh's space into the scene's.
+// Takes what is in a mesh's space into the scene's.
 struct Placing {
   dmat3 linear{1};
   dvec3 move{0};
@@ -43,7 +100,7 @@ dvec3 middle_of(const Box& box) {
   return (dvec3(box.lo) + dvec3(box.hi)) * 0.5;
 }
 
-// Sums of a matrix's rows, without signs.
+// Returns the sums of the absolute values of a matrix's rows.
 dvec3 row_sums(const dmat3& m) {
   return glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]);
 }
@@ -62,7 +119,7 @@ layout::Instance pack(const scene::Instance& from, const MeshForm& mesh, const P
   return out;
 }
 
-// That all floats are floats, and that the kernels' products of them are.
+// Returns whether all numbers, and the kernels' products of them, are within the range of float.
 bool is_sound(const layout::Instance& instance) {
   constexpr float kMost = 0x1p60f;
   bool sound = true;
@@ -101,7 +158,8 @@ Box bounds_of(const MeshPart& of, const MeshForm& mesh, const Placing& placing) 
   return widened(box, row_sums(placing.linear) * (128 * kRoundoff * reach_of(mesh.bounds)));
 }
 
-// No less than rotations with one scale have, so that instances that begin to turn need no other programs.
+// The least is what rotations with one scale need, so that instances that begin to turn need no other
+// programs.
 int widening_for(double condition) {
   int widen = 4;
   while (widen < condition * 42 / 32) widen *= 2;

@@ -18,9 +18,10 @@
 #include <span>
 #include <vector>
 
-#include "base/array.h"
+#include "accel/flatten/wide.h"
 #include "base/box.h"
 #include "base/local_space.h"
+#include "base/memory.h"
 #include "layout/instances.layout.h"
 #include "scene/model/instances.h"
 
@@ -39,6 +40,11 @@ struct MeshForm {
   std::vector<MeshPart> parts;  // [0] is the whole mesh
 };
 
+// Returns what the tree over instances needs to know of a mesh's tree: the root, and the nodes near it that
+// an instance can be opened into (instance_openings.h). A node whose children are all nodes can be opened,
+// down to three levels. Roots are nodes of this form.
+std::vector<MeshPart> parts_of(const WideForm& mesh);
+
 struct PlacedInstances {
   Array<layout::Instance> instances;
   std::vector<Box> bounds;  // in the scene's space, widened
@@ -46,12 +52,12 @@ struct PlacedInstances {
   int widen = 1;  // by which the usual widening of boxes is multiplied: a power of two
 };
 
-// Errors: ErrorCode::input for an instance that the scene's floats can't hold: it is too small or too large
+// Throws ErrorCode::input for an instance that the scene's floats can't hold: it is too small or too large
 // beside the scene.
 PlacedInstances place_instances(std::span<const scene::Instance> instances, std::span<const MeshForm> meshes,
                                 const LocalSpace& scene);
 
-// In the scene's space, widened, of a part of an instance's mesh.
+// Returns the bounds of a part of an instance's mesh in the scene's space, widened.
 Box bounds_of(const MeshPart& part, const scene::Instance& instance, const MeshForm& mesh,
               const LocalSpace& scene);
 

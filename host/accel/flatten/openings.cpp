@@ -20,7 +20,7 @@ class Solver {
   Solver(const kdtree::Tree& tree, std::uint32_t only_kind, RawVector<std::uint32_t>& shares)
       : tree_(tree), only_kind_(only_kind), shares_(shares) {}
 
-  // The costs of the subtree of the nodes [node, end).
+  // Returns the costs of the subtree of the nodes [node, end).
   Costs solve(std::uint32_t node, std::uint32_t end) {
     const kdtree::Node& split = tree_.nodes[node];
     if (split.is_leaf()) return of_leaf(node);
@@ -50,12 +50,12 @@ class Solver {
     return costs;
   }
 
-  // Whether it is a child as it is, in any number of slots, and costs nothing.
+  // Returns whether the node is a child as it is, in any number of slots, and costs nothing.
   bool is_free(std::uint32_t node) const {
     return tree_.nodes[node].is_leaf() && (only_kind_ != kAnyKind || n_kinds(tree_, node) <= 1);
   }
 
-  // Where the lower side is a leaf, which takes one slot, the other has the rest.
+  // Returns the costs where the lower side is a leaf, which takes one slot, and the other side has the rest.
   Costs of_free_and(std::uint32_t node, const Costs& above) {
     std::array<float, kWidth> opened;
     opened[0] = kInfinity;
@@ -65,7 +65,8 @@ class Solver {
     return closed_or(node, opened, share);
   }
 
-  // The same where the upper side is a leaf: more slots than do any good are left to it.
+  // Does the same where the upper side is a leaf: it gets the slots that don't lower the cost of the other
+  // side.
   Costs of_and_free(std::uint32_t node, const Costs& below) {
     std::array<float, kWidth> opened;
     std::array<std::uint32_t, kWidth> share;

@@ -13,7 +13,7 @@
 #include <cstdint>
 
 #include "accel/kdtree/tree.h"
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "scene/primitives/kinds.h"
 
 namespace kdray::flatten {
@@ -28,8 +28,8 @@ class Openings {
  public:
   Openings(const kdtree::Tree& tree, std::uint32_t only_kind);
 
-  // How many of so many slots, 1 to 8, go to what is below the node's plane; 0: the node is one child. For
-  // inner nodes with something on both sides, which eight slots always open.
+  // Returns how many of so many slots, 1 to 8, go to what is below the node's plane; 0: the node is one
+  // child. For inner nodes with something on both sides, which eight slots always open.
   std::uint32_t share_below(std::uint32_t node, std::uint32_t n_slots) const {
     return shares_[node] >> (3 * (n_slots - 1)) & 7u;
   }
@@ -38,8 +38,8 @@ class Openings {
   RawVector<std::uint32_t> shares_;  // 3 bits for each number of slots
 };
 
-// The kinds of primitives that a leaf refers to: each becomes a child of its own. References of a kind follow
-// each other.
+// Counts the kinds of primitives that a leaf refers to: each becomes a child of its own. References of a kind
+// follow each other.
 std::uint32_t n_kinds(const kdtree::Tree& tree, std::uint32_t leaf);
 
 }  // namespace kdray::flatten

@@ -1,4 +1,4 @@
-#include "accel/flatten/pieces.h"
+#include "accel/flatten/refit.h"
 
 #include <tbb/parallel_for.h>
 
@@ -31,8 +31,8 @@ Weights between(const Weights& a, const Weights& b, double t) {
   return w;
 }
 
-// What is on the inner side: where the weighted sum of the corners' distances is 0 or more. A corner that is
-// added may be off along the plane's normal by the rounding of distances, but not off its edge.
+// Returns what is on the inner side: where the weighted sum of the corners' distances is 0 or more. An added
+// corner may be off along the plane's normal by the rounding of distances, but not off its edge.
 Polygon within(const Polygon& from, const Weights& distances) {
   Polygon kept;
   const auto distance = [&](const Weights& w) {
@@ -49,8 +49,8 @@ Polygon within(const Polygon& from, const Weights& distances) {
   return kept;
 }
 
-// The hexagon around a polygon: all places whose weights are within its. Its corners have, for each order of
-// the weights, the largest first one, then the largest second one.
+// Returns the hexagon around a polygon: all places whose weights are within the polygon's. Its corners have,
+// for each order of the weights, the largest first one, then the largest second one.
 Polygon hexagon_around(const Polygon& polygon) {
   constexpr std::size_t kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {2, 0, 1}, {2, 1, 0}, {1, 2, 0}, {1, 0, 2}};
   Weights lo{1, 1, 1}, hi{0, 0, 0};
@@ -90,7 +90,7 @@ Piece piece_of(const Polygon& polygon) {
 template <std::uint32_t kLanes>
 using Lanes = std::array<float, kLanes>;
 
-// Along one axis.
+// An interval along one axis, for each lane.
 template <std::uint32_t kLanes>
 struct Span {
   Lanes<kLanes> lo, hi;

@@ -7,17 +7,15 @@
 
 #include "accel/flatten/collapse.h"
 #include "accel/flatten/leaf_block.h"
-#include "accel/flatten/orders.h"
-#include "accel/flatten/triangle_block.h"
 
 namespace kdray::flatten {
 
 namespace {
 
-// The top of the form, each of whose nodes lets other threads take its children.
+// Levels at the top of the form, whose nodes let other threads take their children.
 constexpr int kShared = 4;
 
-// Blocks ahead of the one in work, whose triangles are fetched.
+// How many blocks ahead triangles are prefetched.
 constexpr std::size_t kAhead = 2;
 
 // What is known of a subtree: its bounds, the sum of its surfaces times their steps, and what a walk stacks.
@@ -38,8 +36,9 @@ double cost_of_root(const Below& root) {
   return all > 0 ? 1 + root.steps / all : 0;
 }
 
-// Visits the form's nodes, children before parents. Leaf: the bounds and the steps of a child that is a leaf,
-// in (node, slot). Done: told of a node, with what is below each of its slots; returns what it stacks.
+// Visits the form's nodes, children before parents. Leaf: returns the bounds and the steps of a child that is
+// a leaf, in (node, slot). Done: called for a node, with what is below each of its slots; returns what it
+// stacks.
 template <class Leaf, class Done>
 class FromBelow {
  public:
@@ -90,7 +89,7 @@ std::size_t blocks_of_leaf(const WideForm& form, layout::u32 leaf) {
   return n;
 }
 
-// A leaf where it was: its own bounds.
+// Returns a leaf that has not moved, with its own bounds.
 Below as_it_was(const WideForm& form, const layout::WideNode& node, std::uint32_t slot) {
   const Box box = bounds_of_child(node, slot);
   return {box, surface(box) * static_cast<double>(blocks_of_leaf(form, node.child[slot])), {}};
@@ -122,7 +121,7 @@ class Mover {
   }
 
  private:
-  // The triangles of a block that is written soon: leaves follow each other.
+  // Prefetches the triangles of a block that is written soon: leaves follow each other.
   void prefetch(std::size_t i) const {
     const std::size_t at = (i * KDRAY_TRIANGLE_ROWS + KDRAY_ROW_TRIANGLE_INDEX) * block_;
     if (at + block_ > from_.triangle_blocks.size()) return;

@@ -18,7 +18,7 @@ void append(std::string& bytes, const T* first, std::size_t n) {
   bytes.append(reinterpret_cast<const char*>(first), n * sizeof(T));
 }
 
-// But for where its normals are, which is another place in another division.
+// Appends all but the place of its normals, which depends on how the scene is divided.
 void append_triangle(std::string& bytes, const FlatScene& flat, std::size_t i) {
   layout::Triangle t = flat.triangles[i];
   const layout::u32 normals = t.normals & KDRAY_NORMALS_MASK;
@@ -35,7 +35,7 @@ void append_triangle(std::string& bytes, const FlatScene& flat, std::size_t i) {
   append_rows(flat.texcoords);
 }
 
-// The primitives of a kind from `first` to before `end`.
+// Hashes the primitives of a kind from `first` to before `end`.
 template <class Kind>
 Hash hash_of_some(Kind, const FlatScene& flat, std::size_t first, std::size_t end) {
   Hash sum;
@@ -52,8 +52,8 @@ Hash hash_of_some(Kind, const FlatScene& flat, std::size_t first, std::size_t en
   return sum;
 }
 
-// The arrays that have something for each primitive, or are the tree's. One that is empty may lie where
-// another begins.
+// Returns where the arrays begin that have something for each primitive, or are the tree's. An empty one may
+// lie where another begins.
 std::vector<const void*> arrays_hashed_apart(const FlatScene& flat) {
   std::vector<const void*> firsts;
   const auto add_array = [&](const auto& array) {

@@ -14,10 +14,10 @@ inline void add(Hash& sum, const Hash& one) {
   sum.low += one.low;
 }
 
-// A scene in parts has the sum of the parts'.
+// Hashes all primitives. For a scene in parts, the parts' hashes add up to the whole scene's.
 Hash hash_of_primitives(const FlatScene& flat);
 
-// `primitives` of the whole scene, of which `flat` may be a part.
+// Hashes the scene: `primitives` is the hash of the whole scene's, of which `flat` may be a part.
 Hash scene_hash(const Hash& primitives, const FlatScene& flat);
 
 }  // namespace kdray::flatten

@@ -4,12 +4,73 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
+#include <span>
 #include <vector>
 
-#include "accel/flatten/texels.h"
-#include "scene/primitives/pack.h"
+#include "base/error.h"
+#include "base/paged.h"
+#include "scene/primitives/shape_tools.h"
 
 namespace kdray::flatten {
+
+namespace {
+
+// A chain with mipmaps serves textures without as well, since its first level is the picture.
+bool serves(const Chain& chain, const scene::Texture& texture) {
+  return chain.picture == texture.picture &&
+         (!scene::has_mipmaps(texture.minify) || (chain.mipmaps && chain.curved == texture.curved));
+}
+
+std::size_t add_chain(std::vector<Chain>& chains, const scene::Texture& texture) {
+  const auto found =
+      std::find_if(chains.begin(), chains.end(), [&](const Chain& c) { return serves(c, texture); });
+  if (found != chains.end()) return static_cast<std::size_t>(found - chains.begin());
+  chains.push_back(
+      {.picture = texture.picture, .curved = texture.curved, .mipmaps = scene::has_mipmaps(texture.minify)});
+  return chains.size() - 1;
+}
+
+void set_levels(const scene::Picture& picture, Chain& chain) {
+  const std::vector<scene::LevelSize> sizes = scene::level_sizes(picture.width, picture.height);
+  chain.size = sizes.front();
+  chain.n_levels = chain.mipmaps ? sizes.size() : 1;
+  chain.n_texels = 0;
+  for (std::size_t k = 0; k < chain.n_levels; ++k) chain.n_texels += sizes[k].texels();
+}
+
+}  // namespace
+
+// Textures with mipmaps come first, so that others find their chains.
+TexelPlan plan_texels(const scene::Texturing& texturing) {
+  TexelPlan plan;
+  plan.chain_of.resize(texturing.textures.size());
+  for (const bool mipmaps : {true, false})
+    for (std::size_t i = 0; i < texturing.textures.size(); ++i)
+      if (scene::has_mipmaps(texturing.textures[i].minify) == mipmaps)
+        plan.chain_of[i] = add_chain(plan.chains, texturing.textures[i]);
+  plan.n_texels = KDRAY_TEXEL_CURVE;
+  for (Chain& chain : plan.chains) {
+    set_levels(*texturing.pictures[chain.picture], chain);
+    chain.first = plan.n_texels;
+    plan.n_texels += chain.n_texels;
+  }
+  if (plan.n_texels > std::numeric_limits<layout::u32>::max())
+    throw Error(ErrorCode::input, "the scene's pictures have over 2^32 texels; make them smaller");
+  return plan;
+}
+
+Array<layout::u32> pack_texels(const scene::Texturing& texturing, const TexelPlan& plan) {
+  Array<layout::u32> texels = paged_array<layout::u32>(plan.n_texels);
+  for (layout::u32 code = 0; code < KDRAY_TEXEL_CURVE; ++code)
+    texels[code] = scene::linear_unit_of_srgb(code / 255.0);
+  tbb::parallel_for(std::size_t{0}, plan.chains.size(), [&](std::size_t i) {
+    const Chain& chain = plan.chains[i];
+    scene::write_levels(*texturing.pictures[chain.picture], chain.curved, 0, chain.n_levels,
+                        std::span(texels.data() + chain.first, chain.n_texels));
+  });
+  return texels;
+}
 
 namespace {
 
@@ -17,7 +78,8 @@ using primitives::set;
 
 constexpr std::size_t kGrain = 8192;  // triangles that one task packs
 
-// Where it is shown smaller; `alike`: one texel where it is shown larger.
+// Returns how a texture is shown where it is made smaller; `alike`: whether one texel is shown where it is
+// made larger.
 layout::u32 how_minified(scene::Minify minify, bool alike) {
   using scene::Minify;
   const bool one = minify == Minify::as_magnified
@@ -47,8 +109,8 @@ layout::u32 how_of(const scene::MaterialMaps& c) {
          (c.metal_map != scene::kNone ? KDRAY_MAPS_METAL : 0u) | (c.tangents ? KDRAY_MAPS_TANGENTS : 0u);
 }
 
-// What the maps say beside the base colour. Where ambient light is occluded, it is kept apart from
-// what is unshadowed.
+// Packs what the maps say beside the base colour. Where ambient light is occluded, it is kept apart from what
+// is unshadowed.
 void pack_maps(const scene::MaterialMaps& c, const vec3& ambient_light, layout::MaterialMaps& out) {
   static_assert(scene::kNone == KDRAY_NO_TEXTURE);
   out.normal_map = c.normal_map;
@@ -107,7 +169,7 @@ Array<layout::Texture> pack_textures(const scene::Texturing& texturing, const Te
   return textures;
 }
 
-// For each triangle of the geometry those that its source has in each of `sets`.
+// Packs, for each triangle of the geometry, what its source has at its corners in each of `sets`.
 template <class T>
 Array<T> pack_corners(const scene::Geometry& geometry, const std::vector<const PageVector<T>*>& sets,
                       const T& none) {
@@ -164,6 +226,57 @@ void pack_corners_of(const scene::Texturing& texturing, const scene::Scene& mesh
   const bool colored = std::any_of(texturing.material_maps.begin(), texturing.material_maps.end(),
                                    [](const scene::MaterialMaps& c) { return c.colored != 0; });
   if (colored) flat.corner_colors = pack_corners(geometry, {&own.colors}, scene::kWhiteCorners);
+}
+
+namespace {
+
+constexpr std::size_t kSkyGrain = std::size_t{1} << 16;
+
+// Packs a base colour, and what each step between two stops adds to it.
+Array<float> pack_gradient(const scene::Sky& sky) {
+  const auto& stops = sky.stops;
+  Array<float> out(3 + KDRAY_SKY_STEP * (stops.size() - 1));
+  const auto put = [](float* to, const vec3& v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; };
+  put(out.data(), stops[0].color);
+  for (std::size_t i = 1; i < stops.size(); ++i) {
+    float* const step = out.data() + 3 + KDRAY_SKY_STEP * (i - 1);
+    step[0] = static_cast<float>(stops[i - 1].height);
+    step[1] = static_cast<float>(1 / (stops[i].height - stops[i - 1].height));
+    put(step + 2, stops[i].color - stops[i - 1].color);
+    step[5] = 0;
+  }
+  return out;
+}
+
+// The film cuts contributions at its own most, so that nothing is lost where colours are cut there.
+Array<float> pack_picture(const scene::Sky& sky) {
+  if (!sky.picture) throw Error(ErrorCode::internal, "the sky's picture has been let go of");
+  const std::vector<float>& rgb = sky.picture->rgb;
+  const auto strength = static_cast<float>(sky.strength);
+  Array<float> out(rgb.size());
+  tbb::parallel_for(std::size_t{0}, (rgb.size() + kSkyGrain - 1) / kSkyGrain, [&](std::size_t grain) {
+    for (std::size_t i = grain * kSkyGrain; i < std::min(rgb.size(), (grain + 1) * kSkyGrain); ++i)
+      out[i] = std::min(rgb[i] * strength, KDRAY_SKY_MOST);
+  });
+  return out;
+}
+
+}  // namespace
+
+void pack_sky(const scene::Sky& sky, FlatScene& flat) {
+  if (sky.kind == scene::SkyKind::none) return;
+  const bool gradient = sky.kind == scene::SkyKind::gradient;
+  const scene::SkyAxes axes = scene::axes_of(sky);
+  layout::Sky out{};
+  primitives::set(out.right, vec3(axes.right));
+  primitives::set(out.up, vec3(axes.up));
+  primitives::set(out.forward, vec3(axes.forward));
+  out.kind = gradient ? KDRAY_SKY_GRADIENT : KDRAY_SKY_PICTURE;
+  out.width = gradient ? static_cast<layout::u32>(sky.stops.size() - 1) : sky.picture->width;
+  out.height = gradient ? 1 : sky.picture->height;
+  flat.sky_colors = gradient ? pack_gradient(sky) : pack_picture(sky);
+  flat.sky = Array<layout::Sky>(1);
+  flat.sky[0] = out;
 }
 
 }  // namespace kdray::flatten

@@ -9,7 +9,6 @@
 
 #include "accel/flatten/collapse.h"
 #include "accel/flatten/leaf_block.h"
-#include "accel/flatten/triangle_block.h"
 #include "base/error.h"
 #include "scene/primitives/shapes.h"
 
@@ -19,7 +18,7 @@ namespace {
 
 using primitives::rows_of;
 
-// References that are read soon: those of the next leaves follow this one's.
+// How many references ahead primitives are prefetched: those of the next leaves follow this one's.
 constexpr std::uint32_t kAhead = 16;
 
 template <class Primitive>
@@ -31,8 +30,8 @@ void prefetch(const kdtree::Tree& tree, std::size_t ref, const Array<Primitive>&
 
 using FourLanes = float __attribute__((vector_size(16)));
 
-// Writes the rows of corners of up to `block` triangles, the rest without. What is written as vectors is read
-// as vectors right after, for the limits; a store of each lane would have to be waited for.
+// Writes the rows of corners of `block` triangles, as vectors: the rows are read as vectors right after, for
+// the limits, which would have to wait for stores of single lanes.
 void write_corners(const std::array<const layout::Triangle*, 8>& triangles, std::uint32_t block,
                    layout::u32* words) {
   for (std::uint32_t lane = 0; lane < block; lane += 4) {
@@ -175,7 +174,7 @@ std::uint32_t only_kind(const FlatScene& scene) {
 
 Parts collapse_in_parts(const kdtree::Tree& tree, std::uint32_t block, std::uint32_t kind) {
   const auto n = static_cast<std::uint32_t>(tree.nodes.size());
-  // Enough parts for any number of threads, none so small that it isn't worth a task.
+  // Cuts into enough parts for any number of threads, none so small that it isn't worth a task.
   const std::uint32_t cut_at = std::max(n / 256, 512u);
   const Openings openings(tree, kind);
   Parts parts{collapse(tree, openings, {0, n}, block, kind, cut_at), {}, 0};

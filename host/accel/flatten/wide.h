@@ -10,7 +10,7 @@
 
 #include "accel/flatten/flatten.h"
 #include "accel/kdtree/tree.h"
-#include "base/array.h"
+#include "base/memory.h"
 #include "layout/kinds.h"
 #include "layout/wide.layout.h"
 
@@ -23,14 +23,15 @@ struct WideForm {
 #define KDRAY_BLOCK_ARRAY(NAME, name, names, Struct) Array<layout::u32> name##_blocks;
   KDRAY_KINDS(KDRAY_BLOCK_ARRAY)
 #undef KDRAY_BLOCK_ARRAY
-  // By what the usual widening of boxes is multiplied, a power of two: more than 1 where there are instances.
+  // The factor by which the usual widening of boxes is multiplied, a power of two: more than 1 where there
+  // are instances.
   int widen = 1;
   int stack_size = 0;  // the most entries that a walk stacks which pushes all children of a node, for any ray
 
   std::size_t bytes() const;
 };
 
-// visit(array) for each of them, in the order of the members (see for_each_flat_array).
+// Calls visit(array) for each of them, in the order of the members (see for_each_flat_array).
 template <class Wide, class Visit>
 void for_each_wide_array(Wide& wide, const Visit& visit) {
   auto& [block, nodes, KDRAY_KINDS(KDRAY_KIND_BLOCKS) widen, stack_size] = wide;
@@ -38,7 +39,7 @@ void for_each_wide_array(Wide& wide, const Visit& visit) {
   primitives::for_each_kind([&](auto kind) { visit(decltype(kind)::blocks_of(wide)); });
 }
 
-// The kind of the primitives of a leaf (a child with KDRAY_WIDE_LEAF).
+// Returns the kind of the primitives of a leaf (a child with KDRAY_WIDE_LEAF).
 inline std::uint32_t leaf_kind(layout::u32 leaf) {
   return leaf >> KDRAY_WIDE_KIND_SHIFT & KDRAY_WIDE_KIND_MASK;
 }
@@ -52,7 +53,8 @@ struct Lanes {
 };
 Lanes count_lanes(const kdtree::Tree& tree);
 
-// The block size: 8 where it takes at most half as many lanes again as 4 would, as for fine meshes, else 4.
+// Returns the block size: 8 where it takes at most half as many lanes again as 4 would, as for fine meshes,
+// else 4.
 int choose_block(const Lanes& lanes);
 int choose_block(const kdtree::Tree& tree);
 

@@ -1,4 +1,4 @@
-// What    Checks what is asked for, and hands the work to the binned or the exact builder.
+// What    Checks the config and the geometry, and hands the work to the binned or the exact builder.
 // Errors  ErrorCode::usage for costs that make no sense, ::input for more primitives than a tree can name.
 
 #include "accel/kdtree/build.h"
@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
-#include "accel/kdtree/binned/top.h"
-#include "accel/kdtree/exact/top.h"
+#include "accel/kdtree/binned/binned.h"
+#include "accel/kdtree/exact/exact.h"
 #include "kdray/error.h"
 
 namespace kdray::kdtree {
@@ -40,10 +40,10 @@ void check(const BuildConfig& c, const scene::Geometry& geometry) {
   });
 }
 
-// How much more Ct counts where cells are divided into groups: what a plane would save of their tests, groups
-// save mostly, and without references to what it cuts. Of meshes, cells of up to kWorthAPlane triangles are
-// not divided by planes at all. Other kinds gain more by planes, and some (cones), which are dear to test,
-// most (docs/logbook/kdtree.md): by how much, their kFenceFactor says.
+// Returns by how much Ct is multiplied where cells are divided into groups: groups save most of the tests
+// that a plane would save, and need no second references to what it cuts. In meshes, planes divide no cells
+// of up to kWorthAPlane triangles. Other kinds gain more from planes, and some that are dear to test (cones)
+// gain most (docs/logbook/kdtree.md): their kFenceFactor says how much.
 double grouped_factor(const scene::Geometry& geometry, const BuildConfig& config) {
   constexpr double kWorthAPlane = 128, kShapes = 6;
   if (!config.groups || config.small_cells) return 1;
@@ -54,7 +54,7 @@ double grouped_factor(const scene::Geometry& geometry, const BuildConfig& config
     const double share = static_cast<double>(decltype(kind)::of(geometry).size()) / n;
     fences += decltype(kind)::Geometry::kFenceFactor * share;
   });
-  // A leaf of so many costs Ci*kWorthAPlane/block.
+  // A leaf of kWorthAPlane triangles costs Ci*kWorthAPlane/block.
   const double of_triangles = kWorthAPlane * 2 / config.block;
   return (of_triangles * triangles + kShapes * (1 - triangles)) / fences;
 }

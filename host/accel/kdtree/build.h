@@ -38,15 +38,16 @@ struct BuildConfig {
   bool clip = true;         // false: split the references' boxes only ("boxed" of the thesis)
 };
 
-// What Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references.
+// Returns what Ct is multiplied by. Dearer inner nodes make larger leaves and fewer references.
 double traverse_factor(Quality quality);
 
-// The groups that the wide form's walks want of a scene of n primitives (docs/design/kdtree.md): few
-// primitives for a clutter of large and small, whole blocks for fine meshes, which wait for memory, and for
-// what is to be built fast or has small cells.
+// Sets the groups that suit the wide form's walks for a scene of n primitives (docs/design/kdtree.md): few
+// primitives for a clutter of large and small ones, whole blocks for fine meshes, where walks wait for
+// memory, and for trees that are built fast or have small cells.
 BuildConfig suited(BuildConfig config, std::size_t n_primitives);
 
-// The deepest leaf that a tree of n primitives may have: what the config says, up to the traversal's stack.
+// Returns the depth of the deepest leaf that a tree of n primitives may have: what the config says, up to the
+// traversal's stack.
 int depth_limit(const BuildConfig& config, std::size_t n_primitives);
 
 Tree build(const scene::Geometry& geometry, const BuildConfig& config = {});

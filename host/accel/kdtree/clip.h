@@ -12,12 +12,12 @@ struct SplitBounds {
   Bounds below, above;
 };
 
-// `r` is bounded inside `cell`; the plane is inside its bounds.
+// Clips a reference. `r` is bounded inside `cell`; the plane is inside its bounds.
 SplitBounds clip_to_sides(const scene::Geometry& geometry, const BoundedRef& r, const Bounds& cell, int axis,
                           float position);
 
-// The same for a triangle. `known` are bounds of the part inside the cell, found before. (For a shape they
-// are a region to clip it to: primitives/<kind>_clip.cpp.)
+// Does the same for a triangle. `known` are bounds of the part inside the cell, found before. (For a shape
+// they are a region to clip it to: primitives/<kind>.cpp.)
 SplitBounds clip_triangle(const scene::TriangleGeometry& t, const Bounds& known, const Bounds& cell, int axis,
                           float position);
 

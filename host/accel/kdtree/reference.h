@@ -8,7 +8,7 @@
 #include <span>
 
 #include "accel/kdtree/tree.h"
-#include "base/bounds.h"
+#include "base/box.h"
 
 namespace kdray::kdtree {
 

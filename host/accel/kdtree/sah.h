@@ -1,9 +1,9 @@
 // What    The cost model: what a split plane is expected to cost a ray that enters the cell, and which of two
-//         splits is the better one. The exact builder's; the binned one has the same in float
-//         (binned/cost-inl.h: TestCost and PlaneCosts). A change here is a change there.
+//         splits is the better one. This is the exact builder's; the binned one has the same in float
+//         (binned/cost-inl.h: TestCost and PlaneCosts). Both have to be changed together.
 // Shape   Areas are half surface areas in double: the exact values of float boxes to 2^-50, flat cells
-//         included. When a plane is no better than a leaf is not decided here: choose_split in
-//         exact/subtree.cpp and cheaper_than_leaf in binned/subtree-inl.h stop.
+//         included. When a plane is no better than a leaf is decided elsewhere: choose_split in
+//         exact/exact.cpp and cheaper_than_leaf in binned/subtree-inl.h.
 // Units   BuildConfig's Ct and Ci.
 // Source  MacDonald and Booth 1990; Wald and Havran 2006, equations 1 to 4.
 #pragma once
@@ -45,11 +45,11 @@ class LeafCost {
   explicit LeafCost(const BuildConfig& config)
       : block_(static_cast<std::uint32_t>(config.block)), each_(config.block > 1 ? kEach : 0) {}
 
-  // Tests that a leaf of n references takes. In blocks, a full one is a little dearer than one of a single
+  // Returns the tests that a leaf of n references takes. A full block is a little dearer than one of a single
   // reference, so that of two equal splits the one with fewer duplicates is taken.
   double operator()(std::uint32_t n) const { return (n + block_ - 1) / block_ + each_ * n; }
 
-  // A lower bound for the cost of any leaf of n references.
+  // Returns a lower bound for the cost of any leaf of n references.
   double at_least(std::uint32_t n) const { return static_cast<double>(n) / block_ + each_ * n; }
 
  private:
@@ -78,18 +78,18 @@ class AxisCosts {
   double area_below(double s) const { return face_ + (s - lo_) * rim_; }
   double area_above(double s) const { return face_ + (hi_ - s) * rim_; }
 
-  // The expected cost with n_below and n_above references in the children; cells that cut off empty space are
-  // favoured, since a ray leaves them at once.
+  // Returns the expected cost with n_below and n_above references in the children; cells that cut off empty
+  // space are favoured, since a ray leaves them at once.
   double operator()(double s, std::uint32_t n_below, std::uint32_t n_above) const {
     const double cost = sum(area_below(s) * tests_(n_below) + area_above(s) * tests_(n_above));
     return n_below == 0 || n_above == 0 ? bonus_ * cost : cost;
   }
 
-  // What it costs to pass the node and make these tests, weighted by their cells' areas.
+  // Returns what it costs to pass the node and make these tests, weighted by their cells' areas.
   double sum(double weighted_tests) const { return traverse_ + intersect_ * weighted_tests; }
   const LeafCost& tests() const { return tests_; }
 
-  // Whether a plane there cuts the cell at all.
+  // Returns whether a plane there cuts the cell at all.
   bool inside(float s) const { return lo_ < s && s < hi_; }
 
   double lo() const { return lo_; }

@@ -26,7 +26,7 @@ void count_cell(std::uint32_t n, int depth, Statistics& s) {
   s.mean_leaf_depth += depth;
 }
 
-// The expected cost of all groups of a cell, or of the one leaf that it is.
+// Returns the expected cost of all groups of a cell, or of the one leaf that it is.
 double groups_cost(const Tree& tree, std::uint32_t cell, double root_area, double chance_of_cell,
                    const BuildConfig& config, Statistics& s) {
   double cost = 0;

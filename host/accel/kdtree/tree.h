@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "base/box.h"
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "layout/tree.layout.h"
 #include "scene/model/geometry.h"
 
@@ -56,13 +56,13 @@ struct Tree {
   int max_depth = 0;  // of any leaf; a lone root leaf has depth 0
 };
 
-// The last node of a subtree.
+// Returns the last node of a subtree.
 inline std::uint32_t last_leaf(const Tree& tree, std::uint32_t node) {
   while (!tree.nodes[node].is_leaf()) node = tree.nodes[node].right;
   return node;
 }
 
-// What a leaf, or all groups of a cell, refer to.
+// Returns what a leaf, or all groups of a cell, refer to.
 inline RefRun refs_of_cell(const Tree& tree, std::uint32_t node) {
   const Node& last = tree.nodes[last_leaf(tree, node)];
   while (!tree.nodes[node].is_leaf()) node = tree.nodes[node].left;

@@ -11,10 +11,7 @@
 
 #include "accel/flatten/features.h"
 #include "accel/flatten/instance_openings.h"
-#include "accel/flatten/instance_tree.h"
 #include "accel/flatten/instances.h"
-#include "accel/flatten/mesh_parts.h"
-#include "accel/flatten/sky.h"
 #include "accel/flatten/textures.h"
 #include "base/error.h"
 #include "base/timer.h"
@@ -32,7 +29,7 @@ struct Part {
   flatten::MeshForm form;
 };
 
-// The array of all: of the scene, then of each mesh. change(value, part) for a mesh's values.
+// Returns one array: the scene's values, then each mesh's, as change(value, part) makes them.
 template <class T, class ArrayOf, class Change>
 Array<T> joined(const Array<T>& first, const std::vector<Part>& parts, const ArrayOf& array_of,
                 const Change& change) {
@@ -47,7 +44,7 @@ Array<T> joined(const Array<T>& first, const std::vector<Part>& parts, const Arr
   return all;
 }
 
-// Where each part's begin, of what size_of(part) counts, behind `first` of the scene's.
+// Returns where each part's items begin, behind `first` of the scene's; size_of(part) counts them.
 template <class SizeOf>
 std::vector<std::size_t> places_behind(std::size_t first, const std::vector<Part>& parts,
                                        const SizeOf& size_of) {
@@ -75,7 +72,7 @@ void join_normals_and_textures(FlatScene& flat, const std::vector<Part>& parts) 
       flat.corner_colors, parts, [](const Part& p) -> auto& { return p.flat.corner_colors; }, kAsItIs);
 }
 
-// Of each kind, where each part's primitives begin; and the primitives themselves.
+// Joins the primitives of a kind; returns where each part's begin.
 template <class Kind>
 std::vector<std::size_t> join_primitives(Kind, FlatScene& flat, const std::vector<Part>& parts,
                                          const std::vector<std::size_t>& normals) {
@@ -97,7 +94,7 @@ std::vector<std::size_t> join_primitives(Kind, FlatScene& flat, const std::vecto
   return places;
 }
 
-// Blocks, whose last row names primitives; returns where each part's begin.
+// Joins blocks, whose last row names primitives; returns where each part's begin.
 template <class Kind>
 std::vector<std::size_t> join_blocks(Kind, WideForm& wide, const std::vector<Part>& parts,
                                      const std::vector<std::size_t>& primitives) {
@@ -115,7 +112,7 @@ std::vector<std::size_t> join_blocks(Kind, WideForm& wide, const std::vector<Par
       layout::u32* const indices = all.data() + (places[i] + block) * words + (Kind::kRows - 1) * lanes;
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const layout::u32 last = indices[lane] & KDRAY_WIDE_LAST, index = indices[lane] & ~KDRAY_WIDE_LAST;
-        // A lane that is empty has an index that is never used.
+        // An empty lane has an index that is never used.
         indices[lane] = last | (static_cast<layout::u32>(index + primitives[i]) & KDRAY_REF_INDEX_MASK);
       }
     }
@@ -124,7 +121,7 @@ std::vector<std::size_t> join_blocks(Kind, WideForm& wide, const std::vector<Par
   return places;
 }
 
-// A node whose children are elsewhere now: nodes and blocks behind others.
+// Adapts the names of a node's children to nodes and blocks that have moved.
 struct Shift {
   std::size_t nodes = 0;
   std::array<std::size_t, primitives::kKinds> blocks{};
@@ -138,8 +135,8 @@ struct Shift {
   }
 };
 
-// Nodes of the scene's own tree, whose children are named as they come to lie, and of all meshes, whose
-// children are named from `first` on.
+// Nodes of the scene's own tree, whose children have their final names, and of all meshes, whose children are
+// named from `first` on.
 struct Trees {
   std::span<const layout::WideNode> own, meshes;
   std::size_t first = 0;
@@ -167,7 +164,8 @@ struct Hittable {
   }
 };
 
-// The scene's own nodes, the tree over the instances, and the meshes' trees, with a root above the first two.
+// Joins the scene's own nodes, the tree over the instances, and the meshes' trees, with a root above the
+// first two.
 Array<layout::WideNode> joined_nodes(const Trees& trees, const flatten::InstanceTree& over,
                                      std::span<const Box> boxes) {
   const std::size_t first_over = trees.own.empty() ? 0 : 1 + trees.own.size(),
@@ -267,7 +265,7 @@ void Meshes::join(Prepared& made) const {
   });
   join_normals_and_textures(made.flat, parts);
 
-  // Where meshes' roots come to lie depends on the tree over the instances.
+  // The places of meshes' roots depend on the tree over the instances.
   RawVector<layout::WideNode> own, of_meshes;
   if (!empty) {
     own.resize(made.wide.nodes.size());
@@ -299,7 +297,7 @@ std::optional<Prepared> replace_instances(const scene::Scene& scene, const Prepa
   if (hittable.instances.empty()) return std::nullopt;
   Prepared out = last;
   const std::vector<std::string> warnings = last.settings.warnings;
-  out.settings = settings_of(scene);
+  out.settings = prepare::settings_of(scene);
   out.settings.warnings = warnings;
   out.features = flatten::features_in_light(last.features, scene);
   out.flat.lights = flatten::pack_lights(scene, last.geometry.space);

@@ -16,10 +16,10 @@ class Meshes {
  public:
   Meshes(const scene::Scene& scene, const kdtree::BuildConfig& config);
 
-  // The size of blocks for all trees: that of the largest.
+  // Returns the size of blocks for all trees: the one that suits the largest.
   int block(const kdtree::Tree& tree, std::size_t n_primitives) const;
 
-  // `made` has the scene's own primitives and tree, with blocks of that size.
+  // Joins the meshes to `made`, which has the scene's own primitives and tree, with blocks of that size.
   void join(Prepared& made) const;
 
  private:
@@ -32,16 +32,16 @@ class Meshes {
   std::vector<Mesh> meshes_;
 };
 
-// `last` with its instances where they are in `scene`, of which nothing else has changed but lights and what
-// sees it: trees of meshes, and of what is no instance, are kept, the tree over instances is built anew. All
-// is as if it had been prepared anew in the same space, bit for bit. Nothing where it has to be: where the
-// scene doesn't keep its space, or its materials have changed.
+// Returns `last` with its instances where they are in `scene`, of which nothing else has changed but lights,
+// sky and view: trees of meshes, and of what is no instance, are kept, the tree over instances is built anew.
+// The result is bit for bit what preparing anew in the same space would give. Returns nothing where the scene
+// has to be prepared anew: where it doesn't keep its space, or its materials have changed.
 std::optional<Prepared> replace_instances(const scene::Scene& scene, const Prepared& last);
 
-// The primitives of the largest mesh.
+// Returns the number of primitives of the largest mesh.
 std::size_t largest_mesh(const scene::Scene& scene);
 
-// Throws ErrorCode::usage where a prepared scene has instances, which `what` doesn't know.
+// Throws ErrorCode::usage where a prepared scene has instances, which `what` doesn't support.
 void refuse_instances(const Prepared& scene, const char* what);
 
 }  // namespace kdray::prepare

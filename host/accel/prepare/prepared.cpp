@@ -1,10 +1,12 @@
 #include "accel/prepare/prepared.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "accel/flatten/features.h"
 #include "accel/prepare/instanced.h"
-#include "accel/prepare/within.h"
+#include "base/error.h"
 #include "base/timer.h"
 
 namespace kdray::prepare {
@@ -67,6 +69,10 @@ scene::Scene settings_of(const scene::Scene& scene) {
 
 namespace {
 
+std::string megabytes(std::uint64_t bytes) {
+  return fmt::format("{:.1f}M", static_cast<double>(bytes) / (1 << 20));
+}
+
 Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geometry,
                         const kdtree::BuildConfig& config, bool binary_form, std::uint64_t most_bytes) {
   std::string warning;
@@ -79,6 +85,17 @@ Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geomet
 }
 
 }  // namespace
+
+std::string warning_of_coarser(std::uint64_t bytes, std::uint64_t most_bytes) {
+  return fmt::format("the tree is coarser, so that the scene takes {} (--memory {}): tracing is slower",
+                     megabytes(bytes), megabytes(most_bytes));
+}
+
+void refuse_size(std::uint64_t least_bytes, std::uint64_t most_bytes) {
+  throw Error(ErrorCode::out_of_memory,
+              fmt::format("the scene takes {} at least; --memory {} is too little for it",
+                          megabytes(least_bytes), megabytes(most_bytes)));
+}
 
 std::size_t Prepared::largest_array() const {
   std::size_t largest = 0;
@@ -103,7 +120,7 @@ Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
 }
 
 void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& geometry) {
-  made.settings = settings_of(scene);
+  made.settings = prepare::settings_of(scene);
   made.geometry.space = geometry.space;
   made.geometry.dropped_degenerate = geometry.dropped_degenerate;
   if (const std::string warning = scene::range_warning(geometry); !warning.empty())

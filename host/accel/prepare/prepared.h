@@ -4,9 +4,11 @@
 //         keeps them in a file.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "accel/flatten/flatten.h"
@@ -38,7 +40,7 @@ struct Seconds {
   double total() const { return load + build + flatten; }
 };
 
-// What instances can be placed anew by, without a look at their meshes (prepare/instanced.h).
+// What placing instances anew needs to know of their meshes (prepare/instanced.h).
 struct PlacedMeshes {
   std::vector<flatten::MeshForm> meshes;  // roots are counted from the first mesh's first node
   std::vector<std::size_t> sizes;         // of each, primitives that can be hit
@@ -65,22 +67,48 @@ struct Prepared {
   std::size_t largest_array() const;  // what a device has to hold in one piece
 };
 
-// What the tree of a scene of n primitives is built with.
+// Returns what the tree of a scene of n primitives is built with.
 kdtree::BuildConfig config_of(const TreeOptions& options, std::size_t n_primitives);
 
-// `kept`: the space of what the scene was before it moved (scene::make_geometry).
+// Prepares a scene. `kept`: the space that it had before it moved (scene::make_geometry).
 Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
                  const std::optional<LocalSpace>& kept = {});
 
-// The same with a tree of any kind, for the scene's `geometry`. Its tree_options are left at their defaults.
+// Does the same with a tree of any kind, for the scene's `geometry`. Leaves tree_options at their defaults.
 Prepared prepare(const scene::Scene& scene, const scene::Geometry& geometry,
                  const kdtree::BuildConfig& config, bool binary_form = true);
 
-// A scene but for its primitives, vertices and normals.
+// Returns a scene without its primitives, vertices and normals.
 scene::Scene settings_of(const scene::Scene& scene);
 
 // Writes what has nothing to do with the tree: settings, counts, warnings, and of the geometry all but its
 // bounds.
 void describe(Prepared& made, const scene::Scene& scene, const scene::Geometry& geometry);
+
+// The warning of make_within(), and its error.
+std::string warning_of_coarser(std::uint64_t bytes, std::uint64_t most_bytes);
+[[noreturn]] void refuse_size(std::uint64_t least_bytes, std::uint64_t most_bytes);
+
+// Builds by `make`, with ever coarser trees, until what a device gets of the scene fits a number of bytes
+// (--memory): dearer inner nodes make larger leaves, so that there are fewer nodes, and fewer copies of
+// primitives that lie in several. What `make` returns for a config has bytes(). `warning` becomes that the
+// tree is coarser than asked for, and is left alone where it isn't. Throws ErrorCode::out_of_memory, with the
+// least that the scene takes, where no tree fits.
+template <class Make>
+auto make_within(kdtree::BuildConfig config, std::uint64_t most_bytes, Make&& make, std::string& warning) {
+  constexpr double kCoarsest = 256;
+  config.cost_traverse = std::max(config.cost_traverse, 1.0);
+  const double asked = config.cost_traverse, finest = config.group_traverse;
+  for (double coarser = 1;; coarser *= 2) {
+    config.cost_traverse = asked * coarser;
+    config.group_traverse = finest * coarser;
+    auto made = make(config);
+    if (made.bytes() <= most_bytes) {
+      if (coarser > 1) warning = warning_of_coarser(made.bytes(), most_bytes);
+      return made;
+    }
+    if (coarser >= kCoarsest) refuse_size(made.bytes(), most_bytes);
+  }
+}
 
 }  // namespace kdray::prepare

@@ -7,14 +7,14 @@
 
 #include "accel/flatten/features.h"
 #include "accel/flatten/refit.h"
-#include "accel/flatten/sky.h"
+#include "accel/flatten/textures.h"
 #include "base/timer.h"
 
 namespace kdray::prepare {
 
 namespace {
 
-// Whether the form's blocks and normals name the same triangles as before.
+// Returns whether the form's blocks and normals name the same triangles as before.
 bool are_same(const Array<layout::Triangle>& a, const Array<layout::Triangle>& b) {
   constexpr std::size_t kGrain = std::size_t{1} << 14;
   if (a.size() != b.size()) return false;
@@ -27,7 +27,7 @@ bool are_same(const Array<layout::Triangle>& a, const Array<layout::Triangle>& b
                               std::logical_and<>());
 }
 
-// Those of the same triangles, which take a look at each of them, where they wear something else.
+// Returns the features of the same triangles; looks at each of them only where materials have changed.
 layout::Features features_of(const Prepared& last, const scene::Scene& scene,
                              const scene::Geometry& geometry) {
   return scene.materials == last.settings.materials ? flatten::features_in_light(last.features, scene)

@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "accel/flatten/pieces.h"
+#include "accel/flatten/refit.h"
 #include "accel/prepare/prepared.h"
 
 namespace kdray::prepare {
@@ -25,9 +25,9 @@ struct Refitted {
   double growth = 1;              // of what a ray is expected to cost, since the tree was built
 };
 
-// `last` is the scene as it was built, or a refit of that. Nothing comes of it where the scene doesn't keep
-// its space, where a triangle has lost its area (degenerate or not) or got it back, and where the cost has
-// grown by more than `most_growth`. (Of shapes it is taken for granted that they are the same.)
+// Fits `last`, the scene as it was built or a refit of that, to the vertices of `scene`. Returns no scene
+// where it doesn't keep its space, where a triangle has lost its area (degenerate or not) or got it back, and
+// where the cost has grown by more than `most_growth`. Assumes that shapes are the same.
 Refitted refit(const scene::Scene& scene, const Prepared& last, const Fitting& fitting, double most_growth);
 
 }  // namespace kdray::prepare

@@ -18,7 +18,7 @@ void take_out_sky(Prepared& scene) {
   scene.flat.sky = {}, scene.flat.sky_colors = {};
 }
 
-// What is cut out covers nothing. Of other maps nothing is left.
+// Keeps what maps cut out, since that covers nothing, and removes all else of them.
 void keep_holes(Prepared& white) {
   for (scene::MaterialMaps& c : white.settings.texturing.material_maps)
     c = {.alpha = c.alpha,

@@ -1,21 +1,22 @@
-// What    A prepared scene seen otherwise: by another camera, before another background, or only for what it
-//         covers. Trees and primitives are shared with the scene that it was made of.
-// Errors  kdray::Error, ErrorCode::usage, as scene/view.h says.
+// What    A prepared scene seen in another way: by another camera, before another background, or only for
+//         what it covers. Trees and primitives are shared with the scene that it was made of.
+// Errors  kdray::Error, ErrorCode::usage, as scene/model/frame.h says.
 #pragma once
 
 #include <optional>
 
 #include "accel/prepare/prepared.h"
-#include "scene/model/view.h"
+#include "scene/model/frame.h"
 
 namespace kdray::prepare {
 
-// `aspect`: width by height of the picture that is going to be made.
+// Returns the scene before another camera and background. `aspect`: the picture's width divided by its
+// height.
 Prepared seen(const Prepared& prepared, const scene::View& view, const std::optional<vec3>& background,
               double aspect);
 
-// All that is there shines white, on black: a picture is the share of each pixel that is covered, when rays
-// go no further than to what they hit first.
+// Returns the scene with everything in it shining white, on black: a picture is then the share of each pixel
+// that is covered, when rays go no further than to what they hit first.
 Prepared coverage_of(const Prepared& prepared);
 
 }  // namespace kdray::prepare

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "scene/import/files.h"
 #include "scene/import/json/json_node.h"
-#include "scene/import/read_file.h"
 #include "scene/model/check_scene.h"
 
 namespace kdray::cli {
@@ -18,7 +18,7 @@ constexpr std::string_view kFileKeys[] = {"kdray_camera_path", "interpolation", 
 constexpr std::string_view kCameraKeys[] = {"frame", "from", "at", "up", "fov"};
 constexpr int kMostFrame = 999999;
 
-// Why no picture can be made by it; null: one can.
+// Returns why no picture can be made by this camera; null: one can.
 const char* fault_in(const Camera& c) {
   scene::Camera camera;
   camera.from = {c.from[0], c.from[1], c.from[2]};
@@ -67,8 +67,8 @@ CameraPath::CameraPath(const std::filesystem::path& file) : file_(file.string())
   if (keys_.empty()) throw root["keys"].expected("one key at least");
 }
 
-// By how much a value changes from frame to frame where the curve passes a key: the mean of both sides, each
-// of the more weight the shorter it is (a parabola through three keys has that slope).
+// Returns by how much a value changes from frame to frame where the curve passes a key: the mean of both
+// sides, where the shorter side weighs more (a parabola through three keys has that slope).
 double CameraPath::slope(std::size_t key, std::size_t value) const {
   const auto of_side = [&](std::size_t i) {
     return (keys_[i + 1].values[value] - keys_[i].values[value]) / (keys_[i + 1].frame - keys_[i].frame);

@@ -2,9 +2,9 @@
 //         curve through them (docs/cli.md has the form).
 // Shape   { "kdray_camera_path": 1, "interpolation": "smooth", "keys": [{"frame": 0, "from": [x, y, z], "at":
 //         ..., "up": ..., "fov": degrees}, ...] }
-//         Before the first key and behind the last the camera stands still.
-// Why     Each frame's camera follows from the file and the frame's number alone: whoever renders it sees the
-//         same.
+//         Before the first key and after the last the camera stands still.
+// Why     Each frame's camera follows from the file and the frame's number alone, so that all processes that
+//         render a sequence see the same.
 // Errors  kdray::Error, ErrorCode::input: the file, the value's place in it, what is wrong.
 #pragma once
 

@@ -1,10 +1,15 @@
-// What    The commands: each adds its subcommand and options to the command line and says what to run
-//         when it was chosen. One file per command.
-// Errors  kdray::Error, which main.cpp turns into an exit code; `run` returns the exit code otherwise.
+// What    The commands: each adds its subcommand and options to the command line and says what to run when it
+//         was chosen. One file per command. And what kdray and kdray-bench have in common as programs: they
+//         turn the command line into a command, and what is thrown into an exit code.
+// Errors  kdray::Error, which run_program() turns into an exit code; a command's `run` returns the exit code
+//         otherwise: 0 done, 1 input, 2 usage, 3 no device, 4 out of memory (docs/cli.md); always one line on
+//         stderr.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace kdray::cli {
@@ -25,5 +30,18 @@ Command add_verify(CLI::App& kdray);
 Command add_tune(CLI::App& kdray);
 Command add_warm_up(CLI::App& kdray);
 Command add_view(CLI::App& kdray);
+
+// Sets what help says of all commands. Has to be called before a command is added, since commands inherit it.
+void prepare(CLI::App& app);
+
+// Parses the arguments, of which the first is the program's name, and runs the command. Prints help and
+// version where they are asked for. Returns the exit code.
+int parse_and_run(CLI::App& app, std::span<const char* const> arguments, std::span<const Command> commands);
+
+// Runs it and returns what main() is to return.
+int run_program(const std::function<int()>& run);
+
+// Returns "did you mean 'render'? ", or nothing when none of the names is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
 }  // namespace kdray::cli

@@ -6,16 +6,13 @@
 #include <string>
 
 #include "apps/cli/command.h"
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
-#include "apps/cli/parse.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/stats.h"
 #include "base/error.h"
 #include "io/image/compare.h"
-#include "io/image/read.h"
-#include "io/image/write.h"
+#include "io/image/picture_file.h"
 
 namespace kdray::cli {
 

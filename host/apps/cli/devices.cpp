@@ -4,10 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "apps/cli/build_notice.h"
 #include "apps/cli/command.h"
-#include "apps/cli/message.h"
 #include "apps/cli/output.h"
+#include "apps/cli/progress.h"
 #include "apps/cli/stats.h"
 #include "device/opencl/pocl_cache.h"
 #include "kdray/kdray.h"

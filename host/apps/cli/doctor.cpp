@@ -1,18 +1,20 @@
 // What    kdray doctor: looks at everything kdray needs from the machine, and says in plain words what
 //         is missing and what to do about it. Ends with a picture and a few rays of known answer on each
-//         usable device. Drivers are tried in processes of their own (trial/trial.h), and what comes of it
-//         is remembered in place of older verdicts.
+//         usable device. Drivers are tried in processes of their own (probe/trial/trial.h), and what comes of
+//         it is remembered in place of older verdicts.
 // Errors  Exit code 3 when no device is usable (ErrorCode::no_device), so that scripts can ask it.
+#include <CL/cl.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/cli/command.h"
-#include "apps/cli/message.h"
-#include "apps/cli/opencl_probe.h"
 #include "apps/cli/output.h"
 #include "apps/cli/self_test.h"
 #include "device/opencl/platform.h"
@@ -21,8 +23,10 @@
 #include "kdray/kdray.h"
 #include "probe/selftest/self_test.h"
 #include "probe/trial/devices.h"
-#include "probe/trial/listing.h"
-#include "scene/import/abilities.h"
+#include "probe/trial/drivers.h"
+#include "scene/import/load.h"
+
+extern char** environ;
 
 namespace kdray::cli {
 
@@ -43,6 +47,65 @@ void bad(const std::string& text, const std::string& remedy) {
 void note(const std::string& text) {
   print("[note] " + one_line(text) + "\n");
 }
+
+// ---- What OpenCL's loader sees on this machine
+
+struct Platform {
+  std::string name, version;
+  std::uint32_t devices = 0;
+};
+
+struct Variable {
+  std::string name, value;
+};
+
+std::string platform_text(cl_platform_id platform, cl_platform_info what) {
+  std::size_t size = 0;
+  if (clGetPlatformInfo(platform, what, 0, nullptr, &size) != CL_SUCCESS || size == 0) return "";
+  std::string text(size, '\0');
+  if (clGetPlatformInfo(platform, what, size, text.data(), nullptr) != CL_SUCCESS) return "";
+  return text.c_str();  // up to the terminating zero
+}
+
+// Returns why the dynamic linker can't open this library, in its words; empty: it can. The library is not
+// closed again: the loader is about to open it too, and drivers dislike being unloaded.
+std::string why_not_opened(const std::string& library) {
+  if (::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL)) return "";
+  const char* const reason = ::dlerror();
+  return reason ? reason : "unknown reason";
+}
+
+std::vector<Platform> find_platforms() {
+  cl_uint count = 0;
+  if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
+  std::vector<cl_platform_id> ids(count);
+  if (clGetPlatformIDs(count, ids.data(), nullptr) != CL_SUCCESS) return {};
+  std::vector<Platform> platforms;
+  for (const cl_platform_id id : ids) {
+    cl_uint devices = 0;
+    if (clGetDeviceIDs(id, CL_DEVICE_TYPE_ALL, 0, nullptr, &devices) != CL_SUCCESS) devices = 0;
+    platforms.push_back(
+        {platform_text(id, CL_PLATFORM_NAME), platform_text(id, CL_PLATFORM_VERSION), devices});
+  }
+  return platforms;
+}
+
+// OCL_*, POCL_* and CUDA_VISIBLE_DEVICES, as far as set.
+std::vector<Variable> opencl_environment() {
+  std::vector<Variable> found;
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string_view text = *entry;
+    const std::size_t equals = text.find('=');
+    if (equals == std::string_view::npos) continue;
+    const std::string_view name = text.substr(0, equals);
+    if (name.starts_with("OCL_") || name.starts_with("POCL_") || name == "CUDA_VISIBLE_DEVICES")
+      found.push_back({std::string(name), std::string(text.substr(equals + 1))});
+  }
+  std::sort(found.begin(), found.end(), [](const Variable& a, const Variable& b) { return a.name < b.name; });
+  return found;
+}
+
+// ---- What is checked
 
 void check_environment() {
   for (const Variable& v : opencl_environment()) {
@@ -114,7 +177,7 @@ void check_platforms() {
   if (pocl) check_pocl_cache();
 }
 
-// Tells what the test throws, so that a fault of one device doesn't hide the others.
+// Returns what the test throws as what is wrong, so that a fault of one device doesn't hide the others.
 std::string tried(const std::function<std::string()>& test) {
   try {
     return test();
@@ -123,7 +186,7 @@ std::string tried(const std::function<std::string()>& test) {
   }
 }
 
-// What is wrong with the device, in a child process where it can be had; empty: nothing.
+// Returns what is wrong with the device, tried in a child process where possible; empty: nothing.
 std::string fault_of(const device::FoundDevice& found) {
   const auto here = [&found] { return self_test(std::to_string(found.info.number)); };
   const auto in_child = [&found] {
@@ -158,7 +221,7 @@ int check_devices() {
   return passed;
 }
 
-// Nobody needs all of them, so that what isn't there is no fault.
+// Says which formats this kdray reads. Nobody needs all of them, so that a missing one is no fault.
 void tell_abilities() {
   for (const scene::Ability& a : scene::abilities())
     note(a.here ? fmt::format("reads {}", a.what)

@@ -10,7 +10,6 @@
 #include "apps/cli/command.h"
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
-#include "apps/cli/parse.h"
 #include "apps/cli/run_files.h"
 #include "base/error.h"
 #include "base/write_file.h"

@@ -155,7 +155,7 @@ Json camera_report(const scene::Scene& scene) {
           {"in_file", scene.cameras.size()}};
 }
 
-// A colour, or what is there instead.
+// Reports a colour, or what is there instead.
 Json background_report(const scene::Scene& scene) {
   const scene::Sky& sky = scene.sky;
   if (sky.kind == scene::SkyKind::none) return as_json(scene.background);

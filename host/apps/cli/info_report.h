@@ -1,10 +1,9 @@
-// What    The parts of what `kdray info` prints, as JSON, and that JSON as text for people: one source
-//         of figures for both.
+// What    The parts of what `kdray info` prints, as JSON; info.cpp makes text for people of it, so that there
+//         is one source of figures for both.
 #pragma once
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 #include "accel/flatten/flatten.h"
 #include "accel/flatten/wide.h"
@@ -31,7 +30,5 @@ struct MemoryUsers {
 };
 
 Json memory_report(const MemoryUsers& users);
-
-std::string report_as_text(const Json& report);
 
 }  // namespace kdray::cli

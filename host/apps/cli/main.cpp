@@ -1,23 +1,78 @@
 // What    The program kdray: its commands, and the one that is a program of its own.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/cli/command.h"
-#include "apps/cli/command_line.h"
 #include "apps/cli/ranks.h"
-#include "apps/cli/start_bench.h"
-#include "apps/cli/suggest.h"
-#include "apps/cli/try.h"
+#include "apps/cli/self_test.h"
+#include "base/signals.h"
 #include "kdray/error.h"
 
 namespace kdray::cli {
 
 namespace {
 
-// A named command that is not there is told what is; CLI11 would only call it unexpected.
+// `kdray bench` is a program of its own, kdray-bench, which lies beside kdray: those who only render need not
+// carry what only measures. kdray becomes that program: the process stays, and with it its standard streams,
+// the signals sent to it and the exit status.
+
+constexpr const char* kProgram = "kdray-bench";
+
+// Returns the path of the running program, whatever link or search path it was started by.
+std::filesystem::path own_path() {
+  std::error_code none;  // without /proc: the folder that kdray is run in
+  return std::filesystem::read_symlink("/proc/self/exe", none);
+}
+
+// Returns what follows "bench" in kdray's arguments, of which the first is the program's name; nothing where
+// another command is asked for.
+std::optional<std::vector<std::string>> arguments_of_bench(std::span<const char* const> arguments) {
+  const auto is = [&](std::size_t i, std::string_view word) {
+    return i < arguments.size() && arguments[i] == word;
+  };
+  if (is(1, "bench")) return std::vector<std::string>(arguments.begin() + 2, arguments.end());
+  if ((is(1, "--help") || is(1, "-h")) && is(2, "bench")) {
+    std::vector<std::string> more(arguments.begin() + 3, arguments.end());
+    more.emplace_back("--help");
+    return more;
+  }
+  return {};
+}
+
+// Throws ErrorCode::input where there is no such program or where it can't be run.
+[[noreturn]] void start_bench(const std::vector<std::string>& arguments) {
+  const std::filesystem::path program = own_path().replace_filename(kProgram);
+  std::vector<char*> argv = {const_cast<char*>(kProgram)};
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  leave_signals_alone();
+  ::execv(program.c_str(), argv.data());
+  if (errno == ENOENT)
+    throw input_error(program.string(), 0, "no such file: this kdray comes without the program that measures",
+                      "install it, or build it (target kdray_bench_program), and put it beside kdray");
+  throw input_error(program.string(), 0, std::string("can't be run: ") + std::strerror(errno),
+                    "install it anew beside kdray");
+}
+
+// Adds the command to the list in kdray's help.
+Command add_bench(CLI::App& kdray) {
+  CLI::App* const app =
+      kdray.add_subcommand("bench", "Measure rays or frames, beside Embree and POV-Ray where they are");
+  return {app, [app]() -> int { start_bench(app->remaining()); }};
+}
+
+// Throws for a command that does not exist, with the list of those that do; CLI11 would only call it
+// unexpected.
 void check_command_name(int argc, char** argv, const std::vector<Command>& commands) {
   if (argc >= 2 && argv[1][0] == '-') return;
   std::vector<std::string> names;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/cli/message.h"
+#include "apps/cli/output.h"
 #include "base/error.h"
 
 namespace kdray::cli {
@@ -14,8 +14,8 @@ namespace {
 
 // Bytes for each pixel, measured as the growth of the process' peak from 2048x2048 over 4096x4096 to
 // 8192x8192, on the CPU, and rounded up: 30.5 for a PNG of 8 bits, 34 of 16, 42 for an EXR, 6.8 for each
-// channel, 25 for what adaptive sampling knows of a pixel. The film is taken in bands, of which each queue
-// holds one.
+// channel, 25 for what adaptive sampling knows of a pixel. The film is held in bands, one
+// for each queue.
 constexpr std::uint64_t kPngBytes = 32, kDeepPngBytes = 36, kExrBytes = 43;
 constexpr std::uint64_t kChannelBytes = 7, kAdaptiveBytes = 26;
 constexpr std::uint64_t kFilmBytes = 24, kLargestBand = std::uint64_t{256} << 20;

@@ -8,7 +8,7 @@
 
 namespace kdray::cli {
 
-// What of a picture decides on the memory that it takes.
+// What decides on the memory that a picture takes.
 struct PictureNeeds {
   std::uint64_t width = 0, height = 0;
   std::uint64_t n_channels = 0;  // floats for each pixel beside the colour
@@ -18,15 +18,15 @@ struct PictureNeeds {
   std::uint64_t n_queues = 1;
 };
 
-// All that is held at one time, the file included, without the scene.
+// Returns all that is held at one time, with the file, without the scene.
 std::uint64_t picture_bytes(const PictureNeeds& picture);
 
 void check_picture_fits(const PictureNeeds& picture, std::uint64_t free);
 
-// `n_rays` of `trace` that a Renderer traces.
+// Throws where `n_rays` of `trace`, which a Renderer traces, don't fit.
 void check_rays_fit(std::uint64_t n_rays, std::uint64_t free);
 
-// Rows of `name` ("points") that take so many bytes each, with their answers.
+// Throws where rows called `name` ("points"), which take so many bytes each with their answers, don't fit.
 void check_rows_fit(const char* name, std::uint64_t n_rows, std::uint64_t bytes_each, std::uint64_t free);
 
 }  // namespace kdray::cli

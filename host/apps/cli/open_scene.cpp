@@ -3,18 +3,24 @@
 #include <algorithm>
 #include <filesystem>
 #include <future>
+#include <memory>
+#include <optional>
+#include <utility>
 
-#include "apps/cli/message.h"
-#include "apps/cli/partition_scene.h"
-#include "base/peak_memory.h"
+#include "accel/prepare/prepared.h"
+#include "api/hooks.h"
+#include "apps/cli/output.h"
+#include "apps/cli/ranks.h"
+#include "base/process_memory.h"
 #include "base/timer.h"
+#include "cluster/partition/scene_partition.h"
 #include "scene/model/scene.h"
 
 namespace kdray::cli {
 
 namespace {
 
-const std::string kHit = "hit", kMiss = "miss";
+const std::string kCacheHit = "hit", kCacheMiss = "miss";
 
 CacheOptions options_of(const CacheChoice& choice) {
   CacheOptions options;
@@ -25,12 +31,33 @@ CacheOptions options_of(const CacheChoice& choice) {
   return options;
 }
 
-// With programs in a folder beside the scenes.
+// Returns the options with a folder for programs beside that of the scenes.
 DeviceOptions with_cache(DeviceOptions device, const CacheChoice& choice) {
   if (!choice.off)
     device.programs =
         choice.folder.empty() ? default_program_folder() : std::filesystem::path(choice.folder) / "programs";
   return device;
+}
+
+// What a rank has of the scene, and what it knows of all of it.
+struct PartitionedScene {
+  prepare::Prepared prepared;
+  std::shared_ptr<const api::WholeScene> whole;
+};
+
+// Reads this rank's share of the scene. All ranks call it. `check` sees the settings before a tree is built.
+// Returns nothing where the scene has instances, so that every rank needs all of it.
+std::optional<PartitionedScene> partition_scene(const SceneInput& input, const TreeOptions& tree, bool quiet,
+                                                const std::function<void(const scene::Scene&)>& check) {
+  const std::shared_ptr<transport::Together> all = together_of_this_run();
+  std::optional<partition::ScenePartition> own =
+      partition::partition_scene(input.file, input.load, tree, *all, check);
+  if (!own) {
+    if (!quiet) say("every rank holds the whole scene: one with instances isn't divided");
+    return std::nullopt;
+  }
+  return PartitionedScene{std::move(own->prepared), std::make_shared<const api::WholeScene>(
+                                                        api::WholeScene{own->core, own->primitives, all})};
 }
 
 }  // namespace
@@ -67,8 +94,8 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
   read(input, tree, tell);
 }
 
-// False: the scene isn't one that is divided. The device is open: what it takes of memory to compile for the
-// self-test, and what reading and building take, are not to come together.
+// Returns false where the scene is none that is divided. The device is open before, so that the memory for
+// compiling the self-test is not needed at the same time as that for reading and building.
 bool OpenedScene::open_partition(const SceneInput& input, const TreeOptions& tree, const Tell& tell) {
   std::size_t told = 0;
   give_back_free_memory();
@@ -89,7 +116,7 @@ bool OpenedScene::open_partition(const SceneInput& input, const TreeOptions& tre
 bool OpenedScene::find(const SceneInput& input, const TreeOptions& tree, const Tell& tell) {
   const Timer look_up;
   scene_ = cache_.find(input.file, tree, input.load);
-  outcome_ = scene_ ? kHit : kMiss;
+  outcome_ = scene_ ? kCacheHit : kCacheMiss;
   seconds_.cache = look_up.seconds();
   if (scene_) tell(scene_->settings());
   return scene_.has_value();
@@ -110,13 +137,14 @@ void OpenedScene::read(const SceneInput& input, const TreeOptions& tree, const T
   tell_more(scene_->warnings(), read.model().warnings.size());
 }
 
-// What the tree was built of is known to be in range, and to fit, only when it is there.
+// Says the warnings that came after the first `told`: whether all is in range and fits is known only when the
+// tree is built.
 void OpenedScene::tell_more(const std::vector<std::string>& warnings, std::size_t told) const {
   if (quiet_) return;
   for (std::size_t i = told; i < warnings.size(); ++i) say(warnings[i]);
 }
 
-// A scene from standard input is no file that could be found again.
+// A scene from standard input could not be found again.
 bool OpenedScene::has_cache(const SceneInput& input, const CacheChoice& choice) {
   return !options_of(choice).folder.empty() && !input.is_stdin();
 }
@@ -128,7 +156,7 @@ void OpenedScene::keep() {
   seconds_.keep_programs = timer.seconds();
 }
 
-// The self-test comes last. Once is enough.
+// Waits for the device, once. The self-test is the last part of opening it.
 void OpenedScene::wait_for(std::future<OpenSeconds>& device) {
   if (!device.valid()) return;
   const Timer timer;
@@ -147,7 +175,7 @@ void OpenedScene::add_to(Statistics::Seconds& seconds) const {
 }
 
 void OpenedScene::keep_scene() {
-  if (outcome_ != kMiss || is_kept_) return;
+  if (outcome_ != kCacheMiss || is_kept_) return;
   is_kept_ = true;
   const Timer timer;
   try {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "api/hooks.h"
-#include "apps/cli/build_notice.h"
 #include "apps/cli/options.h"
+#include "apps/cli/progress.h"
 #include "apps/cli/scene_input.h"
 #include "kdray/kdray.h"
 
@@ -36,25 +36,25 @@ class OpenedScene {
 
   const PreparedScene& scene() const { return *scene_; }
 
-  // Where the scene is a share of it; else null.
+  // Returns the whole scene where this process holds a share of it; else null.
   const std::shared_ptr<const api::WholeScene>& whole() const { return whole_; }
 
-  // What the Renderer is to be made with.
+  // Returns the options to make the Renderer with.
   const DeviceOptions& device() const { return device_; }
 
   // Puts a scene that was not found into the cache; once.
   void keep_scene();
-  // Puts a scene and programs that were not found into the cache; after the picture is out, which it would
-  // only delay.
+  // Puts a scene and programs that were not found into the cache; best after the picture is out, which it
+  // would only delay.
   void keep();
 
-  // Whether a scene from this file is looked for in a cache at all.
+  // Returns whether a scene from this file is looked for in a cache at all.
   static bool has_cache(const SceneInput& input, const CacheChoice& cache);
 
   const std::string& cache() const { return outcome_; }  // "hit", "miss" or "off"
 
-  // Of what was done here: cache, load, keep_programs, and of start and self_test what was waited for, since
-  // the device is opened while the scene is read.
+  // Adds the times of what was done here: cache, load, keep_programs; and the part of start and self_test
+  // that was waited for, since the device is opened while the scene is read.
   void add_to(Statistics::Seconds& seconds) const;
 
  private:
@@ -70,7 +70,7 @@ class OpenedScene {
   SceneCache cache_;
   bool quiet_;
   BuildNotice notice_;
-  std::set<std::string> left_out_;  // devices, as they were told of
+  std::set<std::string> left_out_;  // what was said about devices that are left out
   DeviceOptions device_;
   std::string outcome_ = "off";
   bool is_kept_ = false;

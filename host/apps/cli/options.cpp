@@ -1,21 +1,36 @@
 #include "apps/cli/options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "accel/prepare/quality.h"
-#include "apps/cli/parse.h"
 #include "device/tuning/database.h"
+#include "kdray/kdray.h"
 
 namespace kdray::cli {
 
 namespace {
 
-// In the order of Traversal.
+// Reads the whole of `text` as a number: "1e3 " or "5x" are none, and neither are "inf" and "nan".
+template <class T>
+bool whole_number(std::string_view text, T& value) {
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stopped != end) return false;
+  if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
+  return true;
+}
+
+// In the order of the enumerations' values.
 constexpr std::array<std::string_view, 5> kTraversals = {"auto", "binary", "wide", "packet", "batch"};
-constexpr std::array<std::string_view, 3> kSchedules = {"auto", "slices",
-                                                        "global"};  // in the order of Schedule
+constexpr std::array<std::string_view, 3> kSchedules = {"auto", "slices", "global"};
+constexpr std::array<std::string_view, 2> kPrecisions = {"float", "double"}, kFormats = {"png", "exr"};
 
 // "-o,--output" -> "--output", for messages.
 std::string long_name(const std::string& name) {
@@ -23,6 +38,119 @@ std::string long_name(const std::string& name) {
 }
 
 }  // namespace
+
+Error usage_error(std::string_view option, std::string_view given, std::string_view wanted) {
+  return Error(ErrorCode::usage, fmt::format("{} '{}': expected {}", option, given, wanted));
+}
+
+int parse_int(std::string_view option, std::string_view text, int lo, int hi) {
+  int value = 0;
+  if (!whole_number(text, value) || value < lo || value > hi)
+    throw usage_error(option, text, fmt::format("a whole number from {} to {}", lo, hi));
+  return value;
+}
+
+double parse_real(std::string_view option, std::string_view text, double lo, double hi) {
+  double value = 0;
+  if (!whole_number(text, value) || value < lo || value > hi)
+    throw usage_error(option, text, fmt::format("a number from {} to {}", lo, hi));
+  return value;
+}
+
+std::vector<double> parse_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    double value = 0;
+    if (!whole_number(text.substr(start, comma - start), value)) return {};
+    numbers.push_back(value);
+    start = comma + 1;
+  }
+  return numbers;
+}
+
+// The number is exact where it is whole; a fraction is rounded down to a byte.
+std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
+  constexpr std::string_view kUnits = "KMGT", kLowerUnits = "kmgt";
+  constexpr std::string_view kWanted = "a number of bytes, as in 4096, 64K, 500M, 1.5G or 1T";
+  constexpr double kTooMany = 18446744073709551616.0;  // 2^64
+  const auto unit = text.empty() ? std::string_view::npos
+                                 : std::min(kUnits.find(text.back()), kLowerUnits.find(text.back()));
+  const bool has_unit = unit != std::string_view::npos;
+  const unsigned shift = has_unit ? 10 * (static_cast<unsigned>(unit) + 1) : 0;
+  const std::string_view number = text.substr(0, text.size() - (has_unit ? 1 : 0));
+  if (number.empty() || number.find_first_not_of("0123456789.") != std::string_view::npos)
+    throw usage_error(option, text, kWanted);
+  std::uint64_t whole = 0;
+  if (whole_number(number, whole) && whole <= std::numeric_limits<std::uint64_t>::max() >> shift)
+    return whole << shift;
+  double value = 0;
+  if (!whole_number(number, value)) throw usage_error(option, text, kWanted);
+  value = std::ldexp(value, static_cast<int>(shift));
+  if (value >= kTooMany) throw usage_error(option, text, "less than 2^64 bytes, as in 500M, 1.5G or 1T");
+  return static_cast<std::uint64_t>(value);
+}
+
+Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max) {
+  Size size;
+  const std::size_t cross = text.find_first_of("xX");
+  const bool good = cross != std::string_view::npos && whole_number(text.substr(0, cross), size.width) &&
+                    whole_number(text.substr(cross + 1), size.height) && size.width >= 1 &&
+                    size.height >= 1 && size.width <= side_max && size.height <= side_max;
+  if (!good) throw usage_error(option, text, fmt::format("WIDTHxHEIGHT, each from 1 to {}", side_max));
+  if (static_cast<long long>(size.width) * size.height > pixels_max)
+    throw usage_error(option, text, fmt::format("no more than {} pixels in all", pixels_max));
+  return size;
+}
+
+Samples parse_samples(std::string_view option, std::string_view text) {
+  constexpr std::string_view kAdaptive = "adaptive";
+  constexpr int kMost = 65536;
+  constexpr double kLeast = 1e-6, kLargest = 1e6;
+  Samples samples;
+  if (text == kAdaptive) return {0, kDefaultAdaptiveTarget};
+  if (text.starts_with("adaptive:") && whole_number(text.substr(kAdaptive.size() + 1), samples.target) &&
+      samples.target >= kLeast && samples.target <= kLargest)
+    return samples;
+  if (whole_number(text, samples.number) && samples.number >= 1 && samples.number <= kMost)
+    return {samples.number, 0};
+  throw usage_error(
+      option, text,
+      fmt::format("a whole number from 1 to {}, adaptive, or adaptive:TARGET with an RMSE of {} or more",
+                  kMost, kLeast));
+}
+
+image::Transfer parse_gamma(std::string_view option, std::string_view text) {
+  if (text == "srgb") return {};
+  double gamma = 0;
+  if (!whole_number(text, gamma) || gamma < 0.1 || gamma > 10)
+    throw usage_error(option, text, "srgb or a number from 0.1 to 10");
+  return {.srgb = false, .gamma = gamma};
+}
+
+std::size_t parse_choice(std::string_view option, std::string_view text,
+                         std::span<const std::string_view> accepted) {
+  const auto found = std::find(accepted.begin(), accepted.end(), text);
+  if (found == accepted.end())
+    throw usage_error(option, text,
+                      fmt::format("{}{}", accepted.size() > 1 ? "one of " : "", fmt::join(accepted, ", ")));
+  return static_cast<std::size_t>(found - accepted.begin());
+}
+
+std::vector<std::string> parse_list(std::string_view option, std::string_view text,
+                                    std::span<const std::string_view> accepted) {
+  std::vector<std::string> names;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    const std::string name(text.substr(start, comma - start));
+    if (std::find(accepted.begin(), accepted.end(), name) == accepted.end())
+      throw usage_error(option, text,
+                        fmt::format("names from {}, with commas between", fmt::join(accepted, ", ")));
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    start = comma + 1;
+  }
+  return names;
+}
 
 CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string& shape,
                       const std::string& help, std::function<void(const std::string&)> take) {
@@ -67,11 +195,9 @@ void add_loudness(CLI::App& app, bool& quiet, bool& verbose) {
 }
 
 void add_picture_format(CLI::App& app, std::optional<image::PictureFormat>& format) {
-  static constexpr std::array<std::string_view, 2> kFormats = {"png", "exr"};
   add_text(app, "--format", "NAME", "The picture's format: png, exr (default: by its name; to stdout png)",
            [&format](const std::string& text) {
-             const bool exr = parse_choice("--format", text, kFormats) == "exr";
-             format = exr ? image::PictureFormat::exr : image::PictureFormat::png;
+             format = static_cast<image::PictureFormat>(parse_choice("--format", text, kFormats));
            });
 }
 
@@ -90,13 +216,8 @@ void add_cache_options(CLI::App& app, CacheChoice& cache) {
 }
 
 CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality) {
-  return add_text(app, "--build", "NAME", "Time spent on the tree: fast, balanced (default), best",
-                  [&quality](const std::string& text) {
-                    parse_choice("--build", text, prepare::kQualityNames);
-                    const auto name =
-                        std::find(prepare::kQualityNames.begin(), prepare::kQualityNames.end(), text);
-                    quality = static_cast<BuildQuality>(name - prepare::kQualityNames.begin());
-                  });
+  return add_choice(app, "--build", "NAME", "Time spent on the tree: fast, balanced (default), best",
+                    prepare::kQualityNames, quality);
 }
 
 void add_tree_options(CLI::App& app, TreeOptions& tree) {
@@ -115,6 +236,17 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
       ->group(group);
 }
 
+CLI::Option* add_device_option(CLI::App& app, const std::string& help, DeviceOptions& device) {
+  return add_text(app, "--device", "SPEC", help, [&device](const std::string& text) {
+    if (text.empty()) throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
+    device.device = text;
+  });
+}
+
+CLI::Option* add_schedule_option(CLI::App& app, const std::string& help, DeviceOptions& device) {
+  return add_choice(app, "--schedule", "NAME", help, kSchedules, device.schedule);
+}
+
 void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal, Precision& precision) {
   const std::string group = "Device";
   device.tunings = tuning::default_file();
@@ -122,14 +254,8 @@ void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& travers
          "--no-tuning", [&device] { device.tunings.clear(); },
          "Leave aside what 'kdray tune' found; take what kdray ships with")
       ->group(group);
-  static constexpr std::array<std::string_view, 2> kPrecisions = {"float", "double"};
-  add_text(app, "--device", "SPEC",
-           "auto, cpu, gpu, a number from 'kdray devices', or a part of a name; several with commas",
-           [&device](const std::string& text) {
-             if (text.empty())
-               throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
-             device.device = text;
-           })
+  add_device_option(
+      app, "auto, cpu, gpu, a number from 'kdray devices', or a part of a name; several with commas", device)
       ->group(group);
   add_int(app, "--queues", "Command queues, each on its own equal part of the device (default 1)", 1, 1024,
           device.queues)
@@ -138,27 +264,16 @@ void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& travers
           "Work-items in a group of the per-ray kernels (default: chosen for the device)", 1, 65536,
           device.work_group)
       ->group(group);
-  add_text(app, "--traversal", "NAME", "How rays walk the tree: auto, binary, wide, packet, batch",
-           [&traversal](const std::string& text) {
-             parse_choice("--traversal", text, kTraversals);
-             const auto name = std::find(kTraversals.begin(), kTraversals.end(), text);
-             traversal = static_cast<Traversal>(name - kTraversals.begin());
-           })
+  add_choice(app, "--traversal", "NAME", "How rays walk the tree: auto, binary, wide, packet, batch",
+             kTraversals, traversal)
       ->group(group);
-  add_text(app, "--schedule", "NAME",
-           "Launches: slices (all stages in one, for CPUs), global (one for each, a ray per work-item), auto",
-           [&device](const std::string& text) {
-             parse_choice("--schedule", text, kSchedules);
-             const auto name = std::find(kSchedules.begin(), kSchedules.end(), text);
-             device.schedule = static_cast<Schedule>(name - kSchedules.begin());
-           })
+  add_schedule_option(
+      app, "Launches: slices (all stages in one, for CPUs), global (one for each, a ray per work-item), auto",
+      device)
       ->group(group);
-  add_text(app, "--precision", "NAME",
-           "Arithmetic of the kernels: float (default), double (slow, as a reference)",
-           [&precision](const std::string& text) {
-             const bool in_double = parse_choice("--precision", text, kPrecisions) == "double";
-             precision = in_double ? Precision::float64 : Precision::float32;
-           })
+  add_choice(app, "--precision", "NAME",
+             "Arithmetic of the kernels: float (default), double (slow, as a reference)", kPrecisions,
+             precision)
       ->group(group);
 }
 

@@ -4,17 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <new>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <system_error>
 
-#include "apps/cli/message.h"
-#include "apps/cli/parse.h"
-#include "apps/cli/rank_cores.h"
-#include "cluster/transport/delayed.h"
+#include "apps/cli/options.h"
+#include "apps/cli/output.h"
 #include "cluster/transport/launcher.h"
 #include "cluster/transport/mpi.h"
+#include "cluster/transport/simulated.h"
 
 namespace kdray::cli {
 
@@ -28,7 +31,8 @@ std::shared_ptr<transport::Ranks>& this_run() {
   return ranks;
 }
 
-// The command line is parsed when there are ranks, so that a mistake in it is told once.
+// Finds --mpi before the command line is parsed, which is done when the ranks are known, so that only one of
+// them reports a mistake.
 std::string choice_in(const std::vector<std::string>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--mpi" && i + 1 < arguments.size()) return arguments[i + 1];
@@ -49,8 +53,8 @@ std::optional<double> asked_in(const char* variable, double least, double most) 
   return parse_real(variable, asked, least, most);
 }
 
-// A slower network, for measurements. KDRAY_MPI_DELAY: milliseconds that every message is to take longer;
-// KDRAY_MPI_BANDWIDTH: gigabits a second that a rank receives at most.
+// Makes the network slower, for measurements. KDRAY_MPI_DELAY: how many milliseconds longer every message
+// takes; KDRAY_MPI_BANDWIDTH: how many gigabits a second a rank receives at most.
 std::unique_ptr<transport::Transport> as_asked(std::unique_ptr<transport::Transport> mpi) {
   const auto delay = asked_in("KDRAY_MPI_DELAY", 0, 1000);
   const auto bandwidth = asked_in("KDRAY_MPI_BANDWIDTH", 1e-3, 1e6);
@@ -60,7 +64,7 @@ std::unique_ptr<transport::Transport> as_asked(std::unique_ptr<transport::Transp
   return transport::delayed(std::move(mpi), link);
 }
 
-// How a run ends that `error` has come out of.
+// Ends a run that has failed of `error`. Returns the exit code.
 int end_with(transport::Ranks& ranks, const Error& error) {
   if (!ranks.leads()) return ranks.wait_for_end(&error);
   const int code = error.code() == ErrorCode::internal ? 1 : static_cast<int>(error.code());
@@ -71,7 +75,7 @@ int end_with(transport::Ranks& ranks, const Error& error) {
 
 int run_as_rank(transport::Ranks& ranks, const std::function<int()>& run) {
   try {
-    share_cores(ranks);
+    transport::share_cores(ranks);
     const int code = run();
     if (!ranks.leads()) return ranks.wait_for_end(nullptr);
     ranks.end(code);
@@ -86,6 +90,22 @@ int run_as_rank(transport::Ranks& ranks, const std::function<int()>& run) {
   } catch (const std::exception& error) {
     return end_with(ranks, Error(ErrorCode::internal, error.what()));
   }
+}
+
+constexpr std::uintmax_t kLargeFile = std::uintmax_t{64} << 20;
+
+// A small scene is held whole by every rank: rays travel less where the costs of the whole are known, and
+// where every rank holds what most rays come to. All ranks decide the same, even where they see different
+// files.
+bool wants_shares(const RenderArgs& o) {
+  if (o.holding != Holding::automatic) return o.holding == Holding::shares;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(o.scene.file, error);
+  return together_of_this_run()->any(!error && size >= kLargeFile);
+}
+
+void say_whole(const std::string& why, bool quiet) {
+  if (!quiet) say("every rank holds the whole scene: " + why);
 }
 
 }  // namespace
@@ -110,7 +130,7 @@ const std::shared_ptr<transport::Ranks>& ranks_of_this_run() {
   return this_run();
 }
 
-// One for the whole run, since it numbers the steps.
+// There is one for the whole run, since it numbers the steps.
 std::shared_ptr<transport::Together> together_of_this_run() {
   static const auto together = std::make_shared<transport::Together>(*this_run());
   return together;
@@ -120,18 +140,18 @@ bool leads() {
   return !this_run() || this_run()->leads();
 }
 
-void add_ranks_options(CLI::App& app, std::string& hold) {
+void add_ranks_options(CLI::App& app, Holding& holding) {
   add_text(app, "--mpi", "NAME",
            "Render together with the other processes that mpirun or srun has started: auto (default; when it "
            "has), on, "
            "off",
            [](const std::string& text) { parse_choice("--mpi", text, kChoices); })
       ->group("Division");
-  add_text(
+  add_choice(
       app, "--hold", "WHAT",
       "With ranks and odprt each holds the whole scene, or shares of it: auto (default; shares of a file "
       "of 64 MiB or more), whole, shares",
-      [&hold](const std::string& text) { hold = parse_choice("--hold", text, kHoldings); })
+      kHoldings, holding)
       ->group("Division");
 }
 
@@ -149,6 +169,15 @@ void check_ranks(const RenderArgs& o) {
   if (o.render.division != Division::bag)
     refuse("ranks take their tiles from a bag; leave --division out, or add --mpi off");
   if (!o.timeline.empty()) refuse("--trace tells of one process's queues; leave it out, or add --mpi off");
+}
+
+bool holds_shares(const RenderArgs& o) {
+  if (!ranks_of_this_run() || o.render.mode != Mode::odprt) return false;
+  if (!wants_shares(o)) return false;
+  if (!o.render.channels.empty()) say_whole("--aov needs it", o.quiet);
+  if (o.view.transparent) say_whole("--background transparent needs it", o.quiet);
+  const bool needs_whole = !o.render.channels.empty() || o.view.transparent;
+  return !needs_whole && !o.tree.binary_form;  // what needs that, ODPRT refuses
 }
 
 std::string faults_of_rank(const std::string& faults, int rank) {

@@ -1,16 +1,30 @@
 // What    kdray render: a scene to a picture, or to the pictures of a sequence.
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/cli/command.h"
-#include "apps/cli/parse.h"
+#include "apps/cli/options.h"
+#include "apps/cli/output.h"
 #include "apps/cli/ranks.h"
 #include "apps/cli/render_frame.h"
 #include "apps/cli/render_options.h"
-#include "apps/cli/restarts.h"
 #include "apps/cli/sequence.h"
+#include "base/child.h"
+#include "base/error.h"
 
 namespace kdray::cli {
 
@@ -30,7 +44,7 @@ void add_file_options(CLI::App& app, RenderArgs& o) {
              o.gamma_given = true;
            });
   add_text(app, "--bits", "N", "Bits per channel of a PNG: 8 (default) or 16", [&o](const std::string& text) {
-    o.write.png_bits = parse_choice("--bits", text, kBits) == "16" ? 16 : 8;
+    o.write.png_bits = parse_choice("--bits", text, kBits) == 1 ? 16 : 8;
     o.bits_given = true;
   });
   add_text(app, "--aov", "LIST",
@@ -48,6 +62,74 @@ void add_trace_options(CLI::App& app, RenderArgs& o) {
   add_text(app, "--inject-fault", "Q@N", "For tests: the Nth launch on queue Q fails (Q@N,Q@N,...)",
            [&o](const std::string& text) { o.hooks.faults = text; })
       ->group(group);
+}
+
+// --restarts starts this very command again, without that option, in a process of its own, and once more from
+// its checkpoint whenever a signal has ended it. A run that ends by itself, well or not, is the end. So is
+// one that somebody ended on purpose (SIGINT, SIGTERM, SIGHUP, SIGQUIT). The run ends when this process ends,
+// whatever ended it.
+
+// The arguments of this process without --restarts.
+std::vector<std::string> own_arguments() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  const std::string all{std::istreambuf_iterator<char>(file), {}};
+  std::vector<std::string> arguments;
+  for (std::size_t at = 0; at < all.size(); at = all.find('\0', at) + 1) {
+    const std::string argument = all.c_str() + at;
+    if (argument == "--restarts")
+      at = all.find('\0', at) + 1;  // and its value
+    else if (!argument.starts_with("--restarts="))
+      arguments.push_back(argument);
+  }
+  return arguments;
+}
+
+// In the child: becomes the run. Only what is safe after a fork() of a process with threads is done here.
+[[noreturn]] void become(char* const* arguments, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::getppid() != parent) ::_exit(1);
+  sigset_t none;
+  sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::execv("/proc/self/exe", arguments);
+  ::_exit(127);
+}
+
+int run_once(std::vector<std::string> arguments) {
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  const pid_t parent = ::getpid(), child = ::fork();
+  if (child == 0) become(pointers.data(), parent);
+  if (child < 0)
+    throw Error(ErrorCode::internal, fmt::format("no process for the run ({})", std::strerror(errno)));
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  return status;
+}
+
+bool is_on_purpose(int signal) {
+  return signal == SIGINT || signal == SIGTERM || signal == SIGHUP || signal == SIGQUIT;
+}
+
+// Returns the exit code of the last run.
+int run_again(const CheckpointChoice& choice) {
+  std::vector<std::string> arguments = own_arguments();
+  for (int left = choice.restarts;; --left) {
+    const int status = run_once(arguments);
+    if (WIFEXITED(status)) return WEXITSTATUS(status);
+    const int signal = WTERMSIG(status);
+    if (is_on_purpose(signal) || left == 0) {
+      say(fmt::format("the run was ended by {}{}; what is finished is in {}", signal_name(signal),
+                      is_on_purpose(signal) ? "" : ", and it was the last that --restarts allows",
+                      choice.folder()));
+      return 1;
+    }
+    say(fmt::format("the run was ended by {}; it goes on from {} ({} more {})", signal_name(signal),
+                    choice.folder(), left - 1, left == 2 ? "restart" : "restarts"));
+    if (choice.share.empty() && std::ranges::find(arguments, "--resume") == arguments.end())
+      arguments.push_back("--resume");
+  }
 }
 
 int run(RenderArgs& o) {
@@ -77,7 +159,7 @@ Command add_render(CLI::App& kdray) {
   add_view_options(*app, o->view);
   add_picture_options(*app, o->render);
   add_division_options(*app, o->render);
-  add_ranks_options(*app, o->hold);
+  add_ranks_options(*app, o->holding);
   add_trace_options(*app, *o);
   add_checkpoint_options(*app, o->checkpoint);
   add_device_options(*app, o->device, o->render.traversal, o->render.precision);

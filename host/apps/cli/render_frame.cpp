@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <span>
@@ -9,14 +10,12 @@
 #include <vector>
 
 #include "apps/cli/memory.h"
-#include "apps/cli/message.h"
 #include "apps/cli/output.h"
-#include "apps/cli/partition_scene.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/ranks.h"
 #include "apps/cli/stats.h"
 #include "apps/cli/summary.h"
-#include "base/free_memory.h"
+#include "base/process_memory.h"
 #include "scene/model/frame.h"
 #include "scene/model/scene.h"
 
@@ -26,7 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Before the scene is read. A name that isn't given depends on the files that the scene names.
+// Checks files before the scene is read. A picture's name that isn't given depends on the files that the
+// scene names.
 void check_files(const RenderArgs& o, RunFiles& files) {
   check_scene_input(o.scene);
   if (o.view.transparent && o.render.adaptive_target > 0)
@@ -42,7 +42,7 @@ fs::path default_output(const RenderArgs& o) {
   return default_picture(o.scene.file, o.write.format.value_or(image::PictureFormat::png));
 }
 
-// Once it is known which files the scene names.
+// Checks files once it is known which ones the scene names.
 void check_files(RenderArgs& o, RunFiles& files, const scene::Scene& asked) {
   files.read_scene(asked.files);
   if (!o.output.empty()) return;
@@ -63,7 +63,7 @@ void tell_of_options_without_effect(const RenderArgs& o) {
   if (o.bits_given) say("--bits has no effect: an EXR holds floats");
 }
 
-// As the renderer will resolve it (RenderOptions::width).
+// The size is resolved as the renderer will do it (RenderOptions::width).
 void check_memory(const RenderArgs& o, const scene::RenderSettings& asked) {
   const RenderOptions& render = o.render;
   const int width = render.width > 0 ? render.width : asked.width.value_or(scene::kDefaultSide);
@@ -79,20 +79,46 @@ void check_memory(const RenderArgs& o, const scene::RenderSettings& asked) {
   check_picture_fits(picture, free_memory());
 }
 
-// What eye rays have brought of a background can be taken out where it is the same everywhere.
+// A background can be taken out of the picture only where it is the same everywhere.
 void check_transparent(const RenderArgs& o, const scene::Scene& scene) {
   if (o.view.transparent && scene.sky.kind != scene::SkyKind::none)
     throw Error(ErrorCode::usage,
                 "--background transparent is for scenes whose background is one colour; this one's is not");
 }
 
-// Before a tree is built for nothing.
+// Checks the view before a tree is built for nothing.
 void check_view_of(const RenderArgs& o, const scene::Scene& asked) {
   if (o.view.any) check_view(asked, o.view.view);
   check_transparent(o, asked);
 }
 
-// The picture's alpha, where it is wanted; the background is taken out of its colours then.
+// Returns what share of each pixel eye rays hit anything in, for the samples that `render` asks for.
+std::vector<float> coverage(const PreparedScene& scene, const DeviceOptions& device,
+                            const RenderOptions& render) {
+  RenderOptions options = render;
+  options.depth = 1;
+  options.channels.clear();
+  options.progress = {};
+  options.timeline = false;
+  options.ledger.reset();
+  const Picture picture = Renderer(scene.coverage(), device).render(options);
+  std::vector<float> shares(picture.rgb.size() / 3);
+  for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = std::clamp(picture.rgb[3 * i], 0.0f, 1.0f);
+  return shares;
+}
+
+// Takes out of each pixel what eye rays that hit nothing have brought from the background.
+void take_out_background(std::span<const float> coverage, std::span<const float, 3> background,
+                         std::vector<float>& rgb) {
+  for (std::size_t i = 0; i < coverage.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      float& value = rgb[3 * i + c];
+      // Where nothing is covered nothing may be left, however the sum was rounded.
+      value = coverage[i] == 0 ? 0 : std::max(0.0f, value - (1 - coverage[i]) * background[c]);
+    }
+}
+
+// Returns the picture's alpha, where it is wanted, and takes the background out of its colours then.
 std::vector<float> make_transparent(Picture& picture, const PreparedScene& scene, const DeviceOptions& device,
                                     const RenderArgs& o) {
   if (!o.view.transparent) return {};

@@ -1,4 +1,4 @@
-// What    What render was asked for, and the way from there to a picture in its file: of one frame, or of
+// What    What render is asked for, and the way from there to a picture in its file: for one frame, or for
 //         several that have a scene in common.
 // Shape   With ranks, all of them make a frame, and rank 0 writes its files.
 //         Everything that can be refused is refused before the scene is read; the picture is written whole or
@@ -10,17 +10,19 @@
 #include <string>
 
 #include "api/hooks.h"
-#include "apps/cli/checkpoint_options.h"
 #include "apps/cli/open_scene.h"
 #include "apps/cli/options.h"
+#include "apps/cli/render_options.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/scene_input.h"
-#include "apps/cli/view_options.h"
 #include "base/timer.h"
-#include "io/image/write.h"
+#include "io/image/picture_file.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {
+
+// --hold: what each rank has of a scene that ODPRT divides.
+enum class Holding { automatic, whole, shares };
 
 struct RenderArgs {
   SceneInput scene;
@@ -35,13 +37,13 @@ struct RenderArgs {
   ViewOptions view;
   image::WriteOptions write;
   CheckpointChoice checkpoint;
-  std::string hold = "auto";  // --hold
+  Holding holding = Holding::automatic;
 };
 
 // A scene on its device, ready for frames.
 class FrameMaker {
  public:
-  // `o` is that of the first frame.
+  // `o` has the arguments of the first frame.
   explicit FrameMaker(RenderArgs& o);
 
   // Renders a frame of the scene, and writes its files.

@@ -1,9 +1,12 @@
-// What    The options of render, which view has as well, on what a picture is made of, and on how its work is
-//         divided among queues.
-// Errors  kdray::Error, ErrorCode::usage.
+// What    The options of render: what a picture is made of, where it is seen from and what is behind it, and
+//         how its work is divided among queues, all of which view has as well; and checkpoints and sequences.
+// Errors  kdray::Error, ErrorCode::usage: a value, or options that don't go together.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
 
 #include "kdray/kdray.h"
 
@@ -14,5 +17,37 @@ void add_picture_options(CLI::App& app, RenderOptions& options);
 
 // --mode --division --balance --tile --ray-buffer --device-memory
 void add_division_options(CLI::App& app, RenderOptions& options);
+
+struct ViewOptions {
+  View view;
+  bool transparent = false;  // --background transparent
+  bool any = false;          // whether one was given
+};
+
+// --from --at --up --fov --camera --ortho --aperture --focus --headlight --background
+void add_view_options(CLI::App& app, ViewOptions& options);
+
+struct FrameRange {
+  int first = 0, last = 0;
+};
+
+struct CheckpointChoice {
+  std::string checkpoint, share;  // the folder; both empty: no checkpoint
+  bool resume = false;
+  std::optional<double> every_seconds = {}, lease_seconds = {};
+  int restarts = 0;
+  std::optional<FrameRange> frames = {};
+  std::string camera_path;         // empty: none
+  std::optional<double> fps = {};  // frames to a second of the scene's animation; none: it stands still
+
+  void check() const;
+  const std::string& folder() const { return share.empty() ? checkpoint : share; }
+  // Returns the options of a frame whose checkpoint is in this folder, or, without one, in the folder of the
+  // options.
+  std::optional<LedgerOptions> options(const std::filesystem::path& in = {}) const;
+};
+
+// --checkpoint --resume --checkpoint-every --share --lease --restarts, --frames --camera-path --fps
+void add_checkpoint_options(CLI::App& app, CheckpointChoice& choice);
 
 }  // namespace kdray::cli

@@ -1,7 +1,7 @@
-// What    The files that a run reads and those that it writes. None is written that is read, or that the
-//         scene names without kdray reading it (a texture), or twice.
-// Shape   All are told as soon as they are known; outputs are checked for being writable, too, so that a long
-//         run doesn't end without a place for its results. "-" is standard output, for one of them.
+// What    The files that a run reads and writes. No file is written that is read, or that the scene names
+//         without kdray reading it (a texture), and none is written twice.
+// Shape   Each file is noted as soon as it is known. Outputs are also checked for being writable, so that a
+//         long run doesn't end without a place for its results. "-" is standard output, for one of them.
 //         Two names are the same file when they lead to the same one: by links, by "." and "..". While
 //         neither exists, capitals don't count, for the file system may not tell them apart.
 // Errors  kdray::Error: ErrorCode::usage for options that contradict each other, ErrorCode::input for a place
@@ -15,26 +15,26 @@
 #include <string>
 #include <vector>
 
-#include "io/image/write.h"
-#include "scene/import/files_read.h"
+#include "io/image/picture_file.h"
+#include "scene/import/files.h"
 
 namespace kdray::cli {
 
 class RunFiles {
  public:
-  // An input, which `what` ("SCENE", "--rays") names. "-" is standard input.
+  // Notes an input, which `what` ("SCENE", "--rays") names. "-" is standard input.
   void read(const std::string& what, const std::filesystem::path& file);
-  // All that a scene names, once it is loaded.
+  // Notes all files that a scene names, once it is loaded.
   void read_scene(std::span<const scene::FileRead> files);
 
-  // An output; without a name there is none.
+  // Notes an output; without a name there is none.
   void write(const std::string& option, const std::filesystem::path& file);
-  // A picture with its channels' pictures.
+  // Notes a picture with its channels' pictures.
   void write_picture(const std::string& option, const std::filesystem::path& file,
                      std::span<const std::string> channels, const image::WriteOptions& options);
 
-  // The first of NAME.png, NAME.kdray.png, NAME.kdray2.png, ... that is not taken, for a picture that was
-  // given no name.
+  // Returns the first of NAME.png, NAME.kdray.png, NAME.kdray2.png, ... that is not taken, for a picture
+  // without a name.
   std::filesystem::path free_name(const std::filesystem::path& picture, std::span<const std::string> channels,
                                   const image::WriteOptions& options) const;
 

@@ -1,18 +1,21 @@
 #include "apps/cli/scene_input.h"
 
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <string_view>
 
 #include "apps/cli/options.h"
-#include "apps/cli/parse.h"
 #include "base/error.h"
+#include "scene/import/files.h"
 #include "scene/import/load.h"
-#include "scene/import/read_file.h"
 
 namespace kdray::cli {
 
 namespace {
+
+// In the order of the enumeration's values.
+constexpr std::array<std::string_view, 3> kInstances = {"auto", "flat", "kept"};
 
 std::string bytes_of_stdin() {
   std::string bytes;
@@ -26,8 +29,8 @@ std::string bytes_of_stdin() {
   return bytes;
 }
 
-// The name that messages have for it. It tells the format, and by a second ending what the bytes are packed
-// with. The files that such a scene names are looked for in the current folder.
+// Returns the name that messages have for standard input. Its ending is the format, and a second ending says
+// how the bytes are packed. The files that such a scene names are looked for in the current folder.
 std::filesystem::path name_of(const SceneInput& input, std::string_view bytes) {
   std::string name = "stdin." + input.format;
   if (bytes.starts_with("\x1f\x8b")) name += ".gz";
@@ -46,17 +49,6 @@ void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help) 
       [&input](const std::string& text) { input.format = text.starts_with('.') ? text.substr(1) : text; });
   add_load_options(app, input.load);
 }
-
-namespace {
-
-Instances instances_named(const std::string& name) {
-  if (name == "auto") return Instances::automatic;
-  if (name == "flat") return Instances::flat;
-  if (name == "kept") return Instances::kept;
-  throw Error(ErrorCode::usage, "--instances is auto, flat or kept, not '" + name + "'");
-}
-
-}  // namespace
 
 void add_load_options(CLI::App& app, LoadOptions& load) {
   add_text(app, "--smooth", "DEG",
@@ -79,11 +71,11 @@ void add_load_options(CLI::App& app, LoadOptions& load) {
       "The most memory for pictures on surfaces, as in 2G; the rest is in files (default: half of what is "
       "free)",
       [](const std::string& text) { set_texture_cache(parse_bytes("--texture-cache", text)); });
-  add_text(app, "--instances", "HOW",
-           "What shows many times: auto (held once where copies would be over a million primitives), flat "
-           "(copied) "
-           "or kept (held once)",
-           [&load](const std::string& text) { load.instances = instances_named(text); });
+  add_choice(app, "--instances", "HOW",
+             "What shows many times: auto (held once where copies would be over a million primitives), flat "
+             "(copied) "
+             "or kept (held once)",
+             kInstances, load.instances);
   add_text(app, "--asset-root", "DIR",
            "A folder below which the scene may name pictures and buffers that are not beside it or below it",
            [&load](const std::string& text) { load.asset_root = text; });

@@ -5,10 +5,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "kdray/kdray.h"
+#include "probe/trial/request.h"
+#include "probe/trial/trial.h"
 #include "scene/model/scene.h"
 
 namespace kdray::cli {
@@ -70,6 +74,12 @@ std::string self_test(const std::string& device) {
   Renderer renderer(Scene(make_scene()), {}, {.device = device});
   if (const std::string wrong = check_hits(renderer); !wrong.empty()) return wrong;
   return check_picture(renderer);
+}
+
+void try_if_asked(int argc, char** argv) {
+  trial::this_program_tries();
+  if (const auto request = trial::request_of({argv, static_cast<std::size_t>(argc)}))
+    trial::try_it(*request, [](int number) { return self_test(std::to_string(number)); });
 }
 
 }  // namespace kdray::cli

@@ -1,20 +1,23 @@
 #include "apps/cli/sequence.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cctype>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <optional>
+#include <sstream>
 #include <system_error>
 #include <thread>
 
 #include "apps/cli/camera_path.h"
-#include "apps/cli/message.h"
 #include "apps/cli/output.h"
-#include "apps/cli/sequence_settings.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "engine/checkpoint/create_once.h"
 #include "engine/checkpoint/leases.h"
 
@@ -28,7 +31,7 @@ struct Place {  // of a number in a name
   std::size_t first = 0, end = 0, digits = 0;
 };
 
-// "%d", "%4d" or "%04d"; the last one, since folders may have such names too.
+// Finds "%d", "%4d" or "%04d" in the name; the last one, since folders may have such names too.
 std::optional<Place> place_in(const std::string& name) {
   for (std::size_t at = name.rfind('%'); at != std::string::npos;
        at = at == 0 ? std::string::npos : name.rfind('%', at - 1)) {
@@ -61,7 +64,85 @@ void check_sequence(const RenderArgs& o) {
         "--camera-path says where the camera is; leave --from, --at, --up, --fov, --camera and --ortho out");
 }
 
-// What is to be done for one frame.
+constexpr std::size_t kMostBytes = 1 << 16;
+
+template <class T>
+std::string in_text(const std::optional<T>& value) {
+  return value ? fmt::format("{}", *value) : "the scene's";
+}
+
+std::string hash_of_file(const std::string& name) {
+  if (name.empty()) return "none";
+  std::ifstream stream(name, std::ios::binary);
+  return in_hex(hash_of(std::string{std::istreambuf_iterator<char>(stream), {}}));
+}
+
+std::string settings_of(const RenderArgs& o) {
+  const RenderOptions& r = o.render;
+  const View& v = o.view.view;
+  std::string text = "kdray sequence 1\n";
+  const auto add = [&text](const char* name, const std::string& value) {
+    text += fmt::format("{} {}\n", name, value);
+  };
+  add("scene", fs::path(o.scene.file).filename().string());
+  add("--size", fmt::format("{}x{}", r.width, r.height));
+  add("--samples",
+      r.adaptive_target > 0 ? fmt::format("adaptive:{}", r.adaptive_target) : fmt::format("{}", r.samples));
+  add("--depth", fmt::format("{}", r.depth));
+  add("--min-weight", fmt::format("{}", r.min_weight));
+  add("--grid", fmt::format("{}", static_cast<int>(r.grid)));
+  add("--precision", fmt::format("{}", static_cast<int>(r.precision)));
+  add("--camera-path", hash_of_file(o.checkpoint.camera_path));
+  const LoadOptions& load = o.scene.load;
+  if (o.checkpoint.fps || load.time) {
+    add("--fps", in_text(o.checkpoint.fps));
+    add("--time", in_text(load.time));
+    add("--animation", load.animation);
+  }
+  add("--camera", in_text(v.camera));
+  add("--from", in_text(v.from));
+  add("--at", in_text(v.at));
+  add("--up", in_text(v.up));
+  add("--fov", in_text(v.fov));
+  add("--ortho", in_text(v.ortho_width));
+  add("--aperture", in_text(v.aperture));
+  add("--focus", in_text(v.focus));
+  add("--background", o.view.transparent ? "transparent" : in_text(v.background));
+  add("--headlight", fmt::format("{}", v.headlight));
+  return text;
+}
+
+// Returns the first line in which they differ: there, and here.
+std::string difference(const std::string& there, const std::string& here) {
+  std::istringstream a(there), b(here);
+  std::string line_a, line_b;
+  while (std::getline(a, line_a) && std::getline(b, line_b))
+    if (line_a != line_b) return fmt::format(" ({}; here {})", line_a, line_b);
+  return {};
+}
+
+// All processes that share a sequence, and all runs that go on from it, have to make the same frames: a frame
+// that is done is not looked at again, so that its own checkpoint can't tell. DIR/sequence.ledger, made once,
+// has what was asked for and has a say in the pictures, a line for each. The scene itself is checked by the
+// checkpoint of each frame that is rendered. Throws ErrorCode::input, in a line that says which setting
+// differs.
+void check_sequence_settings(const RenderArgs& o, const fs::path& folder) {
+  const fs::path file = folder / "sequence.ledger";
+  const std::string here = settings_of(o);
+  if (checkpoint::create_once(file, here)) return;
+  std::string there = checkpoint::read_small(file, kMostBytes);
+  for (int i = 0; there.empty() && i < 20;
+       ++i) {  // where it is made without a link, it may be a moment until it is whole
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    there = checkpoint::read_small(file, kMostBytes);
+  }
+  if (there != here)
+    throw input_error(folder.string(), 0,
+                      "the frames in this folder are of other settings" + difference(there, here),
+                      "name another folder, or remove this one");
+}
+
+// Returns the arguments of one frame.
 RenderArgs args_of(const RenderArgs& o, const std::optional<CameraPath>& path, int number) {
   RenderArgs frame = o;
   frame.scene.file = numbered(o.scene.file, number, false);
@@ -126,7 +207,7 @@ void Sequence::render_shared() {
   const auto first = static_cast<std::size_t>(range_.first),
              n = static_cast<std::size_t>(range_.last) - first + 1;
   checkpoint::Leases frames(options.folder, "frame", first, n, heartbeat);
-  // Processes that join others spread over what is in work.
+  // Processes that join others spread over the frames that are in work.
   std::size_t join = std::hash<std::string>()(heartbeat.owner()) % n;
   const auto find = [&](std::size_t from, const auto& is_it) {
     for (std::size_t k = 0; k < n; ++k)
@@ -145,8 +226,8 @@ void Sequence::render_shared() {
   make_what_is_missing();
 }
 
-// Pictures that were made elsewhere, or removed. One at least, which tells whether the checkpoint is this
-// run's at all.
+// Makes the pictures that were made elsewhere, or removed; at least one, which shows whether the checkpoint
+// is this run's at all.
 void Sequence::make_what_is_missing() {
   const auto is_there = [&](int number) { return fs::exists(args_of(o_, path_, number).output); };
   for (int number = range_.first; number <= range_.last; ++number)

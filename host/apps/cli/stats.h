@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 Json collect_stats(const std::string& command, const std::string& scene, const Statistics& statistics);
 
-// The whole process at its largest, as the kernel counted it.
+// Returns the memory of the process at its largest, as the kernel counted it.
 std::uint64_t peak_memory();
 
 void write_stats(const std::filesystem::path& file, const Json& stats);

@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "apps/cli/message.h"
+#include "apps/cli/output.h"
 
 namespace kdray::cli {
 
 namespace {
 
-// What a start takes once and the next one does not, as statistics and people call it.
+// The work that a first start has and the next one does not, as statistics call it, and in words.
 constexpr std::array<std::pair<const char*, const char*>, 5> kStart = {{{"start", "opening the device"},
                                                                         {"self_test", "its self-test"},
                                                                         {"compile", "compiling kernels"},
@@ -95,7 +95,7 @@ std::string picture_in_words(const Json& stats) {
                      samples > 1 ? fmt::format(" of {:.3g} samples", samples) : "");
 }
 
-// Of `trace` this may be points, too.
+// `trace` may be asked about points, too.
 const char* what_was_asked(const Json& stats) {
   return part(stats, "hits").contains("points") ? "points" : "rays";
 }

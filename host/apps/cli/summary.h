@@ -33,7 +33,8 @@ std::string left_out_line(const Json& stats);
 // not adaptive.
 std::string samples_line(const Json& stats);
 
-// The depth to try where rays through stacked glass were cut off that would have mattered; empty where not.
+// A larger --depth to try, where rays through stacked glass were cut off that would have mattered; else
+// empty.
 std::string glass_line(const Json& stats);
 
 void print_render_summary(const Json& stats, std::size_t nan_values, bool verbose);

@@ -19,7 +19,7 @@
 #include "apps/cli/stats.h"
 #include "apps/cli/summary.h"
 #include "base/error.h"
-#include "base/free_memory.h"
+#include "base/process_memory.h"
 #include "base/timer.h"
 #include "io/array/table.h"
 #include "kdray/kdray.h"

@@ -16,15 +16,12 @@
 #include <vector>
 
 #include "apps/cli/command.h"
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
-#include "apps/cli/parse.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/stats.h"
 #include "apps/cli/tune_lab.h"
-#include "apps/cli/tune_report.h"
 #include "device/tuning/database.h"
 #include "device/tuning/search.h"
 #include "scene/model/scene.h"
@@ -63,7 +60,7 @@ tuning::Database read_own(const TuneArgs& o) {
   }
 }
 
-// What others wrote meanwhile is kept.
+// Adds to what the file has now, which others may have written meanwhile.
 void add_to_file(const TuneArgs& o, const tuning::Database& found) {
   tuning::Database all = read_own(o);
   all.merge(found);
@@ -124,7 +121,7 @@ std::vector<Checked> check(const TuneArgs& o, std::vector<TuneScenes>& groups,
   return checked;
 }
 
-// Before a search that would be for nothing.
+// Checks the outputs before a search that would be for nothing.
 void check_outputs(const TuneArgs& o, RunFiles& files) {
   if (o.file == "-")
     throw Error(ErrorCode::usage, "--output '-': tunings are added to those of a file; name one");
@@ -196,17 +193,8 @@ Command add_tune(CLI::App& kdray) {
   app->add_option("SCENE", o->scenes,
                   "Scenes to tune for, files or names as for bench (default: a built-in set, for all scenes)")
       ->type_name("");
-  add_text(*app, "--device", "SPEC", "The device, as for render", [o](const std::string& text) {
-    if (text.empty()) throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
-    o->device.device = text;
-  });
-  static constexpr std::array<std::string_view, 3> kSchedules = {"auto", "slices", "global"};
-  add_text(*app, "--schedule", "NAME", "Launches: slices, global, auto; each has entries of its own",
-           [o](const std::string& text) {
-             parse_choice("--schedule", text, kSchedules);
-             o->device.schedule =
-                 static_cast<Schedule>(std::ranges::find(kSchedules, text) - kSchedules.begin());
-           });
+  add_device_option(*app, "The device, as for render", o->device);
+  add_schedule_option(*app, "Launches: slices, global, auto; each has entries of its own", o->device);
   add_real(*app, "--budget", "SECONDS", "The most that a search may take, without loading (default 20)", 0.1,
            1e6, o->search.budget);
   add_real(

@@ -14,7 +14,7 @@ namespace kdray::cli {
 
 namespace {
 
-// The first pixel that differs in a bit.
+// Returns the first pixel that differs in a bit; empty: none.
 std::string difference(const Picture& picture, const Picture& reference) {
   if (picture.width != reference.width || picture.height != reference.height) return "another size";
   const std::size_t n = picture.rgb.size();
@@ -66,7 +66,7 @@ double TuneScene::seconds(const Tuning& tuning) {
 
 namespace {
 
-// By a thread each, so that compilers work side by side; this is not timed.
+// Each scene has a thread, so that compilers work side by side; this is not timed.
 std::string first_fault(TuneScenes& scenes, const Tuning& tuning) {
   std::vector<std::future<std::string>> looks;
   for (const auto& scene : scenes)
@@ -103,6 +103,103 @@ std::vector<TuneScenes> by_key(TuneScenes scenes) {
     group.push_back(std::move(scene));
   }
   return groups;
+}
+
+namespace {
+
+std::string value_text(int value) {
+  return value == 0 ? "own" : std::to_string(value);
+}
+
+// "4 % faster", "1 % slower".
+std::string speed_text(double ratio) {
+  const double percent = 100 * (1 - ratio);
+  return fmt::format("{:.1f} % {}", percent < 0 ? -percent : percent, percent < 0 ? "slower" : "faster");
+}
+
+std::string explain_rival(const tuning::Setting& setting, const tuning::Rival& rival) {
+  const std::string untimed = rival.fault.empty() ? "not timed, the budget was spent" : rival.fault;
+  const std::string what = rival.ratios.empty() ? untimed : speed_text(rival.ratio());
+  return fmt::format("    {:>6}  {:<9}  {}, {} round{}\n", value_text(rival.tuning.*setting.value),
+                     tuning::name_of(rival.verdict), what, rival.ratios.size(),
+                     rival.ratios.size() == 1 ? "" : "s");
+}
+
+nlohmann::json settings_json(const Tuning& tuning) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const tuning::Setting& s : tuning::settings())
+    if (tuning.*s.value != 0) json[std::string(s.name)] = tuning.*s.value;
+  return json;
+}
+
+nlohmann::json step_json(const tuning::Step& step) {
+  nlohmann::json rivals = nlohmann::json::array();
+  for (const tuning::Rival& r : step.rivals)
+    rivals.push_back({{"value", r.tuning.*step.setting->value},
+                      {"verdict", tuning::name_of(r.verdict)},
+                      {"fault", r.fault},
+                      {"ratio", r.ratio()},
+                      {"rounds", r.ratios.size()}});
+  return {{"setting", step.setting->name}, {"before", step.before},   {"after", step.after},
+          {"ratio", step.ratio},           {"seconds", step.seconds}, {"rivals", rivals}};
+}
+
+}  // namespace
+
+std::string one_line_of(const Tuned& tuned) {
+  const tuning::Found& f = tuned.found;
+  return fmt::format("{}: {}, {} in {:.1f} s ({} races; {})", fmt::join(tuned.scenes, " "),
+                     tuning::in_words(f.best), f.kept_start ? "nothing surely faster" : speed_text(f.ratio),
+                     f.seconds, f.steps.size(), f.ended_by);
+}
+
+std::string explain(const tuning::Found& found) {
+  std::string text;
+  for (const tuning::Step& step : found.steps) {
+    const std::string bought = step.after == step.before
+                                   ? "stays"
+                                   : fmt::format("-> {}: {}", value_text(step.after), speed_text(step.ratio));
+    text += fmt::format("  {} ({}): {} {}, in {:.1f} s\n", step.setting->name, step.setting->what,
+                        value_text(step.before), bought, step.seconds);
+    for (const tuning::Rival& r : step.rivals) text += explain_rival(*step.setting, r);
+  }
+  if (!found.last.ratios.empty())
+    text +=
+        fmt::format("  the last race, against the start: {}, {} rounds; {}\n", speed_text(found.last.ratio()),
+                    found.last.ratios.size(), found.kept_start ? "the start stays" : "kept");
+  return text;
+}
+
+std::string table_of(const std::vector<Checked>& checked) {
+  std::string text =
+      fmt::format("  {:<16} {:>10} {:>9} {:>9}  {}\n", "scene", "time", "least", "most", "settings");
+  for (const Checked& c : checked)
+    text += fmt::format(
+        "  {:<16} {:>10.3f} {:>9.3f} {:>9.3f}  {}\n", c.scene, c.rival.ratio(),
+        std::ranges::min(c.rival.ratios), std::ranges::max(c.rival.ratios),
+        c.settings == Tuning{} ? "kdray's own on both sides: noise" : tuning::in_words(c.settings));
+  return text;
+}
+
+nlohmann::json json_of(const std::vector<Tuned>& tuned, const std::vector<Checked>& checked) {
+  nlohmann::json json = {{"tuned", nlohmann::json::array()}, {"checked", nlohmann::json::array()}};
+  for (const Tuned& t : tuned) {
+    nlohmann::json steps = nlohmann::json::array();
+    for (const tuning::Step& step : t.found.steps) steps.push_back(step_json(step));
+    json["tuned"].push_back({{"scenes", t.scenes},
+                             {"settings", settings_json(t.found.best)},
+                             {"ratio", t.found.ratio},
+                             {"seconds", t.found.seconds},
+                             {"ended_by", t.found.ended_by},
+                             {"last_race", t.found.last.ratios},
+                             {"races", steps}});
+  }
+  for (const Checked& c : checked)
+    json["checked"].push_back({{"scene", c.scene},
+                               {"settings", settings_json(c.settings)},
+                               {"ratio", c.rival.ratio()},
+                               {"ratios", c.rival.ratios}});
+  return json;
 }
 
 }  // namespace kdray::cli

@@ -10,19 +10,16 @@
 #include <string>
 
 #include "apps/cli/command.h"
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
-#include "apps/cli/parse.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/scene_input.h"
 #include "apps/cli/stats.h"
 #include "apps/cli/verify_report.h"
-#include "apps/verify/picture.h"
 #include "base/error.h"
 #include "base/timer.h"
-#include "io/image/write.h"
+#include "io/image/picture_file.h"
 
 namespace kdray::cli {
 
@@ -117,10 +114,7 @@ Command add_verify(CLI::App& kdray) {
           o->rays);
   add_path(*app, "--stats", "Write the findings as JSON ('-': to standard output)", o->stats);
   app->add_flag("-q,--quiet", o->quiet, "Say nothing unless kdray went wrong");
-  add_text(*app, "--device", "SPEC", "As for render; one device", [o = o.get()](const std::string& text) {
-    if (text.empty()) throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
-    o->device.device = text;
-  });
+  add_device_option(*app, "As for render; one device", o->device);
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};
 }

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <vector>
 
-#include "apps/cli/message.h"
+#include "apps/cli/output.h"
 
 namespace kdray::cli {
 

@@ -8,13 +8,13 @@
 
 namespace kdray::cli {
 
-// Several lines, each beginning with "[ok]", "[note]" (about the mesh) or "[bad]" (about kdray).
+// Returns several lines, each beginning with "[ok]", "[note]" (about the mesh) or "[bad]" (about kdray).
 std::string findings_in_words(const verify::Findings& found);
 
-// One line that says what it all comes to.
+// Returns the result in one line.
 std::string verdict(const verify::Findings& found);
 
-// Places are the file's; of each kind of finding the first hundred.
+// Returns the first hundred findings of each kind; places are those of the file.
 Json findings_as_json(const verify::Findings& found);
 
 }  // namespace kdray::cli

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/cli/options.h"
-#include "apps/cli/view_options.h"
+#include "apps/cli/render_options.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {
@@ -25,7 +25,7 @@ struct ViewArgs {
   ViewOptions view;
 };
 
-// view_page.cpp, or, in a kdray without that module, view_missing.cpp.
+// Shows the page; it is in view_page.cpp or, in a kdray without that module, in view_missing.cpp.
 int show_page(ViewArgs& args);
 
 }  // namespace kdray::cli

@@ -2,15 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
 
 #include "apps/cli/command.h"
-#include "apps/cli/message.h"
 #include "apps/cli/options.h"
-#include "apps/cli/parse.h"
+#include "apps/cli/output.h"
 #include "base/error.h"
 #include "base/timer.h"
 #include "device/tuning/database.h"
@@ -51,22 +49,6 @@ int run(WarmUpArgs& o) {
   return 0;
 }
 
-void add_device(CLI::App& app, WarmUpArgs& o) {
-  static constexpr std::array<std::string_view, 3> kSchedules = {"auto", "slices", "global"};
-  add_text(app, "--device", "SPEC", "The device, as for render; several with commas",
-           [&o](const std::string& text) {
-             if (text.empty())
-               throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
-             o.device.device = text;
-           });
-  add_text(app, "--schedule", "NAME", "Launches, as for render: auto (default), slices, global",
-           [&o](const std::string& text) {
-             parse_choice("--schedule", text, kSchedules);
-             const auto name = std::find(kSchedules.begin(), kSchedules.end(), text);
-             o.device.schedule = static_cast<Schedule>(name - kSchedules.begin());
-           });
-}
-
 }  // namespace
 
 Command add_warm_up(CLI::App& kdray) {
@@ -74,7 +56,8 @@ Command add_warm_up(CLI::App& kdray) {
       kdray.add_subcommand("warm-up", "Compile beforehand what any scene's first picture would wait for");
   const auto o = std::make_shared<WarmUpArgs>();
   o->device.tunings = tuning::default_file();
-  add_device(*app, *o);
+  add_device_option(*app, "The device, as for render; several with commas", o->device);
+  add_schedule_option(*app, "Launches, as for render: auto (default), slices, global", o->device);
   add_text(*app, "--cache", "DIR",
            "Keep the programs there, as for render (default: the user's cache directory)",
            [o](const std::string& text) {

@@ -21,8 +21,8 @@ double largest(const dvec3& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-// A direction that floats can hold, from one float point to another place; any other one where they are the
-// same.
+// Returns a direction that floats can hold, from one float point to another place; any direction where they
+// are the same.
 dvec3 towards(const vec3& from, const dvec3& to, Random& random) {
   const dvec3 way = to - dvec3(from);
   const vec3 held(way);
@@ -61,7 +61,7 @@ Aims::Aims(const Subject& subject, const Insides& insides, double clearance, std
   }
 }
 
-// Inwards along the face's normal, to either side, less and less deep.
+// Looks along the face's normal for a point inside, on either side, less and less deep.
 std::optional<InsideOrigin> Aims::move_in(std::uint32_t face) const {
   const Mesh& mesh = subject_.mesh;
   const std::uint32_t component = subject_.topology.component_of[face];
@@ -80,7 +80,7 @@ std::optional<InsideOrigin> Aims::move_in(std::uint32_t face) const {
   return {};
 }
 
-// Half of them in all components by turns, the others by the number of faces.
+// Half of the origins go to all components in turn, the others by the number of faces.
 std::vector<InsideOrigin> Aims::find_origins(std::size_t n) {
   if (faces_.empty()) return {};
   const std::size_t n_groups = first_of_.size() - 1;
@@ -99,7 +99,7 @@ std::vector<InsideOrigin> Aims::find_origins(std::size_t n) {
   return origins;
 }
 
-// A corner, or a place on an edge; otherwise anywhere on it.
+// Returns a corner or a place on an edge; without `of_outline` a place anywhere on the triangle.
 dvec3 Aims::place_on_triangle(std::size_t triangle, bool of_outline) {
   const Mesh& mesh = subject_.mesh;
   const std::size_t k = random_.below(3);

@@ -1,19 +1,38 @@
-// What    The rays of a round: origins, and what they are aimed at.
-// Shape   From inside of watertight components: origins that are surely inside, found by moving in from
-//         faces, each used for many rays at the component's vertices and edges, along the axes and all
-//         around. From outside: from a sphere about the scene and from anywhere in it, at places of
-//         primitives.
+// What    The rays of a round: origins, and what they are aimed at. They are chosen by random numbers that
+//         are the same everywhere: the standard's engine with distributions of our own.
+// Shape   Rays from inside of watertight components start at origins that are surely inside, found by moving
+//         in from faces; each serves for many rays at the component's vertices and edges, along the axes and
+//         all around. Rays from outside start on a sphere about the scene or anywhere in it, and go to places
+//         of primitives.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
+#include <random>
 #include <vector>
 
-#include "apps/verify/inside.h"
+#include "apps/verify/exact.h"
 #include "apps/verify/probes.h"
-#include "apps/verify/random.h"
+#include "base/vec.h"
 
 namespace kdray::verify {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  // [0, 1)
+  double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
+  std::size_t below(std::size_t n) { return static_cast<std::size_t>(engine_() % n); }
+  dvec3 direction() {
+    const double z = between(-1, 1), angle = between(0, 2 * std::numbers::pi), r = std::sqrt(1 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
 
 inline constexpr std::int64_t kNowhere = -1;
 
@@ -30,7 +49,7 @@ struct InsideOrigin {
 
 class Aims {
  public:
-  // `clearance` is how far origins keep from their component.
+  // `clearance`: how far origins stay away from their component.
   Aims(const Subject& subject, const Insides& insides, double clearance, std::uint64_t seed);
 
   // Finds all origins inside, `n` at most, in parallel.

@@ -50,7 +50,7 @@ bool in_plane(const Points& p, const dvec3& unit_normal, const dvec3& in_it, dou
                      [&](const dvec3& v) { return std::abs(glm::dot(unit_normal, v - in_it)) <= tolerance; });
 }
 
-// Whether one of a's edges has all of b beyond it, or no deeper on a's side than `tolerance`.
+// Returns whether one of a's edges has all of b beyond it, or no deeper on a's side than `tolerance`.
 bool separated_by_edge(const Points& a, const Points& b, const dvec3& unit_normal, double tolerance) {
   for (std::size_t k = 0; k < 3; ++k) {
     const dvec3 from = a[k], edge = a[(k + 1) % 3] - from;

@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/verify/boxes.h"
 #include "apps/verify/mesh.h"
 
 namespace kdray::verify {
@@ -26,7 +25,7 @@ struct Duplicates {
 
 Duplicates find_duplicates(const Mesh& mesh, const Boxes& boxes);
 
-// Whether the two lie in one plane and cover common ground; the same face counts.
+// Returns whether the two faces lie in one plane and cover common ground; a face does so with itself.
 bool overlap(const Mesh& mesh, std::uint32_t a, std::uint32_t b);
 
 }  // namespace kdray::verify

@@ -34,7 +34,7 @@ struct Component {
 struct Topology {
   std::size_t n_edges = 0;
   std::vector<Edge> open;                   // one face
-  std::size_t loops = 0;                    // that the open edges form: holes' rims, outlines
+  std::size_t loops = 0;                    // of open edges: rims of holes, outlines
   std::vector<Edge> crowded;                // more than two
   std::vector<Edge> turned;                 // two faces, one of them turned over
   std::vector<std::uint32_t> flipped;       // faces

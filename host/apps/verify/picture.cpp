@@ -1,5 +1,4 @@
-#include "apps/verify/picture.h"
-
+// What    The picture of where the findings are.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "apps/verify/tracer.h"
+#include "apps/verify/verify.h"
 
 namespace kdray::verify {
 
@@ -19,7 +19,7 @@ constexpr vec3 kOpen{0.8f, 0.0f, 0.0f}, kCrowded{0.0f, 0.12f, 0.85f}, kFlipped{0
     kDoubled{0.55f, 0.0f, 0.6f}, kOverlapping{0.0f, 0.35f, 0.12f}, kDefect{0.0f, 0.0f, 0.0f};
 constexpr float kThrough = 0.35f;  // how much is seen of what lies behind something
 
-// The faces to fill, by the primitive's number.
+// Returns the colours of the faces to fill, by the primitive's number.
 std::vector<const vec3*> fills_of(const Findings& f, std::size_t n_primitives) {
   std::vector<const vec3*> fills(n_primitives);
   const auto fill = [&](std::uint32_t face, const vec3& color) { fills[f.mesh.numbers[face]] = &color; };
@@ -43,7 +43,7 @@ struct View {
   }
 };
 
-// The scene's own, and from the other side of it.
+// Returns the scene's own view, and one from the other side of it.
 std::vector<View> views_of(const prepare::Prepared& scene, int height) {
   const scene::Camera camera = scene.settings.camera.value_or(scene::Camera{});
   std::vector<View> views = {{camera.from, camera.at, camera.up, camera.vertical_fov, height}};
@@ -87,7 +87,7 @@ class Panel {
     }
   }
 
-  // A disc of this radius, where the point is to be seen.
+  // Draws a disc of this radius where the point is seen.
   void dot(const dvec3& point, double radius, const vec3& color) {
     const std::optional<Projected> at = project(point);
     if (!at) return;

@@ -13,8 +13,7 @@
 
 #include "apps/verify/aims.h"
 #include "apps/verify/duplicates.h"
-#include "apps/verify/exact_hits.h"
-#include "apps/verify/inside.h"
+#include "apps/verify/exact.h"
 #include "apps/verify/tracer.h"
 
 namespace kdray::verify {
@@ -50,7 +49,7 @@ bool is_hit(const Hit& h) {
   return h.primitive >= 0;
 }
 
-// The place of a primitive in Geometry: triangles, then the shapes, kind by kind.
+// Returns the place of each primitive in Geometry, by its number: triangles, then the shapes, kind by kind.
 std::vector<std::uint32_t> places_by_number(const Subject& s) {
   std::vector<std::uint32_t> places(s.scene.primitive_count());
   std::uint32_t place = 0;
@@ -69,11 +68,11 @@ int side_of(const Line& line, const scene::TriangleGeometry& t) {
 
 enum class Leaves { mirrored, scattered, grazing, through };
 
-// What left a hit.
+// A ray that leaves a hit.
 struct Leaving {
   std::size_t parent;  // of the round's hits
   Leaves how;
-  dvec3 side;  // of the surface that it is to be on: its normal there
+  dvec3 side;  // the normal on the side of the surface where it has to be
 };
 
 struct Blamed {
@@ -116,7 +115,7 @@ class Prober {
     out_.components = components.size();
   }
 
-  // n rays, and those that leave their hits.
+  // Traces n rays, and those that leave their hits.
   void round(std::size_t n) {
     std::vector<Aimed> aimed(n);
     std::vector<Ray> rays(n);
@@ -140,7 +139,7 @@ class Prober {
     leave(rays, hits);
   }
 
-  // By the binary tree; the others must agree.
+  // Traces by the binary tree; the other walks must agree.
   std::vector<Hit> trace(const std::vector<Ray>& rays) {
     std::vector<Hit> hits = tracer_.closest(rays, Traversal::binary);
     for (const Traversal walk : kOtherWalks) {
@@ -173,8 +172,8 @@ class Prober {
     if (!sure) count(&Probes::in_doubt);
   }
 
-  // Whether the hit is one of the component's and goes out through it. (Only a closed one says which way is
-  // out.)
+  // Returns whether the hit is on the component and the ray goes out through it. (Only a closed component has
+  // a way out that is known.)
   bool leaves(const Ray& ray, const Hit& hit, std::uint32_t component) const {
     const std::optional<std::uint32_t> face = face_of(hit);
     if (!face || s_.topology.component_of[*face] != component) return false;
@@ -278,8 +277,7 @@ class Prober {
     how.push_back(leaving);
   }
 
-  // A ray that leaves a triangle never meets it again. What is sure of the
-  // shapes, meets_again tells.
+  // A ray that leaves a triangle never meets it again. For shapes, meets_again() says what is certain.
   void check_self(const Ray& ray, const Leaving& how, const Hit& from, const Hit& found, std::size_t i) {
     if (!is_hit(found) || found.primitive != from.primitive) return;
     const Line line = line_of(ray);
@@ -314,7 +312,7 @@ class Prober {
     const bool out_a = glm::dot(s_.mesh.normal(*a), line.direction) > 0;
     const bool out_b = glm::dot(s_.mesh.normal(*b), line.direction) > 0;
     if (out_a != out_b) return;
-    // One real crossing of what the two hits make two.
+    // The surface is really crossed once where the two hits cross it twice.
     const dvec3 step = 0x1p-11 * reach_ / glm::length(line.direction) * line.direction;
     const Side before = insides_.side_of(line.origin - step, component, clearance());
     const Side behind = insides_.side_of(line.origin + step, component, clearance());

@@ -1,5 +1,5 @@
-// What    Rays through the user's scene, and what kdray did wrong with them: counts, and witnesses to look
-//         at.
+// What    Rays through the user's scene, and what kdray did wrong with them: counts, and examples of such
+//         rays.
 // Shape   Rounds of rays: some from inside of watertight components, at their vertices, edges and all around;
 //         some from outside and in between, at chosen places of all primitives; from each hit one that leaves
 //         it on its own side (mirrored, diffuse or grazing) and one that goes straight on. All are traced by
@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/verify/boxes.h"
 #include "apps/verify/edges.h"
 #include "apps/verify/mesh.h"
 #include "kdray/kdray.h"
@@ -45,12 +44,12 @@ struct Witness {
 struct Probes {
   std::uint64_t from_inside = 0, from_outside = 0, leaving = 0;  // rays
   std::uint64_t origins = 0, components = 0;                     // inside of which rays began
-  std::uint64_t in_doubt = 0;  // rays from inside of which nothing certain can be said
+  std::uint64_t in_doubt = 0;  // rays from inside that can't be judged with certainty
   // Rays that went straight on and entered, or left, a closed component twice in one place: at an edge a
   // ray's origin, moved off one face by its error bound, may come to lie before the other.
   std::uint64_t crossed_twice = 0;
   std::array<std::uint64_t, kDefects> count{};
-  std::vector<Witness> witnesses;  // of each defect some
+  std::vector<Witness> witnesses;  // some of each defect
 
   std::uint64_t rays() const { return from_inside + from_outside + leaving; }
   std::uint64_t defects() const;

@@ -1,6 +1,6 @@
-// What    The scene on a device as the probes ask it: the closest hit by any walk, and where the rays that
-//         leave a hit begin, by the code that renders. All in the scene's own space (math/local_space.h):
-//         origins are not rounded on the way.
+// What    The scene on a device, for the probes: returns the closest hits by any walk, and where rays that
+//         leave a hit begin, both by the code that renders. All is in the scene's own space
+//         (base/local_space.h), so that origins are not rounded on the way.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@
 
 namespace kdray::verify {
 
-// `prepared` as if the file had been in the scene's own space, which is then the world's.
+// Returns `prepared` as if the file had been in the scene's own space, which is then the world's.
 prepare::Prepared in_local_space(prepare::Prepared prepared);
 
 class Tracer {
  public:
-  // `scene`: in_local_space's; it must live as long.
+  // `scene` comes from in_local_space(), and has to live as long.
   Tracer(const prepare::Prepared& scene, const DeviceOptions& device);
 
   std::vector<Hit> closest(std::span<const Ray> rays, Traversal traversal = Traversal::automatic);

@@ -5,8 +5,7 @@
 
 #include "accel/prepare/instanced.h"
 #include "accel/prepare/prepared.h"
-#include "apps/verify/boxes.h"
-#include "apps/verify/picture.h"
+#include "apps/verify/mesh.h"
 #include "apps/verify/tracer.h"
 #include "base/error.h"
 #include "base/timer.h"
@@ -17,8 +16,8 @@ namespace {
 
 constexpr int kFilmSide = 256;
 
-// The scene's own view, small, with all that shading does. A render that comes upon what is no number, or a
-// ray lost on its stack, ends as an internal error.
+// Renders the scene's own view, small, with all that shading does, and looks for values that are no numbers.
+// A render that meets one itself, or loses a ray on its stack, ends with an internal error.
 Film look_through(const prepare::Prepared& prepared, const DeviceOptions& device) {
   Film film;
   Renderer renderer(PreparedScene(prepare::Prepared(prepared)), device);

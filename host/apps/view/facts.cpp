@@ -1,9 +1,10 @@
 #include "apps/view/facts.h"
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "accel/prepare/prepared.h"
-#include "io/image/queue_colors.h"
+#include "io/image/color.h"
 #include "scene/model/frame.h"
 #include "scene/model/scene.h"
 
@@ -30,7 +31,7 @@ Json json_of(const vec3& color) {
   return {color.x, color.y, color.z};
 }
 
-// In milliseconds; stages are device time, added over the queues.
+// Times are in milliseconds; those of stages are device time, added over the queues.
 Json times_of(const Statistics::Seconds& s) {
   Json times = {{"render", s.render * 1e3},
                 {"prepare", s.prepare * 1e3},
@@ -177,6 +178,15 @@ std::string problem_message(const std::string& about, const std::string& what) {
 
 std::string busy_message(const std::string& what) {
   return text_of({{"type", "busy"}, {"text", what}});
+}
+
+Bytes make_frame(std::string_view head, std::string_view picture) {
+  std::string bytes;
+  bytes.reserve(4 + head.size() + picture.size());
+  for (int k = 0; k < 4; ++k) bytes += static_cast<char>(static_cast<std::uint32_t>(head.size()) >> (8 * k));
+  bytes += head;
+  bytes += picture;
+  return std::make_shared<const std::string>(std::move(bytes));
 }
 
 }  // namespace kdray::view

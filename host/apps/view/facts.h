@@ -1,15 +1,19 @@
-// What    The texts that the page is sent: of a scene, of a frame, of what was picked, of what went wrong.
-// Shape   JSON objects with a "type".
+// What    The messages that the page is sent: texts of a scene, of a frame, of what was picked, of what went
+//         wrong; and a picture on its way to a page.
+// Shape   A text is a JSON object with a "type". A picture is one message of bytes: four with the length of
+//         the text about it (little endian), the text, the picture's file.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/view/message.h"
 #include "apps/view/pick.h"
 #include "apps/view/scene_renderer.h"
+#include "apps/view/server.h"
 #include "base/box.h"
 #include "kdray/kdray.h"
 
@@ -36,5 +40,7 @@ std::string cells_message(std::size_t scene, int depth, const std::vector<DBox>&
 // `about`: "scene" (it can't be opened), "look", "pick".
 std::string problem_message(const std::string& about, const std::string& what);
 std::string busy_message(const std::string& what);  // empty: not any more
+
+Bytes make_frame(std::string_view head, std::string_view picture);
 
 }  // namespace kdray::view

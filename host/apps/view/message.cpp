@@ -99,8 +99,6 @@ void read_samples(const Json& value, Fields& fields, ViewRequest& request) {
 ViewRequest view_request_of(const Json& value) {
   static constexpr std::array<std::string_view, 7> kChannels = {"",     "depth",   "normal", "primitive",
                                                                 "cost", "samples", "queue"};
-  static constexpr std::array<std::string_view, 3> kModes = {"auto", "pdprt", "odprt"};
-  static constexpr std::array<std::string_view, 5> kWalks = {"auto", "binary", "wide", "packet", "batch"};
   Fields fields(value);
   ViewRequest request;
   request.scene = static_cast<std::size_t>(fields.whole("scene", 0, 1 << 20));

@@ -1,7 +1,7 @@
 // What    The page's messages, checked: every field of its type and in its range, and no unknown field.
 // Shape   JSON texts of at most kMostText bytes. The page's own numbers (of looks, frames, picks) come back
 //         in what answers them.
-// Errors  kdray::Error, ErrorCode::input: for whoever sent it, and the end of its connection.
+// Errors  kdray::Error, ErrorCode::input, which is sent to the page and ends its connection.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ inline constexpr int kMostSide = 4096;
 inline constexpr int kMostPixels = 8 << 20;
 inline constexpr int kMostCellDepth = 24;
 
-// What the page is to show now; `moving`: more looks are going to follow at once.
+// What the page wants to show now; `moving`: more looks follow at once.
 struct Look {
   std::uint32_t number = 0;
   bool moving = false;
@@ -43,7 +43,7 @@ using Message = std::variant<Look, Shown, Pick, Cells>;
 
 Message parse_message(std::string_view text);
 
-// The token in a first message {"type": "hello", "token": "..."}, or nothing.
+// Returns the token in a first message, {"type": "hello", "token": "..."}; it may be empty.
 std::string token_of_hello(std::string_view text);
 
 }  // namespace kdray::view

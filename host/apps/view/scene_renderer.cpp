@@ -1,7 +1,12 @@
 #include "apps/view/scene_renderer.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <numbers>
+#include <utility>
 
 #include "accel/prepare/prepared.h"
 #include "scene/model/scene.h"
@@ -70,6 +75,75 @@ std::optional<Picked> SceneRenderer::pick(const ViewRequest& request, double x, 
     picker_.emplace(scene(), std::move(geometries), settings_.device);
   }
   return picker_->pick(eye_ray(request.camera, static_cast<double>(request.width) / request.height, x, y));
+}
+
+namespace {
+
+struct Cell {
+  std::uint32_t node = 0;
+  Box box;
+};
+
+bool is_leaf(const layout::KdNode& node) {
+  return (node.word1 & 3) == KDRAY_NODE_LEAF;
+}
+
+// Splits the cell. A plane that doesn't part its box leaves it to one of the two.
+void split(const Cell& cell, const layout::KdNode& node, std::vector<Cell>& below) {
+  const int axis = static_cast<int>(node.word1 & 3);
+  const auto plane = std::bit_cast<float>(node.word0);
+  Cell low{cell.node + 1, cell.box}, high{node.word1 >> 2, cell.box};
+  low.box.hi[axis] = std::min(plane, cell.box.hi[axis]);
+  high.box.lo[axis] = std::max(plane, cell.box.lo[axis]);
+  for (const Cell& child : {low, high})
+    if (!child.box.empty()) below.push_back(child);
+}
+
+}  // namespace
+
+std::vector<DBox> cells_of(const prepare::Prepared& scene, int depth) {
+  const auto& nodes = scene.flat.nodes;
+  if (nodes.size() == 0 || scene.geometry.bounds.empty()) return {};
+  std::vector<Cell> level{{0, scene.geometry.bounds}};
+  for (int d = 0; d < depth; ++d) {
+    std::vector<Cell> below;
+    for (const Cell& cell : level) {
+      const layout::KdNode& node = nodes.data()[cell.node];
+      is_leaf(node) ? below.push_back(cell) : split(cell, node, below);
+    }
+    if (below.size() > kMostCells) break;
+    level = std::move(below);
+  }
+  std::vector<DBox> boxes;
+  const LocalSpace& space = scene.geometry.space;
+  for (const Cell& cell : level)
+    boxes.push_back({space.world(dvec3(cell.box.lo)), space.world(dvec3(cell.box.hi))});
+  return boxes;
+}
+
+FileWatcher::FileWatcher(std::vector<std::filesystem::path> files)
+    : files_(std::move(files)), known_(state()), last_(known_) {}
+
+std::string FileWatcher::state() const {
+  std::string seen;
+  for (const std::filesystem::path& file : files_) {
+    struct stat info {};
+    const bool there = ::stat(file.c_str(), &info) == 0;
+    if (there)
+      seen += std::to_string(info.st_ino) + " " + std::to_string(info.st_size) + " " +
+              std::to_string(info.st_mtim.tv_sec) + "." + std::to_string(info.st_mtim.tv_nsec);
+    seen += "\n";
+  }
+  return seen;
+}
+
+bool FileWatcher::changed() {
+  std::string now = state();
+  const bool settled = now == last_;
+  last_ = std::move(now);
+  if (!settled || last_ == known_) return false;
+  known_ = last_;
+  return true;
 }
 
 }  // namespace kdray::view

@@ -1,8 +1,13 @@
-// What    A scene that pages show: where it comes from, and, once it is loaded, its renderer and what answers
-//         picks.
+// What    A scene that pages show: where it comes from, and, once it is loaded, its renderer, what answers
+//         picks, the cells of its tree, and what tells when one of the files that it was made of has changed.
+// Shape   FileWatcher compares size, time of change and inode. A file that is still being written differs at
+//         each check, so a change counts when two checks after it agree.
+// Units   Cells are boxes in the scene's own units.
 // Threads One thread calls render(), one calls pick(); any may call scene().
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -10,8 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "accel/prepare/prepared.h"
 #include "apps/view/pick.h"
 #include "apps/view/view_request.h"
+#include "base/box.h"
 #include "kdray/kdray.h"
 
 namespace kdray::view {
@@ -33,12 +40,12 @@ class SceneRenderer {
   SceneRenderer(LoadedScene loaded, const Settings& settings);
 
   const PreparedScene& scene() const { return loaded_.scene; }
-  // All that was read, or looked for in vain, to make it.
+  // Returns all files that were read to make it, and those that were not found.
   std::vector<std::filesystem::path> files() const;
-  // Where the scene, or the command line, has the camera.
+  // Returns the camera of the scene, or of the command line.
   Camera camera(int width, int height) const;
 
-  // As the page sees it, with options for a picture of any size.
+  // Renders what the page asks for, with options for a picture of any size.
   Picture render(const ViewRequest& request, const RenderOptions& options);
   const Statistics& statistics() const { return renderer_->statistics(); }
 
@@ -52,6 +59,27 @@ class SceneRenderer {
   std::optional<Renderer> renderer_;
   int queues_ = 0;  // of the renderer
   std::optional<Picker> picker_;
+};
+
+inline constexpr std::size_t kMostCells = 4096;
+
+// Returns the cells of the kd-tree to a depth; leaves above it are cells, too. There are at most kMostCells,
+// from a smaller depth if need be, and none for a scene without a binary form.
+std::vector<DBox> cells_of(const prepare::Prepared& scene, int depth);
+
+class FileWatcher {
+ public:
+  FileWatcher() = default;
+  explicit FileWatcher(std::vector<std::filesystem::path> files);
+
+  // Returns true once for each change.
+  bool changed();
+
+ private:
+  std::string state() const;
+
+  std::vector<std::filesystem::path> files_;
+  std::string known_, last_;  // of all files
 };
 
 }  // namespace kdray::view

@@ -79,7 +79,7 @@ void Server::Impl::accept() {
     if (failure == asio::error::operation_aborted) return;
     if (!failure) serve(std::move(socket), context);
     if (!failure) return accept();
-    // Out of descriptors, say: waits until other connections have been closed.
+    // For example out of descriptors: waits until other connections have been closed.
     pause.expires_after(kPause);
     pause.async_wait([this](Failure ended) {
       if (!ended) accept();

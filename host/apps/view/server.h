@@ -1,8 +1,12 @@
-// What    The server of the page: HTTP and WebSockets on one address, by a single thread.
+// What    The server of the page: HTTP and WebSockets on one address, by a single thread; and the two sides
+//         of a WebSocket whose page knows the token: the page, to which messages are sent, and the handler of
+//         what all pages send.
 // Shape   A connection asks for files, one after the other, or becomes a WebSocket, whose page is a Client
 //         once it has shown that it knows the token. Everything that a client can make grow has a limit.
 // Errors  ErrorCode::input for an address that can't be listened on. Clients can't cause any: what they do
 //         wrong ends their connection.
+// Threads Any thread may send to a Client. The server's thread alone calls a ClientHandler, which releases
+//         its clients before the server ends.
 #pragma once
 
 #include <chrono>
@@ -10,18 +14,35 @@
 #include <memory>
 #include <string>
 
-#include "apps/view/client_handler.h"
+#include "apps/view/message.h"
 
 namespace kdray::view {
+
+using Bytes = std::shared_ptr<const std::string>;
+
+class Client {
+ public:
+  virtual ~Client() = default;
+  virtual void send(std::string text) = 0;
+  virtual void send(Bytes frame) = 0;
+};
+
+class ClientHandler {
+ public:
+  virtual ~ClientHandler() = default;
+  virtual void connected(const std::shared_ptr<Client>& client) = 0;
+  virtual void received(const Client& client, const Message& message) = 0;
+  virtual void disconnected(const Client& client) = 0;
+};
 
 struct ServerOptions {
   std::string bind = "127.0.0.1";  // an address in numbers
   int port = 0;                    // 0: kUsualPort, or the next one that is free
-  // Pages of this machine's other servers may have the page in a frame: for notebooks. None may otherwise.
+  // Whether pages of other servers on this machine may show the page in a frame, as notebooks do.
   bool framed = false;
-  // It ends so long after the last page was closed; none: it stays.
+  // The server ends so long after the last page was closed; 0: it stays.
   std::chrono::milliseconds linger{0};
-  // Called twice a second: true ends it.
+  // Called twice a second; true ends the server.
   std::function<bool()> is_over = {};
 };
 
@@ -44,7 +65,7 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   int port() const;
-  // For the browser; it has the token.
+  // Returns the address for the browser, with the token.
   std::string address() const;
 
   // Serves until stop(), or as the options say. To be called once.

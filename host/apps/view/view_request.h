@@ -1,15 +1,21 @@
-// What    What a page asks to see: a scene, from where, how large, and how it is rendered; and the
-//         options that this is for kdray.
+// What    What a page asks to see: a scene, from where, how large, and how it is rendered; and the options of
+//         kdray that this comes to.
 // Units   The scene's own, degrees, pixels.
 // Shape   0, an empty name or a negative weight: as the command line or the scene has it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "kdray/kdray.h"
 
 namespace kdray::view {
+
+// Names, in the order of the enumerations Mode and Traversal.
+inline constexpr std::array<std::string_view, 3> kModes = {"auto", "pdprt", "odprt"};
+inline constexpr std::array<std::string_view, 5> kWalks = {"auto", "binary", "wide", "packet", "batch"};
 
 enum class Samples { as_given, number, adaptive };
 
@@ -27,7 +33,7 @@ struct ViewRequest {
   int queues = 0;
 };
 
-// What the command line has said, for all requests.
+// What the command line says, for all requests.
 struct Settings {
   View view;  // camera, background
   RenderOptions render;
@@ -36,11 +42,11 @@ struct Settings {
 };
 
 View view_of(const ViewRequest& request, const Settings& settings);
-// What the finished picture is made with.
+// Returns the options of the finished picture.
 RenderOptions render_of(const ViewRequest& request, const Settings& settings);
 int queues_of(const ViewRequest& request, const Settings& settings);
 
-// The command that renders just this picture: its bits, wherever it runs. `scene`: a file.
+// Returns the command that renders just this picture, bit for bit, wherever it runs. `scene`: a file.
 std::string command_for(const ViewRequest& request, const Settings& settings, const std::string& scene);
 
 }  // namespace kdray::view

@@ -4,8 +4,8 @@
 #include <new>
 #include <utility>
 
-#include "apps/view/cells.h"
 #include "apps/view/pixels.h"
+#include "apps/view/scene_renderer.h"
 #include "base/timer.h"
 
 namespace kdray::view {
@@ -84,8 +84,8 @@ void ViewService::received(const Client& client, const Message& message) {
   if (state != nullptr) std::visit([&](const auto& m) { handle(*state, m); }, message);
 }
 
-// A page that asks for a scene which it has not been told of is told of it first, and takes the camera from
-// that message.
+// A page that asks for another scene than its last one is sent the message about it first, and takes the
+// camera from that.
 void ViewService::handle(ClientState& state, const Look& look) {
   const std::size_t scene = look.request.scene;
   if (scene >= sources_.size()) throw Error(ErrorCode::input, "the page's message: there is no such scene");
@@ -167,7 +167,7 @@ void ViewService::open(std::size_t scene) {
   send_to_all(busy_message("opening " + sources_[scene].name), scene);
 }
 
-// Whether the scene changed while it was being opened; it is opened once more then.
+// Returns whether the scene changed while it was being opened, and opens it once more then.
 bool ViewService::is_outdated(std::size_t scene) {
   const bool outdated = std::exchange(opening_[scene], Opening::no) == Opening::outdated;
   if (outdated) open(scene);
@@ -316,7 +316,8 @@ void ViewService::deliver(const Task& task, const Picture& picture, double secon
   state->pacer.finish(task.work, task.last);
 }
 
-// The page has the picture already, but for what JPEG lost of it; so the next request doesn't wait for this.
+// Has the worker send the picture as a PNG. The page has it already, but for what JPEG lost; so the next
+// request doesn't wait for this.
 void ViewService::pack(const Task& task, std::shared_ptr<const Picture> picture) {
   worker_.add([this, task, picture] {
     {

@@ -18,12 +18,10 @@
 #include <thread>
 #include <vector>
 
-#include "apps/view/client_handler.h"
 #include "apps/view/facts.h"
-#include "apps/view/file_watcher.h"
 #include "apps/view/frame_pacer.h"
-#include "apps/view/resolution_controller.h"
 #include "apps/view/scene_renderer.h"
+#include "apps/view/server.h"
 #include "apps/view/worker.h"
 
 namespace kdray::view {
@@ -36,7 +34,8 @@ class ViewService : public ClientHandler {
   ViewService(const ViewService&) = delete;
   ViewService& operator=(const ViewService&) = delete;
 
-  // Opens a scene once more, if it is open: for scenes without files whose changes could be seen.
+  // Opens a scene once more, if it is open; for scenes that don't come from files, whose changes would be
+  // seen.
   void open_again(std::size_t scene);
 
   void connected(const std::shared_ptr<Client>& client) override;
@@ -47,7 +46,7 @@ class ViewService : public ClientHandler {
   // A page, with its frames in flight.
   struct ClientState {
     std::shared_ptr<Client> client;
-    std::size_t scene = 0;  // the last one that it was told of
+    std::size_t scene = 0;  // the last that the page was sent a message about
     FramePacer pacer;
     ResolutionController resolution;
   };
@@ -73,7 +72,7 @@ class ViewService : public ClientHandler {
   void send_scene(ClientState& state, std::size_t scene, bool again);
   void send_to_all(const std::string& text, std::optional<std::size_t> scene = {});
 
-  // The worker opens the scene, and calls opened() or not_opened().
+  // Has the worker open the scene, which then calls opened() or not_opened().
   void open(std::size_t scene);
   void open_anew(std::size_t scene);
   bool is_outdated(std::size_t scene);

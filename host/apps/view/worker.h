@@ -1,5 +1,5 @@
 // What    A thread for what would keep a picture waiting: reading scenes, PNGs, picks.
-// Shape   One thing after the other, in order; so many may wait, and what comes then is not taken.
+// Shape   The works are done one after the other, in order; only so many may wait, and more are not taken.
 #pragma once
 
 #include <condition_variable>
@@ -14,11 +14,11 @@ namespace kdray::view {
 class Worker {
  public:
   explicit Worker(std::size_t most);
-  ~Worker();  // what waits is not done any more
+  ~Worker();  // drops what still waits
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // Work must not throw. False: too much is waiting.
+  // `work` must not throw. Returns false where too much is waiting.
   bool add(std::function<void()> work);
 
  private:

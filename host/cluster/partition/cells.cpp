@@ -44,13 +44,13 @@ Item item_of(std::uint64_t number, const Box& bounds) {
   return {plain, plain.lo * 0.5f + plain.hi * 0.5f, number};
 }
 
-// What goes below bin `plane` along `axis`.
+// Where a node is split: what lies below bin `plane` along `axis` goes to one side.
 struct Split {
   int axis = 0;
   std::size_t plane = 0;
 };
 
-// Along `axis`; of a node whose middles are one point, by numbers.
+// Returns the item's bin along `axis`; in a node whose middles are one point, by its number.
 std::size_t bin_of(const Node& node, int axis, const Item& item) {
   double lo = node.all.middles.lo[axis], hi = node.all.middles.hi[axis], at = item.middle[axis];
   if (node.is_point()) {
@@ -157,7 +157,7 @@ class Divider {
     return best->split;
   }
 
-  // The two sides of a node, of which the bins tell.
+  // The two sides of a node, from its bins.
   std::array<Node, 2> sides_of(std::size_t i, const Split& split) const {
     std::array<Node, 2> sides;
     for (std::size_t bin = 0; bin < kBins; ++bin)

@@ -1,17 +1,24 @@
-// What    Primitives on their way from who has read them to who holds them: as the kernels have them, with
-//         their numbers in the file and what belongs to their corners.
+// What    Primitives on their way from the rank that has read them to the rank that holds them: as the
+//         kernels have them, with their numbers in the file and what belongs to their corners; and the two
+//         steps that all ranks take with them together: normals for zero-area triangles, and the way itself.
 // Shape   Each kind is in the order of the file. A triangle's `normals` is its place among the set's own.
 //         `colors` has a row for each triangle or none at all, `texcoords` as many rows for each as there are
 //         sets.
+//         Primitives travel in batches, which all ranks exchange at the same time. The receiver knows before
+//         how many come from whom, and puts each where it belongs.
+// Memory  Of the way: the primitives that go and those that have come, and a batch. Of the normals: all
+//         zero-area triangles of the scene, on every rank.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "accel/flatten/flatten.h"
-#include "base/raw_vector.h"
+#include "base/memory.h"
+#include "cluster/transport/together.h"
 #include "layout/kinds.h"
 #include "scene/model/geometry.h"
 #include "scene/model/scene.h"
@@ -41,7 +48,7 @@ struct PrimitiveSet {
   }
 };
 
-// From the first of n to before the last: which of n things are the `rank`-th of `size` ranks'.
+// Which of n things the `rank`-th of `size` ranks has: from `first` to before `last`.
 struct Slice {
   std::size_t first = 0, last = 0;
 };
@@ -53,11 +60,11 @@ inline Slice slice_of(std::size_t n, int rank, int size) {
   return {at(rank), at(rank + 1)};
 }
 
-// Of each kind of a flattened scene the rank's slice, behind what there is.
+// Appends the rank's slice of each kind of a flattened scene.
 void add_slice(PrimitiveSet& set, const scene::Scene& scene, const scene::Geometry& geometry,
                const flatten::FlatScene& flat, int rank, int size);
 
-// visit(number, bounds) for each of the primitives, in the order of kinds.
+// Calls visit(number, bounds) for each of the primitives, in the order of kinds.
 template <class Visit>
 void for_each_box(const PrimitiveSet& set, const Visit& visit) {
   for (const layout::Triangle& t : set.triangles) visit(t.number, scene::bounds_of(t));
@@ -65,5 +72,19 @@ void for_each_box(const PrimitiveSet& set, const Visit& visit) {
     for (const auto& s : decltype(kind)::of(set)) visit(s.number, bounds_of(s.shape));
   });
 }
+
+// Gives the zero-area triangles (scene/model/zero_area.h) without normals, in all shares, those that they
+// have in the whole scene.
+void settle_zero_area(PrimitiveSet& set, transport::Together& all);
+
+// How many rows of colours and texture coordinates each triangle has; the same on all ranks.
+struct CornerRows {
+  std::size_t colors = 0, texcoords = 0;
+};
+
+// Brings every primitive to the rank that holds its cell, and returns those that have come to this one.
+// `rank_of` has the rank of each of the set's primitives, in the order of for_each_box().
+PrimitiveSet bring(PrimitiveSet set, std::span<const std::uint32_t> rank_of, const CornerRows& rows,
+                   transport::Together& all);
 
 }  // namespace kdray::partition

@@ -3,27 +3,123 @@
 //         are used, from which the scene's space follows; and to fetch them, make triangles, and let go of
 //         them. What is made of some faces is made by the code that makes it of all.
 // Memory  The share's vertices, faces and triangles, and a batch of each.
-
 #include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
-#include "cluster/partition/facts.h"
+#include "base/box.h"
+#include "cluster/partition/primitive_set.h"
 #include "cluster/partition/share.h"
-#include "cluster/partition/vertices.h"
-#include "cluster/partition/wire.h"
-#include "cluster/partition/zero_area.h"
-#include "scene/import/files_read.h"
+#include "cluster/transport/together.h"
+#include "scene/import/files.h"
 #include "scene/import/load.h"
 #include "scene/import/ply/ply_rows.h"
 #include "scene/model/frame.h"
-#include "scene/model/settle_normals.h"
+#include "scene/model/normals.h"
 
 namespace kdray::partition {
 
 namespace {
 
 using scene::ply::Corners, scene::ply::Rows, scene::ply::Vertices;
+using transport::Bytes, transport::WireReader, transport::WireWriter;
+
+// The vertices of a mesh, of which each rank holds a run. A rank that needs vertices names them in ascending
+// order, each once, and gets them in that order. All ranks ask at the same time, those that need nothing as
+// well. What is asked for at a time takes memory twice.
+class VertexHolders {
+ public:
+  // `own` are those of slice_of(rows.n_vertices(), rank, size).
+  VertexHolders(transport::Together& all, const Rows& rows, Vertices own);
+
+  // Tells the holders of these vertices that they are used.
+  void use(const std::vector<std::uint32_t>& wanted);
+  // Returns the bounds of all vertices that are used.
+  DBox bounds_of_used();
+
+  Vertices fetch(const std::vector<std::uint32_t>& wanted);
+
+ private:
+  std::vector<std::vector<std::uint32_t>> ask(const std::vector<std::uint32_t>& wanted);
+
+  transport::Together& all_;
+  std::uint64_t n_vertices_;
+  scene::ply::VertexColumns columns_;
+  std::uint64_t first_;
+  Vertices own_;
+  std::vector<std::uint8_t> used_;
+};
+
+VertexHolders::VertexHolders(transport::Together& all, const scene::ply::Rows& rows, Vertices own)
+    : all_(all),
+      n_vertices_(rows.n_vertices()),
+      columns_(rows.columns()),
+      first_(slice_of(n_vertices_, all.rank(), all.size()).first),
+      own_(std::move(own)),
+      used_(own_.places.size()) {}
+
+// Returns what each rank wants of this one, as places among its own.
+std::vector<std::vector<std::uint32_t>> VertexHolders::ask(const std::vector<std::uint32_t>& wanted) {
+  std::vector<Bytes> out(static_cast<std::size_t>(all_.size()));
+  auto first = wanted.begin();
+  for (int to = 0; to < all_.size(); ++to) {
+    const auto last = std::lower_bound(first, wanted.end(), slice_of(n_vertices_, to, all_.size()).last);
+    out[static_cast<std::size_t>(to)] = transport::bytes_of_list(std::span(first, last));
+    first = last;
+  }
+  const std::vector<Bytes> in = all_.exchange(std::move(out));
+  std::vector<std::vector<std::uint32_t>> asked(in.size());
+  for (std::size_t from = 0; from < in.size(); ++from) {
+    WireReader reader(in[from], static_cast<int>(from));
+    reader.take(asked[from], in[from].size() / sizeof(std::uint32_t));
+    reader.end();
+    for (std::uint32_t& vertex : asked[from]) {
+      vertex = static_cast<std::uint32_t>(vertex - first_);  // what is before the first becomes large
+      if (vertex >= own_.places.size()) transport::throw_odd_message(static_cast<int>(from));
+    }
+  }
+  return asked;
+}
+
+void VertexHolders::use(const std::vector<std::uint32_t>& wanted) {
+  for (const auto& asked : ask(wanted))
+    for (const std::uint32_t vertex : asked) used_[vertex] = 1;
+}
+
+DBox VertexHolders::bounds_of_used() {
+  DBox box;
+  for (std::size_t i = 0; i < used_.size(); ++i)
+    if (used_[i] != 0) box.grow(own_.places[i]);
+  return all_.join_values(box, [](DBox& sum, const DBox& one) { sum.grow(one); });
+}
+
+Vertices VertexHolders::fetch(const std::vector<std::uint32_t>& wanted) {
+  const auto asked = ask(wanted);
+  std::vector<Bytes> out(asked.size());
+  for (std::size_t to = 0; to < asked.size(); ++to) {
+    WireWriter writer(out[to]);
+    writer.put_some(own_.places, asked[to]);
+    if (!own_.normals.empty()) writer.put_some(own_.normals, asked[to]);
+    if (!own_.colors.empty()) writer.put_some(own_.colors, asked[to]);
+  }
+  const std::vector<Bytes> in = all_.exchange(std::move(out));
+  Vertices found;
+  auto first = wanted.begin();
+  for (int from = 0; from < all_.size(); ++from) {
+    const auto last = std::lower_bound(first, wanted.end(), slice_of(n_vertices_, from, all_.size()).last);
+    const auto n = static_cast<std::size_t>(last - first);
+    WireReader reader(in[static_cast<std::size_t>(from)], from);
+    reader.take(found.places, n);
+    if (columns_.has_normals) reader.take(found.normals, n);
+    if (columns_.has_colors) reader.take(found.colors, n);
+    reader.end();
+    first = last;
+  }
+  return found;
+}
 
 constexpr std::size_t kBatchOfFaces = std::size_t{1} << 17;  // faces
 
@@ -31,7 +127,7 @@ scene::ply::RowRange range_of(const Slice& slice) {
   return {slice.first, slice.last - slice.first};
 }
 
-// The vertices of some faces, in ascending order.
+// Returns the vertices of some faces, in ascending order.
 std::vector<std::uint32_t> vertices_of(std::span<const Corners> faces) {
   std::vector<std::uint32_t> vertices;
   vertices.reserve(3 * faces.size());
@@ -51,7 +147,7 @@ class PlyReader {
   PlyReader(const std::filesystem::path& file, Rows& rows, transport::Together& all)
       : file_(file.string()), rows_(rows), all_(all) {}
 
-  // False: some row is no good, of whatever rank's.
+  // Returns false where a row is unusable, on any rank.
   bool read_rows() {
     const Slice vertices = slice_of(rows_.n_vertices(), all_.rank(), all_.size());
     const Slice faces = slice_of(rows_.n_faces(), all_.rank(), all_.size());
@@ -170,7 +266,7 @@ class PlyReader {
   Share share_;
 };
 
-// Nothing where some rank can't, or has another file.
+// Opens the file. Returns nothing where some rank can't, or has another file.
 std::optional<Rows> open_together(const std::filesystem::path& file, transport::Together& all) {
   std::optional<Rows> rows = Rows::open(file);
   const std::uint64_t own = rows ? rows->fingerprint() | 1 : 0;

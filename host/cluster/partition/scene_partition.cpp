@@ -7,12 +7,12 @@
 
 #include "accel/flatten/scene_hash.h"
 #include "accel/kdtree/build.h"
-#include "accel/prepare/within.h"
+#include "accel/prepare/prepared.h"
 #include "base/timer.h"
+#include "cluster/partition/primitive_set.h"
 #include "cluster/partition/share.h"
-#include "cluster/partition/travel.h"
 #include "scene/import/load.h"
-#include "scene/primitives/pack.h"
+#include "scene/primitives/shape_tools.h"
 
 namespace kdray::partition {
 

@@ -4,7 +4,7 @@
 //         file and the words that it has where the whole scene is in one place: so the nearest hit of all
 //         partitions, of equal ones that of the least number, is the whole scene's. Bounds of partitions may
 //         overlap. docs/design/distribute.md
-// Errors  Those of loading the scene in one process, on all ranks.
+// Errors  The errors of loading the scene in one process, on all ranks.
 #pragma once
 
 #include <cstdint>
@@ -34,13 +34,14 @@ struct ScenePartition {
   std::vector<std::uint32_t> rank_of;  // of each cell
 };
 
-// Every rank calls it, with the same options; there is no binary tree, whatever they say. `check` sees the
-// settings before any tree is built. Nothing, on all ranks: the scene has instances, which are not divided.
+// Reads the file and divides its scene. Every rank calls it, with the same options; there is no binary tree,
+// whatever they say. `check` sees the settings before any tree is built. Returns nothing, on all ranks, where
+// the scene has instances, which are not divided.
 std::optional<ScenePartition> partition_scene(const std::filesystem::path& file, const LoadOptions& load,
                                               const TreeOptions& tree, transport::Together& all,
                                               const std::function<void(const scene::Scene&)>& check = {});
 
-// The same of a scene without instances that every rank has.
+// Divides a scene without instances that every rank has.
 ScenePartition partition_scene(const scene::Scene& scene, const TreeOptions& tree, transport::Together& all);
 
 }  // namespace kdray::partition

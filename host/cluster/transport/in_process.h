@@ -1,5 +1,5 @@
-// What    Ranks that are threads of one process: what tests run whole frames over.
-// Shape   An inbox for each rank. A rank may end at any time; what is sent to it then is lost.
+// What    Ranks that are threads of one process. Tests run whole frames over them.
+// Shape   Each rank has an inbox. A rank may end at any time; what is sent to it after that is lost.
 #pragma once
 
 #include <memory>

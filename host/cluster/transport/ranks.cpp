@@ -41,7 +41,7 @@ void Ranks::send_to_others(Tag tag, const Bytes& bytes) {
     if (to != rank()) send(to, tag, bytes);
 }
 
-// What is about the run itself.
+// Handles a message that is about the run itself.
 void Ranks::mind(const Message& message) {
   if (message.tag == kGone) {
     ++n_gone_;

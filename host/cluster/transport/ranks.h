@@ -1,9 +1,9 @@
-// What    The ranks of a run: a transport with what all that is said over it has in common. Rank 0 leads.
-// Shape   Each protocol has tags of its own; a message is kept until somebody asks for its tag, since they
+// What    The ranks of a run: a transport, with what all protocols over it have in common. Rank 0 leads.
+// Shape   Each protocol has tags of its own; a message is kept until its tag is asked for, since they
 //         come in any order. A rank that fails tells rank 0, which then says why and ends all; a rank that is
 //         told to end finds out when it next looks for messages.
-// Errors  kdray::Error of rank 0: what another rank has failed of, with its number. Ended of another rank:
-//         rank 0 has ended the run.
+// Errors  On rank 0, kdray::Error: why another rank has failed, with its number. On the others, Ended: rank 0
+//         has ended the run.
 // Threads One, the one that renders.
 #pragma once
 
@@ -26,7 +26,7 @@ inline constexpr Tags kTagsOfRanks{0, 15}, kTagsOfCores{16, 17}, kTagsOfScenes{2
     kTagsOfTiles{48, 63}, kTagsOfShares{64, 79}, kTagsOfLists{80, 86}, kTagsOfDivisions{87, 87},
     kTagsOfJoining{88, 95}, kTagsOfRays{96, 111};
 
-// Not an error of this rank's; its code is the one to exit with.
+// Thrown where rank 0 has ended the run, which is no error of this rank's; holds the code to exit with.
 struct Ended {
   int exit_code;
 };
@@ -42,12 +42,12 @@ class Ranks {
   void send(int to, Tag tag, Bytes bytes) { transport_->send(to, tag, std::move(bytes)); }
   void send_to_others(Tag tag, const Bytes& bytes);
 
-  // A message of these tags, if one has come.
+  // Returns a message of these tags, if one has come; wait() waits for it.
   std::optional<Message> next(Tags tags);
   Message wait(Tags tags);
 
-  // Counts up: for what a protocol has to tell apart over the whole run. Of the others: as far as they have
-  // heard.
+  // A count that goes up over the whole run, for what a protocol has to tell apart. Rank 0 counts; the others
+  // reach the numbers that they hear of.
   std::uint32_t next_number() { return ++number_; }
   std::uint32_t number() const { return number_; }
   void reach(std::uint32_t number) { number_ = number; }
@@ -55,12 +55,12 @@ class Ranks {
   double now() const { return transport_->now(); }
   const Counters& counters() const { return transport_->counters(); }
 
-  // Ends the run, when all is done or `exit_code` says that it failed. Of rank 0; the others are told.
+  // On rank 0: ends the run, when all is done or `exit_code` says that it failed, and tells the others.
   void end(int exit_code);
-  // Of the others: waits for rank 0 to end the run, and returns the code to exit with. `failure`: why this
-  // rank can't go on; null: it has done what it had to.
+  // On the others: waits for rank 0 to end the run, and returns the code to exit with. `failure` is why this
+  // rank can't go on; null: it has done its part.
   int wait_for_end(const Error* failure);
-  // Of the others, when they have caught Ended.
+  // On the others: leaves the run, after Ended was caught.
   void leave();
 
  private:

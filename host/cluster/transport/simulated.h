@@ -1,9 +1,14 @@
-// What    Ranks over a network that is only computed: virtual time, with latency, bandwidth and reordering
-//         from a seed. The same calls with the same seed give the same messages at the same times.
-// Shape   A Network has the clock and all that is on its way; whoever drives it moves the clock on to the
+// What    Ranks over a network that is only computed, with latency, bandwidth and reordering from a seed; and
+//         a real transport that is held back as if its network were slower, so that runs can be measured with
+//         a delay where the system has no means for it (docs/logbook/ranks.md).
+// Shape   A Network has the clock and all that is on its way. Whoever drives it moves the clock on to the
 //         next message or to a moment of its own, and lets ranks act. A rank's messages leave one after the
 //         other, each for its length at the bandwidth; then it travels for the latency and up to `jitter`
-//         times that more, so that a later one may overtake it.
+//         times that more, so that a later one may overtake it. The same calls with the same seed give the
+//         same messages at the same times.
+//         delayed() hands a message over `latency` after it has come, and not before those that came earlier
+//         have taken their time at the bandwidth; jitter adds to the latency as above.
+// Units   Seconds, virtual ones in a Network; bytes a second.
 // Threads One.
 #pragma once
 
@@ -32,9 +37,9 @@ class Network {
   int ranks() const { return static_cast<int>(ranks_.size()); }
   double now() const { return now_; }
 
-  // When the next message comes to where it goes; infinity: none is on its way.
+  // Returns when the next message arrives; infinity: none is on its way.
   double next_arrival() const;
-  // To a moment that is not before now; messages that come until then can be polled.
+  // Moves the clock on to a moment that is not before now; messages that arrive until then can be polled.
   void advance(double to);
 
  private:
@@ -60,5 +65,9 @@ class Network {
   std::vector<std::queue<Message>> inboxes_;
   std::vector<std::unique_ptr<Transport>> ranks_;
 };
+
+// Returns the transport with its messages held back.
+std::unique_ptr<Transport> delayed(std::unique_ptr<Transport> transport, const Link& link,
+                                   std::uint64_t seed = 1);
 
 }  // namespace kdray::transport

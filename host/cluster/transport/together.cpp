@@ -14,7 +14,7 @@ void throw_odd_message(int from) {
   throw Error(ErrorCode::internal, fmt::format("rank {} is at another step than this rank", from));
 }
 
-// The step's number is behind the bytes, so that they need not be moved.
+// Sends the step's number behind the bytes, so that they need not be moved.
 void Together::send(int to, std::uint32_t step, Bytes bytes) {
   bytes.append(reinterpret_cast<const char*>(&step), sizeof step);
   ranks_.send(to, kStep, std::move(bytes));

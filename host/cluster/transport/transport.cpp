@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "cluster/transport/words.h"
+#include "cluster/transport/message_bytes.h"
 
 namespace kdray::transport {
 

@@ -1,13 +1,13 @@
 // What    What kdray needs of a network: ranks, numbered from 0, that send each other messages.
-// Shape   Messages are whole and come once, in any order: also those of one rank may overtake each other. A
+// Shape   Messages are whole and come once, in any order: even those of one rank may overtake each other. A
 //         rank may send to itself. send() takes the bytes over and doesn't wait for the receiver; poll()
-//         hands what has come over to the caller, and moves on what is still to be sent. So whoever has sent
-//         something goes on polling: all have when they close().
+//         returns a message that has come, and moves on what is still to be sent. So a rank that has sent
+//         something goes on polling until all ranks close().
 // Units   Bytes; seconds.
-// Errors  kdray::Error, ErrorCode::internal: the network failed, a message that is none of kdray's came, or
-//         one was to be sent that is too long.
-// Threads One at a time may call. MPI's implementation is for one thread alone, which need not be the one
-//         that opened it.
+// Errors  kdray::Error, ErrorCode::internal: the network failed, a message came that is none of kdray's, or a
+//         message is too long to be sent.
+// Threads One at a time may call. MPI's implementation is for one thread alone, though not necessarily the
+//         one that opened it.
 #pragma once
 
 #include <cstdint>
@@ -44,13 +44,14 @@ class Transport {
   void send(int to, Tag tag, Bytes bytes);
   std::optional<Message> poll();
 
-  // What was sent and isn't gone yet.
+  // Returns how many of the bytes that were sent have not left yet.
   virtual std::size_t bytes_waiting() const = 0;
 
-  // Since some moment, of this rank's clock; in the simulation virtual ones.
+  // Returns the seconds since some moment, by this rank's clock; in a simulation they are virtual.
   virtual double now() const = 0;
 
-  // All ranks have to call it, when nothing they need is on its way. Nothing may be called after it.
+  // Ends the use of the network. All ranks have to call it, when nothing that they need is on its way;
+  // nothing may be called after it.
   virtual void close() {}
 
   // Ends all ranks at once, as far as that can be done.

@@ -1,7 +1,8 @@
-// What    A queue's profiling times on the host's clock, so that what several devices did can be shown side
-//         by side.
-// Shape   The difference of the two clocks, from the shortest of a few commands: what lies between asking for
-//         it and its end bounds the error. Clocks that run apart afterwards (about 1e-4) are not followed.
+// What    Converts a queue's profiling times to the host's clock, so that what several devices did can be
+//         shown side by side.
+// Shape   The difference of the two clocks is measured at the shortest of a few commands: the time between
+//         enqueueing it and its end bounds the error. Drift of the clocks afterwards (about 1e-4) is not
+//         corrected.
 #pragma once
 
 #include <chrono>
@@ -17,7 +18,7 @@ class Clock {
   // `queue` has profiling switched on, and nothing to do. Throws cl::Error.
   Clock(const cl::Context& context, cl::CommandQueue queue);
 
-  // `seconds` of a command's profiling times.
+  // Converts `seconds` of a command's profiling times.
   Host::time_point on_host(double seconds) const {
     return Host::time_point(
         std::chrono::duration_cast<Host::duration>(std::chrono::duration<double>(seconds + ahead_)));

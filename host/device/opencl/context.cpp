@@ -21,7 +21,8 @@ namespace kdray::device {
 
 namespace {
 
-// `n` equal parts of the device's first `units` compute units, or the device itself when it can't be divided.
+// Returns `n` equal parts of the device's first `units` compute units, or the device itself when it can't be
+// divided.
 std::vector<cl::Device> divide(cl::Device device, int n, cl_uint units) {
   const cl_uint parts = std::min<cl_uint>(static_cast<cl_uint>(n), units);
   const bool whole = units == device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
@@ -114,7 +115,7 @@ bool Context::rounds_division_correctly() const {
 
 namespace {
 
-// By all that a program is made of. Like what is opened, they are never destroyed.
+// Programs by all that they are made of. Like what is opened, they are never destroyed.
 class RememberedPrograms {
  public:
   using Key = std::tuple<const OpenDevice*, std::string, std::string, std::string>;
@@ -233,7 +234,7 @@ Context open_checked(const std::string& spec, int n_queues, const OpenOptions& o
   return context;
 }
 
-// One that may be opened and passes, or the reason why it can't be used.
+// Returns a context that may be opened and passes the check; else sets `why` it can't be used.
 std::optional<Context> try_to_open(const std::vector<FoundDevice>& candidates, std::size_t i, int n_queues,
                                    const OpenOptions& o, std::string& why) {
   if (o.judge) why = o.judge(candidates, i);
@@ -247,7 +248,7 @@ std::optional<Context> try_to_open(const std::vector<FoundDevice>& candidates, s
   }
 }
 
-// The best device of those that the spec leaves to kdray.
+// Opens the best device of those that the spec leaves to kdray.
 Context open_best(const std::string& spec, int n_queues, const OpenOptions& o) {
   std::string why;
   const std::vector<FoundDevice> candidates = devices_by_preference(spec);

@@ -1,7 +1,7 @@
 // What    One OpenCL context on the chosen device and its queues: one queue on the whole device, or one per
 //         sub-device (clCreateSubDevices, equal shares) when several are asked for.
 // Why     What is opened stays open until the process ends, and the next Context of the same kind shares it:
-//         PoCL 3.1 lets go of a command's event after the command is reported as done, and crashes when the
+//         PoCL 3.1 releases a command's event after the command is reported as done, and crashes when the
 //         queue has been released in between. OpenCL's queues may be used from several threads.
 // Errors  Queues beyond what the device can be divided into share its parts in turn.
 #pragma once
@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "device/opencl/builds.h"
 #include "device/opencl/opencl.h"
 #include "device/opencl/platform.h"
+#include "device/opencl/program.h"
 #include "device/opencl/simd.h"
-#include "device/opencl/variant_build.h"
+#include "device/opencl/variant.h"
 
 namespace kdray::device {
 
@@ -29,8 +29,8 @@ struct OpenDevice {
 
 class Context {
  public:
-  // `compute_units` > 0: a sub-device of that many of the device's units, or all where it has no more; throws
-  // ErrorCode::no_device when it can't be divided.
+  // With `compute_units` > 0, opens a sub-device of that many of the device's units, or of all where it has
+  // no more; throws ErrorCode::no_device when the device can't be divided.
   Context(const std::string& device_spec, int n_queues, int compute_units = 0, Builds builds = {});
 
   const DeviceInfo& info() const { return found_.info; }
@@ -46,35 +46,36 @@ class Context {
 
   cl::Program build(const std::string& file, const std::string& options) const;
   BuiltVariant build(const std::string& file, const Variant& wanted) const;
-  // A source that is no file of kernels/, but may include them.
+  // Builds a source that is no file of kernels/, but may include such files.
   cl::Program build_text(const std::string& name, const std::string& text, const std::string& options) const;
 
   // Throws ErrorCode::out_of_memory, naming the device's limit, when a buffer of `bytes` is too large for it.
   // A buffer of 0 bytes is made as one of 16, since OpenCL has no empty buffers.
   cl::Buffer buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // The same as buffer(), where only pieces here and there are going to be used: no large pages are asked
-  // for, since each of those is cleared as a whole.
+  // Does the same as buffer(), for a buffer of which only scattered pieces will be used: it asks for no large
+  // pages, since each of those is cleared as a whole.
   cl::Buffer sparse_buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const;
 
-  // As buffer(), and its pages are made in the background where it lies in the host's memory: `made` ends
-  // when they are, all 0 if that is asked for. (Or it is no future at all, and nothing is done.) No command
-  // may use it before. The device has to work in that very memory, as a CPU with
-  // CL_DEVICE_HOST_UNIFIED_MEMORY does: the 0s are written beside OpenCL.
+  // Does the same as buffer(), and makes the buffer's pages in the background where it lies in the host's
+  // memory, all 0 if `zeroed`. `made` becomes ready when they are made, and no command may use the buffer
+  // before; `made` is left alone where there is nothing to do. The device has to work in that very memory, as
+  // a CPU with CL_DEVICE_HOST_UNIFIED_MEMORY does, since the 0s are written without OpenCL.
   cl::Buffer buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what, bool zeroed,
                                 std::future<void>& made) const;
 
-  // A buffer for reading of what lies at `data`: that memory itself where the device works in the host's,
-  // which `owner` then keeps as long as the buffer lives; elsewhere a copy.
+  // Returns a buffer for reading what lies at `data`: that memory itself where the device works in the
+  // host's, which `owner` then keeps as long as the buffer lives; elsewhere a copy.
   cl::Buffer upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,
                     const std::string& what) const;
-  // A buffer for writing to memory of the caller's, who keeps it as long as the buffer lives, where the
-  // device works in the host's; elsewhere none. What commands wrote there is seen once it has been mapped.
+  // Returns a buffer for writing to the caller's memory, which the caller keeps as long as the buffer lives,
+  // where the device works in the host's memory; elsewhere none. What commands wrote there can be read once
+  // it has been mapped.
   cl::Buffer lend(void* data, std::size_t bytes, const std::string& what) const;
   // Uploads a copy of the data, also where the device could use it in place.
   cl::Buffer upload_copy(const void* data, std::size_t bytes, const std::string& what) const;
 
-  // Whether the device takes the host's memory as it is: what a kernel has written is there when it has
+  // Returns whether the device works in the host's memory: what a kernel has written is there when it has
   // ended.
   bool works_in_host_memory() const;
 
@@ -85,7 +86,7 @@ class Context {
   Simd simd_ = Simd::portable;
 };
 
-// Why the `i`th of the candidates, the best first, is not to be opened at all; empty: it may be.
+// Returns why the `i`th of the candidates, the best first, must not be opened; an empty text where it may be.
 using Judge = std::function<std::string(const std::vector<FoundDevice>& candidates, std::size_t i)>;
 
 struct OpenOptions {
@@ -94,12 +95,13 @@ struct OpenOptions {
   Builds builds = {};
   Judge judge = {};                                // of devices that nobody asked for by name or number
   std::function<void(const Context&)> check = {};  // throws ErrorCode::no_device for a device not to be used
-  std::function<void(const std::string&)> left_out = {};  // told why, where it goes on to another device
+  // Called with the reason, where it goes on to another device.
+  std::function<void(const std::string&)> left_out = {};
 };
 
-// A context on each of the devices of `specs` (choose_device's, with commas between them). "auto" and a kind
-// take the next device where one can't be used, can't be opened or doesn't pass the check; a device that was
-// asked for by name or number throws what it threw.
+// Opens a context on each of the devices of `specs` (as choose_device() takes them, separated by commas).
+// "auto" and a kind take the next device where one can't be used, can't be opened or doesn't pass the check;
+// for a device that was asked for by name or number, the error is thrown on.
 std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& options);
 std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units = 0);
 

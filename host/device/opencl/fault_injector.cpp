@@ -16,7 +16,7 @@ Error bad(const std::string& specification) {
                                      "not the device's, or self-test@DEVICE");
 }
 
-// The number that `text` is, all of it.
+// Parses a number that takes up all of `text`.
 bool parse(std::string_view text, std::uint64_t& number) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, number);

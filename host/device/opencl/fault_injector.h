@@ -1,6 +1,6 @@
 // What    Makes launches fail on purpose, in each way that one may fail (opencl_error.h): so that what
 //         happens then can be tested.
-// Errors  ErrorCode::usage for a specification that is none.
+// Errors  ErrorCode::usage for a malformed specification.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ class FaultInjector {
   // number fail the self-test. Empty: none fails.
   explicit FaultInjector(const std::string& specification = {});
 
-  // To be called before each of a queue's launches, by that queue's thread; throws where it is to fail.
+  // Called before each of a queue's launches, by that queue's thread; throws where the launch is to fail.
   void launch(std::size_t queue);
 
   bool fails_self_test(int device) const {

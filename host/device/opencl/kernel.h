@@ -30,7 +30,7 @@ class AnyKernel {
   AnyKernel(const AnyKernel&) = delete;  // a copy would set the same kernel's arguments without knowing of it
   AnyKernel(AnyKernel&&) = default;
 
-  // The kernel, to be launched; throws unless every argument has been set.
+  // Returns the kernel for a launch; throws unless every argument has been set.
   const cl::Kernel& ready() const;
 
  protected:

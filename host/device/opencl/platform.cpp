@@ -16,7 +16,7 @@ namespace {
 
 std::atomic<bool> forked_off{false};
 
-// To be called before OpenCL's first call.
+// Called before OpenCL's first call.
 void watch_for_forks() {
   static const int watching = ::pthread_atfork(nullptr, nullptr, [] { forked_off = true; });
   static_cast<void>(watching);
@@ -41,7 +41,7 @@ std::string kind_of(cl_device_type type) {
   return "accelerator";
 }
 
-// Why kdray's kernels can't do with this device; empty where they can.
+// Returns why kdray's kernels can't run on this device; an empty text where they can.
 std::string why_unusable(const cl::Device& device) {
   if (!device.getInfo<CL_DEVICE_AVAILABLE>()) return "not available";
   if (!device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>()) return "has no compiler";

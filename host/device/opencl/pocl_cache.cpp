@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/cache_folder.h"
-#include "base/temporary_folder.h"
+#include "base/temporary.h"
 
 namespace kdray::device {
 
@@ -25,7 +25,8 @@ namespace {
 constexpr std::uint64_t kLeastFree = std::uint64_t{16} << 20;
 constexpr const char* kTemporary = "kdray-pocl-";
 
-// The folder that PoCL would choose. It is empty where PoCL is told to have none, which ends the process.
+// Returns the folder that PoCL would choose. It is empty where PoCL is told to have none, which ends the
+// process.
 fs::path pocls_own() {
   if (const char* const set = std::getenv("POCL_CACHE_DIR")) return set;
   if (const char* const caches = std::getenv("XDG_CACHE_HOME"); caches && *caches)
@@ -85,8 +86,8 @@ PoclCache choose() {
   return cache;
 }
 
-// Whether what is in the file may be executed. A file system mounted with noexec refuses that, and PoCL,
-// whose kernels are shared libraries there, ends the process when it is refused.
+// Returns whether what is in the file may be executed. A file system mounted with noexec refuses that, and
+// PoCL, whose kernels are shared libraries there, ends the process when it is refused.
 bool is_executable(int descriptor) {
   constexpr std::size_t kBytes = 1;
   if (::ftruncate(descriptor, kBytes) != 0) return false;

@@ -1,5 +1,5 @@
-// What    The folder that PoCL compiles in: one that can be written, has room and may hold programs, before
-//         PoCL looks for it.
+// What    Chooses the folder that PoCL compiles in, before PoCL looks for it: one that can be written, has
+//         space and may hold programs.
 // Why     Without such a folder PoCL offers no device at all, or fails while it compiles, or it or LLVM ends
 //         the process. No home, or one that is read-only, full or mounted with noexec, is common: containers,
 //         services, batch systems, clusters.
@@ -22,12 +22,12 @@ struct PoclCache {
   std::string unusable;  // why none of them will do, with what to do about it; empty where one does
 };
 
-// Chosen at the first call.
+// Returns the folder; the first call chooses it.
 const PoclCache& pocl_cache();
 
 bool is_pocl(const std::string& platform);
 
-// Why PoCL can't compile in the folder, which need not exist yet; empty when it can.
+// Returns why PoCL can't compile in the folder, which need not exist yet; an empty text when it can.
 std::string why_no_cache(const std::filesystem::path& folder);
 
 }  // namespace kdray::device

@@ -14,7 +14,6 @@
 #include "device/opencl/opencl_error.h"
 #include "device/opencl/pocl_cache.h"
 #include "device/opencl/program_cache.h"
-#include "device/opencl/program_key.h"
 #include "kernels.h"
 
 namespace kdray::device {
@@ -38,14 +37,15 @@ std::string text_of(const std::string& name) {
 
 constexpr std::string_view kInclude = "#include \"";  // of ours; <system> includes are left alone
 
-// Where the next line begins that includes a file of ours, from `first` on, which begins a line.
+// Returns where the next line begins that includes one of kdray's files, from `first` on, which begins a
+// line.
 std::size_t next_include(std::string_view source, std::size_t first) {
   std::size_t at = source.find(kInclude, first);
   while (at != std::string_view::npos && at > 0 && source[at - 1] != '\n') at = source.find(kInclude, at + 1);
   return std::min(at, source.size());
 }
 
-// Whole pieces between includes are copied, not lines: every start makes the keys of some sources.
+// Copies whole pieces between includes, not lines: every start of kdray computes the keys of some sources.
 void expand(const std::string& name, std::string_view source, std::set<std::string>& seen, std::string& out) {
   seen.insert(name);
   out += fmt::format("#line 1 \"{}\"\n", name);
@@ -112,7 +112,8 @@ std::string expand_source(const std::string& file) {
 
 namespace {
 
-// Notes what it has built for the cache, under the key, where there is one. Empty where the compiler refuses.
+// Compiles, and notes the program under the key where there is a cache. Returns an empty program where the
+// compiler refuses.
 cl::Program compile(const cl::Context& context, const std::vector<cl::Device>& devices,
                     const std::string& source, const std::string& options, const ProgramKey& key,
                     const Builds& builds, std::string& log) {

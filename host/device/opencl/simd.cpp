@@ -13,7 +13,6 @@
 #include "device/opencl/context.h"
 #include "device/opencl/opencl_error.h"
 #include "device/opencl/program.h"
-#include "device/opencl/simd_answers.h"
 
 namespace kdray::device {
 
@@ -52,7 +51,7 @@ bool has_avx512() {
 #endif
 }
 
-// From the best on; the last is what every device must be able to.
+// From the best on; every device must pass the last.
 constexpr Form kForms[] = {
     {Simd::avx512, "avx512", "x86 AVX-512", has_avx512, "AVX-512 (F, VL, DQ and BW)"},
     {Simd::avx2, "avx2", "x86 AVX2", has_avx2, "AVX2 and FMA"},
@@ -63,7 +62,8 @@ const Form& described(Simd form) {
   return *std::ranges::find(kForms, form, &Form::form);
 }
 
-// The form's kernel, or none where the compiler refuses it: an answer, not an error, hence no report of it.
+// Returns the form's kernel, or none where the compiler refuses it: that is an answer, not an error, so
+// nothing reports it.
 std::optional<Kernel<SimdTest>> try_probe_build(Simd form, const OpenDevice& opened, const Builds& builds) {
   try {
     std::string log;
@@ -81,7 +81,7 @@ std::string difference_in(const OpenDevice& opened, Kernel<SimdTest>& kernel) {
   return first_difference(cases, run_simd_test(opened, kernel, cases));
 }
 
-// What KDRAY_SIMD asks for; none: whatever is best.
+// Returns the form that KDRAY_SIMD asks for; null: the best.
 const Form* asked_for() {
   const char* value = std::getenv("KDRAY_SIMD");
   const std::string_view asked = value == nullptr ? "" : value;
@@ -141,10 +141,10 @@ std::vector<layout::SimdAnswers> run_simd_test(const OpenDevice& opened, Kernel<
   return answers;
 }
 
-// In this order, each question making the next one safe to ask: code with instructions that the processor
-// lacks may well build (a compiler can be told any target) and then kills the process, which no self-test
-// survives. The processor asked is the one this runs on, which is a CPU device's own; a GPU's or an
-// accelerator's compiler need not be bothered with builtins that aren't its own.
+// The checks come in this order because each makes the next one safe: code with instructions that the
+// processor lacks may well build (a compiler can be told any target) and then kills the process, which no
+// self-test survives. The processor that is checked is the one this runs on, which is a CPU device's own; the
+// compiler of a GPU or an accelerator need not be tried with builtins that aren't its own.
 std::string why_not(Simd form, const FoundDevice& found, const OpenDevice& opened, const Builds& builds) {
   const Form& wanted = described(form);
   if (!wanted.processor_has) return "";

@@ -1,11 +1,10 @@
 // What    Which form of common/simd.clh a device's kernels are built with: x86 builtins (AVX-512, else AVX2)
 //         or portable OpenCL C.
-// Shape   Forms are tried from the best on, per device and once per process: the processor's features, a
-//         probe build, and a self-test of every operation against answers made on the host
-//         (device/simd_answers.h) have to let a form pass. A device's name is never asked. A compiler that
-//         has lost a builtin, or got one wrong, costs the form that needs it and no other.
-//         KDRAY_SIMD=portable, avx2 or avx512 in the environment asks for a form; it has to pass all the
-//         same.
+// Shape   Forms are tried from the best on, per device and once per process. A form has to pass three tests:
+//         the processor's features, a probe build, and a self-test of every operation against answers made on
+//         the host (simd_answers.cpp). A device's name is never asked. A compiler that has lost a builtin, or
+//         got one wrong, costs the form that needs it and no other. KDRAY_SIMD=portable, avx2 or avx512 in
+//         the environment asks for a form; it has to pass all the same.
 // Errors  ErrorCode::no_device: no form passes, or the one asked for doesn't. ErrorCode::usage: KDRAY_SIMD is
 //         none of them.
 #pragma once
@@ -13,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "device/opencl/builds.h"
 #include "device/opencl/kernel.h"
 #include "device/opencl/platform.h"
+#include "device/opencl/program.h"
 #include "layout/simd.h"
 #include "layout/simd_test.layout.h"
 
@@ -45,17 +44,30 @@ struct SimdChoice {
 const char* in_words(Simd form);      // "portable", "x86 AVX2", "x86 AVX-512"
 std::string build_option(Simd form);  // "-DKDRAY_SIMD=0"
 
-// The form for this device's kernels; remembered, since it takes a build and a launch to know.
+// Returns the form for this device's kernels. It is remembered, since finding out takes a build and a launch.
 SimdChoice choose_simd(const FoundDevice& found, const OpenDevice& opened, const Builds& builds = {});
 
-// The same, tried anew.
+// Does the same, tried anew.
 SimdChoice probe_simd(const FoundDevice& found, const OpenDevice& opened, const Builds& builds = {});
 
-// Why this device can't have the form; empty when it can.
+// Returns why this device can't have the form; an empty text when it can.
 std::string why_not(Simd form, const FoundDevice& found, const OpenDevice& opened, const Builds& builds = {});
 
-// What the device answers to the cases, by the kernel of common/simd_test.cl. Throws cl::Error.
+// Runs the kernel of common/simd_test.cl on the device and returns its answers to the cases. Throws
+// cl::Error.
 std::vector<layout::SimdAnswers> run_simd_test(const OpenDevice& opened, Kernel<kernels::SimdTest>& kernel,
                                                const std::vector<layout::SimdCase>& cases);
+
+// Returns the answers that every form must give, made on the host one lane at a time.
+layout::SimdAnswers expected_answers(const layout::SimdCase& given);
+
+// Returns the self-test's cases: every pair of NaN, infinities, zeros of both signs, limits and common
+// numbers, in every lane, and every mask of 8 lanes.
+std::vector<layout::SimdCase> known_cases();
+
+// Returns the first operation whose answer differs by a bit ("pack16 of case 3"); an empty text when none
+// does.
+std::string first_difference(const std::vector<layout::SimdCase>& cases,
+                             const std::vector<layout::SimdAnswers>& answers);
 
 }  // namespace kdray::device

@@ -1,4 +1,4 @@
-#include "device/opencl/simd_answers.h"
+#include "device/opencl/simd.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // What    A command queue for one thread at a time, beside those that frames use: for queries that several
 //         threads ask at once.
-// Why     PoCL 3.1 crashes when a queue is released right after its last command (context.h): queues are kept
-//         and given to the next who asks.
+// Why     PoCL 3.1 crashes when a queue is released right after its last command (context.h): so queues are
+//         kept, and given to the next caller.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace kdray::device {
 
 class SpareQueue {
  public:
-  // On one of the context's devices, by its place among them.
+  // Takes or opens a queue on one of the context's devices, given by its index.
   explicit SpareQueue(const Context& context, std::size_t sub_device = 0);
   ~SpareQueue();
   SpareQueue(const SpareQueue&) = delete;

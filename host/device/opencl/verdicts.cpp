@@ -12,7 +12,7 @@
 
 #include "base/cache_folder.h"
 #include "base/error.h"
-#include "device/opencl/program_entry.h"
+#include "device/opencl/program_cache.h"
 
 namespace kdray::device {
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kEnding = ".verdict";
+constexpr const char* kVerdictEnding = ".verdict";
 constexpr const char* kMarkEnding = ".trying";
 constexpr std::uint64_t kMostBytes = 1 << 18;  // some 1500 verdicts
 constexpr std::string_view kPassed = "passed ", kFailed = "failed ";
@@ -52,7 +52,7 @@ std::optional<Verdict> Verdicts::find(const Hash& key) const {
     if (found != known().verdicts.end()) return found->second;
   }
   if (folder_.empty()) return std::nullopt;
-  const std::optional<std::string> entry = read_entry(entry_file(folder_, key, kEnding), key);
+  const std::optional<std::string> entry = read_entry(entry_file(folder_, key, kVerdictEnding), key);
   return entry ? parsed(*entry) : std::nullopt;
 }
 
@@ -65,9 +65,9 @@ void Verdicts::note(const Hash& key, const Verdict& verdict) const {
   try {
     std::error_code error;  // told by write_entry
     fs::create_directories(folder_, error);
-    write_entry(entry_file(folder_, key, kEnding), key,
+    write_entry(entry_file(folder_, key, kVerdictEnding), key,
                 std::string(verdict.passed ? kPassed : kFailed) + verdict.text);
-    shrink_folder(folder_, kEnding, kMostBytes);
+    shrink_folder(folder_, kVerdictEnding, kMostBytes);
   } catch (const Error&) {  // it will be found out again
   }
 }

@@ -1,7 +1,7 @@
 // What    Verdicts on devices and drivers, kept between runs beside the built programs: what passed is not
 //         tried again, and what has failed is not run into again.
 // Shape   A verdict lies under a key, which tells all that has a say in it; another driver has another key.
-//         It is known to the process that came to it in any case, to others where there is a folder.
+//         The process that reached it always knows it, others where there is a folder.
 // Errors  None: what is damaged counts as none, and a folder that can't be written is left.
 // Threads Any, and several processes at once.
 #pragma once
@@ -22,7 +22,7 @@ struct Verdict {
 
 class Verdicts {
  public:
-  // An empty folder: this process' own verdicts alone. Not `keeps`: the folder is only read.
+  // With an empty folder there are only this process' own verdicts. Without `keeps` the folder is only read.
   explicit Verdicts(std::filesystem::path folder = {}, bool keeps = true)
       : folder_(std::move(folder)), keeps_(keeps && !folder_.empty()) {}
 
@@ -47,9 +47,9 @@ class Mark {
   Mark(const Mark&) = delete;
   Mark& operator=(const Mark&) = delete;
 
-  // Whether there is one of a process that has ended.
+  // Returns whether there is a mark of a process that has ended.
   static bool is_left(const Verdicts& verdicts, const Hash& key);
-  // Removes such a one.
+  // Removes such a mark.
   static void forget(const Verdicts& verdicts, const Hash& key);
 
  private:

@@ -35,7 +35,7 @@ Json to_json(const Entry& e) {
           {"scenes", e.scenes}};
 }
 
-// A conversion of another kind of number would not fail.
+// Checks the kind of number, since get() would convert another kind without failing.
 std::int64_t integer(const Json& json, const std::string& name) {
   if (!json.is_number_integer()) fail(name, fmt::format("{} should be a whole number", json.dump()));
   return json.get<std::int64_t>();

@@ -45,7 +45,7 @@ class Database {
 
   const std::vector<Entry>& entries() const { return entries_; }
 
-  // The entry for these features, or else the one for any.
+  // Returns the entry for these features, or else the one for any.
   const Entry* find(const Key& key) const;
 
   void put(const Entry& entry);
@@ -58,8 +58,8 @@ class Database {
   std::vector<Entry> entries_;
 };
 
-// $KDRAY_TUNE_FILE, $XDG_DATA_HOME/kdray/tune.json or ~/.local/share/kdray/tune.json; empty where there is no
-// home, or where KDRAY_TUNE_FILE is set to nothing.
+// Returns $KDRAY_TUNE_FILE, $XDG_DATA_HOME/kdray/tune.json or ~/.local/share/kdray/tune.json; empty where
+// there is no home, or where KDRAY_TUNE_FILE is set to nothing.
 std::filesystem::path default_file();
 
 }  // namespace kdray::tuning

@@ -1,21 +1,61 @@
-// What    Looks for the fastest settings within a budget of seconds: coordinate descent, a race (race.h) at
-//         each step.
-// Shape   The next setting is the one of the largest expected gain for its cost. The cost is known from what
-//         frames and compiling took; the expected gain is a guess for a setting that wasn't raced, later a
-//         part of what other settings have gained since (what has not changed need not be asked again). It
-//         ends when no setting's expected gain, over the frames that are to come, is worth its race, or none
-//         fits into what is left of the budget. At last the winner meets the start in a race of more rounds;
-//         unless it is surely faster there, and on no scene slower, the start
-//         stays: a search may find nothing, but should never make things worse.
+// What    Looks for the fastest settings within a budget of seconds: coordinate descent with a race at each
+//         step.
+// Shape   A race holds candidates against a champion, in rounds in which each renders once, until it is clear
+//         which is fastest. A round's times are compared with the champion's of the same round, since a
+//         machine's speed drifts; every second round runs backwards. A rival that is clearly slower is
+//         dropped at once, and after some rounds more the slower half of those that are left (successive
+//         halving), so that time goes to what may win.
+//         The next setting is the one of the largest expected gain for its cost. The cost is known from how
+//         long frames and compiling took; the expected gain is a guess for a setting that wasn't raced, later
+//         a part of what other settings have gained since (where nothing has changed, nothing need be
+//         measured again). The search ends when no setting's expected gain, over the frames to come, is worth
+//         its race, or none fits into what is left of the budget. At the end the winner meets the start in a
+//         race of more rounds; unless it is surely faster there, and on no scene slower, the start stays: a
+//         search may find nothing, but should never make things worse.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "device/tuning/race.h"
 #include "device/tuning/settings.h"
+#include "kdray/options.h"
 
 namespace kdray::tuning {
+
+// How candidates are tried. The first trial of one may compile.
+struct Lab {
+  // Renders once and compares with the reference. Returns what is wrong, or an empty text.
+  std::function<std::string(const Tuning&)> fault;
+  // Seconds of a frame of each scene.
+  std::function<std::vector<double>(const Tuning&)> measure;
+  std::function<double()> now;                           // seconds since the search began
+  std::function<void(double)> progress = [](double) {};  // share of the budget
+};
+
+enum class Verdict { won, no_better, slower, wrong };
+const char* name_of(Verdict verdict);
+
+struct Rival {
+  Tuning tuning;
+  Verdict verdict = Verdict::no_better;
+  std::string fault = {};  // of a wrong one
+  // The rival's time over the champion's for each round, as the geometric mean over the scenes.
+  std::vector<double> ratios = {};
+  std::vector<std::vector<double>> of_scenes = {};  // the same of each scene, by rounds
+
+  double ratio() const;                 // the median; 1 without a round
+  double worst_scene() const;           // the largest of the scenes' medians
+  bool surely_faster(double by) const;  // by that share or more, and in at least three rounds of four
+};
+
+struct RaceLimits {
+  int rounds = 9;
+  double until = 0;  // Lab::now() when it has to end
+};
+
+// Fills in the rivals; those with a wrong output are never timed. At most one has won.
+void race(const Lab& lab, const Tuning& champion, std::vector<Rival>& rivals, const RaceLimits& limits);
 
 struct SearchOptions {
   double budget = 20;     // seconds
@@ -42,7 +82,7 @@ struct Found {
   std::string ended_by;  // in words
 };
 
-// `start` must be right; throws ErrorCode::internal where its output isn't.
+// Throws ErrorCode::internal where the output of `start` is wrong.
 Found search(const Lab& lab, const Tuning& start, const SearchOptions& options);
 
 }  // namespace kdray::tuning

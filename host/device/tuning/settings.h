@@ -30,14 +30,14 @@ std::span<const Setting> settings();
 
 const Setting* find_setting(std::string_view name);
 
-// `kind` is the device's, as DeviceInfo has it.
+// Returns what kdray ships with for a kind of device (DeviceInfo::kind).
 Tuning shipped(std::string_view kind);
 
-// The settings of `over`, and those of `under` where `over` has 0.
+// Returns the settings of `over`, and those of `under` where `over` has 0.
 Tuning merged(const Tuning& under, const Tuning& over);
 
-// For example "batch 1024, packets 16": what is left to kdray isn't named. Where all is, it says "kdray's
-// own".
+// Returns, for example, "batch 1024, packets 16": what is left to kdray isn't named; where everything is,
+// "kdray's own".
 std::string in_words(const Tuning& tuning);
 
 }  // namespace kdray::tuning

@@ -98,7 +98,7 @@ void BandRun::wait(const std::function<void(double)>& progress) {
 
 // The time is over: what is left is not begun.
 void BandRun::close() {
-  band_.seconds = kForever;
+  band_.seconds = frame::kForever;
   if (rank_exchange_)
     rank_exchange_->close();
   else
@@ -172,7 +172,7 @@ void BandRun::launch(std::size_t queue, const Turn& turn, QueueState& state) {
   const std::uint64_t n_waves = sum_of(worker.traffic(), &layout::Traffic::n_waves);
   ++report.launches;
   report.waves += n_waves;
-  report.traced += sum_of(worker.traffic(), &layout::Traffic::n_traced);
+  report.rays += sum_of(worker.traffic(), &layout::Traffic::n_traced);
   state.progressed = n_waves > 0;
 }
 

@@ -21,8 +21,6 @@
 
 namespace kdray::odprt {
 
-inline constexpr double kForever = 1e9;  // seconds
-
 // What the queues render together.
 struct BandWork {
   std::uint32_t list = 0;                          // its number among ranks'
@@ -30,7 +28,7 @@ struct BandWork {
   Shares shares;                                   // of tiles, or of runs of samples
   std::size_t first_pixel = 0, n_places = 0;       // of the film
   std::span<const layout::u32> samples = {};       // empty: tiles
-  double seconds = kForever;                       // for which entries are begun; the others are left
+  double seconds = frame::kForever;                // for which entries are begun; the others are left
   std::function<bool(layout::u32)> is_entry = {};  // with ranks: whether the list may have it
   Shares::Entries left = {};
 };

@@ -1,6 +1,6 @@
 #include "engine/odprt/cost_probe.h"
 
-#include "engine/odprt/frame.h"
+#include "engine/odprt/executor.h"
 
 namespace kdray::odprt {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cluster/transport/values.h"
+#include "cluster/transport/message_bytes.h"
 
 namespace kdray::odprt {
 

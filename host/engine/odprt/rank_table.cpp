@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cluster/transport/words.h"
+#include "cluster/transport/message_bytes.h"
 
 namespace kdray::odprt {
 

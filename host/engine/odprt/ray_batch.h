@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "cluster/transport/words.h"
+#include "cluster/transport/message_bytes.h"
 #include "engine/odprt/host_ray_queue.h"
 
 namespace kdray::odprt {

@@ -10,7 +10,7 @@
 #include "base/timer.h"
 #include "engine/odprt/cost_probe.h"
 #include "engine/odprt/divide_partition.h"
-#include "engine/odprt/frame.h"
+#include "engine/odprt/executor.h"
 #include "engine/odprt/queue_failure.h"
 #include "engine/odprt/rank_lists.h"
 #include "engine/odprt/replicate.h"

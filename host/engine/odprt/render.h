@@ -7,25 +7,19 @@
 // Ranks   All call render(), with the same frame. Rank 0 has the picture; the result of the others has none.
 #pragma once
 
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "base/timeline.h"
 #include "cluster/transport/together.h"
-#include "device/opencl/fault_injector.h"
-#include "engine/adaptive/report.h"
-#include "engine/checkpoint/frame_checkpoint.h"
+#include "engine/frame/executor.h"
+#include "engine/frame/result.h"
 #include "engine/odprt/division.h"
 #include "engine/odprt/exchange.h"
 #include "engine/odprt/rank_table.h"
 #include "engine/wavefront/programs.h"
-#include "engine/wavefront/wavefront.h"
-#include "io/image/image.h"
 #include "kdray/options.h"
 
 namespace kdray::odprt {
@@ -37,36 +31,24 @@ struct Queue {
   std::size_t number = 0;  // among all queues, also those that are left out
 };
 
-struct Request {
-  std::vector<Queue> queues;
-  RankTable table;      // of them, and of other ranks'
-  layout::Frame frame;  // with tiles
-  layout::Features features = 0;
+// Its frame is with tiles.
+struct Request : frame::Request {
+  std::vector<Queue> queues = {};
+  RankTable table = {};  // of them, and of other ranks'
   Traversal traversal = Traversal::automatic;
-  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one.
-  double adaptive_target = 0;
   Balance balance = Balance::sah;
   std::uint32_t n_slices = 16;  // of each queue: enough for all of its compute units
   std::uint32_t ray_buffer = 0;
   std::uint64_t device_memory = 0;
   std::uint32_t census_every = 0;  // visits to subtrees are counted in one wave of so many
-  timeline::Timeline* timeline = nullptr;
-  device::FaultInjector* fault_injector = nullptr;
-  std::function<void(double)> progress;
-  // What is finished already, and where it goes; its tiles are the frame's. Null: there is none.
-  checkpoint::FrameCheckpoint* checkpoint = nullptr;
 };
 
-struct QueueReport {
-  std::size_t number = 0;
-  std::string device;
-  double busy_seconds = 0;
-  std::uint64_t launches = 0, waves = 0, traced = 0;  // traced: rays that the queue has looked for a hit of
+// A ray counts wherever a hit of it was looked for.
+struct QueueReport : frame::QueueReport {
+  std::uint64_t launches = 0, waves = 0;
   std::uint32_t n_parts = 0, n_subtrees = 0;
-  std::uint64_t n_loads = 0;                       // of parts
-  std::size_t geometry_bytes = 0, work_bytes = 0;  // geometry: the most at one time
-  double cost_share = 0;                           // of the expected cost
-  int rank = 0;
+  std::uint64_t n_loads = 0;       // of parts
+  std::size_t geometry_bytes = 0;  // the most at one time
 };
 
 struct Quarantined {
@@ -74,18 +56,14 @@ struct Quarantined {
   std::string what;
 };
 
-struct Result {
-  image::Image image;
-  std::optional<adaptive::Report> samples;  // of adaptive sampling
-  wavefront::Counters counters;
-  std::map<std::string, double> stage_seconds;
-  double render_seconds = 0, divide_seconds = 0;
+struct Result : frame::Result {
+  double divide_seconds = 0;
   std::vector<QueueReport> queues;
   ExchangeCounts exchange{0};
   std::vector<SubtreeUse> visits;             // of each subtree, where counted
   std::vector<std::uint32_t> subtree_queues;  // the number of the queue that holds it, or kEveryPart
   std::vector<Quarantined> quarantined;
-  std::uint32_t n_bands = 0, n_parts = 0, n_cells = 0;
+  std::uint32_t n_parts = 0, n_cells = 0;
   std::vector<std::uint64_t> peak_bytes;  // of each rank's process, so far; 0: not known
 };
 

@@ -28,7 +28,7 @@ void add_worker(const Request& request, const Provision& provision, const Divisi
   QueueReport report;
   report.number = queue.number;
   report.device = queue.context->info().name;
-  report.work_bytes =
+  report.device_bytes =
       pool.workers.back()->bytes() + provision.n_outboxes * pool.outboxes.back().front()->bytes();
   pool.reports.push_back(report);
 }

@@ -126,8 +126,9 @@ void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared
   if (work.samples.empty()) note_costs(tiles, shared);
   const Extent extent = work.samples.empty() ? extent_of(tiles, frame_) : extent_of_runs(tiles);
   // Last: what it adds to the counters counts.
-  wavefront_.finish(extent.first, extent.n,
-                    [&](const wavefront::FilmSums& film) { shared.deliver(film, tiles); });
+  wavefront_.finish(extent.first, extent.n, [&](const wavefront::FilmSums& film) {
+    work.sink({{&film.sums, 1}, film.first, frame_.width}, tiles);
+  });
   if (work.samples.empty()) {
     n_tiles_ += tiles.size();
     for (const layout::u32 tile : tiles)

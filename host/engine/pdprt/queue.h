@@ -6,7 +6,6 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -22,6 +21,7 @@ namespace kdray::pdprt {
 // What a list's tiles are: the picture's, of which the film begins with `first_pixel`, or runs of samples
 // (frame.layout.h).
 struct Work {
+  const frame::Sink& sink;  // of the tiles that are done: each is handed over by one queue's thread
   std::size_t first_pixel = 0;
   std::span<const layout::u32> samples = {};  // empty: tiles
   // A queue delivers what it has when a list has taken so long, and begins another.
@@ -30,9 +30,6 @@ struct Work {
 
 // What the queues of a frame share.
 struct Shared {
-  // Puts what a queue has of some tiles where it belongs; called by the queues' threads, each tile by one of
-  // them.
-  std::function<void(const wavefront::FilmSums&, std::span<const layout::u32> tiles)> deliver;
   std::atomic<std::uint64_t> tiles_done{0};
   std::vector<double> tile_seconds;        // by row and column of tiles; empty: not wanted
   std::vector<std::uint32_t> tile_queues;  // likewise: the queue whose tile is in the picture

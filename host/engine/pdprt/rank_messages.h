@@ -6,8 +6,8 @@
 // Errors  ErrorCode::internal: bytes that are no such message. Values are checked by whoever knows the list.
 #pragma once
 
+#include "cluster/transport/message_bytes.h"
 #include "cluster/transport/ranks.h"
-#include "cluster/transport/words.h"
 #include "engine/checkpoint/header.h"
 #include "layout/frame.layout.h"
 
@@ -46,7 +46,9 @@ struct SharedFrame {
   std::uint32_t width = 0, height = 0, tile_width = 0, tile_height = 0;
 
   // Nowhere (no width): there is no such entry.
-  checkpoint::Rectangle places_of(bool of_runs, layout::u32 entry) const;
+  checkpoint::Rectangle places_of(bool of_runs, layout::u32 entry) const {
+    return checkpoint::places_of({width, height, tile_width, tile_height}, of_runs ? 1 : 0, entry);
+  }
 };
 
 using transport::head_of, transport::refuse, transport::to_bytes, transport::words_behind;

@@ -1,157 +1,211 @@
 #include "engine/pdprt/render.h"
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
 #include <utility>
 
-#include "base/raw_vector.h"
 #include "base/timer.h"
-#include "engine/checkpoint/render_round.h"
-#include "engine/pdprt/frame.h"
+#include "engine/frame/driver.h"
+#include "engine/pdprt/tile_client.h"
+#include "engine/pdprt/tile_server.h"
+#include "engine/pdprt/worker_pool.h"
 #include "engine/wavefront/curve.h"
-#include "engine/wavefront/develop.h"
 
 namespace kdray::pdprt {
 
 namespace {
 
-constexpr double kForever = 1e9;  // seconds
+constexpr double kStep = 0.01;         // seconds between two looks at the time and the progress
+constexpr double kRankStep = 0.001;    // ... at the messages of others
+constexpr double kDeliverEvery = 1.0;  // seconds: that the sums of all tiles don't go home at the end
 
-}  // namespace
+using Progress = std::function<void(double)>;
 
-Frame::Frame(std::span<const Device> devices, const Task& task) : task_(task), frame_(task.frame) {
+void nap() {
+  std::this_thread::sleep_for(std::chrono::duration<double>(kRankStep));
+}
+
+// The fields of a queue that travel to rank 0.
+template <class Stream, class Queue>
+void pass(Stream& stream, Queue& queue) {
+  frame::pass_queue(stream, queue);
+  stream(queue.failure, queue.tiles, queue.tiles_lost);
+}
+
+transport::Bytes to_report(const Result& result) {
+  transport::Writer writer;
+  frame::put_share(result, writer);
+  writer(result.tile_cost, result.queues.size());
+  for (const QueueResult& queue : result.queues) pass(writer, queue);
+  return writer.take();
+}
+
+void add_report(const transport::Message& message, Result& result) {
+  transport::Reader reader(message);
+  frame::add_share(reader, result);
+  result.tile_cost.add(reader.get<TileCost>());
+  for (auto n = reader.get<std::size_t>(); n > 0; --n) {
+    QueueResult& queue = result.queues.emplace_back();
+    pass(reader, queue);
+    queue.number = result.queues.size() - 1;
+    queue.rank = message.from;
+  }
+}
+
+class Executor final : public frame::Executor {
+ public:
+  Executor(std::span<const Device> devices, const Task& task);
+
+  const layout::Frame& frame() const override { return frame_; }
+  std::span<const wavefront::Band> bands() const override { return bands_; }
+  std::size_t n_samples() const override { return capacity_.samples; }
+  frame::Entries render(frame::List list, const frame::Sink& sink, const Progress& progress) override;
+  bool leads() const override { return !task_.ranks || task_.ranks->leads(); }
+  void follow() override;
+
+  // Adds what the queues have done, on rank 0 those of all ranks.
+  void collect(Result& result);
+
+ private:
+  frame::Entries render_alone(frame::List list, const frame::Sink& sink, const Progress& progress);
+  frame::Entries serve(frame::List list, const frame::Sink& sink, const Progress& progress);
+  void check_entries(const Begin& list) const;
+  SharedFrame shared_frame() const;
+  TileHierarchy hierarchy() const { return TileHierarchy(task_.ranks->size(), task_.ranks_to_a_bag); }
+  void collect_tile_seconds(Result& result) const;
+  void add_reports(Result& result);
+
+  const Task& task_;
+  layout::Frame frame_;
+  std::vector<wavefront::Band> bands_;
+  wavefront::Capacity capacity_;
+  std::optional<WorkerPool> pool_;
+  std::optional<TileServer> server_;  // of rank 0
+};
+
+Executor::Executor(std::span<const Device> devices, const Task& task) : task_(task), frame_(task.frame) {
   devices.front().schedule.apply(frame_, task.features);
   bands_ = wavefront::bands_of(frame_, task.max_film_bytes);
-  const adaptive::Size size{frame_.width, frame_.height};
-  image_ = {static_cast<int>(size.width), static_cast<int>(size.height), {}};
-  const bool has_picture = !task.ranks || task.ranks->leads();
-  if (task.adaptive_target > 0 && has_picture)
-    sampler_.emplace(size, task.adaptive_target, (task.features & KDRAY_FEATURES_NOISY) != 0);
-  if (task.adaptive_target == 0 && has_picture) image_.pixels.resize(size.pixels());
   capacity_.tiles = std::size_t{bands_.front().n_rows} * frame_.n_tiles_x;
   capacity_.pixels = bands_.front().n_pixels;
   if (task.adaptive_target > 0)
     capacity_.samples = std::max(kLeastSamples, capacity_.pixels / KDRAY_SAMPLE_RUN * KDRAY_SAMPLE_RUN);
   pool_.emplace(devices, task, capacity_);
+  pool_->require_one();
   pool_->shared().tile_queues.assign(frame_.n_tiles, kNobody);
   if (task.timeline) pool_->shared().tile_seconds.resize(frame_.n_tiles);
   if (task.ranks && task.ranks->leads()) server_.emplace(*task.ranks, shared_frame(), hierarchy());
 }
 
-SharedFrame Frame::shared_frame() const {
+SharedFrame Executor::shared_frame() const {
   return {task_.shared_frame, frame_.width, frame_.height, frame_.tile_width, frame_.tile_height};
 }
 
-TileHierarchy Frame::hierarchy() const {
-  return TileHierarchy(task_.ranks->size(), task_.ranks_to_a_bag);
+frame::Entries Executor::render(frame::List list, const frame::Sink& sink, const Progress& progress) {
+  pool_->shared().tiles_done = 0;
+  return server_ ? serve(std::move(list), sink, progress) : render_alone(std::move(list), sink, progress);
 }
 
-void Frame::render_bands(const Destination& to) {
-  pool_->shared().tiles_done = n_of_others_ = 0;
-  n_tiles_ = frame_.n_tiles;
+frame::Entries Executor::render_alone(frame::List list, const frame::Sink& sink, const Progress& progress) {
+  // A single queue takes everything at once.
+  const Division division = pool_->size() == 1 ? Division::contiguous : task_.division;
+  Tiles tiles(std::move(list.entries), division, pool_->size(), task_.checkpoint != nullptr);
+  const Timer timer;
+  pool_->render(tiles, {.sink = sink, .first_pixel = list.first_place, .samples = list.samples},
+                std::min(kStep, list.seconds), [&] {
+                  if (timer.seconds() >= list.seconds) tiles.close();
+                  progress(static_cast<double>(pool_->shared().tiles_done));
+                });
+  return tiles.left_over();
+}
+
+frame::Entries Executor::serve(frame::List list, const frame::Sink& sink, const Progress& progress) {
+  Tiles own = Tiles::open(pool_->size(), list.entries.size());
+  server_->begin({.of_runs = list.of_runs(), .first_pixel = list.first_place}, std::move(list.entries),
+                 list.samples, sink);
+  const Timer timer;
+  frame::Entries left;
+  const auto beside = [&] {
+    if (timer.seconds() >= list.seconds && left.empty()) left = server_->close();
+    server_->step(own);
+    progress(static_cast<double>(pool_->shared().tiles_done + server_->n_rendered()));
+  };
+  beside();
+  pool_->render(own, {.sink = sink, .first_pixel = list.first_place, .samples = list.samples}, kRankStep,
+                beside);
+  for (; !server_->is_done(); nap()) beside();
+  return left;
+}
+
+// Rank 0's devices decide how a frame is cut into bands; this rank has room for the same.
+void Executor::check_entries(const Begin& list) const {
+  const bool known = std::ranges::any_of(
+      bands_, [&](const wavefront::Band& band) { return band.first_pixel == list.first_pixel; });
+  if (!known || list.n_entries > std::max(capacity_.tiles, capacity_.samples / KDRAY_SAMPLE_RUN))
+    throw Error(ErrorCode::internal, "rank 0 has cut the picture otherwise than this rank");
+}
+
+void Executor::follow() {
+  TileClient client(*task_.ranks, shared_frame(), hierarchy());
+  const frame::Sink sink = [&](const auto& films, auto entries) { client.take(films, entries); };
+  while (!client.is_finished()) {
+    const auto list = client.next_list();
+    if (!list) {
+      nap();
+      continue;
+    }
+    check_entries(list->head);
+    pool_->shared().tiles_done = 0;
+    Tiles tiles = Tiles::open(pool_->size(), list->head.n_entries);
+    const auto beside = [&] { client.step(tiles, pool_->shared().tiles_done); };
+    beside();
+    pool_->render(tiles,
+                  {.sink = sink,
+                   .first_pixel = list->head.first_pixel,
+                   .samples = list->samples,
+                   .seconds = kDeliverEvery},
+                  kRankStep, beside);
+    for (; !client.is_done(); nap()) beside();
+    client.finish_list();
+  }
+}
+
+void Executor::collect_tile_seconds(Result& result) const {
+  const std::vector<double>& costs = pool_->shared().tile_seconds;
+  if (costs.empty() || result.tile_cost.total == 0) return;
   for (const wavefront::Band& band : bands_)
-    render_list(wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows),
-                {.first_pixel = band.first_pixel}, to, kForever);
+    for (const layout::u32 tile : wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows))
+      result.tile_seconds.push_back(costs[KDRAY_TILE_ROW(tile) * frame_.n_tiles_x + KDRAY_TILE_COLUMN(tile)]);
 }
 
-void Frame::render_uniform() {
-  render_bands({.own = [&](const wavefront::FilmSums& film, std::span<const layout::u32> tiles) {
-    wavefront::develop_tiles(film.sums, film.first, frame_, tiles, image_.pixels);
-  }});
+void Executor::add_reports(Result& result) {
+  for (server_->finish(); !server_->take_reports();) nap();
+  std::vector<transport::Message> reports = server_->reports();
+  std::ranges::sort(reports, {}, &transport::Message::from);
+  for (const transport::Message& message : reports) add_report(message, result);
 }
 
-Frame::Destination Frame::to_picture(std::span<layout::i64> sums) const {
-  return {.own =
-              [this, sums](const wavefront::FilmSums& film, std::span<const layout::u32> tiles) {
-                wavefront::copy_tiles(film.sums, film.first, frame_, tiles, sums);
-              },
-          .of_others =
-              [this, sums](layout::u32 tile, checkpoint::Sums from) {
-                const checkpoint::Rectangle r = shared_frame().places_of(false, tile);
-                for (std::size_t row = 0; row < r.height;
-                     ++row, from = from.subspan(std::size_t{3} * r.width))
-                  std::copy_n(from.begin(), std::size_t{3} * r.width,
-                              sums.subspan(3 * ((r.y + row) * frame_.width + r.x)).begin());
-              }};
-}
-
-// The sums of all tiles, from the checkpoint or rendered, to where the picture's are.
-void Frame::render_sums_of_tiles(std::span<layout::i64> sums) {
-  const Destination to = to_picture(sums);
-  if (!task_.checkpoint) return render_bands(to);
-  n_tiles_ = frame_.n_tiles;
-  const std::uint32_t n_rows = frame_.n_tiles / frame_.n_tiles_x, of_band = bands_.front().n_rows;
-  checkpoint::render_round(
-      *task_.checkpoint,
-      checkpoint::round_of_tiles(frame_, wavefront::tile_curve(frame_.n_tiles_x, 0, n_rows), sums),
-      {.number_of = [of_band](layout::u32 tile) { return std::size_t{KDRAY_TILE_ROW(tile) / of_band}; },
-       .render =
-           [&](std::size_t band, std::vector<layout::u32> tiles, double seconds) {
-             pool_->shared().tiles_done = n_of_others_ = 0;
-             return render_list(std::move(tiles), {.first_pixel = bands_[band].first_pixel}, to, seconds);
-           },
-       .idle = [this] { idle(); }});
-}
-
-void Frame::render_uniform_sums() {
-  RawVector<layout::i64> sums(3 * image_.pixels.size());  // each is written
-  render_sums_of_tiles(sums);
-  const std::span<const layout::i64> film = sums;
-  wavefront::develop({&film, 1}, static_cast<int>(frame_.n_samples), image_.pixels);
-}
-
-// Others that share the checkpoint are waited for.
-void Frame::idle() {
-  pool_->shared().tiles_done = n_of_others_ = 0;
-  tell_progress();
-}
-
-void Frame::tell_progress() const {
-  if (!task_.progress) return;
-  const std::uint64_t before = task_.checkpoint ? task_.checkpoint->n_present() : 0;
-  const std::uint64_t of_others = n_of_others_ + (server_ ? server_->n_rendered() : 0);
-  const double share = static_cast<double>(before + of_others + pool_->shared().tiles_done) /
-                       static_cast<double>(std::max<std::uint64_t>(n_tiles_, 1));
-  task_.progress(progress_from_ + std::min(share, 1.0) * (progress_to_ - progress_from_));
-}
-
-Result Frame::collect(double seconds) {
-  Result result;
-  result.render_seconds = seconds;
-  result.image = std::move(image_);
-  if (sampler_) result.samples = sampler_->report();
-  result.tile_width = frame_.tile_width;
-  result.tile_height = frame_.tile_height;
-  result.n_tiles = frame_.n_tiles;
-  result.n_bands = static_cast<std::uint32_t>(bands_.size());
+void Executor::collect(Result& result) {
   result.tile_queues = std::move(pool_->shared().tile_queues);
   result.tile_cost.tile_pixels = std::uint64_t{frame_.tile_width} * frame_.tile_height;
   pool_->collect(result);
-  const std::vector<double>& costs = pool_->shared().tile_seconds;
-  for (const wavefront::Band& band : bands_)
-    if (!costs.empty() && result.tile_cost.total > 0)
-      for (const layout::u32 tile : wavefront::tile_curve(frame_.n_tiles_x, band.first_row, band.n_rows))
-        result.tile_seconds.push_back(
-            costs[KDRAY_TILE_ROW(tile) * frame_.n_tiles_x + KDRAY_TILE_COLUMN(tile)]);
-  return result;
+  collect_tile_seconds(result);
+  if (server_) return add_reports(result);
+  if (!task_.ranks) return;
+  for (QueueResult& queue : result.queues) queue.rank = task_.ranks->rank();
+  task_.ranks->send(0, kReport, to_report(result));
 }
 
-Result Frame::render() {
-  pool_->require_one();
-  const Timer timer;
-  if (sampler_)
-    render_adaptive();
-  else
-    task_.checkpoint || task_.ranks ? render_uniform_sums() : render_uniform();
-  const double seconds = timer.seconds();
-  if (task_.progress) task_.progress(1.0);
-  Result result = collect(seconds);
-  if (server_) add_reports(result);
-  return result;
-}
+}  // namespace
 
 Result render(std::span<const Device> devices, const Task& task) {
-  Frame frame(devices, task);
-  return task.ranks && !task.ranks->leads() ? frame.render_for_others() : frame.render();
+  Executor executor(devices, task);
+  Result result;
+  frame::render_frame(executor, task, result);
+  executor.collect(result);
+  return result;
 }
 
 }  // namespace kdray::pdprt

@@ -10,22 +10,16 @@
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: pixel-distributed, bag of tasks.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "base/timeline.h"
 #include "cluster/transport/ranks.h"
-#include "device/opencl/fault_injector.h"
-#include "engine/adaptive/report.h"
-#include "engine/checkpoint/frame_checkpoint.h"
+#include "engine/frame/executor.h"
+#include "engine/frame/result.h"
 #include "engine/pdprt/tile_hierarchy.h"
 #include "engine/pdprt/tile_size.h"
 #include "engine/wavefront/wavefront.h"
-#include "io/image/image.h"
 
 namespace kdray::pdprt {
 
@@ -44,18 +38,10 @@ inline constexpr std::uint32_t kNobody = 0xffffffffu;
 // don't take many lists for one.
 inline constexpr std::size_t kLeastSamples = std::size_t{1} << 18;
 
-struct Task {
-  layout::Frame frame;  // without a schedule (flatten::make_frame)
-  layout::Features features = 0;
-  // > 0: samples where they are needed (adaptive/sampler.h); the frame then has one.
-  double adaptive_target = 0;
+// Its frame is without a schedule (flatten::make_frame). The timeline also asks for Result::tile_seconds.
+struct Task : frame::Request {
   Division division = Division::bag;
-  std::function<void(double)> progress = {};  // called from render()'s thread with the share done
-  device::FaultInjector* fault_injector = nullptr;
-  timeline::Timeline* timeline = nullptr;               // also asks for Result::tile_seconds
   std::size_t max_film_bytes = std::size_t{256} << 20;  // per queue; larger pictures go in bands
-  // What is finished already, and where it goes; its tiles are those of the schedule. Null: there is none.
-  checkpoint::FrameCheckpoint* checkpoint = nullptr;
   // Others that render the same frame; rank 0 has the picture then, and the others' result has none. Null:
   // there are none.
   transport::Ranks* ranks = nullptr;
@@ -63,24 +49,14 @@ struct Task {
   int ranks_to_a_bag = kRanksToABag;  // the same for all of them; beyond that there are several
 };
 
-struct QueueResult {
-  std::string device;
-  double busy_seconds = 0;
-  std::uint64_t rays = 0, tiles = 0;  // that are in the picture
-  std::size_t device_bytes = 0;       // without the scene
-  std::string failure;                // empty: none
-  std::uint64_t tiles_lost = 0;       // that it had taken when it failed
-  int rank = 0;                       // that it is of
+struct QueueResult : frame::QueueReport {
+  std::uint64_t tiles = 0;       // that are in the picture, as are its rays
+  std::string failure;           // empty: none
+  std::uint64_t tiles_lost = 0;  // that it had taken when it failed
 };
 
-struct Result {
-  image::Image image;
-  std::optional<adaptive::Report> samples;  // of adaptive sampling
-  wavefront::Counters counters;
-  std::map<std::string, double> stage_seconds;  // device time, added over the queues
-  double render_seconds = 0;                    // wall time from the first launch to the finished film
+struct Result : frame::Result {
   std::vector<QueueResult> queues;
-  std::uint32_t tile_width = 0, tile_height = 0, n_tiles = 0, n_bands = 0;
   TileCost tile_cost;                      // no total: it was not measured
   std::vector<double> tile_seconds;        // of a compute unit, in the order of the curve, band after band
   std::vector<std::uint32_t> tile_queues;  // by row and column of tiles: who rendered it, or kNobody

@@ -56,16 +56,10 @@ std::optional<TileClient::List> TileClient::next_list() {
   is_over_ = false;
   prefetch_ = {};
   List list{list_, words_behind<Begin>(*message)};
-  if (below_) pass_on(list);
+  if (below_)
+    below_->pass_on(list.head, list.samples,
+                    [this](const auto& films, auto entries) { take(films, entries); });
   return list;
-}
-
-void TileClient::pass_on(const List& list) {
-  below_->pass_on(list.head, list.samples, [this](layout::u32 entry, checkpoint::Sums sums) {
-    const std::lock_guard lock(mutex_);
-    checkpoint::append_record(records_, frame_.frame, {list_.of_runs, entry, places_of(entry)}, sums,
-                              checkpoint::hash_of_sums(sums));
-  });
 }
 
 void TileClient::take_grant(const transport::Message& message, Tiles& tiles) {
@@ -121,23 +115,19 @@ checkpoint::Rectangle TileClient::places_of(layout::u32 entry) const {
   return frame_.places_of(list_.of_runs != 0, entry);
 }
 
-void TileClient::append(const wavefront::FilmSums& film, layout::u32 entry, std::string& records) const {
-  const bool of_runs = list_.of_runs != 0;
-  const checkpoint::Rectangle r = places_of(entry);
-  std::vector<layout::i64> sums;
-  sums.reserve(r.sums());
-  for (std::size_t row = 0; row < r.height; ++row) {
-    const std::size_t place = of_runs ? r.x : (r.y + row) * frame_.width + r.x;
-    const checkpoint::Sums from = film.sums.subspan(3 * (place - film.first), std::size_t{3} * r.width);
-    sums.insert(sums.end(), from.begin(), from.end());
-  }
-  checkpoint::append_record(records, frame_.frame, {of_runs ? 1u : 0u, entry, r}, sums,
-                            checkpoint::hash_of_sums(sums));
-}
-
-void TileClient::deliver(const wavefront::FilmSums& film, std::span<const layout::u32> entries) {
+void TileClient::take(const wavefront::PlacedFilms& films, std::span<const layout::u32> entries) {
   std::string records;
-  for (const layout::u32 entry : entries) append(film, entry, records);
+  std::vector<layout::i64> sums;
+  for (const layout::u32 entry : entries) {
+    const checkpoint::Rectangle r = places_of(entry);
+    sums.clear();
+    for (std::size_t y = r.y; y < r.y + r.height; ++y) {
+      const checkpoint::Sums row = films.films.front().subspan(films.at(r.x, y), std::size_t{3} * r.width);
+      sums.insert(sums.end(), row.begin(), row.end());
+    }
+    checkpoint::append_record(records, frame_.frame, {list_.of_runs, entry, r}, sums,
+                              checkpoint::hash_of_sums(sums));
+  }
   const std::lock_guard lock(mutex_);
   records_ += records;
 }

@@ -2,10 +2,10 @@
 //         wanted, and sends their sums home as they are done. Where this rank serves others
 //         (tile_hierarchy.h), it passes on to them what they want, and home what they have done.
 // Shape   next_list(), then step() until the queues have rendered what there is of it and is_done(), then
-//         finish_list(); until there is no list any more. What the queues' threads hand to deliver() is sent
+//         finish_list(); until there is no list any more. What the queues' threads hand to take() is sent
 //         by step(), in messages of some hundred KiB.
 // Errors  ErrorCode::internal: messages that make no sense. transport::Ended.
-// Threads One calls all but deliver(), which is for any.
+// Threads One calls all but take(), which is for any.
 #pragma once
 
 #include <mutex>
@@ -17,7 +17,6 @@
 #include "engine/pdprt/rank_messages.h"
 #include "engine/pdprt/tile_server.h"
 #include "engine/pdprt/tiles.h"
-#include "engine/wavefront/wavefront.h"
 
 namespace kdray::pdprt {
 
@@ -35,11 +34,11 @@ class TileClient {
 
   // `n_rendered`: of the list, so far.
   void step(Tiles& tiles, std::size_t n_rendered);
-  void deliver(const wavefront::FilmSums& film, std::span<const layout::u32> entries);
   bool is_done() const { return !below_ || below_->is_done(); }  // with this rank's own clients
   void finish_list();
 
-  void report(transport::Bytes bytes) { ranks_.send(0, kReport, std::move(bytes)); }
+  // Sends home what this rank's queues have rendered, or its clients.
+  void take(const wavefront::PlacedFilms& films, std::span<const layout::u32> entries);
 
  private:
   std::optional<transport::Message> next_message();
@@ -47,9 +46,7 @@ class TileClient {
   void take(const transport::Message& message, Tiles& tiles);
   void take_grant(const transport::Message& message, Tiles& tiles);
   void ask(const Tiles& tiles, std::size_t n_rendered);
-  void pass_on(const List& list);
   checkpoint::Rectangle places_of(layout::u32 entry) const;
-  void append(const wavefront::FilmSums& film, layout::u32 entry, std::string& records) const;
   void send_pieces(std::size_t least_bytes);
 
   transport::Ranks& ranks_;

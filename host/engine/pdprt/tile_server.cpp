@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/checkpoint/record.h"
 
@@ -25,7 +26,7 @@ void TileServer::tell(transport::Tag tag, const transport::Bytes& bytes) {
   for (const int rank : clients_) ranks_.send(rank, tag, bytes);
 }
 
-void TileServer::start(const Begin& head, std::span<const layout::u32> samples, Take take) {
+void TileServer::start(const Begin& head, std::span<const layout::u32> samples, frame::Sink sink) {
   list_ = head.list;
   of_runs_ = head.of_runs != 0;
   bag_.clear();
@@ -35,20 +36,20 @@ void TileServer::start(const Begin& head, std::span<const layout::u32> samples, 
   waiting_.clear();
   own_prefetch_ = {};
   own_wants_.reset();
-  take_ = std::move(take);
+  sink_ = std::move(sink);
   tell(kBegin, to_bytes(head, samples));
 }
 
 void TileServer::begin(Begin head, std::vector<layout::u32> entries, std::span<const layout::u32> samples,
-                       Take take) {
+                       frame::Sink sink) {
   head.list = ranks_.next_number();
   head.n_entries = entries.size();
-  start(head, samples, std::move(take));
+  start(head, samples, std::move(sink));
   bag_ = std::move(entries);
 }
 
-void TileServer::pass_on(const Begin& head, std::span<const layout::u32> samples, Take take) {
-  start(head, samples, std::move(take));
+void TileServer::pass_on(const Begin& head, std::span<const layout::u32> samples, frame::Sink sink) {
+  start(head, samples, std::move(sink));
   is_open_ = true;
 }
 
@@ -119,7 +120,8 @@ void TileServer::take_records(const transport::Message& message) {
     const checkpoint::Sums sums(reinterpret_cast<const layout::i64*>(bytes.data() + checkpoint::kRecordHead),
                                 head->id.places.sums());
     if (checkpoint::hash_of_sums(sums) != head->content) refuse(message);
-    take_(entry, sums);
+    const checkpoint::Rectangle& r = head->id.places;
+    sink_({{&sums, 1}, std::size_t{r.y} * r.width + r.x, r.width}, {&entry, 1});
     assigned_to_.erase(assigned);
     --n_assigned_;
     bytes.remove_prefix(head->bytes);

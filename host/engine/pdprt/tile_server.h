@@ -10,11 +10,11 @@
 #pragma once
 
 #include <deque>
-#include <functional>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
+#include "engine/frame/executor.h"
 #include "engine/pdprt/prefetch_policy.h"
 #include "engine/pdprt/rank_messages.h"
 #include "engine/pdprt/tile_hierarchy.h"
@@ -26,14 +26,13 @@ class TileServer {
  public:
   TileServer(transport::Ranks& ranks, const SharedFrame& frame, const TileHierarchy& hierarchy);
 
-  using Take = std::function<void(layout::u32 entry, checkpoint::Sums sums)>;
-  // `samples` of the list's runs. `take` puts the sums of a record where they belong. Rank 0's, which numbers
-  // the list.
-  void begin(Begin head, std::vector<layout::u32> entries, std::span<const layout::u32> samples, Take take);
+  // `samples` of the list's runs. `sink` gets the sums of a record. Rank 0's, which numbers the list.
+  void begin(Begin head, std::vector<layout::u32> entries, std::span<const layout::u32> samples,
+             frame::Sink sink);
 
   // The others': a list that has been begun, with nothing of it yet. `elsewhere`: how many tiles there are
   // that nobody has, for each rank.
-  void pass_on(const Begin& head, std::span<const layout::u32> samples, Take take);
+  void pass_on(const Begin& head, std::span<const layout::u32> samples, frame::Sink sink);
   void add(std::span<const layout::u32> entries, std::size_t elsewhere);
   void end();
   std::size_t stock() const { return bag_.size() - next_; }
@@ -62,7 +61,7 @@ class TileServer {
     std::size_t least;
   };
 
-  void start(const Begin& head, std::span<const layout::u32> samples, Take take);
+  void start(const Begin& head, std::span<const layout::u32> samples, frame::Sink sink);
   void tell(transport::Tag tag, const transport::Bytes& bytes);
   bool can_assign() const { return stock() > 0 || !is_open_; }
   std::span<const layout::u32> assign(std::size_t least, int n_served);
@@ -86,7 +85,7 @@ class TileServer {
   std::deque<Request> waiting_;                       // for something to be assigned
   PrefetchPolicy own_prefetch_;
   std::optional<std::size_t> own_wants_;
-  Take take_;
+  frame::Sink sink_;  // of the list
   std::vector<transport::Message> reports_;
 };
 

@@ -3,6 +3,7 @@
 //         otherwise, since rays of a tile are alike and share what they fetch.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -12,6 +13,11 @@ namespace kdray::pdprt {
 struct TileCost {
   std::uint64_t tile_pixels = 0;
   double costliest = 0, total = 0;  // seconds of a compute unit
+
+  void add(const TileCost& of_others) {
+    costliest = std::max(costliest, of_others.costliest);
+    total += of_others.total;
+  }
 };
 
 constexpr std::uint32_t kLargestTile = 32;

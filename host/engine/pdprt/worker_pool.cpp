@@ -20,6 +20,7 @@ WorkerPool::WorkerPool(std::span<const Device> devices, const Task& task, const 
 void WorkerPool::open(const Device& device, std::size_t number_of_device) {
   const std::size_t number = places_.size();
   Place& place = places_.emplace_back();
+  place.result.number = number;
   place.result.device = device.context->info().name;
   if (task_.timeline)
     task_.timeline->name_row(static_cast<int>(number),
@@ -113,8 +114,7 @@ void WorkerPool::collect(Result& result) {
       place.result.rays = wavefront.counters().total();
       place.result.tiles = place.queue->tiles();
       place.result.device_bytes = wavefront.device_bytes();
-      result.tile_cost.costliest = std::max(result.tile_cost.costliest, place.queue->tile_cost().costliest);
-      result.tile_cost.total += place.queue->tile_cost().total;
+      result.tile_cost.add(place.queue->tile_cost());
     }
     result.queues.push_back(std::move(place.result));
   }

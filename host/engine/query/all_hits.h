@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "engine/query/target.h"
 #include "kdray/cancel.h"
 #include "kdray/options.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/free_memory.h"
 #include "base/memory.h"
+#include "base/process_memory.h"
 #include "engine/query/all_hits.h"
 #include "engine/query/exact_rays.h"
 #include "engine/query/grains.h"

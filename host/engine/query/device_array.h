@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <span>
 
-#include "base/array.h"
+#include "base/memory.h"
 #include "device/opencl/context.h"
 #include "device/opencl/host_memory.h"
 

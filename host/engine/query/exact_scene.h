@@ -1,8 +1,8 @@
 // What    Rays of doubles against a scene's primitives, in double on the host: for those that begin so near
 //         to a surface that the kernels' floats can't tell on which side of it they are.
 // Shape   Everything in the scene's own space. A line crosses triangles by exact signs (exact_triangle.h),
-//         shapes as primitives/exact.h says; of an instance in its mesh's space, to which the line is moved
-//         once for all of its primitives.
+//         shapes as primitives/shape_tools.h says; of an instance in its mesh's space, to which the line is
+//         moved once for all of its primitives.
 // Why     A crossing is decided in floats wherever its ray begins farther from every surface than is_near()
 //         allows: 32u of the ray's reach are more than the 20u that docs/design/queries.md asks for, and
 //         2^-12 more than the way between a place of doubles and the floats that it is rounded to.
@@ -15,7 +15,7 @@
 
 #include "accel/prepare/prepared.h"
 #include "engine/query/exact_triangle.h"
-#include "scene/primitives/exact.h"
+#include "scene/primitives/shape_tools.h"
 
 namespace kdray::query {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "engine/query/all_hits.h"
 #include "engine/query/check_rays.h"
 #include "engine/query/hit_lists.h"

@@ -9,8 +9,8 @@
 #include <limits>
 #include <numeric>
 
+#include "base/box.h"
 #include "base/error.h"
-#include "base/rounding.h"
 #include "base/timer.h"
 #include "device/opencl/opencl_error.h"
 #include "engine/query/grains.h"

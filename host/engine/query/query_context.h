@@ -1,5 +1,5 @@
-// What    What every query needs: a scene that is ready, on the queues that answer, and what its numbers mean;
-//         and kernels with their queues and buffers, kept from one call for the next.
+// What    What every query needs: a scene that is ready, on the queues that answer, and what its numbers
+//         mean; and kernels with their queues and buffers, kept from one call for the next.
 // Shape   A place is what works by itself: a device, or each of the equal parts that it is divided into. A
 //         session is whatever is made of a Target and has settle(), which waits for what may still be running
 //         on it, and says whether it can serve again. It serves one call at a time, from any thread.

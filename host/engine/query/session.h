@@ -1,5 +1,5 @@
-// What    Kernels with their queue and buffers, ready to trace a chunk of rays (query_context.h): closest hits or
-//         any hits.
+// What    Kernels with their queue and buffers, ready to trace a chunk of rays (query_context.h): closest
+//         hits or any hits.
 // Shape   Chunks are so small that rays and hits stay in a cache between host and kernel, and so large
 //         that a launch is of no account; a GPU's are larger. A chunk is started, and waited for later: two
 //         sessions keep a device busy while the host gets one's rays ready and takes the other's hits. Who

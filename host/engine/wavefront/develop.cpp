@@ -43,7 +43,7 @@ std::vector<TileSpan> spans_of(std::span<const layout::u32> tiles) {
   return spans;
 }
 
-// Calls take(pixel, n) for the pixels of the tiles, row by row: n from the picture's pixel on.
+// Calls take(x, y, n) for the pixels of the tiles, row by row: n from this one on.
 template <class Take>
 void for_each_row(const layout::Frame& frame, std::span<const layout::u32> tiles, const Take& take) {
   const auto take_span = [&](const TileSpan& span) {
@@ -52,8 +52,7 @@ void for_each_row(const layout::Frame& frame, std::span<const layout::u32> tiles
         std::min<std::size_t>(std::size_t{span.end_column} * frame.tile_width, frame.width);
     const std::size_t end_y =
         std::min<std::size_t>((std::size_t{span.row} + 1) * frame.tile_height, frame.height);
-    for (std::size_t y = std::size_t{span.row} * frame.tile_height; y < end_y; ++y)
-      take(y * frame.width + x, end_x - x);
+    for (std::size_t y = std::size_t{span.row} * frame.tile_height; y < end_y; ++y) take(x, y, end_x - x);
   };
   const std::vector<TileSpan> spans = spans_of(tiles);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, spans.size()), [&](const auto& range) {
@@ -89,12 +88,20 @@ class Developer {
   explicit Developer(std::uint32_t samples)
       : scale_(1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples)) {}
 
-  void operator()(std::span<const layout::i64> sums, std::span<vec3> pixels) const {
+  // The films' sums from `first` on.
+  void operator()(Films films, std::size_t first, std::span<vec3> pixels) const {
+    if (films.size() == 1) return develop(films.front().subspan(first, 3 * pixels.size()), pixels);
+    std::vector<layout::i64> sums(3 * pixels.size());
+    add_pieces(films, first, sums);
+    develop(sums, pixels);
+  }
+
+ private:
+  void develop(std::span<const layout::i64> sums, std::span<vec3> pixels) const {
     static_assert(sizeof(vec3) == 3 * sizeof(float));
     if (!pixels.empty()) scale_sums(sums.data(), 3 * pixels.size(), scale_, &pixels.front().x);
   }
 
- private:
   double scale_;
 };
 
@@ -103,11 +110,7 @@ class Developer {
 void develop(Films films, int samples, std::span<vec3> pixels) {
   const Developer developer(static_cast<std::uint32_t>(samples));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kGrain), [&](const auto& range) {
-    const auto to = pixels.subspan(range.begin(), range.size());
-    if (films.size() == 1) return developer(films.front().subspan(3 * range.begin(), 3 * range.size()), to);
-    std::vector<layout::i64> sums(3 * range.size());
-    add_pieces(films, 3 * range.begin(), sums);
-    developer(sums, to);
+    developer(films, 3 * range.begin(), pixels.subspan(range.begin(), range.size()));
   });
 }
 
@@ -117,19 +120,26 @@ void add_up(Films films, std::span<layout::i64> sums) {
   });
 }
 
-void develop_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
-                   std::span<const layout::u32> tiles, std::span<vec3> picture) {
+void develop_tiles(const PlacedFilms& from, const layout::Frame& frame, std::span<const layout::u32> tiles,
+                   std::span<vec3> picture) {
   const Developer developer(frame.n_samples);
-  for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
-    developer(sums.subspan(3 * (pixel - first_pixel), 3 * n), picture.subspan(pixel, n));
+  for_each_row(frame, tiles, [&](std::size_t x, std::size_t y, std::size_t n) {
+    developer(from.films, from.at(x, y), picture.subspan(y * frame.width + x, n));
   });
 }
 
-void copy_tiles(std::span<const layout::i64> sums, std::size_t first_pixel, const layout::Frame& frame,
-                std::span<const layout::u32> tiles, std::span<layout::i64> picture_sums) {
-  for_each_row(frame, tiles, [&](std::size_t pixel, std::size_t n) {
-    const auto from = sums.subspan(3 * (pixel - first_pixel), 3 * n);
-    std::copy(from.begin(), from.end(), picture_sums.subspan(3 * pixel).begin());
+void copy_tiles(const PlacedFilms& from, const layout::Frame& frame, std::span<const layout::u32> tiles,
+                std::span<layout::i64> picture_sums) {
+  for_each_row(frame, tiles, [&](std::size_t x, std::size_t y, std::size_t n) {
+    add_pieces(from.films, from.at(x, y), picture_sums.subspan(3 * (y * frame.width + x), 3 * n));
+  });
+}
+
+void copy_runs(const PlacedFilms& from, std::span<const layout::u32> runs, std::span<layout::i64> sums) {
+  constexpr std::size_t kRun = KDRAY_SAMPLE_RUN;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), kGrain / kRun), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      add_pieces(from.films, from.at(runs[i] * kRun, 0), sums.subspan(3 * kRun * runs[i], 3 * kRun));
   });
 }
 

@@ -36,7 +36,7 @@ NpyHeader parse_header(std::string_view text, const std::string& file);
 // multiple of 64 bytes. `type` is Python's text of it, quotes included.
 std::string make_header(std::string_view type, std::span<const std::uint64_t> shape);
 
-// "(3,)", "(3, 8)"; of more than six sizes the first.
+// Returns "(3,)" or "(3, 8)"; of more than six sizes the first six.
 std::string shape_text(std::span<const std::uint64_t> shape);
 
 }  // namespace kdray::array

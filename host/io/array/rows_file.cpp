@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "NumPy's '<f4' is read as it lies");
 
-// The remedies are the Python that a user would type. True: of doubles.
+// Returns whether the values are doubles. The remedies are the Python that a user would type.
 bool check_type(const NpyHeader& header, const RowsWanted& wanted, const std::string& file) {
   const std::string name = wanted.name;
   if (header.structured)

@@ -1,10 +1,10 @@
 // What    Rays and points from a NumPy file (docs/cli.md): rows of a fixed number of values, float32 or
 //         float64.
 // Shape   Format versions 1 to 3, little endian, C order, N x the number of values; 0 rows allowed. The
-//         header is held against the file's size before anything is read, so that a caller knows how much
+//         header is checked against the file's size before anything is read, so that a caller knows how much
 //         there will be.
 // Errors  kdray::Error, ErrorCode::input: not NumPy, wrong type, order or shape, cut short; the message says
-//         what was found and what is wanted. The values are not judged here.
+//         what was found and what is wanted. The values are not checked here.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace kdray::array {
 
-// What a file is to hold, in words for messages.
+// What a file should hold, in words for messages.
 struct RowsWanted {
   const char* name;  // as in "rays are N x 8"
   std::uint64_t n_values;
@@ -33,7 +33,7 @@ class RowsFile {
   bool in_double() const { return in_double_; }
   std::uint64_t row_bytes() const { return n_values_ * (in_double_ ? sizeof(double) : sizeof(float)); }
 
-  // All of them; a Row is as many floats, or where in_double() doubles, as were wanted.
+  // Returns all of them; a Row is as many floats, or where in_double() doubles, as were wanted.
   template <class Row>
   std::vector<Row> read() {
     std::vector<Row> rows(static_cast<std::size_t>(n_rows_));

@@ -34,7 +34,7 @@ std::string header_of(std::span<const Column> columns) {
   return make_header(type + "]", shape);
 }
 
-// Whether the columns' rows lie in memory just as they do in the file.
+// Returns whether the columns' rows lie in memory just as they do in the file.
 bool lie_packed(std::span<const Column> columns, std::size_t record_bytes) {
   std::size_t offset = 0;
   for (const Column& c : columns) {

@@ -41,32 +41,32 @@ inline constexpr const char* kTypeName<std::uint32_t> = "<u4";
 template <>
 inline constexpr const char* kTypeName<std::uint64_t> = "<u8";
 
-// The values of an array, one to a row.
+// Returns a column of an array's values, one to a row.
 template <class T>
 Column column(std::string name, std::span<const T> values) {
   const auto* const first = reinterpret_cast<const std::byte*>(values.data());
   return {std::move(name), kTypeName<T>, sizeof(T), 1, first, values.size(), sizeof(T)};
 }
-// Rows of several values.
+// Returns a column whose rows have several values.
 template <class T, std::size_t N>
 Column column(std::string name, std::span<const std::array<T, N>> rows) {
   const auto* const first = reinterpret_cast<const std::byte*>(rows.data());
   return {std::move(name), kTypeName<T>, sizeof(T), N, first, rows.size(), sizeof rows[0]};
 }
-// A field of structs.
+// Returns a column of a field of structs.
 template <class Struct, class T>
 Column column(std::string name, std::span<const Struct> rows, T Struct::*field) {
   const auto* const first =
       rows.empty() ? nullptr : reinterpret_cast<const std::byte*>(&(rows.front().*field));
   return {std::move(name), kTypeName<T>, sizeof(T), 1, first, rows.size(), sizeof(Struct)};
 }
-// Bytes that are 0 or 1: false and true.
+// Returns a column of bytes that are 0 or 1: false and true.
 Column flags(std::string name, std::span<const std::uint8_t> values);
 
 enum class TableFormat { npy, npz };
 
 void write_table(std::span<const Column> columns, TableFormat format, const Sink& sink);
-// The same to a file, whole or not at all.
+// Writes a table to a file, whole or not at all.
 void write_table(const std::filesystem::path& file, std::span<const Column> columns, TableFormat format);
 
 }  // namespace kdray::array

@@ -96,7 +96,7 @@ std::string ZipWriter::directory_header(const Entry& e) const {
   return f.put(e.name).put(beside).bytes();
 }
 
-// The end of a directory of `size` bytes that begins at `begin`.
+// Returns the end of a directory of `size` bytes that begins at `begin`.
 std::string ZipWriter::directory_end(std::uint64_t begin, std::uint64_t size) const {
   const bool large = is_large(size), far = is_large(begin);
   const std::uint64_t n = entries_.size();

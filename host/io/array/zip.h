@@ -1,8 +1,8 @@
 // What    Writes a zip archive: files that are stored as they are, as NumPy's .npz has them.
-// Shape   Only forwards, so that it can go to a pipe: a file's bytes are asked for twice, to know their
-//         number and checksum before they are written. Dates are the format's first, 1980-01-01, so that the
-//         same arrays make the same archive. Where a size or a place doesn't fit 32 bits, zip64's fields
-//         stand beside.
+// Shape   It is written forwards only, so that it can go to a pipe: a file's bytes are produced twice, to
+//         know their number and checksum before they are written. Dates are the format's first, 1980-01-01,
+//         so that the same arrays make the same archive. Where a size or a place doesn't fit 32 bits, zip64's
+//         fields stand beside.
 // Source  PKWARE's APPNOTE.TXT, 4.3 and 4.5.3.
 #pragma once
 
@@ -17,13 +17,13 @@ namespace kdray::array {
 
 class ZipWriter {
  public:
-  // Sizes and places from `zip64_from` on are written as zip64 has them; tests ask for it sooner.
+  // Sizes and places from `zip64_from` on are written as zip64 has them; tests set it lower.
   explicit ZipWriter(Sink sink, std::uint64_t zip64_from = 0xffffffffu)
       : sink_(std::move(sink)), zip64_from_(zip64_from) {}
 
   // `produce` is called twice, and hands over the same bytes each time. Names are plain ASCII.
   void add(const std::string& name, const std::function<void(const Sink&)>& produce);
-  // The directory, with which the archive ends.
+  // Writes the directory, with which the archive ends.
   void finish();
 
  private:

@@ -6,9 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "io/image/heat.h"
-#include "io/image/queue_colors.h"
-#include "io/image/transfer.h"
+#include "io/image/color.h"
 
 namespace kdray::image {
 namespace {
@@ -65,7 +63,7 @@ ChannelPicture normal_picture(int width, int height, const std::vector<float>* c
 }
 
 // Neighbouring numbers get unlike colours, none of them near black. The mixing is a 32-bit finaliser
-// (Degski's constants), a bijection, of which each colour takes a byte.
+// (Degski's constants), a bijection; each colour takes a byte of it.
 ChannelPicture number_picture(int width, int height, const Channel& channel) {
   const std::vector<float>& numbers = channel.values;
   ChannelPicture picture{channel.name, blank(width, height, 3, 8), {}};
@@ -101,14 +99,14 @@ ChannelPicture heat_picture(int width, int height, const Channel& channel) {
   return picture;
 }
 
-// How bright a colour is, from a quarter to 1, so that what is black still tells whose it is.
+// Returns how bright a colour is, from a quarter to 1, so that black places still show their queue.
 double brightness(const vec3& color) {
   const double luma = 0.2126 * static_cast<double>(color.x) + 0.7152 * static_cast<double>(color.y) +
                       0.0722 * static_cast<double>(color.z);
   return 0.25 + 0.75 * encode(Transfer{}, luma > 0 ? std::min(luma, 1.0) : 0.0);
 }
 
-// Nobody's pixels are black, and everybody's grey.
+// Pixels of no queue are black, those of every queue grey.
 ChannelPicture queue_picture(int width, int height, const std::vector<float>& queues,
                              std::span<const vec3> image) {
   ChannelPicture picture{"queue", blank(width, height, 3, 8), {}};

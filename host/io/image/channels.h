@@ -1,5 +1,5 @@
 // What    Pictures of extra channels, for beside a PNG: how a depth, a normal, a primitive's number or a cost
-//         looks, and who traced what.
+//         looks, and which queue traced what.
 #pragma once
 
 #include <span>
@@ -17,8 +17,8 @@ struct ChannelPicture {
   PngMeta meta;
 };
 
-// One picture per channel; the three of a normal make one. `image`: the picture beside them, which lends the
-// colours of queues its brightness; empty: they are flat.
+// One picture per channel; the three of a normal make one. `image` is the picture beside them, whose
+// brightness the colours of queues take; where it is empty they are flat.
 std::vector<ChannelPicture> channel_pictures(int width, int height, std::span<const Channel> channels,
                                              std::span<const vec3> image = {});
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "io/image/color.h"
 #include "io/image/flip.h"
-#include "io/image/heat.h"
 
 namespace kdray::image {
 namespace {

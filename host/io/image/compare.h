@@ -16,8 +16,8 @@ struct Difference {
 
 Difference compare(const Image& a, const Image& b);
 
-// The absolute difference per pixel as a heat map, scaled so that the largest difference is the hottest
-// colour.
+// Returns the absolute difference per pixel as a heat map, scaled so that the largest difference is the
+// hottest colour.
 Image difference_image(const Image& a, const Image& b);
 
 }  // namespace kdray::image

@@ -11,16 +11,15 @@
 
 namespace kdray::image {
 
-// Colour goes out as R, G and B, its alpha as A where it has one, `channels` under the names that they have
+// Writes the colour as R, G and B, its alpha as A where it has one, `channels` under the names that they have
 // in an EXR (exr_name).
 std::string encode_exr(const Image& image, std::span<const Channel> channels);
 
 // Reads R, G and B, or grey from Y alone, and A as alpha. The picture is the file's data window; other
-// channels are passed over.
-// More than `most` pixels are refused before they are read.
+// channels are skipped. More than `most` pixels are refused before they are read.
 Image decode_exr(std::string_view bytes, const std::string& file, std::uint64_t most = ~std::uint64_t{0});
 
-// "depth" becomes "Z", "normal.x" becomes "N.X"; others stay as they are.
+// Returns a channel's name in an EXR: "depth" becomes "Z", "normal.x" becomes "N.X"; others stay as they are.
 std::string exr_name(const std::string& channel);
 
 }  // namespace kdray::image

@@ -14,7 +14,7 @@ namespace kdray::image {
 
 constexpr double kPixelsPerDegree = 67;
 
-// The error of each pixel; the sizes must be equal.
+// Returns the error of each pixel; the sizes must be equal.
 std::vector<float> flip_map(const Image& reference, const Image& test,
                             double pixels_per_degree = kPixelsPerDegree);
 double mean_flip(const Image& reference, const Image& test, double pixels_per_degree = kPixelsPerDegree);

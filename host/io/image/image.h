@@ -12,13 +12,13 @@ namespace kdray::image {
 struct Image {
   int width = 0, height = 0;
   std::vector<vec3> pixels;  // width * height, row 0 is the top
-  // What share of each pixel is covered, by which `pixels` are multiplied already; empty: all of each.
+  // The share of each pixel that is covered; `pixels` are multiplied by it already. Empty: all of each pixel.
   std::vector<float> alpha = {};
 };
 
 // One float channel beside the colour, as wide and high as the picture: "depth" (multiples of the unit-length
 // ray direction, inf where nothing is hit), "normal.x" ".y" ".z" (unit, 0 where nothing is hit), "primitive"
-// (number, -1 where nothing is hit), "cost" (nodes visited + primitives tested), "queue" (queue_colors.h).
+// (number, -1 where nothing is hit), "cost" (nodes visited + primitives tested), "queue" (color.h).
 struct Channel {
   std::string name;
   std::vector<float> values;

@@ -8,8 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "io/image/write.h"
-
 namespace kdray::image {
 
 struct PngPixels {

@@ -28,7 +28,7 @@ void note(const device::Verdicts& verdicts, const Hash& key, const Outcome& outc
 
 }  // namespace
 
-// Of a kind of device: what is known of it, or how it is being found out.
+// What is known of a kind of device, or how it is being found out.
 struct DeviceTrials::Case {
   Hash key;
   std::optional<device::Verdict> verdict = {};
@@ -78,7 +78,7 @@ void DeviceTrials::settle(Case& c) {
   if (!c.verdict) settle_without_trial(c);
 }
 
-// No program could try it: this process does, unless that has been too much for another one.
+// No program could try the device: this process does, unless that has been too much for another one.
 void DeviceTrials::settle_without_trial(Case& c) {
   if (device::Mark::is_left(verdicts_, c.key) && !is_the_only_one())
     c.verdict = device::Verdict{false, "has ended or held up a program that tested it"};

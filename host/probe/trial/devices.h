@@ -1,11 +1,11 @@
-// What    Whether a device may be opened in this process: not one that hangs or crashes, fails the self-test,
-//         or that nobody knows yet while there are others.
-// Shape   A device of which nothing is known takes the self-test in a child process, beside all others of
-//         that kind that may be wanted. The only device there is is taken as it comes, under a mark
-//         (device/verdicts.h), and tested in this process: what it costs to know it beforehand would be a
-//         second compiler's work for nothing, since there is no other to take. Where a mark was left behind
-//         it goes to a child, too; likewise every device where no program can try it, when a mark says that
-//         it has been too much for a process.
+// What    Whether a device may be opened in this process: not if it hangs, crashes or fails the self-test,
+//         nor while nothing is known of it and there are others.
+// Shape   A device of which nothing is known takes the self-test in a child process, at the same time as
+//         the other unknown ones that may be used. The only device of a machine is opened under a mark
+//         (device/opencl/verdicts.h), and tested in this process: to try it beforehand would compile
+//         everything twice for nothing, since there is no other to take. Where a mark was left behind it is
+//         tried in a child, too. A device that no program can try is tested in this process, unless there are
+//         others and a mark says that it has been too much for a process before.
 #pragma once
 
 #include <functional>
@@ -23,14 +23,14 @@ namespace kdray::trial {
 
 class DeviceTrials {
  public:
-  // `all`: every device of those asked about is tried if need be, not only those that come before the first
-  // that is known to be good. `watch` is told true when children begin and false when they have ended.
+  // `all`: every candidate is tried if need be, not only those before the first that is known to be good.
+  // `watch` is called with true when children begin and with false when they have ended.
   explicit DeviceTrials(device::Verdicts verdicts, bool all = false, std::function<void(bool)> watch = {});
-  ~DeviceTrials();  // what is still at work is of no interest, and is killed
+  ~DeviceTrials();  // kills the children that are still at work
   DeviceTrials(const DeviceTrials&) = delete;
   DeviceTrials& operator=(const DeviceTrials&) = delete;
 
-  // Why this one of the candidates, the best first, is not to be used; empty: it may be opened.
+  // Returns why candidate i, of those sorted with the best first, must not be used; empty: it may be opened.
   std::string why_not(const std::vector<device::FoundDevice>& candidates, std::size_t i);
 
  private:
@@ -50,10 +50,10 @@ class DeviceTrials {
   int n_kinds_ = -1;                            // of usable devices; -1: not counted yet
 };
 
-// Tries the device in a child and notes the verdict, whatever is known of it.
+// Tries the device in a child, whatever is known of it, and notes the verdict.
 Outcome try_anew(const device::FoundDevice& found, const device::Verdicts& verdicts);
 
-// What is wrong, after the device's name, and what can be done about it.
+// Returns what is wrong, after the device's name, and what can be done about it.
 std::string in_words(const DeviceInfo& info, const device::Verdict& verdict);
 
 }  // namespace kdray::trial

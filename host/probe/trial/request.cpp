@@ -17,7 +17,7 @@ namespace kdray::trial {
 
 namespace {
 
-// A line, whole: what is in it may be anything that a driver says.
+// Writes a whole line; the text may be anything that a driver says.
 void report(std::string line) {
   std::ranges::replace_if(
       line, [](unsigned char c) { return c < ' '; }, ' ');
@@ -30,7 +30,8 @@ void report(std::string line) {
   }
 }
 
-// What is wrong, in words that follow the device's name, and without the advice that goes with an error.
+// Turns an error's text into what is wrong, in words that follow the device's name, without the error's
+// advice.
 std::string as_fault(std::string text, const std::string& name) {
   for (const char* const advice : {"; try another device", "; `kdray doctor`"})
     text = text.substr(0, text.find(advice));

@@ -1,6 +1,6 @@
 // What    What the child of a trial does: `kdray --try driver|device|picture KEY PARENT`.
-// Shape   It reports on Child::kReport, a line each: that it has begun; then the word for what came of it and
-//         more text, or that it came to no verdict.
+// Shape   The child reports in lines on Child::kReport: that it has begun; then a word for the outcome and
+//         more text, or that there is no verdict.
 #pragma once
 
 #include <functional>
@@ -24,13 +24,14 @@ struct TrialRequest {
   int parent;
 };
 
-// What a program's arguments ask for; nothing where they ask for no trial.
+// Returns the trial that a program's arguments ask for; nothing where they ask for none.
 std::optional<TrialRequest> request_of(std::span<const char* const> arguments);
 
-// Tells what is wrong with the picture of the device of this number; empty: nothing.
+// Returns what is wrong with the picture of the device of this number; empty: nothing.
 using TestPicture = std::function<std::string(int number)>;
 
-// Does it and ends the process, without a clean-up: a driver that hangs there has been tried already.
+// Does the trial and ends the process, without a clean-up: a driver that would hang there has been tried
+// already.
 [[noreturn]] void try_it(const TrialRequest& request, const TestPicture& test_picture);
 
 }  // namespace kdray::trial

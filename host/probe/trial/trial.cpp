@@ -6,20 +6,68 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <string_view>
+#include <system_error>
 
-#include "probe/trial/program.h"
 #include "probe/trial/request.h"
 
 namespace kdray::trial {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::atomic<bool> tries_itself{false};
+
+constexpr const char* kName = "kdray";
+
+bool can_be_run(const fs::path& program) {
+  std::error_code error;
+  return fs::is_regular_file(program, error) && ::access(program.c_str(), X_OK) == 0;
+}
+
+fs::path beside_this_program() {
+  std::error_code error;
+  const fs::path own = fs::read_symlink("/proc/self/exe", error);
+  return own.empty() ? own : own.parent_path() / kName;
+}
+
+std::optional<fs::path> in_path() {
+  const char* const set = std::getenv("PATH");
+  std::string_view rest = set ? set : "";
+  while (!rest.empty()) {
+    const std::string_view folder = rest.substr(0, rest.find(':'));
+    rest.remove_prefix(std::min(folder.size() + 1, rest.size()));
+    const fs::path program = fs::path(folder) / kName;
+    if (program.is_absolute() && can_be_run(program)) return program;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void this_program_tries() {
+  tries_itself = true;
+}
+
+// The link /proc/self/exe leads to this program even where an upgrade has replaced its file meanwhile.
+std::optional<fs::path> program() {
+  if (tries_itself) return "/proc/self/exe";
+  if (const char* const set = std::getenv("KDRAY_PROGRAM"); set && *set)
+    return can_be_run(set) ? std::optional<fs::path>(set) : std::nullopt;
+  for (const fs::path& program : {beside_this_program(), fs::path(KDRAY_INSTALLED_PROGRAM)})
+    if (can_be_run(program)) return program;
+  return in_path();
+}
 
 namespace {
 
 constexpr double kLimitSeconds = 15;
 constexpr double kPictureLimit = 4;  // times as long: it takes the compiling of a whole render
 
-// In the order of Subject: what a child is told to do, and how that is called when it went wrong.
+// What a child is told to do, and what that is called when it went wrong; in the order of Subject.
 struct Words {
   const char* asked;
   const char* in;
@@ -35,14 +83,13 @@ const Words& words_for(Subject subject) {
   return kWords[static_cast<std::size_t>(subject)];
 }
 
-// Whether the signal comes from outside: from a user, from a batch system, from the kernel that is out of
-// memory.
+// Whether such a signal comes from outside: from a user, a batch system, or the kernel that is out of memory.
 bool is_sent(int signal) {
   constexpr std::array kSent = {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGXCPU};
   return std::ranges::find(kSent, signal) != kSent.end();
 }
 
-// The last whole line of a report.
+// Returns the last whole line of a report.
 std::string_view last_line(std::string_view report) {
   report = report.substr(0, report.rfind('\n') + 1);
   if (report.empty()) return report;

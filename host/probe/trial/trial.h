@@ -1,9 +1,14 @@
 // What    A trial: a driver is asked for its devices, a device takes the self-test, in a child process that
-//         may crash or hang without harm.
-// Shape   The child reports first that it has begun, then what came of it (request.h). What it leaves unsaid
-//         is read off its end.
+//         may crash or hang without harm; and the program that the child is: kdray itself, whose first
+//         argument is then "--try" (request.h).
+// Shape   The child reports first that it has begun, then what came of it. What it leaves unsaid is read off
+//         its end.
+// Why     A program, and no fork() of this process: only its own copy of OpenCL's loader, with no thread that
+//         a fork would have left behind and no lock that nobody gives back, shows what a driver does. A
+//         program that uses kdray as a library has another main(), which can't be asked.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,28 +20,35 @@
 
 namespace kdray::trial {
 
+// Tells that this program does trials itself, when its arguments ask for one.
+void this_program_tries();
+
+// Returns the program that trials are made with: this one, if it does trials; else the one that KDRAY_PROGRAM
+// names; else `kdray` beside the running program, where it was installed, or in PATH. Empty: there is none.
+std::optional<std::filesystem::path> program();
+
 enum class Subject {
   driver,  // lists the devices of all drivers that it sees
   device,  // the self-test of the device whose verdict lies under the key
   picture  // the picture and the rays that `kdray doctor` asks for of that device
 };
 
-// What came of it. No verdict: there is no program that tries, it is another kdray's, or what went wrong is
-// none of the driver's doing.
+// The outcome of a trial. No verdict: there is no program that tries, it is another kdray's, or what went
+// wrong is not the driver's fault.
 struct Outcome {
   std::optional<device::Verdict> verdict = {};
   bool lasting = true;  // false: somebody killed the child; the next trial may end otherwise
 };
 
-// The seconds that a trial may take: 15, or what KDRAY_TRIAL_SECONDS says.
+// Returns the seconds that a trial may take: 15, or what KDRAY_TRIAL_SECONDS says.
 double time_limit();
 
 class Trial {
  public:
-  // Starts it. The child sees these environment variables in place of its own.
+  // Starts the trial. The child sees these environment variables in place of its own.
   Trial(Subject subject, const Hash& key, const std::map<std::string, std::string>& environment = {});
 
-  const Outcome& outcome();  // waits for it
+  const Outcome& outcome();  // waits for the end
 
  private:
   Subject subject_;
@@ -45,7 +57,7 @@ class Trial {
   std::optional<Outcome> outcome_;
 };
 
-// What a child's end says.
+// Returns what a child's end means.
 Outcome outcome_of(Subject subject, const ChildEnd& end, double limit_seconds);
 
 }  // namespace kdray::trial

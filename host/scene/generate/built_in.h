@@ -20,7 +20,7 @@ scene::Scene lamps();
 // Throws for a name that is neither, so that a run over many scenes can refuse it before the first of them.
 void require_scene(const std::string& name_or_file);
 
-// A built-in scene of that name, or else the file.
+// Returns the built-in scene of that name, or else that of the file.
 scene::Scene load_scene(const std::string& name_or_file);
 
 }  // namespace kdray::generate

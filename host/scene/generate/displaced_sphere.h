@@ -6,12 +6,20 @@
 #include <cstdint>
 #include <numbers>
 
-#include "scene/generate/add_triangle.h"
 #include "scene/generate/random.h"
+#include "scene/model/scene.h"
 
 namespace kdray::generate {
 
-// About 2*n*n triangles, the radius rippled by a fifth.
+// Adds a triangle to a mesh that is being made, numbered in the order of the calls.
+inline void add_triangle(scene::Scene& scene, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  scene::Triangle t;
+  t.vertex = {a, b, c};
+  t.number = static_cast<std::uint32_t>(scene.triangles.size());
+  scene.triangles.push_back(t);
+}
+
+// Returns one of about 2*n*n triangles, whose radius varies by a fifth.
 inline scene::Scene displaced_sphere(std::uint32_t n) {
   scene::Scene s;
   const std::uint32_t columns = 2 * n, rows = n / 2 + 1;
@@ -36,7 +44,7 @@ inline scene::Scene displaced_sphere(std::uint32_t n) {
   return s;
 }
 
-// The one of at least so many triangles.
+// Returns the smallest one that has at least so many triangles.
 inline scene::Scene displaced_sphere_of(std::size_t n_triangles) {
   const auto triangles = [](std::uint32_t n) { return std::size_t{4} * n * (n / 2); };
   auto n = static_cast<std::uint32_t>(std::max(2.0, std::sqrt(static_cast<double>(n_triangles) / 2)));

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "scene/generate/nff_writer.h"
-#include "scene/generate/scenes.h"
 
 namespace kdray::generate {
 
@@ -25,7 +24,7 @@ struct Gear {
   double outer_radius, inner_radius, thickness;
 };
 
-// The outline at the height z. For the lower face `sense` is -1, and it goes round the other way.
+// Returns the outline at the height z. For the lower face `sense` is -1, and it goes round the other way.
 std::vector<dvec3> outline(const Gear& g, double z, int sense) {
   constexpr double tooth = 2 * pi / kTeeth;
   struct Corner {

@@ -1,4 +1,4 @@
-// What    The list of the generators, and the door that checks what is asked for.
+// What    The list of the generators, and the check of their sizes.
 // Shape   The largest sizes are those whose files still have fewer than 10^8 primitives.
 #include "scene/generate/generate.h"
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "scene/generate/scenes.h"
+#include "scene/generate/nff_writer.h"
 
 namespace kdray::generate {
 

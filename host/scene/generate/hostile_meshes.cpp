@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/generate/add_triangle.h"
 #include "scene/generate/displaced_sphere.h"
 #include "scene/generate/random.h"
 
@@ -110,7 +109,7 @@ scene::Scene huge(std::uint32_t n) {
   return scene;
 }
 
-// A mesh of which 60% have two corners in one.
+// Returns a mesh in which 60% of the triangles have two equal corners.
 scene::Scene degenerate(std::uint32_t n) {
   scene::Scene scene = displaced_sphere_of(n);
   for (std::size_t i = 0; i < scene.triangles.size(); ++i)
@@ -118,7 +117,7 @@ scene::Scene degenerate(std::uint32_t n) {
   return scene;
 }
 
-// A wavy disc of triangles that all have the middle as a corner.
+// Returns a wavy disc of triangles that all have the middle as a corner.
 scene::Scene fan(std::uint32_t n) {
   scene::Scene scene = empty_mesh();
   scene.vertices.emplace_back(0, 0, 0);

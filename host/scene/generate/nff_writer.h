@@ -1,4 +1,5 @@
-// What    Writes the entities of Haines' neutral file format (NFF), one call each.
+// What    Writes the entities of Haines' neutral file format (NFF), one call each; and the scenes that are
+//         written with it.
 // Shape   Numbers carry 9 significant digits: enough for every float, so that a vertex shared by two polygons
 //         is the same after reading. Values below 1e-12 are written as 0: they are what a rotation's rounding
 //         left of it.
@@ -61,5 +62,19 @@ class NffWriter {
   std::ostream& out_;
   std::string line_;
 };
+
+// ---- The scenes that generate.cpp lists, written with it.
+
+void write_balls(std::ostream& out, int size);
+void write_gears(std::ostream& out, int size);
+void write_jacks(std::ostream& out, int size);
+void write_lattice(std::ostream& out, int size);
+void write_mount(std::ostream& out, int size);
+void write_rings(std::ostream& out, int size);
+void write_shells(std::ostream& out, int size);
+void write_sombrero(std::ostream& out, int size);
+void write_teapot(std::ostream& out, int size);
+void write_tetra(std::ostream& out, int size);
+void write_tree(std::ostream& out, int size);
 
 }  // namespace kdray::generate

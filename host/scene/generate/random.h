@@ -22,7 +22,7 @@ class Random {
     return z ^ (z >> 31);
   }
 
-  // A number in [0, 1).
+  // Returns a number in [0, 1).
   double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
   dvec3 in_box(const dvec3& lo, const dvec3& hi) {

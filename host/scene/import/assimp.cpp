@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 
 #if KDRAY_WITH_ASSIMP
 
@@ -18,11 +18,10 @@
 #include <cmath>
 #include <exception>
 
-#include "scene/import/files_read.h"
-#include "scene/import/mesh_material.h"
-#include "scene/import/read_file.h"
+#include "scene/import/files.h"
+#include "scene/import/materials.h"
 #include "scene/import/text_scanner.h"
-#include "scene/model/settle_normals.h"
+#include "scene/model/normals.h"
 
 namespace kdray::scene {
 
@@ -55,7 +54,7 @@ Material read_material(const aiMaterial& from) {
   return m;
 }
 
-// Names that begin with '*' are of pictures inside the file.
+// Names that begin with '*' belong to pictures inside the file.
 void note_textures(const aiMaterial& from, const std::filesystem::path& file) {
   for (int type = aiTextureType_NONE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     const auto kind = static_cast<aiTextureType>(type);

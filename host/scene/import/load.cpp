@@ -9,17 +9,54 @@
 #include <system_error>
 
 #include "base/error.h"
-#include "scene/import/find_file.h"
-#include "scene/import/import.h"
-#include "scene/import/importers.h"
-#include "scene/import/read_file.h"
+#include "scene/import/files.h"
 #include "scene/model/check_scene.h"
 #include "scene/model/frame.h"
 #include "scene/model/instances.h"
-#include "scene/model/smooth_normals.h"
-#include "scene/textures/picture_limit.h"
+#include "scene/model/normals.h"
+#include "scene/textures/mipmaps.h"
 
 namespace kdray::scene {
+
+namespace {
+
+#ifdef KDRAY_WITH_JPEG
+constexpr bool kJpeg = true;
+#else
+constexpr bool kJpeg = false;
+#endif
+#ifdef KDRAY_WITH_WEBP
+constexpr bool kWebp = true;
+#else
+constexpr bool kWebp = false;
+#endif
+#ifdef KDRAY_WITH_DRACO
+constexpr bool kDraco = true;
+#else
+constexpr bool kDraco = false;
+#endif
+#ifdef KDRAY_WITH_MESHOPT
+constexpr bool kMeshopt = true;
+#else
+constexpr bool kMeshopt = false;
+#endif
+#ifdef KDRAY_WITH_ASSIMP
+constexpr bool kWithAssimp = true;
+#else
+constexpr bool kWithAssimp = false;
+#endif
+
+}  // namespace
+
+const std::vector<Ability>& abilities() {
+  static const std::vector<Ability> all = {
+      {"JPEG pictures", "libturbojpeg0-dev", kJpeg},
+      {"WebP pictures (glTF's EXT_texture_webp)", "libwebp-dev", kWebp},
+      {"meshes packed with KHR_draco_mesh_compression", "libdraco-dev", kDraco},
+      {"meshes packed with EXT_meshopt_compression", "libmeshoptimizer-dev", kMeshopt},
+      {"3ds, dae, fbx, off, x3d and other meshes", "libassimp-dev", kWithAssimp}};
+  return all;
+}
 
 namespace {
 
@@ -39,12 +76,6 @@ constexpr std::array<std::string_view, 22> kAssimpEndings = {
     ".3ds", ".3mf", ".ac",  ".ase", ".assbin", ".b3d",     ".blend", ".cob", ".dae", ".dxf", ".fbx",
     ".ifc", ".irr", ".lwo", ".lws", ".md2",    ".md5mesh", ".ms3d",  ".off", ".wrl", ".x",   ".x3d"};
 
-#ifdef KDRAY_WITH_ASSIMP
-constexpr bool kWithAssimp = true;
-#else
-constexpr bool kWithAssimp = false;
-#endif
-
 std::string known_endings() {
   std::string known;
   for (const Format& f : kFormats) known.append(known.empty() ? "" : " ").append(f.ending);
@@ -62,7 +93,7 @@ Scene read_by_ending(std::string_view text, const std::filesystem::path& file, c
   return read_assimp(text, file);
 }
 
-// Before the file is read: a wrong ending should not cost the reading of gigabytes.
+// Called before the file is read: a wrong ending should not cost the reading of gigabytes.
 void check_ending(const std::filesystem::path& file, const std::string& ending) {
   if (std::ranges::find(kFormats, ending, &Format::ending) != kFormats.end()) return;
   const bool assimp_reads = std::ranges::find(kAssimpEndings, ending) != kAssimpEndings.end();
@@ -76,10 +107,6 @@ void check_ending(const std::filesystem::path& file, const std::string& ending) 
                     ending.empty() ? "no ending that tells its format" : "unknown format '" + ending + "'",
                     known_endings());
 }
-
-}  // namespace
-
-namespace {
 
 Scene import_text(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
   Scene scene = read_by_ending(text, file, format_of(file), options);
@@ -114,7 +141,7 @@ void check(const LoadOptions& options) {
     throw Error(ErrorCode::usage, "the smoothing angle may be 0 to 180 degrees");
 }
 
-// Said in one line, since the picture looks coarser for it.
+// Warns in one line, since the picture looks coarser for it.
 void fit_pictures(Scene& scene, std::uint64_t most_bytes) {
   const LimitedPictures limited = limit_pictures(scene.texturing, most_bytes);
   if (limited.n_halved == 0) return;

@@ -10,13 +10,11 @@
 #include <filesystem>
 #include <optional>
 
-#include "scene/import/importers.h"
-#include "scene/import/material_table.h"
-#include "scene/import/reserve_ahead.h"
+#include "scene/import/load.h"
+#include "scene/import/materials.h"
 #include "scene/import/text_scanner.h"
-#include "scene/model/add_polygon.h"
 #include "scene/model/check_scene.h"
-#include "scene/model/triangulate.h"
+#include "scene/model/polygon.h"
 
 namespace kdray::scene {
 
@@ -152,7 +150,8 @@ class NffReader {
     scene_.cones.push_back(c);
   }
 
-  // The corner count of 'p' and 'pp', held against the bytes left: a number and its separator take two.
+  // Returns the corner count of 'p' and 'pp', held against the bytes left: a number and its separator take
+  // two.
   std::uint32_t corner_count(std::uint32_t numbers_per_corner) {
     const std::uint32_t n = in_.count("the number of corners of a polygon");
     if (n < 3) throw in_.error("a polygon of " + std::to_string(n) + " corners", "it needs 3 or more");
@@ -198,8 +197,8 @@ class NffReader {
     add_triangles(first, n, mat, add_normals());
   }
 
-  // The place of the patch's first normal, or nothing when one of them has no direction: the triangles then
-  // keep their own.
+  // Returns the place of the patch's first normal, or nothing when one of them has no direction: the
+  // triangles then keep their own.
   std::optional<std::uint32_t> add_normals() {
     const auto first = static_cast<std::uint32_t>(scene_.normals.size());
     for (const dvec3& n : normals_) {
@@ -255,7 +254,8 @@ class NffReader {
     bool has_from = false, has_at = false, has_angle = false;
   };
 
-  // Reads "key values" when `key` is one of the view's; the format wants them in one order, we take any.
+  // Reads "key values" when `key` is one of the view's; the format wants them in one order, but any order is
+  // taken.
   bool read_view_key(View& view, std::string_view key) {
     if (key == "from") {
       view.camera.from = after_key("the view's 'from' (x y z)");

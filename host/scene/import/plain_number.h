@@ -15,7 +15,7 @@
 
 namespace kdray::scene {
 
-// The digits at `p`, behind those in `value` already. They wrap around when there are more than 19.
+// Reads the digits at `p`, behind those in `value` already. They wrap around when there are more than 19.
 inline const char* take_digits(const char* p, const char* end, std::uint64_t& value) {
   for (; p != end; ++p) {
     const auto digit = static_cast<unsigned>(static_cast<unsigned char>(*p)) - '0';
@@ -25,7 +25,7 @@ inline const char* take_digits(const char* p, const char* end, std::uint64_t& va
   return p;
 }
 
-// A whole number without a sign.
+// Reads a whole number without a sign.
 inline const char* read_plain_whole(const char* p, const char* end, std::int64_t& value) {
   constexpr std::ptrdiff_t kMostDigits = 18;  // below 2^63
   std::uint64_t digits = 0;
@@ -35,7 +35,7 @@ inline const char* read_plain_whole(const char* p, const char* end, std::int64_t
   return stop;
 }
 
-// A decimal number without an exponent.
+// Reads a decimal number without an exponent.
 inline const char* read_plain_number(const char* p, const char* end, double& value) {
   constexpr std::array<double, 23> kPowers = {1,    1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                               1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,

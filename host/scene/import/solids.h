@@ -1,8 +1,8 @@
-// What    What POV-Ray's users begin with and kdray makes of the kinds it has: boxes of twelve triangles,
-//         cylinders and truncated cones that are closed by discs, planes that are discs so wide that they end
-//         far beyond the scene.
-// Shape   Parts as importers append them. What depends on how large the scene is, is settled when all of it
-//         is there (settle_solids).
+// What    Solids that POV-Ray's users begin with, made of kdray's kinds: boxes of twelve triangles, cylinders
+//         and truncated cones that are closed by discs, planes that are discs so wide that they end far
+//         beyond the scene.
+// Shape   Parts as importers append them. What depends on the size of the scene is settled when all of it is
+//         there (settle_solids).
 // Errors  Where a wall and its lid meet, rounding could leave a gap. So lids lie inside of the wall's ends by
 //         kSeal of the scene (in a point, where there is some width), and reach beyond the wall by more:
 //         whichever way a ray enters, it crosses one of the two. That is less than what the tree's cells are
@@ -16,7 +16,7 @@
 
 namespace kdray::scene {
 
-// The triangles of a box, which face outwards; its corners are exact.
+// Adds the triangles of a box, which face outwards; its corners are exact.
 void add_box(Scene& part, const dvec3& corner, const dvec3& opposite);
 
 struct Closed {
@@ -28,7 +28,7 @@ struct Plane {
   double extent = 0;                // how far it reaches around the point; 0: far beyond the scene
 };
 
-// Discs of a scene that are not what they are to be before its size is known.
+// Discs of a scene that get their final place and radius when the scene's size is known.
 struct Unsettled {
   struct Lid {
     Closed of;
@@ -43,13 +43,14 @@ struct Unsettled {
   std::vector<Wide> planes;
 };
 
-// Adds a cone and its lids, or a disc, to a part; `first_disc`: how many discs the scene has before it.
+// Adds a cone and its lids, or a disc, to a part; `first_disc` is the number of discs that the scene has
+// before it.
 void add_closed(Scene& part, const Closed& closed, std::size_t first_disc, Unsettled& unsettled);
 void add_plane(Scene& part, const Plane& plane, std::size_t first_disc, Unsettled& unsettled);
 
 void settle_solids(const Unsettled& unsettled, Scene& scene);
 
-// nullptr, or what is wrong with it.
+// Returns what is wrong with a solid; nullptr where nothing is.
 const char* fault_of(const Closed& closed);
 
 }  // namespace kdray::scene

@@ -1,7 +1,7 @@
 // What    STL, ascii and binary. Facets are flat: the normals in the file are ignored (many files have them
 //         wrong). Binary files may have colours by VisCAM's and Materialise's conventions.
-// Shape   A binary file is told by its size, which its facet count gives exactly: many binary files begin
-//         with the word "solid", too.
+// Shape   A binary file is recognised by its size, which follows exactly from its facet count: many binary
+//         files begin with the word "solid", too.
 // Source  Materialise: "COLOR=" in the header and four bytes, red, green, blue and alpha, of facets whose
 //         highest attribute bit is set; the others have their own, red in the lowest five bits. VisCAM: the
 //         highest bit says that the facet has a colour, blue in the lowest bits.
@@ -13,13 +13,11 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/import/importers.h"
-#include "scene/import/left_out.h"
-#include "scene/import/lower.h"
-#include "scene/import/mesh_material.h"
+#include "scene/import/load.h"
+#include "scene/import/materials.h"
 #include "scene/import/text_scanner.h"
-#include "scene/model/add_polygon.h"
-#include "scene/model/settle_normals.h"
+#include "scene/model/normals.h"
+#include "scene/model/polygon.h"
 
 namespace kdray::scene {
 
@@ -206,7 +204,8 @@ class FacetColors {
   std::optional<std::array<std::uint32_t, 3>> of_all_;  // Materialise's; none: VisCAM's convention
 };
 
-// Programs that write as they go leave the count at 0 or at its largest: then the size tells.
+// Programs that write as they go leave the count at 0 or at its largest: then the count follows from the
+// size.
 std::size_t read_count(std::string_view text, const std::string& file, std::vector<std::string>& warnings) {
   const std::size_t counted = facet_count(text), bytes = text.size() - kHeaderBytes;
   const bool unset = counted == 0 || counted == 0xffffffffu;

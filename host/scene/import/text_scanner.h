@@ -1,22 +1,43 @@
-// What    Reads words and numbers from the text of a scene file, and knows the line it is at.
-// Shape   Tokens are separated by white space (new lines included); '#' starts a comment to the end of its
-//         line. Lines end in \n, \r\n or \r; the first is line 1.
+// What    What the readers of text formats share: scanners for words and numbers that know the line they are
+//         at, a count of what is left out, and capacity for what is still to come.
+// Shape   Lines end in \n, \r\n or \r; the first is line 1.
 // Errors  Everything that is not a finite number where one is wanted is refused: "file:line: expected WHAT,
-//         found 'TOKEN'". A number too small for a double is 0. Where NotFinite says so, what stands for a
-//         number that is not finite is NaN.
+//         found 'TOKEN'".
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 #include "base/vec.h"
 
 namespace kdray::scene {
 
-// What becomes of a number that is not finite ("nan", "-inf", "1.#IND", "1e999"): it is refused, or NaN.
+// ---- Words without regard to capitals, of ASCII alone: keywords, names of materials and files.
+
+constexpr char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+inline std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = lower(c);
+  return out;
+}
+
+inline bool same_word(std::string_view a, std::string_view b) {
+  return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
+}
+
+// ---- TextScanner: tokens are separated by white space (new lines included); '#' starts a comment to the end
+// of its line. A number too small for a double is 0. With NotFinite::nan a word for a number that is not
+// finite is NaN.
+
+// Whether a number that is not finite ("nan", "-inf", "1.#IND", "1e999") is refused, or read as NaN.
 enum class NotFinite { refused, nan };
 
 class TextScanner {
@@ -24,13 +45,14 @@ class TextScanner {
   // `text` must outlive the scanner; `file` is the name in messages.
   TextScanner(std::string_view text, std::string file);
 
-  // True when nothing but white space and comments is left; otherwise stands at the next token.
+  // Returns true when nothing but white space and comments is left; otherwise it then stands at the next
+  // token.
   bool at_end();
-  // The next token without taking it; empty at the end. Views stay valid as long as the text.
+  // Returns the next token without taking it; empty at the end. Views stay valid as long as the text.
   std::string_view peek();
-  // Takes the next token; `what` is what the error says was expected when there is none.
+  // Takes the next token; when there is none, the error says that `what` was expected.
   std::string_view word(std::string_view what);
-  // Whether the next token starts like a number (a digit, a sign or a point).
+  // Returns whether the next token starts like a number (a digit, a sign or a point).
   bool at_number();
 
   double number(std::string_view what, NotFinite other = NotFinite::refused);
@@ -40,7 +62,7 @@ class TextScanner {
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
   const std::string& file() const { return file_; }
 
-  // An error at line(). `expected` makes the message for the token that stands next.
+  // Returns an error at line(); expected() makes the message for the token that stands next.
   [[nodiscard]] Error error(const std::string& what, const std::string& remedy = "") const;
   [[nodiscard]] Error expected(std::string_view what);
 
@@ -56,13 +78,110 @@ class TextScanner {
   std::string file_;
 };
 
-// Whether all of [first, last) is one finite number, correctly rounded into `value`.
+// Returns whether all of [first, last) is one finite number, correctly rounded into `value`.
 bool read_number(const char* first, const char* last, double& value);
 
-// The same, but true with NaN where the word stands for a number that is not finite.
+// Does the same, but also returns true, with NaN, where the word stands for a number that is not finite.
 bool read_number_or_nan(const char* first, const char* last, double& value);
 
-// A token as it may be shown in a message: control characters as '?', at most 40 characters.
+// Returns a token as it may be shown in a message: control characters as '?', at most 40 characters.
 std::string printable(std::string_view token);
+
+// ---- LineScanner: a line is a statement (OBJ, MTL): a keyword, words and numbers, or a rest of line. A
+// backslash at the end of a line, blanks after it or not, joins the next one to it. '#' at the start of a
+// word ends the line's words, but not its rest(): names may hold one. A UTF-8 byte order mark is skipped,
+// UTF-16 is refused.
+
+class LineScanner {
+ public:
+  // `text` must outlive the scanner; `file` is the name in messages.
+  LineScanner(std::string_view text, std::string file);
+
+  // Goes to the next line, whatever is left of this one; returns false at the end of the text.
+  bool next_line();
+  // Returns the next word of the line; empty at its end.
+  std::string_view word();
+  // Returns the next word if it is digits only, and its value; empty, with nothing taken, if it is anything
+  // else.
+  std::string_view plain_whole(std::int64_t& value);
+  // Returns what is left of the line, without white space at its ends; valid until the next rest().
+  std::string_view rest();
+  // Returns the next word as a number; `what` says what the number is.
+  double number(std::string_view what, NotFinite other = NotFinite::refused);
+  // The same as number(), but returns false, with nothing taken, when the line has no more words.
+  bool try_number(std::string_view what, double& value, NotFinite other = NotFinite::refused);
+
+  std::uint32_t line() const { return line_; }
+  std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
+  const std::string& file() const { return file_; }
+  [[nodiscard]] Error error(const std::string& what, const std::string& remedy = "") const;
+
+ private:
+  void skip_space();
+  const char* end_of_join(const char* p) const;
+  bool ends_word(const char* p) const;
+
+  const char* at_;
+  const char* end_;
+  std::uint32_t line_ = 0;  // of the word taken last
+  bool started_ = false;
+  std::string joined_;  // a rest() of several lines
+  std::string file_;
+};
+
+// Counts what the reader of a text format leaves out: one warning of each kind, with the line of the first
+// and how many there were.
+class LeftOut {
+ public:
+  // `what` follows the number: "faces with fewer than 3 corners are left out".
+  void add(std::string_view what, std::uint32_t line) {
+    auto kind = std::ranges::find(kinds_, what, &Kind::what);
+    if (kind == kinds_.end()) kind = kinds_.insert(kind, {std::string(what), 0, line});
+    ++kind->count;
+  }
+
+  std::size_t count(std::string_view what) const {
+    const auto kind = std::ranges::find(kinds_, what, &Kind::what);
+    return kind == kinds_.end() ? 0 : kind->count;
+  }
+
+  void warn(const std::string& file, std::vector<std::string>& warnings) const {
+    for (const Kind& kind : kinds_)
+      warnings.push_back(file + ":" + std::to_string(kind.line) + ": " + std::to_string(kind.count) + " " +
+                         kind.what + " (the first is in this line)");
+  }
+
+ private:
+  struct Kind {
+    std::string what;
+    std::size_t count;
+    std::uint32_t line;
+  };
+  std::vector<Kind> kinds_;  // by their first
+};
+
+// Reserves memory in a vector for all that the rest of a text will bring, should it go on as it began. Call
+// reserve() before each push_back(); the rate is measured from where the vector got its first element. Memory
+// that is reserved and not used is never touched, so that too much costs nothing. (Growing by doubling
+// touches each element's memory twice and copies it: that took longer than reading the numbers.)
+class ReserveAhead {
+ public:
+  template <class Vector>
+  void reserve(Vector& elements, std::size_t bytes_left) {
+    const std::size_t n = elements.size();
+    if (n < elements.capacity()) return;
+    if (n == 0) first_ = bytes_left;
+    // So few elements say little about the rest, and are cheap to copy.
+    if (n < kFew || first_ <= bytes_left) return;
+    const double bytes_each = static_cast<double>(first_ - bytes_left) / static_cast<double>(n);
+    const auto more = static_cast<std::size_t>(kSpare * static_cast<double>(bytes_left) / bytes_each);
+    elements.reserve(n + std::max(n, more));
+  }
+
+ private:
+  static constexpr std::size_t kFew = 4096;
+  static constexpr double kSpare = 1.05;
+  std::size_t first_ = 0;  // bytes left at the first element
+};
 
 }  // namespace kdray::scene

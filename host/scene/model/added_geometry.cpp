@@ -8,11 +8,11 @@
 
 #include "base/error.h"
 #include "base/local_space.h"
-#include "scene/model/area_light.h"
 #include "scene/model/check_scene.h"
 #include "scene/model/first_fault.h"
-#include "scene/model/settle_normals.h"
-#include "scene/textures/sky_picture.h"
+#include "scene/model/normals.h"
+#include "scene/model/scene.h"
+#include "scene/textures/sky.h"
 
 namespace kdray::scene {
 
@@ -54,7 +54,7 @@ RawVector<vec3> unit_normals(const Points& normals, std::size_t n_vertices) {
   return copy;
 }
 
-// Vertices' coordinates, brought to their triangles.
+// Copies vertices' coordinates to their triangles.
 PageVector<layout::TexCoords> texcoords_of(const Mesh& mesh, const PageVector<Triangle>& triangles) {
   const std::size_t n = mesh.texcoords.size();
   if (n == 0) return {};
@@ -87,7 +87,7 @@ void check_capacity(std::size_t n, const char* names) {
   if (n >= kMaxPrimitivesPerKind) refuse(fmt::format("{}: 2^28 of them or more; split the scene", names));
 }
 
-// The one for row i of an array that has one for each, or one for all.
+// Returns the value for row i of an array that has one for each row, or one for all.
 double value_for(const Values& values, std::size_t i) {
   return values[values.size() == 1 ? 0 : i][0];
 }

@@ -1,19 +1,19 @@
-#include "scene/model/added_textures.h"
+#include "scene/model/added_geometry.h"
 
 #include <fmt/format.h>
 
 #include <cstdint>
 
 #include "base/error.h"
-#include "scene/import/read_file.h"
-#include "scene/textures/mapped_material.h"
+#include "scene/import/files.h"
 #include "scene/textures/picture.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_texture(const std::string& what) {
   throw Error(ErrorCode::input, what);
 }
 
@@ -36,15 +36,16 @@ std::uint32_t texture_of(PictureId id, const char* name, bool curved, Texturing&
 
 std::shared_ptr<const Picture> picture_of(const Pixels& pixels) {
   const auto& [data, width, height, channels, row_bytes] = pixels;
-  if (channels < 1 || channels > 4) refuse(fmt::format("picture: {} channels; it may have 1 to 4", channels));
-  if (width == 0 || height == 0) refuse("picture: it has no pixels");
+  if (channels < 1 || channels > 4)
+    refuse_texture(fmt::format("picture: {} channels; it may have 1 to 4", channels));
+  if (width == 0 || height == 0) refuse_texture("picture: it has no pixels");
   if (width > kLongestSide || height > kLongestSide || std::size_t{width} * height > kMostTexels)
-    refuse(fmt::format("picture: {}x{} pixels; textures have {} at most, and no side over {}", width, height,
-                       kMostTexels, kLongestSide));
-  if (data == nullptr) refuse("picture: no data");
+    refuse_texture(fmt::format("picture: {}x{} pixels; textures have {} at most, and no side over {}", width,
+                               height, kMostTexels, kLongestSide));
+  if (data == nullptr) refuse_texture("picture: no data");
   const std::size_t row = row_bytes == 0 ? std::size_t{width} * channels : row_bytes;
   if (height > 1 && row > static_cast<std::size_t>(PTRDIFF_MAX) / height)
-    refuse(fmt::format("picture: {} rows, {} bytes apart, reach beyond any memory", height, row));
+    refuse_texture(fmt::format("picture: {} rows, {} bytes apart, reach beyond any memory", height, row));
   Picture picture = blank_picture("a picture", width, height);
   for (std::uint32_t y = 0; y < height; ++y)
     for (std::uint32_t x = 0; x < width; ++x)
@@ -67,13 +68,13 @@ Material textured_material(const kdray::Material& material, Texturing& texturing
   maps.occlusion_map = texture_of(material.occlusion_picture, "occlusion_picture", false, texturing);
   static_assert(static_cast<int>(AlphaMode::blend) == static_cast<int>(Alpha::blend));
   if (material.alpha < AlphaMode::opaque || material.alpha > AlphaMode::blend)
-    refuse("material: there is no such mode of alpha");
+    refuse_texture("material: there is no such mode of alpha");
   if (material.alpha != AlphaMode::opaque && maps.base == kNone)
-    refuse("material: there is no picture whose alpha is to be used");
+    refuse_texture("material: there is no picture whose alpha is to be used");
   maps.mode = static_cast<Alpha>(material.alpha);
   maps.metal = {.base = terms.diffuse, .metallic = material.metallic, .roughness = material.roughness};
   maps.occlusion = material.occlusion;
-  if (const char* const fault = fault_of_factors(maps)) refuse(fmt::format("material: {}", fault));
+  if (const char* const fault = fault_of_factors(maps)) refuse_texture(fmt::format("material: {}", fault));
   if (maps.emission_map != kNone) maps.emissive = terms.emission == vec3(0) ? vec3(1) : terms.emission;
   return with_pictures(terms, maps, texturing);
 }

@@ -100,7 +100,7 @@ class Checker {
     }
   }
 
-  // Kernels follow these without a further look.
+  // Kernels use these indices without a check.
   void check_textures() const {
     const Texturing& texturing = scene_.texturing;
     for (const Material& m : scene_.materials)
@@ -138,7 +138,7 @@ class Checker {
       if (const char* const fault = fault_of(instance))
         require(false, "instance " + std::to_string(i) + ": " + fault);
     }
-    // Meshes are looked at as scenes with this one's materials; what they have is theirs already.
+    // Meshes are checked as scenes with this one's materials.
     for (const auto& mesh : scene_.meshes) {
       require_internal(mesh->instances.empty(), "instances in a mesh");
       Checker(*mesh, scene_.materials.size()).run_mesh();

@@ -9,7 +9,7 @@
 
 namespace kdray::scene {
 
-// Calls work(i) for every i < n, in parallel; the least i of those for which it returns false, or n.
+// Calls work(i) for every i < n, in parallel; returns the least i for which it returned false, or n.
 template <class Work>
 std::size_t first_fault(std::size_t n, const Work& work) {
   constexpr std::size_t kGrain = std::size_t{1} << 14;

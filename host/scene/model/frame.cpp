@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/local_space.h"
+#include "scene/model/check_scene.h"
 
 namespace kdray::scene {
 
@@ -20,7 +23,7 @@ struct Basis {
   dvec3 right, up, forward;
 };
 
-// The rotation by the shortest way from y, which is up for the directions in this file, to `up`.
+// Returns the rotation by the shortest way from y, which is up for the directions in this file, to `up`.
 dvec3 turned_to(const dvec3& up, const dvec3& v) {
   const dvec3 to = safe_normalize(up);
   if (to.y == 1) return v;
@@ -36,7 +39,7 @@ Basis basis_of(const Camera& camera) {
   return {right, glm::cross(right, forward), forward};
 }
 
-// What brings the box to a size of about 1: a power of two. Cameras are made at that size.
+// Returns the power of two that brings the box to a size of about 1. Cameras are made at that size.
 double scale_of(const DBox& world) {
   return scale_to_one(std::max(largest_component(world.lo), largest_component(world.hi)));
 }
@@ -68,7 +71,7 @@ bool contains(const DBox& box, const dvec3& p) {
 }
 
 // A key light from over the viewer's left shoulder and a weaker one from the right. A viewer inside the scene
-// (a room) gets lamps instead, for walls would keep light from outside away: one at the eye and one beside
+// (a room) gets lamps instead, since walls would keep light from outside away: one at the eye and one beside
 // it.
 void add_lights_for_camera(Scene& scene, const DBox& box) {
   const Basis view = basis_of(*scene.camera);
@@ -83,7 +86,8 @@ void add_lights_for_camera(Scene& scene, const DBox& box) {
   }
 }
 
-// The box of the middles of all but the outermost hundredth of the primitives, on each side of each axis.
+// Returns the box of the middles of all but the outermost hundredth of the primitives, on each side of each
+// axis.
 DBox inner_box(std::vector<dvec3> middles) {
   DBox box;
   const std::size_t cut = middles.size() / 100;
@@ -99,8 +103,9 @@ DBox inner_box(std::vector<dvec3> middles) {
   return box;
 }
 
-// What the camera should show: the bounding box, unless a few far or huge primitives (a ground plane, a stray
-// vertex) would leave the scene itself a speck in it. Then it is the box of all the others, with a warning.
+// Returns what the camera should show: the bounding box, unless a few far or huge primitives (a ground plane,
+// a stray vertex) would leave the scene itself a speck in it. Then it is the box of all the others, with a
+// warning.
 DBox worth_showing(Scene& scene, const Framed& framed) {
   constexpr double kSpeck = 4;
   constexpr std::size_t kFew = 100;  // with fewer primitives each of them matters
@@ -173,7 +178,7 @@ void add_lights(Scene& scene) {
   if (!scene.framing.box.empty()) add_lights_for_camera(scene, scene.framing.box);
 }
 
-// Of about kSampled primitives, evenly through the file.
+// Returns the step that takes about kSampled primitives, evenly through the file.
 std::size_t step_of_samples(std::size_t n_primitives) {
   constexpr std::size_t kSampled = 20000;
   return std::max<std::size_t>(1, n_primitives / kSampled);
@@ -209,6 +214,70 @@ void frame_scene(Scene& scene, const Framed& framed) {
     scene.camera = box.empty() ? Camera{} : three_quarter_view(box, usual, aspect_of(scene.settings));
   }
   if (scene.framing.lights) add_lights(scene);
+}
+
+namespace {
+
+const Camera& numbered_camera(const Scene& scene, int number) {
+  const std::size_t n = scene.cameras.size();
+  if (number >= 0 && static_cast<std::size_t>(number) < n)
+    return scene.cameras[static_cast<std::size_t>(number)];
+  const std::string there = n == 0   ? "has no camera"
+                            : n == 1 ? "has one camera, number 0"
+                                     : "has cameras 0 to " + std::to_string(n - 1);
+  throw Error(ErrorCode::usage,
+              "there is no camera " + std::to_string(number) + ": " + scene.name + " " + there);
+}
+
+// Returns the width that shows all; any width does where there is nothing.
+double width_of(const DBox& box, const Camera& camera, double aspect) {
+  const double width = width_to_show(box, camera, aspect);
+  return width > 0 ? width : 1;
+}
+
+// Returns the light at the camera; where its rays are parallel, so is the light.
+Light headlight(const Camera& camera, double strength) {
+  Light light;
+  light.kind = camera.ortho_width > 0 ? LightKind::directional : LightKind::point;
+  light.position = camera.from;
+  light.direction = safe_normalize(camera.at - camera.from);
+  light.color = vec3(static_cast<float>(strength));
+  return light;
+}
+
+void check(const Camera& camera) {
+  if (const char* const fault = fault_of(camera))
+    throw Error(ErrorCode::usage, std::string("the view: ") + fault + "; give other --from, --at or --up");
+}
+
+}  // namespace
+
+Camera camera_of(const Scene& scene, const View& view, double aspect) {
+  Camera camera = view.camera ? numbered_camera(scene, *view.camera) : scene.camera.value_or(Camera{});
+  const bool made_up = scene.framing.camera && !view.camera;
+  if (view.from) camera.from = *view.from;
+  if (view.at) camera.at = *view.at;
+  if (view.up) camera.up = *view.up;
+  if (view.vertical_fov) camera.vertical_fov = *view.vertical_fov, camera.ortho_width = 0;
+  if (made_up && !view.from)
+    camera = three_quarter_view(scene.framing.box, camera, std::min(aspect, aspect_of(scene.settings)));
+  check(camera);
+  if (view.ortho_width && *view.ortho_width > 0)
+    camera.ortho_width = *view.ortho_width;
+  else if (view.ortho_width)
+    camera.ortho_width = width_of(scene.framing.box, camera, aspect);
+  if (view.aperture) camera.aperture = *view.aperture;
+  if (view.focus) camera.focus = *view.focus;
+  return camera;
+}
+
+void set_view(Scene& scene, const View& view, double aspect) {
+  scene.camera = camera_of(scene, view, aspect);
+  if (scene.framing.lights) {
+    scene.lights.clear();
+    add_lights(scene);
+  }
+  if (view.headlight > 0) scene.lights.push_back(headlight(*scene.camera, view.headlight));
 }
 
 }  // namespace kdray::scene

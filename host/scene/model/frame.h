@@ -1,9 +1,13 @@
-// What    Gives a scene without camera or lights a three-quarter view of its bounding box and two lights
-//         (docs/cli.md), and leaves alone what the file said. Where a few primitives reach far beyond
-//         the others (a ground plane), the others are framed.
+// What    The view of a scene: frame_scene() gives one without camera or lights a three-quarter view of its
+//         bounding box and two lights (docs/cli.md), and leaves alone what the file said; where a few
+//         primitives reach far beyond the others (a ground plane), the others are framed. A View asks for
+//         another one than that.
+// Units   World units, angles in radians.
+// Errors  kdray::Error, ErrorCode::usage: a camera that the file doesn't have, directions that make no view.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "scene/model/scene.h"
@@ -12,38 +16,58 @@ namespace kdray::scene {
 
 void frame_scene(Scene& scene);
 
-// The same where the scene's primitives aren't here: so many of them, with these bounds.
+// What frame_scene() needs to know where the scene's primitives aren't here: their number and their bounds.
 struct Framed {
   DBox bounds;
   std::size_t n_primitives = 0;
-  // Those of sampled_middles(), in any order; asked for where the scene has no camera.
+  // Returns what sampled_middles() would, in any order; called where the scene has no camera.
   std::function<std::vector<dvec3>()> middles;
 };
 void frame_scene(Scene& scene, const Framed& framed);
 
-// The middles of every step-th triangle and shape, by their places among those of their kind, of a scene of n
-// primitives.
+// Return the middles of every step-th triangle and shape, by their places among those of their kind, and the
+// step for a scene of n primitives.
 std::size_t step_of_samples(std::size_t n_primitives);
 std::vector<dvec3> sampled_middles(const Scene& scene);
 
-// The longer side of a picture that nobody gives a size.
+// The longer side of a picture whose size is not given.
 inline constexpr int kDefaultSide = 1024;
 
-// The scene's settings; where they have no size and the camera has an aspect ratio, with the size of that
-// ratio whose longer side has kDefaultSide pixels.
+// Returns the scene's settings. Where they have no size and the camera has an aspect ratio, the size has that
+// ratio, and kDefaultSide pixels on its longer side.
 RenderSettings settings_of(const Scene& scene);
 
-// Width by height of the picture that the scene asks for.
+// Returns the width divided by the height of the picture that the scene asks for.
 double aspect_of(const RenderSettings& settings);
 
-// A view from the front, the right and above (y is up, as in glTF and most OBJ files, unless `wanted` has
-// another direction) onto `wanted.at`, from as near as lets all eight corners of the box into the picture.
+// Returns a view from the front, the right and above (y is up, as in glTF and most OBJ files, unless `wanted`
+// has another direction) onto `wanted.at`, from as near as lets all eight corners of the box into the
+// picture.
 Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect);
 
-// How wide an orthographic picture has to be to show all of the box, and a margin; 0 for an empty one.
+// Returns how wide an orthographic picture has to be to show all of the box, and a margin; 0 for an empty
+// one.
 double width_to_show(const DBox& world, const Camera& camera, double aspect);
 
-// Lights for the scene's camera, where there is anything to light.
+// Adds lights for the scene's camera, where there is anything to light.
 void add_lights(Scene& scene);
+
+// What to see of a scene. Fields that are not set leave it as it is. Where the camera was made up, it is made
+// up again about what is set, so that all is in the picture; lights that were made up for it follow it.
+struct View {
+  std::optional<int> camera = {};  // of Scene::cameras
+  std::optional<dvec3> from = {}, at = {}, up = {};
+  std::optional<double> vertical_fov = {};
+  std::optional<double> ortho_width = {};  // parallel eye rays; 0: as wide as the scene needs
+  std::optional<double> aperture = {}, focus = {};
+  double headlight = 0;  // above 0: one more light, of this strength, at the camera
+};
+
+// Returns the camera that the view asks for. `aspect` is the width divided by the height of the picture that
+// will be made.
+Camera camera_of(const Scene& scene, const View& view, double aspect);
+
+// Puts that camera into the scene, with lights for it where they were made up, and the headlight.
+void set_view(Scene& scene, const View& view, double aspect);
 
 }  // namespace kdray::scene

@@ -16,10 +16,11 @@ namespace kdray::scene {
 
 namespace {
 
-// Where the scene's own origin is to be, along one axis. A coordinate near the origin stays as it is, so that
-// the floats of a file stay the floats of the file. Otherwise the middle is taken, rounded to a multiple of
-// the power of two below the scene's size: every float coordinate x of such a scene has |x| > size, so x -
-// center is a multiple of ulp(x) of at most 1.5 times that power, which a float holds without loss.
+// Returns where the scene's own origin should be, along one axis. A coordinate near the origin stays as it
+// is, so that the floats of a file stay the floats of the file. Otherwise the middle is taken, rounded to a
+// multiple of the power of two below the scene's size: every float coordinate x of such a scene has |x| >
+// size, so x - center is a multiple of ulp(x) of at most 1.5 times that power, which a float holds without
+// loss.
 double center_along(double lo, double hi, double size) {
   const double middle = lo + (hi - lo) * 0.5;
   if (std::abs(middle) <= 1.5 * size) return 0;

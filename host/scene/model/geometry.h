@@ -1,9 +1,9 @@
 // What    The primitives as the tree and the kernels see them: float, about the scene's own centre, at a size
-//         that is the same for all scenes (math/local_space.h). The move and the scaling, by a power of two,
+//         that is the same for all scenes (base/local_space.h). The move and the scaling, by a power of two,
 //         are done in double (docs/design/numerics.md), so that a model at (1e6, 1e6, 1e6) keeps its bits,
 //         and so does one that is 2^k times as large.
 // Shape   One array per kind, in file order; `number` maps back to the file. Degenerate triangles (two equal
-//         corners after rounding: their other edges cover each other) and shapes that rounding leaves none
+//         corners after rounding: their other edges cover each other) and shapes that rounding makes vanish
 //         (a radius of 0) are dropped and counted. Triangles of three corners on a line (after rounding,
 //         exactly decided) have no area but may close a gap: they are kept (scene/model/zero_area.h).
 //         Triangles are as the kernels read them: a device that shares memory takes them from here, without a
@@ -15,10 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "base/array.h"
 #include "base/box.h"
 #include "base/local_space.h"
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "layout/primitives.layout.h"
 #include "scene/model/scene.h"
 #include "scene/model/zero_area.h"
@@ -56,25 +55,27 @@ struct Geometry {
   }
 };
 
-// In `kept`, where the scene keeps_space(), or else in a space of its own.
+// Makes the geometry in `kept`, where the scene keeps_space(), or else in a space of its own.
 Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept = {});
 
-// The same in this space, whatever the scene's bounds: of a part of a larger scene, whose space it is.
+// Makes the geometry in this space, whatever the scene's bounds: for a part of a larger scene, whose space it
+// is.
 Geometry make_geometry_in(const LocalSpace& space, const Scene& scene);
 
-// The space of a scene with these bounds, whose name is for the error where they are too large.
+// Returns the space of a scene with these bounds. `name` is for the error where they are too large.
 LocalSpace space_of(const DBox& bounds, const std::string& name);
 
-// Whether a scene that has moved may keep its space: its largest coordinate there is from half of kLocalReach
-// to four times that, so that it loses one bit at most. What keeps its space keeps the floats of all that has
-// not moved.
+// Returns whether a scene that has moved may keep its space: its largest coordinate there is from half of
+// kLocalReach to four times that, so that it loses one bit at most. A scene that keeps its space keeps the
+// floats of all that has not moved.
 bool keeps_space(const LocalSpace& space, const DBox& bounds);
 
-// What the user should know of a scene that ranges too wide for floats, in one line; empty: nothing.
+// Returns a warning in one line about a scene whose range is too wide for floats; empty where there is none.
 std::string range_warning(const Geometry& geometry);
 std::string range_warning(std::size_t lost, std::size_t fine, std::size_t kept);
 
-// visit(Kind(), index) for the i-th of all primitives, kind by kind: the kind and the place in its array.
+// Calls visit(Kind(), index) for the i-th of all primitives, counted kind by kind; `index` is its place in
+// its kind's array.
 template <class Visit>
 void visit_primitive(const Geometry& geometry, std::size_t i, const Visit& visit) {
   std::size_t first = 0;
@@ -85,7 +86,7 @@ void visit_primitive(const Geometry& geometry, std::size_t i, const Visit& visit
   });
 }
 
-// Bounds that contain the primitive, rounded outward.
+// Returns bounds that contain the primitive, rounded outward.
 Box bounds_of(const TriangleGeometry& t);
 using primitives::bounds_of;
 

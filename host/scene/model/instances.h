@@ -1,9 +1,12 @@
-// What    Instances: meshes that lie in a scene many times and in memory once. A mesh is a scene of its own,
-//         of primitives alone; its materials are those of the scene that it is in.
+// What    Affine transforms of scenes; and instances: meshes that lie in a scene many times and in memory
+//         once. A mesh is a scene of its own, of primitives alone; its materials are those of the scene that
+//         it is in.
 // Shape   An instance's transform is affine, with an inverse: p in the mesh is linear*p + move in the world.
 //         Importers keep as instances what pays (worth_keeping), and copy the rest, as they copy everything
 //         where Instancing says so.
-// Errors  fault_of: what makes a transform none that instances can have, in words.
+// Errors  fault_of() says in words why instances can't have a transform. apply_transform() throws
+//         std::domain_error with what is wrong when a scene with shapes (spheres, ...) meets a transform that
+//         would make ellipsoids of them; the caller knows the file and the place in it.
 #pragma once
 
 #include <cstdint>
@@ -28,33 +31,33 @@ struct Instance {
 
 Instance instance_of(const dmat4& to_world, std::uint32_t mesh);
 
-// The largest ratio of what a transform does to two directions, bounded: |linear| times |inverse|, where |m|
-// is the largest sum of a row's absolute values. At least 1, infinite for a flat transform. A rotation with
-// one scale has 3 at most.
+// Returns the largest ratio of what a transform does to two directions, bounded: |linear| times |inverse|,
+// where |m| is the largest sum of a row's absolute values. At least 1, infinite for a flat transform. A
+// rotation with one scale has 3 at most.
 double condition_of(const dmat3& linear);
 
 // Beyond this the rounding of a ray on its way into the mesh is too large a share of the scene.
 inline constexpr double kMostCondition = 48;
 
-// What the word of a wide node's child holds.
+// The most instances that the word of a wide node's child can number.
 inline constexpr std::size_t kMaxInstances = std::size_t{1} << 27;
 
-// What is wrong with a transform; null: nothing.
+// Returns what is wrong with a transform; null where nothing is.
 const char* fault_of(const Instance& instance);
 
-// Contains the mesh's bounds, moved.
+// Returns bounds that contain the mesh's, moved.
 DBox bounds_of(const Instance& instance, const DBox& mesh);
 
-// Whether so many copies of a mesh take so much more than it does that they are to be instances. What is
-// small is copied: rays go through one tree faster than through two.
+// Returns whether so many copies of a mesh take so much more memory than it does that they should be
+// instances. What is small is copied: rays go through one tree faster than through two.
 bool worth_keeping(std::uint64_t primitives, std::uint64_t copies);
 
-// Takes the copies of a mesh that are none of `scene`'s instances yet into its triangles and shapes.
-// Throws std::domain_error where shapes would become none.
+// Adds a copy of a mesh, which is not one of `scene`'s instances, to its triangles and shapes. Throws
+// std::domain_error where shapes would no longer be shapes of their kind.
 void add_copy(const Scene& mesh, const Instance& instance, Scene& scene);
 
-// Copies all instances into the scene's primitives, behind those that there are.
-// Errors: ErrorCode::input where they become too many, or a sphere an ellipsoid.
+// Copies all instances into the scene's primitives, behind those that there are. Throws ErrorCode::input
+// where they become too many, or a sphere an ellipsoid.
 void flatten_instances(Scene& scene);
 
 // While one lives, importers of its thread do as it says.
@@ -69,5 +72,14 @@ class Instancing {
  private:
   Instances outer_;
 };
+
+// Moves vertices, normals and shapes. Normals stay perpendicular to their surface (inverse transpose)
+// and of unit length; a mirroring transform turns the triangles over, so that their front stays where the
+// normals point.
+void apply_transform(const dmat4& m, Scene& scene);
+
+dmat4 translation(const dvec3& by);
+dmat4 scaling(const dvec3& by);
+dmat4 rotation(const dvec3& unit_axis, double radians);  // right-handed
 
 }  // namespace kdray::scene

@@ -18,8 +18,8 @@ using dvec2 = glm::dvec2;
 
 namespace exact {
 
-// A number as the exact sum of doubles that don't overlap, smallest first; zeros are left out. It has room
-// for as many as are added.
+// A number as the exact sum of doubles that don't overlap, smallest first; zeros are left out. It can hold as
+// many as are added.
 template <int kCapacity>
 class Expansion {
  public:

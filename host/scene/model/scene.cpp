@@ -5,6 +5,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace {
 
 constexpr std::size_t kBoundsGrain = std::size_t{1} << 14;
 
-// Only vertices that a triangle uses count: files often carry some that no face names. They are marked, since
-// a mesh has six times as many corners as vertices.
+// Only vertices that a triangle uses count: files often carry some that no face names. Used ones are marked
+// first, since a mesh has six times as many corners as vertices.
 std::vector<std::uint8_t> used_vertices(const Scene& scene) {
   std::vector<std::uint8_t> used(scene.vertices.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), kBoundsGrain),
@@ -53,6 +54,17 @@ DBox Scene::bounds() const {
   for (const auto& mesh : meshes) of_meshes.push_back(mesh->bounds());
   for (const Instance& instance : instances) box.grow(bounds_of(instance, of_meshes[instance.mesh]));
   return box;
+}
+
+void set_disc(Light& light, const dvec3& normal, double radius) {
+  const dvec3 a = glm::abs(normal);
+  const dvec3 least = a.x <= a.y && a.x <= a.z ? dvec3(1, 0, 0)
+                      : a.y <= a.z             ? dvec3(0, 1, 0)
+                                               : dvec3(0, 0, 1);
+  const dvec3 across = glm::normalize(glm::cross(normal, least));
+  light.kind = LightKind::disc;
+  light.across = across * radius;
+  light.down = glm::cross(normal, across) * radius;
 }
 
 }  // namespace kdray::scene

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "base/box.h"
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "base/vec.h"
 #include "kdray/options.h"
-#include "scene/import/files_read.h"
+#include "scene/import/files.h"
 #include "scene/model/instances.h"
 #include "scene/primitives/shapes.h"
 #include "scene/textures/sky.h"
@@ -65,12 +65,16 @@ struct Light {
   double radius = 0;         // sphere
 };
 
+// Makes a light a disc of that normal, which has unit length: sets its kind and two radii at right angles to
+// the normal and to each other.
+void set_disc(Light& light, const dvec3& normal, double radius);
+
 // A pinhole camera, or an orthographic one. `vertical_fov` spans the full height of the picture, from its
 // lower to its upper edge; the horizontal angle follows from the aspect ratio of the picture (square pixels).
 struct Camera {
   dvec3 from{0, 0, 5}, at{0}, up{0, 1, 0};
   double vertical_fov = 0.7853981633974483;
-  double hither = 0;  // distance along the view direction in front of which nothing is seen
+  double hither = 0;  // distance along the view direction; what is nearer is not seen
   double ortho_width =
       0;                // > 0: orthographic, parallel rays from the plane through `from`; the picture's width
   double aperture = 0;  // > 0: the diameter of a thin lens; what is not in its focus is blurred
@@ -78,8 +82,8 @@ struct Camera {
   double aspect = 0;    // width by height of the picture that it is made for; 0: any
 };
 
-// What frame_scene() made up where the file has nothing, so that another view can be made up as well
-// (view.h).
+// What frame_scene() made up where the file has nothing, so that another view can be made up in the same way
+// (frame.h).
 struct Framing {
   bool camera = false, lights = false;
   DBox box;  // of what is worth showing; empty for a scene of nothing
@@ -127,7 +131,7 @@ struct Scene {
   std::vector<FileRead> files;        // what it was loaded from, by load() only
   LoadOptions load_options;           // that it was loaded with
 
-  // Of the scene's own, without its meshes'.
+  // Counts the scene's own primitives, without its meshes'.
   std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(primitives::count_primitives(*this));
   }

@@ -44,7 +44,7 @@ namespace {
 
 using zero_area_edges::Edge, zero_area_edges::Place, zero_area_edges::place_of;
 
-constexpr std::size_t kGrain = std::size_t{1} << 14;
+constexpr std::size_t kSideGrain = std::size_t{1} << 14;
 
 double length2_of_edge(const layout::Triangle& t, std::size_t k) {
   double sum = 0;
@@ -79,7 +79,7 @@ struct ZeroAreaSides::Side {
   double length2;
 };
 
-// Tells most corners that no zero-area triangle has from those that one may have.
+// Distinguishes most corners that no zero-area triangle has from those that one may have.
 class ZeroAreaSides::Filter {
  public:
   void add(const Place& place) { bits_[hash(place) / 64] |= std::uint64_t{1} << hash(place) % 64; }
@@ -115,7 +115,8 @@ ZeroAreaSides::ZeroAreaSides(std::span<const layout::Triangle> zero_area)
 }
 ZeroAreaSides::~ZeroAreaSides() = default;
 
-// Every triangle with area at every edge of one without: of several the first, whichever thread comes first.
+// Has every triangle with area meet every edge of one without. Of several at an edge the first counts,
+// whichever thread comes first.
 void ZeroAreaSides::meet(const layout::Triangle& t, std::uint32_t place) {
   if (is_zero_area(t)) return;
   const bool shared[3] = {filter_->may_have(place_of(t, 0)), filter_->may_have(place_of(t, 1)),
@@ -130,7 +131,7 @@ void ZeroAreaSides::meet(const layout::Triangle& t, std::uint32_t place) {
 
 std::vector<vec3> ZeroAreaSides::normals(const std::function<vec3(std::size_t)>& normal_of_neighbour) const {
   std::vector<vec3> normals(n_zero_area_, vec3(0));
-  // That at the longest edge: the face that was not divided there.
+  // Prefers the neighbour at the longest edge: the face that was not divided there.
   std::vector<double> longest(n_zero_area_, -1);
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     const Side& side = sides_[i];
@@ -140,7 +141,7 @@ std::vector<vec3> ZeroAreaSides::normals(const std::function<vec3(std::size_t)>&
     longest[side.triangle] = side.length2;
     normals[side.triangle] = normal;
   }
-  // From one to the next, over common edges, a round for each step.
+  // Passes normals from one to the next over common edges, a round for each step.
   std::vector<std::vector<std::uint32_t>> beside(n_zero_area_);
   for (std::size_t first = 0, last; first < sides_.size(); first = last) {
     for (last = first + 1; last < sides_.size() && sides_[last].edge == sides_[first].edge; ++last) {
@@ -177,8 +178,8 @@ std::vector<ZeroAreaTriangle> find_zero_area(const Array<layout::Triangle>& tria
     marked.push_back(triangles[i]);
   }
   ZeroAreaSides sides(marked);
-  tbb::parallel_for(std::size_t{0}, (triangles.size() + kGrain - 1) / kGrain, [&](std::size_t grain) {
-    const std::size_t first = grain * kGrain, last = std::min(triangles.size(), first + kGrain);
+  tbb::parallel_for(std::size_t{0}, (triangles.size() + kSideGrain - 1) / kSideGrain, [&](std::size_t grain) {
+    const std::size_t first = grain * kSideGrain, last = std::min(triangles.size(), first + kSideGrain);
     for (std::size_t i = first; i < last; ++i) sides.meet(triangles[i], static_cast<std::uint32_t>(i));
   });
   const std::vector<vec3> normals = sides.normals(

@@ -12,16 +12,17 @@
 #include <span>
 #include <vector>
 
-#include "base/array.h"
+#include "base/memory.h"
 #include "base/vec.h"
 #include "layout/primitives.layout.h"
 
 namespace kdray::scene {
 
-// Whether a triangle of floats has exactly no area: its three projections all have none.
+// Returns whether a triangle of floats has exactly no area: its three projections all have none.
 bool is_flat(const layout::Triangle& t);
 
-// Whether a triangle of the file, of these edges, has an area that is more than the rounding of its decimals.
+// Returns whether a triangle of the file, of these edges, has an area that is more than the rounding of its
+// decimals.
 inline bool has_area(const dvec3& e, const dvec3& f) {
   return glm::length(glm::cross(e, f)) > 0x1p-40 * glm::length(e) * glm::length(f);
 }
@@ -42,32 +43,34 @@ struct ZeroAreaTriangle {
   vec3 normal{0};              // a neighbour's, of unit length; 0: it has none with area
 };
 
-// Those that are marked, in the order of the triangles.
+// Returns the triangles that are marked as such, in the order of the triangles.
 std::vector<ZeroAreaTriangle> find_zero_area(const Array<layout::Triangle>& triangles);
 
-// The same in steps, where not all triangles are in one place: the sides of all of these, which meet all
-// triangles, wherever these are.
+// Finds the same in steps, where the triangles are divided among processes: each has the sides of all
+// zero-area triangles, and has its own triangles meet them.
 class ZeroAreaSides {
  public:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
 
-  // All zero-area triangles of the scene, in the order of its triangles.
+  // `zero_area` has all zero-area triangles of the scene, in the order of its triangles.
   explicit ZeroAreaSides(std::span<const layout::Triangle> zero_area);
   ~ZeroAreaSides();
   ZeroAreaSides(const ZeroAreaSides&) = delete;
   ZeroAreaSides& operator=(const ZeroAreaSides&) = delete;
 
-  // `place` of the triangle among all; any thread's. One without area meets nobody.
+  // Meets a triangle, whose place among all is `place`; any thread may call it. A triangle without area meets
+  // no side.
   void meet(const layout::Triangle& t, std::uint32_t place);
 
-  // For each side the least place of a triangle that shares it, or kNobody: what has met them elsewhere may
-  // lower it.
+  // Returns for each side the least place of a triangle that shares it, or kNobody. The caller lowers it to
+  // what other processes found.
   std::span<std::uint32_t> neighbours() { return neighbours_; }
 
-  // Of each one, when all have met. `normal_of(side)`: normal_of() the side's neighbour, where it has one.
+  // Returns the normal of each zero-area triangle, when all have met. `normal_of(side)` is normal_of() the
+  // side's neighbour, where it has one.
   std::vector<vec3> normals(const std::function<vec3(std::size_t side)>& normal_of) const;
 
-  // Of unit length; 0: it has none.
+  // Returns a normal of unit length, or 0 where the triangle has none.
   static vec3 normal_of(const layout::Triangle& t);
 
  private:

@@ -6,15 +6,12 @@
 #include <optional>
 #include <tuple>
 
-#include "base/bounds.h"
 #include "base/box.h"
 #include "base/vec.h"
 #include "layout/kinds.h"
 #include "layout/primitives.layout.h"
 #include "layout/wide.layout.h"
-#include "scene/primitives/exact.h"
-#include "scene/primitives/fields.h"
-#include "scene/primitives/spaces.h"
+#include "scene/primitives/shape_tools.h"
 
 namespace kdray::primitives {
 

@@ -62,13 +62,13 @@ KDRAY_SHAPES(KDRAY_SHAPE_KIND)
 
 #define KDRAY_VISIT_KIND(NAME, name, names, Struct) visit(Struct##Kind());
 
-// visit(Kind()) for each kind, in the order of their numbers.
+// Calls visit(Kind()) for each kind, in the order of their numbers.
 template <class Visit>
 constexpr void for_each_kind(const Visit& visit) {
   KDRAY_KINDS(KDRAY_VISIT_KIND)
 }
 
-// The same for all but triangles.
+// Calls it for all kinds but triangles.
 template <class Visit>
 constexpr void for_each_shape(const Visit& visit) {
   KDRAY_SHAPES(KDRAY_VISIT_KIND)
@@ -77,7 +77,7 @@ constexpr void for_each_shape(const Visit& visit) {
 
 [[noreturn]] void throw_unknown_kind(std::uint32_t number);
 
-// visit(Kind()) for the kind of that number; what it returns.
+// Calls visit(Kind()) for the kind of that number, and returns what it returns.
 #define KDRAY_CASE_OF_KIND(NAME, name, names, Struct) \
   case KDRAY_KIND_##NAME:                             \
     return visit(Struct##Kind());
@@ -91,7 +91,7 @@ constexpr decltype(auto) with_kind(std::uint32_t number, const Visit& visit) {
 }
 #undef KDRAY_CASE_OF_KIND
 
-// The sum over all kinds of what `holder` has of each.
+// Returns the sum over all kinds of what `holder` has of each.
 template <class Holder>
 std::size_t count_primitives(const Holder& holder) {
   std::size_t n = 0;
@@ -99,8 +99,8 @@ std::size_t count_primitives(const Holder& holder) {
   return n;
 }
 
-// "12 triangles, 3 spheres": of each kind that there is any of what count_of(Kind()) tells; "nothing" for
-// none.
+// Returns "12 triangles, 3 spheres": count_of(Kind()) of each kind of which there are any; "nothing" where
+// there are none.
 template <class CountOf>
 std::string counts_in_words(const CountOf& count_of) {
   std::string words;

@@ -1,9 +1,12 @@
 #include "scene/primitives/torus.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
-#include "scene/primitives/box_around.h"
-#include "scene/primitives/pack.h"
+#include "base/box.h"
+#include "scene/primitives/shape_tools.h"
 
 namespace kdray::primitives {
 
@@ -81,6 +84,249 @@ dvec3 normal_at(const layout::Torus& t, const dvec3& point) {
   const double away = glm::length(across), beyond = away - static_cast<double>(t.major_radius);
   const dvec3 out = away > 0 ? across / away : dvec3(0), normal = beyond * out + along * axis;
   return normal == dvec3(0) ? axis : glm::normalize(normal);
+}
+
+// ---- The bounds of a torus inside a box.
+// The circle is cut into arcs, and the tube around each is bounded by the box of the arc, which is
+// that of its chord and its sagitta, made larger by the minor radius. Arcs whose boxes lie across the
+// region's faces are halved, until they are short beside the tube. And a region that lies within the
+// tube, or farther than its radius from the circle, meets no surface: the distance from the circle
+// differs between two points by no more than they are apart.
+// All in double. 2^-44 of the largest coordinate or radius is more than the ends of arcs, halved at
+// most six times, and distances from the circle are off by.
+
+namespace {
+
+constexpr double kWiden = 0x1p-44;
+constexpr int kArcHalvings = 6;
+
+// Everything about the torus' centre.
+struct Ring {
+  dvec3 axis;
+  double major, minor, widen;
+};
+
+struct Span {
+  dvec3 lo, hi;
+  bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+};
+
+Span common(const Span& a, const Span& b) {
+  return {glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)};
+}
+
+bool contains(const Span& outer, const Span& inner) {
+  return glm::all(glm::lessThanEqual(outer.lo, inner.lo)) && glm::all(glm::lessThanEqual(inner.hi, outer.hi));
+}
+
+void grow(Span& span, const Span& by) {
+  span = {glm::min(span.lo, by.lo), glm::max(span.hi, by.hi)};
+}
+
+// Adds to `out` what the region leaves of the tube around the arc from a to b, which is shorter than half of
+// the circle.
+void add_arc(const Ring& ring, const dvec3& a, const dvec3& b, const Span& region, int halvings, Span& out) {
+  const dvec3 middle = 0.5 * (a + b);
+  const double height = glm::length(middle), sagitta = ring.major - height;
+  const double reach = sagitta + ring.minor + ring.widen;
+  const Span tube{glm::min(a, b) - reach, glm::max(a, b) + reach}, left = common(tube, region);
+  if (left.empty() || contains(out, left)) return;
+  if (halvings == 0 || contains(region, tube) || glm::length(b - a) < 0.25 * ring.minor) {
+    grow(out, left);
+    return;
+  }
+  const dvec3 halved = middle * (ring.major / height);
+  add_arc(ring, a, halved, region, halvings - 1, out);
+  add_arc(ring, halved, b, region, halvings - 1, out);
+}
+
+double from_circle(const Ring& ring, const dvec3& p) {
+  const double along = glm::dot(p, ring.axis), across = glm::length(p - along * ring.axis);
+  return std::hypot(across - ring.major, along);
+}
+
+bool misses_tube(const Ring& ring, const Span& region) {
+  const double distance = from_circle(ring, 0.5 * (region.lo + region.hi));
+  const double around = 0.5 * glm::length(region.hi - region.lo) * (1 + 0x1p-48) + ring.widen;
+  return distance + around < ring.minor || distance - around > ring.minor;
+}
+
+// Corners of a square, and so quarters, in the circle.
+Span tube_within(const Ring& ring, const Span& region) {
+  const dvec3 other = std::abs(ring.axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  const dvec3 u = ring.major * glm::normalize(glm::cross(ring.axis, other)), v = glm::cross(ring.axis, u);
+  const dvec3 corners[] = {u, v, -u, -v};
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  Span out{dvec3(kNone), dvec3(-kNone)};
+  for (int i = 0; i < 4; ++i) add_arc(ring, corners[i], corners[(i + 1) % 4], region, kArcHalvings, out);
+  return out;
+}
+
+}  // namespace
+
+Bounds clip(const TorusGeometry& t, const Bounds& region) {
+  const dvec3 c(t.center), axis = glm::normalize(dvec3(t.axis));
+  const double major = t.major_radius, minor = t.minor_radius;
+  const double widen = kWiden * std::max({major, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+  const Ring ring{axis, major, minor, widen};
+  const dvec3 reach = disc_reach(axis) * major + minor + widen;
+  Span about{-reach, reach};
+  for (int k = 0; k < 3; ++k) {
+    about.lo[k] = std::max(about.lo[k], static_cast<double>(region.lo[k]) - c[k] - widen);
+    about.hi[k] = std::min(about.hi[k], static_cast<double>(region.hi[k]) - c[k] + widen);
+  }
+  if (about.empty() || misses_tube(ring, about)) return no_bounds();
+  const Span left = tube_within(ring, about);
+  if (left.empty()) return no_bounds();
+  Bounds out;
+  for (int k = 0; k < 3; ++k) {
+    out.lo[k] = round_down(c[k] + left.lo[k] - widen);
+    out.hi[k] = round_up(c[k] + left.hi[k] + widen);
+  }
+  return intersection(out, region);
+}
+
+// ---- What is certain about rays and tori, in double. The turns of the distance along a line are found as
+// the kernels find them (kernels/intersect/torus_turns.clh).
+
+namespace {
+
+constexpr int kRootHalvings = 60;
+
+// h, the distance from the torus' circle, along a line.
+class Along {
+ public:
+  Along(const Line& line, const TorusGeometry& t) : major_(t.major_radius) {
+    const dvec3 axis = glm::normalize(dvec3(t.axis)), from = line.origin - dvec3(t.center);
+    z_ = glm::dot(from, axis), dz_ = glm::dot(line.direction, axis);
+    across_ = from - z_ * axis, moving_ = line.direction - dz_ * axis;
+    square_ = glm::dot(line.direction, line.direction);
+    const double size = 1.01 * (major_ + t.minor_radius), middle = -glm::dot(from, line.direction) / square_;
+    const dvec3 nearest = from + middle * line.direction;
+    const double half = std::sqrt(std::max(0.0, size * size - glm::dot(nearest, nearest)) / square_);
+    lo_ = middle - half, hi_ = middle + half;
+    find_turns();
+  }
+
+  double height(double t) const { return std::hypot(rho(t) - major_, z_ + t * dz_); }
+  // Half of the slope of the square of the height.
+  double slope(double t) const {
+    const double away = rho(t), out = glm::dot(across_ + t * moving_, moving_);
+    return (away > 0 ? (away - major_) * out / away : 0) + (z_ + t * dz_) * dz_;
+  }
+
+  // Where the line enters and leaves the sphere around the torus; the two valleys, and the hill between them.
+  // A valley may lie at the hill, where there is but one.
+  double lo() const { return lo_; }
+  double hi() const { return hi_; }
+  double left() const { return left_; }
+  double hill() const { return hill_; }
+  double right() const { return right_; }
+
+  // Between lo and hi, on the way down (up: -1) or up, where it comes to `height`; lo or hi where it doesn't.
+  double crossing(double lo, double hi, double up, double at) const {
+    return halved(lo, hi, [&](double t) { return up * (height(t) - at) < 0; });
+  }
+
+ private:
+  double rho(double t) const { return glm::length(across_ + t * moving_); }
+
+  template <class Before>
+  static double halved(double lo, double hi, const Before& before) {
+    for (int i = 0; i < kRootHalvings; ++i) {
+      const double middle = 0.5 * (lo + hi);
+      (before(middle) ? lo : hi) = middle;
+    }
+    return 0.5 * (lo + hi);
+  }
+
+  void find_turns() {
+    const double ee = glm::dot(moving_, moving_), nearest = -glm::dot(across_, moving_) / ee;
+    const dvec3 c = across_ + nearest * moving_;
+    const double cc = glm::dot(c, c), away = std::cbrt(major_ * cc * ee / square_);
+    const double half = std::sqrt(std::max(0.0, away * away - cc) / ee), least = major_ * ee / square_;
+    const bool whole = !(cc < least * least);  // convex all along
+    const double first = whole ? hi_ : std::clamp(nearest - half, lo_, hi_);
+    const double second = whole ? hi_ : std::clamp(nearest + half, lo_, hi_);
+    const auto falls = [&](double t) { return slope(t) < 0; };
+    left_ = halved(lo_, first, falls);
+    hill_ = halved(first, second, [&](double t) { return slope(t) > 0; });
+    right_ = halved(second, hi_, falls);
+  }
+
+  double major_, z_, dz_, square_;
+  dvec3 across_, moving_;
+  double lo_, hi_, left_, hill_, right_;
+};
+
+}  // namespace
+
+dvec3 place_on(const TorusGeometry& t, double share, const dvec3& direction) {
+  const dvec3 axis = glm::normalize(dvec3(t.axis)), across = direction - glm::dot(direction, axis) * axis;
+  const double length = glm::length(across), angle = 2 * std::numbers::pi * share;
+  const dvec3 out = length > 0 ? across / length : dvec3(0);
+  const double major = t.major_radius, minor = t.minor_radius;
+  return dvec3(t.center) + (major + minor * std::cos(angle)) * out + minor * std::sin(angle) * axis;
+}
+
+// Away from the nearest place of the circle.
+dvec3 outward(const dvec3& point, const TorusGeometry& t) {
+  const dvec3 axis = glm::normalize(dvec3(t.axis)), from = point - dvec3(t.center);
+  const dvec3 across = from - glm::dot(from, axis) * axis;
+  return from - static_cast<double>(t.major_radius) * safe_normalize(across);
+}
+
+// Through a valley well below the surface, near which the distance is off by more than the surface is.
+std::optional<double> sure_target(const Line& line, const TorusGeometry& t, double margin) {
+  const Along along(line, t);
+  const double minor = t.minor_radius, deep = 0.99 * minor - margin, clear = 1.01 * minor + margin;
+  const bool from_left = along.height(along.left()) < clear;
+  const double valley = from_left ? along.left() : along.right();
+  const double top = from_left ? along.lo() : along.hill();
+  if (!(along.height(valley) < deep) || !(along.height(top) > clear) || !(top > 0)) return {};
+  return along.crossing(top, valley, -1, minor);
+}
+
+// A ray that has left the torus may come back on its way down, or once it comes as near as rounding reaches
+// behind a hill.
+bool meets_again(const Line& line, const TorusGeometry& t, double at, const dvec3& side) {
+  const Along along(line, t);
+  const double minor = t.minor_radius, hill = along.hill();
+  const bool outside = glm::dot(side, outward(line.origin, t)) > 0;
+  if (outside != (along.height(0) > minor)) return true;
+  if (outside) {
+    if (along.slope(0) < 0) return false;
+    const double clear = minor + 0x1p-17 * (t.major_radius + minor + glm::length(line.origin));
+    if (!(hill > 0 && along.height(along.right()) < clear)) return true;
+    return at < 0.5 * along.crossing(hill, along.right(), -1, clear);
+  }
+  const bool over_hill = hill > 0 && along.height(hill) > minor;
+  const double exit = over_hill ? along.crossing(std::max(0.0, along.left()), hill, 1, minor)
+                                : along.crossing(std::max(0.0, along.right()), along.hi(), 1, minor);
+  return at < 0.5 * exit;
+}
+
+// Down through the surface before each valley that is below it, and up behind it. Where the line has one
+// valley, the hill and the other lie at its end.
+Crossings crossings(const Line& line, const layout::Torus& t) {
+  const auto vector = [](const float(&v)[3]) { return vec3(v[0], v[1], v[2]); };
+  const Along along(line, {vector(t.center), vector(t.axis), t.major_radius, t.minor_radius, 0});
+  const double minor = t.minor_radius;
+  const auto is_below = [&](double at) { return along.height(at) < minor; };
+  Crossings found;
+  if (!(along.lo() < along.hi())) return found;
+  const double turns[] = {along.lo(), along.left(), along.hill(), along.right(), along.hi()};
+  for (int i = 0; i < 4; ++i)
+    if (is_below(turns[i]) != is_below(turns[i + 1]))
+      found.add(along.crossing(turns[i], turns[i + 1], is_below(turns[i]) ? 1 : -1, minor));
+  return found;
+}
+
+double distance_to(const layout::Torus& t, const dvec3& point) {
+  const dvec3 axis = glm::normalize(dvec3(t.axis[0], t.axis[1], t.axis[2]));
+  const dvec3 from = point - dvec3(t.center[0], t.center[1], t.center[2]);
+  const double z = glm::dot(from, axis), out = glm::length(from - z * axis) - t.major_radius;
+  return std::abs(std::hypot(out, z) - t.minor_radius);
 }
 
 }  // namespace kdray::primitives

@@ -1,9 +1,11 @@
 #include "scene/textures/texturing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/paged.h"
+#include "scene/model/scene.h"
 
 namespace kdray::scene {
 
@@ -17,7 +19,7 @@ std::uint32_t place_in(std::vector<T>& all, const T& one) {
   return static_cast<std::uint32_t>(all.size() - 1);
 }
 
-// `empty` for the triangles before, and for those of a part that has none.
+// Appends, with `empty` for the triangles before, and for those of a part that has no entries.
 template <class T>
 void append_corners(PageVector<T>& to, const PageVector<T>& from, std::size_t before, std::size_t n_triangles,
                     const T& empty) {
@@ -96,6 +98,35 @@ std::uint32_t linear_unit_of_srgb(double code) {
 void set_corner(layout::CornerColors& colors, std::size_t corner, const std::array<std::uint32_t, 4>& rgba) {
   colors.c[corner][0] = rgba[0] | rgba[1] << 16;
   colors.c[corner][1] = rgba[2] | rgba[3] << 16;
+}
+
+Material with_pictures(const Material& terms, const MaterialMaps& maps, Texturing& texturing) {
+  const bool shows = std::ranges::any_of(
+      std::array{maps.base, maps.normal_map, maps.emission_map, maps.occlusion_map, maps.metal_map},
+      [](std::uint32_t map) { return map != kNone; });
+  if (!shows) return terms;
+  Material m = terms;
+  MaterialMaps out = maps;
+  if (out.metal_map != kNone) {
+    m = {.emission = terms.emission};
+  } else if (out.base != kNone) {
+    out.ambient = m.ambient, out.diffuse = m.diffuse, out.transmit = m.transmit;
+    m.ambient = m.diffuse = m.transmit = vec3(0);
+  } else if (out.occlusion_map != kNone) {
+    out.ambient = m.ambient;
+    m.ambient = vec3(0);
+  }
+  if (out.emission_map != kNone) m.emission = vec3(0);
+  m.maps = texturing.add(out);
+  return m;
+}
+
+const char* fault_of_factors(const MaterialMaps& maps) {
+  const auto share = [](float v) { return v >= 0 && v <= 1; };
+  if (!share(maps.metal.metallic)) return "metallic may be 0 to 1";
+  if (!share(maps.metal.roughness)) return "roughness may be 0 to 1";
+  if (!share(maps.occlusion)) return "occlusion may be 0 to 1";
+  return nullptr;
 }
 
 }  // namespace kdray::scene

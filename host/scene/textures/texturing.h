@@ -15,12 +15,13 @@
 #include <string_view>
 #include <vector>
 
-#include "base/array.h"
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "base/vec.h"
 #include "layout/textures.layout.h"
 
 namespace kdray::scene {
+
+struct Material;
 
 struct Picture {
   std::string name;  // in messages
@@ -28,7 +29,7 @@ struct Picture {
   Array<std::uint8_t> texels;  // red, green, blue, alpha, row by row from the top
 };
 
-// Its texels, which are yet to be set, may lie in a file (base/paged.h).
+// Returns a picture whose texels the caller sets; they may lie in a file (base/paged.h).
 Picture blank_picture(const std::string& name, std::uint32_t width, std::uint32_t height);
 
 enum class Wrap : std::uint32_t {
@@ -37,8 +38,8 @@ enum class Wrap : std::uint32_t {
   clamp = KDRAY_WRAP_CLAMP
 };
 
-// What is looked at where a picture is shown smaller than it is, as glTF and OpenGL name it: a texel or four,
-// of the picture itself, of the mipmap that is the nearest in size, or of two.
+// What is sampled where a picture is shown smaller than it is, as glTF and OpenGL name it: one texel or four,
+// of the picture itself, of the mipmap that is nearest in size, or of two.
 enum class Minify : std::uint32_t {
   as_magnified,  // as where it is shown larger
   nearest,
@@ -101,9 +102,9 @@ struct MaterialMaps {
   bool operator==(const MaterialMaps&) const = default;
 };
 
-// The largest terms that maps can have anywhere, base colours being 1 at most.
+// Returns the largest terms that maps can have anywhere, base colours being 1 at most.
 MaterialMaps largest_terms(const MaterialMaps& maps);
-// Whether a texture on this picture looks different where it is shown smaller.
+// Returns whether a texture on this picture looks different where it is shown smaller.
 bool needs_footprints(const Texture& texture, const Picture& picture);
 
 inline constexpr layout::CornerColors kWhiteCorners = {
@@ -121,16 +122,25 @@ struct Texturing {
   std::uint32_t add(const Texture& texture);
   std::uint32_t add(const MaterialMaps& maps);
 
-  // Puts that of a scene which has `n_triangles` behind what this one has, whose triangles are `before`.
-  // Returns the numbers here of the part's maps.
+  // Appends the texturing of a scene that has `n_triangles`; this one's scene had `before` triangles until
+  // then. Returns the numbers that the part's maps have here.
   std::vector<std::uint32_t> append(const Texturing& part, std::size_t before, std::size_t n_triangles);
 };
 
-// A linear value from 0 to 1, or one as sRGB's curve codes it, in 65535ths.
+// Return a linear value from 0 to 1, or one as sRGB's curve codes it, in 65535ths.
 std::uint32_t linear_unit(double value);
 std::uint32_t linear_unit_of_srgb(double code);
 
 // Sets a corner's colour from red, green, blue and alpha in 65535ths.
 void set_corner(layout::CornerColors& colors, std::size_t corner, const std::array<std::uint32_t, 4>& rgba);
+
+// Returns what a material becomes that a program, or kdray's JSON, gives pictures: its terms, parted into
+// what they multiply, which goes to its maps, and what they leave alone. With a picture of metal all terms
+// but the emission follow from the base colour, as glTF's do. `maps` has its textures, alpha's mode, what the
+// emission's picture is multiplied by, and metal's factors.
+Material with_pictures(const Material& terms, const MaterialMaps& maps, Texturing& texturing);
+
+// Returns the rule that a factor of a picture breaks; nullptr where none does.
+const char* fault_of_factors(const MaterialMaps& maps);
 
 }  // namespace kdray::scene

@@ -1,5 +1,5 @@
-// What    Flat discs as the kernels read them, about the scene's centre (host/scene/model/geometry.h), and the
-//         rows of a block of them (layout/wide.layout.h).
+// What    Flat discs as the kernels read them, about the scene's centre
+//         (host/scene/model/geometry.h), and the rows of a block of them (layout/wide.layout.h).
 #ifndef KDRAY_PRIMITIVES_DISC_DISC_LAYOUT_H
 #define KDRAY_PRIMITIVES_DISC_DISC_LAYOUT_H
 #include "layout/base.layout.h"

@@ -1,5 +1,5 @@
-// What    Triangles of meshes as the kernels read them, about the scene's centre (host/scene/model/geometry.h), and the
-//         rows of a block of them (layout/wide.layout.h).
+// What    Triangles of meshes as the kernels read them, about the scene's centre
+//         (host/scene/model/geometry.h), and the rows of a block of them (layout/wide.layout.h).
 #ifndef KDRAY_PRIMITIVES_TRIANGLE_TRIANGLE_LAYOUT_H
 #define KDRAY_PRIMITIVES_TRIANGLE_TRIANGLE_LAYOUT_H
 #include "layout/base.layout.h"
@@ -15,7 +15,7 @@ typedef struct Triangle {
   float v[3][3];
   u32 number;    // place in file order
   u32 material;  // into materials
-  u32 normals;   // into the vertex normals, or KDRAY_NO_NORMALS; and KDRAY_STITCH, which always has some
+  u32 normals;   // into the vertex normals, or KDRAY_NO_NORMALS; and KDRAY_ZERO_AREA, which always has some
 } Triangle;
 KDRAY_ASSERT_SIZE(Triangle, 48)
 KDRAY_ASSERT_OFFSET(Triangle, number, 36)

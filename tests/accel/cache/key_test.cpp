@@ -1,4 +1,4 @@
-#include "accel/cache/key.h"
+#include "accel/cache/cache.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "accel/cache/facts.h"
+#include "accel/cache/entry.h"
 #include "accel/prepare/prepared.h"
 #include "scene/generate/generate.h"
 #include "scene/import/load.h"

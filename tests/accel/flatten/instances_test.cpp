@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "accel/flatten/instance_tree.h"
+#include "accel/flatten/instance_openings.h"
 #include "base/local_space.h"
-#include "scene/model/transform.h"
+#include "scene/model/instances.h"
 
 namespace kdray::flatten {
 namespace {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-#include "accel/flatten/texels.h"
+#include "accel/flatten/textures.h"
 
 namespace kdray::flatten {
 using scene::level_sizes, scene::LevelSize, scene::write_levels;

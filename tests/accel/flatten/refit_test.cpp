@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "accel/flatten/collapse.h"
 #include "accel/flatten/flat_of.h"
 #include "accel/flatten/leaf_block.h"
-#include "accel/flatten/orders.h"
 #include "accel/kdtree/build.h"
 #include "accel/kdtree/shapes.h"
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "accel/kdtree/check_tree.h"
-#include "accel/kdtree/exact/subtree.h"
+#include "accel/kdtree/exact/exact.h"
 #include "accel/kdtree/statistics.h"
 #include "kdray/error.h"
 

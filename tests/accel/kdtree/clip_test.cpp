@@ -9,7 +9,7 @@
 #include "accel/kdtree/exact_clip.h"
 #include "accel/kdtree/integer_case.h"
 #include "accel/kdtree/shapes.h"
-#include "base/rounding.h"
+#include "base/box.h"
 #include "support/all_kinds.h"
 
 namespace kdray::test {

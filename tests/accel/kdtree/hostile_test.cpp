@@ -5,7 +5,7 @@
 
 #include "accel/kdtree/build.h"
 #include "accel/kdtree/check_tree.h"
-#include "accel/kdtree/exact/subtree.h"
+#include "accel/kdtree/exact/exact.h"
 
 namespace kdray::test {
 namespace {

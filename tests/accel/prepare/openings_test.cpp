@@ -11,7 +11,7 @@
 #include "accel/flatten/instance_openings.h"
 #include "accel/prepare/prepared.h"
 #include "scene/generate/displaced_sphere.h"
-#include "scene/model/transform.h"
+#include "scene/model/instances.h"
 
 namespace kdray::prepare {
 namespace {

@@ -1,6 +1,6 @@
 // What    The notice of compiling: only when it takes long, once, and cleared. No test waits for real seconds
 //         to be right: patience is either none or endless.
-#include "apps/cli/build_notice.h"
+#include "apps/cli/progress.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/program.h"
-#include "io/image/read.h"
-#include "io/image/write.h"
+#include "io/image/picture_file.h"
 #include "support/folder.h"
 
 namespace kdray::test {

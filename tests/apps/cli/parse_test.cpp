@@ -1,5 +1,5 @@
 // What    The values of options, in the library: what is taken whole, what is refused.
-#include "apps/cli/parse.h"
+#include "apps/cli/options.h"
 
 #include <array>
 #include <random>

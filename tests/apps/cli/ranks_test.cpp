@@ -14,11 +14,11 @@
 #include <thread>
 
 #include "apps/cli/program.h"
-#include "apps/cli/rank_cores.h"
 #include "apps/cli/ranks.h"
 #include "apps/cli/running.h"
 #include "apps/cli/scenes.h"
 #include "cluster/partition/ply_files.h"
+#include "cluster/transport/launcher.h"
 #include "support/folder.h"
 #include "support/mpirun.h"
 
@@ -329,13 +329,13 @@ TEST(RankCores, AreDealtOutOnce) {
   for (std::size_t n = 1; n <= cores.size(); ++n) {
     std::vector<int> all;
     for (std::size_t i = 0; i < n; ++i) {
-      const std::vector<int> own = cli::cores_of(cores, i, n);
+      const std::vector<int> own = transport::cores_of(cores, i, n);
       EXPECT_GE(own.size(), cores.size() / n);
       all.insert(all.end(), own.begin(), own.end());
     }
     EXPECT_EQ(all, cores);
   }
-  EXPECT_EQ(cli::cores_of(cores, 5, 6), cores);  // too few: all share all
+  EXPECT_EQ(transport::cores_of(cores, 5, 6), cores);  // too few: all share all
 }
 
 TEST(RankFaults, AreOfOneRankOrOfAll) {

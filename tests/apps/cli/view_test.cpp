@@ -6,7 +6,7 @@
 #include "apps/cli/program.h"
 #include "apps/cli/scenes.h"
 #include "io/image/compare.h"
-#include "io/image/read.h"
+#include "io/image/picture_file.h"
 #include "scene/gltf_samples.h"
 #include "support/folder.h"
 

@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "apps/cli/memory.h"
-#include "apps/cli/message.h"
 #include "apps/cli/output.h"
 #include "apps/cli/stats.h"
 #include "apps/cli/summary.h"
@@ -13,6 +12,8 @@
 
 namespace kdray::cli {
 namespace {
+
+using test::fails;
 
 TEST(Words, CountsTimesAndBytes) {
   EXPECT_EQ(in_words(0), "0");

@@ -1,5 +1,5 @@
 // What is told for certain of single primitives: by cases whose answers are plain.
-#include "apps/verify/exact_hits.h"
+#include "apps/verify/exact.h"
 
 #include <gtest/gtest.h>
 

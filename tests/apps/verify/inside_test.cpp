@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/verify/inside.h"
+#include "apps/verify/aims.h"
+#include "apps/verify/exact.h"
 #include "apps/verify/meshes.h"
-#include "apps/verify/random.h"
 #include "support/zero_area_meshes.h"
 
 namespace kdray::verify {

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "apps/view/address.h"
+#include "apps/view/http.h"
 
 namespace kdray::view {
 namespace {

@@ -1,9 +1,8 @@
 // What    Which frame a page gets when; how large a frame is while the camera moves; when a file has changed.
 #include <gtest/gtest.h>
 
-#include "apps/view/file_watcher.h"
 #include "apps/view/frame_pacer.h"
-#include "apps/view/resolution_controller.h"
+#include "apps/view/scene_renderer.h"
 #include "support/folder.h"
 
 namespace kdray::view {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/model/scene.h"
 #include "support/device.h"
 #include "support/folder.h"
 

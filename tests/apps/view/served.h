@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "apps/view/client.h"
+#include "apps/view/facts.h"
 #include "apps/view/server.h"
 
 namespace kdray::test {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "accel/prepare/prepared.h"
-#include "apps/view/cells.h"
 #include "apps/view/pick.h"
+#include "apps/view/scene_renderer.h"
 #include "apps/view/view_request.h"
 #include "support/folder.h"
 

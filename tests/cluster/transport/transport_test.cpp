@@ -8,7 +8,6 @@
 #include <thread>
 #include <tuple>
 
-#include "cluster/transport/delayed.h"
 #include "cluster/transport/exercise.h"
 #include "cluster/transport/in_process.h"
 #include "cluster/transport/simulated.h"

@@ -14,8 +14,6 @@
 #include "base/hash.h"
 #include "device/opencl/context.h"
 #include "device/opencl/program.h"
-#include "device/opencl/program_entry.h"
-#include "device/opencl/program_key.h"
 #include "support/device.h"
 #include "support/errors.h"
 #include "support/folder.h"

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "device/opencl/context.h"
-#include "device/opencl/simd_answers.h"
 #include "support/broken_kernels.h"
 #include "support/device.h"
 #include "support/errors.h"

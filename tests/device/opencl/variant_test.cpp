@@ -12,7 +12,6 @@
 
 #include "device/opencl/context.h"
 #include "device/opencl/program_cache.h"
-#include "device/opencl/variant_build.h"
 #include "support/device.h"
 #include "support/folder.h"
 #include "support/variable.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "device/tuning/race.h"
+#include "device/tuning/search.h"
 #include "device/tuning/settings.h"
 
 namespace kdray::test {

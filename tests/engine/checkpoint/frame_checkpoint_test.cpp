@@ -9,7 +9,6 @@
 #include <random>
 #include <thread>
 
-#include "engine/checkpoint/render_round.h"
 #include "engine/wavefront/curve.h"
 #include "support/errors.h"
 #include "support/folder.h"
@@ -45,14 +44,15 @@ struct Process {
 
   // Says what is first.
   std::vector<layout::u32> begin() {
-    layout::Frame frame{};
-    frame.width = kWidth, frame.height = kHeight;
-    frame.tile_width = checkpoint.cut().tile_width, frame.tile_height = checkpoint.cut().tile_height;
-    frame.n_tiles_x = (kWidth + frame.tile_width - 1) / frame.tile_width;
-    const std::uint32_t n_rows = (kHeight + frame.tile_height - 1) / frame.tile_height;
-    Round round = round_of_tiles(frame, wavefront::tile_curve(frame.n_tiles_x, 0, n_rows), sums);
-    places = round.places;
-    checkpoint.begin(std::move(round));
+    const Cut& cut = checkpoint.cut();
+    const std::uint32_t n_columns = (kWidth + cut.tile_width - 1) / cut.tile_width;
+    const std::uint32_t n_rows = (kHeight + cut.tile_height - 1) / cut.tile_height;
+    places = [cut](layout::u32 tile) { return places_of(cut, 0, tile); };
+    checkpoint.begin({.entries = wavefront::tile_curve(n_columns, 0, n_rows),
+                      .places = places,
+                      .pitch = kWidth,
+                      .sums = sums,
+                      .least_chunk = 4});
     return checkpoint.next();
   }
 
@@ -181,7 +181,10 @@ TEST(FrameCheckpoint, RoundsOfRunsAreKeptToo) {
     FrameCheckpoint checkpoint(options, identity(), {kWidth, kHeight, 8, 4}, false, "device");
     std::size_t n = 0;
     for (const std::uint32_t number : {1u, 2u, 3u}) {
-      checkpoint.begin(round_of_runs(number, 10, sums));
+      checkpoint.begin({.number = number,
+                        .entries = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9},
+                        .places = [number](layout::u32 run) { return places_of({}, number, run); },
+                        .sums = sums});
       for (auto wanted = checkpoint.next(); !wanted.empty(); wanted = checkpoint.next()) {
         if (n == n_keep) return n;
         wanted.resize(1);

@@ -98,7 +98,7 @@ TEST(Provision, WorkersTakeWhatWasComputed) {
     const odprt::Division division = odprt::divide(scene.flat, scene.wide, cut, costs, {});
     const odprt::WorkerPool pool = odprt::make_worker_pool(request, p, division, cut);
     const auto computed = static_cast<double>(work_of(p)),
-               taken = static_cast<double>(pool.reports[0].work_bytes);
+               taken = static_cast<double>(pool.reports[0].device_bytes);
     EXPECT_GE(taken, 0.98 * computed);
     EXPECT_LE(taken, computed + 65536) << "ray buffer " << ray_buffer;
   }

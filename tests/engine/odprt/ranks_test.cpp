@@ -7,8 +7,8 @@
 #include <numeric>
 #include <random>
 
-#include "cluster/transport/delayed.h"
 #include "cluster/transport/in_process.h"
+#include "cluster/transport/simulated.h"
 #include "engine/odprt/render.h"
 #include "engine/wavefront/hall_of_mirrors.h"
 #include "kdray/error.h"
@@ -113,8 +113,13 @@ TEST_P(OdprtRanksTest, AnyNumberOfRanksAndQueues) {
     const auto n_queues = static_cast<std::size_t>(std::accumulate(queues.begin(), queues.end(), 0));
     ASSERT_EQ(result.queues.size(), n_queues);
     EXPECT_EQ(result.queues.back().rank, static_cast<int>(queues.size()) - 1);
+    for (std::size_t q = 0; q < n_queues; ++q) {
+      EXPECT_EQ(result.queues[q].number, q);
+      EXPECT_EQ(result.queues[q].device, reference.queues[0].device);
+      EXPECT_GT(result.queues[q].device_bytes, 0u);
+    }
     std::uint64_t traced = 0, travelled = 0;
-    for (const QueueReport& queue : result.queues) traced += queue.traced;
+    for (const QueueReport& queue : result.queues) traced += queue.rays;
     for (const auto& row : result.exchange.rays) travelled += std::accumulate(row.begin(), row.end(), 0ull);
     // A ray that looks for its hit in several parts is traced in each.
     EXPECT_GE(traced, result.counters.total());

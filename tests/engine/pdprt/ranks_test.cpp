@@ -71,6 +71,11 @@ TEST_P(RanksTest, AnyNumberOfRanksAndQueues) {
     EXPECT_EQ(tiles, result.n_tiles);
     EXPECT_EQ(rays, reference.counters.total());
     EXPECT_EQ(result.queues.back().rank, static_cast<int>(queues.size()) - 1);
+    for (std::size_t q = 0; q < n_queues; ++q) {
+      EXPECT_EQ(result.queues[q].number, q);
+      EXPECT_EQ(result.queues[q].device, reference.queues[0].device);
+      EXPECT_GT(result.queues[q].device_bytes, 0u);
+    }
   }
 }
 

@@ -72,7 +72,8 @@ class Pretender {
     if (in_work_) done_.push_back(*in_work_), in_work_.reset(), ++n_rendered_;
     if (ahead_.empty() && done_.size() < 16) take();
     if (ahead_.empty() && !done_.empty()) {
-      deliver(wavefront::FilmSums{film_, 0}, done_);
+      const std::span<const layout::i64> film = film_;
+      deliver(wavefront::PlacedFilms{{&film, 1}, 0, kWidth}, done_);
       tiles().done(0);
       done_.clear();
       take();
@@ -150,14 +151,16 @@ class Simulation {
     seen_.clear();
     queues_.front()->begin(of_runs);
     const std::vector<layout::u32> samples(of_runs ? 512 : 0);
-    server_->begin(
-        {.of_runs = of_runs ? 1u : 0u}, entries, samples, [&](layout::u32 entry, checkpoint::Sums sums) {
-          const checkpoint::Rectangle r = frame_.places_of(of_runs, entry);
-          for (std::size_t y = 0; y < r.height; ++y)
-            for (std::size_t i = 0; i < std::size_t{3} * r.width; ++i)
-              ASSERT_EQ(sums[3 * y * r.width + i], value_at(entry, 3 * ((r.y + y) * kWidth + r.x) + i));
-          EXPECT_TRUE(seen_.insert(entry).second) << "twice: " << entry;
-        });
+    server_->begin({.of_runs = of_runs ? 1u : 0u}, entries, samples,
+                   [&](const wavefront::PlacedFilms& films, std::span<const layout::u32> taken) {
+                     const layout::u32 entry = taken.front();
+                     const checkpoint::Rectangle r = frame_.places_of(of_runs, entry);
+                     for (std::size_t y = r.y; y < r.y + r.height; ++y)
+                       for (std::size_t i = 0; i < std::size_t{3} * r.width; ++i)
+                         ASSERT_EQ(films.films.front()[films.at(r.x, y) + i],
+                                   value_at(entry, 3 * (y * kWidth + r.x) + i));
+                     EXPECT_TRUE(seen_.insert(entry).second) << "twice: " << entry;
+                   });
     std::vector<layout::u32> left;
     const double since = network_.now();
     for (int guard = 0; !(server_->is_done() && queues_.front()->tiles().is_over()); ++guard) {
@@ -190,7 +193,7 @@ class Simulation {
   void act() {
     Pretender& own = *queues_.front();
     server_->step(own.tiles());
-    own.go_on(network_.now(), [&](const wavefront::FilmSums&, std::span<const layout::u32> entries) {
+    own.go_on(network_.now(), [&](const wavefront::PlacedFilms&, std::span<const layout::u32> entries) {
       for (const layout::u32 entry : entries) EXPECT_TRUE(seen_.insert(entry).second) << "twice: " << entry;
     });
     server_->step(own.tiles());
@@ -206,15 +209,14 @@ class Simulation {
     if (!in_list_[rank]) {
       if (client.is_finished()) return;
       const auto list = client.next_list();
-      if (client.is_finished()) client.report("done");
+      if (client.is_finished()) ranks_[rank]->send(0, kReport, "done");
       if (!list) return;
       in_list_[rank] = true;
       queue.begin(list->head.of_runs != 0);
     }
     client.step(queue.tiles(), queue.n_rendered());
-    queue.go_on(network_.now(), [&](const wavefront::FilmSums& film, std::span<const layout::u32> entries) {
-      client.deliver(film, entries);
-    });
+    queue.go_on(network_.now(), [&](const wavefront::PlacedFilms& films,
+                                    std::span<const layout::u32> entries) { client.take(films, entries); });
     client.step(queue.tiles(), queue.n_rendered());
     if (!queue.tiles().is_over() || !client.is_done()) return;
     client.finish_list();
@@ -298,7 +300,8 @@ TEST(TileServer, WhatMakesNoSenseIsRefused) {
     transport::Ranks first(std::make_unique<RankOf>(network.rank(0)));
     TileServer server(first, frame_of("a frame"), TileHierarchy(2));
     Tiles own = Tiles::open(1, kTiles);
-    server.begin({}, {0, 1, 2}, {}, [](layout::u32, checkpoint::Sums) { FAIL() << "taken"; });
+    server.begin({}, {0, 1, 2}, {},
+                 [](const wavefront::PlacedFilms&, std::span<const layout::u32>) { FAIL() << "taken"; });
     network.rank(1).send(0, tag, bytes);
     network.advance(1);
     return test::fails([&] { server.step(own); }, "rank 1 sent", ErrorCode::internal);
@@ -351,7 +354,8 @@ TEST(TileServer, StrangersAreRefused) {
   transport::Ranks first = ranks_of(0), third = ranks_of(2);
   Tiles own = Tiles::open(1, kTiles);
   TileServer server(first, frame_of("a frame"), hierarchy);
-  server.begin({}, {0, 1, 2}, {}, [](layout::u32, checkpoint::Sums) { FAIL() << "taken"; });
+  server.begin({}, {0, 1, 2}, {},
+               [](const wavefront::PlacedFilms&, std::span<const layout::u32>) { FAIL() << "taken"; });
   TileClient client(third, frame_of("a frame"), hierarchy);
   network.advance(1);
   ASSERT_TRUE(client.next_list());
@@ -376,7 +380,8 @@ TEST(TileServer, DamagedPiecesAreRefused) {
     own.add(std::vector<layout::u32>(10), 0);  // so that rank 0 has enough, and gives all away
     int n_taken = 0;
     const layout::u32 tile = KDRAY_TILE(2, 1);
-    server.begin({}, {tile}, {}, [&](layout::u32, checkpoint::Sums) { ++n_taken; });
+    server.begin({}, {tile}, {},
+                 [&](const wavefront::PlacedFilms&, std::span<const layout::u32>) { ++n_taken; });
     network.rank(1).send(0, kWant, to_bytes(Want{1, 5, 0, 0}));
     network.advance(1);
     server.step(own);

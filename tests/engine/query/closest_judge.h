@@ -9,8 +9,8 @@
 #include <mutex>
 #include <string>
 
-#include "engine/query/point_session.h"
 #include "engine/query/device_scene.h"
+#include "engine/query/point_session.h"
 
 namespace kdray::test {
 

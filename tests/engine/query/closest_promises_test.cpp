@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "engine/query/point_session.h"
 #include "engine/query/closest_scenes.h"
 #include "engine/query/device_scene.h"
+#include "engine/query/point_session.h"
 #include "support/device.h"
 #include "support/errors.h"
 

@@ -15,7 +15,6 @@
 #include "engine/query/meshes.h"
 #include "engine/query/trace.h"
 #include "scene/model/instances.h"
-#include "scene/model/transform.h"
 #include "support/device.h"
 #include "support/variable.h"
 

@@ -66,8 +66,7 @@ void expect_same_hits(QueriedScene& refitted, QueriedScene& built, const std::ve
     for (std::size_t i = 0; i < rays.size(); ++i)
       ASSERT_EQ(counts[i], all.splits[i + 1] - all.splits[i]) << in_words(rays[i]);
     const std::vector<Hit> hits = query::trace(refitted.target(walk), rays, {}).hits;
-    const std::vector<Hit> any =
-        query::trace(refitted.target(walk), rays, {.any_hit = true}).hits;
+    const std::vector<Hit> any = query::trace(refitted.target(walk), rays, {.any_hit = true}).hits;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       ASSERT_EQ(std::memcmp(&hits[i], &closest[i], sizeof hits[i]), 0) << in_words(rays[i]);
       ASSERT_EQ(any[i].t == 0, closest[i].primitive >= 0) << in_words(rays[i]);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "io/image/queue_colors.h"
+#include "io/image/color.h"
 #include "support/errors.h"
 
 namespace kdray::image {

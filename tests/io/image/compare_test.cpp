@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "io/image/heat.h"
+#include "io/image/color.h"
 #include "pictures.h"
 #include "support/errors.h"
 

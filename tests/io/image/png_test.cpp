@@ -7,7 +7,7 @@
 #include <cstring>
 #include <random>
 
-#include "io/image/read.h"
+#include "io/image/picture_file.h"
 #include "support/errors.h"
 #include "support/folder.h"
 

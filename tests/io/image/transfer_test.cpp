@@ -1,11 +1,10 @@
-#include "io/image/transfer.h"
+#include "io/image/color.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "io/image/heat.h"
 #include "support/errors.h"
 
 namespace kdray::image {

@@ -1,10 +1,9 @@
-#include "io/image/write.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "io/image/read.h"
+#include "io/image/picture_file.h"
 #include "pictures.h"
 #include "support/errors.h"
 #include "support/folder.h"

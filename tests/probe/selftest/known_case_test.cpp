@@ -1,5 +1,5 @@
 // What    The self-test's answers against closed forms in double: the table itself must be right.
-#include "probe/selftest/known_case.h"
+#include "probe/selftest/self_test.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "nff_lines.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 #include "scene/model/geometry.h"
 
 namespace kdray::generate {

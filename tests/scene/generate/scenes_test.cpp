@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "nff_lines.h"
+#include "scene/import/files.h"
 #include "scene/import/load.h"
-#include "scene/import/read_file.h"
 #include "scene/model/geometry.h"
 #include "support/data.h"
 

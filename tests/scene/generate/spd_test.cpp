@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "nff_lines.h"
-#include "scene/import/read_file.h"
+#include "scene/import/files.h"
 #include "support/data.h"
 
 namespace kdray::generate {

@@ -1,4 +1,4 @@
-// What    Counting references into bins, and the best plane between two bins.
+// What    Counts references into bins, and finds the best plane between two bins.
 #if defined(KDRAY_BINNED_BINS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_BINS_INL_H
 #undef KDRAY_BINNED_BINS_INL_H
@@ -6,7 +6,7 @@
 #define KDRAY_BINNED_BINS_INL_H
 #endif
 
-#include "accel/kdtree/binned/bin_grid.h"
+#include "accel/kdtree/binned/binned.h"
 #include "accel/kdtree/binned/cost-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -17,8 +17,8 @@ struct BinPair {
   alignas(16) std::int32_t begin[4], end[4];
 };
 
-// Floors of what is clamped to the bins. Between 32 and 64 a float's first five bits behind the leading one
-// are what it has more than 32, rounded down: cheaper than a conversion.
+// Returns the floors of x, clamped to the bins. Between 32 and 64 the first five bits behind a float's
+// leading one are the floor of what it exceeds 32 by: cheaper than a conversion.
 HWY_ATTR inline hn::Vec<hn::Full128<std::int32_t>> bin_of(hn::Vec<hn::Full128<float>> x) {
   static_assert(kBins == 32);
   const hn::Full128<float> d;
@@ -45,7 +45,7 @@ HWY_ATTR inline void add_bins(const BinPair& bins, BinCounts& counts) {
   }
 }
 
-// The same as BinCounts::add, in the widest vectors: a small cell has fewer references than bins.
+// Does the same as BinCounts::add, in the widest vectors: a small cell has fewer references than bins.
 HWY_ATTR inline void add_counts(const BinCounts& from, BinCounts& to) {
   const hn::CappedTag<std::uint32_t, 16> d;
   for (std::size_t k = 0; k < 3; ++k)
@@ -58,7 +58,7 @@ HWY_ATTR inline void add_counts(const BinCounts& from, BinCounts& to) {
     }
 }
 
-// Two sets of counts are kept in turn: neighbours often fall into one bin, and a count that was just written
+// Adds to two sets of counts in turn: neighbours often fall into one bin, and a count that was just written
 // is slow to be read again.
 HWY_ATTR inline void count_bins(std::span<const BoundedRef> refs, const BinGrid& grid, std::size_t stride,
                                 BinCounts& counts) {
@@ -96,7 +96,7 @@ inline SideCounts side_counts(const BinCounts& counts, std::size_t axis) {
   return sides;
 }
 
-// The best of the planes between bins, for a cell of n references.
+// Returns the best of the planes between bins, for a cell of n references.
 HWY_ATTR inline Best best_between_bins(const BinCounts& counts, const BinGrid& grid, const Bounds& contents,
                                        std::size_t n, const BuildConfig& config) {
   const Floats d;

@@ -1,5 +1,5 @@
 // What    The expected costs of planes across one axis of a cell, as many at once as a vector has lanes: the
-//         cost model of kdtree/sah.h (LeafCost and AxisCosts) in float. A change there is a change here.
+//         cost model of kdtree/sah.h (LeafCost and AxisCosts) in float. Both have to be changed together.
 // Shape   Costs are floats without contraction: the same bits on every instruction set. Lengths are taken
 //         relative to the cell's longest, so that neither tiny nor huge scenes leave the range of floats.
 #if defined(KDRAY_BINNED_COST_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -41,7 +41,7 @@ class TestCost {
         whole_(whole),
         each_(each) {}
 
-  // Tests that leaves of n references take.
+  // Returns the tests that leaves of n references take.
   HWY_ATTR V operator()(V n) const {
     const Floats d;
     const V blocks = hn::Floor(hn::Mul(hn::Add(n, hn::Set(d, round_up_)), hn::Set(d, inverse_block_)));
@@ -66,7 +66,7 @@ class PlaneCosts {
     lo_ = contents.lo[k];
     hi_ = contents.hi[k];
     const float across = size[k] / longest, b = size[i] / longest, c = size[j] / longest;
-    // A cell that is a line has no surface: what is left is the share of its length.
+    // A cell that is a line has no surface: shares are those of its length.
     const float area = across * b + b * c + c * across;
     const bool line = !(area > 1e-30f);
     face_ = line ? 0 : b * c / area;
@@ -76,7 +76,7 @@ class PlaneCosts {
     usable_ = size[k] > 0 && longest < std::numeric_limits<float>::max();
   }
 
-  // Whether there are planes strictly inside.
+  // Returns whether there are planes strictly inside.
   bool usable() const { return usable_; }
   float lo() const { return lo_; }
   float hi() const { return hi_; }
@@ -93,13 +93,13 @@ class PlaneCosts {
     return hn::IfThenElse(inside, cost, hn::Set(d, std::numeric_limits<float>::infinity()));
   }
 
-  // False if no plane is as cheap as a leaf of n references, or as that cost. Both sides are tested, and
-  // tests for n references are shared by them: at best all but one reference's are on the side of the lesser
-  // chance, which is that of the face or more, and the chances add up to 1 and that of the face.
+  // Returns false if no plane can be as cheap as a leaf of n references, or as that cost. The two sides share
+  // the tests of n references: at best all but one are on the side of the lesser chance. That is at least the
+  // face's chance, and the two chances add up to 1 plus the face's.
   bool may_beat(float cost, std::size_t n) const {
     const float one = tests_.of(1), rest = tests_.of(n) - one;
     const float least = traverse_ + intersect_ * (one + face_ * rest);
-    return least * (1 - 0x1p-18f) <= std::min(cost, leaf(n));  // what is taken off is for rounding
+    return least * (1 - 0x1p-18f) <= std::min(cost, leaf(n));  // the factor is for rounding
   }
 
   float leaf(std::size_t n) const { return intersect_ * tests_.of(n); }
@@ -110,8 +110,8 @@ class PlaneCosts {
   bool usable_;
 };
 
-// The axes, that of the cell's longest edge first: the best plane is likely to lie across it, and rules out
-// planes across others.
+// Returns the axes, that of the cell's longest edge first: the best plane is likely to lie across it, and
+// then rules out planes across others.
 inline std::array<int, 3> longest_first(const Bounds& b) {
   const auto length = [&](int axis) {
     const auto k = static_cast<std::size_t>(axis);
@@ -138,7 +138,7 @@ struct Best {
   }
 };
 
-// The same in every lane of a vector, for one axis.
+// The cheapest plane so far in every lane of a vector, for one axis.
 class BestOfAxis {
  public:
   HWY_ATTR BestOfAxis()

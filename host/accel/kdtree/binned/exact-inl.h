@@ -1,7 +1,7 @@
 // What    Exact costs of planes at the references' own bounds: of all of them in small cells, and of those
 //         near the best bin's plane in larger ones.
-// Shape   Lanes are planes; every lane runs over the references. No sort: for the few dozens that are here it
-//         is slower.
+// Shape   Lanes are planes; every lane runs over the references. Nothing is sorted: for the few dozens here
+//         that would be slower.
 #if defined(KDRAY_BINNED_EXACT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_EXACT_INL_H
 #undef KDRAY_BINNED_EXACT_INL_H
@@ -9,9 +9,9 @@
 #define KDRAY_BINNED_EXACT_INL_H
 #endif
 
-#include "accel/kdtree/binned/bin_grid.h"
+#include "accel/kdtree/binned/binned.h"
 #include "accel/kdtree/binned/cost-inl.h"
-#include "base/rounding.h"
+#include "base/box.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
@@ -66,7 +66,7 @@ HWY_ATTR inline void offer_planes(const Candidates& c, const PlaneCosts& costs, 
   best_here.offer_to(best, axis);
 }
 
-// The best of all planes of a small cell.
+// Returns the best of all planes of a small cell.
 inline constexpr std::size_t kSmallCell = 48;
 
 // Bounds of the references by axis, begins at even places and ends at odd ones: planes as they are.
@@ -86,8 +86,8 @@ HWY_ATTR inline void transpose(std::span<const BoundedRef> refs, BoundsByAxis& o
   }
 }
 
-// Counting compares two numbers of 16 bits in each lane: a plane's rank with where a reference begins, and
-// their negatives with where it ends.
+// Counting compares two 16-bit numbers in each lane: a plane's rank with the rank where a reference begins,
+// and the negative of both where it ends.
 using Shorts = hn::Repartition<std::int16_t, Floats>;
 using VS = hn::Vec<Shorts>;
 
@@ -95,9 +95,9 @@ HWY_ATTR inline VI pair_of(VI low, VI high) {
   return hn::Or(hn::And(low, hn::Set(Ints(), 0xffff)), hn::ShiftLeft<16>(high));
 }
 
-// Ranks are in the order of bounds, but for what differs by less than 1/32000 of the cell: as with bins, such
-// counts choose a plane and decide nothing else. What lies in a plane begins, for this purpose, a step before
-// it.
+// Ranks are in the order of bounds, except where bounds differ by less than 1/32000 of the cell: as with
+// bins, such counts choose a plane and decide nothing else. What lies in a plane begins, for this purpose, a
+// step before it.
 struct Ranks {
   alignas(64) std::array<std::int32_t, 2 * kSmallCell + 2 * kMostLanes> planes;
   alignas(
@@ -106,7 +106,7 @@ struct Ranks {
   HWY_ATTR Ranks(const float* bounds, std::size_t n, const PlaneCosts& costs) {
     const Floats d;
     const Ints di;
-    // The scale is limited where the cell is hardly wider than nothing.
+    // The scale is limited for a cell of hardly any width.
     const float scale = std::min(32000 / (costs.hi() - costs.lo()), std::numeric_limits<float>::max());
     for (std::size_t p = 0; p < 2 * n; p += hn::Lanes(d)) {
       const V bound = hn::Load(d, bounds + p);
@@ -176,7 +176,7 @@ HWY_ATTR inline Best best_of_all(std::span<const BoundedRef> refs, const Bounds&
   return best;
 }
 
-// Tries the bounds in the two bins beside the best plane, exactly. Of a cell of kRefined references at most.
+// Tries the bounds in the two bins beside the best plane exactly, for a cell of at most kRefined references.
 HWY_ATTR inline void refine(std::span<const BoundedRef> refs, const Bounds& contents, const BinGrid& grid,
                             const BuildConfig& config, Best& best) {
   const int axis = best.plane.axis;

@@ -1,11 +1,10 @@
-// What    Groups: what is in a cell divided further, by primitives and not by a plane, so that each group has
-//         tight bounds of its own.
-// Why     Where primitives lie in each other, a plane cuts most of what it parts, and cells stay large: of
-//         boxes in heaps a ray met three times the leaves and five times the triangles that it has to
+// What    Divides what is in a cell further into groups, by primitives and not by a plane, so that each group
+//         has tight bounds of its own.
+// Why     Where primitives overlap, a plane cuts most of what it parts, and cells stay large: in heaps of
+//         boxes a ray met three times the leaves and five times the triangles that it has to
 //         (docs/logbook/kdtree.md).
-// Shape   What is larger than a sweep takes (sweep-inl.h) is parted between fifteen equal steps along each
-//         axis before. Costs are floats without contraction in a fixed order: the same bits at every vector
-//         width.
+// Shape   What is too large for a sweep (sweep-inl.h) is first parted at fifteen equal steps along each axis.
+//         Costs are floats without contraction in a fixed order: the same bits at every vector width.
 // Source  Stich, Friedrich, Dietrich, "Spatial splits in bounding volume hierarchies", HPG 2009: both kinds
 //         of splits in one tree.
 #if defined(KDRAY_BINNED_GROUP_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -24,18 +23,18 @@ HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
 
 inline constexpr std::size_t kGroupBins = 16;
-// Cells that a budget or a depth has ended stay whole, but for who would rather wait: a million needles take
-// three times as long to build.
+// Larger cells, which a budget or a depth has ended, stay whole except at the best quality: a million needles
+// take three times as long to build.
 inline constexpr std::size_t kMostGrouped = 2048;
 
-// Where a group is parted: what has its centre, doubled, at `position` or below it goes first.
+// Where a group is parted: what has its doubled centre at `position` or below it goes first.
 struct GroupSplit {
   int axis = -1;
   float position = 0;
   float cost = std::numeric_limits<float>::infinity();
 };
 
-// Twice the centre.
+// Returns twice the centre.
 inline float center2(const BoundedRef& r, std::size_t k) {
   return r.lo[k] + r.hi[k];
 }
@@ -90,7 +89,7 @@ class GroupCosts {
   bool usable_;
 };
 
-// Between equal steps along an axis.
+// Offers the places between equal steps along an axis.
 HWY_ATTR inline void offer_steps(std::span<const BoundedRef> refs, const GroupCosts& costs, std::size_t axis,
                                  GroupSplit& best) {
   float lo = std::numeric_limits<float>::infinity(), hi = -lo;
@@ -142,7 +141,7 @@ class Grouper {
           Fragment& out)
       : config_(config), depth_(depth), scratch_(scratch), sweep_(sweep), out_(out) {}
 
-  // The references are left in another order. Returns `contents`, their hull.
+  // Appends the references and leaves them in another order. Returns `contents`, their hull.
   HWY_ATTR Box append(std::span<BoundedRef> refs, const Bounds& contents, int level = 0) {
     const GroupCosts costs(config_, contents);
     if (stays_whole(refs.size()) || !costs.usable() || level == kMostGroupLevels)
@@ -166,7 +165,7 @@ class Grouper {
   }
 
  private:
-  // Where tests are counted by blocks, less than one isn't worth a look.
+  // Where tests are counted by blocks, less than a block isn't worth dividing.
   bool stays_whole(std::size_t n) const {
     if (n > kMostGrouped && config_.quality != Quality::best) return true;
     return n <= (config_.group_each > 0 ? 1 : static_cast<std::size_t>(config_.block));
@@ -181,7 +180,8 @@ class Grouper {
     return part(refs, [&](std::size_t i) { return center2(refs[i], k) <= split.position; });
   }
 
-  // Keeps the order on both sides. A reference is asked for before its place is written.
+  // Parts the references and keeps the order on both sides. Calls is_first for a reference before its place
+  // is written.
   template <class IsFirst>
   std::size_t part(std::span<BoundedRef> refs, const IsFirst& is_first) {
     if (scratch_.size() < refs.size() + 1) scratch_.resize(refs.size() + 1);

@@ -1,5 +1,5 @@
-// What    A leaf, its references in ascending order: each goes to the place of its rank, which takes no
-//         branch. A sort by comparisons guesses wrongly at every other one of the few that a leaf has.
+// What    Appends a leaf, its references in ascending order: each goes to the place of its rank, which takes
+//         no branch. For the few that a leaf has, half of a sort's branches would be mispredicted.
 #if defined(KDRAY_BINNED_LEAF_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KDRAY_BINNED_LEAF_INL_H
 #undef KDRAY_BINNED_LEAF_INL_H
@@ -20,7 +20,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 inline constexpr std::size_t kMostRanked = 32;  // above that a sort does less
 
-// A cell has no primitive twice, so that all ranks differ. Reads up to kMostRanked values.
+// Writes the values by rank; all ranks differ, since a cell has no primitive twice. Reads up to kMostRanked
+// values.
 template <class D>
 HWY_ATTR inline void write_ranked(D d, const Ref* values, std::size_t n, Ref* out) {
   alignas(64) std::array<Ref, kMostRanked> ranks;
@@ -34,7 +35,7 @@ HWY_ATTR inline void write_ranked(D d, const Ref* values, std::size_t n, Ref* ou
   for (std::size_t i = 0; i < n; ++i) out[ranks[i]] = values[i];
 }
 
-// Up to kMostRanked numbers in ascending order; there is room for as many in `values`.
+// Writes up to kMostRanked numbers in ascending order; `values` has space for as many.
 HWY_ATTR inline void write_ascending(const Ref* values, std::size_t n, Ref* out) {
   if (n == 1) {
     out[0] = values[0];

@@ -1,5 +1,5 @@
-// What    Where the references of the tree's top lie: a cell's are in pieces, and a piece is divided where it
-//         lies, as quicksort does it. What a plane makes more of them goes to memory of its own.
+// What    The memory for references of the tree's top: a cell's are in pieces, and a piece is divided in
+//         place, as quicksort does. Additional references, of what a plane cuts, go to memory of their own.
 // Why     Memory that is touched for the first time costs many times what warm memory costs: two copies of
 //         each level took a tenth of the build.
 #pragma once
@@ -9,16 +9,16 @@
 #include <mutex>
 #include <span>
 
-#include "accel/kdtree/binned/simd.h"
+#include "accel/kdtree/binned/binned.h"
 #include "accel/kdtree/reference.h"
-#include "base/raw_vector.h"
+#include "base/memory.h"
 
 namespace kdray::kdtree::binned {
 
 inline constexpr std::size_t kTaskRefs = 16384;  // references to a task, and to a piece, at most
 
 // References of one cell that lie together, and their hull. There is room for one more than the piece can
-// have: partitions write there in vain.
+// have, since partitions also write behind the last.
 struct Piece {
   BoundedRef* first = nullptr;
   std::size_t n = 0, capacity = 0;
@@ -26,12 +26,13 @@ struct Piece {
 
   std::span<BoundedRef> refs() const { return {first, n}; }
 
-  // Whether all references go to one side, so that none need be looked at. What lies in a plane is below it.
+  // Return whether all references go to one side, so that none need be looked at. What lies in a plane is
+  // below it.
   bool is_below(const Plane& plane) const { return hull.hi[plane.axis] <= plane.position; }
   bool is_above(const Plane& plane) const { return hull.lo[plane.axis] > plane.position; }
 };
 
-// What a division left below the plane stays in front; above it there may be as many as the rest holds.
+// Returns the piece behind the references that a division left below the plane; those above may fill it.
 inline Piece rest_of(const Piece& whole, std::size_t n_below) {
   return {whole.first + n_below + 1, 0, whole.capacity - n_below - 1, no_bounds()};
 }
@@ -44,7 +45,7 @@ class PiecePool {
  public:
   explicit PiecePool(std::size_t n_refs) { add_chunk(n_refs); }
 
-  // An empty piece with room for n references.
+  // Returns an empty piece with room for n references.
   Piece take(std::size_t n) {
     const std::lock_guard lock(mutex_);
     if (left_ < n + 1) add_chunk(std::max(n + 1, kChunk));

@@ -1,4 +1,4 @@
-#include "accel/kdtree/binned/simd.h"
+#include "accel/kdtree/binned/binned.h"
 
 // Instruction sets that would add nothing here. The fallback for any machine is Highway's emulation of 128
 // bits, which it avoids with g++ before 12.3 for a fault in products of 16-bit integers (GCC bug 106322);

@@ -14,7 +14,7 @@
 #include "accel/kdtree/binned/exact-inl.h"
 #include "accel/kdtree/binned/group-inl.h"
 #include "accel/kdtree/binned/leaf-inl.h"
-#include "accel/kdtree/budget.h"
+#include "accel/kdtree/fragment.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
@@ -36,8 +36,8 @@ HWY_ATTR inline Plane choose_plane(std::span<const BoundedRef> refs, const Bound
   return cheaper_than_leaf(best, refs.size(), config);
 }
 
-// Whether no split of n references can be cheaper than a leaf: both children would be tested, one reference
-// at least in each, and their chances add up to 1 at least. (The factor is for rounding.)
+// Returns whether no split of n references can be cheaper than a leaf: both children would be tested, one
+// reference at least in each, and their chances add up to 1 at least. (The factor is for rounding.)
 HWY_ATTR inline bool is_leaf_anyway(std::size_t n, const BuildConfig& config) {
   const TestCost tests(config.block);
   const auto traverse = static_cast<float>(config.cost_traverse),
@@ -57,8 +57,8 @@ class SubtreeBuilder {
         sweep_(workspace.sweep),
         out_(workspace.fragment) {}
 
-  // The references are stack[first, first + n), with nothing of use behind them. Returns the hull of what the
-  // leaves hold.
+  // Builds the subtree of the references stack[first, first + n), behind which the stack is free. Returns the
+  // hull of what the leaves hold.
   HWY_ATTR Box build(std::size_t first, std::size_t n, const Cell& cell) {
     const std::span<BoundedRef> refs(stack_.data() + first, n);
     if (is_leaf_anyway(n, config_) || cell.depth >= max_depth_) return append_leaf(refs, cell);

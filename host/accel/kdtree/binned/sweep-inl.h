@@ -1,5 +1,5 @@
-// What    Groups of a cell of up to kSwept references: at every node all places to part it are tried, along
-//         all axes that are not narrow.
+// What    Finds the groups of a cell of up to kSwept references: at every node it tries all places to part
+//         it, along all axes that are not narrow.
 // Why     In the order of centres (swept_cell-inl.h) the hulls of the first i and of the others come from one
 //         pass in each direction, and lanes are places: n steps a node instead of n for each place.
 // Shape   Costs are floats without contraction; the place is packed into the lowest bits of its cost, so that
@@ -71,8 +71,8 @@ class Sweep : private SweptCell {
 
   // ---- Nodes
 
-  // Of the references at [begin, end) along that axis, along all axes where they are more than two. Returns
-  // their hull.
+  // Builds the subtree of the references at [begin, end) in the order along that axis, or along every axis
+  // where they are more than two. Returns their hull.
   HWY_ATTR Box build(std::size_t begin, std::size_t end, std::size_t axis, int level) {
     const std::size_t n = end - begin;
     if (n <= most_whole() || level == kMostGroupLevels) return append_leaf(begin, n, axis);
@@ -90,7 +90,7 @@ class Sweep : private SweptCell {
     return hull;
   }
 
-  // Where tests are counted by blocks, less than one isn't worth a look.
+  // Where tests are counted by blocks, less than a block isn't worth parting.
   std::size_t most_whole() const {
     return config_.group_each > 0 ? 1 : static_cast<std::size_t>(config_.block);
   }
@@ -124,7 +124,7 @@ class Sweep : private SweptCell {
     return buffers_.contents[node] = {{l[0], l[1], l[2]}, {h[0], h[1], h[2]}};
   }
 
-  // The best place, where it is cheaper than a leaf; else nothing goes first.
+  // Returns the best place, where it is cheaper than a leaf; else one where nothing goes first.
   HWY_ATTR Part best_part(std::size_t begin, std::size_t n, std::size_t axis) {
     if (n <= kPairs) return part_of_few(begin, n, axis);
     return n <= kFewPlaces ? best_part_of(Axes(), begin, n) : best_part_of(Floats(), begin, n);
@@ -145,8 +145,8 @@ class Sweep : private SweptCell {
     return e[0] * (e[1] + kOfLength) + e[1] * (e[2] + kOfLength) + e[2] * (e[0] + kOfLength);
   }
 
-  // Of two or three each may be alone, whatever the axis; so that is the one along which they are farthest
-  // apart, for their order.
+  // Any of two or three may be alone, whatever the axis. So the axis is the one along which the two sides are
+  // farthest apart, which only sets their order.
   HWY_ATTR Part part_of_few(std::size_t begin, std::size_t n, std::size_t axis) {
     std::array<std::uint16_t, 3> refs;  // the one that is alone first
     std::copy_n(buffers_.order[axis].data() + begin, n, refs.begin());
@@ -219,8 +219,8 @@ class Sweep : private SweptCell {
     return traverse_ * whole + tests < buffers_.tests[n] * whole;
   }
 
-  // What the hulls of n references, in that order, measure along the axes: of the first i in `first`, of the
-  // others in `second`.
+  // Measures the hulls of n references, in that order, along the axes: those of the first i in `first`, those
+  // of the others in `second`.
   HWY_ATTR void measure_hulls(const std::uint16_t* order, std::size_t n) {
     const Axes d;
     const P inf = hn::Inf(d);
@@ -238,7 +238,7 @@ class Sweep : private SweptCell {
     }
   }
 
-  // Half the surfaces of the hulls at [i, i + lanes).
+  // Returns half the surfaces of the hulls at [i, i + lanes).
   template <class D>
   HWY_ATTR static hn::Vec<D> size_of(D d, const SweepBuffers::Edges& edges, std::size_t i) {
     hn::Vec<D> x, y, z, nothing;

@@ -10,8 +10,8 @@
 #define KDRAY_BINNED_SWEPT_CELL_INL_H
 #endif
 
+#include "accel/kdtree/binned/binned.h"
 #include "accel/kdtree/binned/cost-inl.h"
-#include "accel/kdtree/binned/sweep_buffers.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace kdray::kdtree::binned::HWY_NAMESPACE {
@@ -35,13 +35,13 @@ class SweptCell {
     for (std::size_t k = 0; k < 3; ++k) sort(refs.size(), k);
   }
 
-  // Whether a group is so small a part of the cell that its numbers say little.
+  // Returns whether a group is so small a part of the cell that its numbers say little.
   bool is_coarse(std::size_t begin, std::size_t end) const {
     const std::array<int, 3> width = widths(begin, end);
     return std::max({width[0], width[1], width[2]}) < kCoarse;
   }
 
-  // How far apart a group's centres are along each axis.
+  // Returns how far apart a group's centres are along each axis.
   std::array<int, 3> widths(std::size_t begin, std::size_t end) const {
     std::array<int, 3> width;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -51,7 +51,7 @@ class SweptCell {
     return width;
   }
 
-  // Gives a group, whose order is known along all axes, numbers of its own.
+  // Gives a group, whose order along all axes is known, numbers relative to its own size.
   HWY_ATTR void load_anew(std::size_t begin, std::size_t end) {
     Bounds hull = no_bounds();
     for (std::size_t i = begin; i < end; ++i) hull = kdtree::hull(hull, refs_[buffers_.order[0][i]].bounds());
@@ -65,7 +65,8 @@ class SweptCell {
     }
   }
 
-  // The two others' orders, with what goes first in front; along the part's own axis it is there.
+  // Moves what goes first to the front in the orders of the two other axes; along the part's own axis it is
+  // there already.
   HWY_ATTR void keep_order(std::size_t begin, std::size_t end, const Part& part) {
     const std::uint16_t* const parted = buffers_.order[part.axis].data();
     std::uint8_t* const sides = buffers_.is_second.data();
@@ -120,7 +121,8 @@ class SweptCell {
     for (std::size_t k = 0; k < 3; ++k) buffers_.center[k][i] = static_cast<std::int16_t>(center[k]);
   }
 
-  // Each goes to the place of its rank. What has the same centre has the same rank, and comes in turn.
+  // Puts each reference at the place of its rank. Those of the same centre have the same rank, and follow
+  // each other.
   HWY_ATTR void sort(std::size_t n, std::size_t axis) {
     rank(n, buffers_.center[axis].data());
     std::fill_n(buffers_.ties.begin(), n, std::uint16_t{0});
@@ -130,7 +132,7 @@ class SweptCell {
     }
   }
 
-  // How many centres are below each. A difference's sign is what is counted: numbers have 15 bits.
+  // Counts how many centres are below each, by the signs of differences: numbers have 15 bits.
   HWY_ATTR void rank(std::size_t n, const std::int16_t* centers) {
     const hn::CappedTag<std::int16_t, 2 * kMostLanes> d;
     const std::size_t lanes = hn::Lanes(d);

@@ -1,4 +1,3 @@
-#include "accel/kdtree/binned/top.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -7,16 +6,16 @@
 #include <algorithm>
 #include <atomic>
 
+#include "accel/kdtree/binned/binned.h"
 #include "accel/kdtree/binned/piece.h"
-#include "accel/kdtree/binned/simd.h"
-#include "accel/kdtree/budget.h"
+#include "accel/kdtree/fragment.h"
 
 namespace kdray::kdtree::binned {
 
 namespace {
 
-// Cells of so many references, of n in all, are built in one thread: enough of them for any number of
-// threads, each small enough for a core's cache.
+// Returns how many references a cell may have to be built in one thread, for n in all: there are enough such
+// cells for any number of threads, and each fits a core's cache.
 std::size_t subtree_refs(std::size_t n) {
   return std::clamp<std::size_t>(n / 32, 2048, 32768);
 }
@@ -50,7 +49,7 @@ struct Side {
   }
 };
 
-// Pieces of one cell, about kTaskRefs references in all, and what comes of them.
+// Pieces of one cell, about kTaskRefs references in all, and what they become.
 struct Task {
   std::size_t cell, first_piece, end_piece;
   BinCounts counts;
@@ -94,7 +93,7 @@ class TopBuilder {
     return cell;
   }
 
-  // The i-th of all primitives.
+  // Returns the reference of the i-th of all primitives.
   BoundedRef reference(std::size_t i) const {
     BoundedRef found;
     scene::visit_primitive(geometry_, i, [&](auto kind, std::uint32_t index) {
@@ -104,7 +103,7 @@ class TopBuilder {
     return found;
   }
 
-  // Large cells go to the next level, small ones are subtrees.
+  // Puts large cells in the next level, small ones among the subtrees.
   void place(TopCell&& cell, std::vector<TopCell>& level) {
     cell.is_leaf = cell.cell.depth >= max_depth_;
     const bool small = cell.n <= subtree_refs_ || cell.is_leaf;
@@ -156,7 +155,7 @@ class TopBuilder {
     return planes;
   }
 
-  // A cell is divided where it lies, so that whether its parts fit the budget must be known before. Where
+  // Finds out before a cell is divided whether its parts fit the budget, since it is divided in place. Where
   // even twice the references would fit, nothing need be counted.
   static void drop_unaffordable(const std::vector<TopCell>& level, std::vector<Task>& tasks,
                                 std::vector<Plane>& planes) {
@@ -178,8 +177,9 @@ class TopBuilder {
       if (tight(c) && !fits_budget(level[c].cell.budget, level[c].n, straddling[c])) planes[c] = {};
   }
 
-  // Pieces on one side go there as they are. Of others, what is below stays in front and what is above goes
-  // behind it; the task's other references above, one for each that straddles, to a piece of their own.
+  // Divides a task's pieces. Those on one side go there as they are. In others, what is below stays in front
+  // and what is above goes behind it; further references above, one for each that straddles, go to a piece of
+  // their own.
   void divide_task(const TopCell& cell, const Plane& plane, Task& t) {
     Workspace& workspace = workspaces_.local();
     std::vector<BoundedRef>& others = workspace.others;
@@ -251,7 +251,7 @@ class TopBuilder {
     above.node = node.above.get();
   }
 
-  // The largest first, so that no thread is left alone with one at the end.
+  // Builds the largest first, so that no thread is left alone with one at the end.
   void build_subtrees() {
     std::stable_sort(subtrees_.begin(), subtrees_.end(),
                      [](const TopCell& a, const TopCell& b) { return a.n > b.n; });

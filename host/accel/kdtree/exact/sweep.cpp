@@ -11,18 +11,64 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
-#include "accel/kdtree/exact/bins.h"
 #include "accel/kdtree/exact/split.h"
 
 namespace kdray::kdtree {
 
 namespace {
 
+// ---- Bins along an axis. A bin's number never falls as the position grows, so counts over whole bins are
+// exact statements about planes.
+
+constexpr int kMaxBins = 512;
+
+// Position -> bin along an axis. Every operation is monotone under rounding, so x < y never lands in a later
+// bin than y.
+struct BinMap {
+  float origin = 0, scale = 0;
+  int n_bins = 1;  // 0: nothing to split along this axis
+
+  int operator()(float x) const { return std::clamp(static_cast<int>((x - origin) * scale), 0, n_bins - 1); }
+  // Return positions that no float of the bin is below or above: (x - origin)*scale is off by 2^-22 of its
+  // value, which is less than 1e-3 of a bin for up to 4096 of them.
+  double lower_edge(int bin) const { return n_bins == 1 ? -INFINITY : origin + (bin - 1e-3) / scale; }
+  double upper_edge(int bin) const { return n_bins == 1 ? INFINITY : origin + (bin + 1 + 1e-3) / scale; }
+};
+
+BinMap make_bin_map(float lo, float hi, int n_bins) {
+  const float scale = static_cast<float>(n_bins) / (hi - lo);
+  // A very thin axis, or one whose length overflows, is one bin.
+  return scale > 1e-30f && scale < 1e30f ? BinMap{lo, scale, n_bins} : BinMap{};
+}
+
+struct Histogram {
+  std::uint32_t starts[3][kMaxBins];  // references by the bin of lo
+  std::uint32_t ends[3][kMaxBins];    // and of hi
+
+  void clear(int n_bins) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::fill_n(starts[axis], n_bins, 0u);
+      std::fill_n(ends[axis], n_bins, 0u);
+    }
+  }
+};
+
+// Returns the number of bins for n references, about 16 to a bin: enough to skip most of them, few enough to
+// be cheap to bound.
+int bins_for(std::size_t n) {
+  int bins = 32;
+  while (bins < kMaxBins && static_cast<std::size_t>(bins) * 16 < n) bins *= 2;
+  return bins;
+}
+
+// ---- The sweep
+
 constexpr std::size_t kChunk = 8192;  // references to a parallel task
 
-// Rounding in a lower bound is at most some 2^-50 of it; this is far more, and lets in nothing of note.
+// Rounding in a lower bound is at most some 2^-50 of it; this is far more, and keeps hardly any bin in vain.
 constexpr double kSlack = 1 - 1e-12;
 
 // Which bins of an axis may hold the best plane, and the counts at a bin's beginning.
@@ -172,7 +218,7 @@ class Sweep {
     }
   }
 
-  // Whether all positions of the bin lie inside the cell, none of them on its boundary.
+  // Returns whether all positions of the bin lie inside the cell, none of them on its boundary.
   bool has_inner_plane(int axis, int b) const {
     const BinMap& map = maps_[axis];
     return map.n_bins > 1 && map.lower_edge(b) > costs_[axis].lo() && map.upper_edge(b) < costs_[axis].hi();

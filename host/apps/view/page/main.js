@@ -1,11 +1,10 @@
 // What    The page of kdray view: puts the parts together. A view is a camera and settings; whenever it changes kdray
 //         gets a look, at most one for each frame of the screen, and another one when it has come to rest.
 import * as address from './address.js';
-import {drawCells} from './cells.js';
 import {Controls, showPicked} from './controls.js';
 import {InputController} from './input.js';
 import {Link} from './link.js';
-import {Screen} from './screen.js';
+import {drawCells, Screen} from './screen.js';
 import {showOwners, Strip} from './strip.js';
 
 const REST = 140;  // milliseconds without a change

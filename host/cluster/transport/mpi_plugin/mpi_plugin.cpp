@@ -31,7 +31,7 @@ struct {
   bool is_open = false;
 } state;
 
-// False: it failed, which is noted.
+// Returns whether it succeeded; a failure is noted.
 bool went_well(int result, const char* what) {
   if (result == MPI_SUCCESS) return true;
   char text[MPI_MAX_ERROR_STRING] = "";
@@ -73,7 +73,7 @@ int number_of_ranks() {
   return went_well(MPI_Comm_size(state.world, &n), "MPI_Comm_size") ? n : -1;
 }
 
-// The first line: some MPIs tell a whole page.
+// Returns the first line of the MPI's description; some have a whole page.
 const char* library_in_words() {
   char text[MPI_MAX_LIBRARY_VERSION_STRING] = "";
   int n = 0;
@@ -97,7 +97,7 @@ int send_bytes(int to, int tag, const void* bytes, std::size_t n, std::uint64_t 
   return 0;
 }
 
-// One that has ended is taken from the list.
+// Finds a transfer that has ended, and takes it off the list.
 int next_ended(std::vector<Moving>& list, std::uint64_t* ticket) {
   for (Moving& moving : list) {
     int done = 0;

@@ -33,7 +33,7 @@ class Bounded : public Decoder {
     return most_ <= std::max(kMostFaces, kFacesPerByte * stream_size_) && Decoder::DecodeConnectivity();
   }
 
-  // What they are is known by now, and nothing was allocated for them yet.
+  // The attributes are known by now, and nothing was allocated for them yet.
   bool DecodeAllAttributes() override {
     std::uint64_t size = 0;
     for (std::int32_t i = 0; i < this->point_cloud()->num_attributes(); ++i) {

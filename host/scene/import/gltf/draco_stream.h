@@ -1,6 +1,6 @@
 // What    A mesh out of a Draco stream, which may be hostile. Only where kdray was built with libdraco.
 // Shape   Triangles over points; each attribute has a value for each point. libdraco allocates what a stream
-//         promises, so what it promises is held against the stream's length first: kMostFaces or
+//         promises, so what it promises is checked against the stream's length first: kMostFaces or
 //         kFacesPerByte a byte, whichever is more, and kMostBytes or kBytesPerByte of attributes.
 // Errors  kdray::Error at `where`, in one line.
 // Source  The Draco bitstream specification, version 2.2.
@@ -34,7 +34,7 @@ class Mesh {
   std::uint64_t point_count() const;
   // Three 32-bit numbers of points for each face.
   std::string corners() const;
-  // The attribute with this id, of `parts` components, for each point, as components of glTF's type.
+  // Returns the attribute with this id, of `parts` components, for each point, as components of glTF's type.
   std::string attribute(std::uint64_t id, std::size_t parts, std::uint32_t component,
                         const JsonNode& where) const;
 

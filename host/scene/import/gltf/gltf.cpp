@@ -12,11 +12,10 @@
 
 #include "scene/import/gltf/gltf_accessor.h"
 #include "scene/import/gltf/gltf_document.h"
-#include "scene/import/gltf/gltf_left_out.h"
 #include "scene/import/gltf/gltf_lights.h"
 #include "scene/import/gltf/gltf_mesh.h"
 #include "scene/import/gltf/gltf_pose.h"
-#include "scene/import/importers.h"
+#include "scene/import/load.h"
 
 namespace kdray::scene {
 
@@ -81,8 +80,8 @@ class Reader {
     }
   }
 
-  // The nodes of the default scene, or of the first one. Of a file without scenes, which leaves it to the
-  // viewer what to show, all nodes that are no other's children, as other viewers do.
+  // Returns the nodes of the default scene, or of the first one. Of a file without scenes, which leaves the
+  // choice to the viewer, all nodes that are no other's children, as other viewers do.
   std::vector<JsonNode> roots() {
     const auto& scenes = document_.entries("scenes");
     const auto index = document_.root().find("scene");

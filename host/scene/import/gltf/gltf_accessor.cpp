@@ -179,7 +179,7 @@ void apply_sparse(Document& document, const JsonNode& accessor, Component compon
   }
 }
 
-// Those that were unpacked for it.
+// Returns the elements that were unpacked for an accessor.
 template <class Kind>
 RawVector<typename Kind::Element> copy_unpacked(const Unpacked& from, bool normalized) {
   const auto component = static_cast<Component>(from.component);
@@ -269,7 +269,7 @@ RawVector<std::array<double, 4>> read_quads(Document& document, const JsonNode& 
   return read_doubles<4>(document, accessor, other);
 }
 
-// Only of floats: columns of smaller components would be padded.
+// Only floats are read: columns of smaller components would be padded.
 RawVector<dmat4> read_matrices(Document& document, const JsonNode& accessor) {
   expect_type(accessor, "MAT4");
   const Component component = component_of(accessor["componentType"]);

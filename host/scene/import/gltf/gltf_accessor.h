@@ -8,7 +8,7 @@
 #include <array>
 #include <cstdint>
 
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "base/vec.h"
 #include "scene/import/gltf/gltf_document.h"
 #include "scene/import/text_scanner.h"
@@ -16,21 +16,21 @@
 namespace kdray::scene::gltf {
 
 std::uint64_t accessor_count(const JsonNode& accessor);
-// VEC3 of floats, or of integers, which `normalized` scales to [-1, 1] or [0, 1].
+// Reads VEC3 of floats, or of integers, which `normalized` scales to [-1, 1] or [0, 1].
 RawVector<dvec3> read_vectors(Document& document, const JsonNode& accessor,
                               NotFinite other = NotFinite::refused);
-// VEC2 of the same.
+// Reads VEC2 of the same.
 RawVector<std::array<float, 2>> read_pairs(Document& document, const JsonNode& accessor,
                                            NotFinite other = NotFinite::refused);
-// VEC3 or VEC4 of the same: red, green, blue and alpha, which is 1 where there is none.
+// Reads VEC3 or VEC4 of the same: red, green, blue and alpha, which is 1 where there is none.
 RawVector<std::array<float, 4>> read_colors(Document& document, const JsonNode& accessor,
                                             NotFinite other = NotFinite::refused);
-// SCALAR, VEC4 and MAT4 of the same, all parts of them.
+// Read SCALAR, VEC4 and MAT4 of the same, with all parts.
 RawVector<double> read_scalars(Document& document, const JsonNode& accessor);
 RawVector<std::array<double, 4>> read_quads(Document& document, const JsonNode& accessor,
                                             NotFinite other = NotFinite::refused);
 RawVector<dmat4> read_matrices(Document& document, const JsonNode& accessor);
-// SCALAR of unsigned integers, each below `end`.
+// Reads SCALAR of unsigned integers, each below `end`.
 RawVector<std::uint32_t> read_indices(Document& document, const JsonNode& accessor, std::uint64_t end);
 
 }  // namespace kdray::scene::gltf

@@ -1,7 +1,7 @@
 // What    Morph targets and skins: what they make of a primitive's positions and normals.
 // Shape   Morph targets come first, in the mesh's own space. A skin then moves each vertex by the mean of its
-//         joints' matrices, weighted; where the node is doesn't count. Sets of four joints, as many as there
-//         are up to kMostJointSets.
+//         joints' matrices, weighted; the node's own place doesn't count. Sets of four joints, as many as
+//         there are up to kMostJointSets.
 // Errors  kdray::Error with the path: targets, joints and weights that are not as many as the positions,
 //         joints that the skin doesn't have.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021, 3.7.2.2 and 3.7.3.
@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "base/vec.h"
 #include "scene/import/gltf/gltf_document.h"
 #include "scene/import/gltf/gltf_pose.h"
@@ -63,7 +63,7 @@ class VertexMatrices {
   std::vector<Set> sets_;
 };
 
-// Adds what the primitive's morph targets say of this attribute, weighted, to its values.
+// Adds the primitive's morph targets of this attribute, weighted, to its values.
 void morph(Document& document, const JsonNode& primitive, std::string_view attribute,
            std::span<const double> weights, RawVector<dvec3>& values);
 

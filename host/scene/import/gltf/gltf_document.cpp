@@ -3,17 +3,96 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "base/error.h"
-#include "scene/import/files_read.h"
-#include "scene/import/find_file.h"
-#include "scene/import/gltf/gltf_draco.h"
-#include "scene/import/gltf/gltf_meshopt.h"
-#include "scene/import/gltf/gltf_uri.h"
-#include "scene/import/read_file.h"
+#include "scene/import/files.h"
+#include "scene/import/gltf/gltf_packed.h"
 #include "scene/import/text_scanner.h"
 
 namespace kdray::scene::gltf {
+
+// ---- URIs
+
+namespace {
+
+constexpr std::array<std::int8_t, 256> make_digits() {
+  std::array<std::int8_t, 256> digits{};
+  digits.fill(-1);
+  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < kAlphabet.size(); ++i) {
+    digits[static_cast<unsigned char>(kAlphabet[i])] = static_cast<std::int8_t>(i);
+  }
+  return digits;
+}
+
+std::optional<std::string> decode_base64(std::string_view text) {
+  static constexpr std::array<std::int8_t, 256> kDigits = make_digits();
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  int n_bits = 0;
+  for (const char c : text) {
+    const std::int8_t digit = kDigits[static_cast<unsigned char>(c)];
+    if (digit < 0) return std::nullopt;
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    n_bits += 6;
+    if (n_bits >= 8) {
+      n_bits -= 8;
+      bytes += static_cast<char>(bits >> n_bits & 0xff);
+    }
+  }
+  return bytes;
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
+
+std::optional<std::string> decode_data_uri(std::string_view uri) {
+  constexpr std::string_view kMark = ";base64,";
+  // The mark is in the short head of the URI; the data may be gigabytes.
+  const std::size_t mark = uri.substr(0, 256).find(kMark);
+  if (!uri.starts_with("data:") || mark == std::string_view::npos) return std::nullopt;
+  return decode_base64(uri.substr(mark + kMark.size()));
+}
+
+std::string percent_decoded(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool coded =
+        text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0;
+    if (coded) {
+      out += static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2]));
+      i += 2;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
+std::vector<std::filesystem::path> paths_of(std::string_view uri) {
+  std::vector<std::filesystem::path> paths;
+  const std::size_t colon = uri.find(':');
+  if (colon != std::string_view::npos && uri.find_first_of("/\\") > colon) return paths;
+  const std::string_view bare = uri.substr(0, uri.find_first_of("?#"));
+  for (const std::string& name : {percent_decoded(uri), slashed(percent_decoded(uri)), percent_decoded(bare),
+                                  slashed(percent_decoded(bare))}) {
+    const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+    const bool usable = !name.empty() && name.find('\0') == std::string::npos;
+    if (usable && std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
+  }
+  return paths;
+}
+
+// ---- The document
 
 namespace {
 
@@ -34,7 +113,7 @@ std::uint32_t load_u32(std::string_view text, std::size_t at) {
 constexpr std::uint64_t kMostUnpackedPerByte = 64;
 constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 28;
 
-// The Debian package that kdray was built without, where shapes can't be had without it; empty: nothing is
+// Returns the Debian package that kdray was built without, where shapes need it; empty where nothing is
 // missing.
 std::string package_for(std::string_view extension) {
   if (extension == "KHR_draco_mesh_compression" && !has_draco()) return "libdraco-dev";
@@ -59,7 +138,8 @@ Document::Document(std::string_view text, const std::filesystem::path& path)
   note_files();
 }
 
-// Of all that the file names, in extensions too: pictures and buffers are read only when they are used.
+// Records all files that this one names, in extensions too: pictures and buffers are read only when they are
+// used.
 void Document::note_files() const {
   std::vector<const nlohmann::json*> open = {&json_};
   while (!open.empty()) {
@@ -169,7 +249,7 @@ const Unpacked* Document::unpacked(const JsonNode& accessor) const {
   return found == unpacked_.end() ? nullptr : &found->second;
 }
 
-// Of a buffer view, or of what an extension says in the place of one.
+// Returns the bytes of a buffer view, or of what an extension has in the place of one.
 std::string_view Document::slice(const JsonNode& view) {
   const std::string_view buffer = buffer_bytes(view["buffer"]);
   const std::uint64_t offset = whole_or(view, "byteOffset", 0);

@@ -1,7 +1,7 @@
-// What    A glTF 2.0 file taken apart: its JSON, whose arrays are at hand as nodes, and its buffers, which
-//         are read when they are first asked for.
-// Shape   .gltf or .glb, told by the first bytes. Buffers may be in the GLB itself, in data: URIs, or in
-//         files that the scene may name (find_file.h).
+// What    A glTF 2.0 file taken apart: its JSON, whose arrays are available as nodes, and its buffers, which
+//         are read when they are first used.
+// Shape   .gltf or .glb, recognised by the first bytes. Buffers may be in the GLB itself, in data: URIs, or
+//         in files that the scene may name (files.h).
 // Errors  kdray::Error: the JSON's line for what is not JSON, the value's path ("/accessors/3/count")
 //         otherwise.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021.
@@ -20,7 +20,7 @@
 
 namespace kdray::scene::gltf {
 
-// The numbers of an accessor that were packed otherwise (gltf_draco.h), one after the other.
+// The numbers of an accessor that were packed (gltf_packed.h), one after the other.
 struct Unpacked {
   std::string bytes;
   std::uint64_t count = 0;
@@ -39,23 +39,24 @@ class Document {
   const std::string& file() const { return file_; }
   std::size_t file_size() const { return text_.size(); }
   const std::vector<std::string>& warnings() const { return warnings_; }  // of the file as a whole
-  // What was read so far: the file, buffers beside it, and what came of packed ones.
+  // Returns the number of bytes so far: of the file, of buffers beside it, and of unpacked ones.
   std::uint64_t bytes_read() const { return bytes_read_ + bytes_unpacked_; }
 
-  // The entry of a top-level array ("nodes", "meshes", ...) that `index` names; an error when there is none.
+  // Returns the entry of a top-level array ("nodes", "meshes", ...) that `index` names; an error when there
+  // is none.
   const JsonNode& entry(const std::string& array, const JsonNode& index);
   const std::vector<JsonNode>& entries(const std::string& array);
 
-  // The bytes that a "uri" stands for: data, or a file.
+  // Returns the bytes that a "uri" stands for: data, or a file.
   std::string read_uri(const JsonNode& uri) const;
-  // The bytes of a bufferView, all of which are there; those of a packed one are unpacked.
+  // Returns the bytes of a bufferView, which has them all; a packed one is unpacked.
   std::string_view view_bytes(const JsonNode& view);
 
-  // What an accessor has in the place of its buffer view, until forget_unpacked().
+  // Puts numbers in the place of an accessor's buffer view, until forget_unpacked().
   void put(const JsonNode& accessor, Unpacked unpacked) { unpacked_[accessor.id()] = std::move(unpacked); }
   const Unpacked* unpacked(const JsonNode& accessor) const;
   void forget_unpacked() { unpacked_.clear(); }
-  // Called before `n` bytes are unpacked: refuses what makes more of a file than any mesh does.
+  // Refuses streams that unpack to more than any mesh does; called before `n` bytes are unpacked.
   void count_unpacked(std::uint64_t n, const JsonNode& packed);
 
  private:
@@ -81,12 +82,30 @@ class Document {
   std::uint64_t bytes_read_ = 0, bytes_unpacked_ = 0;
 };
 
-// A whole number from 0 to 2^53.
+// Returns a whole number from 0 to 2^53.
 std::uint64_t whole(const JsonNode& node);
-// `key`'s whole number, or `otherwise` when the object has no such key.
+// Return `key`'s number, or `otherwise` when the object has no such key.
 std::uint64_t whole_or(const JsonNode& object, std::string_view key, std::uint64_t otherwise);
 double number_or(const JsonNode& object, std::string_view key, double otherwise);
-// The object's extension of this name.
+// Returns the object's extension of this name.
 std::optional<JsonNode> extension(const JsonNode& object, std::string_view name);
+
+// ---- The URIs of buffers and pictures: bytes in base64, and names of files.
+
+// Returns the bytes of "data:[type];base64,...", or nothing when it is not one.
+std::optional<std::string> decode_data_uri(std::string_view uri);
+
+// Returns the text with each "%20" replaced by the character that it stands for.
+std::string percent_decoded(std::string_view text);
+
+// Returns the paths that a URI may mean, percent-decoded: as it stands, with backslashes as slashes, and
+// without the query or fragment that web servers' files have behind their names. None for other schemes
+// (http:).
+std::vector<std::filesystem::path> paths_of(std::string_view uri);
+
+// Returns what of a glTF file is not read, by name and number, so that users know: extensions, scenes,
+// animations while the file is at rest, sets of coordinates and colours. Materials and textures report their
+// own (gltf_materials.h).
+std::vector<std::string> left_out_of(Document& document, bool at_rest);
 
 }  // namespace kdray::scene::gltf

@@ -1,4 +1,4 @@
-#include "scene/import/gltf/gltf_left_out.h"
+#include "scene/import/gltf/gltf_document.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// Those that are read, that others tell of, and that nothing of a picture depends on.
+// Returns whether an extension is read, is reported elsewhere, or has no effect on pictures.
 bool is_known(std::string_view name) {
   constexpr std::array<std::string_view, 27> kKnown = {"EXT_mesh_gpu_instancing",
                                                        "EXT_meshopt_compression",
@@ -48,7 +48,7 @@ bool is_known(std::string_view name) {
 
 using Counts = std::map<std::string, std::size_t>;
 
-// How many objects of the file have each extension.
+// Returns how many objects of the file have each extension.
 Counts extensions_in(const json& root) {
   Counts counts;
   std::vector<const json*> open = {&root};
@@ -64,7 +64,7 @@ Counts extensions_in(const json& root) {
   return counts;
 }
 
-// Sets beyond the two of coordinates and the one of colours that are read.
+// Returns whether it is a set beyond the two of coordinates and the one of colours that are read.
 bool is_further_set(std::string_view attribute) {
   if (attribute.starts_with("TEXCOORD_")) return attribute != "TEXCOORD_0" && attribute != "TEXCOORD_1";
   return attribute.starts_with("COLOR_") && attribute != "COLOR_0";

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kHalfPi = 1.5707963267948966;
 
-// Of a picture's sides; 0 where they make no picture.
+// Returns the ratio of a picture's sides; 0 where they make no picture.
 double ratio_or_none(double width, double height) {
   const double ratio = width / height;
   return ratio > 0 && std::isfinite(ratio) ? ratio : 0;
@@ -42,7 +42,7 @@ float brightness(const vec3& color) {
   return std::max({color.x, color.y, color.z});
 }
 
-// Without a light's shadow, cone and range: what it would give where it points.
+// Returns a light's illuminance at a place that it points at, without shadows, its cone and its range.
 double illuminance(const Light& light, const dvec3& at, double nearest) {
   if (light.kind == LightKind::directional) return brightness(light.color);
   const double distance = std::max(glm::length(light.position - at), nearest);

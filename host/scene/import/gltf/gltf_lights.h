@@ -15,7 +15,7 @@ namespace kdray::scene::gltf {
 // `light` is an entry of KHR_lights_punctual's lights, at a node with the transform `to_world`.
 Light read_light(const JsonNode& light, const dmat4& to_world);
 
-// Scales the lights' colours as said above. The scene's geometry must be there.
+// Scales the lights' colours so that the exposure is as above. The scene's geometry must be there.
 void expose(Scene& scene);
 
 // Returns nothing, and warns, for a camera that isn't perspective or has no view direction.

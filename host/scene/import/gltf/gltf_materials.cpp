@@ -134,8 +134,8 @@ Material specular_glossiness(const JsonNode& node, const Surface& s) {
   return m;
 }
 
-// The terms of a surface whose base colour is multiplied by something else at each place: what doesn't depend
-// on it stays the material's, the rest goes to its maps.
+// Returns the terms of a surface whose base colour is multiplied by something else at each place: what
+// doesn't depend on it stays the material's, the rest goes to its maps.
 Material with_maps(const Surface& s, const std::function<Material(const Surface&)>& terms,
                    MaterialMaps& maps) {
   Surface opaque = s, black = s;
@@ -158,7 +158,7 @@ Material with_maps(const Surface& s, const std::function<Material(const Surface&
   return plain;
 }
 
-// What a surface is made of where a picture says how metallic and rough it is.
+// Returns what a surface is made of where a picture says how metallic and rough it is.
 Material metal(const Surface& s, MaterialMaps& maps) {
   maps.metal = {.base = s.base,
                 .metallic = s.metallic,

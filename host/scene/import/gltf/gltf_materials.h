@@ -1,18 +1,41 @@
-// What    glTF materials in the terms of the Whitted model, and their numbers in the scene.
-//         docs/scenes-meshes.md tells users how they are mapped.
-// Source  glTF 2.0, appendix B (the metallic-roughness model); KHR_materials_ior, _transmission, _volume,
-//         _emissive_strength, _unlit, _pbrSpecularGlossiness.
+// What    glTF materials in the terms of the Whitted model, with their textures, and their numbers in the
+//         scene. docs/scenes-meshes.md tells users how they are mapped.
+// Source  glTF 2.0, 3.8 and appendix B (the metallic-roughness model); KHR_texture_transform,
+//         KHR_materials_ior, _transmission, _volume, _emissive_strength, _unlit, _pbrSpecularGlossiness.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "scene/import/gltf/gltf_document.h"
-#include "scene/import/gltf/gltf_textures.h"
 #include "scene/model/scene.h"
 
 namespace kdray::scene::gltf {
+
+// The textures that materials ask for: pictures decoded once each, samplers, sets of coordinates,
+// KHR_texture_transform. What is missing, damaged, of another format or wrong in the file costs the picture,
+// with a warning. The material's factors hold then.
+class Textures {
+ public:
+  Textures(Document& document, Scene& scene) : document_(document), scene_(scene) {}
+
+  // Returns the number among the scene's textures of what a material's texture info names; `curved`: its
+  // colours are codes of sRGB.
+  std::optional<std::uint32_t> number_of(const JsonNode& info, bool curved);
+
+ private:
+  std::optional<std::uint32_t> picture_of(const JsonNode& texture);
+  std::optional<std::uint32_t> read(const JsonNode& info, bool curved);
+  std::uint32_t decode(const JsonNode& image, std::uint64_t number);
+  void read_sampler(const JsonNode& texture, Texture& out);
+
+  Document& document_;
+  Scene& scene_;
+  std::map<std::uint64_t, std::optional<std::uint32_t>> pictures_;  // by the image's number
+};
 
 class Materials {
  public:

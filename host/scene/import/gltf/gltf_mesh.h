@@ -34,15 +34,15 @@ class MeshReader {
   MeshReader(Document& document, Scene& scene);
 
   void add(const JsonNode& mesh, const dmat4& to_world, const Deformation& deformation = {});
-  // The mesh by itself, with the scene's materials.
+  // Returns the mesh by itself, with the scene's materials.
   Scene alone(const JsonNode& mesh);
-  // As many triangles as add() would add, or a few more.
+  // Returns the number of triangles that add() would add, or a few more.
   std::uint64_t count_triangles(const JsonNode& mesh);
   // Called after the last mesh.
   void finish();
-  // There is one warning for each kind of thing that is left out, however often it comes.
+  // Warns once of each kind of thing that is left out, however often it comes.
   void warn(const std::string& what) { left_out_.insert(what); }
-  // The same with how many of it there were before it: "primitives without positions are left out".
+  // Warns of it with its number before it: "primitives without positions are left out".
   void count(const std::string& what) { ++counted_[what]; }
 
  private:

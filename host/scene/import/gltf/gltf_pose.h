@@ -1,7 +1,8 @@
 // What    Where the nodes of a glTF file are, and how far their meshes are morphed: at rest, as the file has
 //         them, or at a second of its animation.
-// Errors  kdray::Error: those of gltf_keyframes.h; ErrorCode::usage for an animation that the file doesn't
-//         have. A channel that moves something else than nodes is left out, with a warning.
+// Errors  kdray::Error with a sampler's path, for values that are not as many as the keyframes want; those of
+//         gltf_accessor.h; ErrorCode::usage for an animation that the file doesn't have. A channel that moves
+//         something else than nodes is left out, with a warning.
 // Source  Khronos Group, "glTF 2.0 Specification", 2021, 3.5 and 3.11.
 #pragma once
 
@@ -21,13 +22,13 @@ class Pose {
  public:
   Pose(Document& document, const LoadOptions& options);
 
-  // A node's transform to its parent's space, and to the file's.
+  // Returns a node's transform to its parent's space, and to the file's.
   dmat4 local(const JsonNode& node) const;
   dmat4 to_world(const JsonNode& node_index);
-  // The weights of a mesh's morph targets where this node shows it; empty where none has one.
+  // Returns the weights of a mesh's morph targets where this node shows it; empty where none has one.
   std::vector<double> weights(const JsonNode& node, const JsonNode& mesh) const;
 
-  // What the file has and this leaves out, or what was asked for in vain.
+  // Returns what the file has and this leaves out, or what was asked for in vain.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
@@ -50,7 +51,7 @@ class Pose {
   std::size_t n_left_out_ = 0;  // channels
 };
 
-// How many morph targets the mesh has.
+// Returns how many morph targets the mesh has.
 std::size_t target_count(const JsonNode& mesh);
 
 }  // namespace kdray::scene::gltf

@@ -1,4 +1,4 @@
-#include "scene/import/gltf/gltf_textures.h"
+#include "scene/import/gltf/gltf_materials.h"
 
 #include <cmath>
 
@@ -87,7 +87,7 @@ std::uint32_t Textures::decode(const JsonNode& image, std::uint64_t number) {
   return scene_.texturing.add(decode_picture(bytes, name, scene_.warnings));
 }
 
-// Said once for each picture, however many textures show it.
+// Warns once for each picture, however many textures show it.
 std::optional<std::uint32_t> Textures::picture_of(const JsonNode& texture) {
   const auto webp = extension(texture, "EXT_texture_webp");
   const auto source = texture.find("source") ? texture.find("source")

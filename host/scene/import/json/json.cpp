@@ -4,16 +4,137 @@
 // Units   Angles in degrees; `fov` is the full vertical field of view; colours linear RGB, a single number is
 //         grey.
 // Errors  "file:line" for what is not JSON, "file: /path/of/the/value" for what is not a scene.
+#include <cmath>
 #include <filesystem>
 
-#include "scene/import/importers.h"
-#include "scene/import/json/json_lights.h"
 #include "scene/import/json/json_node.h"
 #include "scene/import/json/json_objects.h"
-#include "scene/import/json/json_sky.h"
+#include "scene/import/load.h"
 #include "scene/model/check_scene.h"
+#include "scene/model/scene.h"
+#include "scene/textures/sky.h"
 
 namespace kdray::scene {
+
+// ---- lights
+
+namespace {
+
+void read_reach(const JsonNode& node, Light& light) {
+  if (const auto range = node.find("range")) light.range = range->number_above(0);
+  if (const auto attenuation = node.find("attenuation")) {
+    light.attenuation = attenuation->vector();
+    if (glm::any(glm::lessThan(light.attenuation, dvec3(0)))) throw attenuation->error("a value below 0");
+    light.attenuation.x = static_cast<float>(light.attenuation.x);  // it is no length
+    if (light.attenuation == dvec3(0)) {
+      throw attenuation->expected("[constant, linear, quadratic], not all 0");
+    }
+  }
+}
+
+void read_cone_angles(const JsonNode& node, Light& light) {
+  const double outer = node["outer"].number_between(0, 180);
+  const auto inner = node.find("inner");
+  const double full = inner ? inner->number_between(0, 180) : outer;
+  if (full > outer) throw inner->error("the inner angle is wider than the outer one");
+  light.cos_inner = static_cast<float>(std::cos(glm::radians(full)));
+  light.cos_outer = static_cast<float>(std::cos(glm::radians(outer)));
+}
+
+// A rectangle has two edges, a disc a normal.
+void read_area(const JsonNode& node, const std::string& name, Light& light) {
+  light.position = node["position"].vector();
+  if (name == "rectangle") {
+    node.expect_keys(json_keys::kRectangleLight);
+    light.kind = LightKind::rectangle;
+    light.across = node["across"].vector();
+    light.down = node["down"].vector();
+  } else if (name == "sphere") {
+    node.expect_keys(json_keys::kSphereLight);
+    light.kind = LightKind::sphere;
+    light.radius = node["radius"].number_above(0);
+  } else {
+    node.expect_keys(json_keys::kDiscLight);
+    set_disc(light, node["normal"].direction(), node["radius"].number_above(0));
+  }
+  read_reach(node, light);
+}
+
+Light read_light(const JsonNode& node) {
+  const JsonNode type = node["type"];
+  const std::string name = type.string();
+  Light light;
+  if (name == "point") {
+    node.expect_keys(json_keys::kPointLight);
+    light.position = node["position"].vector();
+    read_reach(node, light);
+  } else if (name == "directional") {
+    node.expect_keys(json_keys::kDirectionalLight);
+    light.kind = LightKind::directional;
+    light.direction = node["direction"].direction();
+  } else if (name == "spot") {
+    node.expect_keys(json_keys::kSpotLight);
+    light.kind = LightKind::spot;
+    light.position = node["position"].vector();
+    light.direction = node["direction"].direction();
+    read_cone_angles(node, light);
+    read_reach(node, light);
+  } else if (name == "rectangle" || name == "sphere" || name == "disc") {
+    read_area(node, name, light);
+  } else {
+    throw type.expected("one of point, directional, spot, rectangle, sphere, disc");
+  }
+  if (const auto color = node.find("color")) light.color = color->color();
+  if (const char* fault = fault_of(light)) throw node.error(fault);
+  return light;
+}
+
+}  // namespace
+
+// ---- the background
+
+namespace {
+
+SkyStop read_stop(const JsonNode& node) {
+  node.expect_keys(json_keys::kStop);
+  return {node["height"].number_between(-1, 1), node["color"].color()};
+}
+
+Sky read_gradient(const JsonNode& node) {
+  node.expect_keys(json_keys::kGradient);
+  Sky sky{.kind = SkyKind::gradient};
+  for (const JsonNode& stop : node["stops"].elements()) sky.stops.push_back(read_stop(stop));
+  return sky;
+}
+
+Sky read_picture(const JsonNode& node, const std::filesystem::path& folder, Scene& scene) {
+  node.expect_keys(json_keys::kSkyPicture);
+  Sky sky{.kind = SkyKind::picture};
+  if (const auto turn = node.find("turn")) sky.turn = glm::radians(turn->number());
+  if (const auto strength = node.find("strength")) sky.strength = strength->number_between(0, 1e6);
+  sky.picture = read_sky_picture(folder / node["file"].string(), scene.warnings);
+  return sky;
+}
+
+// Pictures are looked for in `folder`.
+void read_background(const JsonNode& node, const std::filesystem::path& folder, Scene& scene) {
+  if (!node.is_object()) {
+    scene.background = node.color();
+    return;
+  }
+  const JsonNode type = node["type"];
+  const std::string name = type.string();
+  if (name != "gradient" && name != "picture") throw type.expected("one of gradient, picture");
+  Sky sky = name == "gradient" ? read_gradient(node) : read_picture(node, folder, scene);
+  if (const auto up = node.find("up")) sky.up = up->direction();
+  if (const char* const fault = fault_of(sky)) throw node.error(fault);
+  sky.brightest = brightest_of(sky);
+  scene.sky = std::move(sky);
+}
+
+}  // namespace
+
+// ---- the scene
 
 namespace {
 

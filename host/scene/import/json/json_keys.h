@@ -65,7 +65,7 @@ inline constexpr std::string_view box[] = {"type",      "min",    "max",   "mate
                                            "translate", "rotate", "scale", "matrix"};
 inline constexpr std::string_view cylinder[] = {"type", "base", "apex", "radius", "apex_radius", "material"};
 inline constexpr std::string_view plane[] = {"type", "point", "normal", "extent", "material"};
-// Of a shape: its fields', between those that all have.
+// A shape's keys: those of its fields, between those that all shapes have.
 template <class Shape>
 inline constexpr auto shape = std::apply(
     [](const auto&... fields) {

@@ -1,13 +1,13 @@
-#include "scene/import/json/json_material.h"
+#include "scene/import/json/json_objects.h"
 
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/import/files.h"
 #include "scene/import/json/json_keys.h"
-#include "scene/import/read_file.h"
 #include "scene/model/check_scene.h"
-#include "scene/textures/mapped_material.h"
 #include "scene/textures/picture.h"
+#include "scene/textures/texturing.h"
 
 namespace kdray::scene {
 
@@ -47,7 +47,7 @@ Alpha read_alpha(const JsonNode& node) {
   throw node.expected("one of opaque, mask, blend");
 }
 
-// What a picture's values are multiplied by.
+// Returns what a picture's values are multiplied by.
 float factor_of(const JsonNode& material, std::string_view key, std::string_view picture) {
   const auto node = material.find(key);
   if (!node) return 1;

@@ -76,7 +76,7 @@ const char* type_name(const json& value) {
   }
 }
 
-// What an error shows of a value: itself when it is short, its type otherwise.
+// Returns what an error shows of a value: the value itself when it is short, or else its type.
 std::string shown(const json& value) {
   if (value.is_array()) return "an array of " + std::to_string(value.size());
   if (value.is_object() || value.is_null()) return type_name(value);
@@ -110,7 +110,7 @@ bool read_vector(const json& value, dvec3& out) {
 
 namespace {
 
-// Whether one begins where the parser stopped, which is at its first or second character.
+// Returns whether one begins where the parser stopped, which is at its first or second character.
 bool is_comment(std::string_view text, std::size_t at) {
   for (std::size_t first = at > 0 ? at - 1 : 0; first <= at && first < text.size(); ++first) {
     const std::string_view two = text.substr(first, 2);

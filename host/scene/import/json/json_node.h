@@ -12,9 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/did_you_mean.h"
 #include "base/error.h"
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "base/vec.h"
 #include "scene/import/json/json_keys.h"
 
@@ -56,7 +55,7 @@ class JsonNode {
   bool is_object() const { return value_->is_object(); }
   std::size_t size() const { return value_->size(); }
   const std::string& file() const { return *file_; }
-  // The same for all nodes of one value.
+  // Is the same for all nodes of one value.
   const void* id() const { return value_; }
 
   std::string place() const;  // as errors name it: "file: /path/of/the/value"

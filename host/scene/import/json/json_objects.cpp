@@ -6,20 +6,18 @@
 #include <tuple>
 #include <utility>
 
-#include "scene/import/import.h"
-#include "scene/import/read_file.h"
-#include "scene/model/add_polygon.h"
+#include "scene/import/files.h"
+#include "scene/import/load.h"
 #include "scene/model/check_scene.h"
 #include "scene/model/instances.h"
-#include "scene/model/smooth_normals.h"
-#include "scene/model/transform.h"
-#include "scene/model/triangulate.h"
+#include "scene/model/normals.h"
+#include "scene/model/polygon.h"
 
 namespace kdray::scene {
 
 namespace {
 
-// [x, y, z] degrees about the axes, x first; or {"axis": [x, y, z], "angle": degrees}.
+// Reads [x, y, z], degrees about the axes, x first; or {"axis": [x, y, z], "angle": degrees}.
 dmat4 read_rotation(const JsonNode& node) {
   if (node.is_object()) {
     node.expect_keys(json_keys::kTurn);
@@ -36,7 +34,7 @@ dvec3 read_scale(const JsonNode& node) {
   return scale;
 }
 
-// Sixteen numbers row by row, the last row 0 0 0 1, as they are written on paper.
+// Reads sixteen numbers row by row, as they are written on paper; the last row is 0 0 0 1.
 dmat4 read_matrix(const JsonNode& node) {
   if (!node.is_array() || node.size() != 16) throw node.expected("16 numbers, row by row");
   const auto elements = node.elements();
@@ -49,7 +47,7 @@ dmat4 read_matrix(const JsonNode& node) {
   return m;
 }
 
-// Scaled first, then turned, then moved.
+// Returns the transform of an object: scaled first, then turned, then moved.
 std::optional<dmat4> read_transform(const JsonNode& object) {
   const auto translate = object.find("translate"), rotate = object.find("rotate"),
              scale = object.find("scale");
@@ -195,7 +193,7 @@ void JsonObjects::read_mesh(const JsonNode& object) {
   append(part, object);
 }
 
-// The part with the scene's materials in place of its own.
+// Returns the part with the scene's materials in place of its own.
 Scene JsonObjects::adopted(Scene&& part) {
   const std::vector<std::uint32_t> material_maps =
       scene_.texturing.append({.material_maps = part.texturing.material_maps,

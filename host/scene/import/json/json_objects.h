@@ -1,20 +1,38 @@
-// What    Reads the "objects" of a JSON scene (meshes from files, inline triangles, shapes) into a
-//         Scene.
-// Errors  kdray::Error with the object's path; a mesh file's own errors name that file.
+// What    Reads the materials and the objects of kdray's JSON scenes into a Scene.
+// Errors  kdray::Error with the path of the value in the file; a mesh file's own errors name that file.
 #pragma once
 
 #include <filesystem>
 #include <map>
 #include <string>
 
-#include "scene/import/json/json_material.h"
 #include "scene/import/json/json_node.h"
-#include "scene/import/material_table.h"
+#include "scene/import/materials.h"
 #include "scene/import/solids.h"
 #include "scene/model/scene.h"
 
 namespace kdray::scene {
 
+// A material: its terms, and the pictures that it names beside the scene. A material with pictures has maps
+// in the scene's texturing. Pictures are read once each, as codes of sRGB but for normals. A picture that is
+// missing or can't be decoded is an error, since the scene was written with it in mind.
+class JsonMaterials {
+ public:
+  // `folder` is where pictures are looked for; `scene` gets their textures.
+  JsonMaterials(Scene& scene, std::filesystem::path folder) : scene_(scene), folder_(std::move(folder)) {}
+
+  Material read(const JsonNode& node);
+
+ private:
+  std::uint32_t texture_of(const JsonNode& material, std::string_view key, bool curved);
+  std::uint32_t picture_of(const JsonNode& file);
+
+  Scene& scene_;
+  std::filesystem::path folder_;
+  std::map<std::string, std::uint32_t> pictures_;  // by the name in the file
+};
+
+// The objects: meshes from files, inline triangles, shapes.
 using NamedMaterials = std::map<std::string, Material>;
 
 class JsonObjects {
@@ -25,7 +43,7 @@ class JsonObjects {
               std::filesystem::path folder);
 
   void read(const JsonNode& object);
-  // Once all are read.
+  // Called once all are read.
   void finish() { settle_solids(unsettled_, scene_); }
 
  private:

@@ -1,4 +1,4 @@
-// What    The materials of an MTL file, as the file says them.
+// What    The materials of an MTL file, as the file says them, and in the terms of the Whitted model.
 // Errors  kdray::Error for UTF-16 alone. What is no finite number where one is wanted leaves the default,
 //         what is out of range (a negative colour) is brought into range; unknown statements are left out, as
 //         every exporter has its own: one warning of each kind.
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "scene/model/scene.h"
 
 namespace kdray::scene {
 
@@ -39,5 +40,9 @@ struct MtlMaterial {
 // Adds the file's materials to `materials`, its warnings to `warnings`.
 void read_mtl(std::string_view text, const std::string& file, std::vector<MtlMaterial>& materials,
               std::vector<std::string>& warnings);
+
+// Returns the material in the terms of the Whitted model; docs/scenes-meshes.md has the table for users.
+// `has_picture` says whether the picture of map_Kd is there.
+Material whitted_from_mtl(const MtlMaterial& mtl, bool has_picture = false);
 
 }  // namespace kdray::scene

@@ -18,17 +18,13 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/import/find_file.h"
-#include "scene/import/importers.h"
-#include "scene/import/left_out.h"
-#include "scene/import/line_scanner.h"
-#include "scene/import/lower.h"
+#include "scene/import/files.h"
+#include "scene/import/load.h"
 #include "scene/import/obj/obj_materials.h"
 #include "scene/import/plain_number.h"
-#include "scene/import/reserve_ahead.h"
 #include "scene/import/text_scanner.h"
-#include "scene/model/add_polygon.h"
-#include "scene/model/settle_normals.h"
+#include "scene/model/normals.h"
+#include "scene/model/polygon.h"
 
 namespace kdray::scene {
 
@@ -42,7 +38,7 @@ class ObjReader {
         text.find("tllib") != std::string_view::npos || text.find("TLLIB") != std::string_view::npos;
   }
 
-  // Nothing: a face names what comes only after it.
+  // Returns nothing where a face names what comes only after it.
   std::optional<Scene> read_in_order() {
     read_lines();
     return looks_ahead_ ? std::nullopt : std::optional(finish());
@@ -145,7 +141,7 @@ class ObjReader {
     read_color();
   }
 
-  // One number more is a weight, three are a colour, four a weight and a colour.
+  // One more number is a weight, three are a colour, four a weight and a colour.
   void read_color() {
     std::array<float, 4> numbers{};
     std::size_t n = 0;
@@ -239,8 +235,8 @@ class ObjReader {
     return value;
   }
 
-  // The place in an array of which `before` entries stand before this line, and which has `n`. Nothing: there
-  // is none, or it comes later, and then the file is to be read otherwise.
+  // Returns the place in an array of `n` entries, `before` of them before this line. Returns nothing where
+  // there is none, or where it comes later; the file then has to be read another way.
   std::optional<std::size_t> place_of(std::int64_t value, std::size_t before, std::size_t n) {
     const auto counted = static_cast<std::int64_t>(before);
     const std::int64_t index = value < 0 ? counted + value : value - 1;
@@ -268,7 +264,7 @@ class ObjReader {
     return kNone;
   }
 
-  // Of v/vt, v/vt/vn or v//vn, whose first slash is at `first`.
+  // Returns the texture coordinates of v/vt, v/vt/vn or v//vn, whose first slash is at `first`.
   std::array<float, 2> texcoord_of(std::string_view word, std::size_t first) {
     if (first == std::string_view::npos || first + 1 >= word.size() || word[first + 1] == '/')
       return kNoTexcoord;

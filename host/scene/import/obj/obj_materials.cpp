@@ -4,13 +4,10 @@
 #include <map>
 
 #include "base/error.h"
-#include "scene/import/find_file.h"
-#include "scene/import/lower.h"
-#include "scene/import/mesh_material.h"
-#include "scene/import/obj/whitted_from_mtl.h"
-#include "scene/import/read_file.h"
+#include "scene/import/files.h"
+#include "scene/import/materials.h"
+#include "scene/import/obj/mtl.h"
 #include "scene/import/text_scanner.h"
-#include "scene/textures/derived_pictures.h"
 #include "scene/textures/picture.h"
 
 namespace kdray::scene {
@@ -50,7 +47,8 @@ bool says_something(const MaterialMaps& c) {
          c.colored != 0;
 }
 
-// Materials by their names. One that none has is that of the only one, if so, that differs in capitals alone.
+// Finds materials by their names. A name that no material has stands for the only one that differs from it in
+// capitals alone, if there is one.
 class Library {
  public:
   explicit Library(const std::vector<MtlMaterial>& materials) {
@@ -74,7 +72,7 @@ class Library {
 
 }  // namespace
 
-// A name as it is given, or without its quotes, from the OBJ file's folder on.
+// Returns a name as it is given, or without its quotes, from the OBJ file's folder on.
 std::filesystem::path ObjMaterials::find(const std::string& name) const {
   for (const std::string_view given : {std::string_view(name), unquoted(name)}) {
     const std::filesystem::path path(given), folder = file_.parent_path();
@@ -85,7 +83,7 @@ std::filesystem::path ObjMaterials::find(const std::string& name) const {
   return "";
 }
 
-// The last part of a path: exporters write the paths of their own machine.
+// Returns the last part of a path: exporters write the paths of their own machine.
 std::filesystem::path ObjMaterials::find_last_part(const std::string& name) const {
   return find(std::filesystem::path(unquoted(name)).filename().string());
 }

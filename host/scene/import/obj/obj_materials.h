@@ -23,8 +23,8 @@ class ObjMaterials {
 
   void add_library(std::string_view names, std::uint32_t line);
   void use(std::string_view name);
-  std::uint32_t current();  // of the faces that follow
-  // `colored`: vertices have colours.
+  std::uint32_t current();  // the material of the faces that follow
+  // Called after the last line. `colored` says whether vertices have colours.
   void finish(bool colored);
 
  private:

@@ -1,27 +1,98 @@
-// What    PLY: polygons (element face) and triangle strips (element tristrips) over the element vertex,
-//         with vertex normals, colours of vertices or faces, and pictures by texture coordinates of either;
-//         ascii and binary, either byte order. Other elements and properties are skipped.
+// What    PLY: polygons (element face) and triangle strips (element tristrips) over the element vertex, with
+//         vertex normals, colours of vertices or faces, and pictures by texture coordinates of either; ascii
+//         and binary, either byte order. Other elements and properties are skipped.
 // Errors  ascii: file and line; binary: file, element, row and byte.
 // Source  G. Turk, "The PLY Polygon File Format", 1994. Tristrips as the Stanford scanning repository writes
 //         them.
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/error.h"
-#include "scene/import/importers.h"
-#include "scene/import/ply/ply_binary.h"
+#include "scene/import/files.h"
+#include "scene/import/load.h"
+#include "scene/import/materials.h"
 #include "scene/import/ply/ply_columns.h"
 #include "scene/import/ply/ply_header.h"
-#include "scene/import/ply/ply_left_out.h"
 #include "scene/import/ply/ply_mesh.h"
 #include "scene/import/ply/ply_source.h"
-#include "scene/import/ply/ply_textures.h"
+#include "scene/import/text_scanner.h"
+#include "scene/model/scene.h"
+#include "scene/textures/picture.h"
+
+namespace kdray::scene::ply {
+
+// ---- Pictures, as MeshLab and programs of photogrammetry name them: `comment TextureFile NAME`, which faces
+// choose among by `texnumber`. A picture that is missing or damaged is left out, with a warning.
+
+namespace {
+
+// Finds a picture by its name, or by its last part beside the scene: programs write the paths of their own
+// machine.
+std::filesystem::path find_picture(const std::string& name, const std::filesystem::path& folder) {
+  const std::filesystem::path path = std::filesystem::path(slashed(name)).lexically_normal();
+  std::filesystem::path found;
+  if (may_name(folder, path)) found = find_file(folder / path);
+  return found.empty() && path.has_filename() ? find_file(folder / path.filename()) : found;
+}
+
+std::optional<std::uint32_t> picture_of(Scene& scene, const std::string& name, const std::string& file) {
+  const std::filesystem::path path = find_picture(name, std::filesystem::path(file).parent_path());
+  try {
+    if (path.empty())
+      throw input_error(file, 0, "no picture '" + printable(name) + "'",
+                        std::string("put it beside the scene; ") + kAllowAFolder);
+    return scene.texturing.add(decode_picture(read_file(path), path.string(), scene.warnings));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input) throw;
+    scene.warnings.push_back(std::string(error.what()) + " (the picture is left out)");
+    return std::nullopt;
+  }
+}
+
+// Returns the material of meshes without pictures, with the picture as its base colour.
+Material textured(Scene& scene, std::uint32_t picture) {
+  MaterialMaps maps;
+  Material m = colored_mesh_material(maps);
+  maps.base = scene.texturing.add(Texture{.picture = picture, .minify = Minify::linear_mipmap_linear});
+  maps.colored = !scene.texturing.colors.empty();
+  m.maps = scene.texturing.add(maps);
+  return m;
+}
+
+// Gives the scene, whose triangles have the number of their picture for a material, a material for each.
+void lay_on_textures(Scene& scene, const Header& header, const std::string& file) {
+  if (header.textures.empty()) return;
+  const bool numbered =
+      std::ranges::any_of(scene.triangles, [](const Triangle& t) { return t.material > 0; });
+  const std::size_t n = numbered ? header.textures.size() : 1;
+  if (header.textures.size() > n)
+    scene.warnings.push_back(file + ": " + std::to_string(header.textures.size() - n) +
+                             " further pictures are left out: no face has their texnumber");
+  if (scene.texturing.texcoords[0].empty()) {
+    scene.warnings.push_back(file + ": its picture '" + printable(header.textures[0]) +
+                             "' is left out: there are no texture coordinates");
+    for (Triangle& t : scene.triangles) t.material = 0;
+    return;
+  }
+  const Material plain = scene.materials[0];
+  scene.materials.assign(n, plain);
+  for (std::size_t i = 0; i < n; ++i)
+    if (const auto picture = picture_of(scene, header.textures[i], file))
+      scene.materials[i] = textured(scene, *picture);
+}
+
+}  // namespace
+
+}  // namespace kdray::scene::ply
 
 namespace kdray::scene {
+
+// ---- The file
 
 namespace ply {
 namespace {
@@ -199,7 +270,7 @@ class BodyReader {
     mesh_.set_texture(first, known ? static_cast<std::uint32_t>(texture) : 0);
   }
 
-  // False: a number is left over.
+  // Returns false where a number is left over.
   bool read_texcoords(const Property& p) {
     const std::uint64_t n = source_.list_length(p.count_type, p.type);
     for (std::uint64_t i = 0; i < n; ++i) {

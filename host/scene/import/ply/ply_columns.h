@@ -1,4 +1,5 @@
-// What    What the properties of a PLY file's vertices and faces mean.
+// What    What the properties of a PLY file's vertices and faces mean, and which elements and properties are
+//         left out.
 // Errors  kdray::Error with the header's line where a vertex has no place.
 #pragma once
 
@@ -20,10 +21,11 @@ struct VertexColumns {
 };
 inline constexpr std::size_t kColumns = 12;
 
-// Texture coordinates count where the file names a picture, and faces don't have them.
+// Finds a vertex' columns. Texture coordinates count where the file names a picture, and faces don't have
+// them.
 VertexColumns find_columns(const Header& header, const Element& element, const std::string& file);
 
-// What is read of a face beside its corners; null: not there, or vertices have it.
+// What is read of a face beside its corners; null where it is not there, or where vertices have it.
 struct FaceColumns {
   std::array<const Property*, 4> color{};  // red, green, blue, and alpha or null
   const Property* texcoords = nullptr;     // a list of u and v for each corner
@@ -36,7 +38,10 @@ struct FaceColumns {
 
 FaceColumns find_face_columns(const Header& header, const Element& element);
 
-// An error in what the header says of an element.
+// Returns an error in what the header says of an element.
 Error element_error(const Element& element, const std::string& file, const std::string& what);
+
+// Returns the elements and properties of a header that are left out, by name and number.
+std::vector<std::string> left_out_of(const Header& header, const std::string& file);
 
 }  // namespace kdray::scene::ply

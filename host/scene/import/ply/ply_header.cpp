@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scene/import/files_read.h"
-#include "scene/import/find_file.h"
-#include "scene/import/lower.h"
+#include "scene/import/files.h"
 #include "scene/import/text_scanner.h"
 
 namespace kdray::scene::ply {

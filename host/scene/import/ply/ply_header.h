@@ -1,4 +1,4 @@
-// What    The header of a PLY file: which elements with which properties follow, and how they are stored.
+// What    The header of a PLY file: which elements follow, with which properties, and how they are stored.
 // Errors  kdray::Error with the header's line.
 // Source  G. Turk, "The PLY Polygon File Format", 1994; type names in the old and the sized spelling (int,
 //         int32).
@@ -24,7 +24,7 @@ constexpr bool is_integer(Type type) {
 }
 
 struct Property {
-  std::string name;       // of a second one of this name with a note that nobody asks for
+  std::string name;       // a second one of this name has a note behind it, so that find() doesn't take it
   Type type = Type::f32;  // of a list: of its entries
   bool is_list = false;
   Type count_type = Type::u8;

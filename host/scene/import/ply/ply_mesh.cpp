@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/import/mesh_material.h"
-#include "scene/model/add_polygon.h"
-#include "scene/model/settle_normals.h"
-#include "scene/model/triangulate.h"
+#include "scene/import/materials.h"
+#include "scene/model/normals.h"
+#include "scene/model/polygon.h"
 
 namespace kdray::scene::ply {
 

@@ -2,8 +2,8 @@
 // Shape   Faces may come before the vertices: triangles are made at once, larger polygons get the numbers of
 //         their n - 2 triangles at once and are cut in finish(). Indices are checked against the header's
 //         vertex count.
-// Errors  None of its own: the functions return false for what a row may not hold; the caller knows the
-//         place.
+// Errors  None: the functions return false for what a row may not hold; the caller knows the place in the
+//         file.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ class Mesh {
  public:
   explicit Mesh(std::uint32_t n_vertices) : n_vertices_(n_vertices) {}
 
-  // The caller fills them in.
+  // Returns the arrays, which the caller fills in.
   VertexArrays& vertices() { return vertices_; }
   void set_color_unit(double unit) { color_unit_ = unit; }  // what a colour of 1 is in the file
   PageVector<Triangle>& triangles() { return scene_.triangles; }
@@ -41,7 +41,7 @@ class Mesh {
   // Adds one polygon, with texture coordinates for each corner or none. Returns false when it has a corner
   // that is no vertex. One of fewer than three corners is counted and left out.
   bool add_face(std::span<const std::int64_t> corners, std::span<const TexCoord> texcoords = {});
-  // What the triangles from `first` on, of one face, have in common.
+  // Set the colour and the texture of the triangles from `first` on, which are of one face.
   void color_face(std::size_t first, const VertexColor& color);
   void set_texture(std::size_t first, std::uint32_t texture);
   // Triangles over each three neighbours, every second one turned over; -1 starts a new strip.

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "scene/import/ply/ply_binary.h"
+#include "scene/import/files.h"
 #include "scene/import/ply/ply_source.h"
-#include "scene/import/read_file.h"
 
 namespace kdray::scene::ply {
 
@@ -17,7 +16,7 @@ namespace {
 constexpr std::size_t kMostHeader = std::size_t{1} << 20;
 constexpr std::uint64_t kPiece = std::uint64_t{4} << 20;  // bytes of the file that are read at a time
 
-// What a list of three takes, if there is one.
+// Returns the bytes of a row, with three entries in its list if it has one.
 std::uint64_t stride_of(const Element& element) {
   std::uint64_t stride = 0;
   for (const Property& p : element.properties)
@@ -37,7 +36,8 @@ std::int64_t integer(const unsigned char* bytes, Type type) {
   return with_type(type, [&](auto t) { return static_cast<std::int64_t>(load<decltype(t), swap>(bytes)); });
 }
 
-// False where one of n faces, `stride` bytes from one to the next, is no triangle of the file's vertices.
+// Returns false where one of n faces, `stride` bytes from one to the next, is no triangle of the file's
+// vertices.
 template <bool swap>
 bool corners_of(const unsigned char* at, std::uint64_t stride, std::uint64_t n, const Property& list,
                 std::uint64_t n_vertices, Corners* out) {
@@ -53,7 +53,7 @@ bool corners_of(const unsigned char* at, std::uint64_t stride, std::uint64_t n, 
   return true;
 }
 
-// False where a value is not finite.
+// Returns false where a value is not finite.
 template <bool swap>
 bool columns_of(const std::string& bytes, const Element& element, std::uint64_t n,
                 const VertexColumns& columns, Vertices& out) {
@@ -81,7 +81,7 @@ std::optional<Rows> Rows::open(const std::filesystem::path& file) {
     rows.header_ = read_header(head, rows.file_);
     if (!rows.place_elements(bytes)) return std::nullopt;
   } catch (const Error&) {
-    return std::nullopt;  // whoever reads the whole file says why
+    return std::nullopt;  // reading the whole file says why
   }
   head.resize(rows.header_.body);
   rows.fingerprint_ = hash_of(head + std::to_string(bytes)).low;

@@ -1,8 +1,8 @@
-// What    Rows of a binary PLY file, wherever they are: what several processes read a part of each.
+// What    Rows of a binary PLY file, read from any place in it: several processes each read a part.
 // Shape   For files whose rows are all as long as the header says, without pictures or colours of faces:
-//         vertices without lists, faces that are all triangles. open() tells what it is not for, and rows
-//         that are no good say so; then the whole file is read as by read_ply(), which copes with it or says
-//         what is wrong.
+//         vertices without lists, faces that are all triangles. For other files open() returns nothing, and
+//         reading bad rows returns false; then the whole file is read by read_ply(), which copes with it or
+//         says what is wrong.
 // Memory  A piece of the file of some MiB, and what is returned.
 #pragma once
 
@@ -12,10 +12,9 @@
 #include <fstream>
 #include <optional>
 
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "scene/import/ply/ply_columns.h"
 #include "scene/import/ply/ply_header.h"
-#include "scene/import/ply/ply_left_out.h"
 #include "scene/import/ply/ply_mesh.h"
 
 namespace kdray::scene::ply {
@@ -29,7 +28,7 @@ using Corners = std::array<std::uint32_t, 3>;
 
 class Rows {
  public:
-  // Nothing: the file is to be read whole.
+  // Returns nothing where the file has to be read whole.
   static std::optional<Rows> open(const std::filesystem::path& file);
 
   std::uint64_t n_vertices() const { return vertices_.n; }
@@ -37,10 +36,10 @@ class Rows {
   const VertexColumns& columns() const { return columns_; }
   bool has_more() const { return has_more_; }  // behind the last element of the header
   std::vector<std::string> left_out() const { return left_out_of(header_, file_); }
-  // A hash of the header and the file's size, for ranks to agree on.
+  // Returns a hash of the header and the file's size, for ranks to agree on.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
-  // False: one of them is no good.
+  // Return false where one of the rows is bad.
   bool read_vertices(const RowRange& range, Vertices& out);
   bool read_faces(const RowRange& range, RawVector<Corners>& out);
 

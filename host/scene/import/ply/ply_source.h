@@ -1,8 +1,8 @@
 // What    Where the values of a PLY file's rows come from: text (AsciiSource) or bytes (BinarySource). Both
 //         have the same functions, and ply.cpp reads rows from either.
-// Shape   number, integer and skip take the next value, of which a number may be infinite or NaN; list_length
-//         the next list's length, checked against what is left of the file, so that nothing is allocated for
-//         entries that aren't there.
+// Shape   number, integer and skip take the next value; a number may be infinite or NaN. list_length takes
+//         the next list's length and checks it against what is left of the file, so that nothing is allocated
+//         for entries that aren't there.
 // Errors  ascii: "file:line: ..."; binary: "file: element 'face' 17, byte 4711: ...".
 #pragma once
 
@@ -12,9 +12,13 @@
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
+#include "base/vec.h"
+#include "scene/import/ply/ply_columns.h"
 #include "scene/import/ply/ply_header.h"
+#include "scene/import/ply/ply_mesh.h"
 
 namespace kdray::scene::ply {
 
@@ -29,7 +33,7 @@ class AsciiSource {
   void skip(Type) { token(); }
   std::uint64_t list_length(Type count_type, Type entry_type);
 
-  // The most values that can still follow, and the least a row takes of them.
+  // Return the most values that can still follow, and the fewest that a row takes.
   std::uint64_t capacity() const { return (static_cast<std::uint64_t>(end_ - at_) + 1) / 2; }
   static std::uint64_t least_size(const Element& element) { return element.properties.size(); }
 
@@ -39,7 +43,7 @@ class AsciiSource {
     element_ = &element, row_ = row;
   }
   [[nodiscard]] Error error(const std::string& what, const std::string& remedy = "") const;
-  // Called after the last row: whether only white space is left.
+  // Returns whether only white space is left; called after the last row.
   bool at_end() {
     finish_line();
     return skip_space();
@@ -63,7 +67,7 @@ class AsciiSource {
 
 inline constexpr bool kLittleEndianHost = std::endian::native == std::endian::little;
 
-// What a file's bytes stand for on this machine.
+// Returns the value that a file's bytes stand for on this machine.
 template <class T, bool swap>
 T load(const unsigned char* bytes) {
   unsigned char raw[sizeof(T)];
@@ -166,5 +170,18 @@ class BinarySource {
   const Element* element_ = nullptr;
   std::uint64_t row_ = 0;
 };
+
+// ---- The fast paths of binary files: vertices without lists, column by column, and faces that are nothing
+// but triangles of 32-bit indices after a one-byte count. Everything else ply.cpp reads value by value.
+
+// Fills the arrays that there are columns for, which have element.count entries, for which the source has the
+// bytes. Returns false where some value is not finite.
+template <bool swap>
+bool read_columns(BinarySource<swap>& source, const Element& element, const VertexColumns& columns,
+                  VertexArrays& out);
+
+// Reads rows as long as they are good triangles, and returns their number.
+template <bool swap>
+std::uint64_t read_triangles(BinarySource<swap>& source, const Element& element, Mesh& mesh);
 
 }  // namespace kdray::scene::ply

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "accel/kdtree/binned/simd.h"
+#include "accel/kdtree/binned/binned.h"
 #include "accel/kdtree/build.h"
 #include "accel/kdtree/check_tree.h"
 #include "accel/kdtree/integer_case.h"
