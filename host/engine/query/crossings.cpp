@@ -214,7 +214,10 @@ class Collector {
   Collector& operator=(const Collector&) = delete;
   ~Collector() {
     adding_.cancel();
-    adding_.wait();
+    try {
+      adding_.wait();
+    } catch (...) {  // another error is on its way
+    }
   }
 
   QueryReport run(RowTaker& rows, const std::optional<Cancel>& cancel) {
