@@ -463,10 +463,10 @@ class Scene:
         surface comes first is decided in floats about the scene's centre; t of a float64 ray is that of this surface
         in double, and a surface whose t is then not above t_min is none. (What remains: one within some 4e-6 of the
         scene's size ahead of the start may be passed by, and of two as near to each other the farther one be found;
-        `all_hits` decides the former in double.) Results are float32 for float32 rays. `fields` names the arrays of `Hits` that are wanted
-        (all but `point`, and `instance` only where the scene has instances, if you say nothing): fewer are faster;
-        `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are misses, or with `strict` an
-        InputError that names the first.
+        `all_hits` decides the former in double.) Results are float32 for float32 rays. `fields` names the arrays of
+        `Hits` that are wanted (all but `point`, and `instance` only where the scene has instances, if you say
+        nothing): fewer are faster; `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are
+        misses, or with `strict` an InputError that names the first.
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         usual = _USUAL_OF_INSTANCES if self._has_instances else _USUAL

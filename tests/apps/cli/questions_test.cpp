@@ -295,8 +295,9 @@ TEST(Questions, OptionsThatContradictEachOtherAreUsage) {
       {{"--rays", r4, "--max-hits", "3"}, "x.npy", "--max-hits is for --all-hits"},
       {{"--rays", r4, "--all-hits", "--max-hits", "0"}, "x.npz", "from 1"},
       {{"--rays", r4, "--all-hits"}, "x.npy", "ends in .npz"},
-      {{"--rays", r4, "--count", "--traversal", "wide"}, "x.npy", "--traversal"},
-      {{"--rays", r8, "--precision", "double"}, "x.npy", "r8.npy holds float64"},
+      {{"--rays", r4, "--count", "--traversal", "binary"}, "x.npy", "--traversal"},
+      {{"--rays", r8, "--count", "--precision", "double"}, "x.npy", "--precision double"},
+      {{"--closest-point", p, "--traversal", "wide"}, "x.npy", "a walk of its own"},
       {{"--inside", asking.scene}, "box.obj", "the same file"},
   };
   for (const Case& c : cases) {
