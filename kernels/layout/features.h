@@ -111,29 +111,29 @@
 
 // Code of a kind, where the program has it.
 #if KDRAY_HAS_KIND(TRIANGLE)
-#define KDRAY_IF_TRIANGLE(...) __VA_ARGS__
+#define KDRAY_IF_TRIANGLE(code) code
 #else
-#define KDRAY_IF_TRIANGLE(...)
+#define KDRAY_IF_TRIANGLE(code)
 #endif
 #if KDRAY_HAS_KIND(SPHERE)
-#define KDRAY_IF_SPHERE(...) __VA_ARGS__
+#define KDRAY_IF_SPHERE(code) code
 #else
-#define KDRAY_IF_SPHERE(...)
+#define KDRAY_IF_SPHERE(code)
 #endif
 #if KDRAY_HAS_KIND(CONE)
-#define KDRAY_IF_CONE(...) __VA_ARGS__
+#define KDRAY_IF_CONE(code) code
 #else
-#define KDRAY_IF_CONE(...)
+#define KDRAY_IF_CONE(code)
 #endif
 #if KDRAY_HAS_KIND(DISC)
-#define KDRAY_IF_DISC(...) __VA_ARGS__
+#define KDRAY_IF_DISC(code) code
 #else
-#define KDRAY_IF_DISC(...)
+#define KDRAY_IF_DISC(code)
 #endif
 #if KDRAY_HAS_KIND(TORUS)
-#define KDRAY_IF_TORUS(...) __VA_ARGS__
+#define KDRAY_IF_TORUS(code) code
 #else
-#define KDRAY_IF_TORUS(...)
+#define KDRAY_IF_TORUS(code)
 #endif
 #else
 namespace kdray::layout {
