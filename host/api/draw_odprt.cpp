@@ -31,11 +31,12 @@ std::uint64_t memory_limit(const State& state, const RenderOptions& o) {
 
 odprt::Request request_for(State& state, Job& job) {
   const RenderOptions& o = job.options;
-  wavefront::Schedule schedule = state.scheduler.schedule_for(state.devices.first(), job);
+  // Rays travel between slices on every device.
+  wavefront::Schedule schedule = state.scheduler.schedule_for(state.devices.first(), job, true);
   schedule.apply(job.frame, job.features);
   odprt::Request request{request_of(state, job)};
   for (Device& d : state.devices) {
-    schedule.n_slices = std::max(schedule.n_slices, state.scheduler.schedule_for(d, job).n_slices);
+    schedule.n_slices = std::max(schedule.n_slices, state.scheduler.schedule_for(d, job, true).n_slices);
     for (const cl::CommandQueue& queue : d.context.queues())
       request.queues.push_back({&d.context, queue, &d.programs, request.queues.size()});
   }

@@ -16,10 +16,6 @@ std::vector<pdprt::Device> places_on(State& state, const Job& job) {
   std::vector<pdprt::Device> places;
   for (Device& d : state.devices)
     places.push_back({&d.context, &d.buffers(), &d.programs, state.scheduler.schedule_for(d, job)});
-  // The frame has one size of batches for all devices.
-  const auto batch = [](const pdprt::Device& place) { return place.schedule.batch_size; };
-  const std::uint32_t smallest = batch(*std::ranges::min_element(places, {}, batch));
-  for (pdprt::Device& place : places) place.schedule.batch_size = smallest;
   return places;
 }
 

@@ -1,6 +1,7 @@
 #include "api/scheduler.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "api/precision.h"
 
@@ -41,7 +42,7 @@ void Scheduler::choose_slices(wavefront::Schedule& schedule, const engine::Devic
   // streams of its own.
   const std::uint32_t units = device.units_of_a_queue();
   schedule.n_slices = std::max(schedule.n_slices, 16 * units);
-  if (schedule.fused && !one_queue) {
+  if (!one_queue) {
     // Launches do less here, so that what a queue must have ahead of it (pdprt/queue.h) is little. On one
     // core slices would only take turns.
     schedule.n_slices = units == 1 ? 1 : 16 * units;
@@ -54,14 +55,33 @@ void Scheduler::choose_slices(wavefront::Schedule& schedule, const engine::Devic
   if (one_queue && tuned.waves > 0) schedule.fused_waves = static_cast<std::uint32_t>(tuned.waves);
 }
 
-wavefront::Schedule Scheduler::schedule_for(const engine::Device& device, const Job& job) const {
+// Where every ray has a work-item, a wave is to fill the device many times over: its last rays take long. It is
+// no larger than the frame needs, and leaves most of the device's memory to others.
+void Scheduler::choose_wave(wavefront::Schedule& schedule, const engine::Device& device,
+                            const Job& job) const {
+  constexpr std::uint64_t kRaysOfUnit = 8192, kLeast = 4096, kShareOfMemory = 4;
+  layout::Frame frame = job.frame;
+  schedule.apply(frame, job.features);
+  const std::uint64_t samples =
+      std::uint64_t{frame.n_tiles} * schedule.tile_width * schedule.tile_height * frame.n_samples;
+  schedule.batch_size = static_cast<std::uint32_t>(
+      std::clamp(kRaysOfUnit * device.units_of_a_queue(), kLeast, std::max(std::bit_ceil(samples), kLeast)));
+  for (;; schedule.batch_size /= 2) {
+    schedule.apply(frame, job.features);
+    const std::size_t bytes = device.context.queues().size() * schedule.stream_bytes(frame, job.features);
+    if (bytes <= device.context.info().global_memory / kShareOfMemory || schedule.batch_size <= kLeast)
+      return;
+  }
+}
+
+wavefront::Schedule Scheduler::schedule_for(const engine::Device& device, const Job& job, bool fused) const {
   wavefront::Schedule schedule;
   choose_tiles(schedule, job);
   schedule.work_group = device.work_group;
   schedule.traversal = traversal_in(job.options.precision, job.options.traversal, device.context.info());
   schedule.precision = job.options.precision;
-  schedule.fused = !device.global;
-  choose_slices(schedule, device);
+  schedule.fused = fused;
+  fused ? choose_slices(schedule, device) : choose_wave(schedule, device, job);
   // A slice without a tile would do nothing.
   const std::uint64_t tiles_x = (job.frame.width + schedule.tile_width - 1) / schedule.tile_width;
   const std::uint64_t tiles_y = (job.frame.height + schedule.tile_height - 1) / schedule.tile_height;

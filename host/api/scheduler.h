@@ -20,7 +20,11 @@ class Scheduler {
   Scheduler(const engine::DeviceScene& devices, std::uint32_t n_ranks)
       : devices_(devices), n_ranks_(n_ranks) {}
 
-  wavefront::Schedule schedule_for(const engine::Device& device, const Job& job) const;
+  wavefront::Schedule schedule_for(const engine::Device& device, const Job& job) const {
+    return schedule_for(device, job, !device.global);
+  }
+  // `fused`: of slices, whatever the device.
+  wavefront::Schedule schedule_for(const engine::Device& device, const Job& job, bool fused) const;
 
   // What the tiles of a frame cost.
   void remember(const layout::Frame& frame, const pdprt::TileCost& cost);
@@ -30,6 +34,7 @@ class Scheduler {
   void choose_tiles(wavefront::Schedule& schedule, const Job& job) const;
   std::uint32_t tile_side(const layout::Frame& frame) const;
   void choose_slices(wavefront::Schedule& schedule, const engine::Device& device) const;
+  void choose_wave(wavefront::Schedule& schedule, const engine::Device& device, const Job& job) const;
 
   const engine::DeviceScene& devices_;
   std::uint32_t n_ranks_;

@@ -17,9 +17,9 @@ typedef struct Row {
   real lane[KDRAY_LANES];
 } Row;
 
-inline Row row_of(real16 v) {
+inline Row row_of(realN v) {
   Row row;
-  vstore16(v, 0, row.lane);
+  storeN(v, row.lane);
   return row;
 }
 
@@ -61,15 +61,15 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   if (first >= n_pixels) return;
   const u32 n = min(n_pixels - first, KDRAY_LANES);
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
-  const uint16 pixel = first_pixel + first + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  const Real2x16 middle = {(real16)(0.5f), (real16)(0.5f)};
+  const uintN pixel = first_pixel + first + KDRAY_LANE_NUMBERS;
+  const Real2xN middle = {(realN)(0.5f), (realN)(0.5f)};
   const EyeRays rays = eye_rays(frame, pixel % frame->width, pixel / frame->width, middle);
-  const Real3x16 d = normalize3(rays.direction);
+  const Real3xN d = normalize3(rays.direction);
   const Row ox = row_of(rays.origin.x), oy = row_of(rays.origin.y), oz = row_of(rays.origin.z);
   const Row dx = row_of(d.x), dy = row_of(d.y), dz = row_of(d.z);
   const Row t_min = row_of(frame->hither / dot3(d, splat3(load3_constant(frame->forward))));
   // Lanes behind the last pixel take part in vectors as misses.
-  Row t = row_of((real16)(INFINITY)), u = row_of((real16)(0.0f)), v = u, number = u, cost = u;
+  Row t = row_of((realN)(INFINITY)), u = row_of((realN)(0.0f)), v = u, number = u, cost = u;
   word refs[KDRAY_LANES], instances[KDRAY_LANES];
   for (u32 i = 0; i < KDRAY_LANES; ++i) {
     refs[i] = KDRAY_REF_MISS;
@@ -88,19 +88,19 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
     cost.lane[i] = hit.cost;
   }
   const Hits hits = {
-    vload16(0, t.lane),
-    vload16(0, refs),
-    vload16(0, u.lane),
-    vload16(0, v.lane),
+    loadN(t.lane),
+    loadN(refs),
+    loadN(u.lane),
+    loadN(v.lane),
 #if KDRAY_HAS_INSTANCES
-    vload16(0, instances),
+    loadN(instances),
 #endif
   };
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
-  const lanes16 hit = hits.ref != KDRAY_REF_MISS;
+  const lanesN hit = hits.ref != KDRAY_REF_MISS;
   Surface s;
   surfaces_at(&arrays, rays.origin, d, &hits, hit, &s);
-  const Real3x16 normal = select3(hit, s.shading, zero3());
+  const Real3xN normal = select3(hit, s.shading, zero3());
   const Row nx = row_of(normal.x), ny = row_of(normal.y), nz = row_of(normal.z);
   for (u32 i = 0; i < n; ++i) {
     __global float* out = out_channels + (size_t)(first + i) * 7;

@@ -59,6 +59,7 @@
 // All kernels: X(the host's name, file, function, list).
 #define KDRAY_KERNELS(X)                                                                        \
   X(Wave, "wave/wave.cl", wave, KDRAY_WAVE_ARGUMENTS)                                           \
+  X(Plan, "wave/plan.cl", plan, KDRAY_PLAN_ARGUMENTS)                                           \
   X(Admit, "raygen/admit.cl", admit, KDRAY_ADMIT_ARGUMENTS)                                     \
   X(TraceClosest, "traverse/trace_closest.cl", trace_closest, KDRAY_TRACE_CLOSEST_ARGUMENTS)    \
   X(Shade, "shade/shade.cl", shade, KDRAY_SHADE_ARGUMENTS)                                      \
@@ -90,19 +91,21 @@
   X(IO, uchar, occluded)           \
   X(IO, i64, film)
 
+// Where every ray has a work-item, the rays of a queue are those of one slice.
+#define KDRAY_PLAN_ARGUMENTS(F, X) \
+  F(CONSTANT, Frame, frame)        \
+  X(VALUE, u32, n_tiles)           \
+  X(IO, Slice, slices)
+
 #define KDRAY_ADMIT_ARGUMENTS(F, X) \
   F(CONSTANT, Frame, frame)         \
-  X(VALUE, u32, n_slices)           \
   X(IO, Slice, slices)              \
   X(IN, u32, tiles)                 \
-  X(VALUE, u32, n_tiles)            \
   X(IN, real, pool)                 \
-  X(OUT, real, batch)               \
-  X(OUT, i64, film)
+  X(OUT, real, batch)
 
 #define KDRAY_TRACE_CLOSEST_ARGUMENTS(F, X) \
   F(CONSTANT, Frame, frame)                 \
-  X(VALUE, u32, n_slices)                   \
   KDRAY_TRACED_ARRAYS(X)                    \
   KDRAY_TEXTURING_ARRAYS(X)                 \
   X(IN, Slice, slices)                      \
@@ -111,7 +114,6 @@
 
 #define KDRAY_SHADE_ARGUMENTS(F, X) \
   F(CONSTANT, Frame, frame)         \
-  X(VALUE, u32, n_slices)           \
   X(VALUE, u32, first_light)        \
   KDRAY_SURFACE_ARRAYS(X)           \
   KDRAY_LOOK_ARRAYS(X)              \
@@ -124,7 +126,6 @@
 
 #define KDRAY_TRACE_SHADOW_ARGUMENTS(F, X) \
   F(CONSTANT, Frame, frame)                \
-  X(VALUE, u32, n_slices)                  \
   KDRAY_TRACED_ARRAYS(X)                   \
   KDRAY_TEXTURING_ARRAYS(X)                \
   X(IN, Slice, slices)                     \
@@ -133,7 +134,6 @@
 
 #define KDRAY_ADD_ARGUMENTS(F, X) \
   F(CONSTANT, Frame, frame)       \
-  X(VALUE, u32, n_slices)         \
   X(IO, Slice, slices)            \
   X(IN, real, shadow_rays)        \
   X(IN, uchar, occluded)          \

@@ -10,7 +10,11 @@
 #include "layout/base.layout.h"
 #include "layout/features.h"
 
-#define KDRAY_LANES 16u  // rays to a vector
+// Rays to a work-item of what shades and makes rays: a vector of them, or one where the device's own lanes are
+// work-items. The host's capacities are for vectors.
+#ifndef KDRAY_LANES
+#define KDRAY_LANES 16u
+#endif
 
 // This is 1 in the kernels of ODPRT, whose rays carry what another queue needs to go on with them.
 #ifndef KDRAY_ODPRT
@@ -41,6 +45,9 @@
 // (Slice).
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
+// ... of what lies in a batch where every ray has a work-item and is no ray: its t_max is -INFINITY. So is that of
+// a light's place in the shadow stream that has no ray.
+#define KDRAY_NO_PIXEL 0xffffffffu
 // In ODPRT a ray brings the best hit so far, whose t is the float below t_max.
 #define KDRAY_RAY_NUMBER 12u  // u32: of its primitive, in file order
 #define KDRAY_RAY_FINDER 13u  // u32: KDRAY_FINDER of the part that holds it (or KDRAY_NO_PART)

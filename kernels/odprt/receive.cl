@@ -12,9 +12,9 @@
 inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n, u32 slice_id,
                          __global Slice* slice, __global float* pool) {
   for (u32 i = 0; i < n; i += KDRAY_LANES) {
-    const uint16 word = as_uint16(read16(from, KDRAY_RAY_FINDER, i));
+    const uintN word = as_uintN(readN(from, KDRAY_RAY_FINDER, i));
     for (Distinct d = distinct_values(KDRAY_FINDER_DEPTH(word), lanes_up_to(n - i)); d.rest != 0;) {
-      const mask16 same = next_lanes(&d);
+      const maskN same = next_lanes(&d);
       __global u32* n_pool = &slice->n_pool[d.value - 1];
       if (*n_pool + count_lanes(same) > frame->pool_size) {
         slice->n_pool_overflow += count_lanes(same);
@@ -22,8 +22,8 @@ inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n,
       }
       const Stream to = pool_of_depth(pool, frame, slice_id, d.value);
       for (u32 f = 0; f < KDRAY_RAY_FIELDS; ++f)
-        append16(to, f, *n_pool, same,
-                 f == KDRAY_RAY_FINDER ? as_float16(KDRAY_FINDER_PART(word)) : read16(from, f, i));
+        appendN(to, f, *n_pool, same,
+                f == KDRAY_RAY_FINDER ? as_floatN(KDRAY_FINDER_PART(word)) : readN(from, f, i));
       *n_pool += count_lanes(same);
     }
   }
@@ -37,7 +37,7 @@ inline void receive_shadow_rays(__constant const Travel* travel, ConstStream fro
   }
   const u32 first = traffic->n_shadow_pool;
   for (u32 f = 0; f < KDRAY_TRAVEL_SHADOW_FIELDS; ++f)
-    for (u32 i = 0; i < n; i += KDRAY_LANES) write16(pool, f, first + i, read16(from, f, i));
+    for (u32 i = 0; i < n; i += KDRAY_LANES) writeN(pool, f, first + i, readN(from, f, i));
   traffic->n_shadow_pool = first + n;
 }
 

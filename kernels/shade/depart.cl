@@ -7,12 +7,12 @@
 #include "layout/verify.layout.h"
 #include "shade/surface.clh"
 
-inline Real3x16 load_lanes3(const real* lanes) {
-  const Real3x16 r = {vload16(0, lanes), vload16(1, lanes), vload16(2, lanes)};
+inline Real3xN load_lanes3(const real* lanes) {
+  const Real3xN r = {loadN(lanes), loadN(lanes + KDRAY_LANES), loadN(lanes + 2 * KDRAY_LANES)};
   return r;
 }
-inline void store_lanes3(Real3x16 v, real* lanes) {
-  vstore16(v.x, 0, lanes), vstore16(v.y, 1, lanes), vstore16(v.z, 2, lanes);
+inline void store_lanes3(Real3xN v, real* lanes) {
+  storeN(v.x, lanes), storeN(v.y, lanes + KDRAY_LANES), storeN(v.z, lanes + 2 * KDRAY_LANES);
 }
 
 __kernel void depart(KDRAY_PARAMETERS(KDRAY_DEPART_ARGUMENTS)) {
@@ -30,7 +30,7 @@ __kernel void depart(KDRAY_PARAMETERS(KDRAY_DEPART_ARGUMENTS)) {
     t[lane] = in_hits[i].t, ref[lane] = in_hits[i].ref, u[lane] = in_hits[i].u, v[lane] = in_hits[i].v;
   }
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
-  const Hits hits = {vload16(0, t), vload16(0, ref), vload16(0, u), vload16(0, v)};
+  const Hits hits = {loadN(t), loadN(ref), loadN(u), loadN(v)};
   Surface s;
   surfaces_at(&arrays, load_lanes3(origin), load_lanes3(direction), &hits, lanes_up_to(count), &s);
   real front[3 * KDRAY_LANES], back[3 * KDRAY_LANES], normal[3 * KDRAY_LANES];

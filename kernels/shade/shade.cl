@@ -1,13 +1,22 @@
-// What    The stage shade by itself, for the lights from `first_light` on. One work-item per slice.
+// What    Shades the hits of a wave's rays (shade.clh), where every ray has a work-item.
 #include "layout/arguments.h"
 #include "shade/shade.clh"
 
 __kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
-  const u32 slice = (u32)get_global_id(0);
-  if (slice >= n_slices) return;
+  __local Tally of_group;
+  const u32 i = (u32)get_global_id(0);
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const TexturingArrays texturing = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TEXTURING_ARRAYS);
   const SkyArrays sky = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SKY_ARRAYS);
-  shade_batch(&arrays, &texturing, &sky, in_lights, frame, slice, first_light, io_slices + slice, in_batch,
-              in_hits, io_pool, out_shadow_rays, io_film);
+  Shading c = begin_shading(frame, &sky, 0, io_slices, first_light, io_pool, out_shadow_rays);
+  if (i < io_slices->n_batch) {
+    const ConstStream batch = const_stream_of(in_batch, 0, KDRAY_RAY_FIELDS, frame->batch_capacity);
+    const ConstStream hits = const_stream_of(in_hits, 0, KDRAY_HIT_FIELDS, frame->batch_capacity);
+    c.ray = i;
+    for (u32 k = 0; k < frame->light_batch; ++k)
+      write1(c.shadow, KDRAY_RAY_T_MAX, shadow_place(frame, k, i), -INFINITY);
+    const bool is_ray = (u32)as_word(read1(batch, KDRAY_RAY_PIXEL, i)) != KDRAY_NO_PIXEL;
+    shade_rays(&c, &arrays, &texturing, in_lights, first_light, batch, hits, i, is_ray, io_film);
+  }
+  add_tally(io_slices, &c.tally, &of_group);
 }

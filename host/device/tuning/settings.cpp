@@ -22,14 +22,14 @@ const Shipped kShipped[] = {{"cpu", {}}, {"gpu", {}}, {"accelerator", {}}};
 
 std::span<const Setting> settings() {
   static const std::vector<Setting> all = {
-      {"batch", &Tuning::batch, {256, 1024, 2048}, "", true, true, "rays that a slice traces in one wave"},
+      {"batch", &Tuning::batch, {256, 1024, 2048}, "", true, false, "rays that a slice traces in one wave"},
       {"tile", &Tuning::tile, {16, 64}, "", true, true, "side of the largest tiles, pixels"},
       {"slices",
        &Tuning::slices,
        {4, 8, 16, 64},
        "",
        true,
-       true,
+       false,
        "slices in flight for each compute unit (block of the frame that one work-item renders)"},
       {"waves", &Tuning::waves, {16, 32, 128, 256}, "", true, false, "waves of a slice in one launch"},
       {"work-group",

@@ -54,7 +54,7 @@ Queue::Queue(std::size_t number, const Device& device, const cl::CommandQueue& q
              const wavefront::Capacity& capacity)
     : number_(number),
       frame_(scheduled(task.frame, device.schedule, task.features)),
-      n_slices_(device.schedule.n_slices),
+      n_slices_(device.schedule.slices()),
       waves_per_launch_(n_slices_ * (device.schedule.fused ? device.schedule.fused_waves : 1.0)),
       waves_per_tile_(guessed_waves(frame_)),
       compute_units_(device::checked(

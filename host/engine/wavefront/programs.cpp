@@ -45,6 +45,7 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 // The bits a file reads: a scene that differs elsewhere shares the program.
 layout::Features bits_read_by(const std::string& file) {
   if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
+  if (file == "wave/plan.cl") return KDRAY_FEATURE_ADAPTIVE;
   if (file == "raygen/admit.cl")
     return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_FOOTPRINTS | kSamples |
            KDRAY_FEATURE_INSTANCES;
@@ -59,6 +60,12 @@ layout::Features bits_read_by(const std::string& file) {
     return kGeometry | kTexturing | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS;
   if (file == "traverse/trace_shadow.cl") return kGeometry | kTexturing;
   return kGeometry;
+}
+
+// The stages of a wave whose rays have a work-item each.
+bool is_per_ray(const std::string& file) {
+  return file == "wave/plan.cl" || file == "raygen/admit.cl" || file == "traverse/trace_closest.cl" ||
+         file == "shade/shade.cl" || file == "traverse/trace_shadow.cl" || file == "film/add.cl";
 }
 
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
@@ -167,6 +174,7 @@ std::string Programs::options_for(const std::string& file, Traversal traversal, 
   std::string options =
       "-cl-std=CL1.2 " + device::build_option(in_double ? device::Simd::portable : context_->simd());
   if (in_double) options += " -DKDRAY_PRECISION=64";
+  if (is_per_ray(file)) options += " -DKDRAY_LANES=1u";
   if (traversal == Traversal::binary) {
     options += fmt::format(" -DKDRAY_STACK_SIZE={}", stack);
   } else {

@@ -47,7 +47,7 @@ void Schedule::apply(layout::Frame& frame, layout::Features features) const {
 }
 
 std::size_t Schedule::stream_bytes(const layout::Frame& frame, layout::Features features) const {
-  return n_slices * StreamForm::of_device(frame, word_of(precision), features).bytes(frame);
+  return slices() * StreamForm::of_device(frame, word_of(precision), features).bytes(frame);
 }
 
 void Schedule::fit(layout::Frame frame, layout::Features features, std::size_t max_bytes) {
@@ -69,22 +69,27 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       features_(features),
       capacity_{std::max(capacity.tiles, capacity.samples / KDRAY_SAMPLE_RUN),
                 std::max(capacity.pixels, capacity.samples), capacity.samples},
-      buffers_(context, frame, {schedule.n_slices, capacity_.tiles, capacity_.samples, capacity_.pixels},
+      buffers_(context, frame, {schedule.slices(), capacity_.tiles, capacity_.samples, capacity_.pixels},
                StreamForm::of_device(frame, word_of(schedule.precision), features)),
       tile_cycles_(context.buffer(CL_MEM_READ_WRITE, tile_cycle_bytes(), "the tiles' cycles")) {
   device::checked("setting up the kernels", [&] {
     if (schedule.fill) buffers_.fill(queue_, *schedule.fill);
     schedule.fused ? make_wave(programs, scene) : make_stages(programs, scene);
+    if (!schedule.fused) film_is_made();  // which is cleared
     warm_up();
-    if (buffers_.film_made.valid()) buffers_.film_made.get();
+    film_is_made();
   });
+}
+
+void Wavefront::film_is_made() {
+  if (buffers_.film_made.valid()) buffers_.film_made.get();
 }
 
 // Calls `act` with every stage that is there.
 template <class Do>
 void Wavefront::for_each_stage(const Do& act) {
   const auto act_on = [&](auto&... stages) { ((stages ? act(*stages) : void()), ...); };
-  act_on(wave_, admit_, trace_closest_, shade_, trace_shadow_, add_);
+  act_on(wave_, plan_, admit_, trace_closest_, shade_, trace_shadow_, add_);
 }
 
 // PoCL compiles a kernel for good at its first launch: here one that finds nothing to do, not in the frame's
@@ -102,7 +107,7 @@ template <class K>
 void Wavefront::set_arguments(Stage<K>& stage, const SceneBuffers& scene) {
   scene.set_arguments(stage);
   buffers_.set_arguments(stage);
-  KDRAY_SET_WHERE_TAKEN(K, stage, n_slices, schedule_.n_slices);
+  KDRAY_SET_WHERE_TAKEN(K, stage, n_slices, schedule_.slices());
   KDRAY_SET_WHERE_TAKEN(K, stage, n_waves, schedule_.fused_waves);
   KDRAY_SET_WHERE_TAKEN(K, stage, tile_cycles, tile_cycles_);
 }
@@ -117,7 +122,8 @@ void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
   const Traversal none = Traversal::binary;
   const Traversal walk = schedule_.traversal == Traversal::binary ? Traversal::binary : Traversal::wide;
   const bool lights = (features_ & KDRAY_FEATURE_LIGHTS) != 0;
-  std::vector<Programs::Wanted> wanted = {{Admit::kFile, features_, none, schedule_.precision},
+  std::vector<Programs::Wanted> wanted = {{Plan::kFile, features_, none, schedule_.precision},
+                                          {Admit::kFile, features_, none, schedule_.precision},
                                           {TraceClosest::kFile, features_, walk, schedule_.precision},
                                           {Shade::kFile, features_, none, schedule_.precision}};
   if (lights) wanted.push_back({TraceShadow::kFile, features_, walk, schedule_.precision});
@@ -127,6 +133,7 @@ void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
     stage.emplace(programs.kernel<K>(features_, traversal, schedule_.precision));
     set_arguments(*stage, scene);
   };
+  make(plan_, none);
   make(admit_, none);
   make(trace_closest_, walk);
   make(shade_, none);
@@ -149,13 +156,8 @@ void Wavefront::settle() noexcept {
 }
 
 template <class K>
-cl::Event Wavefront::launch_per_slice(Stage<K>& stage) {
-  return stage.launch(queue_, schedule_.n_slices, 1);
-}
-
-template <class K>
-cl::Event Wavefront::launch_per_ray(Stage<K>& stage, std::size_t rays_of_slice) {
-  return stage.launch(queue_, schedule_.n_slices * rays_of_slice, schedule_.work_group);
+cl::Event Wavefront::launch_per_ray(Stage<K>& stage, std::size_t n_rays) {
+  return stage.launch(queue_, n_rays, schedule_.work_group);
 }
 
 // The event of the last.
@@ -164,10 +166,11 @@ cl::Event Wavefront::launch_lights() {
   cl::Event last;
   do {
     shade_->set(kernels::Shade::first_light, first);
-    last = launch_per_slice(*shade_);
+    last = launch_per_ray(*shade_, frame_.batch_size);
     if (frame_.light_batch > 0) {
-      launch_per_ray(*trace_shadow_, std::size_t{frame_.batch_size} * frame_.light_batch);
-      last = launch_per_slice(*add_);
+      const std::size_t n_shadow_rays = std::size_t{frame_.batch_size} * frame_.light_batch;
+      launch_per_ray(*trace_shadow_, n_shadow_rays);
+      last = launch_per_ray(*add_, n_shadow_rays);
     }
     first += frame_.light_batch;
   } while (frame_.light_batch > 0 && first < frame_.n_lights);
@@ -175,15 +178,16 @@ cl::Event Wavefront::launch_lights() {
 }
 
 void Wavefront::launch_stages(Launch& launch) {
-  admit_->set(kernels::Admit::n_tiles, n_listed_);
-  launch.first = launch_per_slice(*admit_);
+  plan_->set(kernels::Plan::n_tiles, n_listed_);
+  launch.first = plan_->launch(queue_, 1, 1);
+  launch_per_ray(*admit_, frame_.batch_size);
   launch_per_ray(*trace_closest_, frame_.batch_size);
   launch.last = launch_lights();
 }
 
 void Wavefront::launch_wave(Launch& launch) {
   wave_->set(kernels::Wave::n_tiles, n_listed_);
-  launch.first = launch.last = launch_per_slice(*wave_);
+  launch.first = launch.last = wave_->launch(queue_, schedule_.slices(), 1);
 }
 
 void Wavefront::launch(Launch& launch) {
@@ -213,11 +217,13 @@ void Wavefront::begin_samples(std::span<const layout::u32> samples) {
 void Wavefront::begin_list() {
   n_listed_ = n_taken_ = 0;
   list_counters_ = {};
-  const std::vector<layout::Slice> slices = fresh_slices(schedule_.n_slices);
-  for (Launch& launch : launches_) launch.slices.resize(schedule_.n_slices);
+  const std::vector<layout::Slice> slices = fresh_slices(schedule_.slices());
+  for (Launch& launch : launches_) launch.slices.resize(schedule_.slices());
   device::checked("beginning a list of tiles", [&] {
     if (wave_)
       queue_.enqueueFillBuffer(tile_cycles_, layout::u64{0}, 0, capacity_.tiles * sizeof(layout::u64));
+    else
+      queue_.enqueueFillBuffer(buffers_.film, layout::i64{0}, 0, buffers_.film.getInfo<CL_MEM_SIZE>());
     queue_.enqueueWriteBuffer(buffers_.frame, CL_TRUE, 0, sizeof frame_, &frame_);
     queue_.enqueueWriteBuffer(buffers_.slices, CL_TRUE, 0, slices.size() * sizeof(layout::Slice),
                               slices.data());
@@ -238,15 +244,15 @@ bool Wavefront::enlist(const Feed& feed, const Progress& progress) {
 
 std::uint32_t Wavefront::tiles_taken(const Launch& launch) const {
   std::uint32_t taken = 0;
-  for (std::uint32_t s = 0; s < schedule_.n_slices; ++s)
-    taken += (launch.slices[s].tile - s) / schedule_.n_slices;
+  const std::uint32_t n_slices = schedule_.slices();
+  for (std::uint32_t s = 0; s < n_slices; ++s) taken += (launch.slices[s].tile - s) / n_slices;
   return taken;
 }
 
 std::uint32_t Wavefront::front(const Launch& launch) const {
   std::uint32_t furthest = 0;
   for (const layout::Slice& slice : launch.slices) furthest = std::max(furthest, slice.tile);
-  return std::min(furthest + 1 - schedule_.n_slices, launch.listed);  // slice s begins with entry s
+  return std::min(furthest + 1 - schedule_.slices(), launch.listed);  // slice s begins with entry s
 }
 
 void Wavefront::tell_of(const Launch& launch, const Counters& sum, std::uint32_t tiles) {

@@ -1,8 +1,9 @@
 // What    Traces tiles of a frame on one queue, wave by wave: admit, trace closest, shade, trace shadow, add;
 //         in one launch for all stages (CPUs) or in one for each.
-// Shape   n_slices slices, each with a pool, a batch and shadow rays of its own (kernels/raygen/admit.clh has
-//         the bound on the pool). The queue's work is a list of tiles on the device, which grows: slice s
-//         takes the entries s, s + n_slices, ... as far as it goes. A wave serves all slices.
+// Shape   Fused, n_slices slices, each with a pool, a batch and shadow rays of its own (kernels/raygen/admit.clh
+//         has the bound on the pool). The queue's work is a list of tiles on the device, which grows: slice s
+//         takes the entries s, s + n_slices, ... as far as it goes. A wave serves all slices. Not fused, there is
+//         one slice, and each ray of its batch has a work-item in every stage.
 //         The next launch, and more tiles for it, are queued before the host looks at what the last one left:
 //         the device never waits for the host, and runs one empty launch at the end.
 // Errors  Counters are read after every launch: a full stack or pool, or a NaN, ends the render with
@@ -29,14 +30,18 @@ namespace kdray::wavefront {
 struct Schedule {
   std::uint32_t tile_width = 32, tile_height = 32;
   std::uint32_t batch_size = 512;  // rays a slice traces in one wave
-  std::uint32_t n_slices = 64;     // slices in flight on a queue
+  std::uint32_t n_slices = 64;     // slices in flight on a queue, if stages are fused
   std::uint32_t light_batch = 8;   // lights between two waves of shadow rays, KDRAY_MAX_LIGHT_BATCH at most
-  bool fused = true;               // all stages in one launch (for CPUs); false: one launch per stage
-  std::uint32_t fused_waves = 64;  // waves that such a launch takes a slice through
-  std::size_t work_group = 64;     // local size of the stages that have one ray per work-item
+  // All stages in one launch (for CPUs); false: one launch per stage, and every ray has a work-item.
+  bool fused = true;
+  std::uint32_t fused_waves = 64;              // waves that such a launch takes a slice through
+  std::size_t work_group = 64;                 // local size of stages that are not fused
   Traversal traversal = Traversal::automatic;  // not fused, all but binary walk the wide tree ray by ray
   Precision precision = Precision::float32;    // float64: binary alone
   std::optional<cl_uint> fill = {};  // for tests: what streams and film hold before they are written
+
+  // All rays are one slice's where they have a work-item each.
+  std::uint32_t slices() const { return fused ? n_slices : 1; }
 
   // Bytes of a queue's slices and their streams, in a frame that the schedule was applied to.
   std::size_t stream_bytes(const layout::Frame& frame, layout::Features features) const;
@@ -138,13 +143,12 @@ class Wavefront {
   template <class K>
   void set_arguments(Stage<K>& stage, const SceneBuffers& scene);
   template <class K>
-  cl::Event launch_per_slice(Stage<K>& stage);
-  template <class K>
-  cl::Event launch_per_ray(Stage<K>& stage, std::size_t rays_of_slice);
+  cl::Event launch_per_ray(Stage<K>& stage, std::size_t n_rays);
   template <class Do>
   void for_each_stage(const Do& act);
   void make_wave(Programs& programs, const SceneBuffers& scene);
   void make_stages(Programs& programs, const SceneBuffers& scene);
+  void film_is_made();
   void warm_up();
   void begin_list();
   bool enlist(const Feed& feed, const Progress& progress);
@@ -174,6 +178,7 @@ class Wavefront {
   cl::Buffer tile_cycles_;  // of fused waves
   // Either the wave or the others are there.
   std::optional<Stage<kernels::Wave>> wave_;
+  std::optional<Stage<kernels::Plan>> plan_;
   std::optional<Stage<kernels::Admit>> admit_;
   std::optional<Stage<kernels::TraceClosest>> trace_closest_;
   std::optional<Stage<kernels::Shade>> shade_;

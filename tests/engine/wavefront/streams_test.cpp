@@ -9,6 +9,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include "device/opencl/context.h"
 #include "layout/features.h"
@@ -25,6 +27,20 @@ namespace {
 constexpr cl_uint kManyLights = 4, kBehind = 1,
                   kDark = 2;     // one light is below the floor, one gives no light
 constexpr float kGuard = 12345;  // behind the streams
+
+// Shading by one work-item for all rays, sixteen at a time, or by one for each ray.
+enum class Form { slice, per_ray };
+
+const char* const kOfSlice = R"(
+#include "layout/arguments.h"
+#include "shade/shade.clh"
+__kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
+  const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
+  const TexturingArrays texturing = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TEXTURING_ARRAYS);
+  const SkyArrays sky = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SKY_ARRAYS);
+  shade_batch(&arrays, &texturing, &sky, in_lights, frame, 0, first_light, io_slices, in_batch, in_hits, io_pool,
+              out_shadow_rays, io_film);
+})";
 
 // A stream's words, read back.
 struct Words {
@@ -58,7 +74,7 @@ class Batch {
   static cl_uint pixel(cl_uint ray) { return 3 * ray + 1; }
   cl_uint n_hits() const { return n_ - n_ / 5; }
 
-  void shade() {
+  void shade(Form form) {
     const auto upload = [&](const void* data, std::size_t bytes) {
       cl::Buffer buffer = context_.buffer(CL_MEM_READ_WRITE, bytes, "test data");
       context_.queues().front().enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
@@ -123,28 +139,33 @@ class Batch {
                      shadows = upload(shadow.words.data(), shadow.words.size() * 4),
                      sums = upload(film.data(), film.size() * sizeof(layout::i64));
     using K = kernels::Shade;
-    device::Kernel<K> kernel(
-        // Everything but what would give rays another word, and read more arrays.
-        context_.build(K::kFile, "-cl-std=CL1.2 " + device::build_option(context_.simd()) +
-                                     fmt::format(" -DKDRAY_FEATURES={}ul",
-                                                 ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_SKY |
-                                                   KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_CUTOUTS |
-                                                   KDRAY_FEATURE_INSTANCES | KDRAY_FEATURE_FOOTPRINTS))));
+    // Everything but what would give rays another word, and read more arrays.
+    const std::string options =
+        "-cl-std=CL1.2 " + device::build_option(context_.simd()) +
+        fmt::format(" -DKDRAY_FEATURES={}ul",
+                    ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_SKY | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_CUTOUTS |
+                      KDRAY_FEATURE_INSTANCES | KDRAY_FEATURE_FOOTPRINTS));
+    device::Kernel<K> kernel(form == Form::per_ray ? context_.build(K::kFile, options + " -DKDRAY_LANES=1u")
+                                                   : context_.build_text("slice.cl", kOfSlice, options));
 #define KDRAY_SET_NONE(access, type, name) kernel.set(K::name, none);
     KDRAY_SURFACE_ARRAYS(KDRAY_SET_NONE)
     KDRAY_TEXTURING_ARRAYS(KDRAY_SET_NONE)
     KDRAY_SKY_ARRAYS(KDRAY_SET_NONE)
 #undef KDRAY_SET_NONE
     kernel.set(K::triangles, floors).set(K::materials, glasses).set(K::lights, lamps).set(K::frame, frame);
-    kernel.set(K::n_slices, cl_uint{1}).set(K::first_light, cl_uint{0}).set(K::slices, slice);
+    kernel.set(K::first_light, cl_uint{0}).set(K::slices, slice);
     kernel.set(K::batch, rays).set(K::hits, found).set(K::pool, pooled).set(K::shadow_rays, shadows);
     kernel.set(K::film, sums);
     const cl::CommandQueue& queue = context_.queues().front();
-    queue.enqueueNDRangeKernel(kernel.ready(), cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+    constexpr cl_uint kGroup = 8;
+    const cl::NDRange items(form == Form::per_ray ? (n_ + kGroup - 1) / kGroup * kGroup : 1);
+    queue.enqueueNDRangeKernel(kernel.ready(), cl::NullRange, items,
+                               cl::NDRange(form == Form::per_ray ? kGroup : 1));
     queue.enqueueReadBuffer(slice, CL_TRUE, 0, sizeof slice_, &slice_);
     queue.enqueueReadBuffer(pooled, CL_TRUE, 0, pool.words.size() * 4, pool.words.data());
     queue.enqueueReadBuffer(shadows, CL_TRUE, 0, shadow.words.size() * 4, shadow.words.data());
     queue.enqueueReadBuffer(sums, CL_TRUE, 0, film.size() * sizeof(layout::i64), film.data());
+    if (form == Form::per_ray) put_in_order();
   }
 
   static float light_x(cl_uint k) {
@@ -158,6 +179,33 @@ class Batch {
   std::vector<layout::i64> film;
 
  private:
+  // As slices have them: shadow rays without the places that have no ray, and the pool's rays, which come in any
+  // order.
+  void put_in_order() {
+    const auto move = [](Words& words, cl_uint n_fields, const std::vector<cl_uint>& from) {
+      const Words before = words;
+      for (cl_uint f = 0; f < n_fields; ++f)
+        for (cl_uint i = 0; i < from.size(); ++i)
+          words.words[std::size_t{f} * words.capacity + i] = before.at(f, from[i]);
+    };
+    std::vector<cl_uint> rays;
+    for (cl_uint light = 0; light < kManyLights; ++light)
+      for (cl_uint ray = 0; ray < n_; ++ray)
+        if (shadow.at(KDRAY_RAY_T_MAX, light * frame_.batch_capacity + ray) >= 0)
+          rays.push_back(light * frame_.batch_capacity + ray);
+    move(shadow, KDRAY_SHADOW_FIELDS, rays);
+    slice_.n_shadow = static_cast<cl_uint>(rays.size());
+    Words second = pool;  // of the rays of depth 2, which come first
+    std::vector<cl_uint> pooled(slice_.n_pool[1]);
+    std::iota(pooled.begin(), pooled.end(), 0u);
+    const auto place = [&](cl_uint i) {
+      const cl_uint ray = (second.bits(KDRAY_POOL_PIXEL, i) - 1) / 3;
+      return std::tuple(ray / 16, second.at(KDRAY_POOL_DIRECTION + 2, i) > 0, ray);
+    };
+    std::ranges::sort(pooled, {}, place);
+    move(pool, KDRAY_POOL_FIELDS, pooled);
+  }
+
   device::Context context_;
   cl_uint n_;
   layout::Frame frame_{};
@@ -172,9 +220,12 @@ class StreamsTest : public test::EachDevice {
     for (const cl_uint n : {1u, 5u, 15u, 16u, 17u, 32u, 37u, 100u})
       for (const cl_uint capacity : {(n + 31) / 16 * 16, (n + 31) / 16 * 16 + 48}) {
         SCOPED_TRACE("batch of " + std::to_string(n) + ", capacity " + std::to_string(capacity));
-        Batch batch(GetParam(), n, capacity);
-        batch.shade();
-        check(batch, n);
+        for (const Form form : {Form::slice, Form::per_ray}) {
+          SCOPED_TRACE(form == Form::slice ? "a slice" : "a work-item for each ray");
+          Batch batch(GetParam(), n, capacity);
+          batch.shade(form);
+          check(batch, n);
+        }
       }
   }
 };
