@@ -55,8 +55,8 @@ void Scheduler::choose_slices(wavefront::Schedule& schedule, const engine::Devic
   if (one_queue && tuned.waves > 0) schedule.fused_waves = static_cast<std::uint32_t>(tuned.waves);
 }
 
-// Where every ray has a work-item, a wave is to fill the device many times over: its last rays take long. It is
-// no larger than the frame needs, and leaves most of the device's memory to others.
+// Where every ray has a work-item, a wave is to fill the device many times over: its last rays take long. It
+// is no larger than the frame needs, and leaves most of the device's memory to others.
 void Scheduler::choose_wave(wavefront::Schedule& schedule, const engine::Device& device,
                             const Job& job) const {
   constexpr std::uint64_t kRaysOfUnit = 8192, kLeast = 4096, kShareOfMemory = 4;

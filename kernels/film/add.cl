@@ -1,6 +1,7 @@
 // What    Adds what the shadow rays of a wave bring to the film, where every ray has a work-item.
 // Shape   item i serves ray i % batch_size of light i / batch_size. (A place without a ray is left alone.)
 // Cost    reads 5 B, and of a ray that arrives 16 B more; adds to 24 B of film.
+#define KDRAY_LANES 1u
 #include "film/accumulate.clh"
 #include "layout/arguments.h"
 #include "wave/shadow_place.clh"

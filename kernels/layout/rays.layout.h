@@ -10,8 +10,8 @@
 #include "layout/base.layout.h"
 #include "layout/features.h"
 
-// Rays to a work-item of what shades and makes rays: a vector of them, or one where the device's own lanes are
-// work-items. The host's capacities are for vectors.
+// Rays to a work-item of what shades and makes rays: a vector of them, or one where the device's own lanes
+// are work-items. The host's capacities are for vectors.
 #ifndef KDRAY_LANES
 #define KDRAY_LANES 16u
 #endif
@@ -45,8 +45,8 @@
 // (Slice).
 #define KDRAY_RAY_WEIGHT 8u  // red green blue
 #define KDRAY_RAY_PIXEL 11u  // u32: row * width + column
-// ... of what lies in a batch where every ray has a work-item and is no ray: its t_max is -INFINITY. So is that of
-// a light's place in the shadow stream that has no ray.
+// ... of what lies in a batch where every ray has a work-item and is no ray: its t_max is -INFINITY. So is
+// that of a light's place in the shadow stream that has no ray.
 #define KDRAY_NO_PIXEL 0xffffffffu
 // In ODPRT a ray brings the best hit so far, whose t is the float below t_max.
 #define KDRAY_RAY_NUMBER 12u  // u32: of its primitive, in file order

@@ -2,6 +2,7 @@
 // Shape   An eye ray whose sample lies outside of its tile, or that fills a run up, is none: its interval is
 //         empty and its pixel KDRAY_NO_PIXEL. Films are cleared beforehand.
 // Cost    reads 44 B and writes 52 B.
+#define KDRAY_LANES 1u
 #include "layout/arguments.h"
 #include "raygen/choose_depth.clh"
 #include "raygen/eye_rays.clh"

@@ -1,4 +1,5 @@
 // What    Shades the hits of a wave's rays (shade.clh), where every ray has a work-item.
+#define KDRAY_LANES 1u
 #include "layout/arguments.h"
 #include "shade/shade.clh"
 

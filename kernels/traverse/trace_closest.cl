@@ -1,6 +1,7 @@
 // What    Finds the closest hits of a wave's rays, where every ray has a work-item.
 // Cost    reads 36 B of the ray and the tree, writes 16 B.
 // Errors  a full stack (binary tree) marks the hit KDRAY_REF_INVALID; shade counts it.
+#define KDRAY_LANES 1u
 #include "layout/arguments.h"
 #include "traverse/trace_slice.clh"
 

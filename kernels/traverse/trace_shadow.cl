@@ -1,7 +1,8 @@
 // What    Decides for each shadow ray of a wave whether its light is hidden, where every ray has a work-item.
-// Shape   item i serves ray i % batch_size of light i / batch_size; its answer is the byte of its place in the
-//         stream.
+// Shape   item i serves ray i % batch_size of light i / batch_size; its answer is the byte of its place in
+//         the stream.
 // Cost    reads 36 B of the ray and the tree, writes 1 B.
+#define KDRAY_LANES 1u
 #include "layout/arguments.h"
 #include "traverse/trace_slice.clh"
 #include "wave/shadow_place.clh"

@@ -1,9 +1,10 @@
 // What    Plans the next wave where every ray has a work-item: of which depth its rays are, and how many. One
 //         work-item.
-// Shape   The rays of a queue are one slice's, whose next_place counts the samples of all tiles in the list, and
-//         whose batch is the wave: of pooled rays the last n_batch, of eye rays the n_batch samples before
-//         next_place.
+// Shape   The rays of a queue are one slice's, whose next_place counts the samples of all tiles in the list,
+//         and whose batch is the wave: of pooled rays the last n_batch, of eye rays the n_batch samples
+//         before next_place.
 // Why     admit.clh says why a depth never holds more rays than the pool has room for.
+#define KDRAY_LANES 1u
 #include "layout/arguments.h"
 #include "raygen/choose_depth.clh"
 

@@ -1,7 +1,6 @@
 #include "engine/pdprt/queue.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "device/opencl/opencl_error.h"
@@ -26,26 +25,38 @@ double guessed_waves(const layout::Frame& frame) {
 
 constexpr double kWavesOfRun = 2.0 * KDRAY_SAMPLE_RUN;  // times rays in a batch, guessed in the same way
 
-// Of the film.
-struct Extent {
-  std::size_t first, n;
+// What a queue delivers at once: neighbouring rows of tiles, or runs, and where their light is in the film.
+struct Delivery {
+  std::span<const layout::u32> entries;
+  wavefront::FilmPiece film;
 };
 
-// The rows of the picture that the tiles cover.
-Extent extent_of(std::span<const layout::u32> tiles, const layout::Frame& frame) {
-  std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
-  for (const layout::u32 tile : tiles) {
-    first = std::min<std::size_t>(first, KDRAY_TILE_ROW(tile));
-    last = std::max<std::size_t>(last, KDRAY_TILE_ROW(tile));
-  }
-  const std::size_t first_row = first * frame.tile_height;
-  const std::size_t end_row = std::min<std::size_t>((last + 1) * frame.tile_height, frame.height);
+// Of entries from the first to the last, which are in order: the rows of the picture that tiles cover, or
+// runs.
+wavefront::FilmPiece film_of(layout::u32 first, layout::u32 last, const layout::Frame& frame,
+                             bool are_tiles) {
+  if (!are_tiles)
+    return {std::size_t{first} * KDRAY_SAMPLE_RUN, std::size_t{last + 1 - first} * KDRAY_SAMPLE_RUN};
+  const std::size_t first_row = std::size_t{KDRAY_TILE_ROW(first)} * frame.tile_height;
+  const std::size_t end_row =
+      std::min<std::size_t>((std::size_t{KDRAY_TILE_ROW(last)} + 1) * frame.tile_height, frame.height);
   return {first_row * frame.width, (end_row - first_row) * frame.width};
 }
 
-Extent extent_of_runs(std::span<const layout::u32> runs) {
-  const auto [first, last] = std::minmax_element(runs.begin(), runs.end());
-  return {std::size_t{*first} * KDRAY_SAMPLE_RUN, std::size_t{*last + 1 - *first} * KDRAY_SAMPLE_RUN};
+// Divides entries, which are in order, so that none of the film's pieces has more places than asked for, if a
+// row of tiles has not.
+std::vector<Delivery> deliveries_of(std::span<const layout::u32> entries, const layout::Frame& frame,
+                                    bool are_tiles, std::size_t most_places) {
+  std::vector<Delivery> all;
+  const auto row = [&](layout::u32 entry) { return are_tiles ? KDRAY_TILE_ROW(entry) : entry; };
+  for (std::size_t first = 0, i = 0; i < entries.size(); first = i) {
+    while (i < entries.size() && (row(entries[i]) == row(entries[first]) ||
+                                  film_of(entries[first], entries[i], frame, are_tiles).n <= most_places))
+      ++i;
+    all.push_back(
+        {entries.subspan(first, i - first), film_of(entries[first], entries[i - 1], frame, are_tiles)});
+  }
+  return all;
 }
 
 }  // namespace
@@ -124,10 +135,15 @@ void Queue::serve(Tiles& tiles, const Work& work, Shared& shared) {
 void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared) {
   if (tiles.empty()) return wavefront_.finish();  // another queue was faster
   if (work.samples.empty()) note_costs(tiles, shared);
-  const Extent extent = work.samples.empty() ? extent_of(tiles, frame_) : extent_of_runs(tiles);
+  std::vector<layout::u32> in_order(tiles.begin(), tiles.end());
+  std::ranges::sort(in_order);
+  const std::vector<Delivery> deliveries =
+      deliveries_of(in_order, frame_, work.samples.empty(), wavefront_.film_piece());
+  std::vector<wavefront::FilmPiece> pieces;
+  for (const Delivery& delivery : deliveries) pieces.push_back(delivery.film);
   // Last: what it adds to the counters counts.
-  wavefront_.finish(extent.first, extent.n, [&](const wavefront::FilmSums& film) {
-    work.sink({{&film.sums, 1}, film.first, frame_.width}, tiles);
+  wavefront_.finish(pieces, [&](std::size_t i, const wavefront::FilmSums& film) {
+    work.sink({{&film.sums, 1}, film.first, frame_.width}, deliveries[i].entries);
   });
   if (work.samples.empty()) {
     n_tiles_ += tiles.size();

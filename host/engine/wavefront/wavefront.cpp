@@ -1,8 +1,10 @@
 #include "engine/wavefront/wavefront.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "device/opencl/opencl_error.h"
+#include "device/opencl/read_back.h"
 #include "layout/features.h"
 #include "layout/rays.layout.h"
 
@@ -20,6 +22,8 @@ double seconds_of(const cl::Event& event, cl_profiling_info moment) {
   event.getProfilingInfo(moment, &nanoseconds);
   return 1e-9 * static_cast<double>(nanoseconds);
 }
+
+constexpr std::size_t kPlaceBytes = 3 * sizeof(layout::i64);
 
 // In which each stage's reals are computed.
 std::size_t word_of(Precision precision) {
@@ -309,14 +313,29 @@ bool Wavefront::render(const Feed& feed) {
   }
 }
 
-void Wavefront::finish(std::size_t first, std::size_t n,
-                       const std::function<void(const FilmSums&)>& take_film) {
+std::size_t Wavefront::film_piece() const {
+  if (schedule_.film_piece == 0 && context_.works_in_host_memory())
+    return std::numeric_limits<std::size_t>::max();
+  return (schedule_.film_piece > 0 ? schedule_.film_piece : device::kPieceBytes) / kPlaceBytes;
+}
+
+void Wavefront::finish(std::span<const FilmPiece> pieces,
+                       const std::function<void(std::size_t, const FilmSums&)>& take_film) {
+  const auto take = [&](std::size_t i, const void* sums) {
+    take_film(i, {{static_cast<const layout::i64*>(sums), pieces[i].n * 3}, pieces[i].first});
+  };
+  std::vector<device::Piece> bytes;
+  for (const FilmPiece& piece : pieces)
+    bytes.push_back({(piece.first - frame_.first_pixel) * kPlaceBytes, piece.n * kPlaceBytes});
   device::checked("reading the film", [&] {
-    constexpr std::size_t kPlace = 3 * sizeof(layout::i64);
-    void* const sums = queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ,
-                                               (first - frame_.first_pixel) * kPlace, n * kPlace);
-    take_film({{static_cast<const layout::i64*>(sums), n * 3}, first});
-    queue_.enqueueUnmapMemObject(buffers_.film, sums);
+    if (film_piece() < std::numeric_limits<std::size_t>::max())
+      return device::read_pieces(context_, queue_, buffers_.film, bytes, take);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      void* const sums =
+          queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ, bytes[i].first, bytes[i].n);
+      take(i, sums);
+      queue_.enqueueUnmapMemObject(buffers_.film, sums);
+    }
   });
   finish();
 }

@@ -1,11 +1,11 @@
 // What    Traces tiles of a frame on one queue, wave by wave: admit, trace closest, shade, trace shadow, add;
 //         in one launch for all stages (CPUs) or in one for each.
-// Shape   Fused, n_slices slices, each with a pool, a batch and shadow rays of its own (kernels/raygen/admit.clh
-//         has the bound on the pool). The queue's work is a list of tiles on the device, which grows: slice s
-//         takes the entries s, s + n_slices, ... as far as it goes. A wave serves all slices. Not fused, there is
-//         one slice, and each ray of its batch has a work-item in every stage.
-//         The next launch, and more tiles for it, are queued before the host looks at what the last one left:
-//         the device never waits for the host, and runs one empty launch at the end.
+// Shape   Fused, n_slices slices, each with a pool, a batch and shadow rays of its own
+//         (kernels/raygen/admit.clh has the bound on the pool). The queue's work is a list of tiles on the
+//         device, which grows: slice s takes the entries s, s + n_slices, ... as far as it goes. A wave
+//         serves all slices. Not fused, there is one slice, and each ray of its batch has a work-item in
+//         every stage. The next launch, and more tiles for it, are queued before the host looks at what the
+//         last one left: the device never waits for the host, and runs one empty launch at the end.
 // Errors  Counters are read after every launch: a full stack or pool, or a NaN, ends the render with
 //         ErrorCode::internal, since the picture would be wrong. Whatever OpenCL says leaves as another code.
 #pragma once
@@ -39,6 +39,8 @@ struct Schedule {
   Traversal traversal = Traversal::automatic;  // not fused, all but binary walk the wide tree ray by ray
   Precision precision = Precision::float32;    // float64: binary alone
   std::optional<cl_uint> fill = {};  // for tests: what streams and film hold before they are written
+  // For tests: bytes of the film that are read back at once; 0: all where it lies in the host's memory.
+  std::size_t film_piece = 0;
 
   // All rays are one slice's where they have a work-item each.
   std::uint32_t slices() const { return fused ? n_slices : 1; }
@@ -86,6 +88,11 @@ struct FilmSums {
   std::size_t first;
 };
 
+// Places of the film from the picture's pixel, or the sample, `first` on.
+struct FilmPiece {
+  std::size_t first, n;
+};
+
 // How much a queue can hold: entries in a list, the film's pixels, samples of a round of adaptive sampling
 // (whole runs).
 struct Capacity {
@@ -113,9 +120,12 @@ class Wavefront {
   // was told to leave.
   bool render(const Feed& feed);
 
-  // Hands over `n` places of the film from the picture's pixel, or the sample, `first` on; what was rendered
-  // since begin() counts from then on.
-  void finish(std::size_t first, std::size_t n, const std::function<void(const FilmSums&)>& take_film);
+  // How many places of the film should be in a piece that is handed over.
+  std::size_t film_piece() const;
+  // Hands over the pieces one after the other, each with its number; what was rendered since begin() counts
+  // from then on.
+  void finish(std::span<const FilmPiece> pieces,
+              const std::function<void(std::size_t, const FilmSums&)>& take_film);
   // Where nothing was rendered: the launches that found nothing count.
   void finish();
 

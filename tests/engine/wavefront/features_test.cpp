@@ -180,8 +180,10 @@ class Subject {
     std::span<const layout::u32> left = tiles;
     wavefront.render([&](const Progress&) { return std::exchange(left, {}); });
     RenderedFrame rendered;
-    wavefront.finish(0, n_pixels,
-                     [&](const FilmSums& film) { rendered.film.assign(film.sums.begin(), film.sums.end()); });
+    const FilmPiece all[] = {{0, n_pixels}};
+    wavefront.finish(all, [&](std::size_t, const FilmSums& film) {
+      rendered.film.assign(film.sums.begin(), film.sums.end());
+    });
     rendered.counters = wavefront.counters();
     return rendered;
   }

@@ -43,6 +43,7 @@ TEST_P(ScheduleTest, NoScheduleChangesThePicture) {
     schedule.fused = false;
     for (const std::size_t work_group : {1u, 7u, 64u}) {
       schedule.work_group = work_group;
+      schedule.film_piece = 1000 * work_group;
       expect_same(prepared.render(context, schedule), reference);
     }
   }

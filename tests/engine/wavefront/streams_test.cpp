@@ -38,8 +38,8 @@ __kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const TexturingArrays texturing = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TEXTURING_ARRAYS);
   const SkyArrays sky = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SKY_ARRAYS);
-  shade_batch(&arrays, &texturing, &sky, in_lights, frame, 0, first_light, io_slices, in_batch, in_hits, io_pool,
-              out_shadow_rays, io_film);
+  shade_batch(&arrays, &texturing, &sky, in_lights, frame, 0, first_light, io_slices, in_batch, in_hits,
+              io_pool, out_shadow_rays, io_film);
 })";
 
 // A stream's words, read back.
@@ -145,7 +145,7 @@ class Batch {
         fmt::format(" -DKDRAY_FEATURES={}ul",
                     ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_SKY | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_CUTOUTS |
                       KDRAY_FEATURE_INSTANCES | KDRAY_FEATURE_FOOTPRINTS));
-    device::Kernel<K> kernel(form == Form::per_ray ? context_.build(K::kFile, options + " -DKDRAY_LANES=1u")
+    device::Kernel<K> kernel(form == Form::per_ray ? context_.build(K::kFile, options)
                                                    : context_.build_text("slice.cl", kOfSlice, options));
 #define KDRAY_SET_NONE(access, type, name) kernel.set(K::name, none);
     KDRAY_SURFACE_ARRAYS(KDRAY_SET_NONE)
@@ -179,8 +179,8 @@ class Batch {
   std::vector<layout::i64> film;
 
  private:
-  // As slices have them: shadow rays without the places that have no ray, and the pool's rays, which come in any
-  // order.
+  // As slices have them: shadow rays without the places that have no ray, and the pool's rays, which come in
+  // any order.
   void put_in_order() {
     const auto move = [](Words& words, cl_uint n_fields, const std::vector<cl_uint>& from) {
       const Words before = words;

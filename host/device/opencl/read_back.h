@@ -1,0 +1,33 @@
+// What    Reading a buffer back piece by piece: the next piece is on its way while one is looked at.
+// Why     A device with memory of its own writes into pinned memory of the host at the full speed of the bus
+//         (50 GB/s on an H100); mapping a buffer, and reading into pages that were never touched, goes at 2
+//         GB/s. Pinned memory takes milliseconds to make, so it is kept.
+// Errors  cl::Error, and what `take` throws; by then no command writes to the host's memory any more.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+
+#include "device/opencl/context.h"
+#include "device/opencl/opencl.h"
+
+namespace kdray::device {
+
+// Of a buffer, in bytes.
+struct Piece {
+  std::size_t first, n;
+};
+
+// How large pieces should be: large enough for the bus, small enough for a cache.
+constexpr std::size_t kPieceBytes = std::size_t{2} << 20;
+
+// Calls take(i, memory) for each piece in turn; the memory holds piece i until it returns.
+void read_pieces(const Context& context, cl::CommandQueue& queue, const cl::Buffer& buffer,
+                 std::span<const Piece> pieces, const std::function<void(std::size_t, const void*)>& take);
+
+// Reads the first n bytes to `to`.
+void read_back(const Context& context, cl::CommandQueue& queue, const cl::Buffer& buffer, std::size_t n,
+               void* to);
+
+}  // namespace kdray::device
