@@ -10,7 +10,11 @@
 #include "layout/base.layout.h"
 #include "layout/features.h"
 
-#define KDRAY_LANES 16u  // rays to a vector
+// Rays to a work-item of what shades and makes rays: a vector of them, or one where the device's own lanes
+// are work-items. The host's capacities are for vectors.
+#ifndef KDRAY_LANES
+#define KDRAY_LANES 16u
+#endif
 
 // This is 1 in the kernels of ODPRT, whose rays carry what another queue needs to go on with them.
 #ifndef KDRAY_ODPRT
