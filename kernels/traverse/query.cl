@@ -10,8 +10,10 @@
 #include "traverse/query.clh"
 #include "traverse/query16.clh"
 // Included after the source of rays, which they use.
-#include "traverse/walk.clh"
 #include "traverse/wide.clh"
+#if KDRAY_LANES != 1
+#include "traverse/walk.clh"
+#endif
 
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
 // The binary tree has its own ray and its own two forms.

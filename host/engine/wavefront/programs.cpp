@@ -62,6 +62,11 @@ layout::Features bits_read_by(const std::string& file) {
   return kGeometry;
 }
 
+// The stages of a wave whose rays have a work-item each.
+bool is_per_ray(const std::string& file) {
+  return file == "traverse/trace_closest.cl" || file == "traverse/trace_shadow.cl";
+}
+
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
 // rays are counted; not masks, which a scene has to have, nor textures or a sky, whose arrays would be read,
 // nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
@@ -168,6 +173,8 @@ std::string Programs::options_for(const std::string& file, Traversal traversal, 
   std::string options =
       "-cl-std=CL1.2 " + device::build_option(in_double ? device::Simd::portable : context_->simd());
   if (in_double) options += " -DKDRAY_PRECISION=64";
+  if (is_per_ray(file) || (file == "traverse/query.cl" && traversal == Traversal::wide))
+    options += " -DKDRAY_LANES=1u";
   if (traversal == Traversal::binary) {
     options += fmt::format(" -DKDRAY_STACK_SIZE={}", stack);
   } else {
