@@ -39,7 +39,7 @@ __kernel void test(__global const Case* in, __global Result* out, uint n) {
   for (int k = 0; k < 18; ++k) out[i].film[k / 3][k % 3] = in[i].film[k / 3][k % 3];
   FilmLight sum = no_light();
   for (int k = 0; k < 2; ++k) {
-    const Real3x16 light = {convert_real16(vload16(0, in[i].light[k][0])),
+    const Real3xN light = {convert_real16(vload16(0, in[i].light[k][0])),
                             convert_real16(vload16(0, in[i].light[k][1])),
                             convert_real16(vload16(0, in[i].light[k][2]))};
     add_light(&sum, convert_lanes16(vload16(0, in[i].in[k]) != 0), light);

@@ -20,7 +20,7 @@ class PowerTest : public test::EachDevice {};
 constexpr const char* kSource = R"(#include "common/power.clh"
 __kernel void test(__global const float2* in, __global float* out, uint n) {
   const uint i = get_global_id(0);
-  if (i < n) out[i] = power16((float16)(in[i].x), (float16)(in[i].y)).s3;
+  if (i < n) out[i] = power((float16)(in[i].x), (float16)(in[i].y)).s3;
 }
 )";
 
@@ -74,7 +74,7 @@ TEST_P(PowerTest, TheEnds) {
 constexpr const char* kSourceInDouble = R"(#include "common/power.clh"
 __kernel void test(__global const float2* in, __global double* out, uint n) {
   const uint i = get_global_id(0);
-  if (i < n) out[i] = power16((double16)(in[i].x), (double16)(in[i].y)).s3;
+  if (i < n) out[i] = power((double16)(in[i].x), (double16)(in[i].y)).s3;
 }
 )";
 

@@ -30,7 +30,7 @@ typedef struct Point { float x, y; } Point;
 __kernel void test(__global const Which* in, __global Point* out, uint n) {
   const uint i = get_global_id(0);
   if (i >= n) return;
-  const Real2x16 offset = sequence_offset((uint16)(in[i].pixel), (uint16)(in[i].k));
+  const Real2xN offset = sequence_offset((uint16)(in[i].pixel), (uint16)(in[i].k));
   const Point point = {offset.x.s7, offset.y.s7};
   out[i] = point;
 }

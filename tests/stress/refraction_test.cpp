@@ -29,8 +29,8 @@ typedef struct Out { float d[3]; int refracted; } Out;
 __kernel void test(__global const In* in, __global Out* out, uint n) {
   const uint i = get_global_id(0);
   if (i >= n) return;
-  const Real3x16 d = splat3(load3(in[i].d)), normal = splat3(load3(in[i].n));
-  Real3x16 t;
+  const Real3xN d = splat3(load3(in[i].d)), normal = splat3(load3(in[i].n));
+  Real3xN t;
   const lanes16 refracted = refracted_direction(d, normal, normal, (float16)(in[i].eta), &t);
   const Out o = {{t.x.s3, t.y.s3, t.z.s3}, refracted.s3 != 0};
   out[i] = o;

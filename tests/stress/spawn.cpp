@@ -24,13 +24,13 @@ typedef struct Spawned {
 #define FOR_LANES for (uint k = 0; k < 16; ++k)
 typedef union Lanes { float16 v; float f[16]; uint u[16]; } Lanes;
 
-Real3x16 gather3(__global const float* first) {
+Real3xN gather3(__global const float* first) {
   Lanes x, y, z;
   FOR_LANES {
     __global const float* p = first + k * (sizeof(ToSpawn) / sizeof(float));
     x.f[k] = p[0], y.f[k] = p[1], z.f[k] = p[2];
   }
-  const Real3x16 r = {x.v, y.v, z.v};
+  const Real3xN r = {x.v, y.v, z.v};
   return r;
 }
 float16 gather(__global const float* first) {
@@ -38,7 +38,7 @@ float16 gather(__global const float* first) {
   FOR_LANES x.f[k] = first[k * (sizeof(ToSpawn) / sizeof(float))];
   return x.v;
 }
-void scatter3(Real3x16 v, __global float* first) {
+void scatter3(Real3xN v, __global float* first) {
   Lanes x, y, z;
   x.v = v.x, y.v = v.y, z.v = v.z;
   FOR_LANES {
@@ -56,7 +56,7 @@ __kernel void spawn(KDRAY_PARAMETERS(SPAWN_ARGUMENTS)) {
   __global const ToSpawn* in = in_hits + i;
   __global Spawned* out = out_spawned + i;
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
-  const Real3x16 o = gather3(in->origin), d = gather3(in->direction), light = gather3(in->light);
+  const Real3xN o = gather3(in->origin), d = gather3(in->direction), light = gather3(in->light);
   const Hits hits = {gather(&in->t), as_uint16(gather((__global const float*)&in->ref)), gather(&in->u),
                      gather(&in->v)};
   const lanes16 hit = hits.ref < KDRAY_REF_INVALID;
@@ -64,11 +64,11 @@ __kernel void spawn(KDRAY_PARAMETERS(SPAWN_ARGUMENTS)) {
   surfaces_at(&arrays, o, d, &hits, hit, &s);
   // The same as in shade.clh.
   const float16 index = gather(&in->index), eta = s.inside ? index : 1.0f / index;
-  Real3x16 refracted;
+  Real3xN refracted;
   const lanes16 refracts = refracted_direction(d, s.shading, s.normal, eta, &refracted);
-  const Real3x16 above = offset_origin(s.point, s.point_error, s.normal);
-  const Real3x16 light_origin = offset_origin(s.light_end, s.point_error, s.normal);
-  const Real3x16 way = sub3(light, s.point);
+  const Real3xN above = offset_origin(s.point, s.point_error, s.normal);
+  const Real3xN light_origin = offset_origin(s.light_end, s.point_error, s.normal);
+  const Real3xN way = sub3(light, s.point);
   const lanes16 lit = dot3(s.shading, divide3(way, sqrt(dot3(way, way)))) > 0.0f;
   scatter3(above, out->above);
   scatter3(offset_origin(s.point, s.point_error, negate3(s.normal)), out->below);

@@ -60,8 +60,8 @@ __kernel void test(__global const Batch* in, __global Answer* out, uint n) {
     first[k] = in[i].rays[k].first;
   }
   const Directory directory = {in[i].cells, 96, 16.0f};
-  const Real3x16 o = {vload16(0, f[0]), vload16(0, f[1]), vload16(0, f[2])};
-  const Real3x16 d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
+  const Real3xN o = {vload16(0, f[0]), vload16(0, f[1]), vload16(0, f[2])};
+  const Real3xN d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
   const uint16 begun = vload16(0, first);
   Way way = no_way();
   way.parts = begun == KDRAY_NO_PART ? (uint16)(0u) : begins_at(begun);
