@@ -1,5 +1,5 @@
-// What    The wide form's nodes compressed (kernels/layout/compressed.layout.h): a bit more than a third of the
-//         bytes, for devices whose walks have one ray to a work-item.
+// What    The wide form's nodes compressed (kernels/layout/compressed.layout.h): three eighths of the bytes,
+//         for devices whose walks have one ray to a work-item.
 // Errors  A child's box, as the walk sees it, holds the one that it stands for, but for 2^-53 of the node's
 //         farthest coordinate: what double is off by where two of its coordinates differ by more than its 53
 //         bits hold. That is 2^-29 of the roundoff that boxes are widened by (kernels/traverse/ray.clh).
