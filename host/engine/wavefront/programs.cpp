@@ -6,6 +6,7 @@
 #include <future>
 #include <string_view>
 
+#include "accel/flatten/compressed.h"
 #include "base/timer.h"
 #include "kernels.h"
 #include "layout/features.h"
@@ -67,6 +68,11 @@ bool is_per_ray(const std::string& file) {
   return file == "traverse/trace_closest.cl" || file == "traverse/trace_shadow.cl";
 }
 
+// Whether a program walks the wide tree with one ray to a work-item.
+bool walks_alone(const std::string& file, Traversal traversal) {
+  return traversal == Traversal::wide && (is_per_ray(file) || file == "traverse/query.cl");
+}
+
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
 // rays are counted; not masks, which a scene has to have, nor textures or a sky, whose arrays would be read,
 // nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
@@ -82,7 +88,7 @@ layout::Features spare_bits_of(const std::string& file) {
 // A program with a larger stack serves as well. Sizes are rounded up, so that scenes of like depth share
 // programs.
 constexpr int kBinaryStacks = 8, kLargestBinaryStack = 64, kWideStacks = 32, kLeastWideStack = 64,
-              kLargestWideStack = 128;
+              kLargestWideStack = 128, kWideLevels = 16;
 
 int rounded_up(int stack, int step) {
   return (stack / step + 1) * step;
@@ -137,7 +143,9 @@ Programs::Programs(const device::Context& context, int tree_depth, const flatten
                         .stack = wide.stack_size,
                         .block = wide.block,
                         .bytes = wide.bytes()},
-               std::move(more_options)) {}
+               std::move(more_options)) {
+  nodes_ = wide.nodes;
+}
 
 // Large trees are deep ones.
 std::vector<Programs::UsualForm> Programs::usual_forms() {
@@ -173,8 +181,8 @@ std::string Programs::options_for(const std::string& file, Traversal traversal, 
   std::string options =
       "-cl-std=CL1.2 " + device::build_option(in_double ? device::Simd::portable : context_->simd());
   if (in_double) options += " -DKDRAY_PRECISION=64";
-  if (is_per_ray(file) || (file == "traverse/query.cl" && traversal == Traversal::wide))
-    options += " -DKDRAY_LANES=1u";
+  if (is_per_ray(file) || walks_alone(file, traversal)) options += " -DKDRAY_LANES=1u";
+  if (walks_alone(file, traversal)) options += fmt::format(" -DKDRAY_WIDE_LEVELS={}", levels_);
   if (traversal == Traversal::binary) {
     options += fmt::format(" -DKDRAY_STACK_SIZE={}", stack);
   } else {
@@ -227,6 +235,8 @@ void Programs::build(const std::vector<Wanted>& wanted) {
   for (const Wanted& w : wanted) {
     const Key key = key_of(w);
     if (programs_.contains(key) || building.contains(key)) continue;
+    if (walks_alone(w.file, w.traversal) && levels_ == 0)
+      levels_ = rounded_up(flatten::most_levels(nodes_), kWideLevels);
     building.emplace(
         key, std::async(when, [this, key] { return context_->build(std::get<0>(key), variant_for(key)); }));
   }

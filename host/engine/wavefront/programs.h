@@ -101,6 +101,8 @@ class Programs {
   const device::Context* context_;
   std::string more_options_, walk_options_;
   int stack_size_, wide_stack_size_, any_order_stack_size_, block_, widen_;
+  Array<layout::WideNode> nodes_;
+  int levels_ = 0;  // of the nodes, rounded up; found when a program asks for them
   bool prefetch_, far_, everything_ = false;
   double build_seconds_ = 0;
   mutable std::mutex mutex_;  // of what is built: queries of several threads ask for kernels

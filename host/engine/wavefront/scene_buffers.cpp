@@ -1,7 +1,10 @@
 #include "engine/wavefront/scene_buffers.h"
 
 #include <memory>
+#include <mutex>
+#include <optional>
 
+#include "accel/flatten/compressed.h"
 #include "device/opencl/opencl_error.h"
 
 namespace kdray::wavefront {
@@ -53,12 +56,31 @@ std::array<cl::Buffer*, SceneBuffers::Slot::kArrays> SceneBuffers::all() {
 #undef KDRAY_ADDRESS
 }
 
+// The nodes to compress, and the buffer of those that are.
+struct SceneBuffers::Compressed {
+  device::Context context;
+  Array<layout::WideNode> nodes;
+  std::mutex making;
+  std::optional<cl::Buffer> buffer;
+};
+
 SceneBuffers::SceneBuffers(const device::Context& context, const flatten::FlatScene& flat,
-                           const flatten::WideForm& wide) {
+                           const flatten::WideForm& wide)
+    : compressed_(std::make_shared<Compressed>(context, wide.nodes)) {
   const auto pieces = pieces_of(flat, wide);
   const auto buffers = all();
   for (std::size_t i = 0; i < Slot::kArrays; ++i)
     *buffers[i] = context.upload(pieces[i].data, pieces[i].bytes, pieces[i].owner, kNames[i]);
+}
+
+const cl::Buffer& SceneBuffers::compressed_nodes() const {
+  Compressed& c = *compressed_;
+  const std::lock_guard lock(c.making);
+  if (!c.buffer) {
+    const Array<layout::CompressedNode> nodes = flatten::compressed(c.nodes);
+    c.buffer = c.context.upload(nodes.data(), nodes.bytes(), nodes.owner(), "the scene's compressed nodes");
+  }
+  return *c.buffer;
 }
 
 void SceneBuffers::upload_lights(const device::Context& context, const flatten::FlatScene& flat) {

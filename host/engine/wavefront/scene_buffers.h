@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "accel/flatten/flatten.h"
 #include "accel/flatten/wide.h"
@@ -35,6 +36,11 @@ struct SceneBuffers {
   // Copies a scene that there is room for, and waits for it.
   void copy(cl::CommandQueue& queue, const flatten::FlatScene& flat, const flatten::WideForm& wide);
 
+  // The wide form's nodes compressed (layout/compressed.layout.h), for kernels that walk it with one ray to a
+  // work-item: they read them in the place of wide_nodes. Made at the first call, by one thread at a time;
+  // not where there is only room.
+  const cl::Buffer& compressed_nodes() const;
+
   // The scene's lights in place of others, of which there may have been more or fewer.
   void upload_lights(const device::Context& context, const flatten::FlatScene& flat);
 
@@ -48,6 +54,9 @@ struct SceneBuffers {
   }
 
  private:
+  struct Compressed;
+  std::shared_ptr<Compressed> compressed_;
+
   std::array<cl::Buffer*, Slot::kArrays> all();
 };
 

@@ -136,6 +136,8 @@ void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
   const auto make = [&]<class K>(std::optional<Stage<K>>& stage, Traversal traversal) {
     stage.emplace(programs.kernel<K>(features_, traversal, schedule_.precision));
     set_arguments(*stage, scene);
+    if constexpr (requires { K::wide_nodes; })
+      if (traversal == Traversal::wide) stage->set(K::wide_nodes, scene.compressed_nodes());
   };
   make(plan_, none);
   make(admit_, none);
