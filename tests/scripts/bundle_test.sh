@@ -10,7 +10,7 @@ skip() { echo "skipped: $*"; exit 77; }
 fail() { echo "failed: $*"; exit 1; }
 [ "$(uname -m)" = x86_64 ] || skip "the root is one for x86-64"
 unshare -r -n -m true 2>/dev/null || skip "unshare is not allowed here"
-ldconfig -p | grep -q 'libpocl\.so\.2 ' || skip "PoCL is not installed"
+ldconfig -p | grep 'libpocl\.so\.2 ' >/dev/null || skip "PoCL is not installed"
 command -v ld.gold >/dev/null || skip "there is no ld.gold"
 
 work=$(mktemp -d)
@@ -20,12 +20,13 @@ system=$root/lib/x86_64-linux-gnu
 KDRAY_DATA_DIR=none scripts/bundle --with-pocl --programs "$1" --into "$work" >/dev/null 2>"$work/log" ||
   fail "scripts/bundle: $(cat "$work/log")"
 
+needed=(awk basename bash cat cp cut dirname env grep head ls md5sum mkdir mv nproc paste readlink rm sed sh tail timeout tr xargs)
 make_root() {
   local tools tool
   mkdir -p "$root"/{bin,usr,lib64,proc,dev,sys,tmp,root,etc/OpenCL/vendors} "$system"
   ln -s ../bin "$root/usr/bin"
   cp -L /lib64/ld-linux-x86-64.so.2 "$root/lib64/"
-  for tool in awk basename bash cat cp cut dirname env grep head ls md5sum mkdir mv paste readlink rm sed sh tail timeout tr; do
+  for tool in "${needed[@]}"; do
     tools+=("$(type -P "$tool")")
     cp -L "${tools[-1]}" "$root/bin/"
   done
