@@ -68,6 +68,20 @@ install_packages() {
     "${apt[@]}" install -y --no-install-recommends "$@" || exit 1
 }
 
+# For what is used where it can be had: installs the packages where that asks nobody for a password.
+try_to_install() {
+  if [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then (install_packages "$@") || true; fi
+}
+
+# python_packages WHAT FOLDER LOGS PACKAGE==VERSION...: a virtual environment with packages from PyPI.
+python_packages() {
+  local what=$1 folder=$2 logs=$3
+  shift 3
+  rm -rf "$folder"
+  logged "fetching $what" "$logs/venv.log" python3 -m venv "$folder" &&
+    logged "fetching $what" "$logs/pip.log" timeout 300 "$folder/bin/pip" install --no-cache-dir "$@"
+}
+
 # Changes when the list of packages or what dpkg has installed changes.
 packages_key() {
   cksum <"$kdray_root/scripts/dependencies"

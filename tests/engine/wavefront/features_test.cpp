@@ -220,7 +220,7 @@ const Schedule kByStages{.tile_width = 4,
                          .batch_size = 24,
                          .n_slices = 3,
                          .fused = false,
-                         .work_group = 8,
+                         .work_group = 32,
                          .fill = 0};
 
 std::vector<layout::Features> kinds() {
@@ -361,6 +361,16 @@ TEST_P(FeaturesTest, Film) {
 
 TEST_P(FeaturesTest, All) {
   draw({kAll});
+}
+
+// The larger of the groups that GPUs have; all else here is in groups of 32.
+TEST_P(FeaturesTest, GroupsOf64) {
+  Subject subject(context_, kAll);
+  Schedule schedule = kByStages;
+  schedule.work_group = 64;
+  const RenderedFrame by_32 = subject.draw(kByStages), by_64 = subject.draw(schedule);
+  EXPECT_EQ(by_64.film, by_32.film);
+  EXPECT_EQ(by_64.counters.total(), by_32.counters.total());
 }
 
 // The forms for CPUs of the same picture: all stages in one launch, by each of the walks.
