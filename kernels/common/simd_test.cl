@@ -24,14 +24,14 @@
 #include "layout/arguments.h"
 #include "layout/simd_test.layout.h"
 
-inline void answer_scalars(__global const SimdCase* in, __global SimdAnswers* out) {
+static inline void answer_scalars(__global const SimdCase* in, __global SimdAnswers* out) {
   out->lanes_below = lanes_below(in->index[0] & 63u);
   out->count_lanes = count_lanes(in->mask);
   out->first_lane = first_lane(in->mask | 0x10000u);
   out->pad = 0;
 }
 
-inline void answer16(__global const SimdCase* in, __global SimdAnswers* out) {
+static inline void answer16(__global const SimdCase* in, __global SimdAnswers* out) {
   const uint16 ua = vload16(0, in->a), ub = vload16(0, in->b), index = vload16(0, in->index) & 15u;
   const float16 a = as_float16(ua), b = as_float16(ub), zero = (float16)(0.0f);
   const mask16 mask = in->mask & 0xffffu;
@@ -54,7 +54,7 @@ inline void answer16(__global const SimdCase* in, __global SimdAnswers* out) {
   vstore16(nearest_long16(select16(less16(fabs(a), (float16)(0x1p62f)), a, zero)), 0, out->nearest_long16);
 }
 
-inline void answer8(__global const SimdCase* in, __global SimdAnswers* out) {
+static inline void answer8(__global const SimdCase* in, __global SimdAnswers* out) {
   const uint8 ua = vload8(0, in->a), ub = vload8(0, in->b), index = vload8(0, in->index);
   const float8 a = as_float8(ua), b = as_float8(ub);
   const mask8 mask = in->mask & 0xffu;

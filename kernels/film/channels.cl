@@ -17,7 +17,7 @@ typedef struct Row {
   real lane[KDRAY_LANES];
 } Row;
 
-inline Row row_of(realN v) {
+static inline Row row_of(realN v) {
   Row row;
   storeN(v, row.lane);
   return row;
@@ -29,8 +29,8 @@ typedef struct Seen {
   u32 ref, instance;  // 1 + the instance's index
 } Seen;
 
-inline Seen see(const SceneArrays* scene, __constant const Frame* frame, const real* origin,
-                const real* direction, real t_min) {
+static inline Seen see(const SceneArrays* scene, __constant const Frame* frame, const real* origin,
+                       const real* direction, real t_min) {
 #if KDRAY_HAS_INSTANCES
   RayIn in;
   for (int k = 0; k < 3; ++k) in.origin[k] = origin[k], in.direction[k] = direction[k];

@@ -9,8 +9,8 @@
 #include "odprt/send.clh"
 #include "wave/pool.clh"
 
-inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n, u32 slice_id,
-                         __global Slice* slice, __global float* pool) {
+static inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n, u32 slice_id,
+                                __global Slice* slice, __global float* pool) {
   for (u32 i = 0; i < n; i += KDRAY_LANES) {
     const uintN word = as_uintN(readN(from, KDRAY_RAY_FINDER, i));
     for (Distinct d = distinct_values(KDRAY_FINDER_DEPTH(word), lanes_up_to(n - i)); d.rest != 0;) {
@@ -29,8 +29,8 @@ inline void receive_rays(__constant const Frame* frame, ConstStream from, u32 n,
   }
 }
 
-inline void receive_shadow_rays(__constant const Travel* travel, ConstStream from, u32 n,
-                                __global Slice* slice, __global Traffic* traffic, Stream pool) {
+static inline void receive_shadow_rays(__constant const Travel* travel, ConstStream from, u32 n,
+                                       __global Slice* slice, __global Traffic* traffic, Stream pool) {
   if (traffic->n_shadow_pool + n > travel->shadow_pool) {
     slice->n_pool_overflow += n;
     return;

@@ -30,8 +30,8 @@ typedef struct Shaders {
 } Shaders;
 
 #if KDRAY_HAS_LIGHTS
-inline void trace_shadow_rays(const Travels* t, __constant const Frame* frame, u32 slice_id,
-                              const Census* census, const Streams* s, bool made_here, u64* since) {
+static inline void trace_shadow_rays(const Travels* t, __constant const Frame* frame, u32 slice_id,
+                                     const Census* census, const Streams* s, bool made_here, u64* since) {
   const RaySource source = shadow_rays(frame, slice_id, s->shadow_rays, s->occluded);
   trace_all(t->scene, frame, &source, t->slice->n_shadow, false, t->slice);
   t->traffic->n_traced += t->slice->n_shadow;
@@ -42,8 +42,9 @@ inline void trace_shadow_rays(const Travels* t, __constant const Frame* frame, u
 }
 #endif
 
-inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32 slice_id,
-                            const Shaders* shaders, const Census* census, const Streams* s, u64* since) {
+static inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32 slice_id,
+                                   const Shaders* shaders, const Census* census, const Streams* s,
+                                   u64* since) {
   u32 first_light = 0;
   do {
     const u32 before = t->slice->n_pool[t->slice->depth];
@@ -62,9 +63,9 @@ inline void shade_and_light(const Travels* t, __constant const Frame* frame, u32
   } while (KDRAY_HAS_LIGHTS && first_light < frame->n_lights);
 }
 
-inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32 slice_id,
-                            const Shaders* shaders, const Census* census, const Streams* s, bool eye,
-                            u64* since) {
+static inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32 slice_id,
+                                   const Shaders* shaders, const Census* census, const Streams* s, bool eye,
+                                   u64* since) {
   const RaySource rays = batch_rays(frame, slice_id, s->batch, s->hits);
   const Stream batch = stream_of(s->batch, slice_id, KDRAY_RAY_FIELDS, frame->batch_capacity);
   const ConstStream hits = const_stream_of(s->hits, slice_id, KDRAY_HIT_FIELDS, frame->batch_capacity);
@@ -80,8 +81,8 @@ inline void trace_and_shade(const Travels* t, __constant const Frame* frame, u32
 }
 
 // Returns false when nothing could be done.
-inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* frame, u32 slice_id,
-                     const Shaders* shaders, const Census* census, const Streams* s) {
+static inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* frame, u32 slice_id,
+                            const Shaders* shaders, const Census* census, const Streams* s) {
   u64 since = cycles();
   const Account account = account_of(tiles, frame, t->slice, t->credits, t->traffic, &t->out);
   if (!has_space(&account, t->travel)) return false;
@@ -106,7 +107,7 @@ inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* f
   return true;
 }
 
-inline void begin_account(__global Traffic* traffic) {
+static inline void begin_account(__global Traffic* traffic) {
   for (u32 level = 0; level <= KDRAY_MAX_DEPTH; ++level) traffic->made[level] = traffic->ended[level] = 0;
   traffic->n_lost = traffic->n_traced = 0;
 }

@@ -9,8 +9,8 @@
 #include "wave/shared.clh"
 
 // Writes sample `number` of the list into the batch. Returns whether it is one.
-inline bool admit_sample(__constant const Frame* frame, __global const u32* tiles, u64 number, Stream batch,
-                         u32 i) {
+static inline bool admit_sample(__constant const Frame* frame, __global const u32* tiles, u64 number,
+                                Stream batch, u32 i) {
   const u64 of_entry = samples_of_entry(frame);
   const u32 entry = (u32)(number / of_entry);
   const u64 sample = number - entry * of_entry;

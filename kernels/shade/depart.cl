@@ -7,11 +7,11 @@
 #include "layout/verify.layout.h"
 #include "shade/surface.clh"
 
-inline Real3xN load_lanes3(const real* lanes) {
+static inline Real3xN load_lanes3(const real* lanes) {
   const Real3xN r = {loadN(lanes), loadN(lanes + KDRAY_LANES), loadN(lanes + 2 * KDRAY_LANES)};
   return r;
 }
-inline void store_lanes3(Real3xN v, real* lanes) {
+static inline void store_lanes3(Real3xN v, real* lanes) {
   storeN(v.x, lanes), storeN(v.y, lanes + KDRAY_LANES), storeN(v.z, lanes + 2 * KDRAY_LANES);
 }
 

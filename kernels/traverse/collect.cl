@@ -15,9 +15,10 @@
 
 #if KDRAY_PRECISION == 32  // the wide form has no other
 
+#if KDRAY_TRAVERSAL != KDRAY_TRAVERSAL_WIDE
 // See walk_rays of walk.clh.
-inline void collect_rays(const SceneArrays* scene, const RaySource* source, const Lists* lists, u32 first,
-                         u32 end, float world_max, float most_apart) {
+static inline void collect_rays(const SceneArrays* scene, const RaySource* source, const Lists* lists,
+                                u32 first, u32 end, float world_max, float most_apart) {
   RayGroups coherent, others;
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_PACKET
   (void)most_apart;
@@ -33,6 +34,7 @@ inline void collect_rays(const SceneArrays* scene, const RaySource* source, cons
   if (coherent.n > 0) collect_packets(scene, source, lists, &coherent, world_max);
   if (others.n > 0) collect_batch(scene, source, lists, &others, world_max);
 }
+#endif
 
 __kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
   const u32 item = (u32)get_global_id(0);

@@ -17,8 +17,8 @@
 
 #if KDRAY_TRAVERSAL == KDRAY_TRAVERSAL_BINARY
 // The binary tree has its own ray and its own two forms.
-inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 i, real3 root_lo,
-                         real3 root_hi, float world_max) {
+static inline void query_binary(const SceneArrays* scene, const RaySource* source, u32 i, real3 root_lo,
+                                real3 root_hi, float world_max) {
   RayIn in;
   fetch_ray(source, i, &in);
   const real3 o = (real3)(in.origin[0], in.origin[1], in.origin[2]);
