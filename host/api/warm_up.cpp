@@ -49,6 +49,7 @@ class Warming {
         buffers_(context, scene.flat, scene.wide),
         programs_(context, form) {
     programs_.use(tuning);
+    programs_.query_alone(global_);
     programs_.have_everything();
   }
 

@@ -34,7 +34,9 @@ Device::Device(const device::Context& opened, const DeviceOptions& options, cons
       global(runs_globally(options, context)),
       programs(context, scene.tree_depth, scene.wide, build_options),
       asked_work_group_(options.work_group),
-      scene_(scene) {}
+      scene_(scene) {
+  programs.query_alone(global);
+}
 
 const wavefront::SceneBuffers& Device::buffers() {
   const std::lock_guard lock(uploading_);

@@ -43,7 +43,8 @@ Session::Session(const Target& target, std::size_t chunk)
     masks_ = {target.context, CL_MEM_READ_ONLY, masked_ ? chunk : 1, "the rays' masks"};
     instances_ = {target.context, CL_MEM_WRITE_ONLY, placed_ ? chunk : 1, "the hits' instances"};
     set_scene_arguments(stage_, target);
-    if (target.walk() == Traversal::wide) stage_.set(K::wide_nodes, target.buffers.compressed_nodes());
+    if (target.programs.walks_alone(K::kFile, target.walk()))
+      stage_.set(K::wide_nodes, target.buffers.compressed_nodes());
     stage_.set(K::space, float4(vec3(0), 1)).set(K::any_length, cl_uint{0});
     stage_.set(K::rays, rays_.buffer()).set(K::hits, hits_.buffer());
     stage_.set(K::hit_instances, instances_.buffer());

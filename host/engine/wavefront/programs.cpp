@@ -63,16 +63,6 @@ layout::Features bits_read_by(const std::string& file) {
   return kGeometry;
 }
 
-// The stages of a wave whose rays have a work-item each.
-bool is_per_ray(const std::string& file) {
-  return file == "traverse/trace_closest.cl" || file == "traverse/trace_shadow.cl";
-}
-
-// Whether a program walks the wide tree with one ray to a work-item.
-bool walks_alone(const std::string& file, Traversal traversal) {
-  return traversal == Traversal::wide && (is_per_ray(file) || file == "traverse/query.cl");
-}
-
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
 // rays are counted; not masks, which a scene has to have, nor textures or a sky, whose arrays would be read,
 // nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
@@ -131,7 +121,8 @@ Programs::Programs(const device::Context& context, const TreeForm& form, std::st
       block_(form.block),
       widen_(form.widen),
       prefetch_(form.bytes > kNear),
-      far_(form.bytes > kFar) {
+      far_(form.bytes > kFar),
+      queries_alone_(context.info().kind != "cpu") {
   use({});
 }
 
@@ -175,14 +166,21 @@ void Programs::use(const Tuning& t) {
   if (t.distance > 0) walk_options_ += fmt::format(" -DKDRAY_COHERENT_DISTANCE={:.4f}f", 0.001 * t.distance);
 }
 
+bool Programs::walks_alone(const std::string& file, Traversal traversal) const {
+  const bool is_stage = file == "traverse/trace_closest.cl" || file == "traverse/trace_shadow.cl";
+  return traversal == Traversal::wide && (is_stage || (queries_alone_ && file == "traverse/query.cl"));
+}
+
 std::string Programs::options_for(const std::string& file, Traversal traversal, Precision precision,
                                   int stack) const {
   const bool in_double = precision == Precision::float64;  // double has only the portable vector form
   std::string options =
       "-cl-std=CL1.2 " + device::build_option(in_double ? device::Simd::portable : context_->simd());
   if (in_double) options += " -DKDRAY_PRECISION=64";
-  if (is_per_ray(file) || walks_alone(file, traversal)) options += " -DKDRAY_LANES=1u";
-  if (walks_alone(file, traversal)) options += fmt::format(" -DKDRAY_WIDE_LEVELS={}", levels_);
+  if (walks_alone(file, traversal)) {
+    options += fmt::format(" -DKDRAY_WIDE_LEVELS={}", levels_);
+    if (file == "traverse/query.cl") options += " -DKDRAY_LANES=1u";
+  }
   if (traversal == Traversal::binary) {
     options += fmt::format(" -DKDRAY_STACK_SIZE={}", stack);
   } else {

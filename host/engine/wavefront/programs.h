@@ -59,6 +59,13 @@ class Programs {
   // From now on programs have all features that they may have, whatever is wanted of them.
   void have_everything() { everything_ = true; }
 
+  // Whether queries with Traversal::wide have a work-item for each ray, without vectors, as GPUs want it: by
+  // themselves all devices but CPUs.
+  void query_alone(bool alone) { queries_alone_ = alone; }
+  // Whether the file's program walks compressed nodes, with one ray to a work-item: as stages that are not fused
+  // do.
+  bool walks_alone(const std::string& file, Traversal traversal) const;
+
   // The constants of the walks from now on; what was built with others is kept.
   void use(const Tuning& tuning);
 
@@ -103,7 +110,7 @@ class Programs {
   int stack_size_, wide_stack_size_, any_order_stack_size_, block_, widen_;
   Array<layout::WideNode> nodes_;
   int levels_ = 0;  // of the nodes, rounded up; found when a program asks for them
-  bool prefetch_, far_, everything_ = false;
+  bool prefetch_, far_, queries_alone_, everything_ = false;
   double build_seconds_ = 0;
   mutable std::mutex mutex_;  // of what is built: queries of several threads ask for kernels
   ProgramsUsed used_;
