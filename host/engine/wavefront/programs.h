@@ -62,8 +62,8 @@ class Programs {
   // Whether queries with Traversal::wide have a work-item for each ray, without vectors, as GPUs want it: by
   // themselves all devices but CPUs.
   void query_alone(bool alone) { queries_alone_ = alone; }
-  // Whether the file's program walks compressed nodes, with one ray to a work-item: as stages that are not fused
-  // do.
+  // Whether the file's program walks compressed nodes, with one ray to a work-item: as stages that are not
+  // fused do.
   bool walks_alone(const std::string& file, Traversal traversal) const;
 
   // The constants of the walks from now on; what was built with others is kept.
