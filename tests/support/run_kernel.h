@@ -17,7 +17,10 @@ std::vector<Out> run_kernel(const std::string& device, const std::string& source
                             const std::string& options = "") {
   const device::Context context(device, 1);
   return device::checked("running a test kernel", [&] {
-    cl::Kernel kernel(context.build_text("test.cl", source, "-cl-std=CL1.2 " + options), "test");
+    // As kdray's own programs have it: without it NVIDIA's quotients and roots are approximations.
+    const char* const rounded =
+        context.rounds_division_correctly() ? "-cl-fp32-correctly-rounded-divide-sqrt " : "";
+    cl::Kernel kernel(context.build_text("test.cl", source, "-cl-std=CL1.2 " + (rounded + options)), "test");
     const cl::Buffer in_buffer = context.buffer(CL_MEM_READ_ONLY, in.size() * sizeof(In), "in");
     const cl::Buffer out_buffer = context.buffer(CL_MEM_WRITE_ONLY, in.size() * sizeof(Out), "out");
     const cl::CommandQueue& queue = context.queues().front();
