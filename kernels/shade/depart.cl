@@ -30,7 +30,15 @@ __kernel void depart(KDRAY_PARAMETERS(KDRAY_DEPART_ARGUMENTS)) {
     t[lane] = in_hits[i].t, ref[lane] = in_hits[i].ref, u[lane] = in_hits[i].u, v[lane] = in_hits[i].v;
   }
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
-  const Hits hits = {loadN(t), loadN(ref), loadN(u), loadN(v)};
+  const Hits hits = {
+    loadN(t),
+    loadN(ref),
+    loadN(u),
+    loadN(v),
+#if KDRAY_HAS_INSTANCES
+    (wordN)(0u),
+#endif
+  };
   Surface s;
   surfaces_at(&arrays, load_lanes3(origin), load_lanes3(direction), &hits, lanes_up_to(count), &s);
   real front[3 * KDRAY_LANES], back[3 * KDRAY_LANES], normal[3 * KDRAY_LANES];

@@ -18,6 +18,12 @@ namespace {
 
 constexpr int kSteps = 255;
 
+// Whether a slot has a child. In meshes that were moved behind others the word of one without isn't 0 any
+// more, but its box is empty.
+bool holds_child(const layout::WideNode& node, std::uint32_t slot) {
+  return node.child[slot] != 0 && node.bounds[0][0][slot] <= node.bounds[0][1][slot];
+}
+
 // Returns the least exponent with which all of the extent is within reach; a float holds its power of two.
 int exponent_for(double extent) {
   int exponent = 0;
@@ -34,13 +40,13 @@ void compress_axis(const layout::WideNode& node, std::size_t axis, layout::Compr
   const float* const hi = node.bounds[axis][1];
   float least = std::numeric_limits<float>::infinity(), most = -least;
   for (std::uint32_t slot = 0; slot < kWidth; ++slot)
-    if (has_child(node, slot)) least = std::min(least, lo[slot]), most = std::max(most, hi[slot]);
+    if (holds_child(node, slot)) least = std::min(least, lo[slot]), most = std::max(most, hi[slot]);
   if (!(least <= most)) return;
   const int exponent = exponent_for(double{most} - double{least});
   out.origin[axis] = least;
   out.scales |= static_cast<layout::u32>(exponent + 127) << (8 * axis);
   for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
-    if (!has_child(node, slot)) continue;
+    if (!holds_child(node, slot)) continue;
     out.bounds[axis][0][slot] = steps(std::floor(std::ldexp(double{lo[slot]} - double{least}, -exponent)));
     out.bounds[axis][1][slot] = steps(std::ceil(std::ldexp(double{hi[slot]} - double{least}, -exponent)));
   }
@@ -54,9 +60,11 @@ class Levels {
   int below(std::size_t index) {
     if (found_[index] > 0) return found_[index];
     int most = 0;
-    for (const layout::u32 child : nodes_[index].child) {
+    for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+      if (!holds_child(nodes_[index], slot)) continue;
+      const layout::u32 child = nodes_[index].child[slot];
       if ((child & ~KDRAY_WIDE_FIRST_MASK) == KDRAY_INSTANCE_LEAF) instances_ = true;
-      if (child != 0 && !(child & KDRAY_WIDE_LEAF)) most = std::max(most, below(child));
+      if (!(child & KDRAY_WIDE_LEAF)) most = std::max(most, below(child));
     }
     return found_[index] = most + 1;
   }
@@ -83,7 +91,7 @@ layout::CompressedNode compressed(const layout::WideNode& node) {
   for (std::size_t axis = 0; axis < 3; ++axis) compress_axis(node, axis, out);
   for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
     out.child[slot] = node.child[slot];
-    out.scales |= layout::u32{has_child(node, slot)} << (24 + slot);
+    out.scales |= layout::u32{holds_child(node, slot)} << (24 + slot);
   }
   return out;
 }

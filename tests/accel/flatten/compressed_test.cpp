@@ -107,6 +107,14 @@ TEST(Compressed, ANodeWithoutChildrenHasNone) {
   EXPECT_EQ(compressed(empty_node()).scales >> 24, 0u);
 }
 
+// As in a mesh that lies behind others: its words were moved, the empty ones' too.
+TEST(Compressed, AWordWithoutABoxIsNoChild) {
+  layout::WideNode node = empty_node();
+  node.child[3] = 7;  // none of the nodes
+  EXPECT_EQ(compressed(node).scales >> 24, 0u);
+  EXPECT_EQ(most_levels(Array<layout::WideNode>::copy_of(std::span(&node, 1))), 1);
+}
+
 TEST(Compressed, AnArrayHasTheSameNodes) {
   std::mt19937 random(kSeed);
   Array<layout::WideNode> nodes(1000);
