@@ -58,6 +58,8 @@ std::array<cl::Buffer*, SceneBuffers::Slot::kArrays> SceneBuffers::all() {
 
 // The nodes to compress, and the buffer of those that are.
 struct SceneBuffers::Compressed {
+  Compressed(const device::Context& on, const Array<layout::WideNode>& all) : context(on), nodes(all) {}
+
   device::Context context;
   Array<layout::WideNode> nodes;
   std::mutex making;
