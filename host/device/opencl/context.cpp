@@ -113,6 +113,13 @@ bool Context::rounds_division_correctly() const {
   });
 }
 
+bool Context::adds_64_bits_atomically() const {
+  return checked("asking " + found_.info.name, [&] {
+    return found_.device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_int64_base_atomics") !=
+           std::string::npos;
+  });
+}
+
 namespace {
 
 // Programs by all that they are made of. Like what is opened, they are never destroyed.

@@ -41,7 +41,9 @@ class Context {
   const cl::Context& get() const { return opened_->context; }
   const std::vector<cl::CommandQueue>& queues() const { return opened_->queues; }
   std::size_t max_work_group() const;
-  bool rounds_division_correctly() const;  // CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT
+  bool rounds_division_correctly() const;
+  // Whether work-items can add to one 64-bit number, as films want it where every ray has a work-item.
+  bool adds_64_bits_atomically() const;  // CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT
   std::size_t n_sub_devices() const { return opened_->devices.size(); }
 
   cl::Program build(const std::string& file, const std::string& options) const;

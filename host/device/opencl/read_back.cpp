@@ -1,7 +1,6 @@
 #include "device/opencl/read_back.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -85,16 +84,6 @@ void read_pieces(const Context& context, cl::CommandQueue& queue, const cl::Buff
     queue.finish();
     throw;
   }
-}
-
-void read_back(const Context& context, cl::CommandQueue& queue, const cl::Buffer& buffer, std::size_t n,
-               void* to) {
-  std::vector<Piece> pieces;
-  for (std::size_t first = 0; first < n; first += kPieceBytes)
-    pieces.push_back({first, std::min(kPieceBytes, n - first)});
-  read_pieces(context, queue, buffer, pieces, [&](std::size_t i, const void* memory) {
-    std::memcpy(static_cast<char*>(to) + pieces[i].first, memory, pieces[i].n);
-  });
 }
 
 }  // namespace kdray::device

@@ -26,8 +26,4 @@ constexpr std::size_t kPieceBytes = std::size_t{2} << 20;
 void read_pieces(const Context& context, cl::CommandQueue& queue, const cl::Buffer& buffer,
                  std::span<const Piece> pieces, const std::function<void(std::size_t, const void*)>& take);
 
-// Reads the first n bytes to `to`.
-void read_back(const Context& context, cl::CommandQueue& queue, const cl::Buffer& buffer, std::size_t n,
-               void* to);
-
 }  // namespace kdray::device

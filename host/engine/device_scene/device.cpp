@@ -14,7 +14,8 @@ constexpr std::size_t kDefaultWorkGroup = 64;
 }  // namespace
 
 bool runs_globally(const DeviceOptions& options, const device::Context& context) {
-  if (options.schedule == Schedule::automatic) return context.info().kind != "cpu";
+  if (options.schedule == Schedule::automatic)
+    return context.info().kind != "cpu" && context.adds_64_bits_atomically();
   return options.schedule == Schedule::global;
 }
 
