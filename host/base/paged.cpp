@@ -121,6 +121,7 @@ namespace {
 
 constexpr std::size_t kLeast = std::size_t{1} << 20;  // smaller blocks are plain, and not counted
 constexpr auto kPause = std::chrono::milliseconds(5);
+constexpr int kMostPassedOver = 100;
 
 // All paged memory of the process.
 class Pages {
@@ -193,16 +194,20 @@ class Pages {
   }
 
   // The size of all mapped files is quick to get, that of these alone much slower: so these are measured only
-  // when all have grown by enough for these to have come near their share.
+  // when all have grown by enough for these to have come near their share. Others write meanwhile: what counts
+  // as seen was there before these were measured, and nothing once they are let go. The quick size lags behind
+  // by some pages a processor, so these are measured from time to time in any case.
   void let_go_of_many() {
     const std::uint64_t share = budget() / 4, now = resident_of_files();
-    if (now < seen_ + share / 8) {
+    if (now < seen_ + share / 8 && ++passed_over_ < kMostPassedOver) {
       seen_ = std::min(seen_, now);
       return;
     }
-    if (resident_of(files_) > share)
-      for (const auto& [memory, bytes] : files_) ::madvise(memory, bytes, MADV_DONTNEED);
-    seen_ = resident_of_files();
+    passed_over_ = 0;
+    seen_ = now;
+    if (resident_of(files_) <= share) return;
+    for (const auto& [memory, bytes] : files_) ::madvise(memory, bytes, MADV_DONTNEED);
+    seen_ = 0;
   }
 
   std::mutex mutex_;
@@ -212,6 +217,7 @@ class Pages {
   std::uint64_t plain_ = 0;
   std::map<void*, std::size_t> files_;
   std::uint64_t seen_ = 0;  // of all mapped files, when these were looked at
+  int passed_over_ = 0;     // pauses since then
 };
 
 std::filesystem::path folder_of_files() {
