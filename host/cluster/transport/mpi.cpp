@@ -32,7 +32,8 @@ std::vector<fs::path> places() {
     return {asked};
   std::error_code error;
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-  return {here / ".." / "lib" / kName, here / ".." / "lib" / "kdray" / kName, here / kName, kName};
+  const fs::path installed = here / ".." / KDRAY_INSTALLED_LIBRARIES;
+  return {here / ".." / "lib" / kName, installed / "kdray" / kName, here / kName, kName};
 }
 
 // It stays until the process ends: an MPI can't be opened twice.
