@@ -41,7 +41,7 @@ run_tests() {
   local test
   for test in picture ranks embed python; do
     echo "-- debian/tests/$test"
-    in_root mkdir -p "/tmp/$test"
+    in_root sh -c "rm -rf /tmp/$test && mkdir -p /tmp/$test"
     in_root env AUTOPKGTEST_TMP="/tmp/$test" "/tests/$test" >"$work/test.log" 2>&1 || { tail -n 30 "$work/test.log"; exit 1; }
     tail -n 3 "$work/test.log"
   done
@@ -52,11 +52,13 @@ mmdebstrap -q --variant=apt bookworm "$root"
 cp -R "$(dirname "$0")/../../debian/tests" "$root/tests"
 mkdir "$root/packages"
 find "$packages" -name '*.deb' ! -name '*-dbgsym_*' -exec cp {} "$root/packages" \;
+cp /etc/resolv.conf "$root/etc/"
+in_root apt-get -qq update >"$work/apt.log" 2>&1 || { tail -n 30 "$work/apt.log"; exit 1; }
 for place in proc sys dev; do mount --rbind "/$place" "$root/$place"; done
 in_root find / -xdev -path /proc -prune -o -path '/packages' -prune -o -iname '*kdray*' -print >"$work/before"
 
 step "kdray alone, without a driver"
-install /packages/kdray_*.deb
+install "/packages/$(basename "$root"/packages/kdray_*.deb)"
 du -sh --apparent-size "$root/usr/bin/kdray" | cut -f1
 status=0
 in_root kdray render /usr/share/kdray/scenes/balls.nff -o /tmp/balls.png || status=$?
@@ -69,7 +71,7 @@ time in_root kdray render /usr/share/kdray/scenes/balls.nff -o /tmp/balls.png
 step "all packages, and their tests"
 in_root sh -c 'cd /packages && ls *.deb'
 # shellcheck disable=SC2046  # names without blanks
-install $(cd "$root" && echo /packages/*.deb) cmake g++ make
+install $(cd "$root" && printf '/%s ' packages/*.deb) cmake g++ make
 run_tests
 
 step "upgrade"
