@@ -1,0 +1,192 @@
+# What    A bound: a file with what is read from the kernels, hypotheses and a goal, made into a script for Gappa.
+# Shape   Lines that begin with % say what is read; the rest is Gappa's, and %rounding in it stands for the hypotheses
+#         about roundings.
+#           %from FILE                 which of the kernels' files
+#           %define NAME=VALUE         for the preprocessor
+#           %read TEXT as TEXT         what an expression of the source stands for here (evaluate.py)
+#           %set PLACE = EXPRESSION    what lies in a struct before
+#           %call FUNCTION(ARGUMENTS)  evaluates a function
+#           %let NAME = PLACE          names a value: what a call stored, or FUNCTION.VARIABLE at its end
+#           %number NAME = EXPRESSION  names a constant
+#         Each operation x is printed three times: op_x, what it computes of its rounded operands; x, the float nearest
+#         to that, as op_x + (op_x*e + n) with |e| <= 2^-24 and, where it may underflow, |n| <= 2^-100; and exact_x, the
+#         same without any rounding. (Flocq: error_N_FLT. Sums don't underflow, nor does a product with a power of two
+#         round.) Lengths are in units of which a float's least is no more than 2^-50, so that n is far above 2^-150 of these.
+#         Hints say how the error of x comes from those of its operands; Gappa checks that they are equations.
+import re
+from fractions import Fraction
+
+from evaluate import Evaluation
+from kernel_source import Broken, Op, Place, Source
+
+ROUNDED = ("+", "-", "*", "/", "fma", "sqrt")
+
+
+def gappa_number(value):
+    exponent = 0
+    while value.denominator != 1:
+        value, exponent = value * 2, exponent - 1
+        if exponent < -400:
+            raise Broken("a number that is no float")
+    return f"{value.numerator}b{exponent}" if value >= 0 else f"(-{-value.numerator}b{exponent})"
+
+
+def is_power_of_two(value):
+    value = abs(value)
+    return value != 0 and (value.numerator & (value.numerator - 1)) == 0 and (value.denominator & (value.denominator - 1)) == 0
+
+
+class Bound:
+    def __init__(self, text):
+        self.lines = [line for line in text.split("\n") if line.startswith("%") and not line.startswith("%rounding")]
+        self.script = "\n".join(line for line in text.split("\n") if line not in self.lines)
+
+    def directives(self, word):
+        return [line[len(word) + 2 :].strip() for line in self.lines if line.startswith(f"%{word} ")]
+
+    def evaluate(self, compiler, kernels):
+        """Returns the named values, and the named constants."""
+        pairs = [d.split(" = ", 1) for d in self.directives("number")]
+        source = Source(compiler, kernels, self.directives("from")[0], self.directives("define"), pairs)
+        evaluation = Evaluation(source, dict(d.split(" as ") for d in self.directives("read")))
+        names = {}
+        for line in self.lines:
+            word, rest = line[1:].split(" ", 1)
+            if word not in ("from", "define", "read", "set", "call", "let", "number", "mutant"):
+                raise Broken(f"no such line in a bound: {line}")
+            if word == "set":
+                place, value = rest.split(" = ")
+                evaluation.memory[place.strip()] = evaluation.load(evaluation.value(source.expression(value), {}))
+            elif word == "call":
+                name, arguments = re.fullmatch(r"(\w+)\((.*)\)", rest.strip()).groups()
+                values = [self.argument(evaluation, source, a) for a in arguments.split(",")]
+                if not source.defines(name, len(values)):
+                    raise Broken(f"no function {name} of {len(values)} parameters any more")
+                evaluation.memory.pop(name, None)
+                result = evaluation.call(name, values)
+                if result is not None:
+                    evaluation.store(Place(f"{name}.result"), result)
+            elif word == "let":
+                name, place = (part.strip() for part in rest.split(" = "))
+                names[name] = self.resolve(evaluation, place)
+        unused = set(evaluation.reads) - evaluation.used
+        if unused:
+            raise Broken(f"not in the source any more: {', '.join(sorted(unused))}")
+        constants = {n: evaluation.load(evaluation.value(source.expression(source.numbers[n]), {})) for n, _ in pairs}
+        return names, {n: c.value for n, c in constants.items()}
+
+    def argument(self, evaluation, source, text):
+        return evaluation.value(source.expression(text.strip()), {})
+
+    def resolve(self, evaluation, place):
+        first, *rest = place.split(".")
+        if rest and rest[0] != "result" and first in evaluation.locals_of and rest[0] in evaluation.locals_of[first]:
+            value = evaluation.locals_of[first][rest[0]]
+            rest = rest[1:]
+        else:
+            value = Place(first)
+        for part in rest:
+            value = evaluation.component(value, part)
+        value = evaluation.load(value)
+        if not isinstance(value, Op):
+            raise Broken(f"{place} is no number")
+        return value
+
+    def gappa(self, compiler, kernels):
+        names, constants = self.evaluate(compiler, kernels)
+        printer = Printer({id(op): name for name, op in names.items()})
+        for name, op in names.items():
+            printer.define(op)
+        printer.alias(names)
+        numbers = ["u = 1b-24;"] + [f"{name} = {gappa_number(value)};" for name, value in constants.items()]
+        rounding = " /\\ ".join(printer.roundings)
+        script = self.script.replace("%rounding", rounding)
+        return "\n".join(numbers + printer.lines) + "\n" + script + "\n" + "\n".join(printer.hints) + "\n"
+
+
+class Printer:
+    def __init__(self, names):
+        self.names, self.lines, self.hints, self.roundings, self.done = names, [], [], [], {}
+
+    def alias(self, names):
+        for name, op in names.items():
+            text, exact = self.define(op)
+            if text != name:
+                self.lines += [f"{name} = {text};", f"exact_{name} = {exact};"]
+
+    def define(self, op):
+        """Returns the names of an operation's value, rounded and exact."""
+        if id(op) not in self.done:
+            self.done[id(op)] = self.print(op)
+        return self.done[id(op)]
+
+    def print(self, op):
+        if op.kind == "name":
+            return op.value, op.value
+        if op.kind == "number":
+            return gappa_number(op.value), gappa_number(op.value)
+        if op.kind == "undecided":
+            raise Broken(f"what this stands for isn't told: {op.value}")
+        args = [self.define(a) for a in op.args]
+        if op.kind == "neg":
+            return f"(-{args[0][0]})", f"(-{args[0][1]})"
+        if op.kind == "abs":
+            return f"|{args[0][0]}|", f"|{args[0][1]}|"
+        name = self.names.get(id(op), f"t{len(self.done) + 1}")
+        rounded, exact = ([a[i] for a in args] for i in (0, 1))
+        self.lines += [f"op_{name} = {formula(op.kind, rounded)};", f"exact_{name} = {formula(op.kind, exact)};"]
+        self.round(op, name)
+        self.hint(op, name, rounded, exact)
+        return name, f"exact_{name}"
+
+    def round(self, op, name):
+        """Says how far a value may be from what is computed of its operands."""
+        times_power = op.kind == "*" and any(a.kind == "number" and is_power_of_two(a.value) for a in op.args)
+        may_underflow = op.kind in ("*", "/", "fma")
+        nearest = f"op_{name}" if times_power else f"r_{name}" if may_underflow else name
+        if not times_power:
+            self.roundings.append(f"{nearest} -/ op_{name} in [-1b-24,1b-24]")
+        if may_underflow:
+            self.lines.append(f"{name} = {nearest} + n_{name};")
+            self.roundings.append(f"n_{name} in [-1b-100,1b-100]")
+            error = f"({nearest} - op_{name}) + n_{name}" if nearest[0] == "r" else f"n_{name}"
+            self.hints.append(f"{name} - op_{name} -> {error};")
+
+    def hint(self, op, name, a, exact):
+        def off(i):
+            return None if a[i] == exact[i] else f"({a[i]} - {exact[i]})"
+
+        def sum_of(terms):
+            return " + ".join(t for t in terms if t) or None
+
+        def product(i, j):
+            first = off(i) and f"{off(i)}*{a[j]}"
+            second = off(j) and f"{exact[i]}*{off(j)}"
+            return sum_of([first, second])
+
+        whole = f"exact_{name}"
+        if op.kind in "+-":
+            second = off(1) and (off(1) if op.kind == "+" else f"-({off(1)})")
+            way = sum_of([off(0), second])
+        elif op.kind == "*":
+            way = product(0, 1)
+        elif op.kind == "fma":
+            way = sum_of([product(0, 1), off(2)])
+        elif op.kind == "/":
+            top = sum_of([off(0), off(1) and f"-({whole}*{off(1)})"])
+            way = top and f"({top})/{a[1]} {{ {a[1]} <> 0, {exact[1]} <> 0 }}"
+        else:
+            way = off(0) and f"{off(0)}/(op_{name} + {whole}) {{ op_{name} + {whole} <> 0 }}"
+        if way:
+            self.hints += [f"op_{name} - {whole} -> {way};"]
+            self.hints += [f"{name} - {whole} -> (op_{name} - {whole}) + ({name} - op_{name});"]
+        else:
+            self.hints += [f"{name} - {whole} -> {name} - op_{name};"]
+
+
+def formula(kind, a):
+    if kind == "fma":
+        return f"{a[0]}*{a[1]} + {a[2]}"
+    if kind == "sqrt":
+        return f"sqrt({a[0]})"
+    return f"{a[0]} {kind} {a[1]}"

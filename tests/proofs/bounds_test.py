@@ -1,0 +1,88 @@
+# What    Proves the bounds (bound.py): Gappa must prove each as the kernels' source is; and must fail, or the source not
+#         be understood any more, for each mutant of the source that a bound names:
+#           %mutant FILE: TEXT => TEXT
+#         bounds_test.py COMPILER PROJECT [proved|refuted|print] [BOUND...]
+# Errors  Status 1 when a bound isn't proved or a mutant is; 77 where Gappa isn't installed.
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+from bound import Bound
+from kernel_source import Broken
+
+FOLDER = pathlib.Path(__file__).parent / "bounds"
+
+
+def gappa(script):
+    """Returns why Gappa doesn't prove a script; nothing when it does."""
+    done = subprocess.run(["gappa"], input=script, capture_output=True, text=True, timeout=600)
+    wrong = [line for line in done.stderr.split("\n") if "not trivially equal" in line]
+    if wrong:
+        return f"a hint is no equation: {wrong[0]}"
+    if "Error: syntax" in done.stderr or "Error: the symbol" in done.stderr:
+        raise SystemExit(f"a bound isn't Gappa's language: {done.stderr.strip()}")
+    return None if done.returncode == 0 else "not proved: " + done.stderr.strip().split("\n")[-1]
+
+
+def why_not(bound, compiler, kernels):
+    try:
+        return gappa(bound.gappa(compiler, kernels))
+    except Broken as broken:
+        return f"the source isn't as the bound has it: {broken}"
+
+
+def mutant(bound, text, compiler, kernels):
+    """Returns what is wrong with a mutant: that it isn't one, or is proved."""
+    file, change = text.split(": ", 1)
+    old, new = change.split(" => ")
+    source = (kernels / file).read_text()
+    if source.count(old) != 1:
+        return f"{source.count(old)} times in {file}: {old}"
+    with tempfile.TemporaryDirectory() as folder:
+        changed = pathlib.Path(folder) / file
+        changed.parent.mkdir(parents=True)
+        changed.write_text(source.replace(old, new))
+        return None if why_not(bound, compiler, [folder, kernels]) else f"is proved, too, with {new} for {old} in {file}"
+
+
+def main():
+    compiler, project, what = sys.argv[1], pathlib.Path(sys.argv[2]), (sys.argv[3:] or ["proved"])[0]
+    if shutil.which("gappa") is None and what != "print":
+        print("skipped: Gappa isn't installed (Debian: apt-get install gappa)")
+        return 77
+    kernels = project / "kernels"
+    bounds = {path.stem: Bound(path.read_text()) for path in sorted(FOLDER.glob("*.bound"))}
+    bounds = {name: bound for name, bound in bounds.items() if name in (sys.argv[4:] or bounds)}
+    if what == "print":
+        for bound in bounds.values():
+            print(bound.gappa(compiler, [kernels]))
+        return 0
+    cases = []
+    for name, bound in bounds.items():
+        mutants = bound.directives("mutant")
+        if not mutants:
+            cases.append((name, lambda: "has no mutant"))
+        if what == "proved":
+            cases.append((name, lambda bound=bound: why_not(bound, compiler, [kernels])))
+        else:
+            cases += [(name, lambda b=bound, m=m: mutant(b, m, compiler, kernels)) for m in mutants]
+
+    def timed(case):
+        start = time.monotonic()
+        return case[0], case[1](), time.monotonic() - start
+
+    failed = 0
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for name, wrong, seconds in pool.map(timed, cases):
+            failed += wrong is not None
+            print(f"{name}: {wrong or what} ({seconds:.1f} s)")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
