@@ -2,6 +2,7 @@
 # Shape   Lines that begin with % say what is read; the rest is Gappa's, and %rounding in it stands for the hypotheses
 #         about roundings.
 #           %from FILE                 which of the kernels' files
+#           %include FILE              lines of another file of the folder
 #           %define NAME=VALUE         for the preprocessor
 #           %read TEXT as TEXT         what an expression of the source stands for here (evaluate.py)
 #           %set PLACE = EXPRESSION    what lies in a struct before
@@ -13,12 +14,14 @@
 #         same without any rounding. (Flocq: error_N_FLT. Sums don't underflow, nor does a product with a power of two
 #         round.) Lengths are in units of which a float's least is no more than 2^-50, so that n is far above 2^-150 of these.
 #         Hints say how the error of x comes from those of its operands; Gappa checks that they are equations.
+import pathlib
 import re
 from fractions import Fraction
 
 from evaluate import Evaluation
 from kernel_source import Broken, Op, Place, Source
 
+FOLDER = pathlib.Path(__file__).parent / "bounds"
 ROUNDED = ("+", "-", "*", "/", "fma", "sqrt")
 
 
@@ -38,6 +41,7 @@ def is_power_of_two(value):
 
 class Bound:
     def __init__(self, text):
+        text = re.sub(r"^%include (\S+)$", lambda m: (FOLDER / m[1]).read_text(), text, flags=re.MULTILINE)
         self.lines = [line for line in text.split("\n") if line.startswith("%") and not line.startswith("%rounding")]
         self.script = "\n".join(line for line in text.split("\n") if line not in self.lines)
 
@@ -87,6 +91,8 @@ class Bound:
             value = Place(first)
         for part in rest:
             value = evaluation.component(value, part)
+        if isinstance(value, Place) and value.name not in evaluation.memory:
+            raise Broken(f"nothing lies at {place}")
         value = evaluation.load(value)
         if not isinstance(value, Op):
             raise Broken(f"{place} is no number")
@@ -102,6 +108,37 @@ class Bound:
         rounding = " /\\ ".join(printer.roundings)
         script = self.script.replace("%rounding", rounding)
         return "\n".join(numbers + printer.lines) + "\n" + script + "\n" + "\n".join(printer.hints) + "\n"
+
+    def coq(self, compiler, kernels):
+        """Prints the named values as definitions of Coq, of what they are computed from."""
+        names, _ = self.evaluate(compiler, kernels)
+        text = ["Require Import Reals.", "Open Scope R_scope."]
+        for name, op in names.items():
+            lines, done = [], {}
+            result = coq_value(op, lines, done)
+            parameters = [coq_name(a.strip()) for a in re.search(r"\((.*)\)", self.directives("call")[0])[1].split(",")]
+            text.append(f"Definition {name} (nearest : R -> R) ({' '.join(parameters)} : R) : R :=")
+            text += [*lines, f"  {result}."]
+        return "\n".join(text) + "\n"
+
+
+def coq_name(name):
+    return name + "_" if name in ("by", "at", "as", "in", "end", "fun") else name
+
+
+def coq_value(op, lines, done):
+    if id(op) in done:
+        return done[id(op)]
+    if op.kind == "name":
+        return coq_name(op.value)
+    args = [coq_value(a, lines, done) for a in op.args]
+    if op.kind == "neg":
+        return f"(- {args[0]})"
+    if op.kind not in ROUNDED:
+        raise Broken(f"not for Coq: {op.kind} {op.value or ''}")
+    done[id(op)] = f"v{len(done) + 1}"
+    lines.append(f"  let {done[id(op)]} := nearest ({formula(op.kind, args)}) in")
+    return done[id(op)]
 
 
 class Printer:

@@ -3,6 +3,7 @@
 #           %mutant FILE: TEXT => TEXT
 #         bounds_test.py COMPILER PROJECT [proved|refuted|print] [BOUND...]
 # Errors  Status 1 when a bound isn't proved or a mutant is; 77 where Gappa isn't installed.
+import contextlib
 import os
 import pathlib
 import shutil
@@ -12,10 +13,9 @@ import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 
-from bound import Bound
+from bound import FOLDER, Bound
 from kernel_source import Broken
 
-FOLDER = pathlib.Path(__file__).parent / "bounds"
 
 
 def gappa(script):
@@ -36,18 +36,24 @@ def why_not(bound, compiler, kernels):
         return f"the source isn't as the bound has it: {broken}"
 
 
-def mutant(bound, text, compiler, kernels):
-    """Returns what is wrong with a mutant: that it isn't one, or is proved."""
+@contextlib.contextmanager
+def changed_kernels(kernels, text):
+    """A folder with the file that a mutant changes."""
     file, change = text.split(": ", 1)
     old, new = change.split(" => ")
     source = (kernels / file).read_text()
     if source.count(old) != 1:
-        return f"{source.count(old)} times in {file}: {old}"
+        raise SystemExit(f"{source.count(old)} times in {file}: {old}")
     with tempfile.TemporaryDirectory() as folder:
         changed = pathlib.Path(folder) / file
         changed.parent.mkdir(parents=True)
         changed.write_text(source.replace(old, new))
-        return None if why_not(bound, compiler, [folder, kernels]) else f"is proved, too, with {new} for {old} in {file}"
+        yield folder
+
+
+def mutant(bound, text, compiler, kernels):
+    with changed_kernels(kernels, text) as folder:
+        return None if why_not(bound, compiler, [folder, kernels]) else f"is proved, too, with {text}"
 
 
 def main():

@@ -135,7 +135,9 @@ class Evaluation:
         operator, value = node[2], self.value(node[3], env)
         if operator == "-":
             return self.each("neg", value)
-        if operator == "+" or operator == "&" or operator == "*":
+        if operator == "*" and isinstance(value, Place):
+            return self.memory.get(value.name, value)
+        if operator in ("+", "&", "*"):
             return value
         known = self.load(value)
         if operator == "!" and isinstance(known, Op) and known.kind == "number":
