@@ -7,7 +7,12 @@
 #           %read TEXT as TEXT         what an expression of the source stands for here (evaluate.py)
 #           %set PLACE = EXPRESSION    what lies in a struct before
 #           %call FUNCTION(ARGUMENTS)  evaluates a function
-#           %let NAME = PLACE          names a value: what a call stored, or FUNCTION.VARIABLE at its end
+#           %let NAME = PLACE          names a value: what a call stored, or FUNCTION.VARIABLE at its end; behind an
+#                                      operation, .0, .1 and .2 are what it is of
+#           %unit UNIT: NAMES          what names are measured in. Sums must be of one unit: then all may be divided by
+#                                      one value of each unit, and "in units of M" is no loss.
+#           %power NAME                that a name is a power of two, a product with which isn't rounded
+#           %pin FILE: TEXT            what stands in a file of the project that isn't read by this
 #           %number NAME = EXPRESSION  names a constant
 #         Each operation x is printed three times: op_x, what it computes of its rounded operands; x, the float nearest
 #         to that, as op_x + (op_x*e + n) with |e| <= 2^-24 and, where it may underflow, |n| <= 2^-100; and exact_x, the
@@ -18,7 +23,7 @@ import pathlib
 import re
 from fractions import Fraction
 
-from evaluate import Evaluation
+from evaluate import Evaluation, plain
 from kernel_source import Broken, Op, Place, Source
 
 FOLDER = pathlib.Path(__file__).parent / "bounds"
@@ -51,12 +56,14 @@ class Bound:
     def evaluate(self, compiler, kernels):
         """Returns the named values, and the named constants."""
         pairs = [d.split(" = ", 1) for d in self.directives("number")]
-        source = Source(compiler, kernels, self.directives("from")[0], self.directives("define"), pairs)
-        evaluation = Evaluation(source, dict(d.split(" as ") for d in self.directives("read")))
+        reads = [d.split(" as ") for d in self.directives("read")]
+        texts = pairs + [(f"read_{i}", text) for i, (text, _) in enumerate(reads)]
+        source = Source(compiler, kernels, self.directives("from")[0], self.directives("define"), texts)
+        evaluation = Evaluation(source, {source.numbers[f"read_{i}"]: value for i, (_, value) in enumerate(reads)})
         names = {}
         for line in self.lines:
             word, rest = line[1:].split(" ", 1)
-            if word not in ("from", "define", "read", "set", "call", "let", "number", "mutant"):
+            if word not in ("from", "define", "read", "set", "call", "let", "number", "unit", "power", "pin", "mutant"):
                 raise Broken(f"no such line in a bound: {line}")
             if word == "set":
                 place, value = rest.split(" = ")
@@ -79,6 +86,14 @@ class Bound:
         constants = {n: evaluation.load(evaluation.value(source.expression(source.numbers[n]), {})) for n, _ in pairs}
         return names, {n: c.value for n, c in constants.items()}
 
+    def check_pins(self, kernels):
+        for pin in self.directives("pin"):
+            file, text = pin.split(": ", 1)
+            folders = [pathlib.Path(folder) for folder in kernels] + [pathlib.Path(kernels[-1]).parent]
+            lines = next(folder / file for folder in folders if (folder / file).exists()).read_text()
+            if plain(text) not in plain(lines):
+                raise Broken(f"not in {file} any more: {text}")
+
     def argument(self, evaluation, source, text):
         return evaluation.value(source.expression(text.strip()), {})
 
@@ -90,7 +105,11 @@ class Bound:
         else:
             value = Place(first)
         for part in rest:
-            value = evaluation.component(value, part)
+            stored = evaluation.memory.get(value.name) if isinstance(value, Place) else value
+            is_operand = part.isdigit() and isinstance(stored, Op) and stored.args
+            if is_operand and int(part) >= len(stored.args):
+                raise Broken(f"{place} isn't there any more")
+            value = stored.args[int(part)] if is_operand else evaluation.component(value, part)
         if isinstance(value, Place) and value.name not in evaluation.memory:
             raise Broken(f"nothing lies at {place}")
         value = evaluation.load(value)
@@ -100,7 +119,11 @@ class Bound:
 
     def gappa(self, compiler, kernels):
         names, constants = self.evaluate(compiler, kernels)
-        printer = Printer({id(op): name for name, op in names.items()})
+        units = {n: {d.split(":")[0]: Fraction(1)} for d in self.directives("unit") for n in d.split(":")[1].split()}
+        for op in names.values():
+            unit_of(op, units, {})
+        self.check_pins(kernels)
+        printer = Printer({id(op): name for name, op in names.items()}, self.directives("power"))
         for name, op in names.items():
             printer.define(op)
         printer.alias(names)
@@ -120,6 +143,31 @@ class Bound:
             text.append(f"Definition {name} (nearest : R -> R) ({' '.join(parameters)} : R) : R :=")
             text += [*lines, f"  {result}."]
         return "\n".join(text) + "\n"
+
+
+def unit_of(op, units, done):
+    """Returns the exponents of the units that a value is measured in."""
+    if id(op) in done:
+        return done[id(op)]
+    args = [unit_of(a, units, done) for a in op.args]
+
+    def scaled(a, b, times):
+        both = {k: a.get(k, 0) + times * b.get(k, 0) for k in {*a, *b}}
+        return {k: v for k, v in both.items() if v}
+
+    def same(a, b):
+        if a != b:
+            raise Broken("a sum of different units")
+        return a
+
+    results = {"name": lambda: units.get(op.value, {}), "number": dict, "neg": lambda: args[0], "abs": lambda: args[0],
+               "+": lambda: same(*args), "-": lambda: same(*args), "*": lambda: scaled(*args, 1),
+               "/": lambda: scaled(*args, -1), "fma": lambda: same(scaled(args[0], args[1], 1), args[2]),
+               "sqrt": lambda: {k: v / 2 for k, v in args[0].items()}}  # fmt: skip
+    if op.kind not in results:
+        raise Broken(f"what this stands for isn't told: {op.value}")
+    done[id(op)] = results[op.kind]()
+    return done[id(op)]
 
 
 def coq_name(name):
@@ -142,7 +190,8 @@ def coq_value(op, lines, done):
 
 
 class Printer:
-    def __init__(self, names):
+    def __init__(self, names, powers):
+        self.powers = powers
         self.names, self.lines, self.hints, self.roundings, self.done = names, [], [], [], {}
 
     def alias(self, names):
@@ -178,7 +227,7 @@ class Printer:
 
     def round(self, op, name):
         """Says how far a value may be from what is computed of its operands."""
-        times_power = op.kind == "*" and any(a.kind == "number" and is_power_of_two(a.value) for a in op.args)
+        times_power = op.kind == "*" and any(self.is_power(a) for a in op.args)
         may_underflow = op.kind in ("*", "/", "fma")
         nearest = f"op_{name}" if times_power else f"r_{name}" if may_underflow else name
         if not times_power:
@@ -188,6 +237,9 @@ class Printer:
             self.roundings.append(f"n_{name} in [-1b-100,1b-100]")
             error = f"({nearest} - op_{name}) + n_{name}" if nearest[0] == "r" else f"n_{name}"
             self.hints.append(f"{name} - op_{name} -> {error};")
+
+    def is_power(self, op):
+        return op.kind == "number" and is_power_of_two(op.value) or op.kind == "name" and op.value in self.powers
 
     def hint(self, op, name, a, exact):
         def off(i):
@@ -213,9 +265,9 @@ class Printer:
             top = sum_of([off(0), off(1) and f"-({whole}*{off(1)})"])
             way = top and f"({top})/{a[1]} {{ {a[1]} <> 0, {exact[1]} <> 0 }}"
         else:
-            way = off(0) and f"{off(0)}/(op_{name} + {whole}) {{ op_{name} + {whole} <> 0 }}"
+            way = off(0)  # Gappa knows the rest itself
         if way:
-            self.hints += [f"op_{name} - {whole} -> {way};"]
+            self.hints += [f"op_{name} - {whole} -> {way};"] if op.kind != "sqrt" else []
             self.hints += [f"{name} - {whole} -> (op_{name} - {whole}) + ({name} - op_{name});"]
         else:
             self.hints += [f"{name} - {whole} -> {name} - op_{name};"]

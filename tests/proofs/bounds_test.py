@@ -6,6 +6,7 @@
 import contextlib
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -20,13 +21,19 @@ from kernel_source import Broken
 
 def gappa(script):
     """Returns why Gappa doesn't prove a script; nothing when it does."""
-    done = subprocess.run(["gappa"], input=script, capture_output=True, text=True, timeout=600)
-    wrong = [line for line in done.stderr.split("\n") if "not trivially equal" in line]
-    if wrong:
-        return f"a hint is no equation: {wrong[0]}"
-    if "Error: syntax" in done.stderr or "Error: the symbol" in done.stderr:
-        raise SystemExit(f"a bound isn't Gappa's language: {done.stderr.strip()}")
-    return None if done.returncode == 0 else "not proved: " + done.stderr.strip().split("\n")[-1]
+    with subprocess.Popen(["gappa", "-Edichotomy=12"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        process.stdin.write(script)
+        process.stdin.close()
+        last = ""
+        for line in process.stderr:  # hints are checked first, and a wrong one may keep Gappa busy for long
+            if "not trivially equal" in line:
+                process.kill()
+                return f"a hint is no equation: {line.strip()}"
+            if line.startswith("Error: ") and not re.search("not satisfied|no contradiction", line):
+                process.kill()
+                raise SystemExit(f"a bound isn't Gappa's language: {line}{script}")
+            last = line.strip() or last
+    return None if process.returncode == 0 else f"not proved: {last}"
 
 
 def why_not(bound, compiler, kernels):
@@ -41,7 +48,8 @@ def changed_kernels(kernels, text):
     """A folder with the file that a mutant changes."""
     file, change = text.split(": ", 1)
     old, new = change.split(" => ")
-    source = (kernels / file).read_text()
+    path = kernels / file if (kernels / file).exists() else kernels.parent / file
+    source = path.read_text()
     if source.count(old) != 1:
         raise SystemExit(f"{source.count(old)} times in {file}: {old}")
     with tempfile.TemporaryDirectory() as folder:

@@ -2,15 +2,25 @@
 # Shape   Evaluation(source, reads).call(function, arguments) returns what the function returns; `memory` has what it
 #         stored, by names like r.near.0, and `locals_of` its variables at its end. Equal operations on equal operands
 #         are one Op: the kernels' arithmetic has one result for them.
+#         Where lanes are chosen (select3), those that count; a loop over what isn't counted is gone through once.
 # Errors  What isn't followed is an Op "undecided" with its text, which the printer refuses.
 import re
+from dataclasses import dataclass
 
 from kernel_source import Broken, Op, Place, Vec, number, round32
 
 LETTERS = "xyzw"
 VECTORS = {"float2": 2, "float3": 3, "float4": 4, "real3": 3, "int4": 4, "uint2": 2, "uint4": 4}
 APART = re.compile(r"(pack|packu|permute|permuteu|count_lanes|less|less_equal|greater_equal)\d*")  # of masks of lanes
-SAME = {"convert_float16", "convert_float8", "splat3", "select3", "as_float", "as_realN", "loadN", "load_row"}
+SAME = {"convert_float16", "convert_float8", "splat3", "as_float", "as_realN", "loadN", "load_row"}
+
+
+@dataclass(frozen=True, eq=False)
+class Variable:
+    """What & of a variable gives."""
+
+    env: dict
+    name: str
 
 
 def plain(text):
@@ -36,6 +46,8 @@ class Evaluation:
             if kind != "/" or b != 0:
                 exact = a + b if kind == "+" else a - b if kind == "-" else a * b if kind == "*" else a / b
                 return self.op("number", value=round32(exact))
+        if kind == "+" and any(a.kind == "number" and a.value == 0 for a in args):
+            return next((a for a in args if a.kind != "number" or a.value != 0), args[0])
         if any(a.kind == "undecided" for a in args):
             return self.undecided(next(a.value for a in args if a.kind == "undecided"))
         key = (kind, tuple(map(id, args)), value)
@@ -133,6 +145,12 @@ class Evaluation:
 
     def of_unary(self, node, env):
         operator, value = node[2], self.value(node[3], env)
+        if operator == "&" and node[3][0] == "name" and not isinstance(value, Place):
+            return Variable(env, node[3][2])
+        if operator == "&" and isinstance(value, Place) and value.name in self.memory:
+            return Variable(self.memory, value.name)
+        if operator == "*" and isinstance(value, Variable):
+            return value.env[value.name]
         if operator == "-":
             return self.each("neg", value)
         if operator == "*" and isinstance(value, Place):
@@ -191,6 +209,8 @@ class Evaluation:
             for i in range(3) if name == "vstore3" else ():
                 self.store(self.component(args[2], str(i)), parts[i])
             return args[0]
+        if name == "select3":
+            return args[1]  # in the lanes that count
         if name in SAME:
             return args[0]
         if not APART.fullmatch(name) and self.source.defines(name, len(args)):
@@ -210,7 +230,9 @@ class Evaluation:
     def assign(self, target, value, env):
         if target[0] == "inner" or target[0] == "unary":
             return self.assign(target[-1], value, env)
-        if target[0] == "name" and not isinstance(env.get(target[2]), Place):
+        if target[0] == "name" and isinstance(env.get(target[2]), Variable):
+            env[target[2]].env[env[target[2]].name] = self.load(value)
+        elif target[0] == "name" and not isinstance(env.get(target[2]), Place):
             env[target[2]] = self.load(value)
         elif target[0] == "field" and target[2][0] == "name" and isinstance(env.get(target[2][2]), Vec):
             env[target[2][2]][LETTERS.index(target[3])] = self.load(value)
@@ -285,9 +307,12 @@ class Evaluation:
 
     def run_for(self, node, env):
         self.run(node[2], env)
-        while self.load(self.value(node[3], env)).value != 0:
+        while True:
+            condition = self.load(self.value(node[3], env))
+            if condition.kind == "number" and condition.value == 0:
+                return None
             done = self.run(node[5], env)
-            if done:
+            if done or condition.kind != "number":  # a loop that isn't counted: once
                 return done
             self.run_do(("do", node[4][1], node[4]), env)
 

@@ -63,7 +63,7 @@ TOKEN = re.compile(
     r"0[xX][0-9a-fA-F]+(?:\.[0-9a-fA-F]*)?(?:[pP][-+]?\d+)?[fFuUlL]*|\d+\.?\d*(?:[eE][-+]?\d+)?[fFuUlL]*"
     r"|[A-Za-z_]\w*|->|<<=|>>=|<<|>>|<=|>=|==|!=|&&|\|\||\+\+|--|[-+*/|&^]=|[-+*/%<>=!~&|^?:;,.(){}\[\]]"
 )
-TYPE = re.compile(r"(?:float|real|double|int|uint|u32|word|lanes|mask|bool|long|uchar|u8)(?:\d+|N)?|Real3xN")
+TYPE = re.compile(r"(?:float|real|double|int|uint|u32|word|lanes|mask|bool|long|uchar|u8)(?:\d+|N)?|Real3xN|void")
 BINARY = [["||"], ["&&"], ["|"], ["^"], ["&"], ["==", "!="], ["<", ">", "<=", ">="], ["<<", ">>"], ["+", "-"],
           ["*", "/", "%"]]  # fmt: skip
 
@@ -220,7 +220,7 @@ class Parser:
             first = self.statement()
             condition = self.expression()
             self.take(";")
-            step = self.expression()
+            step = None if self.peek() == ")" else self.expression()
             self.take(")")
             return self.node("for", start, first, condition, step, self.statement())
         if self.declaration_ahead():
