@@ -1,5 +1,5 @@
-# What    Proves in Coq, over Flocq, that triangles see opposite signs of a shared edge's function (watertight.v), of the
-#         kernels' source as it is; and that this fails for each mutant of it in signs.kernel.
+# What    Proves in Coq, over Flocq, what bounds take as given (inequalities.v), and that triangles see opposite signs of a
+#         shared edge's function (kahan.v, watertight.v), of the kernels' source as it is; and that this fails for each mutant of it in signs.kernel.
 #         signs_test.py COMPILER PROJECT [print]
 # Errors  Status 1 when it isn't proved or a mutant is; 77 where Coq or Flocq isn't installed.
 import pathlib
@@ -49,11 +49,13 @@ def main():
         if shutil.which("coqc") is None or coq(folder, "flocq"):
             print("skipped: Coq with Flocq isn't installed (Debian: apt-get install coq libcoq-flocq)")
             return 77
-        for file in ("kahan.v", "watertight.v"):
-            shutil.copy(FOLDER / file, folder)
-        wrong = coq(folder, "kahan") or why_not(folder, compiler, [kernels])
-        print(f"signs: {wrong or 'proved'}")
-        failed = wrong is not None
+        for file in FOLDER.glob("*.v"):
+            shutil.copy(file, folder)
+        failed = False
+        for file in ("rounding", "inequalities", "kahan", "watertight"):
+            wrong = why_not(folder, compiler, [kernels]) if file == "watertight" else coq(folder, file)
+            print(f"{file}: {wrong or 'proved'}")
+            failed |= wrong is not None
         for text in bound.directives("mutant"):
             with changed_kernels(kernels, text) as changed:
                 wrong = why_not(folder, compiler, [changed, kernels])
