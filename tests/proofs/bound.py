@@ -41,7 +41,11 @@ def gappa_number(value):
 
 def is_power_of_two(value):
     value = abs(value)
-    return value != 0 and (value.numerator & (value.numerator - 1)) == 0 and (value.denominator & (value.denominator - 1)) == 0
+    return (
+        value != 0
+        and (value.numerator & (value.numerator - 1)) == 0
+        and (value.denominator & (value.denominator - 1)) == 0
+    )
 
 
 class Bound:

@@ -18,10 +18,11 @@ from bound import FOLDER, Bound
 from kernel_source import Broken
 
 
-
 def gappa(script):
     """Returns why Gappa doesn't prove a script; nothing when it does."""
-    with subprocess.Popen(["gappa", "-Edichotomy=12"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        ["gappa", "-Edichotomy=12"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
         process.stdin.write(script)
         process.stdin.close()
         last = ""
@@ -60,8 +61,16 @@ def changed_kernels(kernels, text):
 
 
 def mutant(bound, text, compiler, kernels):
+    """Returns whether a mutant fails as it should, and why."""
     with changed_kernels(kernels, text) as folder:
-        return None if why_not(bound, compiler, [folder, kernels]) else f"is proved, too, with {text}"
+        why = why_not(bound, compiler, [folder, kernels])
+        return why is not None, f"{text}: {why or 'is proved, too'}"
+
+
+def proof(bound, compiler, kernels):
+    """Returns whether a bound is proved, and why not."""
+    why = why_not(bound, compiler, [kernels])
+    return why is None, why or "proved"
 
 
 def main():
@@ -78,23 +87,23 @@ def main():
         return 0
     cases = []
     for name, bound in bounds.items():
-        mutants = bound.directives("mutant")
-        if not mutants:
-            cases.append((name, lambda: "has no mutant"))
         if what == "proved":
-            cases.append((name, lambda bound=bound: why_not(bound, compiler, [kernels])))
-        else:
-            cases += [(name, lambda b=bound, m=m: mutant(b, m, compiler, kernels)) for m in mutants]
+            cases.append((name, lambda bound=bound: proof(bound, compiler, kernels)))
+            continue
+        mutants = bound.directives("mutant")
+        cases += [(name, lambda b=bound, m=m: mutant(b, m, compiler, kernels)) for m in mutants]
+        if not mutants:
+            cases.append((name, lambda: (False, "names no mutant")))
 
     def timed(case):
         start = time.monotonic()
-        return case[0], case[1](), time.monotonic() - start
+        return case[0], *case[1](), time.monotonic() - start
 
     failed = 0
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for name, wrong, seconds in pool.map(timed, cases):
-            failed += wrong is not None
-            print(f"{name}: {wrong or what} ({seconds:.1f} s)")
+        for name, passed, text, seconds in pool.map(timed, cases):
+            failed += not passed
+            print(f"{'ok' if passed else 'FAILED'} {name}: {text} ({seconds:.1f} s)")
     return 1 if failed else 0
 
 

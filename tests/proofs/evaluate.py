@@ -318,7 +318,9 @@ class Evaluation:
 
     def call(self, name, args):
         names, body = self.source.function(name, len(args))
-        env = {n: (a if isinstance(a, Place) and a.name not in self.memory else self.load(a)) for n, a in zip(names, args)}
+        env = {
+            n: (a if isinstance(a, Place) and a.name not in self.memory else self.load(a)) for n, a in zip(names, args)
+        }
         done = self.run(body, env)
         self.locals_of[name] = env
         return done[0] if done else None

@@ -80,7 +80,9 @@ class Parser:
     def take(self, expected=None):
         token = self.peek()
         if expected is not None and token != expected:
-            raise Broken(f"'{expected}' was to come, not '{token}', in: {' '.join(self.tokens[max(0, self.at - 8):self.at + 4])}")
+            raise Broken(
+                f"'{expected}' was to come, not '{token}', in: {' '.join(self.tokens[max(0, self.at - 8) : self.at + 4])}"
+            )
         self.at += 1
         return token
 
@@ -133,7 +135,11 @@ class Parser:
             self.take("(")
             name = ""
             while self.peek() != ")":
-                name = self.take() if self.peek() not in ("const", "__global", "*", "__attribute__") else self.take() and name
+                name = (
+                    self.take()
+                    if self.peek() not in ("const", "__global", "*", "__attribute__")
+                    else self.take() and name
+                )
             self.take(")")
             if self.peek() == "(":
                 self.take()
@@ -160,7 +166,7 @@ class Parser:
         if re.match(r"\d", token):
             return self.node("number", start, token)
         if not re.match(r"[A-Za-z_]", token):
-            raise Broken(f"not understood: '{token}' after {' '.join(self.tokens[max(0, start - 8):start])}")
+            raise Broken(f"not understood: '{token}' after {' '.join(self.tokens[max(0, start - 8) : start])}")
         return self.node("name", start, token)
 
     def postfix(self, start, left):

@@ -1,5 +1,6 @@
-# What    Proves in Coq, over Flocq, what bounds take as given (inequalities.v), and that triangles see opposite signs of a
-#         shared edge's function (kahan.v, watertight.v), of the kernels' source as it is; and that this fails for each mutant of it in signs.kernel.
+# What    Proves in Coq, over Flocq, what bounds take as given (rounding.v, inequalities.v), and that triangles see opposite
+#         signs of a shared edge's function (kahan.v, watertight.v), of the kernels' source as it is; and that this fails for
+#         each mutant of it in signs.kernel.
 #         signs_test.py COMPILER PROJECT [print]
 # Errors  Status 1 when it isn't proved or a mutant is; 77 where Coq or Flocq isn't installed.
 import pathlib
