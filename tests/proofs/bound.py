@@ -16,8 +16,8 @@
 #           %number NAME = EXPRESSION  names a constant
 #         Each operation x is printed three times: op_x, what it computes of its rounded operands; x, the float nearest
 #         to that, as op_x + (op_x*e + n) with |e| <= 2^-24 and, where it may underflow, |n| <= 2^-100; and exact_x, the
-#         same without any rounding. (Flocq: error_N_FLT. Sums don't underflow, nor does a product with a power of two
-#         round.) Lengths are in units of which a float's least is no more than 2^-50, so that n is far above 2^-150 of these.
+#         same without any rounding. (rounding.v. Sums don't underflow, nor does a product with a power of two
+#         round.) Units are no less than 2^-50: n, which is 2^-150 at most, is no more than 2^-100 of them.
 #         Hints say how the error of x comes from those of its operands; Gappa checks that they are equations.
 import pathlib
 import re
@@ -128,7 +128,7 @@ class Bound:
             unit_of(op, units, {})
         self.check_pins(kernels)
         printer = Printer({id(op): name for name, op in names.items()}, self.directives("power"))
-        for name, op in names.items():
+        for op in names.values():
             printer.define(op)
         printer.alias(names)
         numbers = ["u = 1b-24;"] + [f"{name} = {gappa_number(value)};" for name, value in constants.items()]
@@ -243,7 +243,7 @@ class Printer:
             self.hints.append(f"{name} - op_{name} -> {error};")
 
     def is_power(self, op):
-        return op.kind == "number" and is_power_of_two(op.value) or op.kind == "name" and op.value in self.powers
+        return op.value in self.powers if op.kind == "name" else op.kind == "number" and is_power_of_two(op.value)
 
     def hint(self, op, name, a, exact):
         def off(i):

@@ -18,11 +18,12 @@ from bound import FOLDER, Bound
 from kernel_source import Broken
 
 
+GAPPA = ["gappa", "-Edichotomy=12"]
+
+
 def gappa(script):
     """Returns why Gappa doesn't prove a script; nothing when it does."""
-    with subprocess.Popen(
-        ["gappa", "-Edichotomy=12"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
+    with subprocess.Popen(GAPPA, stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         process.stdin.write(script)
         process.stdin.close()
         last = ""
@@ -73,14 +74,32 @@ def proof(bound, compiler, kernels):
     return why is None, why or "proved"
 
 
+def all_bounds():
+    return {path.stem: Bound(path.read_text()) for path in sorted(FOLDER.glob("*.bound"))}
+
+
+def report(cases):
+    """Runs cases, of a name and a function, as many at once as there are cores; returns the exit status."""
+
+    def timed(case):
+        start = time.monotonic()
+        return case[0], *case[1](), time.monotonic() - start
+
+    failed = 0
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for name, passed, text, seconds in pool.map(timed, cases):
+            failed += not passed
+            print(f"{'ok' if passed else 'FAILED'} {name}: {text} ({seconds:.1f} s)")
+    return 1 if failed else 0
+
+
 def main():
     compiler, project, what = sys.argv[1], pathlib.Path(sys.argv[2]), (sys.argv[3:] or ["proved"])[0]
     if shutil.which("gappa") is None and what != "print":
         print("skipped: Gappa isn't installed (Debian: apt-get install gappa)")
         return 77
     kernels = project / "kernels"
-    bounds = {path.stem: Bound(path.read_text()) for path in sorted(FOLDER.glob("*.bound"))}
-    bounds = {name: bound for name, bound in bounds.items() if name in (sys.argv[4:] or bounds)}
+    bounds = {name: bound for name, bound in all_bounds().items() if not sys.argv[4:] or name in sys.argv[4:]}
     if what == "print":
         for bound in bounds.values():
             print(bound.gappa(compiler, [kernels]))
@@ -95,16 +114,7 @@ def main():
         if not mutants:
             cases.append((name, lambda: (False, "names no mutant")))
 
-    def timed(case):
-        start = time.monotonic()
-        return case[0], *case[1](), time.monotonic() - start
-
-    failed = 0
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for name, passed, text, seconds in pool.map(timed, cases):
-            failed += not passed
-            print(f"{'ok' if passed else 'FAILED'} {name}: {text} ({seconds:.1f} s)")
-    return 1 if failed else 0
+    return report(cases)
 
 
 if __name__ == "__main__":
