@@ -1,5 +1,5 @@
-# What    Proves the bounds (bound.py): Gappa must prove each as the kernels' source is; and must fail, or the source not
-#         be understood any more, for each mutant of the source that a bound names:
+# What    Proves the bounds (bound.py): Gappa must prove each as the kernels' source is; and must fail, or the source
+#         not be understood any more, for each mutant of the source that a bound names:
 #           %mutant FILE: TEXT => TEXT
 #         bounds_test.py COMPILER PROJECT [proved|refuted|print] [BOUND...]
 # Errors  Status 1 when a bound isn't proved or a mutant is; 77 where Gappa isn't installed.
@@ -16,7 +16,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 from bound import FOLDER, Bound
 from kernel_source import Broken
-
 
 GAPPA = ["gappa", "-Edichotomy=12"]
 

@@ -1,7 +1,7 @@
 # What    Proves in Coq, over Flocq:
-#         signs   what bounds take as given (rounding.v, inequalities.v), and that triangles see opposite signs of a shared
-#                 edge's function (kahan.v, watertight.v), of the kernels' source as it is; and that this fails for each
-#                 mutant of it in signs.kernel
+#         signs   what bounds take as given (rounding.v, inequalities.v), and that triangles see opposite signs of a
+#                 shared edge's function (kahan.v, watertight.v), of the kernels' source as it is; and that this fails
+#                 for each mutant of it in signs.kernel
 #         bounds  what Gappa finds of the bounds: its proofs as Coq checks them, with its hints as lemmas
 #         coq_test.py COMPILER PROJECT signs|bounds|print
 # Errors  Status 1 when something isn't proved or a mutant is; 77 where Coq, or what it needs, isn't installed.

@@ -135,7 +135,7 @@ class Evaluation:
 
     def of_cast(self, node, env):
         parts = [self.value(part, env) for part in node[3]]
-        if len(parts) == 1 or node[2] not in VECTORS and len(parts) != 16:
+        if len(parts) == 1 or (node[2] not in VECTORS and len(parts) != 16):
             return parts[0]
         flat = []
         for part in parts:
@@ -319,7 +319,8 @@ class Evaluation:
     def call(self, name, args):
         names, body = self.source.function(name, len(args))
         env = {
-            n: (a if isinstance(a, Place) and a.name not in self.memory else self.load(a)) for n, a in zip(names, args)
+            n: (a if isinstance(a, Place) and a.name not in self.memory else self.load(a))
+            for n, a in zip(names, args, strict=True)
         }
         done = self.run(body, env)
         self.locals_of[name] = env

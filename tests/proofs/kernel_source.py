@@ -7,7 +7,6 @@
 # Errors  A Broken tells what of the source isn't understood. What decides (comparisons, larger of two) isn't followed:
 #         `reads` says what such a piece of text stands for, and a piece that is not there any more is an error.
 import re
-import struct
 import subprocess
 from dataclasses import dataclass
 from fractions import Fraction
@@ -81,7 +80,7 @@ class Parser:
         token = self.peek()
         if expected is not None and token != expected:
             raise Broken(
-                f"'{expected}' was to come, not '{token}', in: {' '.join(self.tokens[max(0, self.at - 8) : self.at + 4])}"
+                f"'{expected}' was to come, not '{token}': {' '.join(self.tokens[max(0, self.at - 8) : self.at + 4])}"
             )
         self.at += 1
         return token
