@@ -18,13 +18,9 @@ TWELVE = np.concatenate([SIDES[:, :3], SIDES[:, [0, 2, 3]]])
 WRONG = {"plane_of_doubles": "vertices are rounded to floats about the scene's centre (docs/embed.md)"}
 
 
-def name_of(report: Report) -> str:
-    return report.make.__wrapped__.__name__  # type: ignore[attr-defined]
-
-
 def cases() -> list[object]:
     marks = {name: pytest.mark.xfail(strict=True, reason=why, raises=AssertionError) for name, why in WRONG.items()}
-    return [pytest.param(r, id=name_of(r), marks=marks.get(name_of(r), ())) for r in REPORTS]
+    return [pytest.param(r, id=r.name, marks=marks.get(r.name, ())) for r in REPORTS]
 
 
 @pytest.mark.parametrize("report", cases())
@@ -33,7 +29,7 @@ def test_kdray_is_right(report: Report) -> None:
 
 
 def test_corners_in_double_are_off_by_no_more_than_their_rounding() -> None:
-    case = next(r for r in REPORTS if name_of(r) == "plane_of_doubles").make()
+    case = next(r for r in REPORTS if r.name == "plane_of_doubles").make()
     t = Kdray(case.vertices, case.triangles).closest(*case.asked)
     met = np.isfinite(case.right)
     np.testing.assert_array_equal(np.isfinite(t), met)
@@ -43,12 +39,12 @@ def test_corners_in_double_are_off_by_no_more_than_their_rounding() -> None:
 
 def test_each_report_is_told_and_each_case_asks_for_more_than_one_answer() -> None:
     assert len(REPORTS) > 20
-    assert len({name_of(r) for r in REPORTS}) == len(REPORTS)
+    assert len({r.name for r in REPORTS}) == len(REPORTS)
     for report in REPORTS:
         case = report.make()
         assert report.where and report.what and len(case.right) >= 60
         assert all(len(asked) == len(case.right) for asked in case.asked)
-        if not name_of(report).startswith("plane_of"):
+        if not report.name.startswith("plane_of"):
             for array in (case.vertices, *case.asked):
                 np.testing.assert_array_equal(array, np.float32(array))  # who computes in float is given the same
 
@@ -133,7 +129,7 @@ class Liar(Peer):
 
 
 def test_the_table_tells_wrong_answers_by_project_and_version() -> None:
-    those = [r for r in REPORTS if name_of(r) in ("from_within_all_hit", "from_within_to_corners", "cavity")]
+    those = [r for r in REPORTS if r.name in ("from_within_all_hit", "from_within_to_corners", "cavity")]
     lines = told([Kdray, Liar], those)
     assert "| liar 1.2 |" in lines[0]
     assert f"kdray {Kdray.version()}" in lines[0]

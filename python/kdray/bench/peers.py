@@ -17,8 +17,6 @@ from .. import __version__
 from ..scene import Scene
 from .workload import Array
 
-QUESTIONS = ("closest", "occlusion", "count", "inside", "signed_distance")
-
 
 def _doubles(array: Array) -> Array:
     return np.ascontiguousarray(array, np.float64)
@@ -36,8 +34,6 @@ class Peer:
 
     def __init__(self, vertices: Array, triangles: Array) -> None:
         self.vertices, self.triangles = vertices, np.ascontiguousarray(triangles, np.int32)
-        self.middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-        self.size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
 
     @classmethod
     def version(cls) -> str:
@@ -248,8 +244,7 @@ class Libigl(Rays):
 class Vtk(Rays):
     """VTK by way of pyvista."""
 
-    name = "pyvista"
-    package = "pyvista"
+    name = package = "pyvista"
     needs = ("pyvista",)
 
     def __init__(self, vertices: Array, triangles: Array) -> None:
@@ -257,6 +252,8 @@ class Vtk(Rays):
         self.pyvista: Any = importlib.import_module("pyvista")
         faces = np.column_stack([np.full(len(triangles), 3), triangles])
         self.mesh = self.pyvista.PolyData(_doubles(vertices), faces.ravel())
+        self.middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+        self.size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
 
     def _places(self, origin: Array, direction: Array) -> Array:
         far = (np.linalg.norm(self.middle - origin) + self.size) / np.linalg.norm(direction)

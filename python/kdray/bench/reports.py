@@ -54,8 +54,9 @@ class Case:
 
 @dataclass(frozen=True)
 class Report:
-    """Where a fault is reported, what it is, and a case of it."""
+    """A case's name, where its fault is reported, what goes wrong, and the case."""
 
+    name: str
     where: tuple[str, ...]
     what: str
     make: Callable[[], Case]
@@ -67,7 +68,7 @@ REPORTS: list[Report] = []
 def _reported(*where: str) -> Callable[[Callable[[], Case]], Callable[[], Case]]:
     def add(make: Callable[[], Case]) -> Callable[[], Case]:
         made = functools.cache(make)
-        REPORTS.append(Report(where, (make.__doc__ or "").strip().rstrip("."), made))
+        REPORTS.append(Report(make.__name__, where, (make.__doc__ or "").strip().rstrip("."), made))
         return made
 
     return add
