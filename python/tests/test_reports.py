@@ -7,6 +7,7 @@ import pytest
 
 from kdray.bench import command, main
 from kdray.bench.exact import Exact
+from kdray.bench.meshes import ball, cube, nested, octahedron
 from kdray.bench.peers import PEERS, Kdray, Peer
 from kdray.bench.reports import REPORTS, Case, Report, told
 
@@ -47,6 +48,17 @@ def test_each_report_is_told_and_each_case_asks_for_more_than_one_answer() -> No
         if not report.name.startswith("plane_of"):
             for array in (case.vertices, *case.asked):
                 np.testing.assert_array_equal(array, np.float32(array))  # who computes in float is given the same
+
+
+@pytest.mark.parametrize("mesh", [cube(3), octahedron(4), ball(4), nested([3, 2, 1], 2)])
+def test_meshes_are_closed_and_face_outwards(mesh: tuple[np.ndarray, np.ndarray]) -> None:
+    vertices, triangles = mesh
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    there = set(map(tuple, edges.tolist()))
+    assert len(there) == len(edges)
+    assert {(b, a) for a, b in there} == there
+    corners = vertices[triangles].astype(np.float64)
+    assert np.linalg.det(corners).sum() > 0  # six times the volume
 
 
 # ---- What is right

@@ -12,9 +12,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .exact import Exact
+from .meshes import ball, cube, doubles, floats, lattice, nested, octahedron, places_on, towards, unit
 from .peers import Peer
 from .workload import Array
 
@@ -43,8 +43,8 @@ class Case:
         met = np.isfinite(self.right)
         allowed = self.tolerance * np.maximum(size, np.abs(np.where(met, self.right, 0)))
         with np.errstate(invalid="ignore"):
-            near = np.abs(_doubles(answers) - self.right) <= allowed
-        return int(np.count_nonzero(~np.where(met, near, _doubles(answers) == self.right)))
+            near = np.abs(doubles(answers) - self.right) <= allowed
+        return int(np.count_nonzero(~np.where(met, near, doubles(answers) == self.right)))
 
     def ask(self, peer: type[Peer]) -> int | None:
         """How many answers of a peer are wrong; None where it knows no such question."""
@@ -74,103 +74,17 @@ def _reported(*where: str) -> Callable[[Callable[[], Case]], Callable[[], Case]]
     return add
 
 
-def _floats(values: ArrayLike) -> Array:
-    return np.asarray(values, np.float32)
-
-
-def _doubles(values: ArrayLike) -> Array:
-    return np.asarray(values, np.float64)
-
-
-# ---- Meshes: closed, triangles counterclockwise from outside
-
-
-def _cube(n: int) -> tuple[Array, Array]:
-    """The cube from -n to n, n*n squares to a side; corners are integers."""
-    places: list[Array] = []
-    triangles: list[Array] = []
-    for axis in range(3):
-        for side in (-n, n):
-            i, j = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
-            face = np.stack([np.full_like(i, side), 2 * i - n, 2 * j - n], axis=-1)
-            first = sum(map(len, places)) + np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-            a, b, c, d = first[:-1, :-1], first[1:, :-1], first[1:, 1:], first[:-1, 1:]
-            halves = np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
-            places.append(np.roll(face, axis, axis=-1).reshape(-1, 3))
-            triangles.append(halves if side > 0 else halves[:, ::-1])
-    return _merged(np.concatenate(places), np.concatenate(triangles))
-
-
-def _octahedron(n: int) -> tuple[Array, Array]:
-    """|x| + |y| + |z| = n, with a corner at each place of integers."""
-    i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
-    upper = np.array([[i, i + 1, i], [j, j, j + 1]])[:, :, i + j < n]
-    lower = np.array([[i + 1, i + 1, i], [j, j + 1, j + 1]])[:, :, i + j < n - 1]
-    places: list[Array] = []
-    triangles: list[Array] = []
-    for octant in range(8):
-        signs = 1 - 2 * np.array([octant & 1, octant >> 1 & 1, octant >> 2])
-        for x, y in (upper.transpose(0, 2, 1), lower.transpose(0, 2, 1)):
-            corners = np.stack([x, y, n - x - y], axis=-1) * signs
-            corners = corners if np.prod(signs) > 0 else corners[:, ::-1]
-            triangles.append(np.arange(corners.size // 3).reshape(-1, 3) + sum(map(len, places)))
-            places.append(corners.reshape(-1, 3))
-    return _merged(np.concatenate(places), np.concatenate(triangles))
-
-
-def _merged(places: Array, triangles: Array) -> tuple[Array, Array]:
-    vertices, numbers = np.unique(places, axis=0, return_inverse=True)
-    return vertices.astype(np.float32), numbers.reshape(-1)[triangles].astype(np.int32)
-
-
-def _ball(n: int) -> tuple[Array, Array]:
-    """The cube's corners, moved onto the unit sphere."""
-    vertices, triangles = _cube(n)
-    return _unit(np.tan(vertices / n * (np.pi / 4))), triangles
-
-
-def _unit(vectors: Array) -> Array:
-    """Float vectors of a length of about 1."""
-    v = _doubles(vectors)
-    return _floats(v / np.linalg.norm(v, axis=-1, keepdims=True))
-
-
-def _nested(sizes: Sequence[float], n: int = 1) -> tuple[Array, Array]:
-    """Cubes in one another, every other one turned inside out."""
-    vertices, triangles = _cube(n)
-    parts = [triangles[:, :: 1 - 2 * (k % 2)] + k * len(vertices) for k in range(len(sizes))]
-    return np.concatenate([vertices * (_floats(s) / n) for s in sizes]), np.concatenate(parts)
-
-
-def _targets(vertices: Array, triangles: Array) -> Array:
-    """The corners, the middles of edges and of triangles."""
-    corners = _doubles(vertices)[triangles]
-    middles = (corners + np.roll(corners, 1, axis=1)) / 2
-    return np.concatenate([_doubles(vertices), np.unique(middles.reshape(-1, 3), axis=0), corners.mean(axis=1)])
-
-
-def _lattice(*coordinates: Array) -> Array:
-    return np.stack(np.meshgrid(*coordinates, indexing="ij"), axis=-1).reshape(-1, len(coordinates)).astype(np.float32)
-
-
-def _towards(rays: Array, direction: Sequence[float]) -> tuple[Array, Array]:
-    return rays, np.broadcast_to(_floats(direction), rays.shape).copy()
-
-
-# ---- Cases
-
-
 @_reported("trimesh 242", "trimesh 545", "ncollpyde 3", "Open3D 5669")
 def behind_corners() -> Case:
     """Points are inside or not by chance where the ray that is to tell passes through an edge or a corner."""
-    vertices, triangles = _octahedron(8)
-    targets = _targets(vertices, triangles)
+    vertices, triangles = octahedron(8)
+    targets = places_on(vertices, triangles)
     random = np.random.default_rng(SEED)
-    points = [_lattice(*[np.arange(-8, 9)] * 3)]
+    points = [lattice(*[np.arange(-8, 9)] * 3)]
     for direction in ([1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1], [0.4395064455, 0.617598629942, 0.652231566745]):
-        points.append(targets - random.uniform(0.5, 20, (len(targets), 1)) * _unit(np.array(direction)))
-    every = _floats(np.concatenate(points))
-    height = np.abs(_doubles(every)).sum(axis=1)
+        points.append(targets - random.uniform(0.5, 20, (len(targets), 1)) * unit(np.array(direction)))
+    every = floats(np.concatenate(points))
+    height = np.abs(doubles(every)).sum(axis=1)
     every, height = every[np.abs(height - 8) > 0.1], height[np.abs(height - 8) > 0.1]
     return Case(vertices, triangles, "inside", (every,), height < 8)
 
@@ -178,9 +92,9 @@ def behind_corners() -> Case:
 @_reported("trimesh 1180", "trimesh 263")
 def from_within_all_hit() -> Case:
     """Of a panorama's rays from within a closed mesh, a few hit nothing."""
-    vertices, triangles = _ball(12)
-    directions = _unit(
-        np.concatenate([_targets(vertices, triangles), np.random.default_rng(SEED).normal(size=(4000, 3))])
+    vertices, triangles = ball(12)
+    directions = unit(
+        np.concatenate([places_on(vertices, triangles), np.random.default_rng(SEED).normal(size=(4000, 3))])
     )
     assert Exact(vertices, triangles).inside(np.zeros((1, 3))).all()
     origins = np.zeros_like(directions)
@@ -190,8 +104,8 @@ def from_within_all_hit() -> Case:
 @_reported("trimesh 1496")
 def from_within_to_corners() -> Case:
     """Rays from a box's middle to corners of a larger one cross it once, and some no time or twice."""
-    vertices, triangles = _cube(6)
-    origins, directions = np.zeros_like(vertices), vertices * _floats(1.5)
+    vertices, triangles = cube(6)
+    origins, directions = np.zeros_like(vertices), vertices * floats(1.5)
     return Case(vertices, triangles, "count", (origins, directions), np.ones(len(vertices), np.int64))
 
 
@@ -200,58 +114,58 @@ def along_diagonals() -> Case:
     """A ray between a square's two triangles meets neither."""
     random = np.random.default_rng(SEED)
     n = 2000
-    places = _lattice(np.arange(50), np.arange(40), np.array([0])) * _floats(2000)
-    corners = places[:, None] + _floats([[-7, -5, 0], [7, -5, 0], [7, 5, 0], [-7, 5, 0]])
+    places = lattice(np.arange(50), np.arange(40), np.array([0])) * floats(2000)
+    corners = places[:, None] + floats([[-7, -5, 0], [7, -5, 0], [7, 5, 0], [-7, 5, 0]])
     triangles = (4 * np.arange(n)[:, None, None] + np.array([[0, 1, 2], [2, 3, 0]])).reshape(-1, 3)
     ends = places + random.uniform(-0.9, 0.9, (n, 1)) * [7, 5, 0]
-    origins = _floats(ends + np.column_stack([random.uniform(-9, 9, (n, 2)), random.uniform(1, 99, n)]))
-    rays, vertices = (origins, _unit(ends - origins)), corners.reshape(-1, 3)
+    origins = floats(ends + np.column_stack([random.uniform(-9, 9, (n, 2)), random.uniform(1, 99, n)]))
+    rays, vertices = (origins, unit(ends - origins)), corners.reshape(-1, 3)
     return Case(vertices, triangles, "occlusion", rays, np.isfinite(Exact(vertices, triangles).first(*rays)))
 
 
 @_reported("trimesh 2317", "FluidX3D 59", "libigl 2026")
 def columns_through_corners() -> Case:
     """A ray through an edge or a corner counts as many crossings as triangles meet there, or none."""
-    vertices, triangles = _octahedron(8)
-    places = _lattice(np.arange(-9, 9.5, 0.5), np.arange(-9, 9.5, 0.5), np.array([-20]))
+    vertices, triangles = octahedron(8)
+    places = lattice(np.arange(-9, 9.5, 0.5), np.arange(-9, 9.5, 0.5), np.array([-20]))
     reach = np.abs(places[:, :2]).sum(axis=1)
     places, reach = places[reach != 8], reach[reach != 8]
-    return Case(vertices, triangles, "count", _towards(places, (0, 0, 1)), np.where(reach < 8, 2, 0))
+    return Case(vertices, triangles, "count", towards(places, (0, 0, 1)), np.where(reach < 8, 2, 0))
 
 
 @_reported("trimesh 2504", "trimesh 48")
 def thin_and_large() -> Case:
     """Where coordinates are large, the step beyond a hit is lost in rounding, or takes the next hit with it."""
-    vertices, triangles = _cube(1)
-    vertices = vertices * _floats([2**18, 2**18, 0.0625]) + _doubles([2**20, 2**20, 2**20 + 0.0625])
+    vertices, triangles = cube(1)
+    vertices = vertices * floats([2**18, 2**18, 0.0625]) + doubles([2**20, 2**20, 2**20 + 0.0625])
     places = np.random.default_rng(SEED).integers(2**20 - 2**18 + 1, 2**20 + 2**18, (300, 3))
     places[:, 2] = 2**20 + 1000
-    rays = _towards(_floats(places), (0, 0, -1))
-    return Case(_floats(vertices), triangles, "count", rays, np.full(300, 2))
+    rays = towards(floats(places), (0, 0, -1))
+    return Case(floats(vertices), triangles, "count", rays, np.full(300, 2))
 
 
 @_reported("trimesh 2534")
 def cavity() -> Case:
     """A cavity in a solid counts as inside."""
-    points = _lattice(*[np.arange(-7.5, 8, 1)] * 3) / _floats(4)
+    points = lattice(*[np.arange(-7.5, 8, 1)] * 3) / floats(4)
     reach = np.abs(points).max(axis=1)
-    return Case(*_nested([1.75, 0.75], 3), "inside", (points,), (reach < 1.75) & (reach > 0.75))
+    return Case(*nested([1.75, 0.75], 3), "inside", (points,), (reach < 1.75) & (reach > 0.75))
 
 
 @_reported("trimesh 1097")
 def many_layers() -> Case:
     """Beyond twenty hits of a ray the others are left out."""
-    places = _lattice(np.arange(-60, 61, 8) / 64, np.arange(-60, 61, 8) / 64, np.array([-3.0])) + _floats(2**-9)
-    sizes = np.arange(1, 33) / _floats(32)
+    places = lattice(np.arange(-60, 61, 8) / 64, np.arange(-60, 61, 8) / 64, np.array([-3.0])) + floats(2**-9)
+    sizes = np.arange(1, 33) / floats(32)
     reach = np.abs(places[:, :2]).max(axis=1)
-    return Case(*_nested(list(sizes)), "count", _towards(places, (0, 0, 1)), 2 * (reach[:, None] < sizes).sum(axis=1))
+    return Case(*nested(list(sizes)), "count", towards(places, (0, 0, 1)), 2 * (reach[:, None] < sizes).sum(axis=1))
 
 
 @_reported("Open3D 5105", "trimesh 73", "libigl 2348")
 def diagonal_of_a_cube() -> Case:
     """The distance of a point outside of a cube, on its diagonal, is negative, 0 or a little off."""
-    vertices, triangles = _cube(1)
-    points = _lattice(*[np.array([-3, -2, -1, -0.5, 0, 0.5, 1, 2, 3])] * 3)
+    vertices, triangles = cube(1)
+    points = lattice(*[np.array([-3, -2, -1, -0.5, 0, 0.5, 1, 2, 3])] * 3)
     points = points[np.abs(points).max(axis=1) != 1]
     beyond = np.abs(points) - 1
     right = np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
@@ -261,10 +175,10 @@ def diagonal_of_a_cube() -> Case:
 @_reported("pyvista 8133", "pyvista 4240", "warp 922")
 def ball_in_a_grid() -> Case:
     """Stripes of a grid about a ball are on the wrong side."""
-    vertices, triangles = _ball(8)
-    points = _lattice(*[np.arange(-1.25, 1.3, 0.125)] * 3)
-    radius = np.linalg.norm(_doubles(points), axis=1)
-    least = np.linalg.norm(_doubles(vertices)[triangles].mean(axis=1), axis=1).min() * 0.99
+    vertices, triangles = ball(8)
+    points = lattice(*[np.arange(-1.25, 1.3, 0.125)] * 3)
+    radius = np.linalg.norm(doubles(points), axis=1)
+    least = np.linalg.norm(doubles(vertices)[triangles].mean(axis=1), axis=1).min() * 0.99
     points, radius = points[(radius < least) | (radius > 1.0001)], radius[(radius < least) | (radius > 1.0001)]
     return Case(vertices, triangles, "inside", (points,), radius < 1)
 
@@ -272,14 +186,14 @@ def ball_in_a_grid() -> Case:
 @_reported("Open3D 5777", "mitsuba2 171")
 def plane_of_floats() -> Case:
     """The hits of float64 rays lie beside a plane whose corners are floats."""
-    vertices = _doubles([[-500, -500, 37.5], [500, -500, -12.25], [500, 500, 3.125], [-500, 500, 52.875]])
+    vertices = doubles([[-500, -500, 37.5], [500, -500, -12.25], [500, 500, 3.125], [-500, 500, 52.875]])
     return _onto_a_plane(vertices)
 
 
 @_reported("Open3D 5777 (corners in double)")
 def plane_of_doubles() -> Case:
     """The hits of float64 rays lie beside a plane whose corners are no floats."""
-    vertices = _doubles([[-500.1, -500.1, 37.3], [500.1, -500.1, -12.2], [500.1, 500.1, 3.1], [-500.1, 500.1, 52.6]])
+    vertices = doubles([[-500.1, -500.1, 37.3], [500.1, -500.1, -12.2], [500.1, 500.1, 3.1], [-500.1, 500.1, 52.6]])
     return _onto_a_plane(vertices)
 
 
@@ -296,12 +210,12 @@ def _onto_a_plane(vertices: Array) -> Case:
 @_reported("Open3D 6188")
 def around_a_cube() -> Case:
     """Of rays all around, some that pass a cube hit it, and others that meet its edges don't."""
-    vertices, triangles = _cube(1)
+    vertices, triangles = cube(1)
     turn = np.arange(720) * (np.pi / 360)
     flat = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(720)])
-    ends = _targets(vertices, triangles) - [3, 0, 0]
-    directions = _unit(np.concatenate([flat, ends]) + 1e-4)
-    rays = np.broadcast_to(_floats([3, 0, 0]), directions.shape).copy(), directions
+    ends = places_on(vertices, triangles) - [3, 0, 0]
+    directions = unit(np.concatenate([flat, ends]) + 1e-4)
+    rays = np.broadcast_to(floats([3, 0, 0]), directions.shape).copy(), directions
     return Case(vertices, triangles, "closest", rays, Exact(vertices, triangles).first(*rays))
 
 
@@ -310,15 +224,15 @@ def along_slivers() -> Case:
     """A ray along a thin triangle far away hits it where it isn't."""
     random = np.random.default_rng(SEED)
     n = 600
-    middles = _doubles(_lattice(np.arange(25), np.arange(24), np.array([0]))) * 4000
-    along = _doubles(_unit(random.normal(size=(n, 3))))
-    aside = np.cross(along, _unit(random.normal(size=(n, 3))))
+    middles = doubles(lattice(np.arange(25), np.arange(24), np.array([0]))) * 4000
+    along = doubles(unit(random.normal(size=(n, 3))))
+    aside = np.cross(along, unit(random.normal(size=(n, 3))))
     corners = np.stack([middles, middles + 11 * along, middles + 9.6 * along + 0.3 * aside], axis=1)
-    normal = _doubles(_unit(np.cross(along, aside)))
+    normal = doubles(unit(np.cross(along, aside)))
     ends = corners.mean(axis=1) + random.normal(size=(n, 1)) * 0.6 * aside
     start = ends - 500 * along + random.uniform(-4, 4, (n, 1)) * normal + random.uniform(-60, 60, (n, 1)) * aside
-    vertices = _floats(corners.reshape(-1, 3))
-    rays = _floats(start), _unit(ends - start)
+    vertices = floats(corners.reshape(-1, 3))
+    rays = floats(start), unit(ends - start)
     triangles = np.arange(3 * n).reshape(n, 3)
     return Case(vertices, triangles, "closest", rays, Exact(vertices, triangles).first(*rays))
 
@@ -338,9 +252,9 @@ def nested_prisms() -> Case:
                 np.column_stack([a + i, a + j, a + sides + j]),
                 np.column_stack([a + i, a + sides + j, a + sides + i]),
             ]
-    places, numbers = _floats(np.concatenate(vertices)), np.concatenate(triangles)
+    places, numbers = floats(np.concatenate(vertices)), np.concatenate(triangles)
     inner = places[sides : 3 * sides]
-    directions = _unit(
+    directions = unit(
         np.concatenate([inner, (inner + np.roll(inner, 1, axis=0)) / 2, (inner[:sides] + inner[sides:]) / 2])
     )
     rays = np.zeros_like(directions), directions
@@ -350,25 +264,25 @@ def nested_prisms() -> Case:
 @_reported("Embree 416")
 def beside_a_huge_square() -> Case:
     """A ray that begins just above a huge square, and leaves it, hits it."""
-    vertices, triangles = _floats([[-1, -1, -0.5], [1, -1, 0.5], [1, 1, 0.5], [-1, 1, -0.5]]), [[0, 1, 2], [0, 2, 3]]
+    vertices, triangles = floats([[-1, -1, -0.5], [1, -1, 0.5], [1, 1, 0.5], [-1, 1, -0.5]]), [[0, 1, 2], [0, 2, 3]]
     random = np.random.default_rng(SEED)
-    beside = _floats(random.integers(-(2**20), 2**20, (400, 3)) * 2)
+    beside = floats(random.integers(-(2**20), 2**20, (400, 3)) * 2)
     beside[:, 2] = beside[:, 0] / 2 + np.where(np.arange(400) % 2, 1, -1)
-    rays = _towards(beside, (0, 0, 1))
-    return Case(vertices * _floats(2**38), np.array(triangles), "occlusion", rays, np.arange(400) % 2 == 0)
+    rays = towards(beside, (0, 0, 1))
+    return Case(vertices * floats(2**38), np.array(triangles), "occlusion", rays, np.arange(400) % 2 == 0)
 
 
 @_reported("mitsuba3 1149", "trimesh 1919", "trimesh 1338")
 def edges_from_outside() -> Case:
     """Rays to a ball's corners and edges pass it, or hit its far side."""
-    mesh, rays = _ball(4), _at_a_ball()
+    mesh, rays = ball(4), _at_a_ball()
     return Case(*mesh, "closest", rays, Exact(*mesh).first(*rays))
 
 
 @_reported("Embree 188", "trimesh 457")
 def crossings_at_edges() -> Case:
     """Rays through a ball's corners and edges cross its near side twice, or no time."""
-    mesh, rays = _ball(4), _at_a_ball()
+    mesh, rays = ball(4), _at_a_ball()
     return Case(*mesh, "count", rays, Exact(*mesh).crossings(*rays))
 
 
@@ -378,52 +292,52 @@ def _at_a_ball() -> tuple[Array, Array]:
 
     There floats decide by their last bits, and no engine that takes floats is to be blamed for it.
     """
-    ball = Exact(*_ball(4))
-    targets = np.tile(_targets(*_ball(4)), (2, 1))
-    origins = _floats(3 * _unit(targets + 0.6 * np.random.default_rng(SEED).normal(size=targets.shape)))
-    directions = _unit(targets - origins)
+    mesh = Exact(*ball(4))
+    targets = np.tile(places_on(*ball(4)), (2, 1))
+    origins = floats(3 * unit(targets + 0.6 * np.random.default_rng(SEED).normal(size=targets.shape)))
+    directions = unit(targets - origins)
     sure = np.ones(len(targets), np.bool_)
     for move in 1e-5 * np.array([[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]]):
-        sure &= ball.crossings(origins + move, directions) == ball.crossings(origins, directions)
+        sure &= mesh.crossings(origins + move, directions) == mesh.crossings(origins, directions)
     return origins[sure], directions[sure]
 
 
 @_reported("mitsuba3 61", "pyvista 918")
 def from_far_away() -> Case:
     """Rays from far away pass small things, or hit what is beside them."""
-    vertices, triangles = _ball(4)
-    away = _unit(np.roll(_targets(vertices, triangles), 1, axis=1))
-    rays = _floats(2.0**17 * away + _targets(vertices, triangles) * 1.1), -away
+    vertices, triangles = ball(4)
+    away = unit(np.roll(places_on(vertices, triangles), 1, axis=1))
+    rays = floats(2.0**17 * away + places_on(vertices, triangles) * 1.1), -away
     return Case(vertices, triangles, "occlusion", rays, np.isfinite(Exact(vertices, triangles).first(*rays)))
 
 
 @_reported("libigl-python-bindings 78", "fcpw 14", "pyvista 4842")
 def through_a_cube() -> Case:
     """Of a cube's two crossings one is lost, doubled or elsewhere."""
-    vertices, triangles = _cube(2)
-    places = _lattice(np.arange(-23, 24, 2) / 8, np.arange(-24, 25, 2) / 8, np.array([-10.0]))
+    vertices, triangles = cube(2)
+    places = lattice(np.arange(-23, 24, 2) / 8, np.arange(-24, 25, 2) / 8, np.array([-10.0]))
     reach = np.abs(places[:, :2]).max(axis=1)
     places, reach = places[reach != 2], reach[reach != 2]
-    return Case(vertices, triangles, "count", _towards(places, (0, 0, 1)), np.where(reach < 2, 2, 0))
+    return Case(vertices, triangles, "count", towards(places, (0, 0, 1)), np.where(reach < 2, 2, 0))
 
 
 @_reported("warp 1836")
 def sharp_tetrahedron() -> Case:
     """Points off a tetrahedron are inside by the normal of its nearest corner."""
-    vertices = _floats([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    vertices = floats([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     triangles = np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])
-    points = _floats(np.random.default_rng(SEED).uniform(-2.5, 3.5, (600, 3)))
+    points = floats(np.random.default_rng(SEED).uniform(-2.5, 3.5, (600, 3)))
     return Case(vertices, triangles, "signed_distance", (points,), Exact(vertices, triangles).signed_distance(points))
 
 
 @_reported("tinybvh 283", "amrex 5789", "glm 1158")
 def small_triangles() -> Case:
     """A tolerance that doesn't know the scene's size takes small triangles for none."""
-    vertices, triangles = _octahedron(4)
-    scale = _floats(2**-24)
-    places = _lattice(np.arange(-3.75, 4, 0.5), np.arange(-3.75, 4, 0.5), np.array([-5])) + _floats([0, 0.125, 0])
+    vertices, triangles = octahedron(4)
+    scale = floats(2**-24)
+    places = lattice(np.arange(-3.75, 4, 0.5), np.arange(-3.75, 4, 0.5), np.array([-5])) + floats([0, 0.125, 0])
     reach = np.abs(places[:, :2]).sum(axis=1)
-    rays = _towards(places * scale, (0, 0, 1))
+    rays = towards(places * scale, (0, 0, 1))
     return Case(vertices * scale, triangles, "occlusion", rays, reach < 4)
 
 
@@ -432,12 +346,12 @@ def terrain() -> Case:
     """Rays straight down onto a terrain of integers fall through at its corners and edges."""
     n = 16
     height = np.random.default_rng(SEED).integers(0, 9, (n + 1, n + 1))
-    vertices = _lattice(np.arange(n + 1), np.arange(n + 1), np.array([0]))
+    vertices = lattice(np.arange(n + 1), np.arange(n + 1), np.array([0]))
     vertices[:, 2] = height.ravel()
     first = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
     a, b, c, d = (v.ravel() for v in (first[:-1, :-1], first[1:, :-1], first[1:, 1:], first[:-1, 1:]))
     triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    rays = _towards(_lattice(np.arange(0.5, n, 0.5), np.arange(0.5, n, 0.5), np.array([100])), (0, 0, -1))
+    rays = towards(lattice(np.arange(0.5, n, 0.5), np.arange(0.5, n, 0.5), np.array([100])), (0, 0, -1))
     return Case(vertices, triangles, "closest", rays, Exact(vertices, triangles).first(*rays))
 
 
