@@ -8,7 +8,7 @@ import pytest
 from kdray.bench import command, main
 from kdray.bench.exact import Exact
 from kdray.bench.meshes import ball, cube, nested, octahedron
-from kdray.bench.peers import PEERS, Kdray, Peer
+from kdray.bench.peers import PEERS, Kdray, Peer, TrimeshKdray
 from kdray.bench.reports import REPORTS, Case, Report, told
 
 CUBE = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)], np.float32)
@@ -27,6 +27,13 @@ def cases() -> list[object]:
 @pytest.mark.parametrize("report", cases())
 def test_kdray_is_right(report: Report) -> None:
     assert report.make().ask(Kdray) == 0, f"{', '.join(report.where)}: {report.what}"
+
+
+@pytest.mark.parametrize("report", REPORTS, ids=lambda report: report.name)
+def test_kdray_under_trimesh_is_right(report: Report) -> None:
+    for needed in TrimeshKdray.needs:
+        pytest.importorskip(needed)
+    assert report.make().ask(TrimeshKdray) == 0, f"{', '.join(report.where)}: {report.what}"
 
 
 def test_corners_in_double_are_off_by_no_more_than_their_rounding() -> None:
@@ -158,7 +165,7 @@ def test_who_is_not_installed_is_left_out(monkeypatch: pytest.MonkeyPatch, capsy
     monkeypatch.setattr(command, "module", lambda name: None)
     assert main(["--reports"]) == 0
     out = capsys.readouterr().out
-    assert "left out, as they can't be imported: trimesh, trimesh+embreex, embreex, Open3D" in out
+    assert "left out, as they can't be imported: trimesh+kdray, trimesh, trimesh+embreex, embreex, Open3D" in out
     assert f"| reported | asked | kdray {Kdray.version()} |" in out
     assert out.rstrip().endswith(f"| cases with wrong answers | | {len(WRONG)} |")
 

@@ -123,6 +123,16 @@ class TrimeshEmbree(Trimesh):
     embree = True
 
 
+class TrimeshKdray(Trimesh):
+    """trimesh on top of kdray."""
+
+    name = "trimesh+kdray"
+
+    def __init__(self, vertices: Array, triangles: Array) -> None:
+        super().__init__(vertices, triangles)
+        self.mesh.ray = importlib.import_module("kdray.trimesh").RayMeshIntersector(self.mesh)
+
+
 class Embreex(Peer):
     """embreex by itself."""
 
@@ -418,6 +428,7 @@ class Ncollpyde(Peer):
 
 PEERS: tuple[type[Peer], ...] = (
     Kdray,
+    TrimeshKdray,
     Trimesh,
     TrimeshEmbree,
     Embreex,
