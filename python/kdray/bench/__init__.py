@@ -1,7 +1,8 @@
 """`python -m kdray.bench`: the same rays through kdray, embreex, trimesh and Open3D, where installed.
 
 All go from NumPy arrays to NumPy arrays, in the layout that each of them takes. They take turns, round after
-round, so that what slows the machine for a while slows all of them; medians are reported.
+round, so that what slows the machine for a while slows all of them; medians are reported. With `--reports` answers
+are counted in place: `reports` has faults that others' users found, `exact` what is right, `peers` who is asked.
 """
 
 from .command import main

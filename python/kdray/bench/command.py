@@ -58,6 +58,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--tasks", type=_some_of(TASKS), default=list(TASKS), metavar="NAMES", help=", ".join(TASKS))
     parser.add_argument("--engines", type=_some_of(ENGINES), metavar="NAMES", help="all that are installed")
+    parser.add_argument(
+        "--reports", action="store_true", help="in place of times: wrong answers where others' users reported such"
+    )
     parser.add_argument("--json", metavar="FILE", help="write all figures")
     parser.add_argument("--plot", metavar="FILE.svg", help="write bars of the largest batch")
     return parser
@@ -67,11 +70,24 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Measures and writes a table to stdout; the status: 0, 2 for bad input, 3 without a device, else 1."""
     options = _parser().parse_args(argv)
     try:
-        _bench(options)
+        _reports() if options.reports else _bench(options)
     except (Error, OSError) as error:
         print(f"kdray bench: {error}", file=sys.stderr)
         return 2 if isinstance(error, InputError) else 3 if isinstance(error, NoDeviceError) else 1
     return 0
+
+
+def _reports() -> None:
+    """A table of wrong answers: from here, since what it asks is imported with it."""
+    from .peers import PEERS
+    from .reports import told
+
+    peers = [peer for peer in PEERS if all(module(needed) is not None for needed in peer.needs)]
+    left_out = [peer.name for peer in PEERS if peer not in peers]
+    print(f"{processor()}; wrong answers, '-' where there is no such question")
+    if left_out:
+        print(f"left out, as they can't be imported: {', '.join(left_out)}")
+    print("\n".join(["", *told(peers)]))
 
 
 def _bench(options: argparse.Namespace) -> None:
