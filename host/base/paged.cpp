@@ -194,9 +194,9 @@ class Pages {
   }
 
   // The size of all mapped files is quick to get, that of these alone much slower: so these are measured only
-  // when all have grown by enough for these to have come near their share. Others write meanwhile: what counts
-  // as seen was there before these were measured, and nothing once they are let go. The quick size lags behind
-  // by some pages a processor, so these are measured from time to time in any case.
+  // when all have grown by enough for these to have come near their share. Others write meanwhile: what
+  // counts as seen was there before these were measured, and nothing once they are let go. The quick size
+  // lags behind by some pages a processor, so these are measured from time to time in any case.
   void let_go_of_many() {
     const std::uint64_t share = budget() / 4, now = resident_of_files();
     if (now < seen_ + share / 8 && ++passed_over_ < kMostPassedOver) {
