@@ -83,7 +83,8 @@ run_tests
 step "removal"
 # shellcheck disable=SC2046  # names without blanks
 in_root apt-get purge -qq -y $(in_root dpkg -l '*kdray*' | awk '/^ii/ {print $2}') >"$work/apt.log" 2>&1
-rm -r "$root/packages" "$root/upgrades" "$root/tests" "$root"/tmp/*
+rm -r "$root/packages" "$root/upgrades" "$root/tests"
+find "$root/tmp" -mindepth 1 -delete # the user's home here, with its cache
 in_root find / -xdev -path /proc -prune -o -iname '*kdray*' -print >"$work/after"
 diff "$work/before" "$work/after" || { echo "the packages have left something"; exit 1; }
 echo "the packages are installed, used, upgraded and removed"
