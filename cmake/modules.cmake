@@ -58,6 +58,19 @@ function(kdray_compile_quickly target)
   endif()
 endfunction()
 
+# kdray_papers(PROGRAM)
+#   Has the program write its man pages, and kdray the shells' completions, below share in the build folder as often as it is
+#   linked: they are made from its options. A program for another kind of machine can't.
+function(kdray_papers program)
+  if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
+    return()
+  endif()
+  add_custom_command(TARGET ${program} POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${program}> -DSHARE=${CMAKE_BINARY_DIR}/share
+            -P ${PROJECT_SOURCE_DIR}/cmake/papers.cmake
+    VERBATIM)
+endfunction()
+
 # kdray_test(NAME SOURCES ... LIBS ... [LABELS ...] [APART ...])
 #   One test executable per module, each of its suites a CTest test labelled as given. Its files are joined as a module's are, but for
 #   those named APART, whose names others have as well.

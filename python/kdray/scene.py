@@ -18,7 +18,7 @@ from ._arrays import Array, ArrayLike, RayArrays
 from ._pixels import pixels_of
 from ._results import FLOATS, Rows, as_rows, hit_columns, in_parts, known, result_of, type_of, width_of
 from .hits import AllHits, ClosestPoints, Hits
-from .looks import Camera, Color, Light, Material, Vector
+from .looks import Camera, Color, Light, Material, Vector, linear
 from .picture import Picture
 from .progress import Progress, teller
 from .view import View, page_of
@@ -334,15 +334,16 @@ class Scene:
             return number
 
     def _add_to_core(self, m: Material) -> int:
-        ambient = m.ambient if m.ambient is not None else [0.1 * c for c in m.diffuse]
+        diffuse = linear(m.diffuse)
+        ambient = linear(m.ambient) if m.ambient is not None else [0.1 * c for c in diffuse]
         return int(
             self._core.add_material(
-                m.emission,
+                linear(m.emission),
                 ambient,
-                m.diffuse,
-                m.specular,
-                m.reflect,
-                m.transmit,
+                diffuse,
+                linear(m.specular),
+                linear(m.reflect),
+                linear(m.transmit),
                 m.shine,
                 m.index,
                 m.picture_numbers(),
@@ -358,7 +359,7 @@ class Scene:
                 light.kind,
                 light.position,
                 light.direction,
-                light.color,
+                linear(light.color),
                 light.attenuation,
                 light.range,
                 light.inner,
@@ -372,10 +373,11 @@ class Scene:
             self._changed = True
 
     def set_background(self, color: Color) -> None:
-        """The colour of rays that hit nothing, linear RGB."""
+        """The colour of rays that hit nothing, linear RGB or as CSS has it ("skyblue", "#87ceeb")."""
         with self._lock:
-            self._core.set_background(color)
-            self._colors["background"] = tuple(color)
+            numbers = linear(color)
+            self._core.set_background(numbers)
+            self._colors["background"] = numbers
             self._sky = None
             self._changed = True
 
@@ -387,8 +389,9 @@ class Scene:
         if len(heights) != len(colors):
             raise errors.UsageError(f"{len(heights)} heights for {len(colors)} colours")
         with self._lock:
-            self._core.set_gradient(heights, colors, up)
-            self._sky = ("gradient", tuple(heights), tuple(tuple(c) for c in colors), tuple(up))
+            numbers = tuple(linear(color) for color in colors)
+            self._core.set_gradient(heights, numbers, up)
+            self._sky = ("gradient", tuple(heights), numbers, tuple(up))
             self._changed = True
 
     def set_environment(
@@ -408,8 +411,9 @@ class Scene:
     def set_ambient(self, color: Color) -> None:
         """The light that comes from everywhere, linear RGB."""
         with self._lock:
-            self._core.set_ambient(color)
-            self._colors["ambient"] = tuple(color)
+            numbers = linear(color)
+            self._core.set_ambient(numbers)
+            self._colors["ambient"] = numbers
             self._changed = True
 
     # ---- Committing

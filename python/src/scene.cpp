@@ -8,6 +8,7 @@
 
 #include "arrays.h"
 #include "interrupt.h"
+#include "io/image/css_color.h"
 #include "parts.h"
 
 namespace kdray::python {
@@ -144,6 +145,13 @@ void add_looks(SceneClass& scene) {
 }  // namespace
 
 SceneClass add_scene(nb::module_& module) {
+  module.def("css_color", [](const std::string& text) {
+    const auto color = image::css_color(text);
+    if (!color)
+      throw Error(ErrorCode::usage,
+                  "the colour '" + text + "': expected a name of CSS, #rgb, #rrggbb, or three linear values");
+    return Color{color->x, color->y, color->z};
+  });
   SceneClass scene(module, "Scene");
   scene.def(nb::init<>());
   scene.def_static(

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "io/image/css_color.h"
 #include "scene/import/text_scanner.h"
 
 namespace kdray::scene {
@@ -243,11 +244,13 @@ dvec3 JsonNode::direction() const {
 }
 
 vec3 JsonNode::color() const {
+  if (value_->is_string())
+    if (const auto color = image::css_color(value_->get<std::string>())) return *color;
   dvec3 v;
   if (value_->is_number()) {
     v = dvec3(number());
   } else if (!read_vector(*value_, v)) {
-    throw expected("a number or [red, green, blue]");
+    throw expected("a number, [red, green, blue], or a colour as CSS has it");
   }
   const vec3 c(v);
   if (c.x < 0 || c.y < 0 || c.z < 0) throw error("a value below 0");
