@@ -37,7 +37,9 @@ Json to_json(const Entry& e) {
 
 // Checks the kind of number, since get() would convert another kind without failing.
 std::int64_t integer(const Json& json, const std::string& name) {
-  if (!json.is_number_integer()) fail(name, fmt::format("{} should be a whole number", json.dump()));
+  if (!json.is_number_integer())
+    fail(name,
+         fmt::format("{} should be a whole number", json.is_structured() ? json.type_name() : json.dump()));
   return json.get<std::int64_t>();
 }
 
@@ -45,7 +47,7 @@ Tuning to_tuning(const Json& json, const std::string& name) {
   Tuning tuning;
   for (const auto& [word, value] : json.items()) {
     const Setting* const s = find_setting(word);
-    if (!s) fail(name, fmt::format("no setting is named '{}'", word));
+    if (!s) fail(name, fmt::format("no setting is named {}", Json(word).dump()));
     const std::int64_t number = integer(value, name);
     if (std::ranges::find(s->values, number) == s->values.end())
       fail(name, fmt::format("{} is not a value of '{}'", number, word));

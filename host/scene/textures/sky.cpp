@@ -10,6 +10,7 @@
 #include "base/local_space.h"
 #include "io/image/exr.h"
 #include "scene/import/files.h"
+#include "scene/import/text_scanner.h"
 #include "scene/textures/picture.h"
 #include "scene/textures/texturing.h"
 
@@ -147,13 +148,13 @@ Header read_header(Reader& reader) {
   (void)reader.line();  // "#?RADIANCE"
   for (std::string_view line = reader.line(); !line.empty(); line = reader.line()) {
     if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
-      reader.refuse("is a Radiance picture of the format '" + std::string(line.substr(7)) + "'",
+      reader.refuse("is a Radiance picture of the format '" + printable(line.substr(7)) + "'",
                     "convert it to 32-bit_rle_rgbe");
     if (line.starts_with("EXPOSURE=")) take_exposure(line.substr(9), header, reader);
   }
   const std::string_view size = reader.line();
   if (!take_size(size, header))
-    reader.refuse("is a Radiance picture whose rows lie as '" + std::string(size.substr(0, 60)) + "'",
+    reader.refuse("is a Radiance picture whose rows lie as '" + printable(size) + "'",
                   "write it as '-Y HEIGHT +X WIDTH'");
   return header;
 }
@@ -212,7 +213,8 @@ SkyPicture decode_radiance(std::string_view bytes, const std::string& name) {
   for (std::uint32_t y = 0; y < picture.height; ++y) {
     read_row(reader, row);
     for (const Rgbe& pixel : row) {
-      const double unit = pixel[3] == 0 ? 0 : std::ldexp(1.0, pixel[3] - 136) / header.exposure;
+      const double one = pixel[3] == 0 ? 0 : std::ldexp(1.0, pixel[3] - 136) / header.exposure;
+      const double unit = std::min(one, 3e38);  // an exposure may be next to 0
       for (std::size_t c = 0; c < 3; ++c)
         picture.rgb.push_back(static_cast<float>(std::min(pixel[c] * unit, 3e38)));
     }
