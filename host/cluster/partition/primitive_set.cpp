@@ -134,6 +134,7 @@ constexpr std::size_t kBatchOfPrimitives = std::size_t{1} << 16;  // primitives 
 struct Counts {
   std::array<std::uint64_t, primitives::kKinds> of{};
   std::uint64_t normals = 0;
+  bool operator==(const Counts&) const = default;
 };
 
 bool has_normals(const layout::Triangle& t) {
@@ -159,6 +160,8 @@ class Carrier {
       }
       first += n;
     });
+    for (std::size_t from = 0; from < n_ranks(); ++from)
+      if (next_[from] != end_[from]) transport::throw_odd_message(static_cast<int>(from));
     return std::move(here_);
   }
 
