@@ -22,6 +22,7 @@ class SceneFolder {
  public:
   SceneFolder()
       : path_(std::filesystem::temp_directory_path() / ("kdray-fuzz-" + std::to_string(::getpid()))) {
+    std::filesystem::remove_all(path_);  // of a process that has ended before its time
     std::filesystem::create_directories(path_);
     picture_.put(test::four_colors());
     std::filesystem::create_symlink(picture_.path(), path_ / "picture.png");

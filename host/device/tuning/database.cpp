@@ -8,8 +8,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/write_file.h"
-#include "kdray/error.h"
 
 namespace kdray::tuning {
 
@@ -22,7 +22,7 @@ constexpr const char* kFormat = "kdray_tunings";
 constexpr int kVersion = 1;
 
 [[noreturn]] void fail(const std::string& name, const std::string& what) {
-  throw Error(ErrorCode::input, fmt::format("{}: {}", name, what));
+  throw input_error(name, 0, what);
 }
 
 Json to_json(const Entry& e) {
@@ -47,7 +47,7 @@ Tuning to_tuning(const Json& json, const std::string& name) {
   Tuning tuning;
   for (const auto& [word, value] : json.items()) {
     const Setting* const s = find_setting(word);
-    if (!s) fail(name, fmt::format("no setting is named {}", Json(word).dump()));
+    if (!s) fail(name, fmt::format("no setting is named '{}'", word));
     const std::int64_t number = integer(value, name);
     if (std::ranges::find(s->values, number) == s->values.end())
       fail(name, fmt::format("{} is not a value of '{}'", number, word));

@@ -1,6 +1,5 @@
 #include "io/array/npy_header.h"
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -10,10 +9,6 @@ namespace kdray::array {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-}
 
 // A reader of the few Python literals that a header may hold: strings, lists, tuples, integers, True and
 // False.
@@ -79,7 +74,6 @@ class Parser {
     const std::size_t end = text_.find(quote, at_ + 1);
     if (end == std::string_view::npos) fail("a string without its end");
     const std::string_view content = text_.substr(at_ + 1, end - at_ - 1);
-    if (std::ranges::any_of(content, is_control)) fail("a string with control characters");
     at_ = end + 1;
     return std::string(content);
   }
@@ -132,12 +126,10 @@ class Parser {
         string();
         continue;
       }
-      if (is_control(c)) fail("control characters");
       depth += (c == '[' || c == '(') - (c == ']' || c == ')');
       ++at_;
     } while (depth > 0);
     header.type = std::string(text_.substr(begin, at_ - begin));
-    std::ranges::replace_if(header.type, is_control, ' ');  // spaces of other kinds
   }
 
   std::string_view text_;

@@ -10,7 +10,6 @@
 #include "base/local_space.h"
 #include "io/image/exr.h"
 #include "scene/import/files.h"
-#include "scene/import/text_scanner.h"
 #include "scene/textures/picture.h"
 #include "scene/textures/texturing.h"
 
@@ -148,13 +147,13 @@ Header read_header(Reader& reader) {
   (void)reader.line();  // "#?RADIANCE"
   for (std::string_view line = reader.line(); !line.empty(); line = reader.line()) {
     if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
-      reader.refuse("is a Radiance picture of the format '" + printable(line.substr(7)) + "'",
+      reader.refuse("is a Radiance picture of the format '" + std::string(line.substr(7)) + "'",
                     "convert it to 32-bit_rle_rgbe");
     if (line.starts_with("EXPOSURE=")) take_exposure(line.substr(9), header, reader);
   }
   const std::string_view size = reader.line();
   if (!take_size(size, header))
-    reader.refuse("is a Radiance picture whose rows lie as '" + printable(size) + "'",
+    reader.refuse("is a Radiance picture whose rows lie as '" + std::string(size.substr(0, 60)) + "'",
                   "write it as '-Y HEIGHT +X WIDTH'");
   return header;
 }
