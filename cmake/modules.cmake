@@ -26,6 +26,12 @@ if(KDRAY_SANITIZE)
   target_compile_options(kdray_sanitizers INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(kdray_sanitizers INTERFACE -fsanitize=address,undefined)
 endif()
+if(KDRAY_FUZZ)
+  # Quick to compile; coverage for libFuzzer; and checks that are no undefined behaviour, or that only clang has.
+  target_compile_options(kdray_sanitizers INTERFACE -O1 -gline-tables-only -fsanitize=fuzzer-no-link,float-cast-overflow
+                                                    -fno-sanitize-recover=float-cast-overflow)
+  target_compile_definitions(kdray_sanitizers INTERFACE _GLIBCXX_ASSERTIONS)
+endif()
 
 # kdray_module(NAME SOURCES ... [PUBLIC libs...] [PRIVATE libs...] [APART])
 #   Adds the library kdray_NAME (alias kdray::NAME) from the folder of that name. Headers are included as "GROUP/NAME/file.h".

@@ -13,6 +13,9 @@ Error input_error(const std::string& file, std::size_t line, const std::string& 
   if (line > 0) text += ":" + std::to_string(line);
   text += ": " + what;
   if (!remedy.empty()) text += "; " + remedy;
+  // Names and what a file says may hold anything.
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
   return Error(ErrorCode::input, text);
 }
 
