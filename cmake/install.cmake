@@ -37,6 +37,12 @@ if(TARGET kdray_c)
 endif()
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
+# Man pages and completions, where they could be made (kdray_papers).
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
+foreach(shell bash-completion zsh fish)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/${shell} DESTINATION ${CMAKE_INSTALL_DATADIR} OPTIONAL)
+endforeach()
+
 # The program holds the kernels; as text they are there to be read, and to be changed under KDRAY_KERNEL_DIR.
 install(DIRECTORY kernels/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kdray/kernels
         FILES_MATCHING PATTERN "*.cl" PATTERN "*.clh" PATTERN "layout/*.h" PATTERN "primitives/*.h")

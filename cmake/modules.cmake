@@ -26,6 +26,12 @@ if(KDRAY_SANITIZE)
   target_compile_options(kdray_sanitizers INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(kdray_sanitizers INTERFACE -fsanitize=address,undefined)
 endif()
+if(KDRAY_FUZZ)
+  # Quick to compile; coverage for libFuzzer; and checks that are no undefined behaviour, or that only clang has.
+  target_compile_options(kdray_sanitizers INTERFACE -O1 -gline-tables-only -fsanitize=fuzzer-no-link,float-cast-overflow
+                                                    -fno-sanitize-recover=float-cast-overflow)
+  target_compile_definitions(kdray_sanitizers INTERFACE _GLIBCXX_ASSERTIONS)
+endif()
 
 # kdray_module(NAME SOURCES ... [PUBLIC libs...] [PRIVATE libs...] [APART])
 #   Adds the library kdray_NAME (alias kdray::NAME) from the folder of that name. Headers are included as "GROUP/NAME/file.h".
@@ -56,6 +62,19 @@ function(kdray_compile_quickly target)
   if(KDRAY_PRECOMPILE)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
+endfunction()
+
+# kdray_papers(PROGRAM)
+#   Has the program write its man pages, and kdray the shells' completions, below share in the build folder as often as it is
+#   linked: they are made from its options. A program for another kind of machine can't.
+function(kdray_papers program)
+  if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
+    return()
+  endif()
+  add_custom_command(TARGET ${program} POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${program}> -DSHARE=${CMAKE_BINARY_DIR}/share
+            -P ${PROJECT_SOURCE_DIR}/cmake/papers.cmake
+    VERBATIM)
 endfunction()
 
 # kdray_test(NAME SOURCES ... LIBS ... [LABELS ...] [APART ...])

@@ -90,7 +90,7 @@ Command add_bench_build(CLI::App& bench) {
                 "The thesis' builders too: perfect, boxed, spatial median, object median");
   app->add_flag("--growth", c->growth, "Meshes of 10 thousand to 10 million triangles instead of scenes");
   app->add_flag("--hostile", c->hostile, "Meshes made to break a builder instead of scenes");
-  add_build_option(*app, c->hostile_quality)->description("Of --hostile: fast, balanced (default), best");
+  add_build_option(*app, c->hostile_quality)->description("Of --hostile (default: balanced)");
   add_int(*app, "--triangles", "Of a hostile mesh (default 1000000); the most of a growing one", 1000,
           kTrianglesMax, c->triangles);
   add_int(*app, "--rays", "Rays of a class, as a square picture holds them (default 262144)", 1, kRaysMax,

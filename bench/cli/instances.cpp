@@ -65,14 +65,10 @@ Command add_bench_instances(CLI::App& bench) {
   add_text(*app, "--apart", "LIST", "From middle to middle, in sizes of the mesh (default 1,0.5,0.25)",
            [&o](const std::string& text) { o.apart = parse_apart(text); });
   add_int(*app, "--across", "Instances in a row, and rows (default 5)", 1, kAcrossMax, o.across);
-  add_text(
-      *app, "--classes", "LIST",
-      "Of primary,scanline,shadow,mirror,refracted,diffuse,random (default primary,shadow,diffuse,random)",
-      [&o](const std::string& text) { o.classes = parse_list("--classes", text, bench::class_names()); });
-  add_text(*app, "--traversals", "LIST", "Of wide,packet,batch,auto (default: all)",
-           [&o](const std::string& text) {
-             o.traversals = parse_list("--traversals", text, bench::instance_traversals());
-           });
+  static const std::vector<std::string_view> kTraversals = bench::instance_traversals();
+  add_list(*app, "--classes", "Of rays (default: primary,shadow,diffuse,random)", bench::class_names(),
+           o.classes);
+  add_list(*app, "--traversals", "Ways through the tree (default: all)", kTraversals, o.traversals);
   add_int(*app, "--rays", "Rays of a class, as a square picture holds them (default 1048576)", 1, kRaysMax,
           o.rays);
   add_int(*app, "--repeat", "Rounds to take the median of (default 7)", 1, kRepeatMax, o.repeat);

@@ -50,12 +50,8 @@ Command add_bench_queries(CLI::App& bench) {
   const auto c = std::make_shared<QueriesCommand>();
   bench::QueriesOptions& o = c->options;
   add_scenes(*app, o.scenes, "boxes spheres");
-  add_text(*app, "--queries", "LIST", "Of closest,any,count,all,points,distance,inside (default: all)",
-           [&o](const std::string& text) {
-             o.questions = parse_list("--queries", text, bench::question_names());
-           });
-  add_text(*app, "--sets", "LIST", "Of coherent,diffuse,random (default: all)",
-           [&o](const std::string& text) { o.sets = parse_list("--sets", text, bench::set_names()); });
+  add_list(*app, "--queries", "Questions (default: all)", bench::question_names(), o.questions);
+  add_list(*app, "--sets", "Sets of rays (default: all)", bench::set_names(), o.sets);
   add_text(*app, "--batches", "LIST", "Rays or points to a call (default 1,100,10000,1000000)",
            [&o](const std::string& text) { o.batches = parse_batches(text); });
   add_int(*app, "--rays", "Rays or points of a set (default 1000000)", 1, kRaysMax, o.rays);

@@ -62,13 +62,9 @@ Command add_bench_rays(CLI::App& bench) {
   const auto c = std::make_shared<RaysCommand>();
   bench::RaysOptions& o = c->options;
   add_scenes(*app, o.scenes, "boxes spheres balls rings");
-  add_text(
-      *app, "--classes", "LIST", "Of primary,scanline,shadow,mirror,refracted,diffuse,random (default: all)",
-      [&o](const std::string& text) { o.classes = parse_list("--classes", text, bench::class_names()); });
-  add_text(*app, "--traversals", "LIST", "Of binary,wide,packet,batch,auto (default: all)",
-           [&o](const std::string& text) {
-             o.traversals = parse_list("--traversals", text, bench::traversal_names());
-           });
+  add_list(*app, "--classes", "Of rays (default: all)", bench::class_names(), o.classes);
+  add_list(*app, "--traversals", "Ways through the tree (default: all)", bench::traversal_names(),
+           o.traversals);
   add_int(*app, "--rays", "Rays of a class, as a square picture holds them (default 1048576)", 1, kRaysMax,
           o.rays);
   add_int(*app, "--repeat", "Rounds to take the median of (default 7)", 1, kRepeatMax, o.repeat);

@@ -1,12 +1,13 @@
 // What    What each kind of primitive is in Embree: its type, and its buffers, as a scene that is traced has
 //         them and as those that builds are measured by are filled beforehand.
 // Shape   Triangles are triangles, spheres SPHERE_POINTs, cones CONE_LINEAR_CURVEs whose segments are flagged
-//         as having neighbours, which leaves the end caps off, discs ORIENTED_DISC_POINTs. It has no tori: a
-//         scene with them is refused. A kind that lacks something here does not compile.
+//         as having neighbours, which leaves the end caps off, discs ORIENTED_DISC_POINTs. A kind that has no
+//         type here is none of Embree's: a scene with it is refused.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -19,6 +20,10 @@ namespace kdray::bench {
 // A curve's flags without end caps.
 inline constexpr std::uint8_t kOpenCone = RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
 
+template <class Kind>
+constexpr RTCGeometryType embree_type(Kind) {
+  return RTC_GEOMETRY_TYPE_USER;  // never made
+}
 constexpr RTCGeometryType embree_type(primitives::TriangleKind) {
   return RTC_GEOMETRY_TYPE_TRIANGLE;
 }
@@ -32,13 +37,14 @@ constexpr RTCGeometryType embree_type(primitives::DiscKind) {
   return RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT;
 }
 
-// Never made: see refuse_tori.
-constexpr RTCGeometryType embree_type(primitives::TorusKind) {
-  return RTC_GEOMETRY_TYPE_USER;
-}
+template <class Kind>
+constexpr bool kEmbreeHas = embree_type(Kind()) != RTC_GEOMETRY_TYPE_USER;
 
-[[noreturn]] inline void refuse_tori() {
-  throw Error(ErrorCode::input, "Embree has no tori: leave them out of a scene that it is to trace");
+template <class Kind>
+void refuse_any(Kind, const scene::Geometry& geometry) {
+  if (!Kind::of(geometry).empty())
+    throw Error(ErrorCode::input, std::string("Embree has no ") + Kind::kNames +
+                                      ": leave them out of a scene that it is to trace");
 }
 
 // ---- Of a scene that is traced
@@ -87,10 +93,6 @@ inline void fill(RTCGeometry g, const std::vector<scene::DiscGeometry>& discs) {
   for (const scene::DiscGeometry& d : discs) *point++ = {d.center, d.radius}, *normal++ = d.normal;
 }
 
-inline void fill(RTCGeometry, const std::vector<scene::TorusGeometry>& tori) {
-  if (!tori.empty()) refuse_tori();
-}
-
 // ---- For builds
 
 // Embree reads vectors of 16 bytes, at the end too.
@@ -104,7 +106,7 @@ struct Buffers {
   std::vector<std::uint8_t> flags;
 };
 
-// The buffers of a kind. One that lacks them does not compile.
+// The buffers of a kind.
 inline Buffers buffers_of(primitives::TriangleKind, const scene::Scene& scene,
                           const scene::Geometry& geometry) {
   Buffers b;
@@ -154,8 +156,10 @@ inline Buffers buffers_of(primitives::DiscKind, const scene::Scene&, const scene
   return b;
 }
 
-inline Buffers buffers_of(primitives::TorusKind, const scene::Scene&, const scene::Geometry& geometry) {
-  if (!geometry.tori.empty()) refuse_tori();
+template <class Kind>
+Buffers buffers_of(Kind kind, const scene::Scene&, const scene::Geometry& geometry) {
+  static_assert(!kEmbreeHas<Kind>);
+  refuse_any(kind, geometry);
   return {};
 }
 

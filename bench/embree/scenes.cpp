@@ -74,7 +74,10 @@ RTCScene EmbreeScenes::build(const scene::Geometry& geometry, RTCSceneFlags flag
   rtcSetSceneFlags(made, flags);
   rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_MEDIUM);
   primitives::for_each_kind([&](auto kind) {
-    attach(device_, made, kind.kNumber, embree_type(kind), decltype(kind)::of(geometry));
+    if constexpr (kEmbreeHas<decltype(kind)>)
+      attach(device_, made, kind.kNumber, embree_type(kind), decltype(kind)::of(geometry));
+    else
+      refuse_any(kind, geometry);
   });
   return made;
 }

@@ -96,6 +96,11 @@ void write_shape(std::ostream& out, const scene::Torus& t) {
   fmt::print(out, "{:.9g},{:.9g},{:.9g}> {} }}\n", t.center.x, t.center.y, t.center.z, material(t.material));
 }
 
+template <class Kind>
+constexpr bool kHasWord = requires(std::ostream& out, const typename Kind::Source& shape) {
+  write_shape(out, shape);
+};
+
 // A mesh for each material: a texture per triangle would cost POV-Ray memory, and interiors are a mesh's own.
 void write_meshes(std::ostream& out, const scene::Scene& scene) {
   std::vector<std::vector<const scene::Triangle*>> by_material(scene.materials.size());
@@ -111,9 +116,12 @@ void write_meshes(std::ostream& out, const scene::Scene& scene) {
 }  // namespace
 
 bool pov_has_words_for(const scene::Scene& scene) {
+  bool has_shapes = true;
+  primitives::for_each_shape(
+      [&](auto kind) { has_shapes &= kHasWord<decltype(kind)> || decltype(kind)::of(scene).empty(); });
   const auto glows = [](const scene::Material& m) { return largest(m.emission) > 0; };
   const bool plain = scene.sky.kind == scene::SkyKind::none && !(scene.camera && scene.camera->aperture > 0);
-  return plain && std::all_of(scene.lights.begin(), scene.lights.end(), has_words_for) &&
+  return plain && has_shapes && std::all_of(scene.lights.begin(), scene.lights.end(), has_words_for) &&
          std::none_of(scene.materials.begin(), scene.materials.end(), glows);
 }
 
@@ -126,7 +134,8 @@ void write_pov(std::ostream& out, const scene::Scene& scene, double aspect, int 
   for (const scene::Light& light : scene.lights) write_light(out, light);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) write_material(out, scene.materials[i], i);
   primitives::for_each_shape([&](auto kind) {
-    for (const auto& shape : decltype(kind)::of(scene)) write_shape(out, shape);
+    if constexpr (kHasWord<decltype(kind)>)
+      for (const auto& shape : decltype(kind)::of(scene)) write_shape(out, shape);
   });
   write_meshes(out, scene);
 }

@@ -118,17 +118,30 @@ Scene::~Scene() = default;
 GeometryId Scene::add_mesh(const Mesh& mesh, const GeometryOptions& options) {
   return impl_->add(scene::make_added(mesh), options);
 }
-GeometryId Scene::add_spheres(const Spheres& spheres, const GeometryOptions& options) {
-  return impl_->add(scene::make_added(spheres), options);
+GeometryId Scene::add_spheres(const Spheres& s, const GeometryOptions& options) {
+  return add_shapes({"spheres", {{"centers", s.centers}, {"radii", s.radii}}}, options);
 }
-GeometryId Scene::add_cones(const Cones& cones, const GeometryOptions& options) {
-  return impl_->add(scene::make_added(cones), options);
+GeometryId Scene::add_cones(const Cones& c, const GeometryOptions& options) {
+  return add_shapes({"cones",
+                     {{"bases", c.bases},
+                      {"base_radii", c.base_radii},
+                      {"apexes", c.apexes},
+                      {"apex_radii", c.apex_radii}}},
+                    options);
 }
-GeometryId Scene::add_discs(const Discs& discs, const GeometryOptions& options) {
-  return impl_->add(scene::make_added(discs), options);
+GeometryId Scene::add_discs(const Discs& d, const GeometryOptions& options) {
+  return add_shapes({"discs", {{"centers", d.centers}, {"normals", d.normals}, {"radii", d.radii}}}, options);
 }
-GeometryId Scene::add_tori(const Tori& tori, const GeometryOptions& options) {
-  return impl_->add(scene::make_added(tori), options);
+GeometryId Scene::add_tori(const Tori& t, const GeometryOptions& options) {
+  return add_shapes({"tori",
+                     {{"centers", t.centers},
+                      {"axes", t.axes},
+                      {"major_radii", t.major_radii},
+                      {"minor_radii", t.minor_radii}}},
+                    options);
+}
+GeometryId Scene::add_shapes(const Shapes& shapes, const GeometryOptions& options) {
+  return impl_->add(scene::make_added(shapes), options);
 }
 
 GeometryId Scene::add_instances(GeometryId prototype, const Transforms& transforms,

@@ -123,7 +123,8 @@ std::vector<WarmProgram> warm_up(const DeviceOptions& options,
       const Tuning tuning = tuned_for(context, engine::runs_globally(options, context), scene.features,
                                       tunings, options.tunings.string())
                                 .settings;
-      const auto make = [&](const std::string& work, void (Warming::*launch)()) {
+      const auto make = [&, &form = form, &scenes = scenes](const std::string& work,
+                                                            void (Warming::*launch)()) {
         const Timer timer;
         Warming warming(context, options, scene, form, tuning);
         (warming.*launch)();

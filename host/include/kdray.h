@@ -111,6 +111,14 @@ KDRAY_API kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdr
 KDRAY_API kdray_status kdray_add_tori(kdray_scene* scene, kdray_in centers, kdray_in axes,
                                       kdray_in major_radii, kdray_in minor_radii,
                                       const kdray_geometry_options* options, uint32_t* id);
+/* Shapes of any kind by its plural ("spheres", "cones", "discs", "tori"), an array for each of the fields that
+ * these functions name: what they do is this. */
+typedef struct kdray_field {
+  const char* name; /* "centers" */
+  kdray_in rows;
+} kdray_field;
+KDRAY_API kdray_status kdray_add_shapes(kdray_scene* scene, const char* kind, const kdray_field* fields,
+                                        size_t n_fields, const kdray_geometry_options* options, uint32_t* id);
 
 #define KDRAY_NO_INSTANCE 0xffffffffu
 #define KDRAY_OWN_MATERIAL 0xffffffffu

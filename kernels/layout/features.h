@@ -70,8 +70,6 @@
 #define KDRAY_FEATURES (~(KDRAY_KEEP_ALL | KDRAY_FEATURE_INSTANCES))
 #endif
 #define KDRAY_HAS_KIND(NAME) ((KDRAY_FEATURES & KDRAY_FEATURE_KIND(NAME)) != 0)
-// Kinds whose test asks for the square of the direction.
-#define KDRAY_HAS_CURVED (KDRAY_HAS_KIND(SPHERE) || KDRAY_HAS_KIND(CONE) || KDRAY_HAS_KIND(TORUS))
 #define KDRAY_HAS_ZERO_AREA ((KDRAY_FEATURES & KDRAY_FEATURE_ZERO_AREA) != 0)
 #define KDRAY_HAS_SMOOTH (KDRAY_HAS_ZERO_AREA || (KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
 #define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
@@ -108,33 +106,6 @@
 #define KDRAY_HAS_SUPERSAMPLE ((KDRAY_FEATURES & KDRAY_FEATURE_SUPERSAMPLE) != 0)
 #define KDRAY_HAS_ADAPTIVE ((KDRAY_FEATURES & KDRAY_FEATURE_ADAPTIVE) != 0)
 #define KDRAY_HAS_COST ((KDRAY_FEATURES & KDRAY_FEATURE_COST) != 0)
-
-// Code of a kind, where the program has it.
-#if KDRAY_HAS_KIND(TRIANGLE)
-#define KDRAY_IF_TRIANGLE(code) code
-#else
-#define KDRAY_IF_TRIANGLE(code)
-#endif
-#if KDRAY_HAS_KIND(SPHERE)
-#define KDRAY_IF_SPHERE(code) code
-#else
-#define KDRAY_IF_SPHERE(code)
-#endif
-#if KDRAY_HAS_KIND(CONE)
-#define KDRAY_IF_CONE(code) code
-#else
-#define KDRAY_IF_CONE(code)
-#endif
-#if KDRAY_HAS_KIND(DISC)
-#define KDRAY_IF_DISC(code) code
-#else
-#define KDRAY_IF_DISC(code)
-#endif
-#if KDRAY_HAS_KIND(TORUS)
-#define KDRAY_IF_TORUS(code) code
-#else
-#define KDRAY_IF_TORUS(code)
-#endif
 #else
 namespace kdray::layout {
 using Features = std::uint64_t;

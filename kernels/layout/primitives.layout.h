@@ -7,4 +7,7 @@
 #include "primitives/torus/torus.layout.h"
 #include "primitives/triangle/triangle.layout.h"
 
+#define KDRAY_CURVED_KIND(NAME, name, names, Struct) || (KDRAY_HAS_KIND(NAME) && KDRAY_##NAME##_IS_CURVED)
+#define KDRAY_HAS_CURVED (0 KDRAY_KINDS(KDRAY_CURVED_KIND))
+
 #endif

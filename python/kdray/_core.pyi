@@ -4,6 +4,8 @@ from typing import Any
 from numpy.typing import NDArray
 
 def end_calls() -> None: ...
+def css_color(arg: str, /) -> list[float]: ...
+def shape_fields(arg: str, /) -> list[tuple[str, bool, bool]]: ...
 
 class Scene:
     def __init__(self) -> None: ...
@@ -22,43 +24,8 @@ class Scene:
         material: int,
         prototype: bool,
     ) -> int: ...
-    def add_spheres(
-        self, arg0: NDArray[Any] | None, arg1: NDArray[Any] | None, arg2: str, arg3: int, arg4: int, arg5: bool, /
-    ) -> int: ...
-    def add_cones(
-        self,
-        arg0: NDArray[Any] | None,
-        arg1: NDArray[Any] | None,
-        arg2: NDArray[Any] | None,
-        arg3: NDArray[Any] | None,
-        arg4: str,
-        arg5: int,
-        arg6: int,
-        arg7: bool,
-        /,
-    ) -> int: ...
-    def add_discs(
-        self,
-        arg0: NDArray[Any] | None,
-        arg1: NDArray[Any] | None,
-        arg2: NDArray[Any] | None,
-        arg3: str,
-        arg4: int,
-        arg5: int,
-        arg6: bool,
-        /,
-    ) -> int: ...
-    def add_tori(
-        self,
-        arg0: NDArray[Any] | None,
-        arg1: NDArray[Any] | None,
-        arg2: NDArray[Any] | None,
-        arg3: NDArray[Any] | None,
-        arg4: str,
-        arg5: int,
-        arg6: int,
-        arg7: bool,
-        /,
+    def add_shapes(
+        self, kind: str, arrays: Sequence[NDArray[Any] | None], name: str, mask: int, material: int, prototype: bool
     ) -> int: ...
     def add_instances(
         self, prototype: int, transforms: NDArray[Any] | None, materials: NDArray[Any] | None, name: str, mask: int

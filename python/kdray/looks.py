@@ -6,12 +6,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from . import _core
 from .errors import UsageError
 
 Vector = Sequence[float]
-Color = Sequence[float]
+# Three linear values, or text as CSS has it: "skyblue", "#fff", "#87ceeb".
+Color = Sequence[float] | str
 
 _NO_PICTURE = 2**32 - 1
+
+
+def linear(color: Color) -> tuple[float, ...]:
+    """The three linear values of a colour."""
+    return tuple(_core.css_color(color) if isinstance(color, str) else color)
 
 
 @dataclass(frozen=True)
@@ -69,7 +76,7 @@ class Light:
 
 @dataclass(frozen=True)
 class Material:
-    """Whitted's terms, linear RGB, each with its colour multiplied in.
+    """Whitted's terms, linear RGB or as CSS has it ("skyblue"), each with its colour multiplied in.
 
     `shine` is the exponent of the highlight, `index` that of refraction. The default is a matt light grey.
 

@@ -199,7 +199,7 @@ class RaycastingScene:
     def _normals_of(self, geometries: Array, primitives: Array, dtype: Any) -> Array:
         result = np.zeros((*geometries.shape, 3), dtype)
         for geometry in np.unique(geometries):
-            if geometry != self.INVALID_ID and self._scene._added[int(geometry)].method == "add_mesh":
+            if geometry != self.INVALID_ID and self._scene._added[int(geometry)].kind == "mesh":
                 own = geometries == geometry
                 result[own] = self._normals_in(int(geometry))[primitives[own]]
         return result

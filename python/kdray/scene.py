@@ -18,7 +18,7 @@ from ._arrays import Array, ArrayLike, RayArrays
 from ._pixels import pixels_of
 from ._results import FLOATS, Rows, as_rows, hit_columns, in_parts, known, result_of, type_of, width_of
 from .hits import AllHits, ClosestPoints, Hits
-from .looks import Camera, Color, Light, Material, Vector
+from .looks import Camera, Color, Light, Material, Vector, linear
 from .picture import Picture
 from .progress import Progress, teller
 from .view import View, page_of
@@ -44,7 +44,7 @@ class Geometry:
 class _Added:
     """What a geometry was added by, to make it again."""
 
-    method: str
+    kind: str  # "mesh", "instances", or shapes' plural
     arrays: tuple[Array | None, ...]
     material: int | None
     prototype: bool
@@ -126,7 +126,7 @@ class Scene:
         n = None if normals is None else _arrays.vectors(normals, "normals")[0]
         coordinates = None if uv is None else _arrays.pairs(uv, "uv")
         arrays = (v, _arrays.triangles(triangles), n, coordinates)
-        return self._add("add_mesh", arrays, name, mask, material, prototype)
+        return self._add("mesh", arrays, name, mask, material, prototype)
 
     def add_spheres(
         self,
@@ -139,8 +139,8 @@ class Scene:
         prototype: bool = False,
     ) -> int:
         """Adds exact spheres: `centers` (n, 3), `radii` (n,) or one for all, above 0."""
-        arrays = (_points(centers, "centers"), _scalars(radii, "radii"))
-        return self._add("add_spheres", arrays, name, mask, material, prototype)
+        arrays = {"centers": centers, "radii": radii}
+        return self._add_shapes("spheres", arrays, name, mask, material, prototype)
 
     def add_cones(
         self,
@@ -155,8 +155,8 @@ class Scene:
         prototype: bool = False,
     ) -> int:
         """Adds truncated cones without caps, from p0 (n, 3) with radius r0 to p1 with r1 (equal: cylinders)."""
-        arrays = (_points(p0, "p0"), _scalars(r0, "r0"), _points(p1, "p1"), _scalars(r1, "r1"))
-        return self._add("add_cones", arrays, name, mask, material, prototype)
+        arrays = {"bases": p0, "base_radii": r0, "apexes": p1, "apex_radii": r1}
+        return self._add_shapes("cones", arrays, name, mask, material, prototype)
 
     def add_discs(
         self,
@@ -170,8 +170,8 @@ class Scene:
         prototype: bool = False,
     ) -> int:
         """Adds flat discs: `centers` (n, 3), `normals` (n, 3) of any length, `radii` (n,) or one for all."""
-        arrays = (_points(centers, "centers"), _points(normals, "normals"), _scalars(radii, "radii"))
-        return self._add("add_discs", arrays, name, mask, material, prototype)
+        arrays = {"centers": centers, "normals": normals, "radii": radii}
+        return self._add_shapes("discs", arrays, name, mask, material, prototype)
 
     def add_tori(
         self,
@@ -190,13 +190,53 @@ class Scene:
         A torus is what lies `minor_radii` off a circle of `major_radii` about its centre, across its axis, with
         0 < minor < major <= 4096 minor.
         """
-        points = (_points(centers, "centers"), _points(axes, "axes"))
-        arrays = (*points, _scalars(major_radii, "major_radii"), _scalars(minor_radii, "minor_radii"))
-        return self._add("add_tori", arrays, name, mask, material, prototype)
+        arrays = {"centers": centers, "axes": axes, "major_radii": major_radii, "minor_radii": minor_radii}
+        return self._add_shapes("tori", arrays, name, mask, material, prototype)
+
+    def add_shapes(
+        self,
+        kind: str,
+        *,
+        mask: int = -1,
+        name: str | None = None,
+        material: int | None = None,
+        prototype: bool = False,
+        **arrays: ArrayLike,
+    ) -> int:
+        """Adds shapes of any kind: ``add_shapes("spheres", centers=..., radii=...)`` is what `add_spheres` does.
+
+        `kind` is a kind's plural, and each of its fields an array of that name: vectors (n, 3), numbers (n,) or one
+        for all. Raises UsageError that names what there is.
+        """
+        return self._add_shapes(kind, arrays, name, mask, material, prototype)
+
+    def _add_shapes(
+        self,
+        kind: str,
+        arrays: dict[str, ArrayLike],
+        name: str | None,
+        mask: int,
+        material: int | None,
+        prototype: bool,
+    ) -> int:
+        fields = _core.shape_fields(kind)
+        rest = dict(arrays)
+        rows: list[Array | None] = []
+        for field, is_vector, may_be_left_out in fields:
+            if field in rest:
+                rows.append((_points if is_vector else _scalars)(rest.pop(field), field))
+            elif may_be_left_out:
+                rows.append(None)
+            else:
+                raise errors.UsageError(f"{kind} need {field}=")
+        if rest:
+            known = ", ".join(field for field, _, _ in fields)
+            raise errors.UsageError(f"{kind} have no {next(iter(rest))}, but {known}")
+        return self._add(kind, tuple(rows), name, mask, material, prototype)
 
     def _add(
         self,
-        method: str,
+        kind: str,
         arrays: tuple[Array | None, ...],
         name: str | None,
         mask: int,
@@ -205,9 +245,11 @@ class Scene:
     ) -> int:
         with self._lock:
             bits = _arrays.mask_bits(mask)
-            geometry = int(getattr(self._core, method)(*arrays, name or "", bits, material or 0, prototype))
+            how = (name or "", bits, material or 0, prototype)
+            made = self._core.add_mesh(*arrays, *how) if kind == "mesh" else self._core.add_shapes(kind, arrays, *how)
+            geometry = int(made)
             kept = tuple(None if a is None else a.copy() for a in arrays)
-            self._added[geometry] = _Added(method, kept, material, prototype)
+            self._added[geometry] = _Added(kind, kept, material, prototype)
             self._changed = True
             return geometry
 
@@ -234,7 +276,7 @@ class Scene:
             bits = _arrays.mask_bits(mask)
             geometry = int(self._core.add_instances(prototype, rows, of_each, name or "", bits))
             kept = (rows.copy(), None if of_each is None else of_each.copy())
-            self._added[geometry] = _Added("add_instances", kept, None, False, prototype)
+            self._added[geometry] = _Added("instances", kept, None, False, prototype)
             self._has_instances = True
             self._changed = True
             return geometry
@@ -334,15 +376,16 @@ class Scene:
             return number
 
     def _add_to_core(self, m: Material) -> int:
-        ambient = m.ambient if m.ambient is not None else [0.1 * c for c in m.diffuse]
+        diffuse = linear(m.diffuse)
+        ambient = linear(m.ambient) if m.ambient is not None else [0.1 * c for c in diffuse]
         return int(
             self._core.add_material(
-                m.emission,
+                linear(m.emission),
                 ambient,
-                m.diffuse,
-                m.specular,
-                m.reflect,
-                m.transmit,
+                diffuse,
+                linear(m.specular),
+                linear(m.reflect),
+                linear(m.transmit),
                 m.shine,
                 m.index,
                 m.picture_numbers(),
@@ -358,7 +401,7 @@ class Scene:
                 light.kind,
                 light.position,
                 light.direction,
-                light.color,
+                linear(light.color),
                 light.attenuation,
                 light.range,
                 light.inner,
@@ -372,10 +415,11 @@ class Scene:
             self._changed = True
 
     def set_background(self, color: Color) -> None:
-        """The colour of rays that hit nothing, linear RGB."""
+        """The colour of rays that hit nothing, linear RGB or as CSS has it ("skyblue", "#87ceeb")."""
         with self._lock:
-            self._core.set_background(color)
-            self._colors["background"] = tuple(color)
+            numbers = linear(color)
+            self._core.set_background(numbers)
+            self._colors["background"] = numbers
             self._sky = None
             self._changed = True
 
@@ -387,8 +431,9 @@ class Scene:
         if len(heights) != len(colors):
             raise errors.UsageError(f"{len(heights)} heights for {len(colors)} colours")
         with self._lock:
-            self._core.set_gradient(heights, colors, up)
-            self._sky = ("gradient", tuple(heights), tuple(tuple(c) for c in colors), tuple(up))
+            numbers = tuple(linear(color) for color in colors)
+            self._core.set_gradient(heights, numbers, up)
+            self._sky = ("gradient", tuple(heights), numbers, tuple(up))
             self._changed = True
 
     def set_environment(
@@ -408,8 +453,9 @@ class Scene:
     def set_ambient(self, color: Color) -> None:
         """The light that comes from everywhere, linear RGB."""
         with self._lock:
-            self._core.set_ambient(color)
-            self._colors["ambient"] = tuple(color)
+            numbers = linear(color)
+            self._core.set_ambient(numbers)
+            self._colors["ambient"] = numbers
             self._changed = True
 
     # ---- Committing
@@ -716,12 +762,12 @@ class Scene:
         """A geometry by the id that it had; one that was removed leaves its id."""
         if added is None or info is None:
             nothing = np.empty((0, 3), np.float32)
-            self._core.remove(self._core.add_spheres(nothing, nothing[:, 0], "", 0, 0, False))
+            self._core.remove(self._core.add_shapes("spheres", [nothing, nothing[:, 0]], "", 0, 0, False))
         elif added.of is not None:
             transforms, materials = added.arrays
             self.add_instances(added.of, transforms, materials=materials, mask=info.mask, name=info.name)
         else:
-            self._add(added.method, added.arrays, info.name, info.mask, added.material, added.prototype)
+            self._add(added.kind, added.arrays, info.name, info.mask, added.material, added.prototype)
 
     def __copy__(self) -> Scene:
         return self.copy()

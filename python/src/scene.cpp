@@ -4,10 +4,12 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "arrays.h"
 #include "interrupt.h"
+#include "io/image/css_color.h"
 #include "parts.h"
 
 namespace kdray::python {
@@ -35,37 +37,24 @@ void add_geometries(SceneClass& scene) {
       },
       Released(), "vertices"_a, "triangles"_a, "normals"_a.none(), "texcoords"_a.none(), "name"_a, "mask"_a,
       "material"_a, "prototype"_a);
+  // `arrays`: of the kind's fields, in their order; None: left out.
   scene.def(
-      "add_spheres",
-      [](Scene& s, const In& centers, const In& radii, const std::string& name, std::uint32_t mask,
-         std::uint32_t material, bool prototype) {
-        return s.add_spheres({points_of(centers), values_of(radii)}, {name, mask, material, prototype});
-      },
-      Released());
-  scene.def(
-      "add_cones",
-      [](Scene& s, const In& p0, const In& r0, const In& p1, const In& r1, const std::string& name,
+      "add_shapes",
+      [](Scene& s, const std::string& kind, const std::vector<In>& arrays, const std::string& name,
          std::uint32_t mask, std::uint32_t material, bool prototype) {
-        return s.add_cones({points_of(p0), points_of(p1), values_of(r0), values_of(r1)},
-                           {name, mask, material, prototype});
+        Shapes shapes{kind, {}};
+        const std::vector<ShapeKind::Field>& fields = shape_kind(kind).fields;
+        for (std::size_t i = 0; i < arrays.size(); ++i) {
+          if (!arrays[i]) continue;
+          const ShapeKind::Field& field = fields.at(i);
+          if (field.is_vector)
+            shapes.fields.push_back({field.name, points_of(arrays[i])});
+          else
+            shapes.fields.push_back({field.name, values_of(arrays[i])});
+        }
+        return s.add_shapes(shapes, {name, mask, material, prototype});
       },
-      Released());
-  scene.def(
-      "add_discs",
-      [](Scene& s, const In& centers, const In& normals, const In& radii, const std::string& name,
-         std::uint32_t mask, std::uint32_t material, bool prototype) {
-        return s.add_discs({points_of(centers), points_of(normals), values_of(radii)},
-                           {name, mask, material, prototype});
-      },
-      Released());
-  scene.def(
-      "add_tori",
-      [](Scene& s, const In& centers, const In& axes, const In& major, const In& minor,
-         const std::string& name, std::uint32_t mask, std::uint32_t material, bool prototype) {
-        return s.add_tori({points_of(centers), points_of(axes), values_of(major), values_of(minor)},
-                          {name, mask, material, prototype});
-      },
-      Released());
+      Released(), "kind"_a, "arrays"_a, "name"_a, "mask"_a, "material"_a, "prototype"_a);
   scene.def(
       "add_instances",
       [](Scene& s, GeometryId prototype, const In& transforms, const In& materials, const std::string& name,
@@ -144,6 +133,19 @@ void add_looks(SceneClass& scene) {
 }  // namespace
 
 SceneClass add_scene(nb::module_& module) {
+  module.def("css_color", [](const std::string& text) {
+    const auto color = image::css_color(text);
+    if (!color)
+      throw Error(ErrorCode::usage,
+                  "the colour '" + text + "': expected a name of CSS, #rgb, #rrggbb, or three linear values");
+    return Color{color->x, color->y, color->z};
+  });
+  module.def("shape_fields", [](const std::string& kind) {
+    std::vector<std::tuple<std::string, bool, bool>> fields;
+    for (const ShapeKind::Field& f : shape_kind(kind).fields)
+      fields.emplace_back(f.name, f.is_vector, f.may_be_left_out);
+    return fields;
+  });
   SceneClass scene(module, "Scene");
   scene.def(nb::init<>());
   scene.def_static(

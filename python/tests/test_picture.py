@@ -126,3 +126,20 @@ def test_wrong_options(lit):
         lit.render(kdray.Camera((0, 0)))
     with pytest.raises(kdray.Error):
         lit.render(kdray.Camera((0, 0, 5), up=(0, 0, 1)), size=(8, 8))
+
+
+def test_colours_may_be_written_as_the_web_does(lit):
+    def seen(background, diffuse, light):
+        scene = kdray.Scene()
+        scene.add_spheres([0, 0, 0], 1, material=scene.add_material(kdray.Material(diffuse=diffuse)))
+        scene.add_light(kdray.Light("directional", color=light))
+        scene.set_background(background)
+        scene.set_ambient(background)
+        return scene.render(kdray.Camera((0, 0, 5)), (16, 16))
+
+    np.testing.assert_array_equal(seen("red", "#ff0", "white"), seen((1, 0, 0), (1, 1, 0), (1, 1, 1)))
+    np.testing.assert_allclose(seen("#808080", "lime", "#fff")[0, 0], 0.2158605, rtol=1e-6)
+    scene = kdray.Scene()
+    scene.set_gradient([-1, 1], ["navy", (0, 0, 1)])
+    with pytest.raises(kdray.UsageError, match="'skybleu'"):
+        scene.set_background("skybleu")

@@ -48,6 +48,26 @@ def test_tori_have_an_outside_and_a_hole():
     assert [g.id for g in scene.geometries] == [rings]
 
 
+def test_shapes_of_any_kind_by_the_names_of_their_fields():
+    named, by_kind = kdray.Scene(), kdray.Scene()
+    named.add_cones([[0, 0, 0], [9, 0, 0]], 2, [[0, 0, 4], [9, 0, 4]], 0, mask=3)
+    cones = {"apexes": [[0, 0, 4], [9, 0, 4]], "bases": [[0, 0, 0], [9, 0, 0]], "base_radii": 2}  # and pointed
+    by_kind.add_shapes("cones", **cones, mask=3, name="tents")
+    rays = ([[1, 0.25, 9], [9.5, 0.25, 9], [20, 0, 9]], [0, 0, -1])
+    wanted = named.closest_hit(*rays)
+    for scene in (by_kind, pickle.loads(pickle.dumps(by_kind))):
+        np.testing.assert_array_equal(scene.closest_hit(*rays).t, wanted.t)
+        assert scene.info(0).name == "tents" and scene.info(0).mask == 3
+    assert wanted.hit.tolist() == [True, True, False]
+    for kind, arrays, message in [
+        ("cubes", {}, 'no shapes "cubes", but spheres, cones, discs, tori'),
+        ("cones", cones | {"radii": 1}, "cones have no radii, but bases"),
+        ("spheres", {"centers": [0, 0, 0]}, "spheres need radii"),
+    ]:
+        with pytest.raises(kdray.UsageError, match=message):
+            by_kind.add_shapes(kind, **arrays)
+
+
 @pytest.mark.parametrize("dtype", [np.int32, np.uint32, np.int64, np.uint64, np.int16, np.uint8])
 def test_indices_of_any_type(dtype):
     scene = kdray.Scene()

@@ -75,7 +75,7 @@ TYPED_TEST(ExactOf, SureTargetsAreMet) {
       EXPECT_NEAR(met.t, *t, 1e-4);
     }
   });
-  EXPECT_EQ(sure > n / 4, Samples<TypeParam>::kIsSureOfTargets) << sure << " of " << n;
+  EXPECT_EQ(sure > n / 4, kIsSureOfTargets<TypeParam>) << sure << " of " << n;
 }
 
 // A ray that leaves along the normal cannot have the surface close before it; one that comes back can. (But

@@ -222,7 +222,7 @@ TYPED_TEST(TracingOf, IsSoundByVerify) {
     const verify::Findings found = verify::verify(scene_of<TypeParam>(n, kSeed + 1),
                                                   {.rays = 1 << 14, .device = {.device = device_there()}});
     EXPECT_TRUE(found.film.fault.empty() && found.film.not_finite == 0) << found.film.fault;
-    EXPECT_LE(found.probes.defects(), Samples<TypeParam>::kKnownSelfHits);
+    EXPECT_LE(found.probes.defects(), kKnownSelfHits<TypeParam>);
     EXPECT_EQ(found.probes.defects(), found.probes.count[static_cast<std::size_t>(verify::Defect::self_hit)]);
     EXPECT_EQ(TypeParam::of(found.counts), static_cast<std::uint64_t>(n));
   }

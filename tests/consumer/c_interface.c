@@ -289,7 +289,13 @@ static void check_tori(void) {
   kdray_hits hits = {0};
   double t[2];
   uint32_t ring = 9, counts[2];
+  const kdray_field disc[3] = {{"normals", about}, {"radii", doubles(&minor, 1)}, {"centers", one}};
   expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
+  expect(kdray_add_shapes(scene, "cubes", disc, 3, NULL, NULL) == KDRAY_USAGE, "no kind of that name");
+  expect(strstr(kdray_last_error(), "spheres, cones, discs, tori") != NULL, "what there is is named");
+  expect(kdray_add_shapes(scene, "spheres", disc, 3, NULL, NULL) == KDRAY_USAGE, "spheres have no normals");
+  expect(kdray_add_shapes(scene, "discs", disc, 2, NULL, NULL) == KDRAY_INPUT, "no centers");
+  expect(kdray_add_shapes(scene, "discs", NULL, 2, NULL, NULL) == KDRAY_USAGE, "no fields");
   expect(kdray_add_tori(scene, one, about, doubles(&minor, 1), doubles(&major, 1), NULL, NULL) == KDRAY_INPUT,
          "a tube wider than its circle");
   expect(strstr(kdray_last_error(), "tori[0]") != NULL, "the torus is named");
@@ -299,6 +305,9 @@ static void check_tori(void) {
   expect(kdray_add_tori(scene, one, about, doubles(&major, 1), doubles(&minor, 1), NULL, &ring) == KDRAY_OK &&
              ring == 0,
          "a torus");
+  expect(kdray_add_shapes(scene, "discs", disc, 3, NULL, &ring) == KDRAY_OK && ring == 1,
+         "a disc in its hole");
+  expect(kdray_remove(scene, ring) == KDRAY_OK, "the disc is removed");
   expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit");
   rays.size = sizeof rays, rays.origins = doubles(origins, 2), rays.directions = doubles(directions, 2);
   hits.size = sizeof hits, hits.t.data = t, hits.t.count = 2, hits.t.type = KDRAY_FLOAT64;

@@ -6,7 +6,9 @@ function(step)
 endfunction()
 
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --config ${CONFIG})
-foreach(file bin/kdray include/kdray/kdray.h include/kdray/error.h share/kdray/kernels/layout/features.h)
+foreach(file bin/kdray include/kdray/kdray.h include/kdray/error.h share/kdray/kernels/layout/features.h
+        share/man/man1/kdray.1 share/man/man1/kdray-render.1 share/bash-completion/completions/kdray
+        share/zsh/site-functions/_kdray share/fish/vendor_completions.d/kdray.fish)
   if(NOT EXISTS ${WORK}/prefix/${file})
     message(FATAL_ERROR "not installed: ${file}")
   endif()

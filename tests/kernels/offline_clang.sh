@@ -10,8 +10,11 @@ common="-cl-std=CL1.2 -Xclang -finclude-default-header -Wall -Wextra -Wundef -We
 plain="-target spir64 -fsyntax-only $common"
 x86="-target x86_64-linux-gnu -march=icelake-server -c -emit-llvm -o /dev/null $common"
 bits=$(sed -nE 's/^#define KDRAY_(FEATURE|KEEP)_[A-Z]+ (0x[0-9a-f]+)u.*/\2/p' "$kernels/layout/rules.h")
-for kind_or_bit in $(sed -nE 's/.*KDRAY_FEATURE\(([0-9]+)\).*/\1/p' "$kernels/layout/features.h") {16..20}; do
-  bits+=" $(printf '0x%x' $((1 << kind_or_bit)))"
+for bit in $(sed -nE 's/.*KDRAY_FEATURE\(([0-9]+)\).*/\1/p' "$kernels/layout/features.h"); do
+  bits+=" $(printf '0x%x' $((1 << bit)))"
+done
+for kind in $(sed -nE 's/^#define KDRAY_KIND_[A-Z]+ ([0-9]+)u$/\1/p' "$kernels/layout/kinds.h"); do
+  bits+=" $(printf '0x%x' $((1 << (16 + kind))))"
 done
 forms=$(sed -nE 's/^#define KDRAY_SIMD_[A-Z0-9]+ ([0-9]+).*/\1/p' "$kernels/layout/simd.h")
 walks=$(sed -nE 's/^#define KDRAY_TRAVERSAL_[A-Z]+ ([0-9]+)$/\1/p' "$kernels/layout/traversal.h")

@@ -1,10 +1,12 @@
 // What    The roots of a polynomial, isolated by those of its derivatives and halved; for numbers of any
 //         kind.
-// Errors  A root that is one of the derivative's too, as of a line that touches, is found or not as rounding
+// Errors  roots_of: a root that is one of the derivative's too, as of a line that touches, is found or not as rounding
 //         has it.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace kdray::oracle {
@@ -39,6 +41,23 @@ std::vector<N> roots_of(const Polynomial<N>& p, const N& lo, const N& hi, int ha
     found.push_back(a);
   }
   return found;
+}
+
+// The real roots of a*t^2 + 2*b*t + c, ascending; returns how many. Citardauq's form, so that neither root
+// suffers from cancellation.
+inline int roots(double a, double b, double c, double t[2]) {
+  if (a == 0) {
+    if (b == 0) return 0;
+    t[0] = -c / (2 * b);
+    return 1;
+  }
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0) return 0;
+  const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+  t[0] = q / a;
+  t[1] = q == 0 ? t[0] : c / q;
+  if (t[0] > t[1]) std::swap(t[0], t[1]);
+  return 2;
 }
 
 // Where a line meets a torus about the origin: (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - z^2), p = g + t*d;

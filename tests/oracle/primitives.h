@@ -6,6 +6,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "scene/model/scene.h"
@@ -41,6 +42,31 @@ struct Surface {
   std::uint32_t material = 0;
 };
 
+// A primitive in double; which of the numbers are set, and what for, is its kind's affair.
+struct Shape {
+  primitives::PrimitiveKind kind{};
+  std::uint32_t source = 0;  // index into the scene's array of that kind
+  int number = 0;
+  dvec3 a{0}, b{0}, c{0};
+  double r0 = 0, r1 = 0;
+  dvec3 normal{0};
+};
+
+// Each kind has these (tests/primitives/<kind>.cpp): the shape of one, but for the first three members, or
+// none where there is nothing to hit, with `box` grown by it; where a ray meets it first, as World::closest()
+// has it; and what there is at a hit but for the point and the material.
+#define KDRAY_ORACLE_OF_KIND(NAME, name, names, Struct)                                                     \
+  std::optional<Shape> shape_of(const scene::Scene& scene, const scene::Struct& name, DBox& box);           \
+  Hit intersect(primitives::Struct##Kind, const Shape& shape, const Ray& ray, double grow);                 \
+  void put_surface(primitives::Struct##Kind, const scene::Scene& scene, const Shape& shape, const Hit& hit, \
+                   Surface& out);
+KDRAY_KINDS(KDRAY_ORACLE_OF_KIND)
+#undef KDRAY_ORACLE_OF_KIND
+
+inline bool within(double t, const Ray& ray) {
+  return t >= ray.t_min && t <= ray.t_max;
+}
+
 class World {
  public:
   explicit World(const scene::Scene& scene);
@@ -57,29 +83,6 @@ class World {
   std::size_t size() const { return shapes_.size(); }
 
  private:
-  using Kind = primitives::PrimitiveKind;
-  struct Shape {
-    Kind kind;
-    std::uint32_t source;  // index into the scene's array of that kind
-    int number;
-    dvec3 a, b, c;    // triangle: corners; sphere, disc, torus: centre; cone: base, apex
-    double r0, r1;    // sphere, disc: radius; cone: radii; torus: major, minor
-    dvec3 normal{0};  // triangle: its length is twice the area; disc; torus: axis
-  };
-
-  void add(const scene::Triangle& t, std::uint32_t source, DBox& box);
-  void add(const scene::Sphere& s, std::uint32_t source, DBox& box);
-  void add(const scene::Cone& c, std::uint32_t source, DBox& box);
-  void add(const scene::Disc& d, std::uint32_t source, DBox& box);
-  void add(const scene::Torus& t, std::uint32_t source, DBox& box);
-  Hit intersect(const Shape& shape, const Ray& ray, double grow) const;
-  Hit intersect_triangle(const Shape& s, const Ray& ray, double grow) const;
-  Hit intersect_sphere(const Shape& s, const Ray& ray, double grow) const;
-  Hit intersect_cone(const Shape& s, const Ray& ray, double grow) const;
-  Hit intersect_disc(const Shape& s, const Ray& ray, double grow) const;
-  Hit intersect_torus(const Shape& s, const Ray& ray, double grow) const;
-  void triangle_surface(const Shape& shape, const Hit& hit, Surface& out) const;
-
   const scene::Scene& scene_;
   std::vector<Shape> shapes_;  // ascending numbers
   double extent_ = 0;

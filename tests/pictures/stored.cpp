@@ -10,9 +10,6 @@ namespace kdray::test {
 
 namespace {
 
-dvec3 vector(const float (&v)[3]) {
-  return {v[0], v[1], v[2]};
-}
 vec3 color(const float (&v)[3]) {
   return {v[0], v[1], v[2]};
 }
@@ -24,30 +21,13 @@ void add_triangles(const flatten::FlatScene& flat, scene::Scene& out) {
     triangle.number = t.number;
     for (std::uint32_t i = 0; i < 3; ++i) {
       triangle.vertex[i] = static_cast<std::uint32_t>(out.vertices.size());
-      out.vertices.push_back(vector(t.v[i]));
+      out.vertices.push_back(dvec3_of(t.v[i]));
       if (t.normals == KDRAY_NO_NORMALS) continue;
       triangle.normal[i] = static_cast<std::uint32_t>(out.normals.size());
       out.normals.push_back(color(flat.normals[t.normals & KDRAY_NORMALS_MASK].n[i]));
     }
     out.triangles.push_back(triangle);
   }
-}
-
-// A kind that lacks one does not compile.
-scene::Sphere as_told(const layout::Sphere& s) {
-  return {vector(s.center), s.radius, s.material, s.number};
-}
-scene::Cone as_told(const layout::Cone& c) {
-  const double height = c.height, base_radius = c.base_radius, slope = c.slope;
-  const dvec3 base = vector(c.base), apex = base + glm::normalize(vector(c.axis)) * height;
-  return {base, apex, base_radius, std::max(0.0, base_radius + slope * height), c.material, c.number};
-}
-scene::Disc as_told(const layout::Disc& d) {
-  return {vector(d.center), vector(d.normal), d.radius, d.material, d.number};
-}
-
-scene::Torus as_told(const layout::Torus& t) {
-  return {vector(t.center), vector(t.axis), t.major_radius, t.minor_radius, t.material, t.number};
 }
 
 void add_materials(const flatten::FlatScene& flat, scene::Scene& out) {
@@ -78,10 +58,10 @@ Stored as_stored(const scene::Scene& scene) {
   add_materials(flat, out);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     scene::Light light = scene.lights[i];
-    light.position = vector(flat.lights[i].position);
-    light.direction = glm::normalize(vector(flat.lights[i].direction));
+    light.position = dvec3_of(flat.lights[i].position);
+    light.direction = glm::normalize(dvec3_of(flat.lights[i].direction));
     light.range = flat.lights[i].range;
-    light.attenuation = vector(flat.lights[i].attenuation);
+    light.attenuation = dvec3_of(flat.lights[i].attenuation);
     out.lights.push_back(light);
   }
   out.background = scene.background;

@@ -18,6 +18,15 @@ struct Stored {
 // stored as it is.
 Stored as_stored(const scene::Scene& scene);
 
+// The shape that a struct of the kernels stands for. Each kind has one (tests/primitives/<kind>.cpp).
+#define KDRAY_AS_STORED(NAME, name, names, Struct) scene::Struct as_told(const layout::Struct& name);
+KDRAY_SHAPES(KDRAY_AS_STORED)
+#undef KDRAY_AS_STORED
+
+inline dvec3 dvec3_of(const float (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+
 // A camera that looks along -z from z = `distance` and whose numbers float holds, pictures of 2^k pixels and
 // the same width and height assumed.
 scene::Camera straight_camera(double height, double distance);

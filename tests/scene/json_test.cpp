@@ -79,6 +79,17 @@ TEST(Json, ReadsAWholeScene) {
   EXPECT_EQ(s.materials.size(), 3u);
 }
 
+TEST(Json, ColoursMayBeWrittenAsTheWebDoes) {
+  const Scene s = read(
+      R"({"background": "#f00", "ambient": "#808080", "lights": [{"type": "point", "position": [0, 0, 9], "color": "white"}],
+                           "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1,
+                                        "material": {"color": "lime", "ka": 0, "kd": 0.5}}]})");
+  EXPECT_EQ(s.background, vec3(1, 0, 0));
+  EXPECT_NEAR(s.ambient.y, 0.2158605, 1e-6);  // 128 of 255 in sRGB, as linear light
+  EXPECT_EQ(s.lights[0].color, vec3(1));
+  EXPECT_EQ(s.materials.back().diffuse, vec3(0, 0.5, 0));
+}
+
 TEST(Json, TakesAnEmptyScene) {
   EXPECT_EQ(read("{}").primitive_count(), 0u);
 }
@@ -157,6 +168,8 @@ TEST(Json, NamesTheLineOfWhatIsNotJson) {
 }
 
 TEST(Json, NamesThePathOfWhatIsNoScene) {
+  EXPECT_EQ(refused(R"({"ambient": "gray!"})"),
+            "s.json: /ambient: expected a number, [red, green, blue], or a colour as CSS has it, found \"gray!\"");
   EXPECT_EQ(refused(R"({"ambeint": 1})"), "s.json: /ambeint: unknown key; did you mean 'ambient'?");
   EXPECT_EQ(refused_object(R"({"type": "sphere", "center": [0, 0, 0], "raduis": 1})"),
             "s.json: /objects/0/raduis: unknown key; did you mean 'radius'?");
@@ -170,9 +183,11 @@ TEST(Json, NamesThePathOfWhatIsNoScene) {
             "s.json: /objects/0/radius: expected a number, found \"1\"");
   EXPECT_EQ(refused_object(R"({"type": "sphere", "center": [0, 0, 0], "radius": 0})"),
             "s.json: /objects/0/radius: expected a number above 0.0, found 0");
+  std::string kinds;
+  primitives::for_each_shape([&](auto kind) { kinds += std::string(", ") + kind.kName; });
   EXPECT_EQ(refused_object(R"({"type": "cube"})"),
-            "s.json: /objects/0/type: expected one of mesh, triangles, box, cylinder, plane, sphere, cone, "
-            "disc, torus, found \"cube\"");
+            "s.json: /objects/0/type: expected one of mesh, triangles, box, cylinder, plane" + kinds +
+                ", found \"cube\"");
   EXPECT_EQ(refused(R"({"materials": {"a/b": {"index": 0}}})"),
             "s.json: /materials/a~1b/index: expected a number above 0.0, found 0");
   EXPECT_EQ(refused(R"({"materials": {"red": {}}, "objects": [

@@ -5,44 +5,62 @@
 // Source  GMP's mpf.
 #pragma once
 
-#include <gmpxx.h>
-
-#include <array>
-#include <optional>
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/vec.h"
 #include "layout/kinds.h"
 #include "layout/primitives.layout.h"
+#include "oracle/exact_vec.h"
 
 namespace kdray::stress {
 
-using Exact = mpf_class;  // with set_precision() called before the first is made
-void set_precision();
+using test::Exact;
+using Exact3 = test::Vec<Exact>;
 
-struct Exact3 {
-  Exact x, y, z;
-};
-Exact3 exactly(const float (&v)[3]);
+// Before the first is made.
+inline void set_precision() {
+  mpf_set_default_prec(1024);
+}
+inline Exact3 exactly(const float (&v)[3]) {
+  return test::vec<Exact>(v);
+}
+
+// Each kind has the following two (tests/primitives/<kind>.cpp). A kind that lacks one does not link.
 
 // All t where the line meets the primitive as stored, negative ones too.
 #define KDRAY_ROOTS_OF_KIND(NAME, name, names, Struct) \
   std::vector<Exact> roots(const Exact3& origin, const Exact3& direction, const layout::Struct& name);
 KDRAY_KINDS(KDRAY_ROOTS_OF_KIND)
 #undef KDRAY_ROOTS_OF_KIND
-// The same of the cone carried on at both ends, by this share of its height.
-std::vector<Exact> roots_past_the_ends(const Exact3& origin, const Exact3& direction,
-                                       const layout::Cone& cone, double share);
-
 // The distance from the surface's plane, sphere, cone or torus; of the last three with its sign: negative
-// inside. (A kind that lacks one does not link.)
+// inside.
 #define KDRAY_DISTANCE_OF_KIND(NAME, name, names, Struct) \
   double distance(const Exact3& point, const layout::Struct& name);
 KDRAY_KINDS(KDRAY_DISTANCE_OF_KIND)
 #undef KDRAY_DISTANCE_OF_KIND
 
+// The roots of a t^2 + 2 b t + c, ascending.
+inline std::vector<Exact> quadratic(const Exact& a, const Exact& b, const Exact& c) {
+  if (sgn(a) == 0) {
+    if (sgn(b) == 0) return {};
+    return {Exact(-c / (2 * b))};
+  }
+  const Exact discriminant = b * b - a * c;
+  if (sgn(discriminant) < 0) return {};
+  const Exact root = sqrt(discriminant), first = (-b - root) / a, second = (-b + root) / a;
+  return first < second ? std::vector<Exact>{first, second} : std::vector<Exact>{second, first};
+}
+
+inline double ulp(double scale) {
+  int exponent = 0;
+  std::frexp(scale, &exponent);
+  return std::ldexp(1.0, std::max(exponent - 24, -149));
+}
 // |approximate - exact| in units of the last place of a float of `scale`'s size.
-double ulps(double approximate, const Exact& exact, double scale);
-double ulp(double scale);
+inline double ulps(double approximate, const Exact& exact, double scale) {
+  return std::abs(Exact(Exact(approximate) - exact).get_d()) / ulp(scale);
+}
 
 }  // namespace kdray::stress

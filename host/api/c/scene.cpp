@@ -1,4 +1,6 @@
 // The scene's part of kdray.h: what it is made of.
+#include <algorithm>
+#include <initializer_list>
 #include <utility>
 
 #include "api/c/edge.h"
@@ -39,6 +41,11 @@ InstanceOptions options_of(const kdray_instance_options* given) {
 
 void put(std::uint32_t* id, std::uint32_t value) {
   if (id != nullptr) *id = value;
+}
+
+kdray_status add(kdray_scene* scene, const char* kind, std::initializer_list<kdray_field> fields,
+                 const kdray_geometry_options* options, std::uint32_t* id) {
+  return kdray_add_shapes(scene, kind, fields.begin(), fields.size(), options, id);
 }
 
 constexpr Light::Kind kLightKinds[] = {Light::Kind::point,     Light::Kind::directional, Light::Kind::spot,
@@ -136,36 +143,44 @@ kdray_status kdray_add_mesh(kdray_scene* scene, kdray_in vertices, kdray_in tria
     put(id, needed(scene, "scene")->scene.add_mesh(mesh, options_of(options)));
   });
 }
+kdray_status kdray_add_shapes(kdray_scene* scene, const char* kind, const kdray_field* fields,
+                              size_t n_fields, const kdray_geometry_options* options, uint32_t* id) {
+  return guarded([&] {
+    Shapes shapes{needed(kind, "kind"), {}};
+    const ShapeKind& known = shape_kind(shapes.kind);
+    if (n_fields > 0) needed(fields, "fields");
+    for (std::size_t i = 0; i < n_fields; ++i) {
+      const char* const name = needed(fields[i].name, "a field's name");
+      const bool is_vector = std::ranges::any_of(
+          known.fields, [&](const ShapeKind::Field& f) { return f.name == name && f.is_vector; });
+      if (is_vector)
+        shapes.fields.push_back({name, view_of<Points>(fields[i].rows, name)});
+      else
+        shapes.fields.push_back({name, view_of<Values>(fields[i].rows, name)});
+    }
+    put(id, needed(scene, "scene")->scene.add_shapes(shapes, options_of(options)));
+  });
+}
 kdray_status kdray_add_spheres(kdray_scene* scene, kdray_in centers, kdray_in radii,
                                const kdray_geometry_options* options, uint32_t* id) {
-  return guarded([&] {
-    const Spheres spheres{view_of<Points>(centers, "centers"), view_of<Values>(radii, "radii")};
-    put(id, needed(scene, "scene")->scene.add_spheres(spheres, options_of(options)));
-  });
+  return add(scene, "spheres", {{"centers", centers}, {"radii", radii}}, options, id);
 }
 kdray_status kdray_add_cones(kdray_scene* scene, kdray_in bases, kdray_in base_radii, kdray_in apexes,
                              kdray_in apex_radii, const kdray_geometry_options* options, uint32_t* id) {
-  return guarded([&] {
-    const Cones cones{view_of<Points>(bases, "bases"), view_of<Points>(apexes, "apexes"),
-                      view_of<Values>(base_radii, "base_radii"), view_of<Values>(apex_radii, "apex_radii")};
-    put(id, needed(scene, "scene")->scene.add_cones(cones, options_of(options)));
-  });
+  return add(scene, "cones",
+             {{"bases", bases}, {"base_radii", base_radii}, {"apexes", apexes}, {"apex_radii", apex_radii}},
+             options, id);
 }
 kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdray_in normals, kdray_in radii,
                              const kdray_geometry_options* options, uint32_t* id) {
-  return guarded([&] {
-    const Discs discs{view_of<Points>(centers, "centers"), view_of<Points>(normals, "normals"),
-                      view_of<Values>(radii, "radii")};
-    put(id, needed(scene, "scene")->scene.add_discs(discs, options_of(options)));
-  });
+  return add(scene, "discs", {{"centers", centers}, {"normals", normals}, {"radii", radii}}, options, id);
 }
 kdray_status kdray_add_tori(kdray_scene* scene, kdray_in centers, kdray_in axes, kdray_in major_radii,
                             kdray_in minor_radii, const kdray_geometry_options* options, uint32_t* id) {
-  return guarded([&] {
-    const Tori tori{view_of<Points>(centers, "centers"), view_of<Points>(axes, "axes"),
-                    view_of<Values>(major_radii, "major_radii"), view_of<Values>(minor_radii, "minor_radii")};
-    put(id, needed(scene, "scene")->scene.add_tori(tori, options_of(options)));
-  });
+  return add(
+      scene, "tori",
+      {{"centers", centers}, {"axes", axes}, {"major_radii", major_radii}, {"minor_radii", minor_radii}},
+      options, id);
 }
 
 kdray_status kdray_add_instances(kdray_scene* scene, uint32_t prototype, kdray_in transforms,

@@ -6,20 +6,18 @@
 #include <exception>
 #include <new>
 #include <string>
-#include <string_view>
+#include <vector>
 
+#include "apps/cli/help.h"
 #include "apps/cli/output.h"
-#include "base/error.h"
+#include "apps/cli/suggestion.h"
+#include "apps/cli/version.h"
 #include "base/signals.h"
 #include "kdray/error.h"
 
 namespace kdray::cli {
 
 namespace {
-
-constexpr const char* kExitCodes =
-    "Exit codes: 0 done; 1 the input or a file is at fault; 2 usage; 3 no usable device; 4 out of memory.";
-constexpr const char* kMoreHelp = "'kdray COMMAND --help' shows a command's options.\n";
 
 // Has memory that is freed stay with the process: the first touch of a page costs many times a later one
 // (base/memory.h), and a frame's film finds the pages that the build has left.
@@ -45,16 +43,6 @@ std::vector<std::string> names_known_to(const CLI::App& command) {
   return names;
 }
 
-// Returns the name of the command that was parsed last: "kdray bench rays".
-std::string parsed_command(const CLI::App& app) {
-  std::string name = app.get_name();
-  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
-    at = at->get_subcommands().front();
-    name += " " + at->get_name();
-  }
-  return name;
-}
-
 // Throws for the first option, or name of a command, that the command which was parsed last doesn't know.
 // CLI11 would only call it unexpected, or hide it behind another argument that is missing.
 void check_unknown(const CLI::App& app) {
@@ -65,40 +53,33 @@ void check_unknown(const CLI::App& app) {
     const std::string name = word.substr(0, word.find('='));
     throw Error(ErrorCode::usage,
                 fmt::format("there is no {} '{}'; {}see '{} --help'", is_option ? "option" : "command", name,
-                            suggestion(name, names_known_to(command)), parsed_command(app)));
+                            suggestion(name, names_known_to(command)), command_of(command)));
   }
 }
 
 }  // namespace
 
-std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::string guess = did_you_mean(word, views);
-  return guess.empty() ? "" : guess + " ";
-}
-
 void prepare(CLI::App& app) {
   app.description("kdray, an SPMD ray tracer: kd-trees and OpenCL");
   app.name("kdray");
-  app.set_version_flag("--version", "kdray " KDRAY_VERSION);
+  app.set_help_flag("-h,--help", "List the options");
+  app.set_version_flag("--version", version_text(), "Print the version, and what it was built with");
   app.require_subcommand(1);
-  app.footer(kExitCodes);
-  app.get_formatter()->column_width(24);
 }
 
 int parse_and_run(CLI::App& app, std::span<const char* const> arguments, std::span<const Command> commands) {
   try {
     app.parse(static_cast<int>(arguments.size()), arguments.data());
   } catch (const CLI::CallForHelp&) {
-    const auto chosen = app.get_subcommands();
-    print(chosen.empty() ? app.help() + kMoreHelp : chosen.front()->help("kdray"));
+    print(help_of(innermost(app), help_width()));
     return 0;
   } catch (const CLI::CallForVersion& version) {
-    print(std::string(version.what()) + "\n");
+    print(version.what());
     return 0;
   } catch (const CLI::ParseError& error) {
     check_unknown(app);
-    throw Error(ErrorCode::usage, fmt::format("{}; see '{} --help'", error.what(), parsed_command(app)));
+    throw Error(ErrorCode::usage,
+                fmt::format("{}; see '{} --help'", error.what(), command_of(innermost(app))));
   }
   for (const Command& c : commands)
     if (c.app->parsed()) return c.run();

@@ -9,8 +9,6 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace kdray::cli {
 
@@ -40,8 +38,5 @@ int parse_and_run(CLI::App& app, std::span<const char* const> arguments, std::sp
 
 // Runs it and returns what main() is to return.
 int run_program(const std::function<int()>& run);
-
-// Returns "did you mean 'render'? ", or nothing when none of the names is near.
-std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
 }  // namespace kdray::cli

@@ -80,7 +80,7 @@ Command add_compare(CLI::App& kdray) {
   app->add_option("A", o->a, "A picture, .png or .exr")->required()->type_name("");
   app->add_option("B", o->b, "Another of the same size")->required()->type_name("");
   add_path(*app, "--diff", "Write a heat map of the differences, .png or .exr", o->diff);
-  add_text(*app, "--gamma", "G", "PNG's transfer curve, as for render: srgb (default) or v^(1/G)",
+  add_text(*app, "--gamma", "srgb|G", "PNG's transfer curve, as for render: srgb (default) or v^(1/G)",
            [o = o.get()](const std::string& text) { o->transfer = parse_gamma("--gamma", text); });
   add_real(*app, "--max-rmse", "X", "Exit with 1 when the RMSE is above X", 0,
            std::numeric_limits<double>::max(), o->max_rmse);

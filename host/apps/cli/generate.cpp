@@ -33,6 +33,12 @@ std::string what_there_is() {
   return text;
 }
 
+std::string names() {
+  std::vector<std::string_view> all;
+  for (const generate::Generator& g : generate::generators()) all.push_back(g.name);
+  return shape_of(all);
+}
+
 // An unknown name has no size of its own; generate() refuses it with the list of what there is.
 int default_size(const std::string& name) {
   for (const generate::Generator& g : generate::generators())
@@ -78,7 +84,7 @@ int run(const GenerateArgs& o) {
 Command add_generate(CLI::App& kdray) {
   CLI::App* const app = kdray.add_subcommand("generate", "Write one of Haines' SPD scenes as an NFF file");
   const auto o = std::make_shared<GenerateArgs>();
-  app->add_option("NAME", o->name, "Which scene")->required()->type_name("");
+  app->add_option("NAME", o->name, "Which scene")->required()->type_name(names());
   add_int(*app, "--size", "Size factor (default: the scene's own, see below)", 0, kSizeMax, o->size);
   add_path(*app, "-o,--output", "The file, .nff (default, and '-': standard output)", o->output);
   app->footer(what_there_is());

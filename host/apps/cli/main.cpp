@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,10 +14,14 @@
 #include <vector>
 
 #include "apps/cli/command.h"
+#include "apps/cli/help.h"
+#include "apps/cli/output.h"
 #include "apps/cli/ranks.h"
 #include "apps/cli/self_test.h"
+#include "apps/cli/suggestion.h"
+#include "base/error.h"
 #include "base/signals.h"
-#include "kdray/error.h"
+#include "scene/import/load.h"
 
 namespace kdray::cli {
 
@@ -34,19 +39,19 @@ std::filesystem::path own_path() {
   return std::filesystem::read_symlink("/proc/self/exe", none);
 }
 
-// Returns what follows "bench" in kdray's arguments, of which the first is the program's name; nothing where
-// another command is asked for.
+// Returns what kdray-bench is to be started with for these arguments of kdray, of which the first is the
+// program's name; nothing where they are about another command.
 std::optional<std::vector<std::string>> arguments_of_bench(std::span<const char* const> arguments) {
   const auto is = [&](std::size_t i, std::string_view word) {
     return i < arguments.size() && arguments[i] == word;
   };
   if (is(1, "bench")) return std::vector<std::string>(arguments.begin() + 2, arguments.end());
-  if ((is(1, "--help") || is(1, "-h")) && is(2, "bench")) {
-    std::vector<std::string> more(arguments.begin() + 3, arguments.end());
-    more.emplace_back("--help");
-    return more;
-  }
-  return {};
+  if (!is(2, "bench")) return {};
+  if (is(1, "--complete")) return std::vector<std::string>(arguments.begin() + 1, arguments.end());
+  if (!is(1, "help") && !is(1, "--help") && !is(1, "-h")) return {};
+  std::vector<std::string> more(arguments.begin() + 3, arguments.end());
+  more.emplace_back("--help");
+  return more;
 }
 
 // Throws ErrorCode::input where there is no such program or where it can't be run.
@@ -71,29 +76,53 @@ Command add_bench(CLI::App& kdray) {
   return {app, [app]() -> int { start_bench(app->remaining()); }};
 }
 
-// Throws for a command that does not exist, with the list of those that do; CLI11 would only call it
-// unexpected.
-void check_command_name(int argc, char** argv, const std::vector<Command>& commands) {
-  if (argc >= 2 && argv[1][0] == '-') return;
+std::vector<std::string> command_names(const CLI::App& kdray) {
   std::vector<std::string> names;
-  for (const Command& c : commands) names.push_back(c.app->get_name());
-  if (argc < 2)
+  for (const CLI::App* const command : kdray.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+// Throws for a command that does not exist, with the list of those that do, or with what is to be done with
+// a scene; CLI11 would only call it unexpected.
+void check_command_name(const std::string& name, const CLI::App& kdray) {
+  const std::vector<std::string> names = command_names(kdray);
+  if (std::ranges::find(names, name) != names.end()) return;
+  if (scene::is_scene_name(name))
     throw Error(ErrorCode::usage,
-                fmt::format("a command is missing: {}; see 'kdray --help'", fmt::join(names, ", ")));
-  if (std::find(names.begin(), names.end(), argv[1]) == names.end())
-    throw Error(ErrorCode::usage, fmt::format("there is no command '{}'; {}the commands are {}", argv[1],
-                                              suggestion(argv[1], names), fmt::join(names, ", ")));
+                fmt::format("'{0}' is a scene and no command; kdray render {0}, or kdray view {0}", name));
+  throw Error(ErrorCode::usage, fmt::format("there is no command '{}'; {}the commands are {}", name,
+                                            suggestion(name, names), fmt::join(names, ", ")));
+}
+
+Command add_help(CLI::App& kdray) {
+  CLI::App* const app = kdray.add_subcommand("help", "List the options of a command");
+  const auto name = std::make_shared<std::string>();
+  app->add_option("COMMAND", *name, "The command (default: list the commands)")->type_name("");
+  return {app, [&kdray, name] {
+            if (!name->empty()) check_command_name(*name, kdray);
+            print(help_of(name->empty() ? kdray : *kdray.get_subcommand(*name), help_width()));
+            return 0;
+          }};
 }
 
 int run_kdray(int argc, char** argv) {
-  if (const auto arguments = arguments_of_bench({argv, argv + argc})) start_bench(*arguments);
+  const std::span<const char* const> arguments(argv, static_cast<std::size_t>(argc));
+  if (const auto others = arguments_of_bench(arguments)) start_bench(*others);
   CLI::App app;
   prepare(app);
   const std::vector<Command> commands = {
-      add_render(app),   add_view(app),    add_trace(app),  add_info(app), add_devices(app), add_doctor(app),
-      add_generate(app), add_compare(app), add_verify(app), add_tune(app), add_warm_up(app), add_bench(app)};
-  check_command_name(argc, argv, commands);
-  return parse_and_run(app, {argv, argv + argc}, commands);
+      add_render(app),  add_view(app),     add_trace(app),   add_info(app),   add_devices(app),
+      add_doctor(app),  add_generate(app), add_compare(app), add_verify(app), add_tune(app),
+      add_warm_up(app), add_bench(app),    add_help(app)};
+  std::vector<const CLI::App*> pages = {&app};
+  for (const Command& c : commands)
+    if (c.app->get_name() != "bench") pages.push_back(c.app);  // kdray-bench has its pages
+  if (answer_shells(app, pages, arguments)) return 0;
+  if (argc < 2)
+    throw Error(ErrorCode::usage, fmt::format("a command is missing: {}; see 'kdray help'",
+                                              fmt::join(command_names(app), ", ")));
+  if (argv[1][0] != '-') check_command_name(argv[1], app);
+  return parse_and_run(app, arguments, commands);
 }
 
 }  // namespace

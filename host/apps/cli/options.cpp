@@ -10,7 +10,10 @@
 #include <string_view>
 
 #include "accel/prepare/quality.h"
+#include "apps/cli/help.h"
+#include "base/error.h"
 #include "device/tuning/database.h"
+#include "io/image/css_color.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {
@@ -31,6 +34,12 @@ bool whole_number(std::string_view text, T& value) {
 constexpr std::array<std::string_view, 5> kTraversals = {"auto", "binary", "wide", "packet", "batch"};
 constexpr std::array<std::string_view, 3> kSchedules = {"auto", "slices", "global"};
 constexpr std::array<std::string_view, 2> kPrecisions = {"float", "double"}, kFormats = {"png", "exr"};
+
+// "; did you mean 'depth'?", or nothing.
+std::string guess(std::string_view word, std::span<const std::string_view> accepted) {
+  const std::string meant = did_you_mean(word, accepted);
+  return meant.empty() ? "" : "; " + meant;
+}
 
 // "-o,--output" -> "--output", for messages.
 std::string long_name(const std::string& name) {
@@ -133,7 +142,8 @@ std::size_t parse_choice(std::string_view option, std::string_view text,
   const auto found = std::find(accepted.begin(), accepted.end(), text);
   if (found == accepted.end())
     throw usage_error(option, text,
-                      fmt::format("{}{}", accepted.size() > 1 ? "one of " : "", fmt::join(accepted, ", ")));
+                      fmt::format("{}{}{}", accepted.size() > 1 ? "one of " : "", fmt::join(accepted, ", "),
+                                  guess(text, accepted)));
   return static_cast<std::size_t>(found - accepted.begin());
 }
 
@@ -145,16 +155,42 @@ std::vector<std::string> parse_list(std::string_view option, std::string_view te
     const std::string name(text.substr(start, comma - start));
     if (std::find(accepted.begin(), accepted.end(), name) == accepted.end())
       throw usage_error(option, text,
-                        fmt::format("names from {}, with commas between", fmt::join(accepted, ", ")));
+                        fmt::format("names from {}, with commas between{}", fmt::join(accepted, ", "),
+                                    guess(name, accepted)));
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     start = comma + 1;
   }
   return names;
 }
 
+Color parse_color(std::string_view option, std::string_view text, std::string_view others) {
+  if (const auto named = image::css_color(text)) return {named->x, named->y, named->z};
+  constexpr double kMost = 1e6;
+  const std::vector<double> numbers = parse_numbers(text);
+  const auto is_good = [](double x) { return x >= 0 && x <= kMost; };
+  if (numbers.size() != 3 || !std::ranges::all_of(numbers, is_good))
+    throw usage_error(
+        option, text,
+        fmt::format("{}a colour's name as CSS has it, #rgb, #rrggbb, or R,G,B in linear values, "
+                    "each from 0{}",
+                    others, guess(text, image::css_names())));
+  return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2])};
+}
+
 CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string& shape,
                       const std::string& help, std::function<void(const std::string&)> take) {
   return app.add_option_function<std::string>(name, std::move(take), help)->type_name(shape);
+}
+
+std::string shape_of(std::span<const std::string_view> names) {
+  return fmt::format("{}", fmt::join(names, "|"));
+}
+
+CLI::Option* add_list(CLI::App& app, const std::string& name, const std::string& help,
+                      std::span<const std::string_view> names, std::vector<std::string>& chosen) {
+  return add_text(
+      app, name, shape_of(names) + "[,...]", help,
+      [name, names, &chosen](const std::string& text) { chosen = parse_list(name, text, names); });
 }
 
 CLI::Option* add_int(CLI::App& app, const std::string& name, const std::string& help, int lo, int hi,
@@ -181,21 +217,26 @@ CLI::Option* add_size(CLI::App& app, const std::string& help, int side_max, long
                   });
 }
 
+// What stands for standard output besides "-". As files they could only be replaced by others.
+constexpr std::array<std::string_view, 3> kStdout = {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"};
+
 CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string& help, std::string& value) {
   return add_text(app, name, "FILE", help, [option = long_name(name), &value](const std::string& text) {
     if (text.empty()) throw usage_error(option, text, "the name of a file");
-    value = text;
+    value = std::ranges::find(kStdout, text) == kStdout.end() ? text : "-";
   });
 }
 
 void add_loudness(CLI::App& app, bool& quiet, bool& verbose) {
   CLI::Option* const silent = app.add_flag("-q,--quiet", quiet, "Say nothing unless something is wrong");
+  silent->group(kGeneralGroup);
   app.add_flag("-v,--verbose", verbose, "Say where the time went, which rays were traced, what was left out")
-      ->excludes(silent);
+      ->excludes(silent)
+      ->group(kGeneralGroup);
 }
 
 void add_picture_format(CLI::App& app, std::optional<image::PictureFormat>& format) {
-  add_text(app, "--format", "NAME", "The picture's format: png, exr (default: by its name; to stdout png)",
+  add_text(app, "--format", shape_of(kFormats), "The picture's format (default: by its name; to stdout png)",
            [&format](const std::string& text) {
              format = static_cast<image::PictureFormat>(parse_choice("--format", text, kFormats));
            });
@@ -216,8 +257,8 @@ void add_cache_options(CLI::App& app, CacheChoice& cache) {
 }
 
 CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality) {
-  return add_choice(app, "--build", "NAME", "Time spent on the tree: fast, balanced (default), best",
-                    prepare::kQualityNames, quality);
+  return add_choice(app, "--build", "Time spent on the tree (default: balanced)", prepare::kQualityNames,
+                    quality);
 }
 
 void add_tree_options(CLI::App& app, TreeOptions& tree) {
@@ -237,14 +278,14 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
 }
 
 CLI::Option* add_device_option(CLI::App& app, const std::string& help, DeviceOptions& device) {
-  return add_text(app, "--device", "SPEC", help, [&device](const std::string& text) {
+  return add_text(app, "--device", "auto|cpu|gpu|NAME", help, [&device](const std::string& text) {
     if (text.empty()) throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
     device.device = text;
   });
 }
 
 CLI::Option* add_schedule_option(CLI::App& app, const std::string& help, DeviceOptions& device) {
-  return add_choice(app, "--schedule", "NAME", help, kSchedules, device.schedule);
+  return add_choice(app, "--schedule", help, kSchedules, device.schedule);
 }
 
 void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& traversal, Precision& precision) {
@@ -255,7 +296,7 @@ void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& travers
          "Leave aside what 'kdray tune' found; take what kdray ships with")
       ->group(group);
   add_device_option(
-      app, "auto, cpu, gpu, a number from 'kdray devices', or a part of a name; several with commas", device)
+      app, "The device: a number from 'kdray devices' or a part of its name; several with commas", device)
       ->group(group);
   add_int(app, "--queues", "Command queues, each on its own equal part of the device (default 1)", 1, 1024,
           device.queues)
@@ -264,16 +305,14 @@ void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& travers
           "Work-items in a group of the per-ray kernels (default: chosen for the device)", 1, 65536,
           device.work_group)
       ->group(group);
-  add_choice(app, "--traversal", "NAME", "How rays walk the tree: auto, binary, wide, packet, batch",
-             kTraversals, traversal)
+  add_choice(app, "--traversal", "How rays walk the tree (default: auto)", kTraversals, traversal)
       ->group(group);
   add_schedule_option(
       app, "Launches: slices (all stages in one, for CPUs), global (one for each, a ray per work-item), auto",
       device)
       ->group(group);
-  add_choice(app, "--precision", "NAME",
-             "Arithmetic of the kernels: float (default), double (slow, as a reference)", kPrecisions,
-             precision)
+  add_choice(app, "--precision", "Arithmetic of the kernels: float (default), double (slow, as a reference)",
+             kPrecisions, precision)
       ->group(group);
 }
 

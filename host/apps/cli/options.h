@@ -57,19 +57,31 @@ std::size_t parse_choice(std::string_view option, std::string_view text,
 std::vector<std::string> parse_list(std::string_view option, std::string_view text,
                                     std::span<const std::string_view> accepted);
 
-// Adds an option whose text goes to `take`; `shape` stands for the value in --help.
+// Reads a colour: "skyblue", "#fff", "#87ceeb", or "R,G,B" in linear values. `others` are what the option takes
+// besides, for its message.
+Color parse_color(std::string_view option, std::string_view text, std::string_view others);
+
+// Adds an option whose text goes to `take`; `shape` stands for the value in --help: "FILE" for any, "8|16" for
+// these, "auto|N" for this word or any number.
 CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string& shape,
                       const std::string& help, std::function<void(const std::string&)> take);
+
+// The names as an option's shape: "a|b|c".
+std::string shape_of(std::span<const std::string_view> names);
 
 // Adds an option that takes the name of an enumeration's value; the names come in the order of the values,
 // and outlive the option.
 template <class Choice>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::string& shape,
-                        const std::string& help, std::span<const std::string_view> names, Choice& choice) {
-  return add_text(app, name, shape, help, [name, names, &choice](const std::string& text) {
+CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::string& help,
+                        std::span<const std::string_view> names, Choice& choice) {
+  return add_text(app, name, shape_of(names), help, [name, names, &choice](const std::string& text) {
     choice = static_cast<Choice>(parse_choice(name, text, names));
   });
 }
+
+// Adds an option that takes some of these names, with commas between; they outlive the option.
+CLI::Option* add_list(CLI::App& app, const std::string& name, const std::string& help,
+                      std::span<const std::string_view> names, std::vector<std::string>& chosen);
 
 CLI::Option* add_int(CLI::App& app, const std::string& name, const std::string& help, int lo, int hi,
                      int& value);

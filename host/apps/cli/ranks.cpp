@@ -141,17 +141,16 @@ bool leads() {
 }
 
 void add_ranks_options(CLI::App& app, Holding& holding) {
-  add_text(app, "--mpi", "NAME",
-           "Render together with the other processes that mpirun or srun has started: auto (default; when it "
-           "has), on, "
-           "off",
-           [](const std::string& text) { parse_choice("--mpi", text, kChoices); })
+  add_text(
+      app, "--mpi", shape_of(kChoices),
+      "Render together with the other processes that mpirun or srun has started (default: auto, when it has)",
+      [](const std::string& text) { parse_choice("--mpi", text, kChoices); })
       ->group("Division");
-  add_choice(
-      app, "--hold", "WHAT",
-      "With ranks and odprt each holds the whole scene, or shares of it: auto (default; shares of a file "
-      "of 64 MiB or more), whole, shares",
-      kHoldings, holding)
+  add_choice(app, "--hold",
+             "With ranks and odprt each holds the whole scene, or shares of it (default: auto, shares of a "
+             "file of 64 MiB "
+             "or more)",
+             kHoldings, holding)
       ->group("Division");
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "apps/cli/command.h"
+#include "apps/cli/help.h"
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "apps/cli/ranks.h"
@@ -38,20 +39,21 @@ void add_file_options(CLI::App& app, RenderArgs& o) {
            "The picture, .png or .exr; '-': standard output (default: the scene's name with .png, here)",
            o.output);
   add_picture_format(app, o.write.format);
-  add_text(app, "--gamma", "G", "PNG's transfer curve: srgb (default) or v^(1/G)",
+  add_text(app, "--gamma", "srgb|G", "PNG's transfer curve: srgb (default) or v^(1/G)",
            [&o](const std::string& text) {
              o.write.transfer = parse_gamma("--gamma", text);
              o.gamma_given = true;
            });
-  add_text(app, "--bits", "N", "Bits per channel of a PNG: 8 (default) or 16", [&o](const std::string& text) {
-    o.write.png_bits = parse_choice("--bits", text, kBits) == 1 ? 16 : 8;
-    o.bits_given = true;
-  });
-  add_text(app, "--aov", "LIST",
-           "More channels, in the EXR or as files beside the PNG: "
-           "depth,normal,primitive,instance,cost,queue,samples",
-           [&o](const std::string& text) { o.render.channels = parse_list("--aov", text, kChannels); });
+  add_text(app, "--bits", shape_of(kBits), "Bits per channel of a PNG (default 8)",
+           [&o](const std::string& text) {
+             o.write.png_bits = parse_choice("--bits", text, kBits) == 1 ? 16 : 8;
+             o.bits_given = true;
+           });
+  add_list(app, "--aov", "More channels, in the EXR or as files beside the PNG", kChannels,
+           o.render.channels);
   add_path(app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o.stats);
+  static constexpr std::array kOptions = {"--output", "--format", "--gamma", "--bits", "--aov", "--stats"};
+  put_into_group(app, "Output", kOptions);
   add_loudness(app, o.quiet, o.verbose);
 }
 
@@ -133,6 +135,8 @@ int run_again(const CheckpointChoice& choice) {
 }
 
 int run(RenderArgs& o) {
+  if (const int n = o.checkpoint.turntable; n > 0 && !o.checkpoint.frames)
+    o.checkpoint.frames = FrameRange{0, n - 1};
   check_checkpoint(o);
   check_ranks(o);
   if (ranks_of_this_run()) {
@@ -156,8 +160,8 @@ Command add_render(CLI::App& kdray) {
       *app, o->scene,
       "The scene: .nff .obj .ply .stl .gltf .glb .json, also .gz and .xz of them; '-': standard input");
   add_file_options(*app, *o);
-  add_view_options(*app, o->view);
   add_picture_options(*app, o->render);
+  add_view_options(*app, o->view);
   add_division_options(*app, o->render);
   add_ranks_options(*app, o->holding);
   add_trace_options(*app, *o);
@@ -165,6 +169,7 @@ Command add_render(CLI::App& kdray) {
   add_device_options(*app, o->device, o->render.traversal, o->render.precision);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);
+  show_most_used_first(*app);
   return {app, [o] { return run(*o); }};
 }
 

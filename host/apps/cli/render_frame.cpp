@@ -176,6 +176,17 @@ FrameMaker::FrameMaker(RenderArgs& o) {
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }
 
+void FrameMaker::turn(const RenderArgs& o, double turns) {
+  const int width = o.render.width, height = o.render.height;
+  if (!turntable_) {
+    const scene::Scene& seen = seen_->settings();
+    const double asked = scene::aspect_of(scene::settings_of(seen));
+    turntable_.emplace(seen, o.view.view, width > 0 ? static_cast<double>(width) / height : asked);
+  }
+  seen_ = scene_->scene().seen(turntable_->after(turns), width, height);
+  renderer_->look(*seen_);
+}
+
 Picture FrameMaker::render(const RenderArgs& o) {
   Progress progress(o.quiet);
   RenderOptions options = o.render;

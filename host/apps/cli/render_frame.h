@@ -15,6 +15,7 @@
 #include "apps/cli/render_options.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/scene_input.h"
+#include "apps/cli/turntable.h"
 #include "base/timer.h"
 #include "io/image/picture_file.h"
 #include "kdray/kdray.h"
@@ -46,6 +47,9 @@ class FrameMaker {
   // `o` has the arguments of the first frame.
   explicit FrameMaker(RenderArgs& o);
 
+  // Has the frames from the next one on seen after so many turns about the scene (turntable.h).
+  void turn(const RenderArgs& o, double turns);
+
   // Renders a frame of the scene, and writes its files.
   void make(RenderArgs& o);
 
@@ -57,6 +61,7 @@ class FrameMaker {
   std::optional<OpenedScene> scene_;
   std::optional<PreparedScene> seen_;
   std::optional<Renderer> renderer_;
+  std::optional<Turntable> turntable_;
   bool is_first_ = true;
 };
 

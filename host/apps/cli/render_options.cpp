@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
+#include "apps/cli/help.h"
 #include "apps/cli/options.h"
 #include "base/error.h"
-#include "io/image/color.h"
 
 namespace kdray::cli {
 
@@ -35,32 +34,37 @@ void add_picture_options(CLI::App& app, RenderOptions& o) {
            "Rays of less weight are not traced (default: what can't change an 8-bit picture); 0: trace all",
            0, 1, o.min_weight);
   add_text(app, "--samples", "N|adaptive[:TARGET]",
-           "Rays per pixel, stratified (default: the scene's, or 1); or as many where they are needed as an "
-           "RMSE of "
-           "TARGET takes (default 0.0075)",
+           "Rays per pixel, stratified, up to 65536 (default: the scene's, or 1); or as many where they are "
+           "needed as an RMSE of TARGET takes (default 0.0075)",
            [&o](const std::string& text) {
              const Samples samples = parse_samples("--samples", text);
              o.samples = samples.number, o.adaptive_target = samples.target;
            });
   add_choice(
-      app, "--grid", "NAME",
+      app, "--grid",
       "centers: rays through the pixels' centers; corners: the outermost rays go through the picture's "
       "corners, "
       "as the counts published for the SPD scenes are made",
       kGrids, o.grid);
+  static constexpr std::array kOptions = {"--size", "--depth", "--min-weight", "--samples", "--grid"};
+  put_into_group(app, "Picture", kOptions);
+}
+
+void show_most_used_first(CLI::App& app) {
+  static constexpr std::array kMostUsed = {"--output", "--size", "--samples", "--look",       "--from",
+                                           "--at",     "--up",   "--depth",   "--background", "--device"};
+  put_into_group(app, kMostUsedGroup, kMostUsed);
 }
 
 void add_division_options(CLI::App& app, RenderOptions& o) {
   const std::string group = "Division";
-  add_choice(app, "--mode", "NAME",
-             "What queues divide among them: pdprt the pixels, odprt the scene; auto chooses", kModes, o.mode)
+  add_choice(app, "--mode", "What queues divide among them: pdprt the pixels, odprt the scene; auto chooses",
+             kModes, o.mode)
       ->group(group);
-  add_choice(app, "--division", "NAME",
-             "How pdprt's queues come by tiles: bag (default), contiguous, interleaved", kDivisions,
-             o.division)
+  add_choice(app, "--division", "How pdprt's queues come by tiles (default: bag)", kDivisions, o.division)
       ->group(group);
-  add_choice(app, "--balance", "NAME",
-             "What odprt's subtrees are dealt out by: sah, pilot (default), dynamic", kBalances, o.balance)
+  add_choice(app, "--balance", "What odprt's subtrees are dealt out by (default: pilot)", kBalances,
+             o.balance)
       ->group(group);
   add_text(app, "--tile", "WxH", "Size of the tiles the picture is divided into (default: chosen)",
            [&o](const std::string& text) {
@@ -103,25 +107,6 @@ View::Vector parse_up(std::string_view option, std::string_view text) {
   return up;
 }
 
-// Two hexadecimal digits of "#rrggbb", as sRGB has them.
-float parse_hex(std::string_view text, std::size_t at) {
-  const auto digit = [](char c) { return c <= '9' ? c - '0' : (c | 0x20) - 'a' + 10; };
-  const int value = digit(text[at]) * 16 + digit(text[at + 1]);
-  return static_cast<float>(image::decode(image::Transfer{}, value / 255.0));
-}
-
-std::array<float, 3> parse_color(std::string_view option, std::string_view text) {
-  const auto is_hex = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
-  if (text.size() == 7 && text[0] == '#' && std::ranges::all_of(text.substr(1), is_hex))
-    return {parse_hex(text, 1), parse_hex(text, 3), parse_hex(text, 5)};
-  constexpr double kMost = 1e6;
-  const std::vector<double> numbers = parse_numbers(text);
-  const auto is_good = [](double x) { return x >= 0 && x <= kMost; };
-  if (numbers.size() != 3 || !std::ranges::all_of(numbers, is_good))
-    throw usage_error(option, text, "transparent, #rrggbb, or R,G,B in linear values, each from 0");
-  return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2])};
-}
-
 }  // namespace
 
 void add_view_options(CLI::App& app, ViewOptions& options) {
@@ -140,7 +125,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
       [&view](const std::string& name, const std::string& text) { view.from = parse_vector(name, text); });
   add("--at", "X,Y,Z", "What it looks at",
       [&view](const std::string& name, const std::string& text) { view.at = parse_vector(name, text); });
-  add("--up", "X,Y,Z", "What is up: a direction, or x, y, z, -x, -y, -z (scans often have z)",
+  add("--up", "x|y|z|-x|-y|-z|X,Y,Z", "What is up: an axis (of scans often z), or a direction",
       [&view](const std::string& name, const std::string& text) { view.up = parse_up(name, text); });
   CLI::Option* const fov = add("--fov", "DEGREES", "Angle of view over the picture's full height",
                                [&view](const std::string& name, const std::string& text) {
@@ -168,12 +153,13 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
       [&view](const std::string& name, const std::string& text) {
         view.headlight = parse_real(name, text, 0, 1000);
       });
-  add("--background", "COLOR", "R,G,B (linear), #rrggbb, or transparent: the picture gets alpha",
+  add("--background", "COLOR|transparent",
+      "A name of CSS, #rgb, #rrggbb, or R,G,B (linear); transparent: the picture gets alpha",
       [&options](const std::string& name, const std::string& text) {
         if (text == "transparent")
           options.transparent = true;
         else
-          options.view.background = parse_color(name, text);
+          options.view.background = parse_color(name, text, "transparent, ");
       });
 }
 
@@ -217,6 +203,11 @@ void CheckpointChoice::check() const {
   if (lease_seconds && share.empty()) refuse("--lease is about a shared checkpoint; add --share DIR");
   if (restarts > 0 && folder().empty())
     refuse("--restarts goes on from a checkpoint; add --checkpoint DIR or --share DIR");
+  if (turntable > 0 && (!camera_path.empty() || fps))
+    refuse("--turntable turns a model that stands still; leave --camera-path and --fps out");
+  if (turntable > 0 && frames && frames->last >= turntable)
+    refuse(fmt::format("--turntable {0} has the frames 0 to {1}; --frames is for some of these", turntable,
+                       turntable - 1));
   if (!camera_path.empty() && !frames)
     refuse("--camera-path is for the frames of a sequence; add --frames A..B");
   if (fps && !frames)
@@ -254,6 +245,9 @@ void add_checkpoint_options(CLI::App& app, CheckpointChoice& choice) {
       ->group("Sequence");
   add_path(app, "--camera-path", "JSON with cameras at some frames, between which the camera moves",
            choice.camera_path)
+      ->group("Sequence");
+  add_int(app, "--turntable", "Render N frames once around the model, and say how to make a film of them", 1,
+          kMostFrames, choice.turntable)
       ->group("Sequence");
   add_text(app, "--fps", "N", "Play a glTF file's animation: frame F is its second F/N, after --time",
            [&choice](const std::string& text) { choice.fps = parse_real("--fps", text, 1e-6, 1e6); })

@@ -15,6 +15,9 @@ namespace kdray::cli {
 // --size --depth --min-weight --samples --grid
 void add_picture_options(CLI::App& app, RenderOptions& options);
 
+// What most people need of render and view comes first in help. Called when all options have been added.
+void show_most_used_first(CLI::App& app);
+
 // --mode --division --balance --tile --ray-buffer --device-memory
 void add_division_options(CLI::App& app, RenderOptions& options);
 
@@ -38,6 +41,7 @@ struct CheckpointChoice {
   int restarts = 0;
   std::optional<FrameRange> frames = {};
   std::string camera_path;         // empty: none
+  int turntable = 0;               // frames of a turn; 0: none
   std::optional<double> fps = {};  // frames to a second of the scene's animation; none: it stands still
 
   void check() const;
@@ -47,7 +51,7 @@ struct CheckpointChoice {
   std::optional<LedgerOptions> options(const std::filesystem::path& in = {}) const;
 };
 
-// --checkpoint --resume --checkpoint-every --share --lease --restarts, --frames --camera-path --fps
+// --checkpoint --resume --checkpoint-every --share --lease --restarts, --frames --camera-path --turntable --fps
 void add_checkpoint_options(CLI::App& app, CheckpointChoice& choice);
 
 }  // namespace kdray::cli

@@ -70,12 +70,15 @@ void RunFiles::write(const std::string& option, const fs::path& file) {
 void RunFiles::write_picture(const std::string& option, const fs::path& file,
                              std::span<const std::string> channels, const image::WriteOptions& options) {
   if (file.empty()) return;
-  if (file == "-") {
-    check_stdout_takes_bytes(option);
+  std::error_code error;
+  const bool is_stdout = file == "-";
+  if (is_stdout) check_stdout_takes_bytes(option);
+  if (is_stdout || fs::is_other(file, error)) {
     if (!channels.empty() && options.format != image::PictureFormat::exr)
       throw Error(ErrorCode::usage,
-                  "--aov makes more pictures beside a PNG, and standard output has room for one; take "
-                  "--format exr, which holds them all");
+                  fmt::format("--aov makes more pictures beside a PNG, and {} has room for one; take "
+                              "--format exr, which holds them all",
+                              is_stdout ? "standard output" : file.string()));
     return write(option, file);
   }
   for (const fs::path& one : image::picture_files(file, channels, options))

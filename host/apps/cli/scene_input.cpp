@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "apps/cli/help.h"
 #include "apps/cli/options.h"
 #include "base/error.h"
 #include "scene/import/files.h"
@@ -40,12 +41,15 @@ std::filesystem::path name_of(const SceneInput& input, std::string_view bytes) {
   return name;
 }
 
+constexpr std::array kSceneOptions = {"--scene-format",   "--smooth",        "--time",      "--animation",
+                                      "--texture-memory", "--texture-cache", "--instances", "--asset-root"};
+
 }  // namespace
 
 void add_scene_input(CLI::App& app, SceneInput& input, const std::string& help) {
   app.add_option("SCENE", input.file, help)->required()->type_name("");
   add_text(
-      app, "--scene-format", "NAME", "Format of a SCENE from standard input: nff, obj, ply, ...",
+      app, "--scene-format", "nff|obj|ply|stl|gltf|glb|json", "Format of a SCENE from standard input",
       [&input](const std::string& text) { input.format = text.starts_with('.') ? text.substr(1) : text; });
   add_load_options(app, input.load);
 }
@@ -57,7 +61,7 @@ void add_load_options(CLI::App& app, LoadOptions& load) {
   add_text(app, "--time", "SECONDS",
            "The second of a glTF file's animation that is seen (default: it is at rest)",
            [&load](const std::string& text) { load.time = parse_real("--time", text, -1e9, 1e9); });
-  add_text(app, "--animation", "NAME",
+  add_text(app, "--animation", "NAME|all",
            "Which animation --time is of: a name or a number from 0 (default 0), or all at once",
            [&load](const std::string& text) {
              if (text.empty()) throw usage_error("--animation", text, "a name, a number or all");
@@ -71,14 +75,14 @@ void add_load_options(CLI::App& app, LoadOptions& load) {
       "The most memory for pictures on surfaces, as in 2G; the rest is in files (default: half of what is "
       "free)",
       [](const std::string& text) { set_texture_cache(parse_bytes("--texture-cache", text)); });
-  add_choice(app, "--instances", "HOW",
+  add_choice(app, "--instances",
              "What shows many times: auto (held once where copies would be over a million primitives), flat "
-             "(copied) "
-             "or kept (held once)",
+             "(copied) or kept (held once)",
              kInstances, load.instances);
   add_text(app, "--asset-root", "DIR",
            "A folder below which the scene may name pictures and buffers that are not beside it or below it",
            [&load](const std::string& text) { load.asset_root = text; });
+  put_into_group(app, "Scene", kSceneOptions);
 }
 
 void check_load_options(const LoadOptions& load) {

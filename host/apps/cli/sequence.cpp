@@ -45,19 +45,29 @@ std::optional<Place> place_in(const std::string& name) {
   return std::nullopt;
 }
 
+// Returns the name with a place for a number in it, which numbered() would have inserted.
+std::string pattern_of(const std::string& name) {
+  if (place_in(name)) return name;
+  fs::path path = name;
+  path.replace_filename(path.stem().string() + "%04d" + path.extension().string());
+  return path.string();
+}
+
 bool is_numbered(const RenderArgs& o) {
   return place_in(o.scene.file).has_value();
 }
 
 void check_sequence(const RenderArgs& o) {
   const auto refuse = [](const std::string& what) { throw Error(ErrorCode::usage, what); };
-  if (o.checkpoint.camera_path.empty() && !is_numbered(o) && !o.checkpoint.fps)
+  const bool turns = o.checkpoint.turntable > 0;
+  if (o.checkpoint.camera_path.empty() && !is_numbered(o) && !o.checkpoint.fps && !turns)
     refuse(
-        "all frames would be the same picture: add --camera-path FILE, or number the scenes (scene%04d.nff), "
-        "or "
-        "play a glTF file's animation with --fps N");
+        "all frames would be the same picture: add --camera-path FILE or --turntable N, or number the scenes "
+        "(scene%04d.nff), or play a glTF file's animation with --fps N");
+  if (turns && is_numbered(o)) refuse("--turntable turns one model; name one file");
   if (o.scene.is_stdin() || o.output == "-" || o.stats == "-")
     refuse("a sequence has a file for each frame; standard input and output have room for one");
+  if (!o.output.empty() && !o.write.format) image::format_for_writing(o.output);  // before it is numbered
   const View& v = o.view.view;
   if (!o.checkpoint.camera_path.empty() && (v.camera || v.from || v.at || v.up || v.fov || v.ortho_width))
     refuse(
@@ -93,6 +103,7 @@ std::string settings_of(const RenderArgs& o) {
   add("--grid", fmt::format("{}", static_cast<int>(r.grid)));
   add("--precision", fmt::format("{}", static_cast<int>(r.precision)));
   add("--camera-path", hash_of_file(o.checkpoint.camera_path));
+  if (o.checkpoint.turntable > 0) add("--turntable", fmt::format("{}", o.checkpoint.turntable));
   const LoadOptions& load = o.scene.load;
   if (o.checkpoint.fps || load.time) {
     add("--fps", in_text(o.checkpoint.fps));
@@ -142,17 +153,17 @@ void check_sequence_settings(const RenderArgs& o, const fs::path& folder) {
                       "name another folder, or remove this one");
 }
 
+std::string name_of_picture(const RenderArgs& o, const std::string& scene) {
+  if (!o.output.empty()) return o.output;
+  return default_picture(scene, o.write.format.value_or(image::PictureFormat::png)).string();
+}
+
 // Returns the arguments of one frame.
 RenderArgs args_of(const RenderArgs& o, const std::optional<CameraPath>& path, int number) {
   RenderArgs frame = o;
   frame.scene.file = numbered(o.scene.file, number, false);
-  if (o.output.empty()) {
-    const fs::path name =
-        default_picture(frame.scene.file, o.write.format.value_or(image::PictureFormat::png));
-    frame.output = is_numbered(o) ? name.string() : numbered(name.string(), number, true);
-  } else {
-    frame.output = numbered(o.output, number, true);
-  }
+  frame.output = name_of_picture(o, frame.scene.file);
+  if (!o.output.empty() || !is_numbered(o)) frame.output = numbered(frame.output, number, true);
   if (!o.stats.empty()) frame.stats = numbered(o.stats, number, true);
   if (!o.timeline.empty()) frame.timeline = numbered(o.timeline, number, true);
   if (path) frame.render.camera = path->at(number);
@@ -195,6 +206,7 @@ void Sequence::make(int number) {
     maker_.emplace(frame);
     opened_ = frame.scene;
   }
+  if (o_.checkpoint.turntable > 0) maker_->turn(frame, static_cast<double>(number) / o_.checkpoint.turntable);
   maker_->make(frame);
 }
 
@@ -236,14 +248,31 @@ void Sequence::make_what_is_missing() {
 
 }  // namespace
 
+namespace {
+
+// As a shell takes it for one word.
+std::string quoted(const std::string& name) {
+  std::string text = "'";
+  for (const char c : name) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
+void tell_of_film(const RenderArgs& o) {
+  const fs::path pictures = pattern_of(name_of_picture(o, o.scene.file));
+  if (ending_of(pictures) != ".png") return;
+  const fs::path film = default_picture(o.scene.file).replace_extension(".mp4");
+  say(fmt::format("a film of it: ffmpeg -framerate 24 -start_number {} -i {} -pix_fmt yuv420p {}",
+                  o.checkpoint.frames->first, quoted(pictures), quoted(film)));
+}
+
+}  // namespace
+
 std::string numbered(const std::string& name, int number, bool insert) {
-  if (const std::optional<Place> place = place_in(name))
-    return name.substr(0, place->first) + fmt::format("{:0{}}", number, place->digits) +
-           name.substr(place->end);
-  if (!insert) return name;
-  fs::path path = name;
-  path.replace_filename(path.stem().string() + fmt::format("{:04}", number) + path.extension().string());
-  return path.string();
+  const std::string pattern = insert ? pattern_of(name) : name;
+  const std::optional<Place> place = place_in(pattern);
+  if (!place) return name;
+  return pattern.substr(0, place->first) + fmt::format("{:0{}}", number, place->digits) +
+         pattern.substr(place->end);
 }
 
 void check_checkpoint(const RenderArgs& o) {
@@ -254,7 +283,9 @@ void check_checkpoint(const RenderArgs& o) {
 }
 
 int render_sequence(const RenderArgs& o) {
-  return Sequence(o).render();
+  const int code = Sequence(o).render();
+  if (o.checkpoint.turntable > 0 && !o.quiet) tell_of_film(o);
+  return code;
 }
 
 }  // namespace kdray::cli

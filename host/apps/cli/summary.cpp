@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -91,8 +92,9 @@ std::string picture_in_words(const Json& stats) {
   const Json& frame = part(stats, "frame");
   const double adaptive = number(part(stats, "samples"), "per_pixel");
   const double samples = adaptive > 0 ? adaptive : number(frame, "samples");
+  const bool is_whole = samples == std::floor(samples);
   return fmt::format("{}x{}{}", number(frame, "width"), number(frame, "height"),
-                     samples > 1 ? fmt::format(" of {:.3g} samples", samples) : "");
+                     samples > 1 ? fmt::format(" of {:.{}g} samples", samples, is_whole ? 17 : 3) : "");
 }
 
 // `trace` may be asked about points, too.

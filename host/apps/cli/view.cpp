@@ -59,12 +59,13 @@ Command add_view(CLI::App& kdray) {
   add_page_options(*app, *o);
   add_load_options(*app, o->load);
   add_loudness(*app, o->quiet, o->verbose);
-  add_view_options(*app, o->view);
   add_picture_options(*app, o->render);
+  add_view_options(*app, o->view);
   add_division_options(*app, o->render);
   add_device_options(*app, o->device, o->render.traversal, o->render.precision);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);
+  show_most_used_first(*app);
   return {app, [o] { return run(*o); }};
 }
 

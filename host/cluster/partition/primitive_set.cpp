@@ -134,6 +134,7 @@ constexpr std::size_t kBatchOfPrimitives = std::size_t{1} << 16;  // primitives 
 struct Counts {
   std::array<std::uint64_t, primitives::kKinds> of{};
   std::uint64_t normals = 0;
+  bool operator==(const Counts&) const = default;
 };
 
 bool has_normals(const layout::Triangle& t) {
@@ -159,6 +160,8 @@ class Carrier {
       }
       first += n;
     });
+    for (std::size_t from = 0; from < n_ranks(); ++from)
+      if (next_[from] != end_[from]) transport::throw_odd_message(static_cast<int>(from));
     return std::move(here_);
   }
 
@@ -181,7 +184,7 @@ class Carrier {
     messages = all_.exchange(std::move(messages));
     Counts sum;
     for (std::size_t from = 0; from < n_ranks(); ++from) {
-      const auto counts = WireReader(messages[from], static_cast<int>(from)).get<Counts>();
+      const Counts counts = counts_of(messages[from], static_cast<int>(from));
       next_.push_back(sum);
       for (std::size_t kind = 0; kind < sum.of.size(); ++kind) sum.of[kind] += counts.of[kind];
       sum.normals += counts.normals;
@@ -193,6 +196,16 @@ class Carrier {
     here_.colors.resize(n_triangles * rows_.colors);
     here_.texcoords.resize(n_triangles * rows_.texcoords);
     primitives::for_each_kind([&](auto kind) { decltype(kind)::of(here_).resize(sum.of[kind.kNumber]); });
+  }
+
+  // Each is checked by itself as well: the sum of any counts might be one that fits.
+  static Counts counts_of(const Bytes& message, int from) {
+    WireReader reader(message, from);
+    const auto counts = reader.get<Counts>();
+    reader.end();
+    check(counts);
+    if (counts.normals > counts.of[KDRAY_KIND_TRIANGLE]) transport::throw_odd_message(from);
+    return counts;
   }
 
   static void check(const Counts& sum) {

@@ -37,6 +37,7 @@ Head head_of(const Message& message) {
 
 template <class Head>
 std::vector<std::uint32_t> words_behind(const Message& message) {
+  if (message.bytes.size() < sizeof(Head)) refuse(message);
   const std::size_t n = message.bytes.size() - sizeof(Head);
   if (n % sizeof(std::uint32_t) != 0) refuse(message);
   std::vector<std::uint32_t> words(n / sizeof(std::uint32_t));

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/write_file.h"
-#include "kdray/error.h"
 
 namespace kdray::tuning {
 
@@ -22,7 +22,7 @@ constexpr const char* kFormat = "kdray_tunings";
 constexpr int kVersion = 1;
 
 [[noreturn]] void fail(const std::string& name, const std::string& what) {
-  throw Error(ErrorCode::input, fmt::format("{}: {}", name, what));
+  throw input_error(name, 0, what);
 }
 
 Json to_json(const Entry& e) {
@@ -37,7 +37,9 @@ Json to_json(const Entry& e) {
 
 // Checks the kind of number, since get() would convert another kind without failing.
 std::int64_t integer(const Json& json, const std::string& name) {
-  if (!json.is_number_integer()) fail(name, fmt::format("{} should be a whole number", json.dump()));
+  if (!json.is_number_integer())
+    fail(name,
+         fmt::format("{} should be a whole number", json.is_structured() ? json.type_name() : json.dump()));
   return json.get<std::int64_t>();
 }
 

@@ -55,7 +55,8 @@ void add_runs(transport::Reader& reader, const transport::Message& message, std:
   while (!reader.is_at_end()) {
     const auto run = reader.get<RunHead>();
     if (run.first > sums.size() / 3 || run.n > sums.size() / 3 - run.first) refuse(message);
-    for (layout::i64& sum : sums.subspan(3 * run.first, 3 * run.n)) sum += reader.get<layout::i64>();
+    for (layout::i64& sum : sums.subspan(3 * run.first, 3 * run.n))  // wraps around, as in kernels
+      sum = static_cast<layout::i64>(static_cast<std::uint64_t>(sum) + reader.get<std::uint64_t>());
   }
 }
 

@@ -45,7 +45,7 @@ class Reader {
  private:
   void take(void* to, std::size_t n) {
     if (n > rest_.size()) transport::refuse(message_);
-    std::memcpy(to, rest_.data(), n);
+    if (n > 0) std::memcpy(to, rest_.data(), n);
     rest_.remove_prefix(n);
   }
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "kdray/arrays.h"
@@ -74,6 +75,29 @@ struct Tori {
   Points centers, axes;             // of any length but 0
   Values major_radii, minor_radii;  // one for each, or one for all: 0 < minor < major <= 4096 minor
 };
+
+// Shapes of any kind: by the kind's plural, and an array for each of its fields, in any order.
+struct ShapeField {
+  std::string name;
+  std::variant<Points, Values> rows;  // Points: one for each shape; Values: one for each, or one for all
+};
+struct Shapes {
+  std::string kind;
+  std::vector<ShapeField> fields;
+};
+
+// The kinds that there are, with their fields; add_spheres() and its like are names for add_shapes().
+struct ShapeKind {
+  struct Field {
+    std::string name;
+    bool is_vector;        // Points, else Values
+    bool may_be_left_out;  // 0 then
+  };
+  std::string name;  // "spheres"
+  std::vector<Field> fields;
+};
+const std::vector<ShapeKind>& shape_kinds();
+const ShapeKind& shape_kind(const std::string& name);  // ErrorCode::usage where there is none
 
 struct GeometryOptions {
   std::string name = {};

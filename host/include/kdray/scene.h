@@ -89,6 +89,7 @@ class Scene {
   GeometryId add_cones(const Cones& cones, const GeometryOptions& options = {});
   GeometryId add_discs(const Discs& discs, const GeometryOptions& options = {});
   GeometryId add_tori(const Tori& tori, const GeometryOptions& options = {});
+  GeometryId add_shapes(const Shapes& shapes, const GeometryOptions& options = {});
 
   // Instances of a geometry that was added as a prototype: together a geometry by themselves. Each takes
   // less than a kilobyte, and no copy of the prototype (docs/embed.md).

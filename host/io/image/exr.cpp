@@ -66,13 +66,6 @@ struct ColorNames {
   bool alpha;
 };
 
-// Replaces control characters: a damaged channel's name may break a message's line.
-std::string in_one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  return text;
-}
-
 ColorNames find_color(const Imf::ChannelList& channels, const std::string& file) {
   const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
   if (has("R") && has("G") && has("B")) return {{"R", "G", "B"}, has("A")};
@@ -82,10 +75,9 @@ ColorNames find_color(const Imf::ChannelList& channels, const std::string& file)
   std::string found;
   for (auto c = channels.begin(); c != channels.end() && found.size() < 60; ++c)
     found += std::string(found.empty() ? "" : ", ") + c.name();
-  throw input_error(
-      file, 0,
-      "has no channels R, G and B or Y (it has " + (found.empty() ? "none" : in_one_line(found)) + ")",
-      "name an EXR with colour");
+  throw input_error(file, 0,
+                    "has no channels R, G and B or Y (it has " + (found.empty() ? "none" : found) + ")",
+                    "name an EXR with colour");
 }
 
 void check_sides(std::int64_t width, std::int64_t height, const std::string& file) {
@@ -156,9 +148,7 @@ Image decode_exr(std::string_view bytes, const std::string& file, std::uint64_t 
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
-    std::string why = e.what();
-    std::replace(why.begin(), why.end(), '\n', ' ');
-    throw input_error(file, 0, "is a damaged OpenEXR file: " + in_one_line(why), "write it again");
+    throw input_error(file, 0, std::string("is a damaged OpenEXR file: ") + e.what(), "write it again");
   }
 }
 

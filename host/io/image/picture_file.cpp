@@ -17,11 +17,17 @@
 namespace kdray::image {
 
 PictureFormat format_for_writing(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (std::filesystem::is_directory(status) || file.filename().empty())
+    throw input_error(file.string(), 0, "is a folder",
+                      "name a picture in it, as in " + (file / "picture.png").string());
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (ending == ".png") return PictureFormat::png;
   if (ending == ".exr") return PictureFormat::exr;
+  if (ending.empty() && std::filesystem::is_other(status)) return PictureFormat::png;  // a pipe or device
   throw input_error(file.string(), 0,
                     ending.empty() ? "the picture's name has no ending"
                                    : "pictures of the kind '" + ending + "' cannot be written",

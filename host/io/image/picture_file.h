@@ -21,6 +21,7 @@ namespace kdray::image {
 
 enum class PictureFormat { png, exr };
 
+// By the name's ending; what is written to a pipe or device of another name is a PNG.
 PictureFormat format_for_writing(const std::filesystem::path& file);
 PictureFormat format_of_content(std::string_view bytes, const std::filesystem::path& file);
 

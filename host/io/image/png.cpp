@@ -39,6 +39,19 @@ struct Source {
   std::string error;
 };
 
+// Returns whether all chunks are there, each a length, a name, its bytes and a checksum. libpng allocates and
+// clears what a length says before it reads any of it.
+bool is_whole(std::string_view bytes) {
+  constexpr std::size_t kSignature = 8, kName = 4, kAround = 12;
+  for (std::size_t at = kSignature; bytes.size() - at >= kAround;) {
+    if (bytes.substr(at + kName, 4) == "IEND") return true;
+    const std::size_t length = png_get_uint_32(reinterpret_cast<png_const_bytep>(bytes.data() + at));
+    if (length > bytes.size() - at - kAround) return false;
+    at += kAround + length;
+  }
+  return false;
+}
+
 void take(png_structp png, png_bytep data, png_size_t n_bytes) {
   auto* source = static_cast<Source*>(png_get_io_ptr(png));
   if (n_bytes > source->bytes.size() - source->position) png_error(png, "the file is cut short");
@@ -99,6 +112,7 @@ PngPixels decode_png(std::string_view bytes, const std::string& file) {
   };
   if (bytes.size() < 26 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
     throw input_error(file, 0, "is not a PNG file", "name a PNG or EXR picture");
+  if (!is_whole(bytes)) throw damaged("the file is cut short");
   Source source{bytes, 0, {}};
   Reader reader;
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, keep_error<Source>, ignore_warning);

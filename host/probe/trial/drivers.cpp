@@ -220,7 +220,7 @@ void ask_here(Case& only, const ListingOptions& options) {
 std::vector<DriverVerdict> decide(const ListingOptions& options) {
   std::vector<Case> cases;
   for (const Driver& driver : registered_drivers()) {
-    Case& c = cases.emplace_back(driver, key_of(driver));
+    Case& c = cases.emplace_back(Case{driver, key_of(driver)});
     if (!driver.unreadable.empty())
       c.verdict = device::Verdict{true, ""};  // the loader passes over it
     else if (!options.anew)

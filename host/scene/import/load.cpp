@@ -93,16 +93,22 @@ Scene read_by_ending(std::string_view text, const std::filesystem::path& file, c
   return read_assimp(text, file);
 }
 
+bool is_of_assimp(const std::string& ending) {
+  return std::ranges::find(kAssimpEndings, ending) != kAssimpEndings.end();
+}
+
+bool is_read(const std::string& ending) {
+  return std::ranges::find(kFormats, ending, &Format::ending) != kFormats.end() ||
+         (kWithAssimp && is_of_assimp(ending));
+}
+
 // Called before the file is read: a wrong ending should not cost the reading of gigabytes.
 void check_ending(const std::filesystem::path& file, const std::string& ending) {
-  if (std::ranges::find(kFormats, ending, &Format::ending) != kFormats.end()) return;
-  const bool assimp_reads = std::ranges::find(kAssimpEndings, ending) != kAssimpEndings.end();
-  if (assimp_reads && kWithAssimp) return;
-  if (assimp_reads) {
+  if (is_read(ending)) return;
+  if (is_of_assimp(ending))
     throw input_error(file.string(), 0,
                       "reading '" + ending + "' needs assimp, which this kdray was built without",
                       "build with libassimp-dev installed, or convert the file to .obj, .ply or .glb");
-  }
   throw input_error(file.string(), 0,
                     ending.empty() ? "no ending that tells its format" : "unknown format '" + ending + "'",
                     known_endings());
@@ -119,6 +125,10 @@ Scene import_text(std::string_view text, const std::filesystem::path& file, cons
 }
 
 }  // namespace
+
+bool is_scene_name(const std::filesystem::path& file) {
+  return is_read(format_of(file));
+}
 
 Scene import_scene(const std::filesystem::path& file) {
   check_ending(file, format_of(file));

@@ -21,6 +21,9 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
 // scene names.
 Scene load_from_memory(std::string bytes, const std::filesystem::path& name, const LoadOptions& options = {});
 
+// Returns whether the name ends as those of scenes do that load() reads.
+bool is_scene_name(const std::filesystem::path& file);
+
 // Returns the warning about a scene without primitives, or about an empty file in it.
 std::string nothing_to_see(const std::string& name);
 

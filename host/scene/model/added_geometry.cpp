@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "base/error.h"
 #include "base/local_space.h"
@@ -87,29 +90,79 @@ void check_capacity(std::size_t n, const char* names) {
   if (n >= kMaxPrimitivesPerKind) refuse(fmt::format("{}: 2^28 of them or more; split the scene", names));
 }
 
-// Returns the value for row i of an array that has one for each row, or one for all.
-double value_for(const Values& values, std::size_t i) {
-  return values[values.size() == 1 ? 0 : i][0];
+// Calls visit(field) for each field of a kind.
+template <class Kind, class Visit>
+void for_each_field(Kind, const Visit& visit) {
+  using Shape = typename Kind::Source;
+  std::apply([&](const auto&... field) { (visit(field), ...); },
+             fields_of(static_cast<const Shape*>(nullptr)));
+}
+template <class Shape, class Value>
+constexpr bool is_vector(const primitives::Field<Shape, Value>&) {
+  return std::is_same_v<Value, dvec3>;
+}
+template <class Shape, class Value>
+constexpr bool may_be_left_out(const primitives::Field<Shape, Value>& field) {
+  return field.meaning == primitives::Meaning::at_least_zero_or_left_out;
 }
 
-void check_values(const Values& values, const char* name, std::size_t n) {
-  if (values.size() != n && values.size() != 1)
-    refuse(
-        fmt::format("{}: {} of them for {} primitives; give one for each, or one", name, values.size(), n));
-}
-void check_rows(const Points& points, const char* name, std::size_t n) {
-  if (points.size() != n) refuse(fmt::format("{}: {} of them for {} primitives", name, points.size(), n));
+const ShapeField* find_field(const Shapes& shapes, std::string_view name) {
+  const auto found = std::ranges::find(shapes.fields, name, &ShapeField::name);
+  return found == shapes.fields.end() ? nullptr : &*found;
 }
 
-// Shapes as they are made one by one, each checked by its kind's own rules.
-template <class Shape, class Make>
-std::vector<Shape> make_shapes(std::size_t n, const char* names, const Make& make) {
-  check_capacity(n, names);
-  std::vector<Shape> shapes(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    shapes[i] = make(i);
-    if (const char* const fault = fault_of(shapes[i])) refuse(fmt::format("{}[{}]: {}", names, i, fault));
+void check_names(const Shapes& shapes) {
+  const ShapeKind& kind = shape_kind(shapes.kind);
+  for (const ShapeField& given : shapes.fields) {
+    const auto known = std::ranges::find(kind.fields, given.name, &ShapeKind::Field::name);
+    if (known == kind.fields.end())
+      throw Error(ErrorCode::usage, fmt::format("{} have no {}", kind.name, given.name));
+    if (known->is_vector != std::holds_alternative<Points>(given.rows))
+      throw Error(ErrorCode::usage,
+                  fmt::format("{}: {} are wanted", given.name, known->is_vector ? "vectors" : "numbers"));
+    if (find_field(shapes, given.name) != &given)
+      throw Error(ErrorCode::usage, fmt::format("{}: given twice", given.name));
   }
+}
+
+// Sets a field of all shapes.
+template <class Shape>
+void set_field(const primitives::Field<Shape, dvec3>& field, const ShapeField& given,
+               std::vector<Shape>& shapes) {
+  const Points& points = std::get<Points>(given.rows);
+  if (points.size() != shapes.size())
+    refuse(fmt::format("{}: {} of them for {} primitives", field.array, points.size(), shapes.size()));
+  for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i].*field.member = vector(points[i]);
+}
+template <class Shape>
+void set_field(const primitives::Field<Shape, double>& field, const ShapeField& given,
+               std::vector<Shape>& shapes) {
+  const Values& values = std::get<Values>(given.rows);
+  if (values.size() != shapes.size() && values.size() != 1)
+    refuse(fmt::format("{}: {} of them for {} primitives; give one for each, or one", field.array,
+                       values.size(), shapes.size()));
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    shapes[i].*field.member = values[values.size() == 1 ? 0 : i][0];
+}
+
+// The kind's first field, a point, says how many there are. Each is checked by its kind's own rules.
+template <class Kind>
+std::vector<typename Kind::Source> shapes_of(Kind kind, const Shapes& given) {
+  std::vector<typename Kind::Source> shapes;
+  bool is_first = true;
+  for_each_field(kind, [&](const auto& field) {
+    const ShapeField* const rows = find_field(given, field.array);
+    if (rows == nullptr && !may_be_left_out(field)) refuse(fmt::format("{}: none are given", field.array));
+    if (rows != nullptr && std::exchange(is_first, false)) {
+      const std::size_t n = std::get<Points>(rows->rows).size();
+      check_capacity(n, Kind::kNames);
+      shapes.resize(n);
+    }
+    if (rows != nullptr) set_field(field, *rows, shapes);
+  });
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    if (const char* const fault = fault_of(shapes[i]))
+      refuse(fmt::format("{}[{}]: {}", Kind::kNames, i, fault));
   return shapes;
 }
 
@@ -142,55 +195,11 @@ AddedGeometry make_added(const Mesh& mesh) {
   return geometry;
 }
 
-AddedGeometry make_added(const kdray::Spheres& spheres) {
-  const std::size_t n = spheres.centers.size();
-  check_values(spheres.radii, "radii", n);
+AddedGeometry make_added(const Shapes& shapes) {
+  check_names(shapes);
   AddedGeometry geometry;
-  geometry.spheres = make_shapes<Sphere>(n, "spheres", [&](std::size_t i) {
-    return Sphere{.center = vector(spheres.centers[i]), .radius = value_for(spheres.radii, i)};
-  });
-  return geometry;
-}
-
-AddedGeometry make_added(const kdray::Cones& cones) {
-  const std::size_t n = cones.bases.size();
-  check_rows(cones.apexes, "apexes", n);
-  check_values(cones.base_radii, "base_radii", n);
-  check_values(cones.apex_radii, "apex_radii", n);
-  AddedGeometry geometry;
-  geometry.cones = make_shapes<Cone>(n, "cones", [&](std::size_t i) {
-    return Cone{.base = vector(cones.bases[i]),
-                .apex = vector(cones.apexes[i]),
-                .base_radius = value_for(cones.base_radii, i),
-                .apex_radius = value_for(cones.apex_radii, i)};
-  });
-  return geometry;
-}
-
-AddedGeometry make_added(const kdray::Discs& discs) {
-  const std::size_t n = discs.centers.size();
-  check_rows(discs.normals, "normals", n);
-  check_values(discs.radii, "radii", n);
-  AddedGeometry geometry;
-  geometry.discs = make_shapes<Disc>(n, "discs", [&](std::size_t i) {
-    return Disc{.center = vector(discs.centers[i]),
-                .normal = vector(discs.normals[i]),
-                .radius = value_for(discs.radii, i)};
-  });
-  return geometry;
-}
-
-AddedGeometry make_added(const kdray::Tori& tori) {
-  const std::size_t n = tori.centers.size();
-  check_rows(tori.axes, "axes", n);
-  check_values(tori.major_radii, "major_radii", n);
-  check_values(tori.minor_radii, "minor_radii", n);
-  AddedGeometry geometry;
-  geometry.tori = make_shapes<Torus>(n, "tori", [&](std::size_t i) {
-    return Torus{.center = vector(tori.centers[i]),
-                 .axis = vector(tori.axes[i]),
-                 .major_radius = value_for(tori.major_radii, i),
-                 .minor_radius = value_for(tori.minor_radii, i)};
+  primitives::for_each_shape([&](auto kind) {
+    if (shapes.kind == kind.kNames) decltype(kind)::of(geometry) = shapes_of(kind, shapes);
   });
   return geometry;
 }
@@ -296,3 +305,31 @@ vec3 color_of(const Color& c, const char* name) {
 }
 
 }  // namespace kdray::scene
+
+namespace kdray {
+
+const std::vector<ShapeKind>& shape_kinds() {
+  static const std::vector<ShapeKind> all = [] {
+    std::vector<ShapeKind> kinds;
+    primitives::for_each_shape([&](auto kind) {
+      kinds.push_back({kind.kNames, {}});
+      scene::for_each_field(kind, [&](const auto& field) {
+        kinds.back().fields.push_back(
+            {std::string(field.array), scene::is_vector(field), scene::may_be_left_out(field)});
+      });
+    });
+    return kinds;
+  }();
+  return all;
+}
+
+const ShapeKind& shape_kind(const std::string& name) {
+  std::string known;
+  for (const ShapeKind& kind : shape_kinds()) {
+    if (kind.name == name) return kind;
+    known += (known.empty() ? "" : ", ") + kind.name;
+  }
+  throw Error(ErrorCode::usage, fmt::format("there are no shapes \"{}\", but {}", name, known));
+}
+
+}  // namespace kdray

@@ -46,10 +46,7 @@ struct AddedGeometry {
 };
 
 AddedGeometry make_added(const Mesh& mesh);
-AddedGeometry make_added(const Spheres& spheres);
-AddedGeometry make_added(const Cones& cones);
-AddedGeometry make_added(const Discs& discs);
-AddedGeometry make_added(const Tori& tori);
+AddedGeometry make_added(const Shapes& shapes);
 
 // Moves the vertices of a mesh: `vertices` are as many as it has, `normals` as in Mesh. Leaves `geometry` as
 // it was when it throws. ErrorCode::usage where the geometry is no mesh.

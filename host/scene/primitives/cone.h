@@ -24,10 +24,11 @@ struct Cone {
   std::uint32_t number = 0;
 };
 constexpr auto fields_of(const Cone*) {
-  return std::tuple{Field{"base", &Cone::base, Meaning::point},
-                    Field{"base_radius", &Cone::base_radius, Meaning::at_least_zero},
-                    Field{"apex", &Cone::apex, Meaning::point},
-                    Field{"apex_radius", &Cone::apex_radius, Meaning::at_least_zero_or_left_out}};
+  return std::tuple{
+      Field{"base", "bases", &Cone::base, Meaning::point},
+      Field{"base_radius", "base_radii", &Cone::base_radius, Meaning::at_least_zero},
+      Field{"apex", "apexes", &Cone::apex, Meaning::point},
+      Field{"apex_radius", "apex_radii", &Cone::apex_radius, Meaning::at_least_zero_or_left_out}};
 }
 
 struct ConeGeometry {

@@ -24,9 +24,9 @@ struct Disc {
   std::uint32_t number = 0;
 };
 constexpr auto fields_of(const Disc*) {
-  return std::tuple{Field{"center", &Disc::center, Meaning::point},
-                    Field{"normal", &Disc::normal, Meaning::direction},
-                    Field{"radius", &Disc::radius, Meaning::above_zero}};
+  return std::tuple{Field{"center", "centers", &Disc::center, Meaning::point},
+                    Field{"normal", "normals", &Disc::normal, Meaning::direction},
+                    Field{"radius", "radii", &Disc::radius, Meaning::above_zero}};
 }
 
 struct DiscGeometry {

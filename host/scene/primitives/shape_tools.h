@@ -12,19 +12,19 @@
 
 namespace kdray::primitives {
 
-// ---- The fields of a shape as kdray's JSON scenes name them: the reader and the list of keys follow from
-// them.
+// ---- The fields of a shape as kdray's JSON scenes name them, and arrays of them as a program does: the
+// reader, the list of keys and Scene::add_shapes() follow from them.
 
 enum class Meaning { point, direction, above_zero, at_least_zero, at_least_zero_or_left_out };
 
 template <class Shape, class Value>
 struct Field {
-  std::string_view key;
+  std::string_view key, array;
   Value Shape::*member;
   Meaning meaning;
 };
 template <class Shape, class Value>
-Field(std::string_view, Value Shape::*, Meaning) -> Field<Shape, Value>;
+Field(std::string_view, std::string_view, Value Shape::*, Meaning) -> Field<Shape, Value>;
 
 // ---- Placements in a file: the moves that keep a shape a shape of its kind.
 

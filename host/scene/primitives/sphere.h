@@ -22,8 +22,8 @@ struct Sphere {
   std::uint32_t number = 0;
 };
 constexpr auto fields_of(const Sphere*) {
-  return std::tuple{Field{"center", &Sphere::center, Meaning::point},
-                    Field{"radius", &Sphere::radius, Meaning::above_zero}};
+  return std::tuple{Field{"center", "centers", &Sphere::center, Meaning::point},
+                    Field{"radius", "radii", &Sphere::radius, Meaning::above_zero}};
 }
 
 struct SphereGeometry {

@@ -29,10 +29,10 @@ struct Torus {
   std::uint32_t number = 0;
 };
 constexpr auto fields_of(const Torus*) {
-  return std::tuple{Field{"center", &Torus::center, Meaning::point},
-                    Field{"axis", &Torus::axis, Meaning::direction},
-                    Field{"major_radius", &Torus::major_radius, Meaning::above_zero},
-                    Field{"minor_radius", &Torus::minor_radius, Meaning::above_zero}};
+  return std::tuple{Field{"center", "centers", &Torus::center, Meaning::point},
+                    Field{"axis", "axes", &Torus::axis, Meaning::direction},
+                    Field{"major_radius", "major_radii", &Torus::major_radius, Meaning::above_zero},
+                    Field{"minor_radius", "minor_radii", &Torus::minor_radius, Meaning::above_zero}};
 }
 
 struct TorusGeometry {

@@ -212,7 +212,8 @@ SkyPicture decode_radiance(std::string_view bytes, const std::string& name) {
   for (std::uint32_t y = 0; y < picture.height; ++y) {
     read_row(reader, row);
     for (const Rgbe& pixel : row) {
-      const double unit = pixel[3] == 0 ? 0 : std::ldexp(1.0, pixel[3] - 136) / header.exposure;
+      const double one = pixel[3] == 0 ? 0 : std::ldexp(1.0, pixel[3] - 136) / header.exposure;
+      const double unit = std::min(one, 3e38);  // an exposure may be next to 0
       for (std::size_t c = 0; c < 3; ++c)
         picture.rgb.push_back(static_cast<float>(std::min(pixel[c] * unit, 3e38)));
     }

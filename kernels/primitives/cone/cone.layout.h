@@ -3,6 +3,7 @@
 #ifndef KDRAY_PRIMITIVES_CONE_CONE_LAYOUT_H
 #define KDRAY_PRIMITIVES_CONE_CONE_LAYOUT_H
 #include "layout/base.layout.h"
+#include "layout/features.h"
 
 KDRAY_LAYOUT_BEGIN
 // The points base + s*axis + (base_radius + slope*s)*n, 0 <= s <= height, n unit and at right angles to the
@@ -32,5 +33,14 @@ KDRAY_LAYOUT_END
 #define KDRAY_ROW_CONE_SLOPE 8
 #define KDRAY_ROW_CONE_INDEX 9
 #define KDRAY_CONE_ROWS 10
+#define KDRAY_CONE_IS_CURVED 1  // whether its test reads the square of the direction
+
+#ifdef __OPENCL_C_VERSION__
+#if KDRAY_HAS_KIND(CONE)
+#define KDRAY_IF_CONE(code) code
+#else
+#define KDRAY_IF_CONE(code)
+#endif
+#endif
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef KDRAY_PRIMITIVES_DISC_DISC_LAYOUT_H
 #define KDRAY_PRIMITIVES_DISC_DISC_LAYOUT_H
 #include "layout/base.layout.h"
+#include "layout/features.h"
 
 KDRAY_LAYOUT_BEGIN
 // In the plane through its centre at right angles to the normal, which is of unit length but for rounding.
@@ -27,5 +28,14 @@ KDRAY_LAYOUT_END
 #define KDRAY_ROW_DISC_RADIUS 6
 #define KDRAY_ROW_DISC_INDEX 7
 #define KDRAY_DISC_ROWS 8
+#define KDRAY_DISC_IS_CURVED 0  // whether its test reads the square of the direction
+
+#ifdef __OPENCL_C_VERSION__
+#if KDRAY_HAS_KIND(DISC)
+#define KDRAY_IF_DISC(code) code
+#else
+#define KDRAY_IF_DISC(code)
+#endif
+#endif
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef KDRAY_PRIMITIVES_SPHERE_SPHERE_LAYOUT_H
 #define KDRAY_PRIMITIVES_SPHERE_SPHERE_LAYOUT_H
 #include "layout/base.layout.h"
+#include "layout/features.h"
 
 KDRAY_LAYOUT_BEGIN
 typedef struct Sphere {
@@ -21,5 +22,14 @@ KDRAY_LAYOUT_END
 #define KDRAY_ROW_SPHERE_RADIUS 3
 #define KDRAY_ROW_SPHERE_INDEX 4
 #define KDRAY_SPHERE_ROWS 5
+#define KDRAY_SPHERE_IS_CURVED 1  // whether its test reads the square of the direction
+
+#ifdef __OPENCL_C_VERSION__
+#if KDRAY_HAS_KIND(SPHERE)
+#define KDRAY_IF_SPHERE(code) code
+#else
+#define KDRAY_IF_SPHERE(code)
+#endif
+#endif
 
 #endif

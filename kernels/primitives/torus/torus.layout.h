@@ -3,6 +3,7 @@
 #ifndef KDRAY_PRIMITIVES_TORUS_TORUS_LAYOUT_H
 #define KDRAY_PRIMITIVES_TORUS_TORUS_LAYOUT_H
 #include "layout/base.layout.h"
+#include "layout/features.h"
 
 KDRAY_LAYOUT_BEGIN
 // The points at minor_radius from a circle of major_radius about the centre, across the axis.
@@ -29,5 +30,14 @@ KDRAY_LAYOUT_END
 #define KDRAY_ROW_TORUS_MINOR 7
 #define KDRAY_ROW_TORUS_INDEX 8
 #define KDRAY_TORUS_ROWS 9
+#define KDRAY_TORUS_IS_CURVED 1  // whether its test reads the square of the direction
+
+#ifdef __OPENCL_C_VERSION__
+#if KDRAY_HAS_KIND(TORUS)
+#define KDRAY_IF_TORUS(code) code
+#else
+#define KDRAY_IF_TORUS(code)
+#endif
+#endif
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef KDRAY_PRIMITIVES_TRIANGLE_TRIANGLE_LAYOUT_H
 #define KDRAY_PRIMITIVES_TRIANGLE_TRIANGLE_LAYOUT_H
 #include "layout/base.layout.h"
+#include "layout/features.h"
 
 // Triangle::normals: the index, and the bit of a zero-area triangle, whose corners differ but lie on one
 // line: it has no plane, but closes what would gape where a corner lies on a neighbour's edge.
@@ -39,5 +40,14 @@ KDRAY_LAYOUT_END
   9  // |n|_1 + 8|edge|^2 for sign_limit (triangle.clh); < 0: lies across an axis; infinity: it has no area
 #define KDRAY_ROW_TRIANGLE_INDEX 10
 #define KDRAY_TRIANGLE_ROWS 11
+#define KDRAY_TRIANGLE_IS_CURVED 0  // whether its test reads the square of the direction
+
+#ifdef __OPENCL_C_VERSION__
+#if KDRAY_HAS_KIND(TRIANGLE)
+#define KDRAY_IF_TRIANGLE(code) code
+#else
+#define KDRAY_IF_TRIANGLE(code)
+#endif
+#endif
 
 #endif

@@ -1,5 +1,9 @@
 // What    "-": scenes from standard input, and pictures, hits and scenes to standard output.
+#include <sys/stat.h>
+
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "apps/cli/program.h"
 #include "apps/cli/scenes.h"
@@ -31,6 +35,43 @@ TEST_F(PipesTest, APictureThatGoesToStdoutHasTheFilesBytes) {
   EXPECT_EQ(kdray({"render", scene, "-o", "-", "-q"}).out, folder.get("a.png"));
   ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "odd.name", "--format", "exr"})));
   EXPECT_EQ(folder.get("odd.name"), folder.get("a.exr"));
+}
+
+TEST_F(PipesTest, DevicesAndPipesNeedNoEnding) {
+  KDRAY_NEED_DEVICE();
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-o", folder / "a.png"})));
+  EXPECT_EQ(kdray({"render", scene, "-q", "-o", "/dev/stdout"}).out, folder.get("a.png"));
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = folder.get("pipe"); });
+  const Outcome run = kdray({"render", scene, "-q", "-o", pipe});
+  if (!run.exited || run.code != 0) std::ofstream(pipe) << "";  // lets the reader end
+  reader.join();
+  EXPECT_TRUE(succeeds(run));
+  EXPECT_EQ(read, folder.get("a.png"));
+  EXPECT_TRUE(fs::is_fifo(pipe)) << "the pipe was replaced by a file";
+  EXPECT_TRUE(fails_with(kdray({"render", scene, "-o", "/dev/null", "--aov", "depth"}), 2, "--format exr"));
+  EXPECT_TRUE(succeeds(kdray({"render", scene, "-o", "/dev/null"})));
+}
+
+// A redirection that appends goes on where it was: the file is not replaced.
+TEST_F(PipesTest, StdoutByAnyNameIsStdout) {
+  for (const char* const name : {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"})
+    EXPECT_TRUE(
+        fails_with(kdray({"render", scene, "-o", name, "--stats", "-"}), 2, "both go to standard output"))
+        << name;
+}
+
+TEST_F(PipesTest, AFolderIsToldWhatIsMeant) {
+  fs::create_directory(folder / "film");
+  for (const std::string name : {"film", "film/", "none/"})
+    EXPECT_TRUE(fails_with(kdray({"render", scene, "-o", folder / name}), 1,
+                           "is a folder; name a picture in it, as in "))
+        << name;
+  EXPECT_TRUE(
+      fails_with(kdray({"render", folder / "scene%02d.nff", "--frames", "0..3", "-o", folder / "film"}), 1,
+                 "is a folder; name a picture in it"));
 }
 
 TEST_F(PipesTest, AnExrHoldsItsChannelsOnStdoutToo) {

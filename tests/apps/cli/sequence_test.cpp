@@ -15,6 +15,7 @@
 #include "apps/cli/sequence.h"
 #include "engine/checkpoint/header.h"
 #include "engine/checkpoint/record.h"
+#include "io/image/picture_file.h"
 #include "support/errors.h"
 #include "support/folder.h"
 
@@ -53,6 +54,69 @@ TEST_F(SequenceTest, FramesAreWhatTheirCamerasSee) {
   EXPECT_EQ(folder.get("f0003.png"), seen("1,-6,4", "0,0,0.5", "35"));
   EXPECT_EQ(folder.get("f0004.png"), seen("2,-6,5", "0,0,0", "30"));
   EXPECT_EQ(folder.get("f0005.png"), folder.get("f0004.png"));
+}
+
+TEST_F(SequenceTest, ATurntableGoesOnceAroundTheModel) {
+  KDRAY_NEED_DEVICE();
+  const Arguments view{"--at", "0,0,1", "--up", "z", "--fov", "40"};
+  Arguments turn{"-o", folder / "t%d.exr", "--turntable", "4", "--from", "0,-6,3"};
+  turn.insert(turn.end(), view.begin(), view.end());
+  ASSERT_TRUE(succeeds(render(turn)));
+  const char* const cameras[] = {"0,-6,3", "6,0,3", "0,6,3", "-6,0,3"};
+  for (int frame = 0; frame < 4; ++frame) {
+    Arguments one{"-o", folder / "one.exr", "--from", cameras[frame]};
+    one.insert(one.end(), view.begin(), view.end());
+    ASSERT_TRUE(succeeds(render(one)));
+    const std::string name = folder / fmt::format("t{}.exr", frame);
+    // A pixel on an edge may be another one, since the camera's place is rounded.
+    EXPECT_TRUE(succeeds(kdray({"compare", name, folder / "one.exr", "--max-rmse", "0.01"}))) << frame;
+  }
+  EXPECT_FALSE(fs::exists(folder / "t4.exr"));
+  EXPECT_EQ(kdray({"compare", folder / "t0.exr", folder / "t1.exr", "--max-rmse", "0.01"}).code, 1)
+      << "all are the same";
+}
+
+// A long box, seen from a place that is chosen: its ends are in every frame, and so is some background around.
+TEST_F(SequenceTest, ATurntableShowsAllOfTheModelInEachFrame) {
+  KDRAY_NEED_DEVICE();
+  folder.put("bar.json", R"({"objects": [{"type": "box", "min": [-9, 0, -1], "max": [9, 1, 1]}]})");
+  ASSERT_TRUE(succeeds(kdray({"render", "bar.json", "--turntable", "8", "--size", "64x64", "-q",
+                              "--background", "transparent", "-o", "b.exr"},
+                             {.folder = folder.path()})));
+  for (int frame = 0; frame < 8; ++frame) {
+    const image::Image seen = image::read_picture(folder / fmt::format("b{:04}.exr", frame), {});
+    float most = 0, at_edge = 0;
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const float alpha = seen.alpha[static_cast<std::size_t>(y * 64 + x)];
+        most = std::max(most, alpha);
+        if (x % 63 == 0 || y % 63 == 0) at_edge = std::max(at_edge, alpha);
+      }
+    EXPECT_EQ(most, 1) << frame;
+    EXPECT_EQ(at_edge, 0) << frame << ": it reaches out of the picture";
+  }
+}
+
+TEST_F(SequenceTest, ATurntableSaysHowToMakeAFilmOfIt) {
+  KDRAY_NEED_DEVICE();
+  const Outcome run = kdray({"render", "ball.nff", "--turntable", "9", "--frames", "4..5", "--size", "8x8"},
+                            {.folder = folder.path()});
+  ASSERT_TRUE(succeeds(run));
+  EXPECT_TRUE(fs::exists(folder / "ball0004.png") && fs::exists(folder / "ball0005.png"));
+  EXPECT_FALSE(fs::exists(folder / "ball0003.png") || fs::exists(folder / "ball0006.png"));
+  EXPECT_NE(
+      run.err.find("ffmpeg -framerate 24 -start_number 4 -i 'ball%04d.png' -pix_fmt yuv420p 'ball.mp4'"),
+      std::string::npos)
+      << run.err;
+}
+
+TEST_F(SequenceTest, ATurntableGoesAlone) {
+  EXPECT_TRUE(fails_with(render({"--turntable", "4", "--camera-path", path}), 2, "--camera-path"));
+  EXPECT_TRUE(fails_with(render({"--turntable", "4", "--fps", "24"}), 2, "--fps"));
+  EXPECT_TRUE(fails_with(render({"--turntable", "4", "--frames", "0..4"}), 2, "the frames 0 to 3"));
+  EXPECT_TRUE(fails_with(render({"--turntable", "0"}), 2, "from 1"));
+  EXPECT_TRUE(fails_with(kdray({"render", "s%02d.nff", "--turntable", "4"}), 2, "one model"));
+  EXPECT_TRUE(fails_with(render({"--turntable", "4", "-o", "-"}), 2, "a file for each frame"));
 }
 
 TEST_F(SequenceTest, NumberedScenesAreFramesToo) {
@@ -130,7 +194,8 @@ TEST_F(SequenceTest, RestartsEndWithTheRunsOwnCode) {
 }
 
 TEST_F(SequenceTest, WhatMakesNoSequence) {
-  EXPECT_TRUE(fails_with(render({"--frames", "1..2"}), 2, "--camera-path FILE, or number the scenes"));
+  EXPECT_TRUE(fails_with(render({"--frames", "1..2"}), 2,
+                         "--camera-path FILE or --turntable N, or number the scenes"));
   EXPECT_TRUE(fails_with(render({"--camera-path", path}), 2, "--frames A..B"));
   EXPECT_TRUE(fails_with(render({"--frames", "1-2", "--camera-path", path}), 2, "A..B"));
   EXPECT_TRUE(fails_with(render({"--frames", "3..2", "--camera-path", path}), 2, "--frames"));

@@ -151,6 +151,13 @@ TEST(Summary, IsOneLine) {
   EXPECT_EQ(cold_start_line(stats), "");
 }
 
+TEST(Summary, AWholeNumberOfSamplesIsToldWhole) {
+  Json stats = Json::parse(R"({"files": ["a.png"], "frame": {"width": 8, "height": 8, "samples": 2000}})");
+  EXPECT_NE(render_line(stats).find("8x8 of 2000 samples"), std::string::npos) << render_line(stats);
+  stats["samples"] = {{"per_pixel", 3.21987}};
+  EXPECT_NE(render_line(stats).find("8x8 of 3.22 samples"), std::string::npos) << render_line(stats);
+}
+
 TEST(Summary, NamesWhatWasAsked) {
   Json stats = Json::parse(R"({
     "seconds": {"trace": 0.5, "total": 2}, "rays": {"total": 5}, "mrays_per_s": 1.0,

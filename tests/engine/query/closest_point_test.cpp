@@ -60,10 +60,9 @@ TEST_P(ClosestPoints, OfScenesOfAnySizeAndPlaceAreExact) {
 }
 
 TEST_P(ClosestPoints, OfShapesAreExact) {
-  expect_exact("spheres", spheres(200), GetParam(), kPoints);
-  expect_exact("cones", cones(200), GetParam(), kPoints);
-  expect_exact("discs", discs(200), GetParam(), kPoints);
-  expect_exact("tori", tori(200), GetParam(), kPoints);
+  primitives::for_each_shape(
+      [&](auto kind) { expect_exact(kind.kNames, shapes<decltype(kind)>(200), GetParam(), kPoints); });
+  expect_exact("flat cones", flat_cones(200), GetParam(), kPoints);
   expect_exact("all kinds", all_kinds(), GetParam(), kPoints);
 }
 

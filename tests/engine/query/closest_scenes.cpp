@@ -4,31 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "pictures/stored.h"
 #include "scene/primitives/shapes.h"
 
 namespace kdray::test {
-
-namespace {
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double between(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(engine_); }
-  std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(engine_); }
-  dvec3 in_cube(double half) {
-    const double x = between(-half, half), y = between(-half, half);
-    return {x, y, between(-half, half)};
-  }
-  dvec3 direction() {
-    for (;;)
-      if (const dvec3 d = in_cube(1); glm::dot(d, d) > 0.01 && glm::dot(d, d) <= 1) return glm::normalize(d);
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-}  // namespace
 
 void add_triangle(scene::Scene& s, const dvec3& a, const dvec3& b, const dvec3& c) {
   const auto first = static_cast<std::uint32_t>(s.vertices.size());
@@ -46,7 +25,7 @@ scene::Scene empty_scene() {
 
 // Triangles of sizes that differ by factors of up to 10^`decades`.
 scene::Scene soup(int n, double decades) {
-  Random random(kClosestSeed);
+  Draw random(kClosestSeed);
   scene::Scene s = empty_scene();
   for (int i = 0; i < n; ++i) {
     const dvec3 middle = random.in_cube(1);
@@ -59,7 +38,7 @@ scene::Scene soup(int n, double decades) {
 
 // Long ones, a 10^-2 to 10^-7 of their length across.
 scene::Scene slivers(int n) {
-  Random random(kClosestSeed);
+  Draw random(kClosestSeed);
   scene::Scene s = empty_scene();
   for (int i = 0; i < n; ++i) {
     const dvec3 from = random.in_cube(1), way = random.direction();
@@ -71,7 +50,7 @@ scene::Scene slivers(int n) {
 
 // A height field over whole numbers, whose corners and edges its triangles share.
 scene::Scene grid(int n) {
-  Random random(kClosestSeed);
+  Draw random(kClosestSeed);
   scene::Scene s = empty_scene();
   for (int y = 0; y <= n; ++y)
     for (int x = 0; x <= n; ++x)
@@ -104,17 +83,8 @@ scene::Scene ball(int n) {
   return s;
 }
 
-scene::Scene spheres(int n) {
-  Random random(kClosestSeed);
-  scene::Scene s = empty_scene();
-  for (int i = 0; i < n; ++i)
-    s.spheres.push_back(
-        {random.in_cube(1), std::pow(10.0, random.between(-3, -0.5)), 0, s.primitive_count()});
-  return s;
-}
-
-scene::Scene cones(int n) {
-  Random random(kClosestSeed);
+scene::Scene flat_cones(int n) {
+  Draw random(kClosestSeed);
   scene::Scene s = empty_scene();
   for (int i = 0; i < n; ++i) {
     const dvec3 base = random.in_cube(1);
@@ -127,38 +97,15 @@ scene::Scene cones(int n) {
   return s;
 }
 
-scene::Scene discs(int n) {
-  Random random(kClosestSeed);
-  scene::Scene s = empty_scene();
-  for (int i = 0; i < n; ++i)
-    s.discs.push_back({random.in_cube(1), random.direction(), std::pow(10.0, random.between(-2.5, -0.3)), 0,
-                       s.primitive_count()});
-  return s;
-}
-
-scene::Scene tori(int n) {
-  Random random(kClosestSeed);
-  scene::Scene s = empty_scene();
-  for (int i = 0; i < n; ++i) {
-    const double major = std::pow(10.0, random.between(-2.5, -0.3));
-    s.tori.push_back({random.in_cube(1), random.direction(), major, random.between(0.01, 0.95) * major, 0,
-                      s.primitive_count()});
-  }
-  return s;
-}
-
 scene::Scene all_kinds() {
   scene::Scene s = soup(60, 1);
-  const auto take = [&s](const auto& from, auto& to) {
-    for (auto shape : from) {
+  primitives::for_each_shape([&](auto kind) {
+    const scene::Scene some = shapes<decltype(kind)>(40);
+    for (auto shape : decltype(kind)::of(some)) {
       shape.number = s.primitive_count();
-      to.push_back(shape);
+      decltype(kind)::of(s).push_back(shape);
     }
-  };
-  take(spheres(40).spheres, s.spheres);
-  take(cones(40).cones, s.cones);
-  take(discs(40).discs, s.discs);
-  take(tori(40).tori, s.tori);
+  });
   return s;
 }
 
@@ -172,12 +119,9 @@ namespace {
 dvec3 vec(const float (&v)[3]) {
   return {v[0], v[1], v[2]};
 }
-dvec3 across(const dvec3& axis, Random& random) {
-  return glm::normalize(glm::cross(axis, random.direction()));
-}
 
-// Places of surfaces as the kernels have them: inside, and often at corners, on edges, rims and tips.
-dvec3 place_of(const layout::Triangle& t, Random& random) {
+// A place on a triangle: inside, and often at a corner or on an edge.
+dvec3 place_of(const layout::Triangle& t, Draw& random) {
   double u = random.between(0, 1), v = random.between(0, 1);
   if (u + v > 1) u = 1 - u, v = 1 - v;
   const std::size_t choice = random.below(4);
@@ -187,33 +131,19 @@ dvec3 place_of(const layout::Triangle& t, Random& random) {
   const dvec3 a = vec(t.v[0]);
   return a + u * (vec(t.v[1]) - a) + v * (vec(t.v[2]) - a);
 }
-dvec3 place_of(const layout::Sphere& s, Random& random) {
-  return vec(s.center) + double(s.radius) * random.direction();
-}
-dvec3 place_of(const layout::Cone& c, Random& random) {
-  const std::size_t choice = random.below(4);
-  const double share = choice == 0 ? 0 : (choice == 1 ? 1 : random.between(0, 1)), height = share * c.height;
-  const dvec3 axis = vec(c.axis);
-  return vec(c.base) + height * axis + (c.base_radius + c.slope * height) * across(axis, random);
-}
-dvec3 place_of(const layout::Disc& d, Random& random) {
-  const double share = random.below(3) == 0 ? 1 : random.between(0, 1);
-  return vec(d.center) + share * d.radius * across(vec(d.normal), random);
-}
 
-dvec3 place_of(const layout::Torus& t, Random& random) {
-  const dvec3 axis = vec(t.axis), out = across(axis, random);
-  const double angle = random.below(3) == 0 ? 0 : random.between(0, 6.2831853);
-  return vec(t.center) + (t.major_radius + t.minor_radius * std::cos(angle)) * out +
-         t.minor_radius * std::sin(angle) * axis;
-}
-
-std::vector<dvec3> places_on(const DeviceScene& queried, std::size_t n, Random& random) {
+std::vector<dvec3> places_on(const DeviceScene& queried, std::size_t n, Draw& random) {
   std::vector<dvec3> places;
   while (places.size() < n)
     primitives::for_each_kind([&](auto kind) {
-      const auto& all = decltype(kind)::of(queried.prepared().flat);
-      if (all.size() > 0) places.push_back(place_of(all[random.below(all.size())], random));
+      using Kind = decltype(kind);
+      const auto& all = Kind::of(queried.prepared().flat);
+      if (all.size() == 0) return;
+      const auto& one = all[random.below(all.size())];
+      if constexpr (Kind::kIsShape)
+        places.emplace_back(Samples<Kind>::point(geometry_of(as_told(one), LocalSpace{}, 0), random));
+      else
+        places.push_back(place_of(one, random));
     });
   places.resize(n);
   return places;
@@ -222,7 +152,7 @@ std::vector<dvec3> places_on(const DeviceScene& queried, std::size_t n, Random& 
 }  // namespace
 
 std::vector<dvec3> points_for(const DeviceScene& queried, std::size_t n) {
-  Random random(kClosestSeed + 1);
+  Draw random(kClosestSeed + 1);
   const LocalSpace& space = queried.space();
   const Box& bounds = queried.prepared().geometry.bounds;
   const dvec3 middle(bounds.center());

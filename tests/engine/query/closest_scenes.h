@@ -3,12 +3,14 @@
 //         their surfaces.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
-#include <random>
 #include <vector>
 
+#include "conformance/samples.h"
 #include "engine/query/device_scene.h"
 #include "scene/model/scene.h"
+#include "scene/primitives/shapes.h"
 
 namespace kdray::test {
 
@@ -29,10 +31,24 @@ scene::Scene grid(int n);
 // About the origin; all of it is equally far from there.
 scene::Scene ball(int n);
 
-scene::Scene spheres(int n);
-scene::Scene cones(int n);
-scene::Scene discs(int n);
-scene::Scene tori(int n);
+// Shapes of a kind whose sizes differ by factors of up to 30 beyond those of its samples.
+template <class Kind>
+scene::Scene shapes(int n) {
+  Draw random(kClosestSeed);
+  scene::Scene s = empty_scene();
+  for (int i = 0; i < n; ++i) {
+    Samples<Kind>::add(s, 0, random);
+    auto& shape = Kind::of(s).back();
+    const dvec3 middle = middle_of(shape);
+    const double factor = std::pow(10.0, random.between(-1.5, 0));
+    dmat4 matrix(factor);
+    matrix[3] = glm::dvec4(middle - factor * middle, 1);
+    transform(primitives::Similarity{matrix, factor}, shape);
+  }
+  return s;
+}
+
+scene::Scene flat_cones(int n);  // up to three times as wide as they are high
 scene::Scene all_kinds();
 
 // Triangles alone are moved.

@@ -5,23 +5,31 @@
 //         right to 400 digits.
 #pragma once
 
-#include <gmpxx.h>
-
 #include "base/vec.h"
 #include "layout/kinds.h"
 #include "layout/primitives.layout.h"
+#include "oracle/exact_vec.h"
 
 namespace kdray::test {
 
-using Exact = mpf_class;
-void set_exact_precision();  // before the first is made
+// Before the first is made.
+inline void set_exact_precision() {
+  mpf_set_default_prec(1536);
+}
 
-// Each kind has both. The rough ones are right to 2^-60 of the largest coordinate, in long double: to find
+// Each kind has both (tests/primitives/<kind>.cpp, which defines distance<N>()). The rough ones are right to 2^-60 of the largest coordinate, in long double: to find
 // which primitives are worth an exact answer.
 #define KDRAY_DISTANCES_OF_KIND(NAME, name, names, Struct)              \
   Exact exact_distance(const dvec3& point, const layout::Struct& name); \
   long double rough_distance(const dvec3& point, const layout::Struct& name);
 KDRAY_KINDS(KDRAY_DISTANCES_OF_KIND)
 #undef KDRAY_DISTANCES_OF_KIND
+#define KDRAY_DEFINE_DISTANCES(Struct)                                              \
+  Exact exact_distance(const dvec3& point, const layout::Struct& primitive) {       \
+    return distance<Exact>(point, primitive);                                       \
+  }                                                                                 \
+  long double rough_distance(const dvec3& point, const layout::Struct& primitive) { \
+    return distance<long double>(point, primitive);                                 \
+  }
 
 }  // namespace kdray::test

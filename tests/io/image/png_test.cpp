@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <cstring>
+#include <fstream>
 #include <random>
 
 #include "io/image/picture_file.h"
@@ -119,6 +120,25 @@ TEST(Png, AHeaderIsNotTrustedWithMemory) {
   for (int i = 0; i < 4; ++i)
     bytes[29 + static_cast<std::size_t>(i)] = static_cast<char>(crc >> (24 - 8 * i));
   EXPECT_TRUE(test::fails([&] { decode_png(bytes, "a.png"); }, "promises more pixels"));
+}
+
+// Of this process, in bytes: also what was allocated and never touched.
+std::uint64_t most_address_space() {
+  std::ifstream status("/proc/self/status");
+  std::uint64_t kib = 0;
+  for (std::string word; status >> word && word != "VmPeak:";) continue;
+  status >> kib;
+  return kib << 10;
+}
+
+TEST(Png, AChunkIsNotTrustedWithMemory) {
+  constexpr std::size_t kBehindHeader = 33;
+  std::string bytes = encode_png(random_pixels(3, 8, 7), {});
+  bytes.insert(kBehindHeader, std::string("\x7f\0\0\0tEXt", 8));  // two gigabytes
+  const std::uint64_t before = most_address_space();
+  ASSERT_GT(before, 0u);
+  EXPECT_TRUE(test::fails([&] { decode_png(bytes, "a.png"); }, "cut short"));
+  EXPECT_LT(most_address_space() - before, std::uint64_t{1} << 30);
 }
 
 TEST(ReadPicture, SaysWhatIsWrong) {

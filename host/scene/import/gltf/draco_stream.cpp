@@ -153,6 +153,8 @@ std::string Mesh::attribute(std::uint64_t id, std::size_t parts, std::uint32_t c
   if (a->num_components() != parts)
     throw where.error("its Draco stream has " + std::to_string(a->num_components()) +
                       " components, its accessor " + std::to_string(parts));
+  // libdraco would read any byte as a bool.
+  if (a->data_type() == draco::DT_BOOL) throw damaged(where, "its values are of no type that glTF has");
   std::string out;
   if (!copy_component(*a, mesh_->num_points(), parts, component, out))
     throw damaged(where, "its values are not of the accessor's type");

@@ -1,5 +1,7 @@
 #include "scene/import/gltf/gltf_deform.h"
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "scene/import/gltf/gltf_accessor.h"
@@ -47,8 +49,7 @@ VertexMatrices::VertexMatrices(Document& document, const JsonNode& primitive, co
       for (const double joint : four)
         if (!(joint >= 0 && joint < static_cast<double>(joints_->size())))
           throw joints->error("the skin has " + std::to_string(joints_->size()) +
-                              " joints, and a vertex asks for joint " +
-                              std::to_string(static_cast<long long>(joint)));
+                              " joints, and a vertex asks for joint " + fmt::format("{:g}", joint));
   }
 }
 

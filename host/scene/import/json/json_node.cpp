@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
+#include "io/image/css_color.h"
 #include "scene/import/text_scanner.h"
 
 namespace kdray::scene {
@@ -29,34 +29,61 @@ std::string short_message(const char* what) {
                                                              : std::string(text);
 }
 
-// A key given twice is nearly always a mistake, and JSON readers disagree on which counts.
-class DuplicateKeys {
+// Builds a document. (json::parse() with a callback goes through all of a list whenever a part of it ends.)
+class Builder final : public json::json_sax_t {
  public:
-  // `depth` becomes that of the value in work.
-  DuplicateKeys(const std::string& file, int& depth) : file_(file), depth_(depth) {}
+  Builder(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
-  bool operator()(int depth, json::parse_event_t event, const json& value) {
-    const bool opens =
-        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
-    depth_ = depth + (opens ? 1 : 0);
-    if (event == json::parse_event_t::object_start) {
-      open_.emplace_back();
-    } else if (event == json::parse_event_t::object_end) {
-      open_.pop_back();
-    } else if (event == json::parse_event_t::key) {
-      const auto& key = value.get_ref<const std::string&>();
-      if (!open_.back().insert(key).second) {
-        throw input_error(file_, 0, "the key '" + printable(key) + "' is given twice in one object",
-                          "remove one");
-      }
-    }
+  json take() { return std::move(root_); }
+
+  bool null() override { return put(nullptr); }
+  bool boolean(bool value) override { return put(value); }
+  bool number_integer(number_integer_t value) override { return put(value); }
+  bool number_unsigned(number_unsigned_t value) override { return put(value); }
+  bool number_float(number_float_t value, const string_t&) override { return put(value); }
+  bool string(string_t& value) override { return put(std::move(value)); }
+  bool binary(binary_t& value) override { return put(std::move(value)); }
+  bool start_object(std::size_t) override { return open(json::object()); }
+  bool start_array(std::size_t) override { return open(json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  // A key given twice is nearly always a mistake, and JSON readers disagree on which counts.
+  bool key(string_t& key) override {
+    if (open_.back()->contains(key))
+      throw input_error(file_, 0, "the key '" + printable(key) + "' is given twice in one object",
+                        "remove one");
+    key_ = std::move(key);
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string&, const json::exception& error) override;
+
+ private:
+  template <class T>
+  json& place(T&& value) {
+    if (open_.empty()) return root_ = std::forward<T>(value);
+    json& parent = *open_.back();
+    return parent.is_array() ? parent.emplace_back(std::forward<T>(value))
+                             : parent[key_] = std::forward<T>(value);
+  }
+  template <class T>
+  bool put(T&& value) {
+    place(std::forward<T>(value));
+    return true;
+  }
+  bool open(json&& value) {
+    open_.push_back(&place(std::move(value)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
     return true;
   }
 
- private:
+  std::string_view text_;
   const std::string& file_;
-  int& depth_;
-  std::vector<std::set<std::string>> open_;
+  json root_;
+  std::vector<json*> open_;  // lists and objects, each in the one before
+  std::string key_;          // of what comes next in an object
 };
 
 const char* type_name(const json& value) {
@@ -119,23 +146,24 @@ bool is_comment(std::string_view text, std::size_t at) {
   return at < text.size() && text[at] == '#';
 }
 
+bool Builder::parse_error(std::size_t position, const std::string&, const json::exception& error) {
+  if (dynamic_cast<const json::parse_error*>(&error) == nullptr)  // a number beyond double's range
+    throw input_error(file_, 0, std::string("not usable JSON: ") + error.what());
+  const std::size_t at = position > 0 ? position - 1 : 0, line = line_at(text_, at);
+  if (at >= text_.size() && !open_.empty())
+    throw input_error(file_, line,
+                      "not JSON: the text ends inside of " + std::to_string(open_.size()) + " open brackets",
+                      "it is cut short, or nested without an end: fetch or write it again");
+  throw input_error(file_, line, "not JSON: " + short_message(error.what()),
+                    is_comment(text_, at) ? "JSON has no comments: take them out" : "");
+}
+
 }  // namespace
 
 json parse_json(std::string_view text, const std::string& file) {
-  int depth = 0;
-  try {
-    return json::parse(text.begin(), text.end(), DuplicateKeys(file, depth));
-  } catch (const json::parse_error& e) {
-    const std::size_t at = e.byte > 0 ? e.byte - 1 : 0, line = line_at(text, at);
-    if (at >= text.size() && depth > 0)
-      throw input_error(file, line,
-                        "not JSON: the text ends inside of " + std::to_string(depth) + " open brackets",
-                        "it is cut short, or nested without an end: fetch or write it again");
-    throw input_error(file, line, "not JSON: " + short_message(e.what()),
-                      is_comment(text, at) ? "JSON has no comments: take them out" : "");
-  } catch (const json::exception& e) {  // a number beyond double's range
-    throw input_error(file, 0, std::string("not usable JSON: ") + e.what());
-  }
+  Builder builder(text, file);
+  json::sax_parse(text.begin(), text.end(), &builder);
+  return builder.take();
 }
 
 JsonNode JsonNode::child(const json& value, std::string_view key) const {
@@ -243,11 +271,13 @@ dvec3 JsonNode::direction() const {
 }
 
 vec3 JsonNode::color() const {
+  if (value_->is_string())
+    if (const auto color = image::css_color(value_->get<std::string>())) return *color;
   dvec3 v;
   if (value_->is_number()) {
     v = dvec3(number());
   } else if (!read_vector(*value_, v)) {
-    throw expected("a number or [red, green, blue]");
+    throw expected("a number, [red, green, blue], or a colour as CSS has it");
   }
   const vec3 c(v);
   if (c.x < 0 || c.y < 0 || c.z < 0) throw error("a value below 0");

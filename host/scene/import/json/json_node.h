@@ -41,7 +41,7 @@ class JsonNode {
   int integer(int low, int high) const;
   dvec3 vector() const;     // [x, y, z]
   dvec3 direction() const;  // [x, y, z] made unit length; not [0, 0, 0]
-  vec3 color() const;       // a number for grey or [red, green, blue]; none below 0
+  vec3 color() const;       // a number for grey, [red, green, blue], or as CSS has it; none below 0
   std::string string() const;
   bool boolean() const;
 
