@@ -65,7 +65,8 @@ def render(kdray, model, picture, view):
     """Writes the picture; the lines that kdray says are warnings, or why there is none."""
     options = ["--size", "128x128", "--samples", "16", "-q", "-o", str(picture)]
     view_options = from_the_front(kdray, model) if view == "front" else []
-    done = subprocess.run([kdray, "render", model, *options, *view_options], capture_output=True, text=True)
+    command = [kdray, "render", model, "--look", "plain", *options, *view_options]
+    done = subprocess.run(command, capture_output=True, text=True)
     for line in done.stderr.splitlines():
         print(f"  {line.removeprefix('kdray: ').removeprefix(model + ': ')}")
     return done.returncode

@@ -54,14 +54,11 @@ const char* name_of(Ablation::Kind kind) {
   }
 }
 
-// Their code reads what only scenes that have it have.
-constexpr layout::Features kWithData = KDRAY_FEATURE_SKY;
-
 std::vector<Ablation> ablations_for(layout::Features features) {
   std::vector<Ablation> all;
   std::uint64_t code = 0, work = 0;
   for (const flatten::Feature& f : flatten::features()) {
-    if ((features | kWithData) & f.bit) continue;
+    if (features & f.bit) continue;
     all.push_back(
         {.name = std::string("no ") + f.name, .kind = Ablation::Kind::specialisation, .keep = f.bit});
     code |= f.bit;

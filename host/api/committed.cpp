@@ -64,9 +64,30 @@ Statistics Committed::statistics(std::uint64_t n_asked, std::span<const double> 
   return statistics;
 }
 
-Picture Committed::render(const RenderOptions& options) {
+namespace {
+
+// Returns what lights that follow the camera have to know of it.
+View view_of(const std::optional<Camera>& camera) {
+  if (!camera) return {};
+  View view{.from = camera->from, .at = camera->at, .up = camera->up};
+  if (camera->ortho_width > 0)
+    view.ortho_width = camera->ortho_width;
+  else
+    view.fov = camera->fov;
+  return view;
+}
+
+}  // namespace
+
+Picture Committed::render(const RenderOptions& options, Look look) {
   const std::lock_guard lock(rendering_);
   if (!renderer_) renderer_.emplace(make_renderer(devices_));
+  if (look == Look::studio) {
+    if (!in_studio_) in_studio_ = scene_.in_studio();
+    renderer_->look(in_studio_->seen(view_of(options.camera), options.width, options.height));
+  } else if (in_studio_) {
+    renderer_->look(scene_);
+  }
   return renderer_->render(options);
 }
 

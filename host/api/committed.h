@@ -30,7 +30,7 @@ class Committed {
   Committed& operator=(const Committed&) = delete;
 
   const PreparedScene& scene() const { return scene_; }
-  Picture render(const RenderOptions& options);
+  Picture render(const RenderOptions& options, Look look);
   query::QueryContext query_context() { return {places_, table_, frame_}; }
 
   // Of a query over so many rays or points that took this long, and of all that came before it.
@@ -47,7 +47,8 @@ class Committed {
   std::shared_ptr<engine::DeviceScene> devices_;
   std::deque<query::Place> places_;
   std::mutex rendering_;
-  std::optional<Renderer> renderer_;  // once a picture was asked for
+  std::optional<Renderer> renderer_;       // once a picture was asked for
+  std::optional<PreparedScene> in_studio_;  // once one was asked for in a studio
 };
 
 }  // namespace kdray::api

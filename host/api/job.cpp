@@ -55,7 +55,7 @@ Job make_job(State& state, const RenderOptions& options, timeline::Timeline* tim
   check_division(o);
   check_channels(o, scene);
   const layout::Features features =
-      scene.features | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | state.keep;
+      state.devices.features() | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | state.keep;
   Job job{o, frame_of(scene, o), features, timeline};
   use_core(state, job);
   return job;

@@ -2,6 +2,7 @@
 
 #include "accel/cache/cache.h"
 #include "accel/prepare/prepared.h"
+#include "accel/prepare/studio.h"
 #include "accel/prepare/view.h"
 #include "base/cache_folder.h"
 #include "base/paged.h"
@@ -33,8 +34,10 @@ scene::View view_of(const View& view) {
                 .ortho_width = view.ortho_width,
                 .aperture = view.aperture,
                 .focus = view.focus,
-                .headlight = view.headlight};
+                .headlight = view.headlight,
+                .background = {}};
   if (view.fov) v.vertical_fov = glm::radians(*view.fov);
+  if (const auto& b = view.background) v.background = vec3((*b)[0], (*b)[1], (*b)[2]);
   return v;
 }
 
@@ -54,10 +57,10 @@ const std::vector<std::string>& PreparedScene::warnings() const {
   return prepared_->settings.warnings;
 }
 PreparedScene PreparedScene::seen(const View& view, int width, int height) const {
-  std::optional<vec3> background;
-  if (view.background) background = vec3((*view.background)[0], (*view.background)[1], (*view.background)[2]);
-  return PreparedScene(
-      prepare::seen(*prepared_, view_of(view), background, aspect_of(settings(), width, height)));
+  return PreparedScene(prepare::seen(*prepared_, view_of(view), aspect_of(settings(), width, height)));
+}
+PreparedScene PreparedScene::in_studio() const {
+  return PreparedScene(prepare::in_studio(*prepared_));
 }
 PreparedScene PreparedScene::coverage() const {
   return PreparedScene(prepare::coverage_of(*prepared_));

@@ -80,7 +80,7 @@ void Renderer::Impl::tune(const Tuning& tuning) {
 // The trees and primitives of `seen` are this scene's own.
 void Renderer::Impl::look(const prepare::Prepared& seen) {
   state.devices.look(seen);
-  if (state.divided) state.divided->light(seen.flat.lights);
+  if (state.divided) state.divided->light(seen.flat);
 }
 
 Picture Renderer::Impl::render(const RenderOptions& options) {

@@ -275,8 +275,8 @@ PreparedScene Scene::prepared() const {
   return impl_->last()->scene();
 }
 
-Picture Scene::render(const RenderOptions& options) const {
-  return impl_->asked()->render(options);
+Picture Scene::render(const RenderOptions& options, Look look) const {
+  return impl_->asked()->render(options, look);
 }
 QueryReport Scene::closest(const Rays& rays, const HitsOut& out, const QueryOptions& options) const {
   const auto committed = impl_->asked();

@@ -53,19 +53,9 @@ class Warming {
     programs_.have_everything();
   }
 
-  // A Wavefront launches its kernels as it is made.
-  void frames() {
-    const RenderOptions o = flatten::resolved({.width = kSide, .height = kSide}, {});
-    layout::Frame frame = flatten::make_frame(scene_.settings, scene_.geometry, o);
-    wavefront::Schedule schedule{.tile_width = kSide, .tile_height = kSide, .n_slices = 1, .fused = !global_};
-    schedule.work_group = work_group_;
-    schedule.traversal = traversal_in(Precision::float32, Traversal::automatic, context_.info());
-    schedule.apply(frame, scene_.features);
-    const wavefront::Capacity capacity{.tiles = 1, .pixels = std::size_t{kSide} * kSide};
-    const wavefront::Wavefront wavefront(context_, context_.queues().front(), buffers_, programs_, frame,
-                                         schedule, scene_.features, capacity);
-  }
-
+  // Of lights with an area, as a studio has them: rays have another form then.
+  void soft_frames() { frames_of(scene_.features | KDRAY_FEATURE_AREA_LIGHTS); }
+  void frames() { frames_of(scene_.features); }
   void queries() {
     const Ray ray{{0, 0, 0}, 0, {0, 0, -1}, 1};
     const query::Target target{context_, buffers_, programs_, scene_, work_group_, global_};
@@ -75,6 +65,19 @@ class Warming {
   bool compiled() const { return programs_.used().compiled > 0; }
 
  private:
+  // A Wavefront launches its kernels as it is made.
+  void frames_of(layout::Features features) {
+    const RenderOptions o = flatten::resolved({.width = kSide, .height = kSide}, {});
+    layout::Frame frame = flatten::make_frame(scene_.settings, scene_.geometry, o);
+    wavefront::Schedule schedule{.tile_width = kSide, .tile_height = kSide, .n_slices = 1, .fused = !global_};
+    schedule.work_group = work_group_;
+    schedule.traversal = traversal_in(Precision::float32, Traversal::automatic, context_.info());
+    schedule.apply(frame, features);
+    const wavefront::Capacity capacity{.tiles = 1, .pixels = std::size_t{kSide} * kSide};
+    const wavefront::Wavefront wavefront(context_, context_.queues().front(), buffers_, programs_, frame,
+                                         schedule, features, capacity);
+  }
+
   const device::Context& context_;
   const prepare::Prepared& scene_;
   std::size_t work_group_;
@@ -133,6 +136,7 @@ std::vector<WarmProgram> warm_up(const DeviceOptions& options,
         if (told) told(all.back());
       };
       make("frames", &Warming::frames);
+      make("frames in soft light", &Warming::soft_frames);
       make("queries", &Warming::queries);
     }
   return all;

@@ -49,6 +49,8 @@
 #define KDRAY_FEATURE_SPOT KDRAY_FEATURE(51)
 // A core with faces around it; removes testing whether rays pass it by.
 #define KDRAY_FEATURE_FACES KDRAY_FEATURE(52)
+// A floor that rays see which meet nothing else (shade/floor.clh); removes looking for it.
+#define KDRAY_FEATURE_FLOOR KDRAY_FEATURE(54)
 // Instances of meshes (instances.layout.h); removes walks and surfaces in other spaces, and the instance from
 // rays and hits.
 #define KDRAY_FEATURE_INSTANCES KDRAY_FEATURE(53)
@@ -101,6 +103,7 @@
 #define KDRAY_HAS_AREA_LIGHTS ((KDRAY_FEATURES & KDRAY_FEATURE_AREA_LIGHTS) != 0)
 #define KDRAY_HAS_LENS ((KDRAY_FEATURES & KDRAY_FEATURE_LENS) != 0)
 #define KDRAY_HAS_FACES ((KDRAY_FEATURES & KDRAY_FEATURE_FACES) != 0)
+#define KDRAY_HAS_FLOOR ((KDRAY_FEATURES & KDRAY_FEATURE_FLOOR) != 0)
 #define KDRAY_HAS_INSTANCES ((KDRAY_FEATURES & KDRAY_FEATURE_INSTANCES) != 0)
 #define KDRAY_HAS_BACKGROUND ((KDRAY_FEATURES & KDRAY_FEATURE_BACKGROUND) != 0)
 #define KDRAY_HAS_SUPERSAMPLE ((KDRAY_FEATURES & KDRAY_FEATURE_SUPERSAMPLE) != 0)

@@ -62,8 +62,17 @@ typedef struct Frame {
   // stay where it is; 0: a pinhole.
   float lens_radius, lens_slope;
   u32 tells_sample;  // 1: rays have a word that tells their sample (KDRAY_RAY_SAMPLE)
+  u32 has_sky;       // 1: the background is the sky's; 0: it is of one colour, above
+  // A floor (shade/floor.clh): a disc about a point that fades from `floor_inner` to `floor_radius`.
+  float floor_middle[3];
+  float floor_radius;  // 0: there is none
+  float floor_up[3];   // unit
+  float floor_inner;
+  float floor_unshadowed[3];
+  float floor_reflect;
+  float floor_diffuse[3];
 } Frame;
-KDRAY_ASSERT_SIZE(Frame, 260)
+KDRAY_ASSERT_SIZE(Frame, 324)
 KDRAY_ASSERT_OFFSET(Frame, core_lo, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 

@@ -168,6 +168,7 @@ class Scene:
         precision: str,
         channels: Sequence[str],
         progress: Callable[[float], None] | None,
+        look: str,
     ) -> tuple[Any, ...]: ...
 
 def write_picture(
@@ -191,6 +192,7 @@ class Page:
         compute_units: int,
         port: int,
         framed: bool,
+        look: str,
     ) -> None: ...
     def address(self) -> str: ...
     def update(self, scene: Scene) -> None: ...

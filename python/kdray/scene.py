@@ -660,9 +660,10 @@ class Scene:
         self,
         camera: Camera | None = None,
         size: tuple[int, int] = (1024, 1024),
-        samples: int = 1,
+        samples: int | None = None,
         depth: int = 5,
         *,
+        look: str = "studio",
         adaptive: bool | float = False,
         channels: Iterable[str] = (),
         min_weight: float | None = None,
@@ -672,8 +673,10 @@ class Scene:
     ) -> Picture:
         """A Whitted picture, `size` = (width, height), by `camera` or one that sees all of the scene.
 
-        `samples` per pixel, or `adaptive`: as many as each pixel needs (a float: the error in linear RGB that is
-        aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth", "normal", "primitive",
+        `look`: where the scene has neither a camera nor lights of its own, "studio" shows it in soft light that
+        follows the camera, on a floor before a backdrop; "plain" by two lights before the background.
+        `samples` per pixel (1, or 8 in a studio), or `adaptive`: as many as each pixel needs (a float: the error in
+        linear RGB that is aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth", "normal", "primitive",
         "instance", "cost", "samples", "queue".
         `min_weight`: rays that change a pixel by less are left out; 0 traces all.
         """
@@ -681,14 +684,15 @@ class Scene:
         if named or precision == "double":
             self._with_binary_form()
         width, height = size
-        for name, value in (("the width", width), ("the height", height), ("samples", samples), ("depth", depth)):
-            if value < 1:
+        numbers = {"the width": width, "the height": height, "samples": samples, "depth": depth}
+        for name, value in numbers.items():
+            if value is not None and value < 1:
                 raise errors.UsageError(f"{name} is at least 1, not {value}")
         w, h, rgb, planes, warnings = self._ready().render(
             camera.numbers() if camera is not None else None,
             width,
             height,
-            samples,
+            samples or 0,
             depth,
             -1.0 if min_weight is None else min_weight,
             0.0075 if adaptive is True else float(adaptive),
@@ -696,15 +700,23 @@ class Scene:
             precision,
             named,
             teller(progress, "render"),
+            look,
         )
         return Picture(rgb.reshape(h, w, 3), _planes(planes, h, w), list(warnings))
 
-    def view(self, camera: Camera | None = None, size: tuple[int, int] = (960, 600), *, port: int = 0) -> View:
+    def view(
+        self,
+        camera: Camera | None = None,
+        size: tuple[int, int] = (960, 600),
+        *,
+        look: str = "studio",
+        port: int = 0,
+    ) -> View:
         """A page to look around in the scene, as it is now: in a notebook a frame of `size`, elsewhere an address.
 
-        `camera`: where it begins; without one, where all of the scene is seen. `port`: 0 is 7878, or the next one that
-        is free. The page is served to this machine alone, until `View.close` or the end of the program; `View.update`
-        shows what has been changed since.
+        `camera`: where it begins; without one, where all of the scene is seen. `look` is that of `render`. `port`: 0
+        is 7878, or the next one that is free. The page is served to this machine alone, until `View.close` or the end
+        of the program; `View.update` shows what has been changed since.
         """
         width, height = size
         if width < 1 or height < 1:
@@ -714,7 +726,7 @@ class Scene:
         self._with_binary_form()
         name = os.path.basename(self._file[0]) if self._file else "scene"
         numbers = camera.numbers() if camera is not None else None
-        core = page_of(self._ready(), name, numbers, self._device, self._compute_units, port)
+        core = page_of(self._ready(), name, numbers, self._device, self._compute_units, port, look)
         return View(self, core, (width, height))
 
     def _with_binary_form(self) -> None:

@@ -74,10 +74,12 @@ class View:
         )
 
 
-def page_of(core: Any, name: str, camera: list[float] | None, device: str, compute_units: int, port: int) -> Any:
+def page_of(
+    core: Any, name: str, camera: list[float] | None, device: str, compute_units: int, port: int, look: str
+) -> Any:
     """kdray._core's page, whose server lets notebooks of this machine have it in a frame."""
     if not hasattr(_core, "Page"):
         raise errors.UsageError(
             "this kdray was built without the page: install libboost-dev and libturbojpeg0-dev, and build it anew"
         )
-    return _core.Page(core, name, camera, device, compute_units, port, True)
+    return _core.Page(core, name, camera, device, compute_units, port, True, look)

@@ -25,8 +25,9 @@ using namespace nb::literals;
 using CameraNumbers = std::array<double, 14>;
 
 // As it was committed last, with the ids and names of its geometries.
-view::LoadedScene opened(const Scene& scene) {
-  view::LoadedScene opened{scene.prepared(), {}};
+view::LoadedScene opened(const Scene& scene, Look look) {
+  const PreparedScene committed = scene.prepared();
+  view::LoadedScene opened{look == Look::studio ? committed.in_studio() : committed, {}};
   for (const GeometryId id : scene.geometries()) {
     const GeometryInfo info = scene.info(id);
     if (info.enabled) opened.geometries.push_back({info.name, id, info.primitives});
@@ -54,12 +55,14 @@ View view_of(const std::optional<CameraNumbers>& camera) {
 class Page {
  public:
   Page(const Scene& scene, const std::string& name, const std::optional<CameraNumbers>& camera,
-       const std::string& device, int compute_units, int port, bool framed)
-      : scene_(opened(scene)),
+       const std::string& device, int compute_units, int port, bool framed, const std::string& look)
+      : look_(look_of(look)),
+        scene_(opened(scene, look_)),
         served_(std::make_unique<Served>(view::ServerOptions{.port = port, .framed = framed})),
         address_(served_->server.address()) {
     view::Settings settings;
     settings.view = view_of(camera);
+    settings.look = look_;
     settings.device.device = device;
     settings.device.compute_units = compute_units;
     settings.device.programs = default_program_folder();
@@ -75,7 +78,7 @@ class Page {
   const std::string& address() const { return address_; }
 
   void update(const Scene& scene) {
-    view::LoadedScene now = opened(scene);
+    view::LoadedScene now = opened(scene, look_);
     {
       const std::lock_guard lock(mutex_);
       scene_ = std::move(now);
@@ -107,7 +110,8 @@ class Page {
   }
 
   std::mutex mutex_, closing_;
-  view::LoadedScene scene_;              // by `mutex_`
+  const Look look_;
+  view::LoadedScene scene_;  // by `mutex_`
   std::unique_ptr<Served> served_;  // null: closed
   std::string address_;
   pid_t process_ = ::getpid();
@@ -118,9 +122,9 @@ class Page {
 void add_page(nb::module_& module) {
   nb::class_<Page>(module, "Page")
       .def(nb::init<const Scene&, const std::string&, const std::optional<CameraNumbers>&, const std::string&,
-                    int, int, bool>(),
+                    int, int, bool, const std::string&>(),
            Released(), "scene"_a, "name"_a, "camera"_a.none(), "device"_a, "compute_units"_a, "port"_a,
-           "framed"_a)
+           "framed"_a, "look"_a)
       .def("address", &Page::address)
       .def("update", &Page::update, Released(), "scene"_a)
       .def("close", &Page::close, Released());

@@ -3,11 +3,15 @@
 
 #include <nanobind/nanobind.h>
 
+#include <string>
+
 #include "kdray/kdray.h"
 
 namespace kdray::python {
 
 using SceneClass = nanobind::class_<Scene>;
+
+Look look_of(const std::string& name);  // throws ErrorCode::usage
 
 SceneClass add_scene(nanobind::module_& module);
 void add_textures(SceneClass& scene);

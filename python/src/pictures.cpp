@@ -13,6 +13,7 @@
 #include "interrupt.h"
 #include "io/image/picture_file.h"
 #include "parts.h"
+#include "scene/model/scene.h"
 
 namespace kdray::python {
 
@@ -48,6 +49,13 @@ T named(const std::string& name, std::initializer_list<std::pair<const char*, T>
     all += (all.empty() ? "\"" : ", \"") + std::string(n) + "\"";
   }
   throw Error(ErrorCode::usage, std::string(what) + " is one of " + all + ", not \"" + name + "\"");
+}
+
+// Whether there is neither a camera nor a light in the scene.
+bool can_be_in_studio(const Scene& scene) {
+  const PreparedScene prepared = scene.prepared();
+  const scene::Framing& framing = prepared.settings().framing;
+  return framing.camera && framing.lights;
 }
 
 RenderOptions options_of(int width, int height, int samples, int depth, double min_weight, double adaptive,
@@ -99,25 +107,32 @@ void check_channels(const Pixels& pixels, const std::vector<image::Channel>& cha
 
 }  // namespace
 
+Look look_of(const std::string& name) {
+  return named<Look>(name, {{"studio", Look::studio}, {"plain", Look::plain}}, "look");
+}
+
 void add_pictures(nb::module_& module, SceneClass scene) {
   scene.def(
       "render",
       [](const Scene& s, const std::optional<CameraNumbers>& camera, int width, int height, int samples,
          int depth, double min_weight, double adaptive, const std::string& mode, const std::string& precision,
-         const std::vector<std::string>& channels, const std::optional<Progress>& progress) {
+         const std::vector<std::string>& channels, const std::optional<Progress>& progress,
+         const std::string& look) {
         Picture picture;
         {
           RenderOptions o = options_of(width, height, samples, depth, min_weight, adaptive, mode, precision);
           if (camera) o.camera = camera_of(*camera);
           o.channels = channels;
+          const Look shown = look_of(look);
+          if (samples == 0 && !(shown == Look::studio && can_be_in_studio(s))) o.samples = 1;
           const WithoutGil released;
           o.progress = told(progress);
-          picture = s.render(o);
+          picture = s.render(o, shown);
         }
         return arrays_of(std::move(picture));
       },
       "camera"_a.none(), "width"_a, "height"_a, "samples"_a, "depth"_a, "min_weight"_a, "adaptive"_a,
-      "mode"_a, "precision"_a, "channels"_a, "progress"_a.none());
+      "mode"_a, "precision"_a, "channels"_a, "progress"_a.none(), "look"_a);
   module.def(
       "write_picture",
       [](const std::string& file, const Pixels& pixels,

@@ -18,7 +18,7 @@ def lit() -> kdray.Scene:
 
 def test_the_ball_is_where_rays_hit_it(lit):
     camera = kdray.Camera((0, 1, 5), fov=30)
-    picture = lit.render(camera, (60, 40), channels=["depth", "primitive"])
+    picture = lit.render(camera, (60, 40), look="plain", channels=["depth", "primitive"])
     assert picture.shape == (40, 60, 3) and picture.dtype == np.float32
     o, d = kdray.pinhole_rays(camera, 60, 40)
     hits = lit.closest_hit(o, d)
@@ -80,6 +80,24 @@ def test_a_material_is_only_of_those_it_was_given_to():
     np.testing.assert_array_equal(scene.render(camera, (3, 3))[1, 1], grey)
     scene.add_spheres([0, 0, 0], 1.5, material=glow)
     assert scene.render(camera, (3, 3))[1, 1, 0] >= 1
+
+
+def test_looks():
+    scene = kdray.Scene()
+    scene.add_spheres([0, 0, 0], 1)
+    plain, studio = (np.asarray(scene.render(size=(24, 24), look=look)) for look in ("plain", "studio"))
+    np.testing.assert_array_equal(scene.render(size=(24, 24)), studio)
+    np.testing.assert_array_equal(scene.render(size=(24, 24), look="plain"), plain)
+    assert plain.min() == 0 and studio.min() > 0.02  # black behind it, and a backdrop
+    assert not np.array_equal(scene.render(size=(24, 24), samples=1), studio)
+    # The floor is in pictures alone.
+    depth = scene.render(size=(24, 24), channels=["depth"]).channels["depth"]
+    assert np.isinf(depth).any() and depth.min() > 1
+    assert not scene.any_hit([5, 5, 5], [0, -1, 0])
+    scene.add_light(kdray.Light("directional", direction=(1, -1, -1)))
+    np.testing.assert_array_equal(scene.render(size=(24, 24)), scene.render(size=(24, 24), look="plain"))
+    with pytest.raises(kdray.UsageError, match="look is one of"):
+        scene.render(size=(8, 8), look="nice")
 
 
 def test_saving(lit, tmp_path):

@@ -34,7 +34,7 @@ def square(material=None, pixels=None, **terms) -> kdray.Scene:
 
 
 def shown(scene, size):
-    return np.asarray(scene.render(FRONT, (size, size)))
+    return np.asarray(scene.render(FRONT, (size, size), look="plain"))
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
@@ -178,7 +178,7 @@ def test_metal_and_occlusion_are_those_of_gltf(tmp_path, rng):
 def test_files(tmp_path, rng):
     pixels = rng.integers(0, 256, (8, 8, 3), np.uint8)
     scene = square(pixels=pixels)
-    scene.render(FRONT, (8, 8)).save(tmp_path / "same.png")
+    scene.render(FRONT, (8, 8), look="plain").save(tmp_path / "same.png")
     again = kdray.Scene()
     material = kdray.Material(picture=again.add_picture(tmp_path / "same.png"), **SEEN)
     again.add_mesh(SQUARE, HALVES, uv=UV, material=again.add_material(material))

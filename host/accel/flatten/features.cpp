@@ -34,6 +34,7 @@ constexpr Feature kFeatures[] = {
     {KDRAY_FEATURE_SPOT, "spot"},
     {KDRAY_FEATURE_FACES, "faces"},
     {KDRAY_FEATURE_SKY, "sky"},
+    {KDRAY_FEATURE_FLOOR, "floor"},
     {KDRAY_FEATURE_AREA_LIGHTS, "area lights"},
     {KDRAY_FEATURE_LENS, "lens"},
     {KDRAY_FEATURE_INSTANCES, "instances"},
@@ -135,6 +136,11 @@ bool attenuated(const scene::Light& l) {
   return l.attenuation != dvec3(1, 0, 0) || std::isfinite(l.range);
 }
 
+Features features_of_floor(const scene::Floor& floor) {
+  if (!(floor.radius > 0)) return 0;
+  return KDRAY_FEATURE_FLOOR | KDRAY_FEATURE_DIFFUSE | when(floor.reflect > 0, KDRAY_FEATURE_REFLECT);
+}
+
 }  // namespace
 
 Features features_of(const scene::Scene& scene, const scene::Geometry& geometry) {
@@ -162,10 +168,11 @@ Features features_of_instances(const scene::Scene& scene) {
 Features features_in_light(Features mask, const scene::Scene& scene) {
   constexpr Features kOfLight = KDRAY_FEATURE_BACKGROUND | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
                                 KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_SKY |
-                                KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_LENS;
+                                KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_LENS | KDRAY_FEATURE_FLOOR;
   const bool sky = scene.sky.kind != scene::SkyKind::none;
   mask = (mask & ~kOfLight) | when(sky || any(scene.background), KDRAY_FEATURE_BACKGROUND) |
-         when(sky, KDRAY_FEATURE_SKY) | when(scene.camera && scene.camera->aperture > 0, KDRAY_FEATURE_LENS);
+         when(sky, KDRAY_FEATURE_SKY) | features_of_floor(scene.framing.floor) |
+         when(scene.camera && scene.camera->aperture > 0, KDRAY_FEATURE_LENS);
   if (!(mask & (KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_SPECULAR)))
     return mask;  // nothing that light could change
   for (const scene::Light& light : scene.lights)

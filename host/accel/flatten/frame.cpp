@@ -56,6 +56,17 @@ void set_lens(layout::Frame& f, const scene::Camera& camera, const LocalSpace& s
   f.lens_slope = static_cast<float>(camera.aperture / 2 / focus);
 }
 
+void set_floor(layout::Frame& f, const scene::Floor& floor, const LocalSpace& space) {
+  if (!(floor.radius > 0)) return;
+  set(f.floor_middle, space.local(floor.middle));
+  set(f.floor_up, floor.up);
+  set(f.floor_unshadowed, dvec3(floor.unshadowed));
+  set(f.floor_diffuse, dvec3(floor.diffuse));
+  f.floor_reflect = floor.reflect;
+  f.floor_inner = static_cast<float>(space.local_length(floor.inner));
+  f.floor_radius = static_cast<float>(space.local_length(floor.radius));
+}
+
 }  // namespace
 
 RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings& settings) {
@@ -92,6 +103,10 @@ double radiance_bound(const scene::Scene& scene, int depth) {
                                 (lit > 0 ? incident * lit : 0));
     const double sent = largest(m.reflect + maps.reflect) + largest(m.transmit + maps.transmit);
     passed = std::max(passed, maps.mode == scene::Alpha::blend ? std::max(sent, 1.0) : sent);
+  }
+  if (const scene::Floor& floor = scene.framing.floor; floor.radius > 0) {
+    shown = std::max(shown, largest(floor.unshadowed) + incident * largest(floor.diffuse));
+    passed = std::max<double>(passed, floor.reflect);
   }
   double sum = 0, share = 1;
   for (int d = 0; d < depth; ++d, share *= passed) sum += share;
@@ -147,6 +162,8 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
   f.ray_cone = static_cast<float>(
       std::sqrt(std::abs(double{f.x_scale} * double{f.y_scale}) / static_cast<double>(o.samples)));
   set_lens(f, camera, geometry.space);
+  f.has_sky = scene.sky.kind != scene::SkyKind::none ? 1 : 0;
+  set_floor(f, scene.framing.floor, geometry.space);
   return f;
 }
 

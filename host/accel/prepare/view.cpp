@@ -2,6 +2,7 @@
 
 #include "accel/flatten/features.h"
 #include "accel/flatten/flatten.h"
+#include "accel/flatten/textures.h"
 #include "layout/features.h"
 
 namespace kdray::prepare {
@@ -30,11 +31,15 @@ void keep_holes(Prepared& white) {
 
 }  // namespace
 
-Prepared seen(const Prepared& prepared, const scene::View& view, const std::optional<vec3>& background,
-              double aspect) {
+// The sky is the scene's own, as it lies packed there, or none, or one that the view has brought.
+Prepared seen(const Prepared& prepared, const scene::View& view, double aspect) {
   Prepared changed = prepared;
   scene::set_view(changed.settings, view, aspect);
-  if (background) changed.settings.background = *background, take_out_sky(changed);
+  if (prepared.settings.sky.kind == scene::SkyKind::none ||
+      changed.settings.sky.kind == scene::SkyKind::none) {
+    changed.flat.sky = {}, changed.flat.sky_colors = {};
+    flatten::pack_sky(changed.settings.sky, changed.flat);
+  }
   light_anew(changed);
   return changed;
 }
@@ -46,6 +51,7 @@ Prepared coverage_of(const Prepared& prepared) {
   for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1), .maps = m.maps};
   white.settings.background = vec3(0);
   take_out_sky(white);
+  white.settings.framing.floor = {};
   white.settings.lights.clear();
   keep_holes(white);
   white.flat.materials = flatten::pack_materials(white.settings);

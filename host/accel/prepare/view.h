@@ -12,8 +12,7 @@ namespace kdray::prepare {
 
 // Returns the scene before another camera and background. `aspect`: the picture's width divided by its
 // height.
-Prepared seen(const Prepared& prepared, const scene::View& view, const std::optional<vec3>& background,
-              double aspect);
+Prepared seen(const Prepared& prepared, const scene::View& view, double aspect);
 
 // Returns the scene with everything in it shining white, on black: a picture is then the share of each pixel
 // that is covered, when rays go no further than to what they hit first.

@@ -175,7 +175,8 @@ bool holds_shares(const RenderArgs& o) {
   if (!wants_shares(o)) return false;
   if (!o.render.channels.empty()) say_whole("--aov needs it", o.quiet);
   if (o.view.transparent) say_whole("--background transparent needs it", o.quiet);
-  const bool needs_whole = !o.render.channels.empty() || o.view.transparent;
+  if (o.view.look == Look::studio) say_whole("--look studio needs it", o.quiet);
+  const bool needs_whole = !o.render.channels.empty() || o.view.transparent || o.view.look == Look::studio;
   return !needs_whole && !o.tree.binary_form;  // what needs that, ODPRT refuses
 }
 

@@ -155,11 +155,22 @@ void tell_of_scene(OpenedScene& scene) {
   ranks_of_this_run()->send_to_others(transport::kTagsOfScenes.first, {});
 }
 
+// A background that becomes transparent is one colour, in a studio too.
+PreparedScene seen_as(const PreparedScene& scene, const RenderArgs& o) {
+  const PreparedScene shown = in_look(scene, o.view);
+  View view = o.view.view;
+  const bool in_studio = shown.settings().framing.studio.has_value();
+  if (in_studio && o.view.transparent) view.background = {0, 0, 0};
+  return in_studio || o.view.any ? shown.seen(view, o.render.width, o.render.height) : shown;
+}
+
 }  // namespace
 
 FrameMaker::FrameMaker(RenderArgs& o) {
   if (leads()) check_files(o, files_);
   tell_of_options_without_effect(o);
+  const bool in_shares = holds_shares(o);
+  if (in_shares) o.view.look = Look::plain;  // the shape is not this rank's to know
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
   scene_.emplace(
       o.scene, o.tree, o.device, o.cache, o.quiet,
@@ -168,10 +179,10 @@ FrameMaker::FrameMaker(RenderArgs& o) {
         if (leads()) check_files(o, files_, asked);
         check_memory(o, scene::settings_of(asked));
       },
-      o.hooks, OpeningByRanks{.in_shares = holds_shares(o), .before_lookup = wait_for_scene});
+      o.hooks, OpeningByRanks{.in_shares = in_shares, .before_lookup = wait_for_scene});
   if (scene_->cache() != "off") tell_of_scene(*scene_);
   o.hooks.whole = scene_->whole();
-  seen_ = o.view.any ? scene_->scene().seen(o.view.view, o.render.width, o.render.height) : scene_->scene();
+  seen_ = seen_as(scene_->scene(), o);
   check_transparent(o, seen_->settings());
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }
@@ -209,6 +220,7 @@ void FrameMaker::make(RenderArgs& o) {
   const Timer step;
   const image::Written written = write(std::move(picture), std::move(alpha), o);
   figures.seconds.write = step.seconds();
+  if (is_first_ && !o.quiet) tell_of_view(*seen_, o.view);
   if (is_first_) {
     scene_->keep();
     scene_->add_to(figures.seconds);

@@ -8,7 +8,9 @@
 
 #include "apps/cli/help.h"
 #include "apps/cli/options.h"
+#include "apps/cli/output.h"
 #include "base/error.h"
+#include "scene/model/scene.h"
 
 namespace kdray::cli {
 
@@ -23,6 +25,7 @@ constexpr std::array<std::string_view, 3> kModes = {"auto", "pdprt", "odprt"};
 constexpr std::array<std::string_view, 3> kDivisions = {"bag", "contiguous", "interleaved"};
 constexpr std::array<std::string_view, 3> kBalances = {"sah", "pilot", "dynamic"};
 constexpr std::array<std::string_view, 2> kGrids = {"centers", "corners"};
+constexpr std::array<std::string_view, 2> kLooks = {"plain", "studio"};
 
 }  // namespace
 
@@ -121,6 +124,13 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
         ->group(group);
   };
   View& view = options.view;
+  add_text(app, "--look", "NAME",
+           "Of a scene without camera and lights: studio (default): soft lights, a backdrop, a floor, a view "
+           "that fits; plain: two lights on black",
+           [&options](const std::string& text) {
+             options.look = static_cast<Look>(parse_choice("--look", text, kLooks));
+           })
+      ->group(group);
   add("--from", "X,Y,Z", "Where the camera is (default: the scene's, or where all is in the picture)",
       [&view](const std::string& name, const std::string& text) { view.from = parse_vector(name, text); });
   add("--at", "X,Y,Z", "What it looks at",
@@ -161,6 +171,24 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
         else
           options.view.background = parse_color(name, text, "transparent, ");
       });
+}
+
+PreparedScene in_look(const PreparedScene& scene, const ViewOptions& options) {
+  return options.look.value_or(Look::studio) == Look::studio ? scene.in_studio() : scene;
+}
+
+void tell_of_view(const PreparedScene& scene, const ViewOptions& options) {
+  const scene::Scene& settings = scene.settings();
+  const View& view = options.view;
+  // Every NFF file has one.
+  const bool might_have_none = settings.name.find(".nff") == std::string::npos;
+  if (might_have_none && !settings.framing.camera && !settings.cameras.empty() && !view.camera && !view.from)
+    say(settings.cameras.size() == 1
+            ? std::string("using the file's camera 0")
+            : fmt::format("using the file's camera 0 of {} (--camera N)", settings.cameras.size()));
+  if (!settings.framing.studio || view.up || view.from) return;
+  if (settings.framing.studio->up.z == 1) say("it stands on z, so that is up; else --up y");
+  if (settings.framing.studio->perhaps_on_side) say("lies on its side? --up z");
 }
 
 namespace {

@@ -23,12 +23,20 @@ void add_division_options(CLI::App& app, RenderOptions& options);
 
 struct ViewOptions {
   View view;
+  std::optional<Look> look = {};  // none: a studio, where that can be
   bool transparent = false;  // --background transparent
   bool any = false;          // whether one was given
 };
 
-// --from --at --up --fov --camera --ortho --aperture --focus --headlight --background
+// --look --from --at --up --fov --camera --ortho --aperture --focus --headlight --background
 void add_view_options(CLI::App& app, ViewOptions& options);
+
+// Returns the scene in the look that is asked for.
+PreparedScene in_look(const PreparedScene& scene, const ViewOptions& options);
+
+// Says where the view comes from, where that was neither asked for nor plain to see: from the file's camera, from
+// a guess of what is up.
+void tell_of_view(const PreparedScene& scene, const ViewOptions& options);
 
 struct FrameRange {
   int first = 0, last = 0;

@@ -39,6 +39,7 @@ struct Settings {
   RenderOptions render;
   DeviceOptions device;
   LoadOptions load;
+  kdray::Look look = kdray::Look::studio;  // that scenes are in; for the commands alone
 };
 
 View view_of(const ViewRequest& request, const Settings& settings);

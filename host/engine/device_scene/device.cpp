@@ -54,9 +54,9 @@ double Device::upload_seconds() const {
   return upload_seconds_;
 }
 
-void Device::light_anew() {
+void Device::light_anew(bool with_sky) {
   const std::lock_guard lock(uploading_);
-  if (buffers_) buffers_->upload_lights(context, scene_.flat);
+  if (buffers_) buffers_->upload_lights(context, scene_.flat, with_sky);
 }
 
 void Device::use(const Tuned& settings) {

@@ -46,7 +46,7 @@ class Device {
   double upload_seconds() const;
 
   // Uploads the lights of the scene, which have changed.
-  void light_anew();
+  void light_anew(bool with_sky);
 
   void use(const Tuned& settings);
   const Tuned& tuned() const { return tuned_; }

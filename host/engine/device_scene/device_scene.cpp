@@ -5,7 +5,7 @@ namespace kdray::engine {
 DeviceScene::DeviceScene(const prepare::Prepared& scene, std::span<const device::Context> contexts,
                          const DeviceOptions& options, const std::string& build_options,
                          const TunedFor& tuned_for)
-    : scene_(scene) {
+    : scene_(scene), features_(scene.features) {
   for (const device::Context& context : contexts) {
     Device& device = devices_.emplace_back(context, options, build_options, scene_);
     device.use(tuned_for(context, device.global));
@@ -14,9 +14,11 @@ DeviceScene::DeviceScene(const prepare::Prepared& scene, std::span<const device:
 
 void DeviceScene::look(const prepare::Prepared& seen) {
   scene_.settings = seen.settings;
-  scene_.features = seen.features;
+  features_ = seen.features;
   scene_.flat.lights = seen.flat.lights;
-  for (Device& device : devices_) device.light_anew();
+  const bool other_sky = scene_.flat.sky.data() != seen.flat.sky.data();
+  scene_.flat.sky = seen.flat.sky, scene_.flat.sky_colors = seen.flat.sky_colors;
+  for (Device& device : devices_) device.light_anew(other_sky);
 }
 
 void DeviceScene::tune(const Tuning& tuning) {

@@ -25,8 +25,11 @@ class DeviceScene {
   DeviceScene& operator=(const DeviceScene&) = delete;
 
   const prepare::Prepared& scene() const { return scene_; }
-  // Takes camera, lights and settings from a scene whose trees and primitives are this one's own.
+  // Takes camera, lights, sky and settings from a scene whose trees and primitives are this one's own. Queries
+  // may go on meanwhile: they read none of these.
   void look(const prepare::Prepared& seen);
+  // Those of frames: what the scene needs as it is seen.
+  layout::Features features() const { return features_; }
 
   Device& first() { return devices_.front(); }
   const Device& first() const { return devices_.front(); }
@@ -52,6 +55,7 @@ class DeviceScene {
 
  private:
   prepare::Prepared scene_;
+  layout::Features features_;
   std::deque<Device> devices_;
 };
 

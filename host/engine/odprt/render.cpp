@@ -50,10 +50,13 @@ DividedScene::DividedScene(flatten::FlatScene flat, flatten::WideForm wide,
   flat_.refs = {};
 }
 
-void DividedScene::light(const Array<layout::Light>& lights) {
-  flat_.lights = lights;
+void DividedScene::light(const flatten::FlatScene& seen) {
+  const auto light = [&seen](flatten::FlatScene& flat) {
+    flat.lights = seen.lights, flat.sky = seen.sky, flat.sky_colors = seen.sky_colors;
+  };
+  light(flat_);
   if (!division_) return;
-  for (Part& part : division_->parts) part.flat.lights = lights;
+  for (Part& part : division_->parts) light(part.flat);
 }
 
 void DividedScene::cut_for(std::uint32_t n_parts) {

@@ -80,7 +80,7 @@ class DividedScene {
   Result render(const Request& request);
 
   // From the next frame on.
-  void light(const Array<layout::Light>& lights);
+  void light(const flatten::FlatScene& seen);
 
   const Cut& cut() const { return cut_; }
   // Of the whole scene; where it is held by ranks, once a frame was rendered.

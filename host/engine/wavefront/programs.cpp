@@ -30,7 +30,7 @@ constexpr layout::Features kShading =
     kGeometry | kLooks | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT |
     KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE | KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_ATTENUATION |
     KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND | KDRAY_FEATURE_FACES |
-    KDRAY_FEATURE_SKY | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_KEEP_SHADING;
+    KDRAY_FEATURE_SKY | KDRAY_FEATURE_FLOOR | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_KEEP_SHADING;
 
 // A wide form larger than this lies outside of the nearer caches, where fetching ahead is worth its
 // instructions: a tenth is lost at 1 and 3 MB, up to a third gained at 20 MB.
@@ -64,12 +64,12 @@ layout::Features bits_read_by(const std::string& file) {
 }
 
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
-// rays are counted; not masks, which a scene has to have, nor textures or a sky, whose arrays would be read,
-// nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
+// rays are counted; not masks, which a scene has to have, nor textures, whose arrays would be read, nor what
+// changes the form of rays or where they start; and not in ODPRT what sizes its plan
 // (odprt/admit.clh).
 layout::Features spare_bits_of(const std::string& file) {
-  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks |
-                                                 KDRAY_FEATURE_SKY | kSamples | KDRAY_FEATURE_INSTANCES);
+  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks | kSamples |
+                                                 KDRAY_FEATURE_INSTANCES);
   if (file == "odprt/wave.cl")
     bits &= ~(KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS);
   return bits;

@@ -85,8 +85,13 @@ const cl::Buffer& SceneBuffers::compressed_nodes() const {
   return *c.buffer;
 }
 
-void SceneBuffers::upload_lights(const device::Context& context, const flatten::FlatScene& flat) {
-  lights = context.upload(flat.lights.data(), flat.lights.bytes(), flat.lights.owner(), kNames[Slot::lights]);
+void SceneBuffers::upload_lights(const device::Context& context, const flatten::FlatScene& flat,
+                                 bool with_sky) {
+  const auto upload = [&](const auto& items, std::size_t slot) {
+    return context.upload(items.data(), items.bytes(), items.owner(), kNames[slot]);
+  };
+  lights = upload(flat.lights, Slot::lights);
+  if (with_sky) sky = upload(flat.sky, Slot::sky), sky_colors = upload(flat.sky_colors, Slot::sky_colors);
 }
 
 SceneBuffers::SceneBuffers(const device::Context& context, const Sizes& sizes) {

@@ -41,8 +41,8 @@ struct SceneBuffers {
   // not where there is only room.
   const cl::Buffer& compressed_nodes() const;
 
-  // The scene's lights in place of others, of which there may have been more or fewer.
-  void upload_lights(const device::Context& context, const flatten::FlatScene& flat);
+  // The scene's lights, and its sky, in place of others, of which there may have been more or fewer.
+  void upload_lights(const device::Context& context, const flatten::FlatScene& flat, bool with_sky);
 
   // Sets those of a kernel's arguments that are arrays of the scene. Kernel: device::Kernel<K>, or a stage of
   // it.

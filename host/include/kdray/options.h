@@ -26,6 +26,12 @@ enum class Instances {
   kept        // all that the file names as such are held once
 };
 
+// How a scene looks whose file has neither camera nor lights.
+enum class Look {
+  plain,  // two lights, and what else the file says
+  studio  // PreparedScene::in_studio()
+};
+
 // How a scene file is read.
 struct LoadOptions {
   // Triangles without normals get them from the faces around each corner, where the surface turns by no more

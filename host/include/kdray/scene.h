@@ -141,7 +141,8 @@ class Scene {
 
   // A picture of what was committed; one at a time, others wait. Channels, double precision and the binary
   // walk ask for CommitOptions::tree.binary_form.
-  Picture render(const RenderOptions& options = {}) const;
+  // `look`: what it is shown in where it has neither camera nor lights of its own.
+  Picture render(const RenderOptions& options = {}, Look look = Look::plain) const;
 
   // What each ray hits first. With the t of a hit as t_min the same ray finds what comes after just that hit.
   // Which surface comes first is decided in floats about the scene's centre; t of a ray of doubles is that of

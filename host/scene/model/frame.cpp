@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/local_space.h"
 #include "scene/model/check_scene.h"
+#include "scene/model/studio.h"
 
 namespace kdray::scene {
 
@@ -18,37 +19,9 @@ constexpr double kFov = 0.6981317007977318;  // 40 degrees
 constexpr double kMargin = 1.05;             // of the half picture: 2.5% of its height stay free on each side
 constexpr float kKey = 0.75f, kFill = 0.25f;
 
-// Right, up and forward of a camera, unit vectors.
-struct Basis {
-  dvec3 right, up, forward;
-};
-
-// Returns the rotation by the shortest way from y, which is up for the directions in this file, to `up`.
-dvec3 turned_to(const dvec3& up, const dvec3& v) {
-  const dvec3 to = safe_normalize(up);
-  if (to.y == 1) return v;
-  if (to.y == -1) return {v.x, -v.y, -v.z};
-  const dvec3 axis(to.z, 0, -to.x);  // y x up, as long as the sine of the angle
-  return to.y * v + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1 + to.y));
-}
-
-Basis basis_of(const Camera& camera) {
-  const dvec3 forward = safe_normalize(camera.at - camera.from);
-  const dvec3 right =
-      glm::normalize(glm::cross(forward, camera.up * scale_to_one(largest_component(camera.up))));
-  return {right, glm::cross(right, forward), forward};
-}
-
 // Returns the power of two that brings the box to a size of about 1. Cameras are made at that size.
 double scale_of(const DBox& world) {
   return scale_to_one(std::max(largest_component(world.lo), largest_component(world.hi)));
-}
-
-std::array<dvec3, 8> corners_of(const DBox& box) {
-  std::array<dvec3, 8> corners;
-  for (std::size_t i = 0; i < 8; ++i)
-    corners[i] = {i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z};
-  return corners;
 }
 
 Light directional(const dvec3& direction, float intensity) {
@@ -64,10 +37,6 @@ Light point(const dvec3& position, float intensity) {
   light.position = position;
   light.color = vec3(intensity);
   return light;
-}
-
-bool contains(const DBox& box, const dvec3& p) {
-  return glm::all(glm::lessThanEqual(box.lo, p)) && glm::all(glm::lessThanEqual(p, box.hi));
 }
 
 // A key light from over the viewer's left shoulder and a weaker one from the right. A viewer inside the scene
@@ -120,6 +89,33 @@ DBox worth_showing(Scene& scene, const Framed& framed) {
 }
 
 }  // namespace
+
+// Directions in this file have y up.
+dvec3 turned_to(const dvec3& up, const dvec3& v) {
+  const dvec3 to = safe_normalize(up);
+  if (to.y == 1) return v;
+  if (to.y == -1) return {v.x, -v.y, -v.z};
+  const dvec3 axis(to.z, 0, -to.x);  // y x up, as long as the sine of the angle
+  return to.y * v + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1 + to.y));
+}
+
+Basis basis_of(const Camera& camera) {
+  const dvec3 forward = safe_normalize(camera.at - camera.from);
+  const dvec3 right =
+      glm::normalize(glm::cross(forward, camera.up * scale_to_one(largest_component(camera.up))));
+  return {right, glm::cross(right, forward), forward};
+}
+
+std::array<dvec3, 8> corners_of(const DBox& box) {
+  std::array<dvec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = {i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z};
+  return corners;
+}
+
+bool contains(const DBox& box, const dvec3& p) {
+  return glm::all(glm::lessThanEqual(box.lo, p)) && glm::all(glm::lessThanEqual(p, box.hi));
+}
 
 RenderSettings settings_of(const Scene& scene) {
   RenderSettings settings = scene.settings;
@@ -255,11 +251,12 @@ void check(const Camera& camera) {
 Camera camera_of(const Scene& scene, const View& view, double aspect) {
   Camera camera = view.camera ? numbered_camera(scene, *view.camera) : scene.camera.value_or(Camera{});
   const bool made_up = scene.framing.camera && !view.camera;
+  if (made_up && scene.framing.studio) set_studio_camera(camera, scene.framing, view, aspect);
   if (view.from) camera.from = *view.from;
   if (view.at) camera.at = *view.at;
   if (view.up) camera.up = *view.up;
   if (view.vertical_fov) camera.vertical_fov = *view.vertical_fov, camera.ortho_width = 0;
-  if (made_up && !view.from)
+  if (made_up && !scene.framing.studio && !view.from)
     camera = three_quarter_view(scene.framing.box, camera, std::min(aspect, aspect_of(scene.settings)));
   check(camera);
   if (view.ortho_width && *view.ortho_width > 0)
@@ -273,9 +270,10 @@ Camera camera_of(const Scene& scene, const View& view, double aspect) {
 
 void set_view(Scene& scene, const View& view, double aspect) {
   scene.camera = camera_of(scene, view, aspect);
+  if (view.background) scene.background = *view.background, scene.sky = {};
   if (scene.framing.lights) {
     scene.lights.clear();
-    add_lights(scene);
+    scene.framing.studio ? furnish_studio(scene, view) : add_lights(scene);
   }
   if (view.headlight > 0) scene.lights.push_back(headlight(*scene.camera, view.headlight));
 }

@@ -6,6 +6,7 @@
 // Errors  kdray::Error, ErrorCode::usage: a camera that the file doesn't have, directions that make no view.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -49,6 +50,19 @@ Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect
 // one.
 double width_to_show(const DBox& world, const Camera& camera, double aspect);
 
+// Right, up and forward of a camera, unit vectors.
+struct Basis {
+  dvec3 right, up, forward;
+};
+Basis basis_of(const Camera& camera);
+
+std::array<dvec3, 8> corners_of(const DBox& box);
+
+// Returns the rotation by the shortest way from y to `up`, of a vector.
+dvec3 turned_to(const dvec3& up, const dvec3& v);
+
+bool contains(const DBox& box, const dvec3& p);
+
 // Adds lights for the scene's camera, where there is anything to light.
 void add_lights(Scene& scene);
 
@@ -61,13 +75,15 @@ struct View {
   std::optional<double> ortho_width = {};  // parallel eye rays; 0: as wide as the scene needs
   std::optional<double> aperture = {}, focus = {};
   double headlight = 0;  // above 0: one more light, of this strength, at the camera
+  std::optional<vec3> background = {};
 };
 
 // Returns the camera that the view asks for. `aspect` is the width divided by the height of the picture that
 // will be made.
 Camera camera_of(const Scene& scene, const View& view, double aspect);
 
-// Puts that camera into the scene, with lights for it where they were made up, and the headlight.
+// Puts that camera into the scene, with lights for it where they were made up, the headlight and the
+// background. In a studio, also what else belongs to it.
 void set_view(Scene& scene, const View& view, double aspect);
 
 }  // namespace kdray::scene

@@ -82,11 +82,34 @@ struct Camera {
   double aspect = 0;    // width by height of the picture that it is made for; 0: any
 };
 
+// A disc that rays see which meet nothing else (kernels/shade/floor.clh), as a surface of these terms.
+struct Floor {
+  dvec3 middle{0}, up{0, 1, 0};
+  double inner = 0, radius = 0;  // it fades into the background from the one to the other; 0: there is none
+  vec3 unshadowed{0}, diffuse{0};
+  float reflect = 0;
+};
+
+// How a scene is shown in a studio (studio.h), by what its shape tells (accel/prepare/studio.h).
+struct Studio {
+  dvec3 up{0, 1, 0};
+  bool perhaps_on_side = false;  // z may be up, but the shape doesn't tell for certain
+  bool own_background = false;   // the scene has one
+  bool stands = false;           // on a floor, as all of it is shown
+  struct Room {
+    dvec3 from, at;
+  };
+  std::optional<Room> room = {};     // of one that is closed all around: where a viewer in it stands
+  std::optional<dvec3> open_to = {};  // of one that is open on one side: the way out
+};
+
 // What frame_scene() made up where the file has nothing, so that another view can be made up in the same way
 // (frame.h).
 struct Framing {
   bool camera = false, lights = false;
   DBox box;  // of what is worth showing; empty for a scene of nothing
+  std::optional<Studio> studio = {};  // that the scene is seen in
+  Floor floor = {};                   // that the studio has for the view
 };
 
 struct Triangle {

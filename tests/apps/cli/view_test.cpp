@@ -1,5 +1,8 @@
 // What    The view on the command line against the same view in the file, and against closed forms: what a
 //         sphere covers in parallel rays, what a mesh looks like that was turned instead of the camera.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -7,6 +10,7 @@
 #include "apps/cli/scenes.h"
 #include "io/image/compare.h"
 #include "io/image/picture_file.h"
+#include "kdray/kdray.h"
 #include "scene/gltf_samples.h"
 #include "support/folder.h"
 
@@ -66,21 +70,28 @@ TEST_F(ViewTest, UpAloneIsAsIfTheMeshWereTurned) {
   folder.put("y.obj", wedge([](const dvec3& v) { return v; }));
   folder.put("z.obj", wedge([](const dvec3& v) { return dvec3(v.x, -v.z, v.y); }));
   folder.put("down.obj", wedge([](const dvec3& v) { return dvec3(v.x, -v.y, -v.z); }));
-  const image::Image upright = rendered("y.obj");
-  EXPECT_TRUE(same_bits(rendered("y.obj", {"--up", "y"}), upright));
-  EXPECT_LT(image::compare(rendered("z.obj", {"--up", "z"}), upright).rmse, 1e-3);
-  EXPECT_LT(image::compare(rendered("down.obj", {"--up", "-y"}), upright).rmse, 1e-3);
-  EXPECT_GT(image::compare(rendered("z.obj"), upright).rmse, 0.02) << "nothing was turned";
+  const auto plain = [this](const std::string& scene, std::vector<std::string> options) {
+    options.push_back("--look=plain");
+    return rendered(scene, options);
+  };
+  const image::Image upright = plain("y.obj", {});
+  EXPECT_TRUE(same_bits(plain("y.obj", {"--up", "y"}), upright));
+  EXPECT_LT(image::compare(plain("z.obj", {"--up", "z"}), upright).rmse, 1e-3);
+  EXPECT_LT(image::compare(plain("down.obj", {"--up", "-y"}), upright).rmse, 1e-3);
+  EXPECT_GT(image::compare(plain("z.obj", {}), upright).rmse, 0.02) << "nothing was turned";
 }
 
 TEST_F(ViewTest, LightsThatTheFileLacksFollowTheCamera) {
   folder.put("y.obj", wedge([](const dvec3& v) { return v; }));
   for (const char* const from : {"9,1,0", "-9,1,0", "0,1,9", "0,1,-9", "1,-9,1"}) {
-    const image::Image image = rendered("y.obj", {"--from", from, "--background", "transparent"});
-    ASSERT_GT(mean_alpha(image), 0.01) << from;
-    double brightest = 0;
-    for (const vec3& p : image.pixels) brightest = std::max<double>(brightest, p.x);
-    EXPECT_GT(brightest, 0.25) << from << ": by ambient light alone it were under 0.1";
+    for (const char* const look : {"plain", "studio"}) {
+      const image::Image image =
+          rendered("y.obj", {"--from", from, "--background", "transparent", "--look", look});
+      ASSERT_GT(mean_alpha(image), 0.01) << from;
+      double brightest = 0;
+      for (const vec3& p : image.pixels) brightest = std::max<double>(brightest, p.x);
+      EXPECT_GT(brightest, 0.25) << look << ", " << from << ": by ambient light alone it were under 0.1";
+    }
   }
 }
 
@@ -176,6 +187,81 @@ TEST_F(ViewTest, TheBackgroundIsTheColourAskedFor) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.pixels[0][c], b.pixels[0][c], 0.005f);
 }
 
+// A wedge on its longest side, before the studio's backdrop; the other look is what the library renders.
+TEST_F(ViewTest, ALookIsAStudioUnlessItIsToBePlain) {
+  const std::string file = folder.put("y.obj", wedge([](const dvec3& v) { return v; }));
+  const image::Image studio = rendered("y.obj"), plain = rendered("y.obj", {"--look", "plain"});
+  EXPECT_TRUE(same_bits(rendered("y.obj", {"--look=studio"}), studio));
+  const Picture library = Renderer(Scene::load(file)).render({.width = 64, .height = 64});
+  ASSERT_EQ(library.rgb.size(), 3 * plain.pixels.size());
+  for (std::size_t i = 0; i < plain.pixels.size(); ++i)
+    ASSERT_EQ(plain.pixels[i], vec3(library.rgb[3 * i], library.rgb[3 * i + 1], library.rgb[3 * i + 2])) << i;
+  const auto darkest = [](const image::Image& image) {
+    return std::ranges::min_element(image.pixels, {}, &vec3::x)->x;
+  };
+  EXPECT_EQ(darkest(plain), 0);
+  EXPECT_GT(darkest(studio), 0.02f);
+  for (const std::vector<std::string>& mode : {std::vector<std::string>{"--mode=odprt", "--queues=2"},
+                                               {"--mode=pdprt", "--queues=2"},
+                                               {"--schedule=global"},
+                                               {"--traversal=batch"}})
+    EXPECT_TRUE(same_bits(rendered("y.obj", mode), studio)) << mode[0];
+}
+
+TEST_F(ViewTest, AStudioWhoseBackgroundIsTransparentIsOneWithoutFloor) {
+  folder.put("y.obj", wedge([](const dvec3& v) { return v; }));
+  const image::Image image = rendered("y.obj", {"--background", "transparent"});
+  ASSERT_EQ(image.alpha.size(), image.pixels.size());
+  EXPECT_EQ(image.alpha, rendered("y.obj", {"--background", "transparent", "--samples=8"}).alpha);
+  for (std::size_t i = 0; i < image.alpha.size(); ++i)
+    if (image.alpha[i] == 0) {
+      EXPECT_EQ(image.pixels[i], vec3(0)) << i;
+    }
+  EXPECT_GT(mean_alpha(image), 0.1);
+}
+
+TEST_F(ViewTest, AFileWithACameraOrLightsLooksAsItSays) {
+  const std::string objects = R"("objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1}]})";
+  folder.put("seen.json", R"({"camera": {"from": [0, 1, 5], "at": [0, 0, 0]}, )" + objects);
+  folder.put("lit.json", R"({"lights": [{"type": "point", "position": [0, 9, 5]}], )" + objects);
+  folder.put("both.nff", kSphereOnSquare);
+  for (const char* const scene : {"seen.json", "lit.json", "both.nff"})
+    EXPECT_TRUE(same_bits(rendered(scene, {"--look=studio"}), rendered(scene, {"--look=plain"}))) << scene;
+  const auto said = [&](const std::string& scene, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"render", folder / scene, "-o", folder / "o.png", "--size=8x8"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = kdray(arguments);
+    EXPECT_TRUE(succeeds(run));
+    return run.err;
+  };
+  const std::string told = "kdray: using the file's camera 0\n";
+  EXPECT_NE(said("seen.json").find(told), std::string::npos);
+  EXPECT_EQ(said("seen.json", {"--from=0,0,9"}).find(told), std::string::npos);
+  EXPECT_EQ(said("lit.json").find(told), std::string::npos);
+}
+
+// A plinth with a small ball over it, along z.
+TEST_F(ViewTest, WhatStandsOnZIsUprightAndALineSaysSo) {
+  const auto tower = [](dvec3 (*turn)(const dvec3&)) {
+    std::string text;
+    for (int i = 0; i < 8; ++i) {
+      const dvec3 v = turn({i & 1 ? 1.0 : -1.0, i & 2 ? 3.0 : 0.0, i & 4 ? 0.8 : -0.8});
+      text += fmt::format("v {} {} {}\n", v.x, v.y, v.z);
+    }
+    const dvec3 top = turn({0.2, 6, 0.1});
+    text += fmt::format("v {} {} {}\n", top.x, top.y, top.z);
+    return text +
+           "f 1 2 6 5\nf 1 3 4 2\nf 5 6 8 7\nf 1 5 7 3\nf 2 4 8 6\nf 3 9 4\nf 4 9 8\nf 8 9 7\nf 7 9 3\n";
+  };
+  const std::string y = folder.put("y.obj", tower([](const dvec3& v) { return v; }));
+  const std::string z = folder.put("z.obj", tower([](const dvec3& v) { return dvec3(v.x, -v.z, v.y); }));
+  EXPECT_LT(image::compare(rendered("z.obj"), rendered("y.obj")).rmse, 0.02);
+  EXPECT_GT(image::compare(rendered("z.obj", {"--up=y"}), rendered("y.obj")).rmse, 0.05);
+  const std::string told = "it stands on z";
+  EXPECT_NE(kdray({"render", z, "-o", folder / "z.png", "--size=8x8"}).err.find(told), std::string::npos);
+  EXPECT_EQ(kdray({"render", y, "-o", folder / "y.png", "--size=8x8"}).err.find(told), std::string::npos);
+}
+
 TEST(ViewOptions, WhatMakesNoViewIsRefused) {
   const Folder folder;
   const std::string scene = folder.put("a.nff", kSphereOnSquare), out = folder / "a.png";
@@ -189,6 +275,7 @@ TEST(ViewOptions, WhatMakesNoViewIsRefused) {
   EXPECT_TRUE(refuses({"--up", "0,0,0"}, "not all 0"));
   EXPECT_TRUE(refuses({"--up", "w"}, "x, y, z"));
   EXPECT_TRUE(refuses({"--fov", "180"}, "--fov"));
+  EXPECT_TRUE(refuses({"--look", "nice"}, "--look 'nice': expected one of plain, studio"));
   EXPECT_TRUE(refuses({"--ortho", "0"}, "--ortho"));
   EXPECT_TRUE(refuses({"--ortho", "2", "--fov", "40"}, "--ortho"));
   EXPECT_TRUE(refuses({"--background", "#12345"}, "transparent"));

@@ -41,12 +41,12 @@ constexpr layout::Features kT = KDRAY_FEATURE_KIND(TRIANGLE), kSmooth = KDRAY_FE
                            kMaps = KDRAY_FEATURE_MATERIAL_MAPS, kColors = KDRAY_FEATURE_CORNER_COLORS,
                            kTextures = KDRAY_FEATURE_TEXTURES, kCutouts = KDRAY_FEATURE_CUTOUTS,
                            kSky = KDRAY_FEATURE_SKY, kArea = KDRAY_FEATURE_AREA_LIGHTS,
-                           kLens = KDRAY_FEATURE_LENS;
+                           kLens = KDRAY_FEATURE_LENS, kFloor = KDRAY_FEATURE_FLOOR;
 constexpr layout::Features kKinds = (KDRAY_FEATURE_OF_KIND(primitives::kKinds) - 1) & KDRAY_FEATURE_ALL_KINDS;
 constexpr layout::Features kLit = kDiffuse | kLights,
                            kAll = kKinds | kZeroArea | kSmooth | kNumbers | kReflect | kTransmit | kSpecular |
                                   kLit | kFallOff | kDirectional | kSpot | kBackground | kSamples | kMaps |
-                                  kColors | kTextures | kCutouts | kSky | kArea | kLens;
+                                  kColors | kTextures | kCutouts | kSky | kArea | kLens | kFloor;
 
 constexpr std::uint64_t kSeed = 3;
 
@@ -145,6 +145,13 @@ scene::Scene scene_of(layout::Features mask) {
     s.sky = {.kind = scene::SkyKind::gradient, .stops = {{-1, {0.1f, 0.2f, 0.3f}}, {1, {0.2f, 0.3f, 0.4f}}}};
     s.sky.brightest = scene::brightest_of(s.sky);
   }
+  if (has(mask, kFloor))
+    s.framing.floor = {.middle = {0, -1.2, 0},
+                       .inner = 2,
+                       .radius = 8,
+                       .unshadowed = vec3(0.1f),
+                       .diffuse = vec3(0.5f),
+                       .reflect = has(mask, kReflect) ? 0.2f : 0.0f};
   s.camera = scene::Camera{.from = {0.5, 0.8, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 0.7};
   if (has(mask, kLens)) s.camera->aperture = 0.1;
   return s;
@@ -288,6 +295,9 @@ const std::vector<layout::Features> kFilmMasks = {kBackground,
                                                   kT | kReflect | kLit | kSamples,
                                                   kBackground | kSky,
                                                   kT | kReflect | kBackground | kSky,
+                                                  kT | kLit | kFloor,
+                                                  kT | kReflect | kLit | kFloor | kBackground | kSky,
+                                                  kT | kLit | kFloor | kArea | kSamples,
                                                   kT | kLit | kLens,
                                                   kT | kLit | kLens | kSamples};
 
