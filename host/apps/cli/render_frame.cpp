@@ -164,14 +164,20 @@ PreparedScene seen_as(const PreparedScene& scene, const RenderArgs& o) {
   return in_studio || o.view.any ? shown.seen(view, o.render.width, o.render.height) : shown;
 }
 
+// No rank knows the shape of a scene that is held in shares, by which a studio is furnished.
+void take_plain_look(RenderArgs& o, const scene::Scene& scene) {
+  if (!o.view.look && scene.framing.camera && scene.framing.lights && leads() && !o.quiet)
+    say("in the plain look, as ranks hold shares of the scene; --hold whole --look studio for the other");
+  o.view.look = Look::plain;
+}
+
 }  // namespace
 
 FrameMaker::FrameMaker(RenderArgs& o) {
   if (leads()) check_files(o, files_);
   tell_of_options_without_effect(o);
-  const bool in_shares = holds_shares(o);
-  if (in_shares) o.view.look = Look::plain;  // the shape is not this rank's to know
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
+  const bool in_shares = holds_shares(o);
   scene_.emplace(
       o.scene, o.tree, o.device, o.cache, o.quiet,
       [&](const scene::Scene& asked) {
@@ -182,6 +188,7 @@ FrameMaker::FrameMaker(RenderArgs& o) {
       o.hooks, OpeningByRanks{.in_shares = in_shares, .before_lookup = wait_for_scene});
   if (scene_->cache() != "off") tell_of_scene(*scene_);
   o.hooks.whole = scene_->whole();
+  if (in_shares) take_plain_look(o, scene_->scene().settings());
   seen_ = seen_as(scene_->scene(), o);
   check_transparent(o, seen_->settings());
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);

@@ -131,7 +131,7 @@ TEST_F(MpirunTest, SharesOfTheScene) {
       folder.put("ball.ply", ball_ply(40, {.normals = true, .colors = true}, true)).string();
   const std::string nff = folder / "gears.nff";
   ASSERT_TRUE(succeeds(kdray({"generate", "gears", "--size", "2", "-o", nff})));
-  const Arguments view{"--size", "150x110"};
+  const Arguments view{"--size", "150x110", "--look", "plain"};
   for (const std::string& scene : {ply, nff}) {
     const std::string whole = alone(scene, view);
     const auto rays = told()["rays"]["total"];

@@ -203,7 +203,7 @@ TEST(Usage, ValuesThatAreNoneAreRefusedWithWhatIsAccepted) {
 }
 
 TEST(Usage, MessagesStayOnOneLineWhateverTheNames) {
-  EXPECT_TRUE(fails_with(kdray({"info", "a\nb\033[31m.nff"}), 1, "a b [31m.nff"));
+  EXPECT_TRUE(fails_with(kdray({"info", "a\nb\033[31m.nff"}), 1, "a?b?[31m.nff"));
   EXPECT_TRUE(fails_with(kdray({"tu\nne"}), 2, "tu ne"));
 }
 
