@@ -25,7 +25,7 @@ namespace kdray {
 
 namespace {
 
-Picture to_picture(FrameResult& result, std::vector<image::Channel> channels) {
+Picture to_picture(api::FrameResult& result, std::vector<image::Channel> channels) {
   Picture picture{static_cast<int>(result.width), static_cast<int>(result.height), std::move(result.rgb), {}, {}};
   for (image::Channel& c : channels) picture.channels.push_back({std::move(c.name), std::move(c.values)});
   return picture;
