@@ -70,8 +70,8 @@ namespace {
 
 image::Channel samples_channel(const Job& job, FrameResult& frame_result) {
   if (frame_result.samples) return {"samples", std::move(frame_result.samples->counts)};
-  return {"samples",
-          std::vector<float>(frame_result.image.pixels.size(), static_cast<float>(job.frame.n_samples))};
+  const std::size_t n_pixels = frame_result.rgb.size() / 3;
+  return {"samples", std::vector<float>(n_pixels, static_cast<float>(job.frame.n_samples))};
 }
 
 }  // namespace

@@ -25,13 +25,8 @@ namespace kdray {
 
 namespace {
 
-Picture to_picture(const image::Image& image, std::vector<image::Channel> channels) {
-  Picture picture{image.width, image.height, {}, {}, {}};
-  static_assert(sizeof(vec3) == 3 * sizeof(float));
-  if (!image.pixels.empty()) {
-    const float* const first = &image.pixels.front().x;
-    picture.rgb.assign(first, first + 3 * image.pixels.size());
-  }
+Picture to_picture(api::FrameResult& result, std::vector<image::Channel> channels) {
+  Picture picture{static_cast<int>(result.width), static_cast<int>(result.height), std::move(result.rgb), {}, {}};
   for (image::Channel& c : channels) picture.channels.push_back({std::move(c.name), std::move(c.values)});
   return picture;
 }
@@ -100,7 +95,7 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
   if (job.checkpoint)
     std::ranges::copy(job.checkpoint->warnings(), std::back_inserter(frame_result.warnings));
   if (!leads) return {};
-  Picture picture = to_picture(frame_result.image, api::channels_of(state, job, frame_result));
+  Picture picture = to_picture(frame_result, api::channels_of(state, job, frame_result));
   picture.warnings = std::move(frame_result.warnings);
   return picture;
 }

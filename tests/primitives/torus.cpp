@@ -31,6 +31,8 @@ Hit intersect(primitives::TorusKind, const Shape& s, const Ray& ray, double grow
                                   f = RealVec(ray.origin) - RealVec(s.a);
   const long double a = glm::dot(d, d), middle = -glm::dot(f, d) / a;
   const RealVec g = f + middle * d;
+  // Most rays pass the sphere around it, and finding a quartic's roots takes long.
+  if (glm::dot(g, g) > (1 + 1e-9L) * (major + minor) * (major + minor)) return {};
   const auto quartic = torus_quartic<long double>(glm::dot(g, g), glm::dot(g, d), a, glm::dot(g, n),
                                                   glm::dot(d, n), major, minor);
   const long double reach = 2 * (major + minor) / std::sqrt(a);

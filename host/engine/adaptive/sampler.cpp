@@ -225,18 +225,18 @@ void Sampler::take(std::span<const layout::i64> sums) {
     if (near[block]) changed_.push_back(block);
 }
 
-std::vector<vec3> Sampler::picture() const {
+std::vector<float> Sampler::picture() const {
   std::array<double, kLevels> scale;
   for (int level = 0; level < kLevels; ++level)
     scale[static_cast<std::size_t>(level)] = kUnit / samples_of(level);
-  std::vector<vec3> pixels(size_.pixels());
+  std::vector<float> rgb(sums_.size());
   for_each_of(size_.height, [&](std::size_t y) {
     for (std::size_t pixel = y * size_.width; pixel < (y + 1) * size_.width; ++pixel)
       for (std::size_t c = 0; c < 3; ++c)
-        pixels[pixel][static_cast<int>(c)] =
+        rgb[3 * pixel + c] =
             static_cast<float>(static_cast<double>(sums_[3 * pixel + c]) * scale[level_[pixel]]);
   });
-  return pixels;
+  return rgb;
 }
 
 Report Sampler::report() const {

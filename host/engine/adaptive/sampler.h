@@ -40,7 +40,7 @@ class Sampler {
   // Takes the light of the last round's samples: three sums for each place of its runs.
   void take(std::span<const layout::i64> sums);
 
-  std::vector<vec3> picture() const;
+  std::vector<float> picture() const;  // RGB
   Report report() const;
 
  private:

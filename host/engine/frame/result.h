@@ -9,11 +9,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cluster/transport/message_bytes.h"
 #include "engine/adaptive/report.h"
 #include "engine/wavefront/counters.h"
-#include "io/image/image.h"
 
 namespace kdray::frame {
 
@@ -27,7 +27,8 @@ struct QueueReport {
 };
 
 struct Result {
-  image::Image image;
+  std::uint32_t width = 0, height = 0;          // of the picture
+  std::vector<float> rgb;                       // linear, row by row from the top left; rank 0 has it
   std::optional<adaptive::Report> samples;  // of adaptive sampling
   wavefront::Counters counters;
   std::map<std::string, double> stage_seconds;  // device time, added over the queues

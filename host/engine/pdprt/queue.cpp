@@ -1,5 +1,7 @@
 #include "engine/pdprt/queue.h"
 
+#include <oneapi/tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -136,7 +138,7 @@ void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared
   if (tiles.empty()) return wavefront_.finish();  // another queue was faster
   if (work.samples.empty()) note_costs(tiles, shared);
   std::vector<layout::u32> in_order(tiles.begin(), tiles.end());
-  std::ranges::sort(in_order);
+  tbb::parallel_sort(in_order);
   const std::vector<Delivery> deliveries =
       deliveries_of(in_order, frame_, work.samples.empty(), wavefront_.film_piece());
   std::vector<wavefront::FilmPiece> pieces;

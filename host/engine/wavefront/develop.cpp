@@ -21,7 +21,7 @@ namespace kdray::wavefront {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 15;  // pixels to a task: 1 MiB of sums and picture
+constexpr std::size_t kGrain = 3 << 15;  // sums to a task: 1 MiB of them and of the picture
 
 // Neighbouring tiles of one row.
 struct TileSpan {
@@ -30,10 +30,14 @@ struct TileSpan {
 
 // Spans as long as can be: sums and picture are read and written in the order in which they lie.
 std::vector<TileSpan> spans_of(std::span<const layout::u32> tiles) {
-  std::vector<layout::u32> sorted(tiles.begin(), tiles.end());
-  std::sort(sorted.begin(), sorted.end());  // by row, then by column
+  std::vector<layout::u32> sorted;  // by row, then by column
+  if (!std::ranges::is_sorted(tiles)) {
+    sorted.assign(tiles.begin(), tiles.end());
+    std::ranges::sort(sorted);
+    tiles = sorted;
+  }
   std::vector<TileSpan> spans;
-  for (const layout::u32 tile : sorted) {
+  for (const layout::u32 tile : tiles) {
     const std::uint32_t row = KDRAY_TILE_ROW(tile), column = KDRAY_TILE_COLUMN(tile);
     if (!spans.empty() && spans.back().row == row && spans.back().end_column == column)
       ++spans.back().end_column;
@@ -89,28 +93,23 @@ class Developer {
       : scale_(1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples)) {}
 
   // The films' sums from `first` on.
-  void operator()(Films films, std::size_t first, std::span<vec3> pixels) const {
-    if (films.size() == 1) return develop(films.front().subspan(first, 3 * pixels.size()), pixels);
-    std::vector<layout::i64> sums(3 * pixels.size());
+  void operator()(Films films, std::size_t first, std::span<float> rgb) const {
+    if (films.size() == 1) return scale_sums(films.front().data() + first, rgb.size(), scale_, rgb.data());
+    std::vector<layout::i64> sums(rgb.size());
     add_pieces(films, first, sums);
-    develop(sums, pixels);
+    scale_sums(sums.data(), rgb.size(), scale_, rgb.data());
   }
 
  private:
-  void develop(std::span<const layout::i64> sums, std::span<vec3> pixels) const {
-    static_assert(sizeof(vec3) == 3 * sizeof(float));
-    if (!pixels.empty()) scale_sums(sums.data(), 3 * pixels.size(), scale_, &pixels.front().x);
-  }
-
   double scale_;
 };
 
 }  // namespace
 
-void develop(Films films, int samples, std::span<vec3> pixels) {
+void develop(Films films, int samples, std::span<float> rgb) {
   const Developer developer(static_cast<std::uint32_t>(samples));
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kGrain), [&](const auto& range) {
-    developer(films, 3 * range.begin(), pixels.subspan(range.begin(), range.size()));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rgb.size(), kGrain), [&](const auto& range) {
+    developer(films, range.begin(), rgb.subspan(range.begin(), range.size()));
   });
 }
 
@@ -121,10 +120,10 @@ void add_up(Films films, std::span<layout::i64> sums) {
 }
 
 void develop_tiles(const PlacedFilms& from, const layout::Frame& frame, std::span<const layout::u32> tiles,
-                   std::span<vec3> picture) {
+                   std::span<float> picture) {
   const Developer developer(frame.n_samples);
   for_each_row(frame, tiles, [&](std::size_t x, std::size_t y, std::size_t n) {
-    developer(from.films, from.at(x, y), picture.subspan(y * frame.width + x, n));
+    developer(from.films, from.at(x, y), picture.subspan(3 * (y * frame.width + x), 3 * n));
   });
 }
 
@@ -137,7 +136,7 @@ void copy_tiles(const PlacedFilms& from, const layout::Frame& frame, std::span<c
 
 void copy_runs(const PlacedFilms& from, std::span<const layout::u32> runs, std::span<layout::i64> sums) {
   constexpr std::size_t kRun = KDRAY_SAMPLE_RUN;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), kGrain / kRun), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), kGrain / (3 * kRun)), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
       add_pieces(from.films, from.at(runs[i] * kRun, 0), sums.subspan(3 * kRun * runs[i], 3 * kRun));
   });

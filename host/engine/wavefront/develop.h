@@ -1,13 +1,12 @@
 // What    From the film's 64-bit fixed-point sums (kernels/layout/frame.layout.h has the units) to linear
 //         RGB.
-// Shape   Three sums for each pixel. Several queues may have a film each of the same pixels (ODPRT); what
+// Shape   Three sums, and three floats, for each pixel. Several queues may have a film each of the same pixels (ODPRT); what
 //         counts is the sum of their sums, which saturates as the kernels' adding does.
 // Why     Integer addition is exact and has no order: bands, tiles and queues give the same bits.
 #pragma once
 
 #include <span>
 
-#include "base/vec.h"
 #include "layout/frame.layout.h"
 
 namespace kdray::wavefront {
@@ -25,7 +24,7 @@ struct PlacedFilms {
 };
 
 // The mean of `samples` samples for each of the pixels.
-void develop(Films films, int samples, std::span<vec3> pixels);
+void develop(Films films, int samples, std::span<float> rgb);
 
 // The sums alone, added up.
 void add_up(Films films, std::span<layout::i64> sums);
@@ -33,7 +32,7 @@ void add_up(Films films, std::span<layout::i64> sums);
 // The same for the pixels of some tiles of a picture (entries of a list: KDRAY_TILE), which the films have;
 // the others are left as they are.
 void develop_tiles(const PlacedFilms& from, const layout::Frame& frame, std::span<const layout::u32> tiles,
-                   std::span<vec3> picture);
+                   std::span<float> picture);
 
 // The sums themselves, to where the picture's are: three for each pixel.
 void copy_tiles(const PlacedFilms& from, const layout::Frame& frame, std::span<const layout::u32> tiles,

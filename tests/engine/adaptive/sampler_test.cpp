@@ -46,7 +46,7 @@ layout::i64 units(double value) {
 }
 
 struct Outcome {
-  std::vector<vec3> picture;
+  std::vector<float> picture;
   Report report;
 };
 
@@ -84,27 +84,27 @@ Outcome sample(const Function& f, double target, bool noisy = false) {
 }
 
 // Against 16x16 samples of each pixel.
-double error_of(const std::vector<vec3>& picture, const Function& f) {
+double error_of(const std::vector<float>& picture, const Function& f) {
   double squares = 0;
   for (std::uint32_t y = 0; y < kPictureSize.height; ++y)
     for (std::uint32_t x = 0; x < kPictureSize.width; ++x) {
       double mean = 0;
       for (int i = 0; i < 256; ++i) mean += f(x + (i % 16 + 0.5) / 16, y + (i / 16 + 0.5) / 16) / 256;
-      const double d = static_cast<double>(picture[y * kPictureSize.width + x].x) - mean;
+      const double d = static_cast<double>(picture[3 * (y * kPictureSize.width + x)]) - mean;
       squares += d * d;
     }
   return std::sqrt(squares / static_cast<double>(kPictureSize.pixels()));
 }
 
-std::vector<vec3> uniform(const Function& f, std::uint32_t n) {
-  std::vector<vec3> picture(kPictureSize.pixels());
-  for (std::uint32_t pixel = 0; pixel < picture.size(); ++pixel) {
+std::vector<float> uniform(const Function& f, std::uint32_t n) {
+  std::vector<float> picture(3 * kPictureSize.pixels());
+  for (std::uint32_t pixel = 0; pixel < kPictureSize.pixels(); ++pixel) {
     double sum = 0;
     for (std::uint32_t k = 0; k < n; ++k) {
       const Point p = point_of(pixel, k);
       sum += f(pixel % kPictureSize.width + p.x, pixel / kPictureSize.width + p.y);
     }
-    picture[pixel] = vec3(static_cast<float>(sum / n));
+    std::fill_n(picture.begin() + 3 * pixel, 3, static_cast<float>(sum / n));
   }
   return picture;
 }
@@ -143,7 +143,7 @@ TEST(Sampler, NoiseGetsFourSamplesInEachPixelAtLeast) {
   const Outcome o = sample(noise, 0.1, true);
   EXPECT_EQ(o.report.pixels[0], 0u);
   double sum = 0;
-  for (const vec3& pixel : o.picture) sum += (pixel.x - kShare) * (pixel.x - kShare);
+  for (const float value : o.picture) sum += (value - kShare) * (value - kShare) / 3;
   EXPECT_LT(std::sqrt(sum / static_cast<double>(kPictureSize.pixels())), 0.2);
   const Outcome flat = sample([](double, double) { return 0.4; }, 1e-6, true);
   EXPECT_EQ(flat.report.samples, 4 * kPictureSize.pixels());

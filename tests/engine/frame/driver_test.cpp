@@ -184,14 +184,14 @@ struct Case {
 
 // The mean of the samples, so many of each pixel.
 void expect_picture(const Result& result, const layout::Frame& frame, const std::vector<float>& counts) {
-  ASSERT_EQ(result.image.pixels.size(), std::size_t{frame.width} * frame.height);
-  for (std::size_t p = 0; p < result.image.pixels.size(); ++p)
+  ASSERT_EQ(result.rgb.size(), 3 * std::size_t{frame.width} * frame.height);
+  for (std::size_t p = 0; p < result.rgb.size() / 3; ++p)
     for (std::size_t c = 0; c < 3; ++c) {
       double sum = 0;
       for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(counts[p]); ++i)
         sum += static_cast<double>(light(static_cast<std::uint32_t>(p % frame.width),
                                          static_cast<std::uint32_t>(p / frame.width), i, c));
-      ASSERT_NEAR(result.image.pixels[p][static_cast<int>(c)],
+      ASSERT_NEAR(result.rgb[3 * p + c],
                   sum / (static_cast<double>(KDRAY_FILM_SCALE) * counts[p]), 1e-6)
           << "pixel " << p;
     }
@@ -297,7 +297,7 @@ TEST_P(DriverTest, AdaptiveSamplingIsTheSameHoweverItIsCut) {
   const Result reference = frame.render(whole);
   const std::size_t few = KDRAY_SAMPLE_RUN * frame.random.pick(1, 4);
   Pretender cut = frame.executor(1, few);
-  EXPECT_EQ(frame.render(cut).image.pixels, reference.image.pixels);
+  EXPECT_EQ(frame.render(cut).rgb, reference.rgb);
   EXPECT_TRUE(std::ranges::is_sorted(frame.told)) << testing::PrintToString(frame.told);
 
   const test::Folder folder;
@@ -311,7 +311,7 @@ TEST_P(DriverTest, AdaptiveSamplingIsTheSameHoweverItIsCut) {
     EXPECT_TRUE(std::ranges::is_sorted(frame.told)) << testing::PrintToString(frame.told);
     n_rendered += executor.n_rendered;
   }
-  EXPECT_EQ(result->image.pixels, reference.image.pixels);
+  EXPECT_EQ(result->rgb, reference.rgb);
   EXPECT_EQ(result->samples->counts, reference.samples->counts);
   EXPECT_EQ(n_rendered, whole.n_rendered);  // each entry once
 }
@@ -325,7 +325,7 @@ TEST(Driver, OtherRanksFollow) {
   const Result result = frame.render(executor);
   EXPECT_EQ(executor.n_followed, 1);
   EXPECT_TRUE(executor.lists.empty());
-  EXPECT_TRUE(result.image.pixels.empty());
+  EXPECT_TRUE(result.rgb.empty());
   EXPECT_TRUE(frame.told.empty());
   EXPECT_EQ(result.n_bands, executor.bands().size());
 }

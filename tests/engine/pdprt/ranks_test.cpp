@@ -95,7 +95,7 @@ TEST_P(RanksTest, BagsOfBags) {
   adaptive.features |= flatten::features_of_samples(1, true);
   const Result samples = alone(adaptive);
   adaptive.ranks_to_a_bag = 2;
-  EXPECT_EQ(render({1, 1, 1, 1, 1}, adaptive).image.pixels, samples.image.pixels);
+  EXPECT_EQ(render({1, 1, 1, 1, 1}, adaptive).rgb, samples.rgb);
 }
 
 TEST_P(RanksTest, BandsAndAdaptiveSampling) {
@@ -107,7 +107,7 @@ TEST_P(RanksTest, BandsAndAdaptiveSampling) {
   adaptive.features |= flatten::features_of_samples(1, true);
   const Result reference = alone(adaptive);
   const Result result = render({1, 2, 1}, adaptive);
-  EXPECT_EQ(result.image.pixels, reference.image.pixels);
+  EXPECT_EQ(result.rgb, reference.rgb);
   EXPECT_EQ(result.counters.primary, reference.counters.primary);
   EXPECT_GT(reference.counters.primary, std::uint64_t{61} * 43);
 }
@@ -115,7 +115,7 @@ TEST_P(RanksTest, BandsAndAdaptiveSampling) {
 TEST_P(RanksTest, AQueueThatFailsCostsNothing) {
   device::FaultInjector second("1@2");
   const Result result = render({1, 2, 1}, long_task(), {nullptr, &second});
-  EXPECT_EQ(result.image.pixels, alone(long_task()).image.pixels);
+  EXPECT_EQ(result.rgb, alone(long_task()).rgb);
   EXPECT_NE(result.queues[2].failure, "");
 }
 

@@ -25,14 +25,14 @@ TEST(Develop, RoundsEachValueByItself) {
   while (sums.size() < 3 * 1001)  // no multiple of a vector
     sums.push_back(static_cast<layout::i64>(random()) >> (random() % 64));
   for (const int samples : {1, 3, 16, 1000}) {
-    std::vector<vec3> pixels(sums.size() / 3);
+    std::vector<float> rgb(sums.size());
     const std::span<const layout::i64> films[] = {sums};
-    develop(films, samples, pixels);
+    develop(films, samples, rgb);
     const double scale = 1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples);
     for (std::size_t i = 0; i < sums.size(); ++i) {
       const volatile double product = static_cast<double>(sums[i]) * scale;
       const auto wanted = static_cast<float>(product);
-      EXPECT_EQ(std::bit_cast<std::uint32_t>(pixels[i / 3][static_cast<int>(i % 3)]),
+      EXPECT_EQ(std::bit_cast<std::uint32_t>(rgb[i]),
                 std::bit_cast<std::uint32_t>(wanted))
           << sums[i] << " of " << samples;
     }
@@ -65,7 +65,7 @@ TEST(Develop, AddsUpFilms) {
   std::vector<layout::i64> added(wanted.size());
   add_up(films, added);
   EXPECT_EQ(added, wanted);
-  std::vector<vec3> of_films(wanted.size() / 3), of_one(wanted.size() / 3);
+  std::vector<float> of_films(wanted.size()), of_one(wanted.size());
   develop(films, 4, of_films);
   const std::span<const layout::i64> one[] = {wanted};
   develop(one, 4, of_one);

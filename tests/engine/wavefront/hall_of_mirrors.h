@@ -113,7 +113,7 @@ struct Hall {
 };
 
 inline void expect_same(const pdprt::Result& result, const pdprt::Result& reference) {
-  EXPECT_EQ(result.image.pixels, reference.image.pixels);
+  EXPECT_EQ(result.rgb, reference.rgb);
   const wavefront::Counters &a = result.counters, &b = reference.counters;
   EXPECT_EQ(a.primary, b.primary);
   EXPECT_EQ(a.primary_hit, b.primary_hit);

@@ -77,16 +77,14 @@ class PlacedFilmsTest : public testing::TestWithParam<int> {
 };
 
 TEST_P(PlacedFilmsTest, TilesAreDeveloped) {
-  const vec3 before(-7.0f);
-  std::vector<vec3> pixels(n_pixels, before);
-  hand_over([&](const PlacedFilms& from, const Tiles& tiles) { develop_tiles(from, frame, tiles, pixels); });
+  const float before = -7;
+  std::vector<float> rgb(3 * n_pixels, before);
+  hand_over([&](const PlacedFilms& from, const Tiles& tiles) { develop_tiles(from, frame, tiles, rgb); });
   const double scale = 1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * frame.n_samples);
-  for (std::size_t p = 0; p < n_pixels; ++p)
-    for (int c = 0; c < 3; ++c) {
-      const volatile double mean =
-          static_cast<double>(films.all[3 * p + static_cast<std::size_t>(c)]) * scale;
-      ASSERT_EQ(pixels[p][c], has(p) ? static_cast<float>(mean) : before[c]) << "pixel " << p;
-    }
+  for (std::size_t i = 0; i < rgb.size(); ++i) {
+    const volatile double mean = static_cast<double>(films.all[i]) * scale;
+    ASSERT_EQ(rgb[i], has(i / 3) ? static_cast<float>(mean) : before) << "value " << i;
+  }
 }
 
 TEST_P(PlacedFilmsTest, SumsOfTilesAreCopied) {
