@@ -47,7 +47,7 @@ class Committed {
   std::shared_ptr<engine::DeviceScene> devices_;
   std::deque<query::Place> places_;
   std::mutex rendering_;
-  std::optional<Renderer> renderer_;       // once a picture was asked for
+  std::optional<Renderer> renderer_;        // once a picture was asked for
   std::optional<PreparedScene> in_studio_;  // once one was asked for in a studio
 };
 

@@ -26,7 +26,8 @@ namespace kdray {
 namespace {
 
 Picture to_picture(api::FrameResult& result, std::vector<image::Channel> channels) {
-  Picture picture{static_cast<int>(result.width), static_cast<int>(result.height), std::move(result.rgb), {}, {}};
+  Picture picture{
+      static_cast<int>(result.width), static_cast<int>(result.height), std::move(result.rgb), {}, {}};
   for (image::Channel& c : channels) picture.channels.push_back({std::move(c.name), std::move(c.values)});
   return picture;
 }

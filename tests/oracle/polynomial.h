@@ -1,7 +1,7 @@
 // What    The roots of a polynomial, isolated by those of its derivatives and halved; for numbers of any
 //         kind.
-// Errors  roots_of: a root that is one of the derivative's too, as of a line that touches, is found or not as rounding
-//         has it.
+// Errors  roots_of: a root that is one of the derivative's too, as of a line that touches, is found or not as
+//         rounding has it.
 #pragma once
 
 #include <cmath>

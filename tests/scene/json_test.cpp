@@ -81,7 +81,8 @@ TEST(Json, ReadsAWholeScene) {
 
 TEST(Json, ColoursMayBeWrittenAsTheWebDoes) {
   const Scene s = read(
-      R"({"background": "#f00", "ambient": "#808080", "lights": [{"type": "point", "position": [0, 0, 9], "color": "white"}],
+      R"({"background": "#f00", "ambient": "#808080",
+          "lights": [{"type": "point", "position": [0, 0, 9], "color": "white"}],
                            "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1,
                                         "material": {"color": "lime", "ka": 0, "kd": 0.5}}]})");
   EXPECT_EQ(s.background, vec3(1, 0, 0));
@@ -169,7 +170,8 @@ TEST(Json, NamesTheLineOfWhatIsNotJson) {
 
 TEST(Json, NamesThePathOfWhatIsNoScene) {
   EXPECT_EQ(refused(R"({"ambient": "gray!"})"),
-            "s.json: /ambient: expected a number, [red, green, blue], or a colour as CSS has it, found \"gray!\"");
+            "s.json: /ambient: expected a number, [red, green, blue], or a colour as CSS has it, "
+            "found \"gray!\"");
   EXPECT_EQ(refused(R"({"ambeint": 1})"), "s.json: /ambeint: unknown key; did you mean 'ambient'?");
   EXPECT_EQ(refused_object(R"({"type": "sphere", "center": [0, 0, 0], "raduis": 1})"),
             "s.json: /objects/0/raduis: unknown key; did you mean 'radius'?");

@@ -1,5 +1,5 @@
-// What    What the test of self-hits (self_hits_test.cpp) must know of each kind of primitive: hostile scenes of
-//         it, places on one, and when a ray that leaves one may meet it again.
+// What    What the test of self-hits (self_hits_test.cpp) must know of each kind of primitive: hostile scenes
+//         of it, places on one, and when a ray that leaves one may meet it again.
 #pragma once
 
 #include <algorithm>
@@ -51,9 +51,9 @@ struct Departure {
   float blur;    // by how much at most in any direction
 };
 
-// Each kind has these (tests/primitives/<kind>.cpp): its scenes, kPrimitives of the kind each; a place on one;
-// how thin the surface is about a point of it, for a departure's radius; and whether a hit of the surface that
-// the ray has left may be.
+// Each kind has these (tests/primitives/<kind>.cpp): its scenes, kPrimitives of the kind each; a place on
+// one; how thin the surface is about a point of it, for a departure's radius; and whether a hit of the
+// surface that the ray has left may be.
 #define KDRAY_SELF_HITS_OF_KIND(NAME, name, names, Struct)         \
   std::vector<Family> families_of(primitives::Struct##Kind);       \
   Spot spot_on(const layout::Struct& name, Random& random);        \

@@ -48,8 +48,8 @@ vec3 corner(const layout::Triangle& t, int i) {
   return {t.v[i][0], t.v[i][1], t.v[i][2]};
 }
 
-// Calls `found` with the ray's number, the distance and whether the triangle's front faces it, for each of the
-// rays from a point that hits the triangle.
+// Calls `found` with the ray's number, the distance and whether the triangle's front faces it, for each of
+// the rays from a point that hits the triangle.
 template <std::size_t n, class Found>
 void hits_of(const layout::Triangle& t, const vec3& from, const Rays<n>& ways, Found&& found) {
   const vec3 a = corner(t, 0) - from, b = corner(t, 1) - from, c = corner(t, 2) - from;
@@ -175,8 +175,8 @@ bool says_y(const std::string& name) {
   return std::ranges::any_of(kNames, [&](std::string_view ending) { return name.ends_with(ending); });
 }
 
-// What lies on a base across an axis stands on it: what is flat below, by so much more than above. (Round things
-// have a twentieth of either.)
+// What lies on a base across an axis stands on it: what is flat below, by so much more than above. (Round
+// things have a twentieth of either.)
 void find_up(scene::Studio& studio, const Told& told, const Box& box) {
   constexpr float kBase = 0.12f, kSomeBase = 0.03f;
   const auto base = [&](int axis) {
@@ -196,7 +196,8 @@ void find_up_of_room(scene::Studio& studio, const Box& box) {
   if (e.z < kLower * e.y && e.z < e.x) studio.up = {0, 0, 1};
 }
 
-// Returns the side by which a room is open, as a direction; none where there is none on the level, or several.
+// Returns the side by which a room is open, as a direction; none where there is none on the level, or
+// several.
 std::optional<dvec3> open_side_of(const Told& told, const std::array<Exit, kRays>& exits, int up) {
   std::optional<dvec3> open;
   for (int k = 0; k < 3; ++k)

@@ -1,5 +1,5 @@
-// What    What the commands say of themselves: help, man pages and completions, all of it from their own lists
-//         of options, so that a new option is in all three at once.
+// What    What the commands say of themselves: help, man pages and completions, all of it from their own
+//         lists of options, so that a new option is in all three at once.
 // Shape   An option's shape (options.h) is read, too: its words in small letters are the values that shells
 //         complete, those in capitals stand for any.
 #pragma once
@@ -48,12 +48,12 @@ std::string man_page(const CLI::App& app);
 // Writes a page for each of these and for the commands below them: kdray-render.1.
 void write_man_pages(std::span<const CLI::App* const> apps, const std::filesystem::path& folder);
 
-// Returns what may stand in place of the last word, after those before it: a line each, "WORD<tab>what it is".
-// Nothing: a file, or anything.
+// Returns what may stand in place of the last word, after those before it: a line each, "WORD<tab>what it
+// is". Nothing: a file, or anything.
 std::string completions(const CLI::App& kdray, std::span<const std::string> words);
-// Answers what the build and shells ask for: "--man DIR" writes the pages of these commands and of those below
-// them, "--completion SHELL" prints the script of bash, zsh or fish, "--complete WORD..." what may follow.
-// Returns whether the arguments, of which the first is the program's name, are one of these.
+// Answers what the build and shells ask for: "--man DIR" writes the pages of these commands and of those
+// below them, "--completion SHELL" prints the script of bash, zsh or fish, "--complete WORD..." what may
+// follow. Returns whether the arguments, of which the first is the program's name, are one of these.
 bool answer_shells(const CLI::App& kdray, std::span<const CLI::App* const> pages,
                    std::span<const char* const> arguments);
 

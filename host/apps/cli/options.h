@@ -57,12 +57,12 @@ std::size_t parse_choice(std::string_view option, std::string_view text,
 std::vector<std::string> parse_list(std::string_view option, std::string_view text,
                                     std::span<const std::string_view> accepted);
 
-// Reads a colour: "skyblue", "#fff", "#87ceeb", or "R,G,B" in linear values. `others` are what the option takes
-// besides, for its message.
+// Reads a colour: "skyblue", "#fff", "#87ceeb", or "R,G,B" in linear values. `others` are what the option
+// takes besides, for its message.
 Color parse_color(std::string_view option, std::string_view text, std::string_view others);
 
-// Adds an option whose text goes to `take`; `shape` stands for the value in --help: "FILE" for any, "8|16" for
-// these, "auto|N" for this word or any number.
+// Adds an option whose text goes to `take`; `shape` stands for the value in --help: "FILE" for any, "8|16"
+// for these, "auto|N" for this word or any number.
 CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string& shape,
                       const std::string& help, std::function<void(const std::string&)> take);
 

@@ -24,8 +24,8 @@ void add_division_options(CLI::App& app, RenderOptions& options);
 struct ViewOptions {
   View view;
   std::optional<Look> look = {};  // none: a studio, where that can be
-  bool transparent = false;  // --background transparent
-  bool any = false;          // whether one was given
+  bool transparent = false;       // --background transparent
+  bool any = false;               // whether one was given
 };
 
 // --look --from --at --up --fov --camera --ortho --aperture --focus --headlight --background
@@ -34,8 +34,8 @@ void add_view_options(CLI::App& app, ViewOptions& options);
 // Returns the scene in the look that is asked for.
 PreparedScene in_look(const PreparedScene& scene, const ViewOptions& options);
 
-// Says where the view comes from, where that was neither asked for nor plain to see: from the file's camera, from
-// a guess of what is up.
+// Says where the view comes from, where that was neither asked for nor plain to see: from the file's camera,
+// from a guess of what is up.
 void tell_of_view(const PreparedScene& scene, const ViewOptions& options);
 
 struct FrameRange {
@@ -59,7 +59,8 @@ struct CheckpointChoice {
   std::optional<LedgerOptions> options(const std::filesystem::path& in = {}) const;
 };
 
-// --checkpoint --resume --checkpoint-every --share --lease --restarts, --frames --camera-path --turntable --fps
+// --checkpoint --resume --checkpoint-every --share --lease --restarts, --frames --camera-path --turntable
+// --fps
 void add_checkpoint_options(CLI::App& app, CheckpointChoice& choice);
 
 }  // namespace kdray::cli

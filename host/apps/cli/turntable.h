@@ -1,5 +1,5 @@
-// What    --turntable N: where the camera is in each of N frames, which go once around what it looks at. Where
-//         it was chosen for the scene, it is as far off as takes all of the scene into every frame.
+// What    --turntable N: where the camera is in each of N frames, which go once around what it looks at.
+//         Where it was chosen for the scene, it is as far off as takes all of the scene into every frame.
 #pragma once
 
 #include "kdray/kdray.h"

@@ -19,8 +19,8 @@ struct Piece {
   std::size_t first, n;
 };
 
-// How large pieces should be: so large that waiting for each is little beside it (a film of 25 MB takes an H100's
-// host 1.6 ms in pieces of 2 MiB, 1.1 ms in these).
+// How large pieces should be: so large that waiting for each is little beside it (a film of 25 MB takes an
+// H100's host 1.6 ms in pieces of 2 MiB, 1.1 ms in these).
 constexpr std::size_t kPieceBytes = std::size_t{8} << 20;
 
 // Calls take(i, memory) for each piece in turn; the memory holds piece i until it returns.

@@ -25,8 +25,8 @@ class DeviceScene {
   DeviceScene& operator=(const DeviceScene&) = delete;
 
   const prepare::Prepared& scene() const { return scene_; }
-  // Takes camera, lights, sky and settings from a scene whose trees and primitives are this one's own. Queries
-  // may go on meanwhile: they read none of these.
+  // Takes camera, lights, sky and settings from a scene whose trees and primitives are this one's own.
+  // Queries may go on meanwhile: they read none of these.
   void look(const prepare::Prepared& seen);
   // Those of frames: what the scene needs as it is seen.
   layout::Features features() const { return features_; }

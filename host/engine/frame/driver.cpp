@@ -56,7 +56,7 @@ class Driver {
   const Request& request_;
   const layout::Frame& frame_;
   std::vector<float>& rgb_;
-  std::shared_future<void> rgb_made_;  // before anything is written there
+  std::shared_future<void> rgb_made_;         // before anything is written there
   std::optional<adaptive::Sampler> sampler_;  // adaptive sampling
   double from_ = 0, to_ = 1;                  // of the share done, that the round in work is
   std::size_t n_entries_ = 0, n_done_ = 0;    // of the round; before the list in work

@@ -27,8 +27,8 @@ struct QueueReport {
 };
 
 struct Result {
-  std::uint32_t width = 0, height = 0;          // of the picture
-  std::vector<float> rgb;                       // linear, row by row from the top left; rank 0 has it
+  std::uint32_t width = 0, height = 0;      // of the picture
+  std::vector<float> rgb;                   // linear, row by row from the top left; rank 0 has it
   std::optional<adaptive::Report> samples;  // of adaptive sampling
   wavefront::Counters counters;
   std::map<std::string, double> stage_seconds;  // device time, added over the queues

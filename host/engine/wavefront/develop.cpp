@@ -136,10 +136,11 @@ void copy_tiles(const PlacedFilms& from, const layout::Frame& frame, std::span<c
 
 void copy_runs(const PlacedFilms& from, std::span<const layout::u32> runs, std::span<layout::i64> sums) {
   constexpr std::size_t kRun = KDRAY_SAMPLE_RUN;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), kGrain / (3 * kRun)), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      add_pieces(from.films, from.at(runs[i] * kRun, 0), sums.subspan(3 * kRun * runs[i], 3 * kRun));
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, runs.size(), kGrain / (3 * kRun)), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          add_pieces(from.films, from.at(runs[i] * kRun, 0), sums.subspan(3 * kRun * runs[i], 3 * kRun));
+      });
 }
 
 }  // namespace kdray::wavefront

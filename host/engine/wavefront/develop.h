@@ -1,7 +1,7 @@
 // What    From the film's 64-bit fixed-point sums (kernels/layout/frame.layout.h has the units) to linear
 //         RGB.
-// Shape   Three sums, and three floats, for each pixel. Several queues may have a film each of the same pixels (ODPRT); what
-//         counts is the sum of their sums, which saturates as the kernels' adding does.
+// Shape   Three sums, and three floats, for each pixel. Several queues may have a film each of the same
+//         pixels (ODPRT); what counts is the sum of their sums, which saturates as the kernels' adding does.
 // Why     Integer addition is exact and has no order: bands, tiles and queues give the same bits.
 #pragma once
 

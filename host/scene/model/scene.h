@@ -99,7 +99,7 @@ struct Studio {
   struct Room {
     dvec3 from, at;
   };
-  std::optional<Room> room = {};     // of one that is closed all around: where a viewer in it stands
+  std::optional<Room> room = {};      // of one that is closed all around: where a viewer in it stands
   std::optional<dvec3> open_to = {};  // of one that is open on one side: the way out
 };
 
@@ -107,7 +107,7 @@ struct Studio {
 // (frame.h).
 struct Framing {
   bool camera = false, lights = false;
-  DBox box;  // of what is worth showing; empty for a scene of nothing
+  DBox box;                           // of what is worth showing; empty for a scene of nothing
   std::optional<Studio> studio = {};  // that the scene is seen in
   Floor floor = {};                   // that the studio has for the view
 };

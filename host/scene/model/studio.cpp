@@ -20,8 +20,8 @@ double radius_of(const DBox& box) {
 }
 
 // Moves the camera, which looks along `view`, to where all corners of the box are in the picture and as many
-// sides of it as possible are touched. Of each pair of sides, left and right, the corner that reaches farthest
-// out gives a line that the eye lies behind; where the two lines cross, both sides are touched.
+// sides of it as possible are touched. Of each pair of sides, left and right, the corner that reaches
+// farthest out gives a line that the eye lies behind; where the two lines cross, both sides are touched.
 void fit(Camera& camera, const DBox& box, const Basis& view, double aspect) {
   const double tan_up = std::tan(camera.vertical_fov / 2) / kBorder, tan_side = tan_up * aspect;
   const dvec3 middle = box.center();

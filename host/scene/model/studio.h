@@ -1,6 +1,7 @@
-// What    A studio for a scene that has neither camera nor lights: a camera in front of it, to the right and a
-//         little above, that it just fits; a key, a fill and a rim light that follow the camera and throw soft
-//         shadows; a backdrop; and a floor that it stands on. In a room, the camera and two lamps are in it.
+// What    A studio for a scene that has neither camera nor lights: a camera in front of it, to the right and
+//         a little above, that it just fits; a key, a fill and a rim light that follow the camera and throw
+//         soft shadows; a backdrop; and a floor that it stands on. In a room, the camera and two lamps are in
+//         it.
 // Shape   Scene::framing.studio says what is known of the scene. What a View asks for wins.
 // Units   World units, angles in radians.
 #pragma once

@@ -76,7 +76,8 @@ TEST_F(SequenceTest, ATurntableGoesOnceAroundTheModel) {
       << "all are the same";
 }
 
-// A long box, seen from a place that is chosen: its ends are in every frame, and so is some background around.
+// A long box, seen from a place that is chosen: its ends are in every frame, and so is some background
+// around.
 TEST_F(SequenceTest, ATurntableShowsAllOfTheModelInEachFrame) {
   KDRAY_NEED_DEVICE();
   folder.put("bar.json", R"({"objects": [{"type": "box", "min": [-9, 0, -1], "max": [9, 1, 1]}]})");

@@ -191,8 +191,7 @@ void expect_picture(const Result& result, const layout::Frame& frame, const std:
       for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(counts[p]); ++i)
         sum += static_cast<double>(light(static_cast<std::uint32_t>(p % frame.width),
                                          static_cast<std::uint32_t>(p / frame.width), i, c));
-      ASSERT_NEAR(result.rgb[3 * p + c],
-                  sum / (static_cast<double>(KDRAY_FILM_SCALE) * counts[p]), 1e-6)
+      ASSERT_NEAR(result.rgb[3 * p + c], sum / (static_cast<double>(KDRAY_FILM_SCALE) * counts[p]), 1e-6)
           << "pixel " << p;
     }
 }

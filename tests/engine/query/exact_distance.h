@@ -17,8 +17,8 @@ inline void set_exact_precision() {
   mpf_set_default_prec(1536);
 }
 
-// Each kind has both (tests/primitives/<kind>.cpp, which defines distance<N>()). The rough ones are right to 2^-60 of the largest coordinate, in long double: to find
-// which primitives are worth an exact answer.
+// Each kind has both (tests/primitives/<kind>.cpp, which defines distance<N>()). The rough ones are right to
+// 2^-60 of the largest coordinate, in long double: to find which primitives are worth an exact answer.
 #define KDRAY_DISTANCES_OF_KIND(NAME, name, names, Struct)              \
   Exact exact_distance(const dvec3& point, const layout::Struct& name); \
   long double rough_distance(const dvec3& point, const layout::Struct& name);

@@ -32,8 +32,7 @@ TEST(Develop, RoundsEachValueByItself) {
     for (std::size_t i = 0; i < sums.size(); ++i) {
       const volatile double product = static_cast<double>(sums[i]) * scale;
       const auto wanted = static_cast<float>(product);
-      EXPECT_EQ(std::bit_cast<std::uint32_t>(rgb[i]),
-                std::bit_cast<std::uint32_t>(wanted))
+      EXPECT_EQ(std::bit_cast<std::uint32_t>(rgb[i]), std::bit_cast<std::uint32_t>(wanted))
           << sums[i] << " of " << samples;
     }
   }
