@@ -111,8 +111,8 @@ KDRAY_API kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdr
 KDRAY_API kdray_status kdray_add_tori(kdray_scene* scene, kdray_in centers, kdray_in axes,
                                       kdray_in major_radii, kdray_in minor_radii,
                                       const kdray_geometry_options* options, uint32_t* id);
-/* Shapes of any kind by its plural ("spheres", "cones", "discs", "tori"), an array for each of the fields that
- * these functions name: what they do is this. */
+/* Shapes of any kind by its plural ("spheres", "cones", "discs", "tori"), an array for each of the fields
+ * that these functions name: what they do is this. */
 typedef struct kdray_field {
   const char* name; /* "centers" */
   kdray_in rows;

@@ -27,9 +27,9 @@ complete -o bashdefault -o default -F _kdray kdray
 constexpr const char* kZsh = R"(#compdef kdray
 # Completions of kdray for zsh
 _kdray() {
-  local line
+  local line program="${(Q)words[1]}"
   local -a found
-  for line in "${(@f)$("${(Q)words[1]}" --complete "${(@Q)words[2,CURRENT-1]}" "${(Q)PREFIX}" 2>/dev/null)}"; do
+  for line in "${(@f)$("$program" --complete "${(@Q)words[2,CURRENT-1]}" "${(Q)PREFIX}" 2>/dev/null)}"; do
     [[ -n $line ]] && found+=("${${line%%$'\t'*}//:/\\:}:${line#*$'\t'}")
   done
   if (( $#found )); then _describe kdray found; else _files; fi
