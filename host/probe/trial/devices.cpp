@@ -20,6 +20,11 @@ std::pair<std::uint64_t, std::uint64_t> place(const Hash& key) {
   return {key.high, key.low};
 }
 
+std::unique_ptr<Trial> trial_of(const device::FoundDevice& found, const Hash& key) {
+  return std::make_unique<Trial>(Subject::device, key, std::map<std::string, std::string>(),
+                                 found.info.kind == "gpu" ? kGpuTrialSeconds : kTrialSeconds);
+}
+
 void note(const device::Verdicts& verdicts, const Hash& key, const Outcome& outcome) {
   if (!outcome.verdict) return;
   if (outcome.lasting) verdicts.note(key, *outcome.verdict);
@@ -64,7 +69,7 @@ void DeviceTrials::begin(const std::vector<device::FoundDevice>& candidates, std
   for (std::size_t i = first; i < candidates.size(); ++i) {
     Case& c = case_of(candidates[i]);
     if (c.verdict && c.verdict->passed && !all_) break;
-    if (!c.verdict && !c.trial) c.trial = std::make_unique<Trial>(Subject::device, c.key);
+    if (!c.verdict && !c.trial) c.trial = trial_of(candidates[i], c.key);
   }
 }
 
@@ -98,9 +103,9 @@ bool DeviceTrials::is_the_only_one() {
 
 Outcome try_anew(const device::FoundDevice& found, const device::Verdicts& verdicts) {
   const Hash key = key_of(found);
-  Trial trial(Subject::device, key);
-  note(verdicts, key, trial.outcome());
-  return trial.outcome();
+  const auto trial = trial_of(found, key);
+  note(verdicts, key, trial->outcome());
+  return trial->outcome();
 }
 
 std::string in_words(const DeviceInfo& info, const device::Verdict& verdict) {

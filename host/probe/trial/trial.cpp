@@ -64,7 +64,6 @@ std::optional<fs::path> program() {
 
 namespace {
 
-constexpr double kLimitSeconds = 15;
 constexpr double kPictureLimit = 4;  // times as long: it takes the compiling of a whole render
 
 // What a child is told to do, and what that is called when it went wrong; in the order of Subject.
@@ -108,10 +107,10 @@ Outcome failed(const std::string& text, bool lasting = true) {
 
 }  // namespace
 
-double time_limit() {
+double time_limit(double usual) {
   const char* const set = std::getenv("KDRAY_TRIAL_SECONDS");
   const double seconds = set ? std::strtod(set, nullptr) : 0;
-  return seconds > 0 && seconds <= 1e6 ? seconds : kLimitSeconds;
+  return seconds > 0 && seconds <= 1e6 ? seconds : usual;
 }
 
 Outcome outcome_of(Subject subject, const ChildEnd& end, double limit_seconds) {
@@ -127,8 +126,10 @@ Outcome outcome_of(Subject subject, const ChildEnd& end, double limit_seconds) {
   return failed(fmt::format("ends the program {}", words.in));
 }
 
-Trial::Trial(Subject subject, const Hash& key, const std::map<std::string, std::string>& environment)
-    : subject_(subject), limit_seconds_(time_limit() * (subject == Subject::picture ? kPictureLimit : 1)) {
+Trial::Trial(Subject subject, const Hash& key, const std::map<std::string, std::string>& environment,
+             double usual_seconds)
+    : subject_(subject),
+      limit_seconds_(time_limit(usual_seconds) * (subject == Subject::picture ? kPictureLimit : 1)) {
   if (const auto found = program())
     child_ = std::make_unique<Child>(
         ChildOptions{.program = *found,

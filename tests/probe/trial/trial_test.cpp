@@ -70,12 +70,14 @@ TEST(Trial, AProgramThatDoesNotEvenBeginSaysNothing) {
 TEST(Trial, TheLimitCanBeChanged) {
   const test::Variable none("KDRAY_TRIAL_SECONDS");
   EXPECT_EQ(time_limit(), 15);
+  EXPECT_EQ(time_limit(kGpuTrialSeconds), 60);
   for (const char* const useless : {"", "0", "-1", "nan", "inf", "x", "1e300"}) {
     const test::Variable set("KDRAY_TRIAL_SECONDS", useless);
     EXPECT_EQ(time_limit(), 15) << useless;
   }
   const test::Variable set("KDRAY_TRIAL_SECONDS", "2.5");
   EXPECT_EQ(time_limit(), 2.5);
+  EXPECT_EQ(time_limit(kGpuTrialSeconds), 2.5);
 }
 
 TEST(Trial, ArgumentsAskForOneOrForNone) {
