@@ -91,6 +91,7 @@ Command add_bench_accuracy(CLI::App& bench) {
   app->add_flag_callback(
       "--no-povray", [&o] { o.povray = false; }, "Leave POV-Ray out");
   app->add_flag("--quick", o.quick, "A few settings only");
+  add_device_option(*app, "The device, as for render (default: auto)", o.device);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};
 }

@@ -45,6 +45,7 @@ Command add_bench_depth(CLI::App& bench) {
   add_int(*app, "--rays", "Rays of a class, as a square picture holds them (default 65536)", 1, kRaysMax,
           o.rays);
   add_int(*app, "--repeat", "Rounds to take the median of (default 3)", 1, kRepeatMax, o.repeat);
+  add_device_option(*app, "The device, as for render (default: auto)", o.device);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};
 }

@@ -44,6 +44,7 @@ Command add_bench_frames(CLI::App& bench) {
   add_size(*app, "Pixels across and down (default 1024x1024)", kSideMax, kRaysMax, o.width, o.height);
   add_int(*app, "--depth", "Deepest ray; the eye ray is 1 (default 5)", 1, 64, o.depth);
   add_int(*app, "--repeat", "Rounds to take the median of (default 7)", 1, kRepeatMax, o.repeat);
+  add_device_option(*app, "The device, as for render (default: auto)", o.device);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};
 }

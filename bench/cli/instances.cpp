@@ -75,6 +75,7 @@ Command add_bench_instances(CLI::App& bench) {
   add_int(*app, "--cores", "Number of cores (default: all)", 1, 4096, o.cores);
   app->add_flag_callback(
       "--no-embree", [&o] { o.embree = false; }, "Leave Embree out: kdray's traversals against each other");
+  add_device_option(*app, "The device, as for render (default: auto)", o.device);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};
 }

@@ -137,6 +137,7 @@ Command add_bench_modes(CLI::App& bench) {
   app->add_flag_callback(
       "--no-model", [&o] { o.model = false; }, "Measure only");
   add_ranks(*app, *c);
+  add_device_option(*app, "The device, as for render (default: auto)", o.device);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};
 }

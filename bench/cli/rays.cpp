@@ -72,6 +72,7 @@ Command add_bench_rays(CLI::App& bench) {
            [&o](const std::string& text) { o.cores = parse_cores(text); });
   app->add_flag_callback(
       "--no-embree", [&o] { o.embree = false; }, "Leave Embree out: kdray's traversals against each other");
+  add_device_option(*app, "The device, as for render (default: auto)", o.device);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};
 }

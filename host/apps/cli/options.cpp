@@ -277,10 +277,10 @@ void add_tree_options(CLI::App& app, TreeOptions& tree) {
       ->group(group);
 }
 
-CLI::Option* add_device_option(CLI::App& app, const std::string& help, DeviceOptions& device) {
+CLI::Option* add_device_option(CLI::App& app, const std::string& help, std::string& device) {
   return add_text(app, "--device", "auto|cpu|gpu|NAME", help, [&device](const std::string& text) {
     if (text.empty()) throw usage_error("--device", text, "auto, cpu, gpu, a number or a part of a name");
-    device.device = text;
+    device = text;
   });
 }
 
@@ -296,7 +296,7 @@ void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& travers
          "Leave aside what 'kdray tune' found; take what kdray ships with")
       ->group(group);
   add_device_option(
-      app, "The device: a number from 'kdray devices' or a part of its name; several with commas", device)
+      app, "The device: a number from 'kdray devices' or a part of its name; several with commas", device.device)
       ->group(group);
   add_int(app, "--queues", "Command queues, each on its own equal part of the device (default 1)", 1, 1024,
           device.queues)

@@ -112,7 +112,7 @@ CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality);
 void add_tree_options(CLI::App& app, TreeOptions& tree);
 
 // --device
-CLI::Option* add_device_option(CLI::App& app, const std::string& help, DeviceOptions& device);
+CLI::Option* add_device_option(CLI::App& app, const std::string& help, std::string& device);
 
 // --schedule
 CLI::Option* add_schedule_option(CLI::App& app, const std::string& help, DeviceOptions& device);

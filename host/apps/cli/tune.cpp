@@ -193,7 +193,7 @@ Command add_tune(CLI::App& kdray) {
   app->add_option("SCENE", o->scenes,
                   "Scenes to tune for, files or names as for bench (default: a built-in set, for all scenes)")
       ->type_name("");
-  add_device_option(*app, "The device, as for render", o->device);
+  add_device_option(*app, "The device, as for render", o->device.device);
   add_schedule_option(*app, "Launches: slices, global, auto; each has entries of its own", o->device);
   add_real(*app, "--budget", "SECONDS", "The most that a search may take, without loading (default 20)", 0.1,
            1e6, o->search.budget);

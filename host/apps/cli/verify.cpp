@@ -114,7 +114,7 @@ Command add_verify(CLI::App& kdray) {
           o->rays);
   add_path(*app, "--stats", "Write the findings as JSON ('-': to standard output)", o->stats);
   app->add_flag("-q,--quiet", o->quiet, "Say nothing unless kdray went wrong");
-  add_device_option(*app, "As for render; one device", o->device);
+  add_device_option(*app, "As for render; one device", o->device.device);
   add_tree_options(*app, o->tree);
   return {app, [o] { return run(*o); }};
 }

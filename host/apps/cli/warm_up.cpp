@@ -56,7 +56,7 @@ Command add_warm_up(CLI::App& kdray) {
       kdray.add_subcommand("warm-up", "Compile beforehand what any scene's first picture would wait for");
   const auto o = std::make_shared<WarmUpArgs>();
   o->device.tunings = tuning::default_file();
-  add_device_option(*app, "The device, as for render; several with commas", o->device);
+  add_device_option(*app, "The device, as for render; several with commas", o->device.device);
   add_schedule_option(*app, "Launches, as for render: auto (default), slices, global", o->device);
   add_text(*app, "--cache", "DIR",
            "Keep the programs there, as for render (default: the user's cache directory)",
