@@ -313,6 +313,13 @@ def several(b, folder, other):
     check_picture(b, folder, "and the first again")
 
 
+def no_token(viewer):
+    with Browser(WIDTH, HEIGHT + 30) as b:
+        b.open(viewer.address.split("#")[0])
+        b.wait("document.getElementById('problem').textContent.includes('Copy the whole address')")
+    print("ok  a page without its token says what to do")
+
+
 def endings(scene):
     viewer = Viewer(kdray, scene)
     viewer.process.send_signal(signal.SIGINT)
@@ -365,6 +372,7 @@ def main():
                     if others:
                         several(b, folder, others[0])
                     assert not b.faults(), b.faults()
+                    no_token(viewer)
                 except BaseException:
                     b.screenshot(os.environ.get("KDRAY_SHOT", os.devnull))
                     print(b.ask("(({scene, png, ...s}) => JSON.stringify(s))(kdray.state)"), "link", b.ask("kdray.view.link?.open"))
