@@ -84,6 +84,15 @@ Camera camera_of(const Json& value) {
   return camera;
 }
 
+// Left out or null: as the command line or the scene has it.
+void read_background(const Json& value, const Fields& fields, ViewRequest& request) {
+  if (value.is_null()) return;
+  if (!value.is_array() || value.size() != 3) refuse("background is no colour");
+  std::array<float, 3>& color = request.background.emplace();
+  for (std::size_t k = 0; k < 3; ++k)
+    color[k] = static_cast<float>(fields.real(value[k], "background", 0, 1));
+}
+
 void read_samples(const Json& value, Fields& fields, ViewRequest& request) {
   constexpr int kMost = 1024;
   if (value == "adaptive") {
@@ -110,6 +119,7 @@ ViewRequest view_request_of(const Json& value) {
   read_samples(fields.get("samples"), fields, request);
   request.min_weight = fields.real("weight", -1, 1);
   request.headlight = fields.real("headlight", 0, 1000);
+  if (const Json* const background = fields.find("background")) read_background(*background, fields, request);
   request.channel = kChannels[static_cast<std::size_t>(fields.choice("channel", kChannels))];
   request.mode = static_cast<Mode>(fields.choice("mode", kModes));
   request.traversal = static_cast<Traversal>(fields.choice("traversal", kWalks));

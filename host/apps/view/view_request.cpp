@@ -40,6 +40,7 @@ View view_of(const ViewRequest& request, const Settings& settings) {
   else
     view.fov = request.camera.fov;
   view.headlight = request.headlight;
+  if (request.background) view.background = request.background;
   return view;
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,7 @@ struct ViewRequest {
   int width = 1024, height = 768;
   int depth = 0;
   double min_weight = -1, headlight = 0;
+  std::optional<std::array<float, 3>> background;  // linear RGB, as View's
   Samples samples = Samples::as_given;
   int n_samples = 1;    // Samples::number
   std::string channel;  // empty: the picture itself
