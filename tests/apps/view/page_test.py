@@ -8,7 +8,6 @@ channels, reload, resizing, and how the program ends, follow. Skips (status 77) 
 """
 
 import hashlib
-import importlib.util
 import math
 import os
 import pathlib
@@ -19,7 +18,7 @@ import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from browser import Browser  # noqa: E402
-from viewer import Viewer, camera, compare, png, rest  # noqa: E402
+from viewer import Viewer, camera, choose, compare, distance, near, png, resize, rest  # noqa: E402
 
 WIDTH, HEIGHT = 640, 480
 MIDDLE = (WIDTH / 2, HEIGHT / 2)
@@ -29,15 +28,6 @@ if not Browser.find():
     print("skipped: there is no chromium here (Debian: chromium)")
     sys.exit(77)
 kdray = os.path.abspath(sys.argv[1])
-
-
-def distance(c):
-    return math.dist(c["from"], c["at"])
-
-
-def near(p, q):
-    """The camera at rest has no more digits than can be seen."""
-    return math.dist(p, q) <= 1e-5 * max(1, math.hypot(*q))
 
 
 def check_picture(browser, folder, name):
@@ -85,75 +75,6 @@ def mouse_and_keys(b, folder):
     rest(b)
     assert camera(b) == start, "R goes back"
     assert len(seen) == 11, f"some of these are the same picture: {len(seen)}"
-
-
-AXE = """axe.run({runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa']}).then(r => r.violations
-    .filter(v => ['serious', 'critical'].includes(v.impact))
-    .map(v => v.id + ': ' + v.nodes.map(n => n.target).join(' ')))"""
-
-
-def axe():
-    """axe-core's script: of PyPI's axe-core-python, or Debian's node-axe-core."""
-    package = importlib.util.find_spec("axe_core_python")
-    places = [*(package.submodule_search_locations if package else []), "/usr/share/nodejs/axe-core"]
-    return next((f for p in places if (f := pathlib.Path(p) / "axe.min.js").exists()), None)
-
-
-def accessible(b, what):
-    if not (script := axe()):
-        return print("skipped: axe's checks (PyPI: axe-core-python, Debian: node-axe-core)")
-    b.ask("window.axe ? 0 : (" + "() => {" + script.read_text() + "\n})()")
-    assert not (found := b.ask(AXE)), (what, found)
-
-
-OVERLAPS = """(() => {
-  const seen = [...document.querySelectorAll('#bar, #strip, #panel[open]')].map(e => [e.id, e.getBoundingClientRect()]);
-  return seen.flatMap(([a, p], i) => seen.slice(i + 1).filter(([, q]) => p.left < q.right && q.left < p.right &&
-    p.top < q.bottom && q.top < p.bottom).map(([b]) => a + ' ' + b));
-})()"""
-
-
-def dialogs(b, folder):
-    """By keyboard alone, at the sizes of a laptop, a desktop and a phone."""
-    for width, height in ((1280, 720), (1920, 1080), (390, 844)):
-        resize(b, width, height)
-        accessible(b, (width, height))
-        b.ask("document.getElementById('open-panel').focus()")
-        b.key("KeyP", "p")
-        assert b.ask("document.getElementById('panel').contains(document.activeElement)"), "it takes the focus"
-        assert not (told := b.ask(OVERLAPS)), (width, height, told)
-        accessible(b, (width, height, "settings"))
-        b.screenshot(folder / f"settings-{width}.png")
-        b.key("KeyH", "h")
-        assert b.ask("document.querySelector('dialog:modal').id") == "help"
-        accessible(b, (width, height, "help"))
-        b.screenshot(folder / f"help-{width}.png")
-        b.key("Escape", "Escape")
-        assert b.ask("[document.getElementById('help').open, document.getElementById('panel').open]") == [False, True]
-        b.key("Escape", "Escape")
-        assert b.ask("!document.getElementById('panel').open && document.activeElement.id") == "open-panel"
-    b.key("KeyP", "p")
-    before = camera(b)
-    b.click(195, 100)
-    assert not b.ask("document.getElementById('panel').open") and camera(b) == before, "a tap outside closes it"
-    resize(b, WIDTH, HEIGHT + 30)
-    b.ask("document.getElementById('picture').focus()")
-    before = camera(b)
-    b.key("ArrowLeft", "ArrowLeft")
-    rest(b)
-    assert near(camera(b)["at"], before["at"]) and camera(b)["from"] != before["from"], "an arrow key orbits"
-    before = camera(b)
-    b.key("Equal", "+")
-    rest(b)
-    assert math.isclose(distance(camera(b)) * 1.1, distance(before), rel_tol=1e-5), "plus zooms in"
-    choose(b, "backdrop", "chosen")
-    choose(b, "background", "#ff8000")
-    assert "--background 1,0.21" in rest(b)
-    check_picture(b, folder, "background")
-    choose(b, "backdrop", "")
-    b.key("KeyR", "r")
-    rest(b)
-    print("ok  dialogs, keyboard, background")
 
 
 def picks(b):
@@ -210,10 +131,6 @@ def touches(b):
     print("ok  touch: orbit, zoom, pan, tap")
 
 
-def choose(b, name, value):
-    b.ask(f"(e => {{ e.value = {value!r}; e.dispatchEvent(new Event('input')); }})(document.getElementById('{name}'))")
-
-
 def owners(b, folder):
     """Who traced it: in ODPRT the subtrees' queues, the same each time; in PDPRT whoever took the tile."""
     for name, value in (("channel", "queue"), ("queues", "2"), ("mode", "odprt")):
@@ -260,19 +177,12 @@ def channels(b, folder):
     print("ok  cells and figures")
 
 
-def resize(b, width, height):
-    """The page hears of it when it is drawn next."""
-    b.resize(width, height)
-    b.wait(f"innerWidth === {width} && innerHeight === {height}")
-    b.ask("new Promise(then => requestAnimationFrame(() => requestAnimationFrame(() => then(1))))")
-    rest(b)
-
-
 def address(b, viewer, folder):
     assert "token" not in b.ask("location.hash"), "the token leaves the address"
     b.drag(MIDDLE, (MIDDLE[0] + 50, MIDDLE[1]))
     before = check_picture(b, folder, "before reloading the page"), camera(b)
     b.wait("location.hash.includes('camera=')")
+    assert b.ask("location.hash.length") < 160, b.ask("location.hash")
     b.ask("window.isOld = true")
     b.reload()
     b.wait("!window.isOld && window.kdray?.state.scene")
@@ -363,7 +273,6 @@ def main():
                 b.wait("window.kdray?.state.scene")
                 try:
                     mouse_and_keys(b, folder)
-                    dialogs(b, pathlib.Path(os.environ.get("KDRAY_SHOTS", name)))
                     picks(b)
                     touches(b)
                     channels(b, folder)
