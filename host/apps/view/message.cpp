@@ -58,7 +58,10 @@ class Fields {
   }
   template <std::size_t kN>
   int choice(const char* name, const std::array<std::string_view, kN>& names) {
-    const Json& value = get(name);
+    return choice(get(name), name, names);
+  }
+  template <std::size_t kN>
+  int choice(const Json& value, const char* name, const std::array<std::string_view, kN>& names) const {
     for (std::size_t i = 0; value.is_string() && i < kN; ++i)
       if (value.get_ref<const std::string&>() == names[i]) return static_cast<int>(i);
     refuse(std::string(name) + " is none of its choices");
@@ -120,6 +123,8 @@ ViewRequest view_request_of(const Json& value) {
   request.min_weight = fields.real("weight", -1, 1);
   request.headlight = fields.real("headlight", 0, 1000);
   if (const Json* const background = fields.find("background")) read_background(*background, fields, request);
+  if (const Json* const look = fields.find("look"); look != nullptr && !look->is_null())
+    request.look = static_cast<kdray::Look>(fields.choice(*look, "look", kLooks));
   request.channel = kChannels[static_cast<std::size_t>(fields.choice("channel", kChannels))];
   request.mode = static_cast<Mode>(fields.choice("mode", kModes));
   request.traversal = static_cast<Traversal>(fields.choice("traversal", kWalks));

@@ -137,6 +137,26 @@ def settings(b, folder):
     print("ok  up axis, background, light, what a mode means")
 
 
+def looks(b, folder):
+    """A scene with neither camera nor lights, in a studio and without; its picture is the command's in both."""
+    scene = folder / "roof.obj"
+    scene.write_text("v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 1 0\nf 1 5 2\nf 2 5 3\nf 3 5 4\nf 4 5 1\n")
+    viewer = Viewer(kdray, scene)
+    try:
+        b.open(viewer.address)
+        b.wait("window.kdray?.state.scene?.names[0] === 'roof.obj'")
+        assert b.ask("document.getElementById('look').value") == "studio"
+        studio = compare(kdray, b, folder, "studio")
+        choose(b, "look", "plain")
+        assert "--look plain" in rest(b)
+        assert compare(kdray, b, folder, "plain") != studio
+        choose(b, "look", "studio")
+        assert compare(kdray, b, folder, "studio again") == studio
+    finally:
+        viewer.close()
+    print("ok  looks")
+
+
 OVERLAPS = """(() => {
   const seen = [...document.querySelectorAll('#bar, #strip, #panel[open]')].map(e => [e.id, e.getBoundingClientRect()]);
   return seen.flatMap(([a, p], i) => seen.slice(i + 1).filter(([, q]) => p.left < q.right && q.left < p.right &&
@@ -202,6 +222,7 @@ def main():
             for name in SIZES:
                 layout(b, name, rules)
             assert not b.faults(), b.faults()
+            looks(b, pathlib.Path(folder))
     finally:
         viewer.close()
 

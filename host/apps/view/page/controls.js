@@ -14,7 +14,7 @@ const six = (x) => String(Number(x.toPrecision(7)));
 export class Controls {
   constructor(byId, changed) {
     this.byId = byId;
-    for (const id of ['channel', 'samples', 'mode', 'traversal', 'queues', 'depth', 'weight', 'headlight', 'backdrop', 'background'])
+    for (const id of ['channel', 'samples', 'mode', 'traversal', 'queues', 'depth', 'weight', 'headlight', 'look', 'backdrop', 'background'])
       byId(id).addEventListener('input', () => {
         this.showValues();
         changed(id);
@@ -27,6 +27,7 @@ export class Controls {
     this.byId('depth').value = scene.depth;
     this.byId('samples').value = String(scene.samples);
     if (this.byId('samples').selectedIndex < 0) this.byId('samples').value = '0';
+    this.byId('look').value = scene.look;
     this.byId('headlight').value = Math.round(scene.headlight * 10);
     this.showValues();
   }
@@ -46,7 +47,7 @@ export class Controls {
   values() {
     const text = (id) => this.byId(id).value;
     return {
-      channel: text('channel'), mode: text('mode'), traversal: text('traversal'),
+      channel: text('channel'), look: text('look'), mode: text('mode'), traversal: text('traversal'),
       queues: Number(text('queues')), depth: Number(text('depth')),
       samples: text('samples') === 'adaptive' ? 'adaptive' : Number(text('samples')),
       weight: weightOf(Number(text('weight'))), headlight: Number(text('headlight')) / 10,

@@ -277,6 +277,8 @@ addEventListener('resize', () => {
   }, REST);
 });
 
+// The settings end above the strip, however high it is.
+new ResizeObserver(() => document.documentElement.style.setProperty('--strip', `${byId('strip').offsetHeight}px`)).observe(byId('strip'));
 address.exchange(token);
 requestAnimationFrame(tick);
 window.kdray = {state, screen, view};  // for whoever scripts the page, and the tests
