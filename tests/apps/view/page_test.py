@@ -226,7 +226,7 @@ def several(b, folder, other):
 def no_token(viewer):
     with Browser(WIDTH, HEIGHT + 30) as b:
         b.open(viewer.address.split("#")[0])
-        b.wait("document.getElementById('problem').textContent.includes('Copy the whole address')")
+        b.wait("document.getElementById('problem')?.textContent.includes('Copy the whole address')")
     print("ok  a page without its token says what to do")
 
 
