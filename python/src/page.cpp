@@ -10,10 +10,10 @@
 #include <optional>
 #include <thread>
 
-#include "interrupt.h"
-#include "parts.h"
 #include "apps/view/server.h"
 #include "apps/view/view_service.h"
+#include "interrupt.h"
+#include "parts.h"
 
 namespace kdray::python {
 
@@ -25,9 +25,8 @@ using namespace nb::literals;
 using CameraNumbers = std::array<double, 14>;
 
 // As it was committed last, with the ids and names of its geometries.
-view::LoadedScene opened(const Scene& scene, Look look) {
-  const PreparedScene committed = scene.prepared();
-  view::LoadedScene opened{look == Look::studio ? committed.in_studio() : committed, {}};
+view::LoadedScene opened(const Scene& scene) {
+  view::LoadedScene opened{scene.prepared(), {}};
   for (const GeometryId id : scene.geometries()) {
     const GeometryInfo info = scene.info(id);
     if (info.enabled) opened.geometries.push_back({info.name, id, info.primitives});
@@ -56,19 +55,18 @@ class Page {
  public:
   Page(const Scene& scene, const std::string& name, const std::optional<CameraNumbers>& camera,
        const std::string& device, int compute_units, int port, bool framed, const std::string& look)
-      : look_(look_of(look)),
-        scene_(opened(scene, look_)),
+      : scene_(opened(scene)),
         served_(std::make_unique<Served>(view::ServerOptions{.port = port, .framed = framed})),
         address_(served_->server.address()) {
     view::Settings settings;
     settings.view = view_of(camera);
-    settings.look = look_;
+    settings.look = look_of(look);
     settings.device.device = device;
     settings.device.compute_units = compute_units;
     settings.device.programs = default_program_folder();
     settings.device.remember_programs = true;
-    served_->service.emplace(std::vector<view::SceneSource>{{name, "", [this] { return scene_now(); }}}, settings,
-                          scene_);
+    served_->service.emplace(std::vector<view::SceneSource>{{name, "", [this] { return scene_now(); }}},
+                             settings, scene_);
     served_->thread = std::thread([s = served_.get()] { s->server.run(*s->service); });
   }
   ~Page() { close(); }
@@ -78,7 +76,7 @@ class Page {
   const std::string& address() const { return address_; }
 
   void update(const Scene& scene) {
-    view::LoadedScene now = opened(scene, look_);
+    view::LoadedScene now = opened(scene);
     {
       const std::lock_guard lock(mutex_);
       scene_ = std::move(now);
@@ -110,8 +108,7 @@ class Page {
   }
 
   std::mutex mutex_, closing_;
-  const Look look_;
-  view::LoadedScene scene_;  // by `mutex_`
+  view::LoadedScene scene_;         // by `mutex_`
   std::unique_ptr<Served> served_;  // null: closed
   std::string address_;
   pid_t process_ = ::getpid();

@@ -47,7 +47,7 @@ std::vector<view::SceneSource> sources_of(const ViewArgs& args) {
     const auto open = [&args, scene] {
       OpenedScene opened(input_of(args, scene), args.tree, args.device, args.cache, true);
       opened.keep();
-      return view::LoadedScene{in_look(opened.scene(), args.view), {}};
+      return view::LoadedScene{opened.scene(), {}};
     };
     sources.push_back({fs::path(scene).filename().string(), scene, open});
   }
@@ -165,11 +165,10 @@ int show_page(ViewArgs& args) {
                       if (args.view.any) check_view(asked, args.view.view);
                     });
   first.keep();
-  const PreparedScene shown = in_look(first.scene(), args.view);
-  if (!args.quiet) tell_of_view(shown, args.view);
+  if (!args.quiet) tell_of_view(in_look(first.scene(), args.view), args.view);
   view::Settings settings{args.view.view, args.render, first.device(), args.load,
                           args.view.look.value_or(Look::studio)};
-  view::ViewService service(sources_of(args), settings, {shown, {}});
+  view::ViewService service(sources_of(args), settings, {first.scene(), {}});
   say_where(args, server);
   std::unique_ptr<Temporary> opened;
   if (args.open || (!args.no_open && can_open())) {

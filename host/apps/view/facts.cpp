@@ -112,6 +112,7 @@ std::string scene_message(std::span<const SceneSource> sources, std::size_t numb
       box.empty() ? Json(nullptr) : Json{{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
   json["depth"] = given.depth > 0 ? given.depth : asked.depth.value_or(5);
   json["samples"] = given.samples > 0 ? Json(given.samples) : Json("adaptive");
+  json["look"] = kLooks[static_cast<std::size_t>(settings.look)];
   json["headlight"] = settings.view.headlight;
   json["queues"] = settings.device.queues;
   const prepare::Prepared& prepared = renderer.scene().prepared();

@@ -58,7 +58,10 @@ class Fields {
   }
   template <std::size_t kN>
   int choice(const char* name, const std::array<std::string_view, kN>& names) {
-    const Json& value = get(name);
+    return choice(get(name), name, names);
+  }
+  template <std::size_t kN>
+  int choice(const Json& value, const char* name, const std::array<std::string_view, kN>& names) const {
     for (std::size_t i = 0; value.is_string() && i < kN; ++i)
       if (value.get_ref<const std::string&>() == names[i]) return static_cast<int>(i);
     refuse(std::string(name) + " is none of its choices");
@@ -82,6 +85,15 @@ Camera camera_of(const Json& value) {
   camera.ortho_width = fields.real("ortho", 0, 1e300);
   fields.end();
   return camera;
+}
+
+// Left out or null: as the command line or the scene has it.
+void read_background(const Json& value, const Fields& fields, ViewRequest& request) {
+  if (value.is_null()) return;
+  if (!value.is_array() || value.size() != 3) refuse("background is no colour");
+  std::array<float, 3>& color = request.background.emplace();
+  for (std::size_t k = 0; k < 3; ++k)
+    color[k] = static_cast<float>(fields.real(value[k], "background", 0, 1));
 }
 
 void read_samples(const Json& value, Fields& fields, ViewRequest& request) {
@@ -110,6 +122,9 @@ ViewRequest view_request_of(const Json& value) {
   read_samples(fields.get("samples"), fields, request);
   request.min_weight = fields.real("weight", -1, 1);
   request.headlight = fields.real("headlight", 0, 1000);
+  if (const Json* const background = fields.find("background")) read_background(*background, fields, request);
+  if (const Json* const look = fields.find("look"); look != nullptr && !look->is_null())
+    request.look = static_cast<kdray::Look>(fields.choice(*look, "look", kLooks));
   request.channel = kChannels[static_cast<std::size_t>(fields.choice("channel", kChannels))];
   request.mode = static_cast<Mode>(fields.choice("mode", kModes));
   request.traversal = static_cast<Traversal>(fields.choice("traversal", kWalks));

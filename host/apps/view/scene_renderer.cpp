@@ -28,7 +28,7 @@ Vec3 triple_of(const dvec3& v) {
 }  // namespace
 
 SceneRenderer::SceneRenderer(LoadedScene loaded, const Settings& settings)
-    : loaded_(std::move(loaded)), settings_(settings) {}
+    : loaded_(std::move(loaded)), settings_(settings), studio_(loaded_.scene.in_studio()) {}
 
 std::vector<std::filesystem::path> SceneRenderer::files() const {
   std::vector<std::filesystem::path> paths;
@@ -52,7 +52,7 @@ void SceneRenderer::make_ready(const ViewRequest& request) {
   if (renderer_ && queues == queues_) return;
   DeviceOptions device = settings_.device;
   device.queues = queues;
-  renderer_.emplace(scene(), device);
+  renderer_.emplace(loaded_.scene, device);
   if (queues == 1) {
     Tuning tuning = renderer_->statistics().tuning.settings;
     tuning.waves = tuning.waves > 0 ? std::min(tuning.waves, kWavesOfLaunch) : kWavesOfLaunch;
@@ -63,7 +63,8 @@ void SceneRenderer::make_ready(const ViewRequest& request) {
 
 Picture SceneRenderer::render(const ViewRequest& request, const RenderOptions& options) {
   make_ready(request);
-  renderer_->look(scene().seen(view_of(request, settings_), request.width, request.height));
+  const PreparedScene& shown = scene(look_of(request, settings_));
+  renderer_->look(shown.seen(view_of(request, settings_), request.width, request.height));
   return renderer_->render(options);
 }
 

@@ -24,7 +24,7 @@
 namespace kdray::view {
 
 struct LoadedScene {
-  PreparedScene scene;
+  PreparedScene scene;                   // in the plain look
   std::vector<GeometryName> geometries;  // empty: all of it is geometry 0
 };
 
@@ -39,7 +39,11 @@ class SceneRenderer {
  public:
   SceneRenderer(LoadedScene loaded, const Settings& settings);
 
-  const PreparedScene& scene() const { return loaded_.scene; }
+  // Returns it in the look of the command line, or in another one.
+  const PreparedScene& scene() const { return scene(settings_.look); }
+  const PreparedScene& scene(kdray::Look look) const {
+    return look == kdray::Look::studio ? studio_ : loaded_.scene;
+  }
   // Returns all files that were read to make it, and those that were not found.
   std::vector<std::filesystem::path> files() const;
   // Returns the camera of the scene, or of the command line.
@@ -56,6 +60,7 @@ class SceneRenderer {
 
   LoadedScene loaded_;
   Settings settings_;
+  PreparedScene studio_;
   std::optional<Renderer> renderer_;
   int queues_ = 0;  // of the renderer
   std::optional<Picker> picker_;

@@ -40,6 +40,7 @@ View view_of(const ViewRequest& request, const Settings& settings) {
   else
     view.fov = request.camera.fov;
   view.headlight = request.headlight;
+  if (request.background) view.background = request.background;
   return view;
 }
 
@@ -58,6 +59,10 @@ RenderOptions render_of(const ViewRequest& request, const Settings& settings) {
 
 int queues_of(const ViewRequest& request, const Settings& settings) {
   return request.queues > 0 ? request.queues : settings.device.queues;
+}
+
+kdray::Look look_of(const ViewRequest& request, const Settings& settings) {
+  return request.look.value_or(settings.look);
 }
 
 namespace {
@@ -132,7 +137,7 @@ std::string command_for(const ViewRequest& request, const Settings& settings, co
   if (settings.load.texture_bytes > 0)
     text += fmt::format(" --texture-memory {}", settings.load.texture_bytes);
   if (!settings.load.asset_root.empty()) text += " --asset-root " + quoted(settings.load.asset_root.string());
-  if (settings.look == kdray::Look::plain) text += " --look plain";
+  if (look_of(request, settings) == kdray::Look::plain) text += " --look plain";
   return text + view_options(view_of(request, settings)) + picture_options(options) +
          division_options(options, queues_of(request, settings));
 }

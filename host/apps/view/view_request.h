@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,8 +14,9 @@
 
 namespace kdray::view {
 
-// Names, in the order of the enumerations Mode and Traversal.
+// Names, in the order of the enumerations Mode, Look and Traversal.
 inline constexpr std::array<std::string_view, 3> kModes = {"auto", "pdprt", "odprt"};
+inline constexpr std::array<std::string_view, 2> kLooks = {"plain", "studio"};
 inline constexpr std::array<std::string_view, 5> kWalks = {"auto", "binary", "wide", "packet", "batch"};
 
 enum class Samples { as_given, number, adaptive };
@@ -25,6 +27,8 @@ struct ViewRequest {
   int width = 1024, height = 768;
   int depth = 0;
   double min_weight = -1, headlight = 0;
+  std::optional<std::array<float, 3>> background;  // linear RGB, as View's
+  std::optional<kdray::Look> look;
   Samples samples = Samples::as_given;
   int n_samples = 1;    // Samples::number
   std::string channel;  // empty: the picture itself
@@ -39,13 +43,14 @@ struct Settings {
   RenderOptions render;
   DeviceOptions device;
   LoadOptions load;
-  kdray::Look look = kdray::Look::studio;  // that scenes are in; for the commands alone
+  kdray::Look look = kdray::Look::studio;
 };
 
 View view_of(const ViewRequest& request, const Settings& settings);
 // Returns the options of the finished picture.
 RenderOptions render_of(const ViewRequest& request, const Settings& settings);
 int queues_of(const ViewRequest& request, const Settings& settings);
+kdray::Look look_of(const ViewRequest& request, const Settings& settings);
 
 // Returns the command that renders just this picture, bit for bit, wherever it runs. `scene`: a file.
 std::string command_for(const ViewRequest& request, const Settings& settings, const std::string& scene);

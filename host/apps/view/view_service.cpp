@@ -249,7 +249,8 @@ ViewService::Task ViewService::task_for(ClientState& state, const FramePacer::Wo
                                         const std::shared_ptr<SceneRenderer>& renderer) {
   Task task{state.client, renderer, work, render_of(work.look.request, settings_)};
   RenderOptions& o = task.options;
-  if (o.samples == 0) o.samples = renderer->scene().settings().settings.samples.value_or(1);
+  const PreparedScene& shown = renderer->scene(look_of(work.look.request, settings_));
+  if (o.samples == 0) o.samples = shown.settings().settings.samples.value_or(1);
   if (work.look.moving) {
     const int by = state.resolution.divide_by(static_cast<double>(o.width) * o.height);
     o = options_of({.samples = 1}, o);

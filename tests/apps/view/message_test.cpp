@@ -21,6 +21,7 @@ TEST(Message, ALookIsTakenAsItIs) {
   json["sight"]["samples"] = 16;
   json["sight"]["channel"] = "cost";
   json["sight"]["mode"] = "odprt";
+  json["sight"]["look"] = "plain";
   json["sight"]["traversal"] = "batch";
   json["sight"]["camera"]["from"] = {0.1, -1e-9, 3e200};
   const Look look = std::get<Look>(parse_message(json.dump()));
@@ -32,6 +33,7 @@ TEST(Message, ALookIsTakenAsItIs) {
   EXPECT_EQ(look.request.n_samples, 16);
   EXPECT_EQ(look.request.channel, "cost");
   EXPECT_EQ(look.request.mode, Mode::odprt);
+  EXPECT_EQ(look.request.look, kdray::Look::plain);
   EXPECT_EQ(look.request.traversal, Traversal::batch);
   EXPECT_EQ(std::get<Shown>(parse_message(R"({"type":"shown","frame":7})")).frame, 7u);
   EXPECT_EQ(std::get<Cells>(parse_message(R"({"type":"cells","scene":0,"depth":9})")).depth, 9);
@@ -73,6 +75,11 @@ TEST(Message, EveryFieldIsChecked) {
       changed[at] = wrong;
       refuses(changed.dump());
     }
+  }
+  for (const Json& wrong : {Json("bright"), Json(1), Json(Json::array())}) {
+    Json changed = good;
+    changed["sight"]["look"] = wrong;
+    refuses(changed.dump());
   }
   Json more = good;
   more["sight"]["path"] = "/etc/passwd";

@@ -26,13 +26,15 @@ TEST(Command, HasTheNumbersWithAllTheirBits) {
   request.headlight = 0.5;
   request.mode = Mode::odprt;
   request.queues = 2;
+  request.look = kdray::Look::plain;
   Settings settings;
   settings.load.smooth_degrees = 40;
   settings.load.asset_root = "my textures";
   settings.view.camera = 1;
   EXPECT_EQ(
       command_for(request, settings, "-x.nff"),
-      "kdray render './-x.nff' --smooth 40 --asset-root 'my textures' --from=0.1,0.3333333333333333,-2e-07 "
+      "kdray render './-x.nff' --smooth 40 --asset-root 'my textures' --look plain "
+      "--from=0.1,0.3333333333333333,-2e-07 "
       "--at=0,0,0 --up=0,0,1 "
       "--camera 1 --ortho 2.5 --headlight 0.5 --size 64x48 --depth 1 --samples 1 --queues 2 --mode odprt "
       "--aov depth");

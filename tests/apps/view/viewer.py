@@ -1,6 +1,7 @@
 """`kdray view` as a process, and what its page tells whoever scripts it."""
 
 import base64
+import math
 import shlex
 import subprocess
 import time
@@ -48,6 +49,27 @@ def png(browser):
 
 def camera(browser):
     return browser.ask("kdray.state.camera")
+
+
+def distance(c):
+    return math.dist(c["from"], c["at"])
+
+
+def near(p, q):
+    """The camera at rest has no more digits than can be seen."""
+    return math.dist(p, q) <= 1e-5 * max(1, math.hypot(*q))
+
+
+def choose(b, name, value):
+    b.ask(f"(e => {{ e.value = {value!r}; e.dispatchEvent(new Event('input')); }})(document.getElementById('{name}'))")
+
+
+def resize(b, width, height):
+    """The page hears of it when it is drawn next."""
+    b.resize(width, height)
+    b.wait(f"innerWidth === {width} && innerHeight === {height}")
+    b.ask("new Promise(then => requestAnimationFrame(() => requestAnimationFrame(() => then(1))))")
+    rest(b)
 
 
 def compare(kdray, browser, folder, name, limit=PATIENCE):

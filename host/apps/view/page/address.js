@@ -33,9 +33,11 @@ function write(change) {
   history.replaceState(null, '', '#' + all.toString().replaceAll('%2C', ','));
 }
 
+// No camera: the scene's own.
 export function keep(camera, scene) {
   write((all) => {
-    all.set('camera', [...camera.from, ...camera.at, ...camera.up, camera.fov, camera.ortho].join(','));
+    if (camera) all.set('camera', [...camera.from, ...camera.at, ...camera.up, camera.fov, camera.ortho].join(','));
+    else all.delete('camera');
     scene > 0 ? all.set('scene', scene) : all.delete('scene');
   });
 }

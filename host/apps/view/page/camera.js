@@ -118,16 +118,33 @@ export function fromSide(camera, side, box, aspect) {
   return {...frameAll(view, box, aspect), up: side === 'top' ? view.up : up};
 }
 
-// The next axis is up, and the camera goes with it.
-export function nextUp(camera) {
-  const axes = [[0, 1, 0], [0, 0, 1], [1, 0, 0], [0, -1, 0], [0, 0, -1], [-1, 0, 0]];
-  const now = unit(camera.up);
-  const i = axes.findIndex((a) => dot(a, now) > 0.9);
-  const up = axes[(i + 1) % axes.length];
-  const axis = cross(now, up), sine = length(axis);
+const AXES = [[0, 1, 0], [0, 0, 1], [1, 0, 0], [0, -1, 0], [0, 0, -1], [-1, 0, 0]];
+const axisOf = (camera) => AXES.findIndex((a) => dot(a, unit(camera.up)) > 0.9);
+
+// Another direction is up, and the camera goes with it.
+export function withUp(camera, up) {
+  const now = unit(camera.up), axis = cross(now, up), sine = length(axis);
   const angle = Math.atan2(sine, dot(now, up));
   const about = sine > 1e-9 ? scale(axis, 1 / sine) : basis(camera).right;
   return {...camera, up, from: add(camera.at, turn(sub(camera.from, camera.at), about, angle))};
+}
+
+export function nextUp(camera) {
+  return withUp(camera, AXES[(axisOf(camera) + 1) % AXES.length]);
+}
+
+// The axis that is up, as text, or nothing.
+export function upAxis(camera) {
+  return AXES[axisOf(camera)]?.join(',') ?? '';
+}
+
+// With no more digits than can be seen: a millionth of the distance, and seven digits of the rest.
+export function rounded(camera) {
+  const digits = 6 - Math.floor(Math.log10(length(sub(camera.at, camera.from))));
+  if (!(digits >= 0 && digits <= 100)) return camera;
+  const short = (x) => Number(x.toFixed(digits)), seven = (x) => Number(x.toPrecision(7));
+  return {from: camera.from.map(short), at: camera.at.map(short), up: camera.up.map((x) => Number(x.toFixed(7))),
+          fov: seven(camera.fov), ortho: seven(camera.ortho)};
 }
 
 // Where a point is seen: x, y from -1 to 1, and how far ahead it is.

@@ -2,12 +2,19 @@
 
 const weightOf = (step) => step === 0 ? -1 : 10 ** (-6 + (step - 1) * 6 / 40);
 const small = new Intl.NumberFormat('en', {maximumSignificantDigits: 2, notation: 'standard'});
+const linear = (v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
+const linearColor = (hex) => [1, 3, 5].map((i) => linear(parseInt(hex.slice(i, i + 2), 16) / 255));
+const MODES = {
+  auto: 'kdray chooses how the queues divide the work.',
+  pdprt: 'pdprt: the queues divide the picture; each has the whole scene.',
+  odprt: 'odprt: the queues divide the scene; rays travel between them.',
+};
 const six = (x) => String(Number(x.toPrecision(7)));
 
 export class Controls {
   constructor(byId, changed) {
     this.byId = byId;
-    for (const id of ['channel', 'samples', 'mode', 'traversal', 'queues', 'depth', 'weight', 'headlight'])
+    for (const id of ['channel', 'samples', 'mode', 'traversal', 'queues', 'depth', 'weight', 'headlight', 'look', 'backdrop', 'background'])
       byId(id).addEventListener('input', () => {
         this.showValues();
         changed(id);
@@ -20,24 +27,31 @@ export class Controls {
     this.byId('depth').value = scene.depth;
     this.byId('samples').value = String(scene.samples);
     if (this.byId('samples').selectedIndex < 0) this.byId('samples').value = '0';
+    this.byId('look').value = scene.look;
     this.byId('headlight').value = Math.round(scene.headlight * 10);
     this.showValues();
   }
 
   showValues() {
-    const {weight, headlight, depth} = this.values();
-    this.byId('depth-out').value = depth;
-    this.byId('weight-out').value = weight < 0 ? 'as given' : small.format(weight);
-    this.byId('headlight-out').value = headlight > 0 ? String(headlight) : 'off';
+    const {weight, headlight, depth} = this.values(), cells = Number(this.byId('cells').value);
+    const texts = {depth: String(depth), weight: weight < 0 ? 'as given' : small.format(weight),
+                   headlight: headlight > 0 ? String(headlight) : 'off', cells: cells ? `depth ${cells}` : 'none'};
+    for (const [id, text] of Object.entries(texts)) {
+      this.byId(`${id}-out`).value = text;
+      this.byId(id).setAttribute('aria-valuetext', text);
+    }
+    this.byId('background-row').hidden = !this.byId('backdrop').value;
+    this.byId('mode-means').textContent = MODES[this.byId('mode').value];
   }
 
   values() {
     const text = (id) => this.byId(id).value;
     return {
-      channel: text('channel'), mode: text('mode'), traversal: text('traversal'),
+      channel: text('channel'), look: text('look'), mode: text('mode'), traversal: text('traversal'),
       queues: Number(text('queues')), depth: Number(text('depth')),
       samples: text('samples') === 'adaptive' ? 'adaptive' : Number(text('samples')),
       weight: weightOf(Number(text('weight'))), headlight: Number(text('headlight')) / 10,
+      background: text('backdrop') ? linearColor(text('background')) : null,
     };
   }
 }

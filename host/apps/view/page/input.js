@@ -8,6 +8,9 @@ const CLICK_PIXELS = 4, CLICK_TIME = 500, DOUBLE_TIME = 350;
 const TAP_PIXELS = 10, TAP_TIME = 400;
 const FLIGHT = 0.8;            // distances to what is looked at, in a second
 const FAST = 4;
+const STEP = 1 / 24;           // of the picture's height, for an arrow key
+const ZOOM = 1.1;              // for plus and minus
+const ARROWS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
 const FLY = {KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyQ: [0, -1, 0], KeyE: [0, 1, 0]};
 
@@ -117,7 +120,11 @@ export class InputController {
   }
 
   key(e) {
-    if (e.ctrlKey || e.metaKey || e.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
+    if (e.ctrlKey || e.metaKey || e.altKey) return;
+    if (e.code === 'Escape') return this.view.escape() && e.preventDefault();
+    if (/^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
+    if (document.querySelector('dialog:modal') && e.code !== 'KeyH') return;
+    if (this.step(e)) return e.preventDefault();
     this.fast = e.shiftKey;
     if (FLY[e.code]) return void this.keys.add(e.code);
     const {view} = this, now = view.camera;
@@ -129,9 +136,23 @@ export class InputController {
       Digit1: () => this.side('front'), Numpad1: () => this.side('front'),
       Digit3: () => this.side('side'), Numpad3: () => this.side('side'),
       Digit7: () => this.side('top'), Numpad7: () => this.side('top'),
-      KeyH: view.help, KeyP: view.panel, KeyC: view.copy, Escape: view.escape,
+      KeyH: view.help, KeyP: view.panel, KeyC: view.copy,
     }[e.code];
     if (action) action();
+  }
+
+  // Arrow keys, which scroll what else has the focus, and plus and minus, wherever the keyboard has them.
+  step(e) {
+    const {view} = this, arrow = e.target.closest('#details, dialog') ? null : ARROWS[e.key];
+    if (!view.camera) return false;
+    if (arrow) {
+      const [x, y] = arrow.map((v) => v * STEP), now = view.camera;
+      view.change(e.shiftKey ? camera.pan(now, x, y, view.aspect) : camera.orbit(now, x * ORBIT, y * ORBIT), e.timeStamp);
+      return true;
+    }
+    const factor = {'+': 1 / ZOOM, '=': 1 / ZOOM, '-': ZOOM, '_': ZOOM}[e.key];
+    if (factor) view.change(camera.zoom(view.camera, factor, 0, 0, view.aspect), e.timeStamp);
+    return Boolean(factor);
   }
 
   up(e) {

@@ -41,7 +41,8 @@ export class Link {
 
   closed(event) {
     if (event.code === NO_TOKEN)
-      return this.status('This page needs its token: open the address that kdray view has printed.');
+      return this.status('This page has no token, or an old one. Copy the whole address that kdray view has printed in its terminal, with what ' +
+                         'follows #token=, and open that.');
     this.status(event.reason || 'kdray is not there any more, or the network is not. Trying again …');
     setTimeout(() => this.connect(), this.wait);
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);

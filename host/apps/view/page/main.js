@@ -1,6 +1,7 @@
 // What    The page of kdray view: puts the parts together. A view is a camera and settings; whenever it changes kdray
 //         gets a look, at most one for each frame of the screen, and another one when it has come to rest.
 import * as address from './address.js';
+import {rounded, upAxis, withUp} from './camera.js';
 import {Controls, showPicked} from './controls.js';
 import {InputController} from './input.js';
 import {Link} from './link.js';
@@ -36,6 +37,7 @@ function change(camera, at = performance.now()) {
   state.changedAt = performance.now();
   if (!state.inputAt) state.inputAt = at;
   byId('mark').hidden = true;
+  byId('up').value = upAxis(camera);
   drawCells(screen.lines, state.boxes, state.camera, screen.aspect);
 }
 
@@ -64,8 +66,10 @@ function tick(now) {
   if (state.scene && link.open) {
     if (state.changed) ask(true);
     else if (state.moving && now - state.changedAt > REST) {
+      const isFirst = state.camera === state.scene.camera;
+      if (!isFirst) state.camera = rounded(state.camera);
       settle();
-      address.keep(state.camera, state.scene.scene);
+      address.keep(isFirst ? null : state.camera, state.scene.scene);
     }
   }
   requestAnimationFrame(tick);
@@ -88,6 +92,7 @@ function handleScene(scene) {
   if (other) {
     state.camera = (first && address.scene() === scene.scene ? address.camera() : null) ?? scene.camera;
     controls.begin(scene);
+    byId('up').value = upAxis(state.camera);
     for (const warning of scene.warnings) console.info('kdray: ' + warning);
   }
   document.title = `${scene.names[scene.scene]} – kdray view`;
@@ -180,17 +185,30 @@ function marked(x, y, message) {
 
 function askCells() {
   const depth = Number(byId('cells').value);
-  byId('cells-out').value = depth ? `depth ${depth}` : 'none';
+  controls.showValues();
   link.send({type: 'cells', scene: state.scene.scene, depth});
 }
 
+const isNarrow = () => matchMedia('(max-width: 560px)').matches;
+
+// Settings stand beside the picture, which stays in use; help lies over all of it.
 function toggle(id) {
-  byId(id).hidden = !byId(id).hidden;
+  const dialog = byId(id);
+  if (dialog.open) dialog.close();
+  else id === 'help' ? dialog.showModal() : dialog.show();
+}
+
+// Closes what lies on top, and returns whether there was something.
+function escape() {
+  const dialog = ['help', 'panel'].map(byId).find((d) => d.open);
+  if (dialog) return dialog.close(), true;
+  if (byId('picked').hidden && byId('mark').hidden) return false;
+  return byId('picked').hidden = byId('mark').hidden = true;
 }
 
 async function copy() {
   if (!state.command) return;
-  byId('panel').hidden = false;
+  if (!byId('panel').open) toggle('panel');
   byId('said').textContent = state.command;
   try {
     await navigator.clipboard.writeText(state.command);
@@ -221,7 +239,7 @@ const view = {
   help: () => toggle('help'),
   panel: () => toggle('panel'),
   copy,
-  escape: () => { byId('help').hidden = byId('picked').hidden = byId('mark').hidden = true; },
+  escape,
 };
 
 const controls = new Controls(byId, () => settle());
@@ -237,8 +255,19 @@ byId('copy').onclick = copy;
 byId('save').onclick = save;
 byId('open-panel').onclick = view.panel;
 byId('open-help').onclick = view.help;
-byId('help').onclick = (e) => { if (e.target === byId('help') || e.target.className === 'close') view.help(); };
-byId('picked').querySelector('.close').onclick = view.escape;
+byId('up').onchange = () => state.camera && change(withUp(state.camera, byId('up').value.split(',').map(Number)));
+for (const id of ['panel', 'help']) byId(id).querySelector('.close').onclick = () => byId(id).close();
+// A click on the dimmed page around a modal dialog is one on the dialog itself, beside what is in it.
+byId('help').onclick = (e) => {
+  const box = byId('help').getBoundingClientRect();
+  if (e.clientX < box.left || e.clientX > box.right || e.clientY < box.top || e.clientY > box.bottom) byId('help').close();
+};
+byId('viewport').addEventListener('pointerdown', (e) => {
+  if (!isNarrow() || !byId('panel').open) return;
+  byId('panel').close();
+  e.stopPropagation();
+}, {capture: true});
+byId('picked').querySelector('.close').onclick = escape;
 addEventListener('resize', () => {
   screen.layout();
   clearTimeout(state.resizing);
@@ -248,6 +277,8 @@ addEventListener('resize', () => {
   }, REST);
 });
 
+// The settings end above the strip, however high it is.
+new ResizeObserver(() => document.documentElement.style.setProperty('--strip', `${byId('strip').offsetHeight}px`)).observe(byId('strip'));
 address.exchange(token);
 requestAnimationFrame(tick);
 window.kdray = {state, screen, view};  // for whoever scripts the page, and the tests

@@ -59,6 +59,7 @@ export class Strip {
     Object.assign(this, {figures, details, frame: null, latency: 0});
     more.onclick = () => {
       details.hidden = !details.hidden;
+      more.setAttribute('aria-expanded', String(!details.hidden));
       this.draw();
     };
   }
