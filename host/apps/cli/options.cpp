@@ -295,8 +295,9 @@ void add_device_options(CLI::App& app, DeviceOptions& device, Traversal& travers
          "--no-tuning", [&device] { device.tunings.clear(); },
          "Leave aside what 'kdray tune' found; take what kdray ships with")
       ->group(group);
-  add_device_option(
-      app, "The device: a number from 'kdray devices' or a part of its name; several with commas", device.device)
+  add_device_option(app,
+                    "The device: a number from 'kdray devices' or a part of its name; several with commas",
+                    device.device)
       ->group(group);
   add_int(app, "--queues", "Command queues, each on its own equal part of the device (default 1)", 1, 1024,
           device.queues)
