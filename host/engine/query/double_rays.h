@@ -1,0 +1,68 @@
+// What    Rays of a program against a scene of doubles (double_scene.h): each on the host, in parallel.
+// Errors  As kdray/query.h says of rays that are none.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/error.h"
+#include "engine/query/check_rays.h"
+#include "engine/query/double_scene.h"
+#include "engine/query/grains.h"
+#include "engine/query/queries.h"
+
+namespace kdray::query {
+
+class DoubleRays {
+ public:
+  DoubleRays(const QueryContext& context, const RayArrays& rays)
+      : context_(&context), rays_(&rays), scene_(context.scene(), context.table) {}
+
+  const DoubleScene& scene() const { return scene_; }
+  std::uint32_t mask(std::size_t i) const { return rays_->mask(i); }
+
+  // None: it meets nothing.
+  std::optional<DoubleRay> ray_of(std::size_t i) const {
+    const dvec3 origin = rays_->origin(i), direction = rays_->direction(i);
+    const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
+    if (rays_->mask(i) == 0 || fault_of(origin, direction, t_min, t_max) != nullptr) return std::nullopt;
+    return context_->frame.double_ray(origin, direction, t_min, t_max);
+  }
+
+  // Throws for the first of these rays that is none, where such are errors; counts them.
+  std::uint64_t check(std::size_t first, std::size_t n, InvalidRays invalid) const {
+    std::uint64_t count = 0;
+    for (std::size_t i = first; i < first + n; ++i) {
+      const char* const fault =
+          fault_of(rays_->origin(i), rays_->direction(i), rays_->t_min(i), rays_->t_max(i));
+      if (fault == nullptr) continue;
+      if (invalid == InvalidRays::error)
+        throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault));
+      ++count;
+    }
+    return count;
+  }
+
+  // Calls answer(first, last) for parts of the rays, from several threads.
+  template <class Answer>
+  QueryReport run(const QueryOptions& options, const Answer& answer) const {
+    constexpr std::size_t kAtOnce = std::size_t{1} << 16;
+    QueryReport report;
+    for (std::size_t first = 0; first < rays_->size(); first += kAtOnce) {
+      const std::size_t n = std::min(kAtOnce, rays_->size() - first);
+      report.invalid += check(first, n, options.invalid);
+      for_each_slow_grain(n, options.cancel,
+                          [&](std::size_t begin, std::size_t end) { answer(first + begin, first + end); });
+    }
+    return report;
+  }
+
+ private:
+  const QueryContext* context_;
+  const RayArrays* rays_;
+  DoubleScene scene_;
+};
+
+}  // namespace kdray::query

@@ -1,0 +1,61 @@
+// What    A scene of doubles (TreeOptions::geometry) asked by rays and points, on the host: what exact
+//         arithmetic says of the vertices and rays as the caller gave them.
+// Shape   A walk through the wide tree, whose boxes are those of the floats, widened. Which triangles a line
+//         crosses goes by the half-open rule with exact signs (exact_triangle.h), for closest hits too: of
+//         what shares an edge one is hit. Which of two comes first is decided exactly; at one t it is the one
+//         with the lower number. In leaves four triangles of floats at a time are looked at before, and passed
+//         by where their doubles can't be crossed.
+// Errors  t is the double nearest to the exact one, nearly always, and off by less than two of its last
+//         places. It is compared with t_min and t_max as such; its sign is exact. Distances of points are off
+//         by some 2^-50 of themselves.
+// Why     Boxes: a vertex is off by u of the scene's reach W in floats, so that what a triangle's floats have
+//         in a cell its doubles have within u*W, and the boxes of pieces are off by some u*W more
+//         (kdtree/clip.h). A walk's floats lose 4u of the lengths in play, |o| + 2W. The margin is 64u*W and
+//         32u*|o|.
+// Threads As many calls at once as there are threads.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/query/exact_scene.h"
+#include "engine/query/geometry_table.h"
+#include "engine/query/local_rays.h"
+
+namespace kdray::query {
+
+class DoubleScene {
+ public:
+  // Of a scene that has doubles; `table` tells masks.
+  DoubleScene(const prepare::Prepared& scene, const GeometryTable& table);
+
+  // t as the caller's rays have it.
+  std::optional<ExactHit> closest(const DoubleRay& ray, std::uint32_t mask) const;
+  bool any(const DoubleRay& ray, std::uint32_t mask) const;
+  // Sorted, in place of what `hits` held. A hit at t = 0 counts where t_min is 0.
+  void all(const DoubleRay& ray, std::uint32_t mask, std::vector<ExactHit>& hits) const;
+
+  struct Nearest {
+    double distance;
+    dvec3 point;
+    std::uint32_t ref;
+    double u, v;
+  };
+  // Of what lies within `most` of the place; of several at one distance the one with the lowest number. All
+  // in the scene's space.
+  std::optional<Nearest> nearest(const dvec3& place, double most) const;
+
+ private:
+  class Walk;
+  bool is_seen(std::uint32_t ref, std::uint32_t mask) const;
+  bool precedes(const ExactLine& line, const ExactHit& a, const ExactHit& b) const;
+  ExactHit finished(const ExactLine& line, const DoubleRay& ray, ExactHit hit) const;
+
+  const prepare::Prepared* scene_;
+  const scene::DoubleTriangles* doubles_;
+  const GeometryTable* table_;
+  double reach_, margin_;
+};
+
+}  // namespace kdray::query
