@@ -181,11 +181,9 @@ QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut&
     const DoubleRays in_doubles(context, arrays);
     return in_doubles.run(options, [&](std::size_t first, std::size_t last) {
       if (out.empty()) return;
-      std::vector<ExactHit> hits;
       out.fill(first, last - first, [&](std::size_t i) {
-        hits.clear();
-        if (const auto ray = in_doubles.ray_of(i)) in_doubles.scene().all(*ray, in_doubles.mask(i), hits);
-        return std::array{static_cast<std::uint32_t>(hits.size())};
+        const auto ray = in_doubles.ray_of(i);
+        return std::array{ray ? in_doubles.scene().count(*ray, in_doubles.mask(i)) : 0};
       });
     });
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <tuple>
 
+#include "engine/query/double_walk.h"
 #include "engine/query/scene_arguments.h"
 #include "engine/query/surface.h"
 #include "engine/query/wide_boxes.h"
@@ -19,12 +20,6 @@ using layout::WideNode;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBoxes = 0x1p-18;  // 64u of the reach: see double_scene.h
-
-// Below this, as a share of either, two values of t may be in the other order.
-constexpr double kSureOrder = 0x1p-50;
-bool is_sure_order(double a, double b) {
-  return std::abs(a - b) > kSureOrder * std::max(std::abs(a), std::abs(b));
-}
 
 float rounded_down(double value) {
   constexpr double kMost = std::numeric_limits<float>::max();
@@ -71,202 +66,151 @@ DoubleScene::DoubleScene(const prepare::Prepared& scene, const GeometryTable& ta
       reach_(world_max(scene.geometry.bounds)),
       margin_(kBoxes * reach_) {}
 
-// A ray on its way. What it finds it tells found(hit), whose t, the local one, is all that is known yet: how
-// far it goes on, or nothing: no farther.
+// A triangle that may be hit: t lies between these.
+struct DoubleScene::Candidate {
+  std::uint32_t triangle;
+  ExactLine::Bounds t;
+};
+
+// A ray on its way. Triangles that its line crosses, with t between t_min and t_max, it tells found(candidate),
+// each once for every leaf that it lies in: how far it goes on, or nothing: no farther.
 class DoubleScene::Walk {
  public:
-  Walk(const DoubleScene& scene, const DoubleRay& ray)
+  Walk(const DoubleScene& scene, const DoubleRay& ray, std::uint32_t mask)
       : line(without_tiny(ray.origin), without_tiny(ray.direction), without_tiny(ray.rest)),
         scene_(scene),
-        ray_(ray) {
-    const dvec3 start = ray.origin + ray.rest + ray.start * ray.direction;
-    origin_ = vec3(start);
-    margin_ = widened(scene.margin_, start);
-    constexpr float kMost = 0x1p100f;
-    for (int k = 0; k < 3; ++k) {
-      inverse_[k] = static_cast<float>(std::clamp(1 / ray.direction[k], double{-kMost}, double{kMost}));
-      octant_ |= (ray.direction[k] < 0 ? 1u : 0u) << k;
-    }
-    begin_ = rounded_down(ray.t_min - ray.start - slack(ray.t_min));
-    end_at(ray.t_max);
-    choose_axes();
-  }
+        ray_(ray),
+        mask_(mask),
+        end_(ray.t_max) {}
 
   const ExactLine line;
 
+  // t_min: 0 lies ahead of 0.
   template <class Found>
-  void run(const Found& found) {
-    if (scene_.scene_->wide.nodes.size() == 0 || !(begin_ <= end_)) return;
-    thread_local std::vector<Entry> stack;
-    stack.clear();
-    open(0, stack);
-    while (!stack.empty()) {
-      const Entry entry = stack.back();
-      stack.pop_back();
-      if (entry.enter > end_) continue;
-      if (!(entry.child & KDRAY_WIDE_LEAF)) {
-        open(entry.child, stack);
-      } else if (!test(entry.child, found)) {
-        return;
+  void run(bool from_start, const Found& found) {
+    const dvec3 start = ray_.origin + ray_.rest + ray_.start * ray_.direction;
+    LineInFloats floats(start, ray_.direction, widened(scene_.margin_, start), scene_.reach_);
+    floats.begin = rounded_down(ray_.t_min - ray_.start - slack(ray_.t_min));
+    floats.end = in_floats(end_);
+    const auto decide = [&](std::uint32_t triangle) {
+      Candidate candidate{triangle, {}};
+      if (scene_.is_seen(triangle, mask_) && is_hit(candidate, from_start)) {
+        const std::optional<double> end = found(candidate);
+        if (!end) return -HUGE_VALF;
+        end_ = *end;
       }
-    }
+      return in_floats(end_);
+    };
+    walk_triangles(
+        scene_.scene_->wide, floats,
+        [](void* context, std::uint32_t triangle) {
+          return (*static_cast<decltype(decide)*>(context))(triangle);
+        },
+        const_cast<void*>(static_cast<const void*>(&decide)));
+  }
+
+  // Exactly by t, then by number. False for the same triangle.
+  bool precedes(Candidate a, Candidate b) const {
+    if (a.triangle == b.triangle) return false;
+    if (a.t.most < b.t.least) return true;
+    if (b.t.most < a.t.least) return false;
+    settle(a), settle(b);
+    if (a.t.most < b.t.least) return true;
+    if (b.t.most < a.t.least) return false;
+    const int order = line.compare_t(scene_.doubles_->at(a.triangle), scene_.doubles_->at(b.triangle));
+    return order != 0 ? order < 0 : scene_.number_of(a.triangle) < scene_.number_of(b.triangle);
   }
 
  private:
-  struct Entry {
-    float enter;
-    std::uint32_t child;
-  };
-
   // Between t here and in floats from the start on.
   double slack(double t) const {
     return 0x1p-48 * (std::abs(ray_.start) + (std::isinf(t) ? 0 : std::abs(t)));
   }
-  void end_at(double t) { end_ = rounded_up(t - ray_.start + slack(t)); }
+  float in_floats(double t) const { return rounded_up(t - ray_.start + slack(t)); }
 
-  void open(std::uint32_t index, std::vector<Entry>& stack) const {
-    const WideNode& node = scene_.scene_->wide.nodes[index];
-    float enters[8];
-    const std::uint32_t slots = choose_slots([&](int first) {
-      Slots enter = Slots{} + begin_, leave = Slots{} + end_;
-      for (int k = 0; k < 3; ++k) {
-        const Slots a = (slots_at(node.bounds[k][0] + first) - (origin_[k] + margin_)) * inverse_[k],
-                    b = (slots_at(node.bounds[k][1] + first) - (origin_[k] - margin_)) * inverse_[k];
-        enter = greater(enter, lesser(a, b));
-        leave = lesser(leave, greater(a, b));
-      }
-      std::memcpy(enters + first, &enter, sizeof enter);
-      return (enter <= leave) & (slots_at(node.bounds[0][0] + first) <= slots_at(node.bounds[0][1] + first));
-    });
-    for (std::uint32_t order = node.order[octant_], i = 0; i < 8; ++i, order >>= 3)
-      if (const std::uint32_t slot = order & 7; slots >> slot & 1)
-        stack.push_back({enters[slot], node.child[slot]});
+  double settle(Candidate& candidate) const {
+    const double t = line.t_of(scene_.doubles_->at(candidate.triangle));
+    candidate.t = ExactLine::around(t);
+    return t;
   }
 
-  // The triangles' plane in floats: z along the direction's largest component.
-  void choose_axes() {
-    const dvec3 d = glm::abs(ray_.direction);
-    kz_ = d.x >= d.y && d.x >= d.z ? 0 : (d.y >= d.z ? 1 : 2);
-    kx_ = (kz_ + 1) % 3;
-    ky_ = (kz_ + 2) % 3;
-    sx_ = static_cast<float>(ray_.direction[kx_] / ray_.direction[kz_]);
-    sy_ = static_cast<float>(ray_.direction[ky_] / ray_.direction[kz_]);
-    const double most = 2 * scene_.reach_ + largest_component(dvec3(origin_));
-    displaced_ = static_cast<float>(16 * 0x1p-24 * most);
-  }
-
-  // Which of four triangles may be crossed. A corner's place in the plane across the line, sheared, is off by
-  // 16u of what the largest of its lengths can be: 2u for the rounding of vertex and origin, each also by
-  // way of the shear, and 9u for that of the operations. Where it is off by no more than e, and no corner's
-  // coordinate is above m, an edge function is off by 4*e*m + 2*e^2, and by 3u of 2*m^2 for its own rounding.
-  SlotsChosen may_cross(const layout::u32* rows, std::size_t block) const {
-    Slots x[3], y[3], most{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto at = [&](int k) {
-        Slots values;
-        std::memcpy(&values, rows + (3 * i + static_cast<std::size_t>(k)) * block, sizeof values);
-        return values - origin_[k];
-      };
-      const Slots z = at(kz_);
-      x[i] = at(kx_) - sx_ * z;
-      y[i] = at(ky_) - sy_ * z;
-      most = greater(most, greater(greater(x[i], -x[i]), greater(y[i], -y[i])));
-    }
-    const Slots bound = 1.01f * (most * (4 * displaced_ + 0x1p-21f * most) + 2 * displaced_ * displaced_);
-    const auto edge = [&](int p, int q) { return x[q] * y[p] - y[q] * x[p]; };
-    const Slots a = edge(1, 2), b = edge(2, 0), c = edge(0, 1);
-    return ~((lesser(a, lesser(b, c)) < -bound) & (greater(a, greater(b, c)) > bound));
-  }
-
-  template <class Found>
-  bool test(std::uint32_t leaf, const Found& found) {
-    const auto block = static_cast<std::size_t>(scene_.scene_->wide.block);
-    return visit_blocks(scene_.scene_->wide, leaf, [&](const layout::u32* rows, std::size_t n) {
-      for (std::size_t first = 0; first < n; first += 4) {
-        const SlotsChosen chosen = may_cross(rows + first, block);
-        for (std::size_t i = first; i < std::min(n, first + 4); ++i) {
-          if (!chosen[i - first]) continue;
-          const std::uint32_t triangle = rows[(KDRAY_TRIANGLE_ROWS - 1) * block + i] & ~KDRAY_WIDE_LAST;
-          const ExactLine::Corners corners = scene_.doubles_->at(triangle);
-          if (!line.crosses(corners)) continue;
-          const std::optional<double> end =
-              found(ExactHit{line.t_of(corners), 0, 0, ref_of(triangle), kNoInstance});
-          if (!end) return false;
-          end_at(*end);
-        }
-      }
-      return true;
-    });
+  bool is_hit(Candidate& candidate, bool from_start) const {
+    const ExactLine::Corners corners = scene_.doubles_->at(candidate.triangle);
+    candidate.t = line.bounds_of_t(corners);
+    if (candidate.t.most < ray_.t_min || candidate.t.least > end_ || !line.crosses(corners)) return false;
+    if (candidate.t.least > ray_.t_min && candidate.t.most < ray_.t_max) return true;
+    const double t = settle(candidate);
+    return (t > ray_.t_min || (from_start && t == 0 && ray_.t_min == 0)) && t < ray_.t_max;
   }
 
   const DoubleScene& scene_;
   const DoubleRay& ray_;
-  vec3 origin_, inverse_;
-  std::uint32_t octant_ = 0;
-  float margin_, begin_, end_;
-  int kx_, ky_, kz_;
-  float sx_, sy_, displaced_;
+  const std::uint32_t mask_;
+  double end_;
 };
 
-bool DoubleScene::is_seen(std::uint32_t ref, std::uint32_t mask) const {
-  return mask == 0xffffffffu || (table_->mask_of(number_of(scene_->flat, ref)) & mask) != 0;
+std::uint32_t DoubleScene::number_of(std::uint32_t triangle) const {
+  return query::number_of(scene_->flat, ref_of(triangle));
 }
 
-// Whether it comes first. In a row: exactly by t, then by number.
-bool DoubleScene::precedes(const ExactLine& line, const ExactHit& a, const ExactHit& b) const {
-  if (a.ref == b.ref) return false;
-  if (is_sure_order(a.t, b.t)) return a.t < b.t;
-  const int order =
-      line.compare_t(doubles_->at(a.ref & KDRAY_REF_INDEX_MASK), doubles_->at(b.ref & KDRAY_REF_INDEX_MASK));
-  if (order != 0) return order < 0;
-  return number_of(scene_->flat, a.ref) < number_of(scene_->flat, b.ref);
+bool DoubleScene::is_seen(std::uint32_t triangle, std::uint32_t mask) const {
+  return mask == 0xffffffffu || (table_->mask_of(number_of(triangle)) & mask) != 0;
 }
 
-ExactHit DoubleScene::finished(const ExactLine& line, const DoubleRay& ray, ExactHit hit) const {
-  const auto [u, v] = line.weights_of(doubles_->at(hit.ref & KDRAY_REF_INDEX_MASK));
-  hit.t = std::scalbn(hit.t, ray.exponent);
-  hit.u = u, hit.v = v;
-  return hit;
+ExactHit DoubleScene::hit_of(const ExactLine& line, const DoubleRay& ray, std::uint32_t triangle) const {
+  const ExactLine::Corners corners = doubles_->at(triangle);
+  const auto [u, v] = line.weights_of(corners);
+  return {std::scalbn(line.t_of(corners), ray.exponent), u, v, ref_of(triangle), kNoInstance};
 }
 
 std::optional<ExactHit> DoubleScene::closest(const DoubleRay& ray, std::uint32_t mask) const {
-  Walk walk(*this, ray);
-  std::optional<ExactHit> best;
-  walk.run([&](const ExactHit& hit) -> std::optional<double> {
-    const double end = best ? best->t : ray.t_max;
-    if (!(hit.t > ray.t_min && hit.t < ray.t_max) || !is_seen(hit.ref, mask)) return end;
-    if (!best || precedes(walk.line, hit, *best)) best = hit;
-    return best->t;
+  Walk walk(*this, ray, mask);
+  std::optional<Candidate> best;
+  walk.run(false, [&](const Candidate& candidate) -> std::optional<double> {
+    if (!best || walk.precedes(candidate, *best)) best = candidate;
+    return std::min(best->t.most, ray.t_max);
   });
-  if (best) best = finished(walk.line, ray, *best);
-  return best;
+  if (!best) return std::nullopt;
+  return hit_of(walk.line, ray, best->triangle);
 }
 
 bool DoubleScene::any(const DoubleRay& ray, std::uint32_t mask) const {
-  Walk walk(*this, ray);
   bool has_hit = false;
-  walk.run([&](const ExactHit& hit) -> std::optional<double> {
-    has_hit = hit.t > ray.t_min && hit.t < ray.t_max && is_seen(hit.ref, mask);
-    return has_hit ? std::nullopt : std::optional(ray.t_max);
+  Walk(*this, ray, mask).run(false, [&](const Candidate&) -> std::optional<double> {
+    has_hit = true;
+    return std::nullopt;
   });
   return has_hit;
 }
 
-void DoubleScene::all(const DoubleRay& ray, std::uint32_t mask, std::vector<ExactHit>& hits) const {
-  hits.clear();
-  Walk walk(*this, ray);
-  walk.run([&](const ExactHit& hit) -> std::optional<double> {
-    const bool is_ahead = hit.t > ray.t_min || (hit.t == 0 && ray.t_min == 0);
-    if (is_ahead && hit.t < ray.t_max && is_seen(hit.ref, mask)) hits.push_back(hit);
+// A triangle lies in several leaves.
+void DoubleScene::collect(Walk& walk, const DoubleRay& ray, std::vector<Candidate>& found) const {
+  found.clear();
+  walk.run(true, [&](const Candidate& candidate) -> std::optional<double> {
+    found.push_back(candidate);
     return ray.t_max;
   });
-  // A triangle lies in several leaves.
-  std::sort(hits.begin(), hits.end(), [](const ExactHit& a, const ExactHit& b) { return a.ref < b.ref; });
-  const auto same = [](const ExactHit& a, const ExactHit& b) { return a.ref == b.ref; };
-  hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
-  std::sort(hits.begin(), hits.end(),
-            [&](const ExactHit& a, const ExactHit& b) { return precedes(walk.line, a, b); });
-  for (ExactHit& hit : hits) hit = finished(walk.line, ray, hit);
+  std::sort(found.begin(), found.end(),
+            [](const Candidate& a, const Candidate& b) { return a.triangle < b.triangle; });
+  const auto same = [](const Candidate& a, const Candidate& b) { return a.triangle == b.triangle; };
+  found.erase(std::unique(found.begin(), found.end(), same), found.end());
+}
+
+std::uint32_t DoubleScene::count(const DoubleRay& ray, std::uint32_t mask) const {
+  thread_local std::vector<Candidate> found;
+  Walk walk(*this, ray, mask);
+  collect(walk, ray, found);
+  return static_cast<std::uint32_t>(found.size());
+}
+
+void DoubleScene::all(const DoubleRay& ray, std::uint32_t mask, std::vector<ExactHit>& hits) const {
+  thread_local std::vector<Candidate> found;
+  Walk walk(*this, ray, mask);
+  collect(walk, ray, found);
+  std::sort(found.begin(), found.end(),
+            [&](const Candidate& a, const Candidate& b) { return walk.precedes(a, b); });
+  hits.clear();
+  for (const Candidate& candidate : found) hits.push_back(hit_of(walk.line, ray, candidate.triangle));
 }
 
 namespace {
@@ -369,8 +313,7 @@ std::optional<DoubleScene::Nearest> DoubleScene::nearest(const dvec3& place, dou
         if (!(near.square <= square)) continue;
         const std::uint32_t ref = ref_of(triangle);
         const double distance = std::sqrt(near.square);
-        if (best && near.square == square &&
-            number_of(scene_->flat, ref) >= number_of(scene_->flat, best->ref))
+        if (best && near.square == square && number_of(triangle) >= query::number_of(scene_->flat, best->ref))
           continue;
         if (distance > within) continue;
         square = near.square;

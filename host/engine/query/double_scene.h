@@ -33,7 +33,9 @@ class DoubleScene {
   // t as the caller's rays have it.
   std::optional<ExactHit> closest(const DoubleRay& ray, std::uint32_t mask) const;
   bool any(const DoubleRay& ray, std::uint32_t mask) const;
-  // Sorted, in place of what `hits` held. A hit at t = 0 counts where t_min is 0.
+  // Of count and all: a hit at t = 0 counts where t_min is 0.
+  std::uint32_t count(const DoubleRay& ray, std::uint32_t mask) const;
+  // Sorted, in place of what `hits` held.
   void all(const DoubleRay& ray, std::uint32_t mask, std::vector<ExactHit>& hits) const;
 
   struct Nearest {
@@ -48,9 +50,11 @@ class DoubleScene {
 
  private:
   class Walk;
-  bool is_seen(std::uint32_t ref, std::uint32_t mask) const;
-  bool precedes(const ExactLine& line, const ExactHit& a, const ExactHit& b) const;
-  ExactHit finished(const ExactLine& line, const DoubleRay& ray, ExactHit hit) const;
+  struct Candidate;
+  std::uint32_t number_of(std::uint32_t triangle) const;
+  bool is_seen(std::uint32_t triangle, std::uint32_t mask) const;
+  void collect(Walk& walk, const DoubleRay& ray, std::vector<Candidate>& found) const;
+  ExactHit hit_of(const ExactLine& line, const DoubleRay& ray, std::uint32_t triangle) const;
 
   const prepare::Prepared* scene_;
   const scene::DoubleTriangles* doubles_;

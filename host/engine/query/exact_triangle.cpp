@@ -231,6 +231,29 @@ double ExactLine::distance_to(const Corners& v, int facing_sign) const {
   return sign > 0 ? std::max(t, kLeast) : std::min(t, -kLeast);
 }
 
+ExactLine::Bounds ExactLine::around(double t) {
+  const double off = 0x1p-50 * std::abs(t);
+  return {t - off, t + off};
+}
+
+ExactLine::Bounds ExactLine::bounds_of_t(const Corners& v) const {
+  const dvec3 e = v[1] - v[0], f = v[2] - v[0], a = v[0] - origin_ - rest_;
+  const dvec3 n = glm::cross(e, f);
+  const double volume = glm::dot(n, a), facing = glm::dot(n, direction_);
+  double volume_size = 0, facing_size = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    const double part = std::abs(e[l] * f[m]) + std::abs(e[m] * f[l]);
+    volume_size += part * (std::abs(v[0][k]) + std::abs(origin_[k]));
+    facing_size += part * std::abs(direction_[k]);
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (!(std::abs(facing) > 4 * kSure * facing_size)) return {-kInfinity, kInfinity};
+  const double t = volume / facing;
+  const double off = 2 * kSure * (volume_size + std::abs(t) * facing_size) / std::abs(facing);
+  return {t - off, t + off};
+}
+
 int ExactLine::side_of(const Place& a, const Place& b, const Place& c) const {
   const int side = side_of(a, b);
   return side == 0 || side != side_of(b, c) || side != side_of(c, a) ? 0 : side;

@@ -34,6 +34,12 @@ class ExactLine {
   std::optional<Crossing> crossing(const Corners& corners) const;
 
   bool crosses(const Corners& corners) const;
+  // Of a triangle that it crosses: t, and what t_of tells, lie between these; infinite where that isn't plain.
+  struct Bounds {
+    double least, most;
+  };
+  Bounds bounds_of_t(const Corners& corners) const;
+  static Bounds around(double t);  // the exact t, of what t_of tells
   // Of a triangle that it crosses: t, the weights of the second and third corner, and the sign of t less that
   // of another such triangle.
   double t_of(const Corners& corners) const;
