@@ -136,8 +136,7 @@ QueryReport closest_of_doubles(const QueryContext& context, const RayArrays& arr
   return rays.run(options, [&](std::size_t first, std::size_t last) {
     const std::size_t n = last - first;
     std::vector<std::optional<ExactHit>> hits(n);
-    for (std::size_t i = 0; i < n; ++i)
-      if (const auto ray = rays.ray_of(first + i)) hits[i] = rays.scene().closest(*ray, rays.mask(first + i));
+    rays.scene().closest(rays.questions(first, n), hits);
     const auto put = [&](const auto& column, const auto& of_miss, const auto& of_hit) {
       fill(column, first, n, [&](std::size_t ray) {
         const std::optional<ExactHit>& hit = hits[ray - first];
@@ -187,10 +186,9 @@ QueryReport any(const QueryContext& context, const Rays& rays, const BytesOut& o
   if (context.scene().doubles) {
     const DoubleRays in_doubles(context, arrays);
     return in_doubles.run(options, [&](std::size_t first, std::size_t last) {
-      fill(out, first, last - first, [&](std::size_t i) {
-        const auto ray = in_doubles.ray_of(i);
-        return std::array{static_cast<std::uint8_t>(ray && in_doubles.scene().any(*ray, in_doubles.mask(i)))};
-      });
+      std::vector<std::uint8_t> hit(last - first);
+      in_doubles.scene().any(in_doubles.questions(first, last - first), hit);
+      fill(out, first, last - first, [&](std::size_t i) { return std::array{hit[i - first]}; });
     });
   }
   return trace_chunks(

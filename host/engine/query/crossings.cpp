@@ -181,10 +181,9 @@ QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut&
     const DoubleRays in_doubles(context, arrays);
     return in_doubles.run(options, [&](std::size_t first, std::size_t last) {
       if (out.empty()) return;
-      out.fill(first, last - first, [&](std::size_t i) {
-        const auto ray = in_doubles.ray_of(i);
-        return std::array{ray ? in_doubles.scene().count(*ray, in_doubles.mask(i)) : 0};
-      });
+      std::vector<std::uint32_t> counts(last - first);
+      in_doubles.scene().count(in_doubles.questions(first, last - first), counts);
+      out.fill(first, last - first, [&](std::size_t i) { return std::array{counts[i - first]}; });
     });
   }
   const auto work = [&](Place& place, RowTaker& rows, const std::optional<Cancel>& cancel) {
@@ -304,11 +303,10 @@ AllHits all_of_doubles(const QueryContext& context, const RayArrays& arrays, con
     n_invalid += in_doubles.check(first, n, options.invalid);
     ExactHits found{std::vector<std::vector<ExactHit>>(n), std::vector<std::uint8_t>(n)};
     for_each_slow_grain(n, options.cancel, [&](std::size_t begin, std::size_t end) {
+      in_doubles.scene().all(in_doubles.questions(first + begin, end - begin),
+                             std::span(found.hits).subspan(begin, end - begin));
       for (std::size_t i = begin; i < end; ++i) {
-        const auto ray = in_doubles.ray_of(first + i);
-        if (!ray) continue;
         std::vector<ExactHit>& hits = found.hits[i];
-        in_doubles.scene().all(*ray, in_doubles.mask(first + i), hits);
         found.more[i] = hits.size() > options.max_hits;
         hits.resize(std::min<std::size_t>(hits.size(), options.max_hits));
       }

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
+#include <vector>
 
 #include "base/error.h"
 #include "engine/query/check_rays.h"
@@ -21,14 +21,19 @@ class DoubleRays {
       : context_(&context), rays_(&rays), scene_(context.scene(), context.table) {}
 
   const DoubleScene& scene() const { return scene_; }
-  std::uint32_t mask(std::size_t i) const { return rays_->mask(i); }
 
-  // None: it meets nothing.
-  std::optional<DoubleRay> ray_of(std::size_t i) const {
-    const dvec3 origin = rays_->origin(i), direction = rays_->direction(i);
-    const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
-    if (rays_->mask(i) == 0 || fault_of(origin, direction, t_min, t_max) != nullptr) return std::nullopt;
-    return context_->frame.double_ray(origin, direction, t_min, t_max);
+  // Of these rays, but for those that meet nothing; places count from the first.
+  std::vector<DoubleScene::Question> questions(std::size_t first, std::size_t n) const {
+    std::vector<DoubleScene::Question> asked;
+    asked.reserve(n);
+    for (std::size_t i = first; i < first + n; ++i) {
+      const dvec3 origin = rays_->origin(i), direction = rays_->direction(i);
+      const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
+      if (rays_->mask(i) == 0 || fault_of(origin, direction, t_min, t_max) != nullptr) continue;
+      if (const auto ray = context_->frame.double_ray(origin, direction, t_min, t_max))
+        asked.push_back({*ray, rays_->mask(i), i - first});
+    }
+    return asked;
   }
 
   // Throws for the first of these rays that is none, where such are errors; counts them.

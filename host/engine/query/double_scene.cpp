@@ -72,41 +72,34 @@ struct DoubleScene::Candidate {
   ExactLine::Bounds t;
 };
 
-// A ray on its way. Triangles that its line crosses, with t between t_min and t_max, it tells found(candidate),
-// each once for every leaf that it lies in: how far it goes on, or nothing: no farther.
-class DoubleScene::Walk {
+// A ray, and how far it goes on.
+class DoubleScene::Line : public ExactLine {
  public:
-  Walk(const DoubleScene& scene, const DoubleRay& ray, std::uint32_t mask)
-      : line(without_tiny(ray.origin), without_tiny(ray.direction), without_tiny(ray.rest)),
-        scene_(scene),
-        ray_(ray),
-        mask_(mask),
-        end_(ray.t_max) {}
+  Line(const DoubleScene& scene, const Question& question)
+      : ExactLine(without_tiny(question.ray.origin), without_tiny(question.ray.direction),
+                  without_tiny(question.ray.rest)),
+        scene_(&scene),
+        ray_(&question.ray),
+        end_(question.ray.t_max) {}
 
-  const ExactLine line;
+  LineInFloats in_floats() const {
+    const dvec3 start = ray_->origin + ray_->rest + ray_->start * ray_->direction;
+    LineInFloats line(start, ray_->direction, widened(scene_->margin_, start), scene_->reach_);
+    line.begin = rounded_down(ray_->t_min - ray_->start - slack(ray_->t_min));
+    line.end = end_in_floats();
+    return line;
+  }
+  float end_in_floats() const { return rounded_up(end_ - ray_->start + slack(end_)); }
+  void end_at(double t) { end_ = std::min(t, end_); }
 
-  // t_min: 0 lies ahead of 0.
-  template <class Found>
-  void run(bool from_start, const Found& found) {
-    const dvec3 start = ray_.origin + ray_.rest + ray_.start * ray_.direction;
-    LineInFloats floats(start, ray_.direction, widened(scene_.margin_, start), scene_.reach_);
-    floats.begin = rounded_down(ray_.t_min - ray_.start - slack(ray_.t_min));
-    floats.end = in_floats(end_);
-    const auto decide = [&](std::uint32_t triangle) {
-      Candidate candidate{triangle, {}};
-      if (scene_.is_seen(triangle, mask_) && is_hit(candidate, from_start)) {
-        const std::optional<double> end = found(candidate);
-        if (!end) return -HUGE_VALF;
-        end_ = *end;
-      }
-      return in_floats(end_);
-    };
-    walk_triangles(
-        scene_.scene_->wide, floats,
-        [](void* context, std::uint32_t triangle) {
-          return (*static_cast<decltype(decide)*>(context))(triangle);
-        },
-        const_cast<void*>(static_cast<const void*>(&decide)));
+  // Whether the line crosses it, with t between t_min, or where that is 0 from_start, and where it ends.
+  bool hits(Candidate& candidate, bool from_start) const {
+    const Corners corners = scene_->doubles_->at(candidate.triangle);
+    candidate.t = bounds_of_t(corners);
+    if (candidate.t.most < ray_->t_min || candidate.t.least > end_ || !crosses(corners)) return false;
+    if (candidate.t.least > ray_->t_min && candidate.t.most < ray_->t_max) return true;
+    const double t = settle(candidate);
+    return (t > ray_->t_min || (from_start && t == 0 && ray_->t_min == 0)) && t < ray_->t_max;
   }
 
   // Exactly by t, then by number. False for the same triangle.
@@ -117,37 +110,70 @@ class DoubleScene::Walk {
     settle(a), settle(b);
     if (a.t.most < b.t.least) return true;
     if (b.t.most < a.t.least) return false;
-    const int order = line.compare_t(scene_.doubles_->at(a.triangle), scene_.doubles_->at(b.triangle));
-    return order != 0 ? order < 0 : scene_.number_of(a.triangle) < scene_.number_of(b.triangle);
+    const int order = compare_t(scene_->doubles_->at(a.triangle), scene_->doubles_->at(b.triangle));
+    return order != 0 ? order < 0 : scene_->number_of(a.triangle) < scene_->number_of(b.triangle);
+  }
+
+  ExactHit hit(const Candidate& candidate) const {
+    const Corners corners = scene_->doubles_->at(candidate.triangle);
+    const auto [u, v] = weights_of(corners);
+    return {std::scalbn(t_of(corners), ray_->exponent), u, v, ref_of(candidate.triangle), kNoInstance};
   }
 
  private:
   // Between t here and in floats from the start on.
   double slack(double t) const {
-    return 0x1p-48 * (std::abs(ray_.start) + (std::isinf(t) ? 0 : std::abs(t)));
+    return 0x1p-48 * (std::abs(ray_->start) + (std::isinf(t) ? 0 : std::abs(t)));
   }
-  float in_floats(double t) const { return rounded_up(t - ray_.start + slack(t)); }
 
   double settle(Candidate& candidate) const {
-    const double t = line.t_of(scene_.doubles_->at(candidate.triangle));
-    candidate.t = ExactLine::around(t);
+    const double t = t_of(scene_->doubles_->at(candidate.triangle));
+    candidate.t = around(t);
     return t;
   }
 
-  bool is_hit(Candidate& candidate, bool from_start) const {
-    const ExactLine::Corners corners = scene_.doubles_->at(candidate.triangle);
-    candidate.t = line.bounds_of_t(corners);
-    if (candidate.t.most < ray_.t_min || candidate.t.least > end_ || !line.crosses(corners)) return false;
-    if (candidate.t.least > ray_.t_min && candidate.t.most < ray_.t_max) return true;
-    const double t = settle(candidate);
-    return (t > ray_.t_min || (from_start && t == 0 && ray_.t_min == 0)) && t < ray_.t_max;
-  }
-
-  const DoubleScene& scene_;
-  const DoubleRay& ray_;
-  const std::uint32_t mask_;
+  const DoubleScene* scene_;
+  const DoubleRay* ray_;
   double end_;
 };
+
+// What line i hits is found(i, line, candidate), once for each leaf that it lies in: whether it goes on.
+template <class Found>
+class DoubleScene::Decider final : public TriangleDecider {
+ public:
+  Decider(const DoubleScene& scene, std::span<const Question> questions, std::span<Line> lines,
+          bool from_start, const Found& found)
+      : scene_(scene), questions_(questions), lines_(lines), from_start_(from_start), found_(found) {}
+
+  float decide(std::size_t i, std::uint32_t triangle) override {
+    Candidate candidate{triangle, {}};
+    if (scene_.is_seen(triangle, questions_[i].mask) && lines_[i].hits(candidate, from_start_) &&
+        !found_(i, lines_[i], candidate))
+      return -HUGE_VALF;
+    return lines_[i].end_in_floats();
+  }
+
+ private:
+  const DoubleScene& scene_;
+  const std::span<const Question> questions_;
+  const std::span<Line> lines_;
+  const bool from_start_;
+  const Found& found_;
+};
+
+template <class Found>
+std::vector<DoubleScene::Line> DoubleScene::walk(std::span<const Question> questions, bool from_start,
+                                                 const Found& found) const {
+  std::vector<Line> lines;
+  std::vector<LineInFloats> in_floats;
+  lines.reserve(questions.size());
+  in_floats.reserve(questions.size());
+  for (const Question& question : questions)
+    in_floats.push_back(lines.emplace_back(*this, question).in_floats());
+  Decider decider(*this, questions, lines, from_start, found);
+  walk_triangles(scene_->wide, *doubles_, in_floats, decider);
+  return lines;
+}
 
 std::uint32_t DoubleScene::number_of(std::uint32_t triangle) const {
   return query::number_of(scene_->flat, ref_of(triangle));
@@ -157,60 +183,64 @@ bool DoubleScene::is_seen(std::uint32_t triangle, std::uint32_t mask) const {
   return mask == 0xffffffffu || (table_->mask_of(number_of(triangle)) & mask) != 0;
 }
 
-ExactHit DoubleScene::hit_of(const ExactLine& line, const DoubleRay& ray, std::uint32_t triangle) const {
-  const ExactLine::Corners corners = doubles_->at(triangle);
-  const auto [u, v] = line.weights_of(corners);
-  return {std::scalbn(line.t_of(corners), ray.exponent), u, v, ref_of(triangle), kNoInstance};
+void DoubleScene::closest(std::span<const Question> questions,
+                          std::span<std::optional<ExactHit>> hits) const {
+  std::vector<std::optional<Candidate>> best(questions.size());
+  const std::vector<Line> lines =
+      walk(questions, false, [&](std::size_t i, Line& line, const Candidate& candidate) {
+        if (best[i] && !line.precedes(candidate, *best[i])) return true;
+        best[i] = candidate;
+        line.end_at(candidate.t.most);
+        return true;
+      });
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (best[i]) hits[questions[i].place] = lines[i].hit(*best[i]);
 }
 
-std::optional<ExactHit> DoubleScene::closest(const DoubleRay& ray, std::uint32_t mask) const {
-  Walk walk(*this, ray, mask);
-  std::optional<Candidate> best;
-  walk.run(false, [&](const Candidate& candidate) -> std::optional<double> {
-    if (!best || walk.precedes(candidate, *best)) best = candidate;
-    return std::min(best->t.most, ray.t_max);
+void DoubleScene::any(std::span<const Question> questions, std::span<std::uint8_t> hit) const {
+  walk(questions, false, [&](std::size_t i, const Line&, const Candidate&) {
+    hit[questions[i].place] = 1;
+    return false;
   });
-  if (!best) return std::nullopt;
-  return hit_of(walk.line, ray, best->triangle);
 }
 
-bool DoubleScene::any(const DoubleRay& ray, std::uint32_t mask) const {
-  bool has_hit = false;
-  Walk(*this, ray, mask).run(false, [&](const Candidate&) -> std::optional<double> {
-    has_hit = true;
-    return std::nullopt;
+// Calls collected(i, line, candidates) for the lines that hit any, each triangle once.
+template <class Collected>
+void DoubleScene::collect(std::span<const Question> questions, const Collected& collected) const {
+  struct Of {
+    std::size_t line;
+    Candidate candidate;
+    auto key() const { return std::pair(line, candidate.triangle); }
+  };
+  std::vector<Of> found;
+  const std::vector<Line> lines =
+      walk(questions, true, [&](std::size_t i, const Line&, const Candidate& candidate) {
+        found.push_back({i, candidate});
+        return true;
+      });
+  std::sort(found.begin(), found.end(), [](const Of& a, const Of& b) { return a.key() < b.key(); });
+  std::vector<Candidate> of_line;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const std::size_t i = found[k].line;
+    if (k == 0 || found[k - 1].key() != found[k].key()) of_line.push_back(found[k].candidate);
+    if (k + 1 < found.size() && found[k + 1].line == i) continue;
+    collected(i, lines[i], of_line);
+    of_line.clear();
+  }
+}
+
+void DoubleScene::count(std::span<const Question> questions, std::span<std::uint32_t> counts) const {
+  collect(questions, [&](std::size_t i, const Line&, const std::vector<Candidate>& candidates) {
+    counts[questions[i].place] = static_cast<std::uint32_t>(candidates.size());
   });
-  return has_hit;
 }
 
-// A triangle lies in several leaves.
-void DoubleScene::collect(Walk& walk, const DoubleRay& ray, std::vector<Candidate>& found) const {
-  found.clear();
-  walk.run(true, [&](const Candidate& candidate) -> std::optional<double> {
-    found.push_back(candidate);
-    return ray.t_max;
+void DoubleScene::all(std::span<const Question> questions, std::span<std::vector<ExactHit>> hits) const {
+  collect(questions, [&](std::size_t i, const Line& line, std::vector<Candidate>& candidates) {
+    std::sort(candidates.begin(), candidates.end(),
+              [&](const Candidate& a, const Candidate& b) { return line.precedes(a, b); });
+    for (const Candidate& candidate : candidates) hits[questions[i].place].push_back(line.hit(candidate));
   });
-  std::sort(found.begin(), found.end(),
-            [](const Candidate& a, const Candidate& b) { return a.triangle < b.triangle; });
-  const auto same = [](const Candidate& a, const Candidate& b) { return a.triangle == b.triangle; };
-  found.erase(std::unique(found.begin(), found.end(), same), found.end());
-}
-
-std::uint32_t DoubleScene::count(const DoubleRay& ray, std::uint32_t mask) const {
-  thread_local std::vector<Candidate> found;
-  Walk walk(*this, ray, mask);
-  collect(walk, ray, found);
-  return static_cast<std::uint32_t>(found.size());
-}
-
-void DoubleScene::all(const DoubleRay& ray, std::uint32_t mask, std::vector<ExactHit>& hits) const {
-  thread_local std::vector<Candidate> found;
-  Walk walk(*this, ray, mask);
-  collect(walk, ray, found);
-  std::sort(found.begin(), found.end(),
-            [&](const Candidate& a, const Candidate& b) { return walk.precedes(a, b); });
-  hits.clear();
-  for (const Candidate& candidate : found) hits.push_back(hit_of(walk.line, ray, candidate.triangle));
 }
 
 namespace {

@@ -1,10 +1,10 @@
 // What    A scene of doubles (TreeOptions::geometry) asked by rays and points, on the host: what exact
 //         arithmetic says of the vertices and rays as the caller gave them.
-// Shape   A walk through the wide tree, whose boxes are those of the floats, widened. Which triangles a line
+// Shape   Rays walk through the wide tree (double_walk.h), whose boxes are those of the floats, widened. Which triangles a line
 //         crosses goes by the half-open rule with exact signs (exact_triangle.h), for closest hits too: of
 //         what shares an edge one is hit. Which of two comes first is decided exactly; at one t it is the one
-//         with the lower number. In leaves four triangles of floats at a time are looked at before, and passed
-//         by where their doubles can't be crossed.
+//         with the lower number. t is bounded first, and
+//         found to its last place for what is told and where bounds overlap.
 // Errors  t is the double nearest to the exact one, nearly always, and off by less than two of its last
 //         places. It is compared with t_min and t_max as such; its sign is exact. Distances of points are off
 //         by some 2^-50 of themselves.
@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/query/exact_scene.h"
@@ -30,13 +31,18 @@ class DoubleScene {
   // Of a scene that has doubles; `table` tells masks.
   DoubleScene(const prepare::Prepared& scene, const GeometryTable& table);
 
+  struct Question {
+    DoubleRay ray;
+    std::uint32_t mask;
+    std::size_t place;  // of its answer; what is at other places stays
+  };
   // t as the caller's rays have it.
-  std::optional<ExactHit> closest(const DoubleRay& ray, std::uint32_t mask) const;
-  bool any(const DoubleRay& ray, std::uint32_t mask) const;
+  void closest(std::span<const Question> questions, std::span<std::optional<ExactHit>> hits) const;
+  void any(std::span<const Question> questions, std::span<std::uint8_t> hit) const;
   // Of count and all: a hit at t = 0 counts where t_min is 0.
-  std::uint32_t count(const DoubleRay& ray, std::uint32_t mask) const;
-  // Sorted, in place of what `hits` held.
-  void all(const DoubleRay& ray, std::uint32_t mask, std::vector<ExactHit>& hits) const;
+  void count(std::span<const Question> questions, std::span<std::uint32_t> counts) const;
+  // Sorted.
+  void all(std::span<const Question> questions, std::span<std::vector<ExactHit>> hits) const;
 
   struct Nearest {
     double distance;
@@ -49,12 +55,16 @@ class DoubleScene {
   std::optional<Nearest> nearest(const dvec3& place, double most) const;
 
  private:
-  class Walk;
   struct Candidate;
+  class Line;
+  template <class Found>
+  class Decider;
   std::uint32_t number_of(std::uint32_t triangle) const;
   bool is_seen(std::uint32_t triangle, std::uint32_t mask) const;
-  void collect(Walk& walk, const DoubleRay& ray, std::vector<Candidate>& found) const;
-  ExactHit hit_of(const ExactLine& line, const DoubleRay& ray, std::uint32_t triangle) const;
+  template <class Found>
+  std::vector<Line> walk(std::span<const Question> questions, bool from_start, const Found& found) const;
+  template <class Collected>
+  void collect(std::span<const Question> questions, const Collected& collected) const;
 
   const prepare::Prepared* scene_;
   const scene::DoubleTriangles* doubles_;

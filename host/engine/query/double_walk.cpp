@@ -36,81 +36,141 @@ HWY_ATTR u32 bits_of(D d, hn::Mask<D> mask) {
   return bytes[0];
 }
 
-// kBlock: primitives to a block.
+inline void fetch(const void* begin, std::size_t bytes) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t i = 0; i < bytes; i += kLine) __builtin_prefetch(static_cast<const char*>(begin) + i);
+}
+
+struct Scene {
+  const flatten::WideForm& wide;
+  const scene::DoubleTriangles& doubles;
+  TriangleDecider& decider;
+};
+
+// A line in flight. kBlock: primitives to a block.
 template <std::size_t kBlock>
 class Walk {
  public:
-  HWY_ATTR Walk(const flatten::WideForm& wide, const LineInFloats& line, FoundTriangle found, void* context)
-      : wide_(wide), line_(line), found_(found), context_(context), end_(line.end) {}
+  HWY_ATTR Walk(const Scene& scene, Entry* stack) : scene_(&scene), bottom_(stack), top_(stack) {}
 
-  HWY_ATTR void run() {
-    thread_local std::vector<Entry> stack;
-    const std::size_t capacity = static_cast<std::size_t>(wide_.stack_size) + 8;
-    if (stack.size() < capacity) stack.resize(capacity);
-    const Entry* const bottom = stack.data();
-    Entry* top = open(0, stack.data());
-    while (top != bottom) {
-      const Entry entry = *--top;
-      if (entry.enter > end_) continue;
-      if (!(entry.child & KDRAY_WIDE_LEAF)) {
-        top = open(entry.child, top);
-      } else if (!test(entry.child)) {
-        return;
-      }
+  HWY_ATTR void start(const LineInFloats& line, std::size_t number) {
+    line_ = &line;
+    number_ = number;
+    end_ = line.end;
+    top_ = bottom_;
+    rows_ = nullptr;
+    undecided_ = 0;
+    if (line.begin <= line.end) open(0);
+  }
+
+  // Whether there is another.
+  HWY_ATTR bool step() {
+    if (undecided_ != 0) return decide();
+    if (rows_ != nullptr) {
+      test();
+      return true;
     }
+    while (top_ != bottom_) {
+      const Entry entry = *--top_;
+      if (entry.enter > end_) continue;
+      if (entry.child & KDRAY_WIDE_LEAF) {
+        rows_ = rows_of(entry.child);
+        test();
+      } else {
+        open(entry.child);
+      }
+      return true;
+    }
+    return false;
   }
 
  private:
   // Pushes the children that the line meets, the nearest last. Slots without a child have nothing between
   // their bounds.
-  HWY_ATTR Entry* open(u32 index, Entry* top) const {
-    const layout::WideNode& node = wide_.nodes[index];
+  HWY_ATTR void open(u32 index) {
+    const layout::WideNode& node = scene_->wide.nodes[index];
     const hn::CappedTag<float, 8> d;
     float enters[8];
     u32 met = 0;
     for (std::size_t slot = 0; slot < 8; slot += hn::Lanes(d)) {
-      auto enter = hn::Set(d, line_.begin), leave = hn::Set(d, end_);
+      auto enter = hn::Set(d, line_->begin), leave = hn::Set(d, end_);
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto first = hn::LoadU(d, node.bounds[k][line_.upper_first[k]] + slot);
-        const auto last = hn::LoadU(d, node.bounds[k][1 - line_.upper_first[k]] + slot);
-        const auto inverse = hn::Set(d, line_.inverse[k]);
-        enter = hn::Max(enter, hn::Mul(hn::Sub(first, hn::Set(d, line_.first[k])), inverse));
-        leave = hn::Min(leave, hn::Mul(hn::Sub(last, hn::Set(d, line_.last[k])), inverse));
+        const auto first = hn::LoadU(d, node.bounds[k][line_->upper_first[k]] + slot);
+        const auto last = hn::LoadU(d, node.bounds[k][1 - line_->upper_first[k]] + slot);
+        const auto inverse = hn::Set(d, line_->inverse[k]);
+        enter = hn::Max(enter, hn::Mul(hn::Sub(first, hn::Set(d, line_->first[k])), inverse));
+        leave = hn::Min(leave, hn::Mul(hn::Sub(last, hn::Set(d, line_->last[k])), inverse));
       }
       hn::StoreU(enter, d, enters + slot);
       met |= bits_of(d, hn::Le(enter, leave)) << slot;
     }
     if ((met & (met - 1)) == 0) {
-      if (met == 0) return top;
+      if (met == 0) return;
       const int slot = std::countr_zero(met);
-      *top = {enters[slot], node.child[slot]};
-      return top + 1;
+      *top_++ = {enters[slot], node.child[slot]};
+    } else {
+      Entry* top = top_;
+      for (u32 order = node.order[line_->octant], i = 0; i < 8; ++i, order >>= 3) {
+        const u32 slot = order & 7;
+        *top = {enters[slot], node.child[slot]};
+        top += met >> slot & 1;
+      }
+      top_ = top;
     }
-    for (u32 order = node.order[line_.octant], i = 0; i < 8; ++i, order >>= 3) {
-      const u32 slot = order & 7;
-      *top = {enters[slot], node.child[slot]};
-      top += met >> slot & 1;
-    }
-    return top;
+    const u32 next = top_[-1].child;
+    if (next & KDRAY_WIDE_LEAF)
+      fetch(rows_of(next), kRows * kBlock * sizeof(u32));
+    else
+      fetch(&scene_->wide.nodes[next], sizeof(layout::WideNode));
   }
 
-  HWY_ATTR bool test(u32 leaf) {
-    constexpr std::size_t kRows = KDRAY_TRIANGLE_ROWS;
+  HWY_ATTR const u32* rows_of(u32 leaf) const {
+    return scene_->wide.triangle_blocks.data() + (leaf & KDRAY_WIDE_FIRST_MASK) * kRows * kBlock;
+  }
+
+  // Looks at a block.
+  HWY_ATTR void test() {
     const hn::CappedTag<float, kBlock> d;
-    const u32* rows = wide_.triangle_blocks.data() + (leaf & KDRAY_WIDE_FIRST_MASK) * kRows * kBlock;
-    for (;; rows += kRows * kBlock)
-      for (std::size_t lane = 0; lane < kBlock; lane += hn::Lanes(d)) {
-        const u32* const index = rows + (kRows - 1) * kBlock + lane;
-        const hn::RebindToUnsigned<decltype(d)> du;
-        const u32 ends = bits_of(du, hn::TestBit(hn::LoadU(du, index), hn::Set(du, KDRAY_WIDE_LAST)));
-        const u32 there = (ends ^ (ends - 1)) & ((u32{1} << hn::Lanes(d)) - 1);
-        u32 may = there & ~surely_missed(d, rows + lane);
-        for (; may != 0; may &= may - 1) {
-          end_ = found_(context_, index[std::countr_zero(may)] & ~KDRAY_WIDE_LAST);
-          if (end_ < line_.begin) return false;
-        }
-        if (ends != 0) return true;
-      }
+    const hn::RebindToUnsigned<decltype(d)> du;
+    u32 missed = 0, ends = 0;
+    indices_ = rows_ + (kRows - 1) * kBlock;
+    for (std::size_t lane = 0; lane < kBlock; lane += hn::Lanes(d)) {
+      const auto index = hn::LoadU(du, indices_ + lane);
+      ends |= bits_of(du, hn::TestBit(index, hn::Set(du, KDRAY_WIDE_LAST))) << lane;
+      missed |= surely_missed(d, rows_ + lane) << lane;
+    }
+    undecided_ = ~missed & (ends ^ (ends - 1)) & ((u32{1} << kBlock) - 1);
+    has_fetched_ = false;
+    rows_ = ends != 0 ? nullptr : rows_ + kRows * kBlock;
+    for_each_undecided([&](u32 triangle) {
+      __builtin_prefetch(&scene_->doubles.corners[triangle]);
+      return true;
+    });
+  }
+
+  // In two steps: where corners are is told by what had to be fetched as well.
+  HWY_ATTR bool decide() {
+    if (!has_fetched_) {
+      has_fetched_ = true;
+      return for_each_undecided([&](u32 triangle) {
+        for (const u32 vertex : scene_->doubles.corners[triangle])
+          fetch(&scene_->doubles.vertices[vertex], sizeof(dvec3));
+        return true;
+      });
+    }
+    const bool goes_on = for_each_undecided([&](u32 triangle) {
+      end_ = scene_->decider.decide(number_, triangle);
+      return end_ >= line_->begin;
+    });
+    undecided_ = 0;
+    return goes_on;
+  }
+
+  template <class Visit>
+  HWY_ATTR bool for_each_undecided(const Visit& visit) const {
+    for (u32 left = undecided_; left != 0; left &= left - 1)
+      if (!visit(indices_[std::countr_zero(left)] & ~KDRAY_WIDE_LAST)) return false;
+    return true;
   }
 
   template <class D>
@@ -121,11 +181,11 @@ class Walk {
   template <class D>
   HWY_ATTR u32 surely_missed(D d, const u32* rows) const {
     hn::Vec<D> x[3], y[3], z[3], most = hn::Zero(d);
-    const auto shear_x = hn::Set(d, line_.shear[0]), shear_y = hn::Set(d, line_.shear[1]);
+    const auto shear_x = hn::Set(d, line_->shear[0]), shear_y = hn::Set(d, line_->shear[1]);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto at = [&](std::size_t k) HWY_ATTR {
-        const auto axis = static_cast<std::size_t>(line_.axis[k]);
-        return hn::Sub(values_at(d, rows + (3 * i + axis) * kBlock), hn::Set(d, line_.origin[axis]));
+        const auto axis = static_cast<std::size_t>(line_->axis[k]);
+        return hn::Sub(values_at(d, rows + (3 * i + axis) * kBlock), hn::Set(d, line_->origin[axis]));
       };
       z[i] = at(2);
       x[i] = hn::Sub(at(0), hn::Mul(shear_x, z[i]));
@@ -134,7 +194,7 @@ class Walk {
     }
     const auto edge = [&](std::size_t p, std::size_t q)
                           HWY_ATTR { return hn::Sub(hn::Mul(x[q], y[p]), hn::Mul(y[q], x[p])); };
-    const float e = line_.displaced;
+    const float e = line_->displaced;
     const auto slope = hn::Add(hn::Set(d, 4 * e), hn::Mul(hn::Set(d, 0x1p-21f), most));
     const auto bound = hn::Mul(hn::Set(d, 1.01f), hn::Add(hn::Mul(most, slope), hn::Set(d, 2 * e * e)));
     const auto a = edge(1, 2), b = edge(2, 0), c = edge(0, 1);
@@ -142,19 +202,49 @@ class Walk {
     return bits_of(d, hn::And(hn::Lt(least, hn::Neg(bound)), hn::Gt(greatest, bound)));
   }
 
-  const flatten::WideForm& wide_;
-  const LineInFloats& line_;
-  const FoundTriangle found_;
-  void* const context_;
-  float end_;
+  static constexpr std::size_t kRows = KDRAY_TRIANGLE_ROWS;
+
+  const Scene* scene_;
+  const LineInFloats* line_ = nullptr;
+  std::size_t number_ = 0;
+  Entry *bottom_, *top_;
+  float end_ = 0;
+  const u32* rows_ = nullptr;     // of the block that is to be looked at next; null: the stack has it
+  const u32* indices_ = nullptr;  // of the block that was looked at last
+  u32 undecided_ = 0;             // lanes of it
+  bool has_fetched_ = false;
 };
 
-HWY_ATTR void WalkTriangles(const flatten::WideForm& wide, const LineInFloats& line, FoundTriangle found,
-                            void* context) {
-  if (wide.block == 8)
-    Walk<8>(wide, line, found, context).run();
-  else
-    Walk<4>(wide, line, found, context).run();
+template <std::size_t kBlock>
+HWY_ATTR void walk_all(const Scene& scene, std::span<const LineInFloats> lines) {
+  constexpr std::size_t kInFlight = 8;
+  thread_local std::vector<Entry> stacks;
+  const std::size_t capacity = static_cast<std::size_t>(scene.wide.stack_size) + 8;
+  if (stacks.size() < kInFlight * capacity) stacks.resize(kInFlight * capacity);
+  std::vector<Walk<kBlock>> walks;
+  walks.reserve(kInFlight);
+  std::size_t next = 0;
+  for (; next < std::min(lines.size(), kInFlight); ++next) {
+    walks.emplace_back(scene, stacks.data() + next * capacity);
+    walks.back().start(lines[next], next);
+  }
+  while (!walks.empty())
+    for (std::size_t i = 0; i < walks.size(); ++i) {
+      if (walks[i].step()) continue;
+      if (next < lines.size()) {
+        walks[i].start(lines[next], next);
+        ++next;
+      } else {
+        walks[i] = walks.back();
+        walks.pop_back();
+      }
+    }
+}
+
+HWY_ATTR void WalkTriangles(const flatten::WideForm& wide, const scene::DoubleTriangles& doubles,
+                            std::span<const LineInFloats> lines, TriangleDecider& decider) {
+  const Scene scene{wide, doubles, decider};
+  wide.block == 8 ? walk_all<8>(scene, lines) : walk_all<4>(scene, lines);
 }
 
 }  // namespace kdray::query::HWY_NAMESPACE
@@ -184,10 +274,10 @@ LineInFloats::LineInFloats(const dvec3& from, const dvec3& direction, float marg
                                  (2 * reach + largest_component(dvec3(origin[0], origin[1], origin[2]))));
 }
 
-void walk_triangles(const flatten::WideForm& wide, const LineInFloats& line, FoundTriangle found,
-                    void* context) {
-  if (wide.nodes.size() == 0 || !(line.begin <= line.end)) return;
-  HWY_DYNAMIC_DISPATCH(WalkTriangles)(wide, line, found, context);
+void walk_triangles(const flatten::WideForm& wide, const scene::DoubleTriangles& doubles,
+                    std::span<const LineInFloats> lines, TriangleDecider& decider) {
+  if (wide.nodes.size() == 0) return;
+  HWY_DYNAMIC_DISPATCH(WalkTriangles)(wide, doubles, lines, decider);
 }
 
 }  // namespace kdray::query

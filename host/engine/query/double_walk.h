@@ -1,7 +1,8 @@
-// What    A line's way through the wide tree of a scene of doubles, in floats: which triangles it may cross.
+// What    Lines' ways through the wide tree of a scene of doubles, in floats: which triangles they may cross.
 // Shape   Eight boxes of a node, or the triangles of a block, at a time, in the CPU's widest vectors (Highway).
 //         Each triangle that is passed by is one that no half-line of doubles which these floats are of
-//         crosses between `begin` and `end`; the rest is found(context, triangle)'s to decide.
+//         crosses between `begin` and `end`; the rest is the decider's. Some lines are in flight at once, each
+//         a step at a time, so that what one needs next is fetched while the others take theirs.
 // Why     Boxes: see double_scene.h. Triangles: a corner's place in the plane across the line, sheared, is off
 //         by 16u of what the largest of its lengths can be: 2u for the rounding of vertex and origin, each
 //         also by way of the shear, and 9u for that of the operations. Where it is off by no more than e, and
@@ -9,10 +10,13 @@
 //         its own rounding. t of a crossing lies between those of the corners.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "accel/flatten/wide.h"
 #include "base/vec.h"
+#include "scene/model/geometry.h"
 
 namespace kdray::query {
 
@@ -30,10 +34,17 @@ struct LineInFloats {
   float displaced;  // how far a corner may be off
 };
 
-// Answers how far the line goes on; what is below `begin` ends it.
-using FoundTriangle = float (*)(void* context, std::uint32_t triangle);
+class TriangleDecider {
+ public:
+  // How far the line of this number goes on; what is below its `begin` ends it.
+  virtual float decide(std::size_t line, std::uint32_t triangle) = 0;
 
-void walk_triangles(const flatten::WideForm& wide, const LineInFloats& line, FoundTriangle found,
-                    void* context);
+ protected:
+  ~TriangleDecider() = default;
+};
+
+// Also fetches the doubles of triangles that are to be decided about.
+void walk_triangles(const flatten::WideForm& wide, const scene::DoubleTriangles& doubles,
+                    std::span<const LineInFloats> lines, TriangleDecider& decider);
 
 }  // namespace kdray::query
