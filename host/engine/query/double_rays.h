@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <vector>
 
 #include "base/error.h"
@@ -27,10 +28,9 @@ class DoubleRays {
     std::vector<DoubleScene::Question> asked;
     asked.reserve(n);
     for (std::size_t i = first; i < first + n; ++i) {
-      const dvec3 origin = rays_->origin(i), direction = rays_->direction(i);
-      const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
-      if (rays_->mask(i) == 0 || fault_of(origin, direction, t_min, t_max) != nullptr) continue;
-      if (const auto ray = context_->frame.double_ray(origin, direction, t_min, t_max))
+      if (rays_->mask(i) == 0 || fault(i) != nullptr) continue;
+      if (const auto ray = context_->frame.double_ray(rays_->origin(i), rays_->direction(i), rays_->t_min(i),
+                                                      rays_->t_max(i)))
         asked.push_back({*ray, rays_->mask(i), i - first});
     }
     return asked;
@@ -38,14 +38,16 @@ class DoubleRays {
 
   // Throws for the first of these rays that is none, where such are errors; counts them.
   std::uint64_t check(std::size_t first, std::size_t n, InvalidRays invalid) const {
-    std::uint64_t count = 0;
-    for (std::size_t i = first; i < first + n; ++i) {
-      const char* const fault =
-          fault_of(rays_->origin(i), rays_->direction(i), rays_->t_min(i), rays_->t_max(i));
-      if (fault == nullptr) continue;
-      if (invalid == InvalidRays::error)
-        throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault));
-      ++count;
+    std::atomic<std::uint64_t> count{0};
+    for_each_grain(n, [&](std::size_t begin, std::size_t end) {
+      std::uint64_t faults = 0;
+      for (std::size_t i = first + begin; i < first + end; ++i) faults += fault(i) != nullptr;
+      count += faults;
+    });
+    if (count > 0 && invalid == InvalidRays::error) {
+      std::size_t i = first;
+      while (fault(i) == nullptr) ++i;
+      throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault(i)));
     }
     return count;
   }
@@ -65,6 +67,10 @@ class DoubleRays {
   }
 
  private:
+  const char* fault(std::size_t i) const {
+    return fault_of(rays_->origin(i), rays_->direction(i), rays_->t_min(i), rays_->t_max(i));
+  }
+
   const QueryContext* context_;
   const RayArrays* rays_;
   DoubleScene scene_;

@@ -114,12 +114,16 @@ std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3
   if (!line) return std::nullopt;
   const dvec3 from_center = origin - space_.center, back = origin - from_center;
   const dvec3 rest = (origin - (from_center + back)) - (space_.center - back);
+  // Dividing by the usual unit rounds as little, and takes a tenth of the time.
+  const auto scaled = [&](double t) {
+    return line->exponent == exponent_ ? t / unit_ : std::scalbn(t, -line->exponent);
+  };
   return DoubleRay{from_center * space_.scale,
                    rest * space_.scale,
                    line->direction,
                    line->ahead,
-                   std::scalbn(t_min, -line->exponent),
-                   std::scalbn(t_max, -line->exponent),
+                   scaled(t_min),
+                   scaled(t_max),
                    line->exponent};
 }
 
