@@ -128,20 +128,17 @@ class Walk {
     return scene_->wide.triangle_blocks.data() + (leaf & KDRAY_WIDE_FIRST_MASK) * kRows * kBlock;
   }
 
-  // Looks at a block.
+  // Looks at a block. Lanes without a triangle hold NaN, of which nothing is true, and the last one tells whether
+  // there are more blocks.
   HWY_ATTR void test() {
     const hn::CappedTag<float, kBlock> d;
-    const hn::RebindToUnsigned<decltype(d)> du;
-    u32 missed = 0, ends = 0;
+    undecided_ = 0;
+    for (std::size_t lane = 0; lane < kBlock; lane += hn::Lanes(d))
+      undecided_ |= may_cross(d, rows_ + lane) << lane;
     indices_ = rows_ + (kRows - 1) * kBlock;
-    for (std::size_t lane = 0; lane < kBlock; lane += hn::Lanes(d)) {
-      const auto index = hn::LoadU(du, indices_ + lane);
-      ends |= bits_of(du, hn::TestBit(index, hn::Set(du, KDRAY_WIDE_LAST))) << lane;
-      missed |= surely_missed(d, rows_ + lane) << lane;
-    }
-    undecided_ = ~missed & (ends ^ (ends - 1)) & ((u32{1} << kBlock) - 1);
+    const bool is_last = (indices_[kBlock - 1] & KDRAY_WIDE_LAST) != 0;
     has_fetched_ = false;
-    rows_ = ends != 0 ? nullptr : rows_ + kRows * kBlock;
+    rows_ = is_last ? nullptr : rows_ + kRows * kBlock;
     for_each_undecided([&](u32 triangle) {
       __builtin_prefetch(&scene_->doubles.corners[triangle]);
       return true;
@@ -179,7 +176,7 @@ class Walk {
   }
 
   template <class D>
-  HWY_ATTR u32 surely_missed(D d, const u32* rows) const {
+  HWY_ATTR u32 may_cross(D d, const u32* rows) const {
     hn::Vec<D> x[3], y[3], z[3], most = hn::Zero(d);
     const auto shear_x = hn::Set(d, line_->shear[0]), shear_y = hn::Set(d, line_->shear[1]);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -199,7 +196,7 @@ class Walk {
     const auto bound = hn::Mul(hn::Set(d, 1.01f), hn::Add(hn::Mul(most, slope), hn::Set(d, 2 * e * e)));
     const auto a = edge(1, 2), b = edge(2, 0), c = edge(0, 1);
     const auto least = hn::Min(a, hn::Min(b, c)), greatest = hn::Max(a, hn::Max(b, c));
-    return bits_of(d, hn::And(hn::Lt(least, hn::Neg(bound)), hn::Gt(greatest, bound)));
+    return bits_of(d, hn::Or(hn::Ge(least, hn::Neg(bound)), hn::Le(greatest, bound)));
   }
 
   static constexpr std::size_t kRows = KDRAY_TRIANGLE_ROWS;
