@@ -7,7 +7,7 @@
 //         by 16u of what the largest of its lengths can be: 2u for the rounding of vertex and origin, each
 //         also by way of the shear, and 9u for that of the operations. Where it is off by no more than e, and
 //         no corner's coordinate is above m, an edge function is off by 4*e*m + 2*e^2, and by 3u of 2*m^2 for
-//         its own rounding. t of a crossing lies between those of the corners.
+//         its own rounding.
 #pragma once
 
 #include <cstddef>
