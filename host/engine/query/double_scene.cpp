@@ -18,7 +18,6 @@ namespace {
 
 using layout::WideNode;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBoxes = 0x1p-18;  // 64u of the reach: see double_scene.h
 
 float rounded_down(double value) {
