@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "engine/query/double_walk.h"
 #include "engine/query/scene_arguments.h"
