@@ -114,7 +114,7 @@ std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3
   if (!line) return std::nullopt;
   const dvec3 from_center = origin - space_.center, back = origin - from_center;
   const dvec3 rest = (origin - (from_center + back)) - (space_.center - back);
-  // Dividing by the usual unit rounds as little, and takes a tenth of the time.
+  // Dividing by the usual unit, a power of two, rounds as scalbn does, and needs no call.
   const auto scaled = [&](double t) {
     return line->exponent == exponent_ ? t / unit_ : std::scalbn(t, -line->exponent);
   };
