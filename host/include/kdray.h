@@ -232,6 +232,7 @@ typedef struct kdray_commit_options {
   /* Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has
    * grown by more than this since it was built; 0: 1.5; below 0: it is always built. */
   double refit_growth;
+  int32_t geometry; /* 0 float; 1 double: queries answer for meshes' vertices as they were given, exactly */
 } kdray_commit_options;
 KDRAY_API kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* options);
 

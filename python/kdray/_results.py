@@ -31,18 +31,18 @@ def width_of(name: str) -> int:
     return 3 if name in ("normal", "point") else 1
 
 
-def type_of(name: str, of_rays: Any) -> Any:
+def type_of(name: str, of_rays: Any, of_weights: Any) -> Any:
     if name in _WORDS:
         return np.int32
-    return np.float32 if name in ("u", "v") else of_rays
+    return of_weights if name in ("u", "v") else of_rays
 
 
-def hit_columns(rays: RayArrays, out: Hits | None, fields: tuple[str, ...]) -> dict[str, Array]:
+def hit_columns(rays: RayArrays, out: Hits | None, fields: tuple[str, ...], of_weights: Any) -> dict[str, Array]:
     columns: dict[str, Array] = {}
     if out is None:
         for name in known(fields, Hits._names):
             shape = (*rays.shape, 3) if width_of(name) == 3 else rays.shape
-            columns[name] = np.empty(shape, type_of(name, rays.dtype))
+            columns[name] = np.empty(shape, type_of(name, rays.dtype, of_weights))
         return columns
     if not isinstance(out, Hits):
         raise errors.InputError(f"out: a kdray.Hits is wanted, not {type(out).__name__}")

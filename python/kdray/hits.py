@@ -65,8 +65,8 @@ class Hits(_Columns):
     geometry = _column("geometry", "int32: the geometry's id; -1 for a miss.")
     primitive = _column("primitive", "int32: the number within the geometry, from 0; -1 for a miss.")
     instance = _column("instance", "int32: the number among the geometry's instances; -1 where it isn't of such.")
-    u = _column("u", "float32: the weight of a triangle's second corner; of cones, the share of the axis.")
-    v = _column("v", "float32: the weight of a triangle's third corner.")
+    u = _column("u", "The weight of a triangle's second corner; of cones, the share of the axis. float32, see `v`.")
+    v = _column("v", 'The weight of a triangle\'s third corner: float32, or as t in a scene with geometry="double".')
     normal = _column("normal", "(..., 3) of unit length, of the surface itself; 0 for a miss.")
 
     def __init__(self, columns: dict[str, Array], point_later: Callable[[Array], Array] | None = None) -> None:
@@ -162,8 +162,8 @@ class ClosestPoints(_Columns):
     point = _column("point", "(..., 3): the nearest point of a surface.")
     geometry = _column("geometry", "int32: the geometry's id, or -1.")
     primitive = _column("primitive", "int32: the number within the geometry, or -1.")
-    u = _column("u", "float32, as in `Hits`.")
-    v = _column("v", "float32, as in `Hits`.")
+    u = _column("u", "As in `Hits`.")
+    v = _column("v", "As in `Hits`.")
 
     def __init__(self, columns: dict[str, Array]) -> None:
         for name in self._names:

@@ -71,23 +71,30 @@ class Scene:
     counts in multiples of the direction. (Of hits in the start point itself, t = 0, `count_hits` and `all_hits` know
     where t_min is 0.)
 
+    With ``geometry="double"`` a scene of meshes alone answers for its vertices as they were given: all questions are
+    decided by exact arithmetic on doubles, and t of float64 rays is the nearest float64 but for its last place, on the
+    host's cores, which takes longer. Pictures are of the vertices rounded to floats, as all is otherwise.
+
     A scene can be copied and pickled; it then holds its arrays, or the name of the file that it was read from.
 
     OpenCL does not outlive a fork: once a process has committed, asked or listed devices, what it forks off is
     answered with a NoDeviceError. Start such processes by ``multiprocessing.get_context("spawn")``.
     """
 
-    def __init__(self, *, device: str | int = "auto", compute_units: int = 0) -> None:
+    def __init__(self, *, device: str | int = "auto", compute_units: int = 0, geometry: str = "float") -> None:
         """`device`: "auto", "cpu", "gpu", a number of `kdray.devices()` or a part of a name.
 
         `compute_units`: only so many of the device's cores; 0 is all. Raises NoDeviceError where there is no such
-        device. (Where there is none at all, the first commit does.)
+        device. (Where there is none at all, the first commit does.) `geometry`: what vertices are to questions,
+        "float" or "double".
         """
-        self._start(_core.Scene(), _device(device), compute_units)
+        self._start(_core.Scene(), _device(device), compute_units, geometry)
 
-    def _start(self, core: Any, device: str, compute_units: int) -> None:
+    def _start(self, core: Any, device: str, compute_units: int, geometry: str) -> None:
+        if geometry not in ("float", "double"):
+            raise errors.UsageError(f'geometry is "float" or "double", not {geometry!r}')
         self._core = core
-        self._device, self._compute_units = device, compute_units
+        self._device, self._compute_units, self._geometry = device, compute_units, geometry
         self._file: tuple[str, float | None, float | None, str, str] | None = None
         self._added: dict[int, _Added] = {}  # by id
         self._materials: list[Material] = []
@@ -474,11 +481,16 @@ class Scene:
         _drivers.choose()
         self._changed = False  # by now: what is changed meanwhile is for the next one
         try:
-            self._core.commit(self._quality, self._device, self._compute_units, self._binary_form)
+            self._core.commit(
+                self._quality, self._device, self._compute_units, self._binary_form, self._geometry == "double"
+            )
         except BaseException:
             self._changed = True
             raise
         self._committed = True
+
+    def _type_of_weights(self, of_questions: Any) -> Any:
+        return of_questions if self._geometry == "double" else np.float32
 
     def _ready(self) -> Any:
         if self._changed or not self._committed:
@@ -516,7 +528,7 @@ class Scene:
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         usual = _USUAL_OF_INSTANCES if self._has_instances else _USUAL
-        columns = hit_columns(rays, out, usual if fields is None else tuple(fields))
+        columns = hit_columns(rays, out, usual if fields is None else tuple(fields), self._type_of_weights(rays.dtype))
         rows = {name: as_rows(column, width_of(name)) for name, column in columns.items()}
         core = self._ready()
 
@@ -561,7 +573,7 @@ class Scene:
 
         A ray from outside of a closed mesh to its outside has an even count, always. Whether a float64 ray begins
         before or behind a surface is decided by its doubles, for triangles exactly (corners are floats about the
-        scene's centre).
+        scene's centre, unless the scene has geometry="double").
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         return self._ask_each(self._ready().count, rays, np.uint32, out, strict, progress, "count_hits")
@@ -616,7 +628,8 @@ class Scene:
         wanted = known(fields, ClosestPoints._names)
         columns: dict[str, Array] = {}
         for name in wanted:
-            columns[name] = np.empty((*shape, 3) if name == "point" else shape, type_of(name, rows.dtype))
+            dtype = type_of(name, rows.dtype, self._type_of_weights(rows.dtype))
+            columns[name] = np.empty((*shape, 3) if name == "point" else shape, dtype)
         cut = {name: as_rows(column, width_of(name)) for name, column in columns.items()}
         self._ready().closest_points(rows, radius, strict, *(cut.get(name) for name in ClosestPoints._names))
         return ClosestPoints(columns)
@@ -645,7 +658,8 @@ class Scene:
         """Whether each point lies inside: of an odd number of closed surfaces.
 
         float64 points are decided by their doubles, without a vote: exactly against triangles, whose corners are
-        floats about the scene's centre (in a scene of 200 km they lie up to 4 mm beside what was given). float32
+        floats about the scene's centre (in a scene of 200 km they lie up to 4 mm beside what was given), or with
+        geometry="double" what was given. float32
         points are rounded to floats there, and may be wrong within 2^-18 of the scene's size of a surface. A point
         that is not finite lies outside.
         """
@@ -740,8 +754,9 @@ class Scene:
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
             infos = [self.info(id) for id in self._core.geometries()]
-            names = ("_device", "_compute_units", "_quality", "_file", "_pictures", "_materials", "_lights", "_colors")
-            return {name: copy.copy(getattr(self, name)) for name in (*names, "_sky")} | {
+            names = ("_device", "_compute_units", "_geometry", "_quality", "_file")
+            looks = ("_pictures", "_materials", "_lights", "_colors", "_sky")
+            return {name: copy.copy(getattr(self, name)) for name in (*names, *looks)} | {
                 "added": {id: added.copy() for id, added in self._added.items()},
                 "infos": infos,
             }
@@ -749,7 +764,7 @@ class Scene:
     def __setstate__(self, state: dict[str, Any]) -> None:
         file = state["_file"]
         core = _core.Scene.load(*file) if file else _core.Scene()
-        self._start(core, state["_device"], state["_compute_units"])
+        self._start(core, state["_device"], state["_compute_units"], state["_geometry"])
         self._file, self._quality = file, state["_quality"]
         for picture in state["_pictures"]:
             self.add_picture(picture)
@@ -805,20 +820,21 @@ def load(
     animation: str | int = "",
     asset_root: str | os.PathLike[str] = "",
     device: str | int = "auto",
+    geometry: str = "float",
 ) -> Scene:
     """A scene from a file: .obj, .ply, .stl, .gltf, .glb, .nff, kdray's .json, also .gz and .xz of these.
 
     What is in it is geometry 0. `smooth`: triangles without normals get some where the surface turns by no more
     than so many degrees. `time`: the second of a glTF file's animation that is seen, of the first or of the
     `animation` with this name or number, or "all"; without it nodes are at rest. `asset_root`: a folder below which
-    the file may name pictures and buffers that are not beside it or below it. Raises InputError with file, line, what
-    is wrong and what to do.
+    the file may name pictures and buffers that are not beside it or below it. `device` and `geometry` are `Scene`'s.
+    Raises InputError with file, line, what is wrong and what to do.
     """
     chosen = _device(device)
     scene = Scene.__new__(Scene)
     root = os.fspath(asset_root)
     file = (os.path.abspath(os.fspath(path)), smooth, time, str(animation), root and os.path.abspath(root))
-    scene._start(_core.Scene.load(*file), chosen, 0)
+    scene._start(_core.Scene.load(*file), chosen, 0, geometry)
     scene._file = file
     return scene
 

@@ -164,17 +164,18 @@ SceneClass add_scene(nb::module_& module) {
   add_textures(scene);
   scene.def(
       "commit",
-      [](Scene& s, const std::string& quality, const std::string& device, int compute_units,
-         bool binary_form) {
+      [](Scene& s, const std::string& quality, const std::string& device, int compute_units, bool binary_form,
+         bool in_double) {
         CommitOptions options;
         options.tree.quality = quality_of(quality);
         options.tree.binary_form = binary_form;
+        if (in_double) options.tree.geometry = Precision::float64;
         options.device.device = device;
         options.device.compute_units = compute_units;
         options.device.programs = default_program_folder();
         s.commit(options);
       },
-      Released(), "quality"_a, "device"_a, "compute_units"_a, "binary_form"_a);
+      Released(), "quality"_a, "device"_a, "compute_units"_a, "binary_form"_a, "in_double"_a);
   return scene;
 }
 

@@ -1,9 +1,13 @@
 """What rays and points are told, held against plain NumPy."""
 
+import pickle
+
 import numpy as np
 import pytest
 
 import kdray
+from kdray.bench.exact import Exact
+from kdray.bench.meshes import ball as small_ball
 
 FLOATS = (np.float32, np.float64)
 
@@ -258,3 +262,85 @@ def test_an_empty_scene_has_nothing_to_hit():
 def test_what_is_wrong_is_named(ball, origins, directions, named, message):
     with pytest.raises(kdray.InputError, match=message):
         ball.closest_hit(origins, directions, **named)
+
+
+# ---- Scenes of doubles
+
+
+@pytest.fixture
+def speck() -> tuple[np.ndarray, np.ndarray]:
+    """A ball of a millimetre, 900 km out on a floor of 1000 km: floats have none of its corners apart."""
+    vertices, triangles = small_ball(3)
+    floor = [[0, 0, -1], [1e6, 0, -1], [0, 1e6, -1], [1e6, 1e6, -1]]
+    vertices = np.concatenate([1e-3 * vertices + MIDDLE, floor])
+    return vertices, np.concatenate([triangles, len(vertices) + np.array([[-4, -3, -1], [-4, -1, -2]])])
+
+
+MIDDLE = np.array([900000.123, 900000.456, 0.789])
+
+
+def scene_of(mesh, **options) -> kdray.Scene:
+    scene = kdray.Scene(**options)
+    scene.add_mesh(*mesh)
+    return scene
+
+
+def test_double_geometry_answers_exactly(speck, rng):
+    scene, right = scene_of(speck, geometry="double"), Exact(*speck)
+    origins = MIDDLE + 3e-3 * rng.normal(size=(150, 3))
+    targets = MIDDLE + 1.1e-3 * rng.normal(size=(150, 3)) / 3**0.5
+    # Beside corners, not at them: there a line may touch the ball, which counts by rules.
+    targets[:70] = speck[0][rng.integers(0, len(speck[0]) - 4, 70)] + 1e-8 * rng.normal(size=(70, 3))
+    rays = origins, targets - origins
+    t = right.first(*rays)
+    hits = scene.closest_hit(*rays, fields=("t", "u", "v", "primitive", "point"))
+    assert hits.t.dtype == hits.u.dtype == hits.v.dtype == hits.point.dtype == np.float64
+    np.testing.assert_array_max_ulp(hits.t, t, 1)
+    a, b, c = (speck[0][speck[1][hits.primitive[hits.hit], k]] for k in range(3))
+    u, v = hits.u[hits.hit, None], hits.v[hits.hit, None]
+    np.testing.assert_allclose(a + u * (b - a) + v * (c - a), hits.point[hits.hit], rtol=1e-15)
+    crossings = right.crossings(*rays)
+    assert (hits.primitive[hits.hit] < len(speck[1]) - 2).sum() > 50 and (crossings == 0).any()
+    np.testing.assert_array_equal(scene.any_hit(*rays), np.isfinite(t))
+    np.testing.assert_array_equal(scene.count_hits(*rays), crossings)
+    every = scene.all_hits(*rays)
+    np.testing.assert_array_equal(every.counts, crossings)
+    np.testing.assert_array_max_ulp(every.t[every.splits[:-1][crossings > 0]], t[crossings > 0], 1)
+    ball = scene_of((speck[0][:-4], speck[1][:-2]), geometry="double")
+    right = Exact(speck[0][:-4], speck[1][:-2])
+    np.testing.assert_array_equal(ball.contains(targets), right.inside(targets))
+    np.testing.assert_allclose(ball.signed_distance(targets), right.signed_distance(targets), rtol=1e-9, atol=1e-18)
+
+
+def test_floats_lose_what_double_geometry_keeps(speck):
+    ray = MIDDLE + [0, 0, 2], [0, 0, -1]
+    last = len(speck[1]) - 2
+    assert scene_of(speck, geometry="double").closest_hit(*ray).primitive < last
+    assert scene_of(speck).closest_hit(*ray).primitive >= last
+
+
+def test_double_geometry_keeps_to_the_rays_type_and_goes_with_copies(speck, tmp_path):
+    scene = scene_of(speck, geometry="double")
+    hits = scene.closest_hit(np.float32([9, 9, 9]), np.float32([0, 0, -1]))
+    assert hits.t.dtype == hits.u.dtype == np.float32 and hits.t == 10
+    assert scene.closest_point(MIDDLE).u.dtype == np.float64
+    ray = MIDDLE + [0, 0, 2], [0, 0, -1]
+    t = scene.closest_hit(*ray).t
+    assert scene.copy().closest_hit(*ray).t == t == pickle.loads(pickle.dumps(scene)).closest_hit(*ray).t
+    file = tmp_path / "speck.obj"
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in speck[0].tolist()]
+    file.write_text("\n".join([*lines, *(f"f {a} {b} {c}" for a, b, c in (speck[1] + 1).tolist())]))
+    assert kdray.load(file, geometry="double").closest_hit(*ray).t == t
+
+
+def test_double_geometry_refuses_what_is_no_mesh(ball_mesh):
+    with pytest.raises(kdray.UsageError, match='geometry is "float" or "double", not'):
+        kdray.Scene(geometry="float64")
+    shapes = kdray.Scene(geometry="double")
+    shapes.add_spheres([[0, 0, 0]], 1)
+    with pytest.raises(kdray.InputError, match="primitives other than triangles, which a scene of doubles"):
+        shapes.any_hit([0, 0, 5], [0, 0, -1])
+    placed = kdray.Scene(geometry="double")
+    placed.add_instances(placed.add_mesh(*ball_mesh, prototype=True), np.eye(4))
+    with pytest.raises(kdray.InputError, match="instances, which a scene of doubles"):
+        placed.any_hit([0, 0, 5], [0, 0, -1])

@@ -5,6 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from kdray import Scene
 from kdray.bench import command, main
 from kdray.bench.exact import Exact
 from kdray.bench.meshes import ball, cube, nested, octahedron
@@ -15,16 +16,8 @@ CUBE = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)], np.float32)
 SIDES = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
 TWELVE = np.concatenate([SIDES[:, :3], SIDES[:, [0, 2, 3]]])
 
-# What kdray has wrong, and why. `strict`: whoever mends it takes it from here.
-WRONG = {"plane_of_doubles": "vertices are rounded to floats about the scene's centre (docs/embed.md)"}
 
-
-def cases() -> list[object]:
-    marks = {name: pytest.mark.xfail(strict=True, reason=why, raises=AssertionError) for name, why in WRONG.items()}
-    return [pytest.param(r, id=r.name, marks=marks.get(r.name, ())) for r in REPORTS]
-
-
-@pytest.mark.parametrize("report", cases())
+@pytest.mark.parametrize("report", REPORTS, ids=lambda report: report.name)
 def test_kdray_is_right(report: Report) -> None:
     assert report.make().ask(Kdray) == 0, f"{', '.join(report.where)}: {report.what}"
 
@@ -36,9 +29,11 @@ def test_kdray_under_trimesh_is_right(report: Report) -> None:
     assert report.make().ask(TrimeshKdray) == 0, f"{', '.join(report.where)}: {report.what}"
 
 
-def test_corners_in_double_are_off_by_no_more_than_their_rounding() -> None:
+def test_corners_rounded_to_float_are_off_by_no_more_than_that() -> None:
     case = next(r for r in REPORTS if r.name == "plane_of_doubles").make()
-    t = Kdray(case.vertices, case.triangles).closest(*case.asked)
+    scene = Scene()
+    scene.add_mesh(case.vertices, case.triangles)
+    t = scene.closest_hit(*case.asked).t
     met = np.isfinite(case.right)
     np.testing.assert_array_equal(np.isfinite(t), met)
     # Half a float's last place of 500 in each coordinate, along rays that are at least 0.15 radians above the plane.
@@ -167,7 +162,7 @@ def test_who_is_not_installed_is_left_out(monkeypatch: pytest.MonkeyPatch, capsy
     out = capsys.readouterr().out
     assert "left out, as they can't be imported: trimesh+kdray, trimesh, trimesh+embreex, embreex, Open3D" in out
     assert f"| reported | asked | kdray {Kdray.version()} |" in out
-    assert out.rstrip().endswith(f"| cases with wrong answers | | {len(WRONG)} |")
+    assert out.rstrip().endswith("| cases with wrong answers | | 0 |")
 
 
 @pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)

@@ -360,6 +360,35 @@ static void check_refit(kdray_scene* scene, uint32_t box) {
          "built because it is asked for");
 }
 
+/* Two triangles that floats of a scene this wide have at one height: the upper one comes later. */
+static void check_double_geometry(void) {
+  const double places[18] = {-5e5, -5e5, 0.3,          5e5, -5e5, 0.3,          0, 5e5, 0.3,
+                             -5e5, -5e5, 0.3000000001, 5e5, -5e5, 0.3000000001, 0, 5e5, 0.3000000001};
+  const uint32_t numbers[6] = {0, 1, 2, 3, 4, 5};
+  const double from[3] = {7, 9, 5}, down[3] = {0, 0, -1};
+  double t = 0;
+  uint32_t primitive = 9;
+  kdray_scene* scene = NULL;
+  kdray_in none = {0}, triangles = {numbers, 2, 0, KDRAY_UINT32}, vertices = {places, 6, 0, KDRAY_FLOAT64};
+  kdray_in origin = {from, 1, 0, KDRAY_FLOAT64}, direction = {down, 1, 0, KDRAY_FLOAT64};
+  kdray_out t_out = {&t, 1, 0, KDRAY_FLOAT64}, primitive_out = {&primitive, 1, 0, KDRAY_UINT32};
+  kdray_rays rays = {0};
+  kdray_hits hits = {0};
+  kdray_commit_options options = {0};
+  options.size = sizeof options, options.geometry = 2;
+  rays.size = sizeof rays, rays.origins = origin, rays.directions = direction;
+  hits.size = sizeof hits, hits.t = t_out, hits.primitive = primitive_out;
+  expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene of doubles");
+  expect(kdray_add_mesh(scene, vertices, triangles, none, NULL, NULL) == KDRAY_OK, "its mesh");
+  expect(kdray_commit(scene, &options) != KDRAY_OK, "a geometry that there is none of is refused");
+  options.geometry = 1;
+  expect(kdray_commit(scene, &options) == KDRAY_OK, "its commit");
+  expect(kdray_closest(scene, &rays, &hits, NULL) == KDRAY_OK && primitive == 1,
+         "the upper of two triangles");
+  expect(t > 4.6999999998 && t < 4.69999999995, "t in double");
+  kdray_scene_free(scene);
+}
+
 int main(void) {
   kdray_scene* scene = NULL;
   kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
@@ -381,6 +410,7 @@ int main(void) {
   check_instances();
   check_tori();
   check_refit(scene, box);
+  check_double_geometry();
   expect(kdray_keep_programs() == KDRAY_OK, "programs are kept");
   kdray_scene_free(scene);
   puts(failures == 0 ? "c_interface: all right" : "c_interface: wrong answers");

@@ -66,7 +66,8 @@ void make_folder(const fs::path& folder) {
 Hash key_of(const std::filesystem::path& file, const Hash& content, const TreeOptions& tree,
             const LoadOptions& load) {
   // All options are named here, so that one that is added fails to compile.
-  const auto& [quality, max_depth, cost_traverse, cost_intersect, memory_bytes, binary_form] = tree;
+  const auto& [quality, max_depth, cost_traverse, cost_intersect, memory_bytes, binary_form, geometry] = tree;
+  static_cast<void>(geometry);  // doubles are not kept
   const auto& [smooth_degrees, time, animation, texture_bytes, instances, asset_root] = load;
   // The ending decides how bytes are read; numbers are written so that no bit is lost.
   const std::string text = fmt::format(
@@ -83,7 +84,7 @@ Hash key_of(const std::filesystem::path& file, const Hash& content, const TreeOp
 
 std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path& scene,
                                       const TreeOptions& tree, const LoadOptions& load) {
-  if (cache.folder.empty()) return std::nullopt;
+  if (cache.folder.empty() || tree.geometry == Precision::float64) return std::nullopt;
   const std::optional<Hash> content = content_of(scene);
   if (!content) return std::nullopt;
   const Hash key = key_of(scene, *content, tree, load);
@@ -103,7 +104,7 @@ std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path&
 
 bool keep(const CacheOptions& cache, const prepare::Prepared& prepared) {
   const std::vector<FileRead>& files = prepared.settings.files;
-  if (cache.folder.empty() || files.empty() || !files.front().content) return false;
+  if (cache.folder.empty() || files.empty() || !files.front().content || prepared.doubles) return false;
   const std::uint64_t bytes = entry_bytes(prepared);
   if (bytes < cache.min_bytes || bytes > cache.max_bytes / 4) return false;
   const fs::path scene = files.front().path;

@@ -154,9 +154,10 @@ std::string to_bytes(const prepare::Prepared& p) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
                materials, texturing, lights, unlit, camera, cameras, framing, background, sky, ambient,
                settings, warnings, files, load_options] = p.settings;
-  const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, placed_meshes,
-               tree_options, seconds] = p;
-  static_cast<void>(placed_meshes);  // of scenes that programs make, which are kept in no file
+  const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, doubles,
+               placed_meshes, tree_options, seconds] = p;
+  static_cast<void>(doubles),
+      static_cast<void>(placed_meshes);  // of scenes that programs make, which are kept in no file
   const Json facts = {{"name", name},
                       {"warnings", warnings},
                       {"files", of(files)},

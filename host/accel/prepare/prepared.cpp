@@ -108,12 +108,16 @@ std::size_t Prepared::largest_array() const {
 Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
                  const std::optional<LocalSpace>& kept) {
   const Timer timer;
-  const scene::Geometry geometry = scene::make_geometry(scene, kept);
+  const bool in_doubles = options.geometry == Precision::float64;
+  const scene::Geometry geometry =
+      in_doubles ? scene::make_geometry_for_doubles(scene) : scene::make_geometry(scene, kept);
   const kdtree::BuildConfig config = config_of(options, std::max(geometry.size(), largest_mesh(scene)));
   const double seconds = timer.seconds();
   Prepared made = options.memory_bytes > 0
                       ? prepare_within(scene, geometry, config, options.binary_form, options.memory_bytes)
                       : prepare(scene, geometry, config, options.binary_form);
+  if (in_doubles)
+    made.doubles = std::make_shared<scene::DoubleTriangles>(scene::make_double_triangles(scene, geometry));
   made.tree_options = options;
   made.seconds.build += seconds;
   return made;

@@ -261,6 +261,11 @@ CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality) {
                     quality);
 }
 
+void add_geometry_option(CLI::App& app, Precision& geometry) {
+  add_choice(app, "--geometry", "What vertices are: float (default), double (of meshes: exact, and slower)",
+             kPrecisions, geometry);
+}
+
 void add_tree_options(CLI::App& app, TreeOptions& tree) {
   const std::string group = "Tree";
   add_build_option(app, tree.quality)->group(group);

@@ -45,7 +45,7 @@ TraceRequest request_of(const QuestionArgs& args);
 // By the ending of the file's name; to stdout ("-") an .npy where it holds the answers.
 array::TableFormat format_of(const std::string& output, Question question);
 
-// Throws for a walk or a precision in which there is no answer to that question.
-void check_walk(Question question, Traversal traversal, Precision precision);
+// Throws for a walk, or a precision of kernels or geometry, in which there is no answer to that question.
+void check_walk(Question question, Traversal traversal, Precision precision, Precision geometry);
 
 }  // namespace kdray::cli

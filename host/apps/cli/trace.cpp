@@ -134,14 +134,15 @@ Json answers_told(const TraceArgs& o, const TraceRequest& request, std::size_t n
 int run(const TraceArgs& o) {
   const Timer total;
   const TraceRequest request = request_of(o.question);
-  check_walk(request.question, o.traversal, o.precision);
+  check_walk(request.question, o.traversal, o.precision, o.tree.geometry);
   static_cast<void>(format_of(o.output, request.question));
   RunFiles files;
   check_files(o, request, files);
   const Timer step;
   array::RowsFile file(request.file, request.wanted());
   // Closest and any hits of floats, which are on the devices before the time counts.
-  const bool by_renderer = is_plain(request.question) && !file.in_double();
+  const bool by_renderer =
+      is_plain(request.question) && !file.in_double() && o.tree.geometry == Precision::float32;
   const RequestedRows rows(file, request, free_memory());
   const double read_rays = step.seconds();
 
@@ -179,6 +180,7 @@ Command add_trace(CLI::App& kdray) {
   add_device_options(*app, o->device, o->traversal, o->precision);
   add_cache_options(*app, o->cache);
   add_tree_options(*app, o->tree);
+  add_geometry_option(*app, o->tree.geometry);
   return {app, [o] { return run(*o); }};
 }
 

@@ -9,8 +9,10 @@
 #include <optional>
 
 #include "base/error.h"
+#include "engine/query/double_rays.h"
 #include "engine/query/grains.h"
 #include "engine/query/shared_rows.h"
+#include "engine/query/surface.h"
 #include "engine/query/write_hits.h"
 
 namespace kdray::query {
@@ -119,12 +121,57 @@ QueryReport trace_chunks(const QueryContext& context, const RayArrays& rays, boo
                     });
 }
 
+// ---- Of a scene of doubles.
+
+template <class Column, class ValueOf>
+void fill(const Column& column, std::size_t first, std::size_t n, const ValueOf& value_of) {
+  if (column.empty()) return;
+  column.fill(first, n, [&](std::size_t ray) { return value_of(ray); });
+}
+
+QueryReport closest_of_doubles(const QueryContext& context, const RayArrays& arrays, const HitsOut& out,
+                               const QueryOptions& options) {
+  const DoubleRays rays(context, arrays);
+  const prepare::Prepared& scene = context.scene();
+  return rays.run(options, [&](std::size_t first, std::size_t last) {
+    const std::size_t n = last - first;
+    std::vector<std::optional<ExactHit>> hits(n);
+    rays.scene().closest(rays.questions(first, n), hits);
+    const auto put = [&](const auto& column, const auto& of_miss, const auto& of_hit) {
+      fill(column, first, n, [&](std::size_t ray) {
+        const std::optional<ExactHit>& hit = hits[ray - first];
+        return hit ? of_hit(ray, *hit) : of_miss;
+      });
+    };
+    const auto place_of = [&](const ExactHit& hit) {
+      return context.table.of(number_of(scene.flat, hit.ref));
+    };
+    const auto array_of = [](const dvec3& v) { return std::array{v.x, v.y, v.z}; };
+    put(out.t, std::array{HUGE_VAL}, [](std::size_t, const ExactHit& hit) { return std::array{hit.t}; });
+    put(out.geometry, std::array{kNoGeometry},
+        [&](std::size_t, const ExactHit& hit) { return std::array{place_of(hit).geometry}; });
+    put(out.primitive, std::array{kNoPrimitive},
+        [&](std::size_t, const ExactHit& hit) { return std::array{place_of(hit).primitive}; });
+    put(out.u, std::array{0.0}, [](std::size_t, const ExactHit& hit) { return std::array{hit.u}; });
+    put(out.v, std::array{0.0}, [](std::size_t, const ExactHit& hit) { return std::array{hit.v}; });
+    put(out.normal, array_of(dvec3(0)), [&](std::size_t, const ExactHit& hit) {
+      return array_of(normal_of(scene.doubles->at(hit.ref & KDRAY_REF_INDEX_MASK)));
+    });
+    put(out.point, array_of(dvec3(HUGE_VAL)), [&](std::size_t ray, const ExactHit& hit) {
+      return array_of(arrays.origin(ray) + hit.t * arrays.direction(ray));
+    });
+    put(out.instance, std::array{kNoInstance},
+        [](std::size_t, const ExactHit&) { return std::array{kNoInstance}; });
+  });
+}
+
 }  // namespace
 
 QueryReport closest(const QueryContext& context, const Rays& rays, const HitsOut& out,
                     const QueryOptions& options) {
   const RayArrays arrays(rays);
   const HitWriter writer(context, arrays, out);
+  if (context.scene().doubles) return closest_of_doubles(context, arrays, out, options);
   return trace_chunks(
       context, arrays, false, writer.wants_refs(), options,
       [&](const Chunk& chunk, std::span<const layout::QueryHit> hits, std::size_t begin, std::size_t end) {
@@ -136,6 +183,14 @@ QueryReport any(const QueryContext& context, const Rays& rays, const BytesOut& o
                 const QueryOptions& options) {
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "hit");
+  if (context.scene().doubles) {
+    const DoubleRays in_doubles(context, arrays);
+    return in_doubles.run(options, [&](std::size_t first, std::size_t last) {
+      std::vector<std::uint8_t> hit(last - first);
+      in_doubles.scene().any(in_doubles.questions(first, last - first), hit);
+      fill(out, first, last - first, [&](std::size_t i) { return std::array{hit[i - first]}; });
+    });
+  }
   return trace_chunks(
       context, arrays, true, false, options,
       [&](const Chunk& chunk, std::span<const layout::QueryHit> hits, std::size_t begin, std::size_t end) {

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/process_memory.h"
 #include "engine/query/all_hits.h"
+#include "engine/query/double_rays.h"
 #include "engine/query/exact_rays.h"
 #include "engine/query/grains.h"
 #include "engine/query/shared_rows.h"
@@ -151,7 +152,7 @@ class Answer {
   }
 
   // `instance`: by its place in the scene's list.
-  void put(std::size_t at, double t, float u, float v, std::uint32_t number, std::uint32_t instance) {
+  void put(std::size_t at, double t, double u, double v, std::uint32_t number, std::uint32_t instance) {
     const bool placed = instance != kNoInstance;
     const auto shown =
         placed ? context_->table.of_instance(instance) : GeometryTable::InstancePlace{0, kNoInstance};
@@ -159,8 +160,8 @@ class Answer {
     hits_.t[at] = t;
     hits_.geometry[at] = place.geometry;
     hits_.primitive[at] = place.primitive;
-    hits_.u[at] = u;
-    hits_.v[at] = v;
+    hits_.u[at] = static_cast<float>(u);
+    hits_.v[at] = static_cast<float>(v);
     hits_.instance[at] = shown.instance;
   }
 
@@ -176,6 +177,15 @@ QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut&
                   const QueryOptions& options) {
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "counts");
+  if (context.scene().doubles) {
+    const DoubleRays in_doubles(context, arrays);
+    return in_doubles.run(options, [&](std::size_t first, std::size_t last) {
+      if (out.empty()) return;
+      std::vector<std::uint32_t> counts(last - first);
+      in_doubles.scene().count(in_doubles.questions(first, last - first), counts);
+      out.fill(first, last - first, [&](std::size_t i) { return std::array{counts[i - first]}; });
+    });
+  }
   const auto work = [&](Place& place, RowTaker& rows, const std::optional<Cancel>& cancel) {
     CollectedRays collected(context, arrays);
     const Sessions<Passes>::Borrowed passes = place.sessions.crossings.borrow();
@@ -282,9 +292,36 @@ class Collector {
 
 }  // namespace
 
+namespace {
+
+AllHits all_of_doubles(const QueryContext& context, const RayArrays& arrays, const AllHitsOptions& options,
+                       Answer& answer) {
+  const DoubleRays in_doubles(context, arrays);
+  std::uint64_t n_invalid = 0;
+  for (std::size_t first = 0, n = 0; first < arrays.size(); first += n) {
+    n = std::min(kCollected, arrays.size() - first);
+    n_invalid += in_doubles.check(first, n, options.invalid);
+    ExactHits found{std::vector<std::vector<ExactHit>>(n), std::vector<std::uint8_t>(n)};
+    for_each_slow_grain(n, options.cancel, [&](std::size_t begin, std::size_t end) {
+      in_doubles.scene().all(in_doubles.questions(first + begin, end - begin),
+                             std::span(found.hits).subspan(begin, end - begin));
+      for (std::size_t i = begin; i < end; ++i) {
+        std::vector<ExactHit>& hits = found.hits[i];
+        found.more[i] = hits.size() > options.max_hits;
+        hits.resize(std::min<std::size_t>(hits.size(), options.max_hits));
+      }
+    });
+    answer.add(found);
+  }
+  return answer.take(n_invalid);
+}
+
+}  // namespace
+
 AllHits all(const QueryContext& context, const Rays& rays, const AllHitsOptions& options) {
   const RayArrays arrays(rays);
   Answer answer(context, arrays.size(), options.max_bytes);
+  if (context.scene().doubles) return all_of_doubles(context, arrays, options, answer);
   const QueryReport report =
       share_rows(context, arrays.size(), kFirstRays, options.cancel,
                  [&](Place& place, RowTaker& rows, const std::optional<Cancel>& cancel) {

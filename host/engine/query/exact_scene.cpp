@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "engine/query/scene_arguments.h"
 #include "engine/query/surface.h"
+#include "engine/query/wide_boxes.h"
 #include "kdray/model.h"
 #include "scene/primitives/shapes.h"
 
@@ -28,38 +28,6 @@ bool is_instance(std::uint32_t child) {
   return flatten::leaf_kind(child) == KDRAY_KIND_INSTANCE;
 }
 
-// Half of the slots of a node at once. Boxes are widened by far more than floats lose.
-using Slots = float __attribute__((vector_size(16)));
-using SlotsChosen = int __attribute__((vector_size(16)));
-
-Slots slots_at(const float* values) {
-  Slots slots;
-  std::memcpy(&slots, values, sizeof slots);
-  return slots;
-}
-Slots lesser(const Slots& a, const Slots& b) {
-  return a < b ? a : b;
-}
-Slots greater(const Slots& a, const Slots& b) {
-  return a > b ? a : b;
-}
-
-// Of all slots: chosen_of(first) tells which of [first, first + 4).
-template <class ChosenOf>
-std::uint32_t choose_slots(const ChosenOf& chosen_of) {
-  std::uint32_t bits = 0;
-  for (int first = 0; first < 8; first += 4) {
-    const SlotsChosen chosen = chosen_of(first);
-    for (int i = 0; i < 4; ++i) bits |= static_cast<std::uint32_t>(chosen[i] & 1) << (first + i);
-  }
-  return bits;
-}
-
-// By how much the boxes of places of floats are widened: so that rounding `place` to floats doesn't count.
-float widened(double margin, const dvec3& place) {
-  return static_cast<float>(margin + 0x1p-19 * largest_component(place));
-}
-
 // Slots of a node whose boxes hold the place, widened by `margin`.
 std::uint32_t holding(const WideNode& node, const dvec3& place, float margin) {
   const vec3 at(place);
@@ -73,12 +41,10 @@ std::uint32_t holding(const WideNode& node, const dvec3& place, float margin) {
 }
 
 // The corners of a triangle whose words begin at `rows`, `block` apart.
-struct TriangleCorners {
-  float v[3][3];
-};
-TriangleCorners corners_at(const layout::u32* rows, std::size_t block) {
-  TriangleCorners corners;
-  for (std::size_t i = 0; i < 9; ++i) corners.v[i / 3][i % 3] = std::bit_cast<float>(rows[i * block]);
+ExactLine::Corners corners_at(const layout::u32* rows, std::size_t block) {
+  ExactLine::Corners corners;
+  for (std::size_t i = 0; i < 9; ++i)
+    corners[i / 3][static_cast<int>(i % 3)] = std::bit_cast<float>(rows[i * block]);
   return corners;
 }
 
@@ -88,11 +54,8 @@ double square_to_edge(const dvec3& a, const dvec3& e) {
   return glm::dot(p, p);
 }
 
-bool is_within(double distance, const TriangleCorners& triangle, const dvec3& place) {
-  const auto corner = [&](int i) {
-    return dvec3(triangle.v[i][0], triangle.v[i][1], triangle.v[i][2]) - place;
-  };
-  const dvec3 a = corner(0), b = corner(1), c = corner(2);
+bool is_within(double distance, const ExactLine::Corners& triangle, const dvec3& place) {
+  const dvec3 a = triangle[0] - place, b = triangle[1] - place, c = triangle[2] - place;
   const dvec3 lo = glm::min(a, glm::min(b, c)), hi = glm::max(a, glm::max(b, c));
   if (glm::any(glm::greaterThan(lo, dvec3(distance))) || glm::any(glm::lessThan(hi, dvec3(-distance))))
     return false;
@@ -191,6 +154,11 @@ bool ExactScene::visit_leaf(std::uint32_t leaf, const Visit& visit) const {
   });
 }
 
+// Of a triangle whose words begin at `rows`.
+ExactLine::Corners ExactScene::corners_of(std::uint32_t index, const layout::u32* rows) const {
+  return scene_->doubles ? scene_->doubles->at(index) : corners_at(rows, block_size());
+}
+
 bool ExactScene::is_near(const dvec3& place) const {
   if (scene_->wide.nodes.size() == 0) return false;
   return is_near(0, place, margin_ + kNear, kNear);
@@ -209,7 +177,7 @@ bool ExactScene::is_near(std::uint32_t index, const dvec3& place, double margin,
                  if constexpr (Kind::kIsShape)
                    return primitives::distance_to(Kind::of(scene_->flat)[i], place) <= within;
                  else
-                   return is_within(within, corners_at(rows, block_size()), place);
+                   return is_within(within, corners_of(i, rows), place);
                })) {
       return true;
     }
@@ -259,7 +227,7 @@ void ExactScene::cross(std::uint32_t index, const Walk& walk) const {
           for (const auto& at :
                primitives::crossings({walk.line.origin(), walk.line.direction()}, Kind::of(scene_->flat)[i]))
             walk.add(at.t, at.u, 0, ref);
-        } else if (const auto at = walk.line.crossing(corners_at(rows, block_size()).v)) {
+        } else if (const auto at = walk.line.crossing(corners_of(i, rows))) {
           walk.add(at->t, at->u, at->v, ref);
         }
         return false;

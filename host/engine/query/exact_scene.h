@@ -21,7 +21,7 @@ namespace kdray::query {
 
 struct ExactHit {
   double t;
-  float u, v;
+  double u, v;             // of a scene of floats rounded to floats
   std::uint32_t ref;       // tree.layout.h
   std::uint32_t instance;  // by index, or kNoInstance
 };
@@ -55,6 +55,7 @@ class ExactScene {
   void cross(std::uint32_t node, const Walk& walk) const;
   double distance_in_mesh(const primitives::Line& line, std::uint32_t ref, double t) const;
   std::size_t block_size() const { return static_cast<std::size_t>(scene_->wide.block); }
+  ExactLine::Corners corners_of(std::uint32_t index, const layout::u32* rows) const;
   template <class Visit>
   bool visit_leaf(std::uint32_t leaf, const Visit& visit) const;
 

@@ -26,11 +26,12 @@ dvec3 without_tiny(dvec3 v, double least) {
   return v;
 }
 
-// A coordinate less another, exactly.
-Expansion<2> difference(double a, double b) {
-  Expansion<2> d;
+// A coordinate less another, and less what rounding left of it, exactly.
+Expansion<3> difference(double a, double b, double rest = 0) {
+  Expansion<3> d;
   d.add(a);
   d.add(-b);
+  if (rest != 0) d.add(-rest);
   return d;
 }
 
@@ -49,40 +50,130 @@ Expansion<kCapacity> cross(const Expansion<kA>& a, const Expansion<kA>& b, const
   return sum;
 }
 
-// The sign of the volume of three corners about a point.
-int exact_volume_sign(const float (&v)[3][3], const dvec3& point) {
-  Expansion<2> d[3][3];
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) d[i][k] = difference(v[i][k], point[k]);
-  Expansion<192> volume;
-  for (int k = 0; k < 3; ++k) {
-    const int l = (k + 1) % 3, m = (k + 2) % 3;
-    add_product(volume, cross<16>(d[1][l], d[2][m], d[1][m], d[2][l]), d[0][k], 1);
+// A triangle's normal times two vectors: from the line's origin to a corner, and the line's direction. t is
+// their quotient.
+struct ExactQuotient {
+  Expansion<432> volume;
+  Expansion<144> facing;
+
+  ExactQuotient(const ExactLine::Corners& v, const dvec3& origin, const dvec3& rest, const dvec3& direction) {
+    Expansion<3> e[3], f[3];
+    for (int k = 0; k < 3; ++k) {
+      e[k] = difference(v[1][k], v[0][k]);
+      f[k] = difference(v[2][k], v[0][k]);
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3, m = (k + 2) % 3;
+      const Expansion<24> n = cross<24>(e[l], f[m], e[m], f[l]);
+      add_product(volume, n, difference(v[0][k], origin[k], rest[k]), 1);
+      facing.add_product(n, direction[k]);
+    }
   }
-  return volume.sign();
+};
+
+// The same number in as few doubles as there can be: each is below the last place of the next.
+template <int kOther>
+Expansion<48> compressed(const Expansion<kOther>& from) {
+  std::array<double, kOther + 1> above;
+  int n = 0;
+  double sum = 0;
+  for (const double* part = from.end(); part != from.begin();) {
+    const double low = *--part, next = sum + low, rest = low - (next - sum);
+    if (rest != 0) above[static_cast<std::size_t>(n++)] = next;
+    sum = rest != 0 ? rest : next;
+  }
+  Expansion<48> few;
+  few.add(sum);
+  while (n > 0) few.add(above[static_cast<std::size_t>(--n)]);
+  return few;
 }
+
+// ---- Pairs of doubles, some 2^-104 of a sum's or product's terms exact. Source: Dekker 1971; Joldes, Muller,
+// Popescu 2017.
+
+struct Pair {
+  double high, low;
+};
+
+Pair exact_sum(double a, double b) {
+  const double sum = a + b, back = sum - a;
+  return {sum, (a - (sum - back)) + (b - back)};
+}
+Pair exact_product(double a, double b) {
+  const double high = a * b;
+  return {high, std::fma(a, b, -high)};
+}
+Pair with_low(double high, double low) {  // |low| is no more than |high|, or high is 0
+  const double sum = high + low;
+  return {sum, low - (sum - high)};
+}
+Pair operator+(const Pair& a, const Pair& b) {
+  const Pair s = exact_sum(a.high, b.high), r = exact_sum(a.low, b.low);
+  const Pair first = with_low(s.high, s.low + r.high);
+  return with_low(first.high, first.low + r.low);
+}
+Pair operator-(const Pair& a) {
+  return {-a.high, -a.low};
+}
+Pair operator*(const Pair& a, double b) {
+  const Pair p = exact_product(a.high, b);
+  return with_low(p.high, std::fma(a.low, b, p.low));
+}
+Pair operator*(const Pair& a, const Pair& b) {
+  const Pair p = exact_product(a.high, b.high);
+  return with_low(p.high, std::fma(a.high, b.low, std::fma(a.low, b.high, p.low)));
+}
+template <int kCapacity>
+Pair pair_of(const Expansion<kCapacity>& sum) {
+  Pair pair{0, 0};
+  for (const double part : sum) pair = pair + Pair{part, 0};
+  return pair;
+}
+// To the nearest double, but for 2^-50 of its last place.
+double quotient(const Pair& a, const Pair& b) {
+  const double about = a.high / b.high;
+  const Pair left = a + -(b * about);
+  return about + (left.high + left.low) / b.high;
+}
+
+// A sum of products in pairs, and what its error is a share of.
+struct SizedSum {
+  Pair sum{0, 0};
+  double size = 0;
+
+  void add(const Pair& a, const Pair& b, double size_of_product) {
+    sum = sum + a * b;
+    size += size_of_product;
+  }
+  // Error below 2^-96 of the size: right to 2^-58 of itself.
+  bool is_sure() const { return std::abs(sum.high) >= 0x1p-38 * size; }
+};
 
 }  // namespace
 
 // Of a corner: x and y in the sheared plane times the direction's z, z along it, and what x and y are sums
 // of.
 struct ExactLine::Place {
-  const float (*corner)[3];
+  const dvec3* corner;
   double x, y, x_size, y_size;
 };
 
-ExactLine::ExactLine(const dvec3& origin, const dvec3& direction)
-    : origin_(without_tiny(origin, 0x1p-140)), direction_(without_tiny(direction, 0x1p-200)), kz_(0) {
+ExactLine::ExactLine(const dvec3& origin, const dvec3& direction, const dvec3& rest)
+    : origin_(without_tiny(origin, 0x1p-140)),
+      direction_(without_tiny(direction, 0x1p-200)),
+      rest_(without_tiny(rest, 0x1p-140)),
+      kz_(0) {
   for (int k = 1; k < 3; ++k)
     if (std::abs(direction_[k]) >= std::abs(direction_[kz_])) kz_ = k;
   kx_ = (kz_ + 1) % 3;
   ky_ = (kz_ + 2) % 3;
 }
 
-ExactLine::Place ExactLine::place_of(const float (&corner)[3]) const {
-  const double z = corner[kz_] - origin_[kz_], dz = direction_[kz_];
-  const double x = (corner[kx_] - origin_[kx_]) * dz, shift_x = z * direction_[kx_];
-  const double y = (corner[ky_] - origin_[ky_]) * dz, shift_y = z * direction_[ky_];
+// (Where the rest is of the size of a difference, the difference was not rounded.)
+ExactLine::Place ExactLine::place_of(const dvec3& corner) const {
+  const double z = corner[kz_] - origin_[kz_] - rest_[kz_], dz = direction_[kz_];
+  const double x = (corner[kx_] - origin_[kx_] - rest_[kx_]) * dz, shift_x = z * direction_[kx_];
+  const double y = (corner[ky_] - origin_[ky_] - rest_[ky_]) * dz, shift_y = z * direction_[ky_];
   return {&corner, x - shift_x, y - shift_y, std::abs(x) + std::abs(shift_x),
           std::abs(y) + std::abs(shift_y)};
 }
@@ -94,17 +185,17 @@ int ExactLine::side_of(const Place& p, const Place& q) const {
   return std::abs(side) > kSure * size ? sign_of(side) : exact_side_of(*p.corner, *q.corner);
 }
 
-int ExactLine::exact_side_of(const float (&p)[3], const float (&q)[3]) const {
-  const auto sheared = [&](const float(&corner)[3], int k) {
-    Expansion<8> place;
-    place.add_product(difference(corner[k], origin_[k]), direction_[kz_]);
-    place.add_product(difference(corner[kz_], origin_[kz_]), -direction_[k]);
+int ExactLine::exact_side_of(const dvec3& p, const dvec3& q) const {
+  const auto sheared = [&](const dvec3& corner, int k) {
+    Expansion<12> place;
+    place.add_product(difference(corner[k], origin_[k], rest_[k]), direction_[kz_]);
+    place.add_product(difference(corner[kz_], origin_[kz_], rest_[kz_]), -direction_[k]);
     return place;
   };
-  const Expansion<8> px = sheared(p, kx_), py = sheared(p, ky_), qx = sheared(q, kx_), qy = sheared(q, ky_);
-  if (const int side = cross<256>(qx, py, qy, px).sign(); side != 0) return side;
-  const auto less = [](const Expansion<8>& a, const Expansion<8>& b) {
-    Expansion<16> sum;
+  const Expansion<12> px = sheared(p, kx_), py = sheared(p, ky_), qx = sheared(q, kx_), qy = sheared(q, ky_);
+  if (const int side = cross<576>(qx, py, qy, px).sign(); side != 0) return side;
+  const auto less = [](const Expansion<12>& a, const Expansion<12>& b) {
+    Expansion<24> sum;
     for (const double part : a) sum.add(part);
     for (const double part : b) sum.add(-part);
     return sum.sign();
@@ -116,8 +207,7 @@ int ExactLine::exact_side_of(const float (&p)[3], const float (&q)[3]) const {
 // Of a line that crosses the triangle: `facing` is the sign of the product of its direction and the normal.
 // Where rounding could have made the sign of t, that is decided exactly, and t lies between the corners.
 double ExactLine::distance_to(const Corners& v, int facing_sign) const {
-  const auto corner = [&](int i) { return dvec3(v[i][0], v[i][1], v[i][2]); };
-  const dvec3 e = corner(1) - corner(0), f = corner(2) - corner(0), a = corner(0) - origin_;
+  const dvec3 e = v[1] - v[0], f = v[2] - v[0], a = v[0] - origin_;
   const dvec3 n = glm::cross(e, f);
   const double volume = glm::dot(n, a), facing = glm::dot(n, direction_);
   double volume_size = 0, facing_size = 0;
@@ -129,11 +219,11 @@ double ExactLine::distance_to(const Corners& v, int facing_sign) const {
   }
   if (std::abs(volume) > kSure * volume_size && std::abs(facing) > kSure * facing_size)
     return volume / facing;
-  const int sign = exact_volume_sign(v, origin_) * facing_sign;
+  const int sign = ExactQuotient(v, origin_, rest_, direction_).volume.sign() * facing_sign;
   if (sign == 0) return 0;
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-  for (int i = 0; i < 3; ++i) {
-    const double t = (corner(i)[kz_] - origin_[kz_]) / direction_[kz_];
+  for (const dvec3& corner : v) {
+    const double t = (corner[kz_] - origin_[kz_]) / direction_[kz_];
     lo = std::min(lo, t), hi = std::max(hi, t);
   }
   const double t = facing == 0 ? 0.5 * (lo + hi) : std::clamp(volume / facing, lo, hi);
@@ -141,14 +231,100 @@ double ExactLine::distance_to(const Corners& v, int facing_sign) const {
   return sign > 0 ? std::max(t, kLeast) : std::min(t, -kLeast);
 }
 
+ExactLine::Bounds ExactLine::around(double t) {
+  const double off = 0x1p-50 * std::abs(t);
+  return {t - off, t + off};
+}
+
+ExactLine::Bounds ExactLine::bounds_of_t(const Corners& v) const {
+  const dvec3 e = v[1] - v[0], f = v[2] - v[0], a = v[0] - origin_ - rest_;
+  const dvec3 n = glm::cross(e, f);
+  const double volume = glm::dot(n, a), facing = glm::dot(n, direction_);
+  double volume_size = 0, facing_size = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    const double part = std::abs(e[l] * f[m]) + std::abs(e[m] * f[l]);
+    volume_size += part * (std::abs(v[0][k]) + std::abs(origin_[k]));
+    facing_size += part * std::abs(direction_[k]);
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (!(std::abs(facing) > 4 * kSure * facing_size)) return {-kInfinity, kInfinity};
+  const double t = volume / facing;
+  const double off = 2 * kSure * (volume_size + std::abs(t) * facing_size) / std::abs(facing);
+  return {t - off, t + off};
+}
+
+int ExactLine::side_of(const Place& a, const Place& b, const Place& c) const {
+  const int side = side_of(a, b);
+  return side == 0 || side != side_of(b, c) || side != side_of(c, a) ? 0 : side;
+}
+
 std::optional<ExactLine::Crossing> ExactLine::crossing(const Corners& v) const {
   const Place a = place_of(v[0]), b = place_of(v[1]), c = place_of(v[2]);
-  const int side = side_of(a, b);
-  if (side == 0 || side != side_of(b, c) || side != side_of(c, a)) return std::nullopt;
+  const int side = side_of(a, b, c);
+  if (side == 0) return std::nullopt;
   const auto weight = [](const Place& p, const Place& q) { return std::abs(q.x * p.y - q.y * p.x); };
   const double wa = weight(b, c), wb = weight(c, a), wc = weight(a, b), all = wa + wb + wc;
   const int facing_sign = direction_[kz_] > 0 ? -side : side;
   return Crossing{distance_to(v, facing_sign), all > 0 ? wb / all : 1.0 / 3, all > 0 ? wc / all : 1.0 / 3};
+}
+
+bool ExactLine::crosses(const Corners& v) const {
+  return side_of(place_of(v[0]), place_of(v[1]), place_of(v[2])) != 0;
+}
+
+// A triangle that the line crosses isn't seen edge-on, so that what is divided by is not 0.
+double ExactLine::t_of(const Corners& v) const {
+  Pair e[3], f[3], a[3];
+  double a_size[3];
+  for (int k = 0; k < 3; ++k) {
+    e[k] = exact_sum(v[1][k], -v[0][k]);
+    f[k] = exact_sum(v[2][k], -v[0][k]);
+    a[k] = exact_sum(v[0][k], -origin_[k]);
+    a[k] = with_low(a[k].high, a[k].low - rest_[k]);
+    a_size[k] = std::abs(v[0][k]) + std::abs(origin_[k]);
+  }
+  SizedSum volume, facing;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    const Pair n = e[l] * f[m] + -(e[m] * f[l]);
+    const double size = std::abs(e[l].high * f[m].high) + std::abs(e[m].high * f[l].high);
+    volume.add(n, a[k], size * a_size[k]);
+    facing.add(n, {direction_[k], 0}, size * std::abs(direction_[k]));
+  }
+  if (volume.is_sure() && facing.is_sure()) return quotient(volume.sum, facing.sum);
+  const ExactQuotient t(v, origin_, rest_, direction_);
+  return quotient(pair_of(t.volume), pair_of(t.facing));
+}
+
+std::array<double, 2> ExactLine::weights_of(const Corners& v) const {
+  Pair x[3], y[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto from_origin = [&](int k) {
+      const Pair d = exact_sum(v[i][k], -origin_[k]);
+      return with_low(d.high, d.low - rest_[k]);
+    };
+    const Pair z = from_origin(kz_);
+    x[i] = from_origin(kx_) * direction_[kz_] + -(z * direction_[kx_]);
+    y[i] = from_origin(ky_) * direction_[kz_] + -(z * direction_[ky_]);
+  }
+  const auto weight = [&](std::size_t p, std::size_t q) {
+    const Pair w = x[q] * y[p] + -(y[q] * x[p]);
+    return std::abs(w.high + w.low);
+  };
+  const double wa = weight(1, 2), wb = weight(2, 0), wc = weight(0, 1), all = wa + wb + wc;
+  if (!(all > 0)) return {1.0 / 3, 1.0 / 3};
+  return {wb / all, wc / all};
+}
+
+int ExactLine::compare_t(const Corners& v, const Corners& w) const {
+  const ExactQuotient one(v, origin_, rest_, direction_), other(w, origin_, rest_, direction_);
+  const Expansion<48> volume = compressed(one.volume), facing = compressed(one.facing);
+  const Expansion<48> other_volume = compressed(other.volume), other_facing = compressed(other.facing);
+  Expansion<9216> difference_of_products;
+  add_product(difference_of_products, volume, other_facing, 1);
+  add_product(difference_of_products, other_volume, facing, -1);
+  return difference_of_products.sign() * facing.sign() * other_facing.sign();
 }
 
 }  // namespace kdray::query

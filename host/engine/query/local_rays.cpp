@@ -108,6 +108,25 @@ std::optional<LocalLine> LocalFrame::line(const dvec3& origin, const dvec3& dire
   return begin_line(origin, direction, in_double);
 }
 
+std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3& direction, double t_min,
+                                                double t_max) const {
+  const std::optional<LocalLine> line = begin_line(origin, direction, true);
+  if (!line) return std::nullopt;
+  const dvec3 from_center = origin - space_.center, back = origin - from_center;
+  const dvec3 rest = (origin - (from_center + back)) - (space_.center - back);
+  // Dividing by the usual unit, a power of two, rounds as scalbn does, and needs no call.
+  const auto scaled = [&](double t) {
+    return line->exponent == exponent_ ? t / unit_ : std::scalbn(t, -line->exponent);
+  };
+  return DoubleRay{from_center * space_.scale,
+                   rest * space_.scale,
+                   line->direction,
+                   line->ahead,
+                   scaled(t_min),
+                   scaled(t_max),
+                   line->exponent};
+}
+
 LocalRay LocalFrame::begin(const dvec3& origin, const dvec3& direction, double t_min, double t_max,
                            bool in_double) const {
   LocalRay out{kNoRay, 0, exponent_};

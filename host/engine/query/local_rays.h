@@ -62,6 +62,14 @@ struct LocalRay {
   int exponent;
 };
 
+// A ray of a scene of doubles, in its space: exactly origin + rest + t*direction. t is 2^-exponent times the
+// caller's. A walk in floats may begin at `start`, before anything lies.
+struct DoubleRay {
+  dvec3 origin, rest, direction;
+  double start, t_min, t_max;
+  int exponent;
+};
+
 // The same in doubles: t = ldexp(ahead + local t, exponent).
 struct LocalLine {
   dvec3 origin, direction;
@@ -75,6 +83,9 @@ class LocalFrame {
 
   // None where it passes the bounds by, or stays too far from them for floats.
   std::optional<LocalLine> line(const dvec3& origin, const dvec3& direction, bool in_double) const;
+  // None where line() has none.
+  std::optional<DoubleRay> double_ray(const dvec3& origin, const dvec3& direction, double t_min,
+                                      double t_max) const;
   LocalRay begin(const dvec3& origin, const dvec3& direction, double t_min, double t_max,
                  bool in_double) const;
   // The exponent of rays that need no more: those of ordinary length that are not moved.

@@ -9,16 +9,19 @@
 #include "accel/prepare/instanced.h"
 #include "base/error.h"
 #include "engine/query/all_hits.h"
+#include "engine/query/double_scene.h"
 #include "engine/query/exact_scene.h"
 #include "engine/query/grains.h"
 #include "engine/query/point_session.h"
 #include "engine/query/shared_rows.h"
+#include "engine/query/surface.h"
 
 namespace kdray::query {
 
 namespace {
 
 // Points of a chunk at most, and of the first one.
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kPointsAtOnce = std::size_t{1} << 18, kFirstPoints = std::size_t{1} << 12;
 
 // Chunks of points as they can be asked for: those that are not finite are put at the origin, and remembered.
@@ -97,7 +100,7 @@ std::vector<std::uint8_t> are_inside(const QueryContext& context, Place& place, 
   const std::vector<std::uint32_t> counts = crossings_above(context, place, points, cancel);
   std::vector<std::uint8_t> inside(points.size());
   for_each_index(points.size(), [&](std::size_t i) { inside[i] = counts[i] % 2; });
-  if (!in_double) return inside;
+  if (!in_double && !context.scene().doubles) return inside;
   const ExactScene exact(context.scene());
   for_each_slow_grain(points.size(), cancel, [&](std::size_t begin, std::size_t end) {
     std::vector<ExactHit> hits;
@@ -122,6 +125,10 @@ class Nearest {
       : found_(points.size(), kNoClosestPoint) {
     check_points(points, radius);
     if (points.empty() || context.scene().geometry.bounds.empty()) return;
+    if (context.scene().doubles) {
+      look_up_doubles(context, points, radius);
+      return;
+    }
     session_ = place.sessions.points.borrow();
     session_->start(points, radius);
   }
@@ -133,6 +140,23 @@ class Nearest {
   }
 
  private:
+  void look_up_doubles(const QueryContext& context, std::span<const dvec3> points, double radius) {
+    const DoubleScene scene(context.scene(), context.table);
+    const LocalSpace& space = context.frame.space();
+    const Places places{space};
+    for_each_slow_grain(points.size(), std::nullopt, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto nearest = scene.nearest(places.place_of(points[i]), kInfinity);
+        if (!nearest) continue;
+        const dvec3 point = space.world(nearest->point);
+        const double distance = places.distance(points[i], nearest->point, nearest->distance);
+        if (distance > radius) continue;
+        const auto number = static_cast<std::int32_t>(query::number_of(context.scene().flat, nearest->ref));
+        found_[i] = {distance, point, number, static_cast<float>(nearest->u), static_cast<float>(nearest->v)};
+      }
+    });
+  }
+
   std::vector<ClosestPoint> found_;
   Sessions<PointSession>::Borrowed session_;
 };

@@ -4,6 +4,7 @@
 // Errors  ErrorCode::internal for a kind that there is none of.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -36,10 +37,13 @@ struct Surface {
 
 // In double, which floats' differences and products leave with next to no rounding, and whose range their
 // squares don't leave.
+inline dvec3 normal_of(const std::array<dvec3, 3>& t) {
+  const dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+  return n == dvec3(0) ? n : glm::normalize(n);
+}
 inline dvec3 normal_of(const layout::Triangle& t) {
   const auto corner = [&](int i) { return dvec3(t.v[i][0], t.v[i][1], t.v[i][2]); };
-  const dvec3 a = corner(0), n = glm::cross(corner(1) - a, corner(2) - a);
-  return n == dvec3(0) ? n : glm::normalize(n);
+  return normal_of(std::array{corner(0), corner(1), corner(2)});
 }
 
 // `point_of()`, a point on the primitive, is asked for only where the normal depends on it.

@@ -114,7 +114,8 @@ void HitWriter::settle(Some& some, Changed& changed) const {
       const auto ref = static_cast<std::uint32_t>(hit.primitive);
       exact = exact_->closest(some.ray + i, {hit.t, hit.u, hit.v, ref, some.instance(i)}).value_or(kMiss);
     }
-    changed.hits[i] = {static_cast<float>(exact.t), static_cast<std::int32_t>(exact.ref), exact.u, exact.v};
+    changed.hits[i] = {static_cast<float>(exact.t), static_cast<std::int32_t>(exact.ref),
+                       static_cast<float>(exact.u), static_cast<float>(exact.v)};
     changed.instances[i] = exact.instance;
     changed.t[i] = exact.t;
   }

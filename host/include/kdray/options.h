@@ -51,6 +51,10 @@ struct LoadOptions {
   bool operator==(const LoadOptions&) const = default;
 };
 
+// What the kernels compute in. The scene is the same, stored as float. float64 (C++'s double) is the
+// reference for float's rounding: slower, by the binary walk and PDPRT alone, on devices that have it.
+enum class Precision { float32, float64 };
+
 struct TreeOptions {
   BuildQuality quality = BuildQuality::balanced;
   int max_depth = -1;  // -1: 8 + 1.3*log2(N)
@@ -59,6 +63,9 @@ struct TreeOptions {
   // The most that the scene may take when it is traced; the tree gets coarser; 0: no limit.
   std::uint64_t memory_bytes = 0;
   bool binary_form = true;  // is made too; few options take it (takes_binary_form)
+  // float64: queries answer for the vertices as they were given, in doubles, which are kept beside the floats
+  // of the scene, by exact arithmetic on the host (slower). For triangles alone. Pictures are of the floats.
+  Precision geometry = Precision::float32;
   bool operator==(const TreeOptions&) const = default;
 };
 
@@ -120,10 +127,6 @@ enum class Traversal {
   packet,     // the wide tree, 16 coherent rays to a vector, several packets in flight
   batch       // the wide tree, many independent rays in flight
 };
-
-// What the kernels compute in. The scene is the same, stored as float. float64 (C++'s double) is the
-// reference for float's rounding: slower, by the binary walk and PDPRT alone, on devices that have it.
-enum class Precision { float32, float64 };
 
 // How a frame is divided among the queues (docs/modes.md). A choice changes time and memory, never the
 // picture.

@@ -70,7 +70,10 @@ void for_each_grain(std::size_t n, const Work& work) {
 
 class Maker {
  public:
-  Maker(const LocalSpace& space, const Scene& scene) : scene_(scene) { out_.space = space; }
+  Maker(const LocalSpace& space, const Scene& scene, bool for_doubles = false)
+      : scene_(scene), for_doubles_(for_doubles) {
+    out_.space = space;
+  }
 
   Geometry make() {
     add_triangles();
@@ -105,10 +108,13 @@ class Maker {
       for (std::size_t i = first; i < last; ++i) {
         TriangleGeometry t = triangle(vertices, i);
         if (is_flat(t)) {
-          found.lost += has_area(i);
-          if (has_equal_corners(t)) continue;
-          t.normals |= KDRAY_ZERO_AREA;
-          found.has_zero_area = true;
+          if (for_doubles_ && differ(scene_.triangles[i].vertex)) {
+            if (!has_equal_corners(t)) mark_zero_area(t, found);
+          } else {
+            found.lost += has_area(i);
+            if (has_equal_corners(t)) continue;
+            mark_zero_area(t, found);
+          }
         }
         out_.triangles[end] = t;
         out_.sources[end++] = static_cast<std::uint32_t>(i);
@@ -138,6 +144,16 @@ class Maker {
     std::uint32_t lost = 0, fine = 0;
     bool has_zero_area = false;
   };
+
+  static void mark_zero_area(TriangleGeometry& t, GrainFacts& found) {
+    t.normals |= KDRAY_ZERO_AREA;
+    found.has_zero_area = true;
+  }
+
+  bool differ(const std::array<std::uint32_t, 3>& v) const {
+    const dvec3 &a = scene_.vertices[v[0]], &b = scene_.vertices[v[1]], &c = scene_.vertices[v[2]];
+    return a != b && b != c && c != a;
+  }
 
   bool has_area(std::size_t i) const {
     const auto& v = scene_.triangles[i].vertex;
@@ -212,6 +228,7 @@ class Maker {
   }
 
   const Scene& scene_;
+  bool for_doubles_;
   Geometry out_;
 };
 
@@ -226,6 +243,33 @@ LocalSpace space_of(const DBox& bounds, const std::string& name) {
 
 Geometry make_geometry_in(const LocalSpace& space, const Scene& scene) {
   return Maker(space, scene).make();
+}
+
+Geometry make_geometry_for_doubles(const Scene& scene) {
+  if (!scene.instances.empty())
+    throw input_error(scene.name, 0, "instances, which a scene of doubles doesn't have",
+                      "give every mesh its own triangles, or ask about it in floats");
+  if (scene.primitive_count() != scene.triangles.size())
+    throw input_error(scene.name, 0, "primitives other than triangles, which a scene of doubles doesn't have",
+                      "leave them out, or ask about it in floats");
+  return Maker(space_of(scene.bounds(), scene.name), scene, true).make();
+}
+
+DoubleTriangles make_double_triangles(const Scene& scene, const Geometry& geometry) {
+  DoubleTriangles made;
+  made.vertices.resize(scene.vertices.size());
+  for_each_grain(made.vertices.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      made.vertices[i] = geometry.space.local(scene.vertices[i]);
+      for (int k = 0; k < 3; ++k)
+        if (std::abs(made.vertices[i][k]) < DoubleTriangles::kLeast) made.vertices[i][k] = 0;
+    }
+  });
+  made.corners.resize(geometry.triangles.size());
+  for_each_grain(made.corners.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) made.corners[i] = scene.triangles[geometry.sources[i]].vertex;
+  });
+  return made;
 }
 
 Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept) {

@@ -10,6 +10,7 @@
 //         copy. Copies of a Geometry share them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -54,6 +55,29 @@ struct Geometry {
     return primitives::count_primitives(*this);
   }
 };
+
+// The triangles of a scene that is asked about in doubles (TreeOptions::geometry), as the file or the caller
+// has them: in the scene's own space, where its floats are too, and exactly so. (The centre is 0, or within
+// twice of every coordinate, so that taking it from them rounds nothing.) Coordinates below kLeast are 0.
+struct DoubleTriangles {
+  static constexpr double kLeast = 0x1p-100;
+
+  RawVector<dvec3> vertices;
+  RawVector<std::array<std::uint32_t, 3>> corners;  // of each triangle of the Geometry
+
+  std::array<dvec3, 3> at(std::size_t triangle) const {
+    const auto& [a, b, c] = corners[triangle];
+    return {vertices[a], vertices[b], vertices[c]};
+  }
+  std::size_t bytes() const {
+    return vertices.size() * sizeof vertices[0] + corners.size() * sizeof corners[0];
+  }
+};
+DoubleTriangles make_double_triangles(const Scene& scene, const Geometry& geometry);
+
+// Makes the geometry of a scene that is asked about in doubles: a triangle whose corners differ in these is
+// kept though rounding makes two of them equal, and then no ray of floats meets it.
+Geometry make_geometry_for_doubles(const Scene& scene);
 
 // Makes the geometry in `kept`, where the scene keeps_space(), or else in a space of its own.
 Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept = {});

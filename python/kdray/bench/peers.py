@@ -52,13 +52,14 @@ class Rays(Peer):
 
 
 class Kdray(Peer):
-    """kdray."""
+    """kdray; of doubles where floats can't hold the vertices."""
 
     name = "kdray"
 
     def __init__(self, vertices: Array, triangles: Array) -> None:
         super().__init__(vertices, triangles)
-        self.scene = Scene()
+        fit = np.array_equal(vertices, np.asarray(vertices, np.float32))
+        self.scene = Scene(geometry="float" if fit else "double")
         self.scene.add_mesh(vertices, triangles)
 
     @classmethod

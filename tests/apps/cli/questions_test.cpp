@@ -55,6 +55,29 @@ struct __attribute__((packed)) DoubleHit {
 static_assert(sizeof(DoubleHit) == 20);
 const std::string kDoubleHits = "[('t', '<f8'), ('primitive', '<i4'), ('u', '<f4'), ('v', '<f4')]";
 
+// Two squares of a million, 1e-10 apart: the upper one comes later in the file, and floats have both at one
+// height.
+TEST(Questions, DoubleGeometryIsThatOfTheFile) {
+  KDRAY_NEED_DEVICE();
+  const Asking asking;
+  std::string squares;
+  for (const char* z : {"0.3", "0.3000000001"})
+    for (const char* xy : {"-5e5 -5e5 ", "5e5 -5e5 ", "5e5 5e5 ", "-5e5 5e5 "})
+      squares += std::string("v ") + xy + z + "\n";
+  squares += "v 0 0 -4e5\nf 1 2 3 4\nf 5 6 7 8\nf 1 2 9\n";
+  const auto scene = asking.folder.put("squares.obj", squares);
+  const auto rays = asking.folder.put(
+      "down.npy", npy_of("<f8", std::vector<BoxRay<double>>{{7, 9, 5, 0, 0, 0, -1, kEver}}));
+  const auto hit_of = [&](const char* geometry) {
+    EXPECT_TRUE(succeeds(
+        kdray({"trace", scene, "--rays", rays, "-o", asking.folder / "h.npy", "--geometry", geometry})));
+    return values_of<DoubleHit>(asking.folder.get("h.npy"), kDoubleHits).at(0);
+  };
+  EXPECT_EQ(hit_of("double").primitive / 2, 1);
+  EXPECT_DOUBLE_EQ(hit_of("double").t, 5 - 0.3000000001);
+  EXPECT_EQ(hit_of("float").primitive / 2, 0);
+}
+
 TEST(Questions, DoubleRaysHaveHitsInDouble) {
   KDRAY_NEED_DEVICE();
   const Asking asking;
@@ -298,6 +321,8 @@ TEST(Questions, OptionsThatContradictEachOtherAreUsage) {
       {{"--rays", r4, "--count", "--traversal", "binary"}, "x.npy", "--traversal"},
       {{"--rays", r8, "--count", "--precision", "double"}, "x.npy", "--precision double"},
       {{"--closest-point", p, "--traversal", "wide"}, "x.npy", "a walk of its own"},
+      {{"--rays", r8, "--geometry", "double", "--traversal", "wide"}, "x.npy", "leave --traversal and"},
+      {{"--rays", r8, "--geometry", "double", "--precision", "double"}, "x.npy", "--precision out"},
       {{"--inside", asking.scene}, "box.obj", "the same file"},
   };
   for (const Case& c : cases) {

@@ -1,0 +1,358 @@
+#include "engine/query/double_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "engine/query/double_walk.h"
+#include "engine/query/scene_arguments.h"
+#include "engine/query/surface.h"
+#include "engine/query/wide_boxes.h"
+
+namespace kdray::query {
+
+namespace {
+
+using layout::WideNode;
+
+constexpr double kBoxes = 0x1p-18;  // 64u of the reach: see double_scene.h
+
+float rounded_down(double value) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return std::nextafterf(static_cast<float>(std::clamp(value, -kMost, kMost)), -HUGE_VALF);
+}
+float rounded_up(double value) {
+  return -rounded_down(-value);
+}
+
+dvec3 without_tiny(dvec3 v) {
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(v[k]) < scene::DoubleTriangles::kLeast) v[k] = 0;
+  return v;
+}
+
+std::uint32_t ref_of(std::uint32_t triangle) {
+  return std::uint32_t{KDRAY_KIND_TRIANGLE} << KDRAY_REF_KIND_SHIFT | triangle;
+}
+
+// Calls visit(rows, n, block) for each block of a leaf of triangles, of which the first n lanes are there,
+// until a call answers false; whether none did.
+template <class Visit>
+bool visit_blocks(const flatten::WideForm& wide, std::uint32_t leaf, const Visit& visit) {
+  const auto block = static_cast<std::size_t>(wide.block);
+  constexpr std::size_t kRows = KDRAY_TRIANGLE_ROWS;
+  const layout::u32* rows = wide.triangle_blocks.data() + (leaf & KDRAY_WIDE_FIRST_MASK) * kRows * block;
+  for (;; rows += kRows * block) {
+    const layout::u32* const index = rows + (kRows - 1) * block;
+    std::size_t n = 0;
+    while (n < block && !(index[n] & KDRAY_WIDE_LAST)) ++n;
+    const bool is_last = n < block;
+    if (is_last) ++n;
+    if (!visit(rows, n)) return false;
+    if (is_last) return true;
+  }
+}
+
+}  // namespace
+
+DoubleScene::DoubleScene(const prepare::Prepared& scene, const GeometryTable& table)
+    : scene_(&scene),
+      doubles_(scene.doubles.get()),
+      table_(&table),
+      reach_(world_max(scene.geometry.bounds)),
+      margin_(kBoxes * reach_) {}
+
+// A triangle that may be hit: t lies between these.
+struct DoubleScene::Candidate {
+  std::uint32_t triangle;
+  ExactLine::Bounds t;
+};
+
+// A ray, and how far it goes on.
+class DoubleScene::Line : public ExactLine {
+ public:
+  Line(const DoubleScene& scene, const Question& question)
+      : ExactLine(without_tiny(question.ray.origin), without_tiny(question.ray.direction),
+                  without_tiny(question.ray.rest)),
+        scene_(&scene),
+        ray_(&question.ray),
+        end_(question.ray.t_max) {}
+
+  LineInFloats in_floats() const {
+    const dvec3 start = ray_->origin + ray_->rest + ray_->start * ray_->direction;
+    LineInFloats line(start, ray_->direction, widened(scene_->margin_, start), scene_->reach_);
+    line.begin = rounded_down(ray_->t_min - ray_->start - slack(ray_->t_min));
+    line.end = end_in_floats();
+    return line;
+  }
+  float end_in_floats() const { return rounded_up(end_ - ray_->start + slack(end_)); }
+  void end_at(double t) { end_ = std::min(t, end_); }
+
+  // Whether the line crosses it, with t between t_min and where it ends; from_start: at 0, where t_min is 0, as
+  // well. Bounds its t.
+  bool hits(Candidate& candidate, bool from_start) const {
+    const Corners corners = scene_->doubles_->at(candidate.triangle);
+    candidate.t = bounds_of_t(corners);
+    if (candidate.t.most < ray_->t_min || candidate.t.least > end_ || !crosses(corners)) return false;
+    if (candidate.t.least > ray_->t_min && candidate.t.most < ray_->t_max) return true;
+    const double t = settle(candidate);
+    return (t > ray_->t_min || (from_start && t == 0 && ray_->t_min == 0)) && t < ray_->t_max;
+  }
+
+  // Exactly by t, then by number. False for the same triangle.
+  bool precedes(Candidate a, Candidate b) const {
+    if (a.triangle == b.triangle) return false;
+    if (a.t.most < b.t.least) return true;
+    if (b.t.most < a.t.least) return false;
+    settle(a), settle(b);
+    if (a.t.most < b.t.least) return true;
+    if (b.t.most < a.t.least) return false;
+    const int order = compare_t(scene_->doubles_->at(a.triangle), scene_->doubles_->at(b.triangle));
+    return order != 0 ? order < 0 : scene_->number_of(a.triangle) < scene_->number_of(b.triangle);
+  }
+
+  ExactHit hit(const Candidate& candidate) const {
+    const Corners corners = scene_->doubles_->at(candidate.triangle);
+    const auto [u, v] = weights_of(corners);
+    return {std::scalbn(t_of(corners), ray_->exponent), u, v, ref_of(candidate.triangle), kNoInstance};
+  }
+
+ private:
+  // Between t here and in floats from the start on.
+  double slack(double t) const {
+    return 0x1p-48 * (std::abs(ray_->start) + (std::isinf(t) ? 0 : std::abs(t)));
+  }
+
+  double settle(Candidate& candidate) const {
+    const double t = t_of(scene_->doubles_->at(candidate.triangle));
+    candidate.t = around(t);
+    return t;
+  }
+
+  const DoubleScene* scene_;
+  const DoubleRay* ray_;
+  double end_;
+};
+
+// What line i hits is found(i, line, candidate), once for each leaf that it lies in: whether it goes on.
+template <class Found>
+class DoubleScene::Decider final : public TriangleDecider {
+ public:
+  Decider(const DoubleScene& scene, std::span<const Question> questions, std::span<Line> lines,
+          bool from_start, const Found& found)
+      : scene_(scene), questions_(questions), lines_(lines), from_start_(from_start), found_(found) {}
+
+  float decide(std::size_t i, std::uint32_t triangle) override {
+    Candidate candidate{triangle, {}};
+    if (scene_.is_seen(triangle, questions_[i].mask) && lines_[i].hits(candidate, from_start_) &&
+        !found_(i, lines_[i], candidate))
+      return -HUGE_VALF;
+    return lines_[i].end_in_floats();
+  }
+
+ private:
+  const DoubleScene& scene_;
+  const std::span<const Question> questions_;
+  const std::span<Line> lines_;
+  const bool from_start_;
+  const Found& found_;
+};
+
+template <class Found>
+std::vector<DoubleScene::Line> DoubleScene::walk(std::span<const Question> questions, bool from_start,
+                                                 const Found& found) const {
+  std::vector<Line> lines;
+  std::vector<LineInFloats> in_floats;
+  lines.reserve(questions.size());
+  in_floats.reserve(questions.size());
+  for (const Question& question : questions)
+    in_floats.push_back(lines.emplace_back(*this, question).in_floats());
+  Decider decider(*this, questions, lines, from_start, found);
+  walk_triangles(scene_->wide, *doubles_, in_floats, decider);
+  return lines;
+}
+
+std::uint32_t DoubleScene::number_of(std::uint32_t triangle) const {
+  return query::number_of(scene_->flat, ref_of(triangle));
+}
+
+bool DoubleScene::is_seen(std::uint32_t triangle, std::uint32_t mask) const {
+  return mask == 0xffffffffu || (table_->mask_of(number_of(triangle)) & mask) != 0;
+}
+
+void DoubleScene::closest(std::span<const Question> questions,
+                          std::span<std::optional<ExactHit>> hits) const {
+  std::vector<std::optional<Candidate>> best(questions.size());
+  const std::vector<Line> lines =
+      walk(questions, false, [&](std::size_t i, Line& line, const Candidate& candidate) {
+        if (best[i] && !line.precedes(candidate, *best[i])) return true;
+        best[i] = candidate;
+        line.end_at(candidate.t.most);
+        return true;
+      });
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (best[i]) hits[questions[i].place] = lines[i].hit(*best[i]);
+}
+
+void DoubleScene::any(std::span<const Question> questions, std::span<std::uint8_t> hit) const {
+  walk(questions, false, [&](std::size_t i, const Line&, const Candidate&) {
+    hit[questions[i].place] = 1;
+    return false;
+  });
+}
+
+// Calls collected(i, line, candidates) for the lines that hit any, each triangle once.
+template <class Collected>
+void DoubleScene::collect(std::span<const Question> questions, const Collected& collected) const {
+  struct Of {
+    std::size_t line;
+    Candidate candidate;
+    auto key() const { return std::pair(line, candidate.triangle); }
+  };
+  std::vector<Of> found;
+  const std::vector<Line> lines =
+      walk(questions, true, [&](std::size_t i, const Line&, const Candidate& candidate) {
+        found.push_back({i, candidate});
+        return true;
+      });
+  std::sort(found.begin(), found.end(), [](const Of& a, const Of& b) { return a.key() < b.key(); });
+  std::vector<Candidate> of_line;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const std::size_t i = found[k].line;
+    if (k == 0 || found[k - 1].key() != found[k].key()) of_line.push_back(found[k].candidate);
+    if (k + 1 < found.size() && found[k + 1].line == i) continue;
+    collected(i, lines[i], of_line);
+    of_line.clear();
+  }
+}
+
+void DoubleScene::count(std::span<const Question> questions, std::span<std::uint32_t> counts) const {
+  collect(questions, [&](std::size_t i, const Line&, const std::vector<Candidate>& candidates) {
+    counts[questions[i].place] = static_cast<std::uint32_t>(candidates.size());
+  });
+}
+
+void DoubleScene::all(std::span<const Question> questions, std::span<std::vector<ExactHit>> hits) const {
+  collect(questions, [&](std::size_t i, const Line& line, std::vector<Candidate>& candidates) {
+    std::sort(candidates.begin(), candidates.end(),
+              [&](const Candidate& a, const Candidate& b) { return line.precedes(a, b); });
+    for (const Candidate& candidate : candidates) hits[questions[i].place].push_back(line.hit(candidate));
+  });
+}
+
+namespace {
+
+// The point of a triangle that is nearest to 0, by weights of its second and third corner. An edge is looked
+// at from its lesser corner, whichever triangle asks: of two that share what is nearest both have the same
+// distance.
+struct NearPoint {
+  double square;
+  dvec3 point;
+  double u, v;
+};
+
+NearPoint near_of_edge(const ExactLine::Corners& corners, int i, int k) {
+  const auto less = [](const dvec3& a, const dvec3& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  };
+  if (less(corners[static_cast<std::size_t>(k)], corners[static_cast<std::size_t>(i)])) std::swap(i, k);
+  const dvec3 &a = corners[static_cast<std::size_t>(i)], &b = corners[static_cast<std::size_t>(k)];
+  const dvec3 e = b - a;
+  const double length2 = glm::dot(e, e);
+  const double s = length2 > 0 ? std::clamp(-glm::dot(a, e) / length2, 0.0, 1.0) : 0;
+  const dvec3 point = s == 1 ? b : a + s * e;
+  std::array<double, 3> weights{};
+  weights[static_cast<std::size_t>(i)] = 1 - s;
+  weights[static_cast<std::size_t>(k)] = s;
+  return {glm::dot(point, point), point, weights[1], weights[2]};
+}
+
+NearPoint near_of(const ExactLine::Corners& corners) {
+  const auto& [a, b, c] = corners;
+  const dvec3 ab = b - a, bc = c - b, ca = a - c, n = glm::cross(ab, -ca);
+  const double n2 = glm::dot(n, n);
+  const double wa = glm::dot(glm::cross(b, bc), n), wb = glm::dot(glm::cross(c, ca), n),
+               wc = glm::dot(glm::cross(a, ab), n);
+  if (n2 > 0 && wa > 0 && wb > 0 && wc > 0) {
+    const double height = glm::dot(a, n);
+    return {height * (height / n2), height / n2 * n, wb / n2, wc / n2};
+  }
+  NearPoint best = near_of_edge(corners, 0, 1);
+  for (const auto& [i, k] : {std::pair{1, 2}, std::pair{2, 0}})
+    if (const NearPoint other = near_of_edge(corners, i, k); other.square < best.square) best = other;
+  return best;
+}
+
+// The square of the distance from a place to each of eight boxes, or infinity where there is none.
+void squares_to_boxes(const WideNode& node, const dvec3& place, double margin, float (&squares)[8]) {
+  const vec3 at(place);
+  const float wider = widened(margin, place);
+  for (int first = 0; first < 8; first += 4) {
+    Slots sum{};
+    for (int k = 0; k < 3; ++k) {
+      const Slots below = slots_at(node.bounds[k][0] + first) - (at[k] + wider),
+                  above = (at[k] - wider) - slots_at(node.bounds[k][1] + first);
+      const Slots way = greater(Slots{}, greater(below, above));
+      sum += way * way;
+    }
+    std::memcpy(squares + first, &sum, sizeof sum);
+  }
+}
+
+}  // namespace
+
+std::optional<DoubleScene::Nearest> DoubleScene::nearest(const dvec3& place, double most) const {
+  struct Entry {
+    float square;
+    std::uint32_t child;
+    bool operator<(const Entry& other) const { return square > other.square; }
+  };
+  std::optional<Nearest> best;
+  double square = most * most, within = most;
+  if (scene_->wide.nodes.size() == 0) return best;
+  // Squares of floats are off by some 4u; the boxes' margin is in them.
+  constexpr double kFloats = 1 - 0x1p-20;
+  std::vector<Entry> heap{{0, 0}};
+  while (!heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end());
+    const Entry entry = heap.back();
+    heap.pop_back();
+    if (entry.square * kFloats > square) break;
+    if (!(entry.child & KDRAY_WIDE_LEAF)) {
+      const WideNode& node = scene_->wide.nodes[entry.child];
+      float squares[8];
+      squares_to_boxes(node, place, margin_, squares);
+      for (std::size_t slot = 0; slot < 8; ++slot) {
+        const bool is_there = node.bounds[0][0][slot] <= node.bounds[0][1][slot];
+        if (!is_there || squares[slot] * kFloats > square) continue;
+        heap.push_back({squares[slot], node.child[slot]});
+        std::push_heap(heap.begin(), heap.end());
+      }
+      continue;
+    }
+    const auto block = static_cast<std::size_t>(scene_->wide.block);
+    visit_blocks(scene_->wide, entry.child, [&](const layout::u32* rows, std::size_t n) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::uint32_t triangle = rows[(KDRAY_TRIANGLE_ROWS - 1) * block + i] & ~KDRAY_WIDE_LAST;
+        ExactLine::Corners corners = doubles_->at(triangle);
+        for (dvec3& corner : corners) corner -= place;
+        const NearPoint near = near_of(corners);
+        if (!(near.square <= square)) continue;
+        const std::uint32_t ref = ref_of(triangle);
+        const double distance = std::sqrt(near.square);
+        if (best && near.square == square && number_of(triangle) >= query::number_of(scene_->flat, best->ref))
+          continue;
+        if (distance > within) continue;
+        square = near.square;
+        best = Nearest{distance, near.point + place, ref, near.u, near.v};
+      }
+      return true;
+    });
+  }
+  return best;
+}
+
+}  // namespace kdray::query

@@ -1,0 +1,75 @@
+// What    A scene of doubles (TreeOptions::geometry) asked by rays and points, on the host: what exact
+//         arithmetic says of the vertices and rays as the caller gave them.
+// Shape   Rays walk through the wide tree (double_walk.h), whose boxes are those of the floats, widened. Which
+//         triangles a line crosses goes by the half-open rule with exact signs (exact_triangle.h), for closest
+//         hits too: of what shares an edge one is hit. Which of two comes first is decided exactly; at one t
+//         it is the one with the lower number. t is bounded first, and found to its last place for what is
+//         told and where bounds overlap.
+// Errors  t is the double nearest to the exact one, nearly always, and off by less than two of its last
+//         places. It is compared with t_min and t_max as such; its sign is exact. Distances of points are off
+//         by some 2^-50 of themselves.
+// Why     Boxes: a vertex is off by u of the scene's reach W in floats, so that what a triangle's floats have
+//         in a cell its doubles have within u*W, and the boxes of pieces are off by some u*W more
+//         (kdtree/clip.h). A walk's floats lose 4u of the lengths in play, |o| + 2W. The margin is 64u*W and
+//         32u*|o|.
+// Threads As many calls at once as there are threads.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/query/exact_scene.h"
+#include "engine/query/geometry_table.h"
+#include "engine/query/local_rays.h"
+
+namespace kdray::query {
+
+class DoubleScene {
+ public:
+  // Of a scene that has doubles; `table` tells masks.
+  DoubleScene(const prepare::Prepared& scene, const GeometryTable& table);
+
+  struct Question {
+    DoubleRay ray;
+    std::uint32_t mask;
+    std::size_t place;  // of its answer; what is at other places stays
+  };
+  // t as the caller's rays have it.
+  void closest(std::span<const Question> questions, std::span<std::optional<ExactHit>> hits) const;
+  void any(std::span<const Question> questions, std::span<std::uint8_t> hit) const;
+  // Of count and all: a hit at t = 0 counts where t_min is 0.
+  void count(std::span<const Question> questions, std::span<std::uint32_t> counts) const;
+  // Sorted.
+  void all(std::span<const Question> questions, std::span<std::vector<ExactHit>> hits) const;
+
+  struct Nearest {
+    double distance;
+    dvec3 point;
+    std::uint32_t ref;
+    double u, v;
+  };
+  // Of what lies within `most` of the place; of several at one distance the one with the lowest number. All
+  // in the scene's space.
+  std::optional<Nearest> nearest(const dvec3& place, double most) const;
+
+ private:
+  struct Candidate;
+  class Line;
+  template <class Found>
+  class Decider;
+  std::uint32_t number_of(std::uint32_t triangle) const;
+  bool is_seen(std::uint32_t triangle, std::uint32_t mask) const;
+  template <class Found>
+  std::vector<Line> walk(std::span<const Question> questions, bool from_start, const Found& found) const;
+  template <class Collected>
+  void collect(std::span<const Question> questions, const Collected& collected) const;
+
+  const prepare::Prepared* scene_;
+  const scene::DoubleTriangles* doubles_;
+  const GeometryTable* table_;
+  double reach_, margin_;
+};
+
+}  // namespace kdray::query

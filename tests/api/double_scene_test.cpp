@@ -1,0 +1,323 @@
+// Scenes of doubles (TreeOptions::geometry): every answer against GMP's rationals, over the vertices and rays
+// as they were given: which triangle is hit, by the half-open rule, how often, and where.
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "kdray/kdray.h"
+#include "support/device.h"
+#include "support/errors.h"
+
+namespace kdray {
+namespace {
+
+using test::fails;
+using Point = std::array<double, 3>;
+using Exact = std::array<mpq_class, 3>;
+
+constexpr unsigned kSeed = 440;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Mesh {
+  std::vector<Point> vertices;
+  std::vector<std::uint32_t> triangles;
+
+  const Point& corner(std::size_t triangle, std::size_t i) const {
+    return vertices[triangles[3 * triangle + i]];
+  }
+  std::size_t size() const { return triangles.size() / 3; }
+  Points points() const { return {&vertices.front()[0], vertices.size(), sizeof(Point)}; }
+};
+
+// A closed ring of odd doubles, of this size about this centre.
+Mesh ring(std::uint32_t n, std::uint32_t m, const Point& center, double size, std::mt19937& random) {
+  std::uniform_real_distribution<double> shaken(-0.01, 0.01);
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t k = 0; k < m; ++k) {
+      const double a = 6.283185307 * i / n, b = 6.283185307 * k / m, r = 0.7 + 0.25 * std::cos(b);
+      const Point p{r * std::cos(a), r * std::sin(a), 0.25 * std::sin(b)};
+      Point at;
+      for (std::size_t c = 0; c < 3; ++c) at[c] = center[c] + size * (p[c] + shaken(random));
+      mesh.vertices.push_back(at);
+      const std::uint32_t next_i = (i + 1) % n, next_k = (k + 1) % m;
+      const std::uint32_t p0 = i * m + k, q = next_i * m + k, r2 = next_i * m + next_k, s = i * m + next_k;
+      for (const std::uint32_t v : {p0, q, r2, p0, r2, s}) mesh.triangles.push_back(v);
+    }
+  return mesh;
+}
+
+void add(Mesh& to, const Mesh& other) {
+  const auto first = static_cast<std::uint32_t>(to.vertices.size());
+  to.vertices.insert(to.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const std::uint32_t v : other.triangles) to.triangles.push_back(first + v);
+}
+
+// Sheets 1e-9 apart, and one that is there twice.
+Mesh sheets() {
+  Mesh mesh;
+  for (const double z : {0.0, 1e-9, 2e-9, 2e-9, 3e-9}) {
+    Mesh sheet;
+    sheet.vertices = {
+        {1e3 - 1, 1e3 - 1, z}, {1e3 + 1, 1e3 - 1, z + 1e-10}, {1e3 + 1, 1e3 + 1, z}, {1e3 - 1, 1e3 + 1, z}};
+    sheet.triangles = {0, 1, 2, 0, 2, 3};
+    add(mesh, sheet);
+  }
+  return mesh;
+}
+
+// ---- What the rationals say
+
+Exact exact(const Point& p) {
+  return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])};
+}
+Exact minus(const Exact& a, const Exact& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+mpq_class volume(const Exact& a, const Exact& b, const Exact& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+struct Crossing {
+  mpq_class t;
+  std::uint32_t triangle;
+  double u, v;
+};
+
+class Line {
+ public:
+  Line(const Point& origin, const Point& direction) : o_(exact(origin)), d_(exact(direction)) {
+    for (std::size_t k = 1; k < 3; ++k)
+      if (std::abs(direction[k]) >= std::abs(direction[kz_])) kz_ = k;
+    kx_ = (kz_ + 1) % 3, ky_ = (kz_ + 2) % 3;
+  }
+
+  // All that the line crosses, in its order.
+  std::vector<Crossing> crossings(const Mesh& mesh) const {
+    std::vector<Crossing> found;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+      Exact v[3];
+      for (std::size_t k = 0; k < 3; ++k) v[k] = minus(exact(mesh.corner(i, k)), o_);
+      const int side = side_of(v[0], v[1]);
+      if (side == 0 || side != side_of(v[1], v[2]) || side != side_of(v[2], v[0])) continue;
+      const mpq_class all = volume(v[0], v[1], d_) + volume(v[1], v[2], d_) + volume(v[2], v[0], d_);
+      found.push_back({volume(v[0], v[1], v[2]) / all, i, mpq_class(volume(v[2], v[0], d_) / all).get_d(),
+                       mpq_class(volume(v[0], v[1], d_) / all).get_d()});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
+    return found;
+  }
+
+ private:
+  std::array<mpq_class, 2> place(const Exact& p) const {
+    return {p[kx_] * d_[kz_] - p[kz_] * d_[kx_], p[ky_] * d_[kz_] - p[kz_] * d_[ky_]};
+  }
+  int side_of(const Exact& from, const Exact& to) const {
+    const auto p = place(from), q = place(to);
+    const mpq_class edge = q[0] * p[1] - q[1] * p[0];
+    if (edge != 0) return sgn(edge);
+    return q[1] != p[1] ? cmp(q[1], p[1]) > 0 ? 1 : -1 : sgn(mpq_class(p[0] - q[0]));
+  }
+
+  Exact o_, d_;
+  std::size_t kx_, ky_, kz_ = 0;
+};
+
+// How many of a double's last places it is off.
+double places_off(double got, const mpq_class& exact) {
+  const double about = exact.get_d(), place = std::nextafter(std::abs(about), kInfinity) - std::abs(about);
+  return std::abs(mpq_class((mpq_class(got) - exact) / mpq_class(place)).get_d());
+}
+
+// ---- Rays
+
+struct RayList {
+  std::vector<Point> origins, directions;
+  Rays rays() const {
+    return {{&origins.front()[0], origins.size(), sizeof(Point)},
+            {&directions.front()[0], directions.size(), sizeof(Point)}};
+  }
+};
+
+// From near and far: at vertices, at places of edges and faces, along axes through vertices, and anywhere.
+RayList aimed(const Mesh& mesh, std::size_t n, double size, std::mt19937& random) {
+  std::uniform_real_distribution<double> share(0, 1), way(-1, 1);
+  RayList list;
+  while (list.origins.size() < n) {
+    const std::size_t triangle = random() % mesh.size(), kind = random() % 5;
+    const double u = share(random), v = kind == 1 ? 0 : share(random) * (1 - u);
+    Point at = mesh.corner(triangle, 0), origin, direction;
+    const double far = std::pow(10.0, std::uniform_int_distribution<int>(0, 3)(random)) * size;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (kind == 1 || kind == 2)
+        at[k] += u * (mesh.corner(triangle, 1)[k] - at[k]) + v * (mesh.corner(triangle, 2)[k] - at[k]);
+      origin[k] = at[k] + far * way(random);
+    }
+    if (kind == 3) {  // the line goes through the vertex exactly
+      const std::size_t axis = random() % 3;
+      origin = at;
+      origin[axis] -= far;
+      direction = {0, 0, 0};
+      direction[axis] = 1;
+    } else {
+      for (std::size_t k = 0; k < 3; ++k) direction[k] = kind == 4 ? way(random) : at[k] - origin[k];
+    }
+    list.origins.push_back(origin);
+    list.directions.push_back(direction);
+  }
+  return list;
+}
+
+class DoubleScenes : public test::EachDevice {
+ protected:
+  CommitOptions options() const {
+    CommitOptions options;
+    options.device.device = GetParam();
+    options.tree.geometry = Precision::float64;
+    return options;
+  }
+  Scene scene_of(const Mesh& mesh) const {
+    Scene scene;
+    scene.add_mesh({mesh.points(), mesh.triangles});
+    scene.commit(options());
+    return scene;
+  }
+
+  void holds(const Mesh& mesh, const RayList& list) const {
+    const Scene scene = scene_of(mesh);
+    const std::size_t n = list.origins.size();
+    std::vector<double> t(n), u(n), v(n);
+    std::vector<std::uint32_t> primitive(n), counts(n);
+    std::vector<std::uint8_t> any(n);
+    scene.closest(list.rays(), {.t = t, .primitive = primitive, .u = u, .v = v});
+    scene.any(list.rays(), any);
+    scene.count(list.rays(), counts);
+    const AllHits all = scene.all(list.rays());
+    for (std::size_t i = 0; i < n; ++i) {
+      SCOPED_TRACE(i);
+      std::vector<Crossing> found = Line(list.origins[i], list.directions[i]).crossings(mesh);
+      std::erase_if(found, [](const Crossing& c) { return c.t < 0; });
+      ASSERT_EQ(counts[i], found.size());
+      ASSERT_EQ(all.splits[i + 1] - all.splits[i], found.size());
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        ASSERT_EQ(all.primitive[all.splits[i] + k], found[k].triangle);
+        ASSERT_LT(places_off(all.t[all.splits[i] + k], found[k].t), 2);
+      }
+      std::erase_if(found, [](const Crossing& c) { return c.t == 0; });
+      ASSERT_EQ(any[i], !found.empty());
+      if (found.empty()) {
+        ASSERT_EQ(t[i], kInfinity);
+        ASSERT_EQ(primitive[i], kNoPrimitive);
+        continue;
+      }
+      ASSERT_EQ(primitive[i], found.front().triangle);
+      ASSERT_LT(places_off(t[i], found.front().t), 2);
+      ASSERT_NEAR(u[i], found.front().u, 1e-15);
+      ASSERT_NEAR(v[i], found.front().v, 1e-15);
+    }
+  }
+};
+KDRAY_FOR_EACH_DEVICE(DoubleScenes);
+
+TEST_P(DoubleScenes, HitsAreThoseOfRationals) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  // What floats about the scene's centre can't hold: tiny detail far off, and beside what is large.
+  Mesh apart = ring(9, 7, {1e6, -2e6, 3e6}, 1e-4, random);
+  holds(apart, aimed(apart, 600, 1e-4, random));
+  Mesh beside = ring(9, 7, {0.1, 0.2, 0.3}, 1e-9, random);
+  const RayList at_detail = aimed(beside, 300, 1e-9, random);
+  add(beside, ring(5, 5, {3, 4, 5}, 1e3, random));
+  holds(beside, at_detail);
+  holds(beside, aimed(beside, 600, 1e3, random));
+  const Mesh near = sheets();
+  holds(near, aimed(near, 600, 1, random));
+}
+
+TEST_P(DoubleScenes, ParityOfClosedMeshesIsEven) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 1);
+  Mesh mesh = ring(30, 20, {1e5, 1e5, 0}, 1e-3, random);
+  add(mesh, ring(30, 20, {1e5, 1e5, 0}, 1e-3 * (1 + 1e-12), random));
+  const RayList list = aimed(mesh, 20000, 1e-3, random);
+  const Scene scene = scene_of(mesh);
+  std::vector<std::uint32_t> counts(list.origins.size());
+  RayList from_outside = list;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) from_outside.origins[i][k] -= 1e3 * list.directions[i][k];
+  scene.count(from_outside.rays(), counts);
+  std::size_t n_hit = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double reach = std::hypot(list.directions[i][0], list.directions[i][1], list.directions[i][2]);
+    if (1e3 * reach < 1) continue;  // it may begin inside
+    ASSERT_EQ(counts[i] % 2, 0) << i;
+    n_hit += counts[i] > 0;
+  }
+  EXPECT_GT(n_hit, 1000u);
+}
+
+TEST_P(DoubleScenes, PointsAreMeasuredToTheDoubles) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 2);
+  const Mesh mesh = ring(9, 7, {1e6, -2e6, 3e6}, 1e-4, random);
+  const Scene scene = scene_of(mesh);
+  // Beside the middle of a face, to either side of it.
+  std::vector<Point> points;
+  std::vector<std::uint32_t> face;
+  for (std::uint32_t i = 0; i < mesh.size(); ++i)
+    for (const double side : {-1.0, 1.0}) {
+      const Point &a = mesh.corner(i, 0), &b = mesh.corner(i, 1), &c = mesh.corner(i, 2);
+      Point e, f, n, at;
+      for (std::size_t k = 0; k < 3; ++k) e[k] = b[k] - a[k], f[k] = c[k] - a[k];
+      for (std::size_t k = 0; k < 3; ++k)
+        n[k] = e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3];
+      const double length = std::hypot(n[0], n[1], n[2]);
+      for (std::size_t k = 0; k < 3; ++k) at[k] = a[k] + (e[k] + f[k]) / 3 + side * 4e-9 * n[k] / length;
+      points.push_back(at);
+      face.push_back(i);
+    }
+  const Points given(&points.front()[0], points.size(), sizeof(Point));
+  std::vector<double> distance(points.size()), with_sign(points.size());
+  std::vector<std::uint32_t> primitive(points.size());
+  std::vector<std::uint8_t> inside(points.size());
+  scene.closest_points(given, {.distance = distance, .primitive = primitive});
+  scene.inside(given, inside);
+  scene.signed_distance(given, with_sign);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SCOPED_TRACE(i);
+    const Exact p = exact(points[i]);
+    const Exact a = minus(exact(mesh.corner(face[i], 0)), p), b = minus(exact(mesh.corner(face[i], 1)), p),
+                c = minus(exact(mesh.corner(face[i], 2)), p);
+    const Exact e = minus(b, a), f = minus(c, a);
+    mpq_class n2 = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const mpq_class n = e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3];
+      n2 += n * n;
+    }
+    const mpq_class v = volume(a, b, c);
+    const double wanted = std::sqrt(mpq_class(v * v / n2).get_d());
+    ASSERT_EQ(primitive[i], face[i]);
+    ASSERT_NEAR(distance[i], wanted, 1e-12 * wanted);
+    ASSERT_EQ(std::abs(with_sign[i]), distance[i]);
+    ASSERT_EQ(with_sign[i] < 0, inside[i] == 1);
+    std::vector<Crossing> ahead = Line(points[i], {0.31, 0.57, 1}).crossings(mesh);
+    std::erase_if(ahead, [](const Crossing& hit) { return hit.t < 0; });
+    ASSERT_EQ(inside[i], ahead.size() % 2);
+  }
+}
+
+TEST_P(DoubleScenes, WhatIsNoMeshIsRefused) {
+  Scene scene;
+  const std::vector<double> center{0, 0, 0}, radius{1};
+  scene.add_spheres({center, radius});
+  EXPECT_TRUE(fails([&] { scene.commit(options()); }, "other than triangles"));
+}
+
+}  // namespace
+}  // namespace kdray
