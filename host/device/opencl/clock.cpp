@@ -14,6 +14,13 @@ double host_seconds() {
 
 }  // namespace
 
+cl_ulong profiled_nanoseconds(const cl::Event& event, cl_profiling_info moment) {
+  event.wait();
+  cl_ulong nanoseconds = 0;
+  event.getProfilingInfo(moment, &nanoseconds);
+  return nanoseconds;
+}
+
 Clock::Clock(const cl::Context& context, cl::CommandQueue queue) {
   const cl::Buffer buffer(context, CL_MEM_READ_WRITE, 16);
   const cl_uint word = 0;
@@ -25,11 +32,9 @@ Clock::Clock(const cl::Context& context, cl::CommandQueue queue) {
     const double after = host_seconds();
     if (after - before >= shortest) continue;
     shortest = after - before;
-    event.wait();  // a blocking call may end before its event is complete and has times (Intel's runtime)
-    const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-    const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-    const double middle = 0.5e-9 * (static_cast<double>(start) + static_cast<double>(end));
-    ahead_ = 0.5 * (before + after) - middle;
+    const auto start = static_cast<double>(profiled_nanoseconds(event, CL_PROFILING_COMMAND_START));
+    const auto end = static_cast<double>(profiled_nanoseconds(event, CL_PROFILING_COMMAND_END));
+    ahead_ = 0.5 * (before + after) - 0.5e-9 * (start + end);
   }
 }
 

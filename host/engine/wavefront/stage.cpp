@@ -1,5 +1,7 @@
 #include "engine/wavefront/stage.h"
 
+#include "device/opencl/clock.h"
+
 namespace kdray::wavefront {
 
 cl::Event LaunchClock::launch(const cl::Kernel& kernel, cl::CommandQueue& queue, std::size_t items,
@@ -16,8 +18,8 @@ double LaunchClock::collect_seconds() {
   while (!launches_.empty() &&
          launches_.front().getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() == CL_COMPLETE) {
     const cl::Event& event = launches_.front();
-    seconds_ += 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                           event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+    seconds_ += 1e-9 * static_cast<double>(device::profiled_nanoseconds(event, CL_PROFILING_COMMAND_END) -
+                                           device::profiled_nanoseconds(event, CL_PROFILING_COMMAND_START));
     launches_.pop_front();
   }
   return seconds_;

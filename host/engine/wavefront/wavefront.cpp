@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "device/opencl/clock.h"
 #include "device/opencl/opencl_error.h"
 #include "device/opencl/read_back.h"
 #include "layout/features.h"
@@ -15,12 +16,6 @@ namespace {
 bool at_work(const layout::Slice& slice, std::uint32_t n_listed) {
   return slice.tile < n_listed || slice.n_batch > 0 ||
          std::any_of(std::begin(slice.n_pool), std::end(slice.n_pool), [](layout::u32 n) { return n > 0; });
-}
-
-double seconds_of(const cl::Event& event, cl_profiling_info moment) {
-  cl_ulong nanoseconds = 0;
-  event.getProfilingInfo(moment, &nanoseconds);
-  return 1e-9 * static_cast<double>(nanoseconds);
 }
 
 constexpr std::size_t kPlaceBytes = 3 * sizeof(layout::i64);
@@ -262,11 +257,12 @@ std::uint32_t Wavefront::front(const Launch& launch) const {
 }
 
 void Wavefront::tell_of(const Launch& launch, const Counters& sum, std::uint32_t tiles) {
-  const double start = seconds_of(launch.first, CL_PROFILING_COMMAND_START);
-  const double end = seconds_of(launch.last, CL_PROFILING_COMMAND_END);
-  busy_seconds_ += end - start;
+  const auto start = device::profiled_nanoseconds(launch.first, CL_PROFILING_COMMAND_START);
+  const auto end = device::profiled_nanoseconds(launch.last, CL_PROFILING_COMMAND_END);
+  busy_seconds_ += 1e-9 * static_cast<double>(end - start);
   if (watch_.after)
-    watch_.after({start, end, sum.waves - list_counters_.waves, tiles, sum.total() - list_counters_.total()});
+    watch_.after({1e-9 * static_cast<double>(start), 1e-9 * static_cast<double>(end),
+                  sum.waves - list_counters_.waves, tiles, sum.total() - list_counters_.total()});
 }
 
 Progress Wavefront::wait_for(Launch& launch) {
