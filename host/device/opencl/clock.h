@@ -12,8 +12,8 @@
 namespace kdray::device {
 
 // Returns when a command got to `moment` (CL_PROFILING_COMMAND_START or _END), in nanoseconds of the device's
-// clock. Waits for its end: that a later command of its queue has ended, or that a blocking call has returned,
-// is not enough for NVIDIA's driver and Intel's runtime. Throws cl::Error.
+// clock. Waits for its end: that a later command of its queue has ended, or that a blocking call has
+// returned, is not enough for NVIDIA's driver and Intel's runtime. Throws cl::Error.
 cl_ulong profiled_nanoseconds(const cl::Event& event, cl_profiling_info moment);
 
 class Clock {

@@ -91,8 +91,8 @@ class DoubleScene::Line : public ExactLine {
   float end_in_floats() const { return rounded_up(end_ - ray_->start + slack(end_)); }
   void end_at(double t) { end_ = std::min(t, end_); }
 
-  // Whether the line crosses it, with t between t_min and where it ends; from_start: at 0, where t_min is 0, as
-  // well. Bounds its t.
+  // Whether the line crosses it, with t between t_min and where it ends; from_start: at 0, where t_min is 0,
+  // as well. Bounds its t.
   bool hits(Candidate& candidate, bool from_start) const {
     const Corners corners = scene_->doubles_->at(candidate.triangle);
     candidate.t = bounds_of_t(corners);

@@ -1,10 +1,10 @@
 // What    A scene of doubles (TreeOptions::geometry) asked by rays and points, on the host: what exact
 //         arithmetic says of the vertices and rays as the caller gave them.
-// Shape   Rays walk through the wide tree (double_walk.h), whose boxes are those of the floats, widened. Which
-//         triangles a line crosses goes by the half-open rule with exact signs (exact_triangle.h), for closest
-//         hits too: of what shares an edge one is hit. Which of two comes first is decided exactly; at one t
-//         it is the one with the lower number. t is bounded first, and found to its last place for what is
-//         told and where bounds overlap.
+// Shape   Rays walk through the wide tree (double_walk.h), whose boxes are those of the floats, widened.
+//         Which triangles a line crosses goes by the half-open rule with exact signs (exact_triangle.h), for
+//         closest hits too: of what shares an edge one is hit. Which of two comes first is decided exactly;
+//         at one t it is the one with the lower number. t is bounded first, and found to its last place for
+//         what is told and where bounds overlap.
 // Errors  t is the double nearest to the exact one, nearly always, and off by less than two of its last
 //         places. It is compared with t_min and t_max as such; its sign is exact. Distances of points are off
 //         by some 2^-50 of themselves.

@@ -128,8 +128,8 @@ class Walk {
     return scene_->wide.triangle_blocks.data() + (leaf & KDRAY_WIDE_FIRST_MASK) * kRows * kBlock;
   }
 
-  // Looks at a block. Lanes without a triangle hold NaN, of which nothing is true, and the last one tells whether
-  // there are more blocks.
+  // Looks at a block. Lanes without a triangle hold NaN, of which nothing is true, and the last one tells
+  // whether there are more blocks.
   HWY_ATTR void test() {
     const hn::CappedTag<float, kBlock> d;
     undecided_ = 0;

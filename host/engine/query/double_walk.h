@@ -1,13 +1,13 @@
 // What    Lines' ways through the wide tree of a scene of doubles, in floats: which triangles they may cross.
-// Shape   Eight boxes of a node, or the triangles of a block, at a time, in the CPU's widest vectors (Highway).
-//         Each triangle that is passed by is one that no half-line of doubles which these floats are of
-//         crosses between `begin` and `end`; the rest is the decider's. Some lines are in flight at once, each
-//         a step at a time, so that what one needs next is fetched while the others take theirs.
-// Why     Boxes: see double_scene.h. Triangles: a corner's place in the plane across the line, sheared, is off
-//         by 16u of what the largest of its lengths can be: 2u for the rounding of vertex and origin, each
-//         also by way of the shear, and 9u for that of the operations. Where it is off by no more than e, and
-//         no corner's coordinate is above m, an edge function is off by 4*e*m + 2*e^2, and by 3u of 2*m^2 for
-//         its own rounding.
+// Shape   Eight boxes of a node, or the triangles of a block, at a time, in the CPU's widest vectors
+//         (Highway). Each triangle that is passed by is one that no half-line of doubles which these floats
+//         are of crosses between `begin` and `end`; the rest is the decider's. Some lines are in flight at
+//         once, each a step at a time, so that what one needs next is fetched while the others take theirs.
+// Why     Boxes: see double_scene.h. Triangles: a corner's place in the plane across the line, sheared, is
+//         off by 16u of what the largest of its lengths can be: 2u for the rounding of vertex and origin,
+//         each also by way of the shear, and 9u for that of the operations. Where it is off by no more than
+//         e, and no corner's coordinate is above m, an edge function is off by 4*e*m + 2*e^2, and by 3u of
+//         2*m^2 for its own rounding.
 #pragma once
 
 #include <cstddef>

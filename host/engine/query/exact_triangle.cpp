@@ -88,8 +88,8 @@ Expansion<48> compressed(const Expansion<kOther>& from) {
   return few;
 }
 
-// ---- Pairs of doubles, some 2^-104 of a sum's or product's terms exact. Source: Dekker 1971; Joldes, Muller,
-// Popescu 2017.
+// ---- Pairs of doubles, some 2^-104 of a sum's or product's terms exact. Source: Dekker 1971; Joldes,
+// Muller, Popescu 2017.
 
 struct Pair {
   double high, low;

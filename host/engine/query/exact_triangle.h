@@ -34,7 +34,8 @@ class ExactLine {
   std::optional<Crossing> crossing(const Corners& corners) const;
 
   bool crosses(const Corners& corners) const;
-  // Of a triangle that it crosses: t, and what t_of tells, lie between these; infinite where that isn't plain.
+  // Of a triangle that it crosses: t, and what t_of tells, lie between these; infinite where that isn't
+  // plain.
   struct Bounds {
     double least, most;
   };

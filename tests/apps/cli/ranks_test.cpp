@@ -152,7 +152,7 @@ TEST_F(MpirunTest, SharesOfTheScene) {
 // round.
 TEST_F(MpirunTest, CheckpointsOfSharesAndOfWholeScenes) {
   const std::string scene = folder.put("ball.ply", ball_ply(30, {.colors = true})).string();
-  const Arguments size{"--size", "200x150", "--samples", "4"};
+  const Arguments size{"--size", "200x150", "--samples", "4", "--look", "plain"};
   const std::string whole = alone(scene, size), checkpoint = folder / "checkpoint";
   const Arguments kept = with(size, {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.05"});
   const Arguments in_shares = with(kept, {"--mode", "odprt", "--hold", "shares"});
