@@ -58,6 +58,7 @@ Command add_bench_queries(CLI::App& bench) {
   add_int(*app, "--repeat", "Rounds to take the median of (default 5)", 1, kRepeatMax, o.repeat);
   app->add_flag_callback(
       "--no-embree", [&o] { o.embree = false; }, "Leave Embree out");
+  add_geometry_option(*app, o.geometry);
   add_device_option(*app, "The device, as for render (default: auto)", o.device);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};

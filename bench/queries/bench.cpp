@@ -54,7 +54,7 @@ class Cell {
 
   std::size_t calls() const { return calls_; }
 
-  std::vector<Runner> warm_up(const std::vector<Side>& sides, int runs) const {
+  std::vector<Runner> warm_up(std::span<const Side> sides, int runs) const {
     std::vector<Runner> runners;
     const Side::Form& first = sides.front().forms.front();
     for (const Side& side : sides) {
@@ -156,6 +156,8 @@ class QueriesScene {
     run_.device = device.at("name");
     run_.vectors = device.value("vectors", "");
     sides_ = {kdray_side(scene_, mesh_, device_)};
+    if (options_.geometry == Precision::float64) sides_.push_back(double_side(mesh_, device_));
+    n_own_ = sides_.size();
     if (options_.embree)
       for (Side& side : embree_sides(mesh_, run_.cores)) sides_.push_back(std::move(side));
     if (!sets_.empty()) run_.first_answers = first_answers();
@@ -200,8 +202,8 @@ class QueriesScene {
   CellResult cell(const std::string& name, const QuerySet& set, std::size_t batch) {
     say(fmt::format("{}, {} rays, {} at a time", name, set.name, batch));
     const Question question = question_of(name);
-    const std::vector<Side> alone(sides_.begin(), sides_.begin() + 1);
-    const std::vector<Side>& sides = embree_answers(question) ? sides_ : alone;
+    const std::span<const Side> sides =
+        std::span(sides_).first(embree_answers(question) ? sides_.size() : n_own_);
     const Cell cell(question, set, batch, width_);
     std::vector<Runner> runners = cell.warm_up(sides, std::min(kWarmUps, options_.repeat));
     const bool whole = batch == set.size() && (question == Question::closest || question == Question::any);
@@ -231,6 +233,7 @@ class QueriesScene {
   std::optional<OnDevice> on_device_;
   std::vector<QuerySet> sets_;
   std::vector<Side> sides_;
+  std::size_t n_own_ = 0;  // of them kdray's, the first
 };
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "bench/queries/kdray_side.h"
 
+#include <algorithm>
+#include <optional>
+
 namespace kdray::bench {
 
 namespace {
@@ -9,22 +12,48 @@ std::span<T> some(std::vector<T>& all, std::size_t first, std::size_t n, std::si
   return std::span(all).subspan(values * first, values * n);
 }
 
-Points points_of(const std::vector<float>& all, std::size_t first, std::size_t n) {
+template <class Real>
+Points points_of(const std::vector<Real>& all, std::size_t first, std::size_t n) {
   return Points(all.data() + 3 * first, n);
 }
 
+// A set's values in doubles, as a caller has them who wants doubles.
+struct DoubleSet {
+  explicit DoubleSet(const QuerySet& set)
+      : of(&set),
+        origins(set.origins.begin(), set.origins.end()),
+        directions(set.directions.begin(), set.directions.end()),
+        points(set.points.begin(), set.points.end()),
+        t(set.size()) {}
+
+  const QuerySet* of;
+  std::vector<double> origins, directions, points, t;
+};
+
+// Asks in floats, or in doubles.
 class KdrayAsker : public Asker {
  public:
-  explicit KdrayAsker(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {}
+  explicit KdrayAsker(std::shared_ptr<const Scene> scene, bool in_double = false)
+      : scene_(std::move(scene)), in_double_(in_double) {}
 
   void ask(Question question, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) override {
+    if (!in_double_) return ask(question, set, first, n, a, a.t);
+    if (!doubles_ || doubles_->of != &set) doubles_.emplace(set);
+    ask(question, *doubles_, first, n, a, doubles_->t);
+    if (!a.t.empty()) std::copy_n(doubles_->t.begin() + first, n, a.t.begin() + first);
+  }
+
+ private:
+  template <class Set, class Real>
+  void ask(Question question, const Set& set, std::size_t first, std::size_t n, Answers& a,
+           std::vector<Real>& t) {
     const Rays rays{points_of(set.origins, first, n), points_of(set.directions, first, n)};
     const Points points = points_of(set.points, first, n);
     const auto words = [&](std::vector<std::uint32_t>& all) { return WordsOut(some(all, first, n)); };
-    const auto values = [&](std::vector<float>& all) { return ValuesOut(some(all, first, n)); };
+    const auto values = [&](auto& all) { return ValuesOut(some(all, first, n)); };
     switch (question) {
       case Question::closest:
-        scene_->closest(rays, {.t = values(a.t),
+        scene_->closest(rays, {.t = values(t),
                                .geometry = words(a.geometry),
                                .primitive = words(a.primitive),
                                .u = values(a.u),
@@ -40,7 +69,7 @@ class KdrayAsker : public Asker {
         a.all = scene_->all(rays);
         break;
       case Question::points:
-        scene_->closest_points(points, {.distance = values(a.t),
+        scene_->closest_points(points, {.distance = values(t),
                                         .point = some(a.point, first, n, 3),
                                         .geometry = words(a.geometry),
                                         .primitive = words(a.primitive),
@@ -48,7 +77,7 @@ class KdrayAsker : public Asker {
                                         .v = values(a.v)});
         break;
       case Question::distance:
-        scene_->signed_distance(points, values(a.t));
+        scene_->signed_distance(points, values(t));
         break;
       case Question::inside:
         scene_->inside(points, some(a.hit, first, n));
@@ -56,16 +85,18 @@ class KdrayAsker : public Asker {
     }
   }
 
- private:
   std::shared_ptr<const Scene> scene_;
+  bool in_double_;
+  std::optional<DoubleSet> doubles_;  // of the set that was asked last
 };
 
 }  // namespace
 
-Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device) {
+Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device, Precision geometry) {
   Scene scene;
   scene.add_mesh({mesh.vertices, mesh.triangles});
   CommitOptions options;
+  options.tree.geometry = geometry;
   options.device = device;
   options.device.remember_programs = true;
   scene.commit(options);
@@ -78,6 +109,16 @@ Side kdray_side(const std::shared_ptr<const Scene>& scene, const MeshArrays& mes
             Answers answer(Question::closest, 1);
             KdrayAsker(std::make_shared<const Scene>(kdray_scene(mesh, device)))
                 .ask(Question::closest, set, 0, 1, answer);
+          }};
+}
+
+Side double_side(const MeshArrays& mesh, const DeviceOptions& device) {
+  const auto make = [&mesh, device] {
+    return std::make_shared<const Scene>(kdray_scene(mesh, device, Precision::float64));
+  };
+  return {"double", {{"", std::make_shared<KdrayAsker>(make(), true)}}, [make](const QuerySet& set) {
+            Answers answer(Question::closest, set.size());
+            KdrayAsker(make(), true).ask(Question::closest, set, 0, 1, answer);
           }};
 }
 

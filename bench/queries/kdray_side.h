@@ -10,10 +10,14 @@
 namespace kdray::bench {
 
 // The mesh as a scene that has been committed.
-Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device);
+Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device,
+                  Precision geometry = Precision::float32);
 
 // The mesh has to outlive it.
 Side kdray_side(const std::shared_ptr<const Scene>& scene, const MeshArrays& mesh,
                 const DeviceOptions& device);
+
+// The same with vertices, rays and answers in doubles (TreeOptions::geometry).
+Side double_side(const MeshArrays& mesh, const DeviceOptions& device);
 
 }  // namespace kdray::bench

@@ -45,10 +45,11 @@ std::string ratio_cells(const std::vector<SideResult>& sides) {
 
 std::string line_of(const CellResult& cell) {
   const SideResult* const kdray = find(cell.sides, "kdray");
-  return fmt::format("  {:<9}{:<9}{:>8}{:>12.1f}{}{}{}{}\n", cell.question, cell.set, cell.batch,
+  return fmt::format("  {:<9}{:<9}{:>8}{:>12.1f}{}{}{}{:>12}{}\n", cell.question, cell.set, cell.batch,
                      1e6 * kdray->wall.median, side_cells(find(cell.sides, "fast")),
                      side_cells(find(cell.sides, "robust")), ratio_cells(cell.sides),
-                     cell.on_device ? number(1e6 * cell.on_device->median, 12, 1) : "");
+                     cell.on_device ? number(1e6 * cell.on_device->median, 12, 1) : "",
+                     find(cell.sides, "double") ? number(Ratio(cell.sides, "double").wall, 8, 2) : "");
 }
 
 Json json_of(const SideResult& s) {
@@ -61,7 +62,7 @@ Json json_of(const SideResult& s) {
 
 Json ratios_of(const std::vector<SideResult>& sides) {
   Json json = Json::object();
-  for (const char* const other : {"fast", "robust"}) {
+  for (const char* const other : {"fast", "robust", "double"}) {
     const Ratio ratio(sides, other);
     json[other] = ratio.wall > 0 ? Json(ratio.wall) : Json();
     json[std::string(other) + "_cpu"] = ratio.cpu > 0 ? Json(ratio.cpu) : Json();
@@ -109,9 +110,10 @@ std::string table_of(const QueriesRun& run) {
   out += fmt::format("  from arrays to the first answer, s:");
   for (const SideResult& s : run.first_answers) out += fmt::format(" {} {:.3f}", s.side, s.wall.median);
   out += fmt::format("; the first in this process {:.3f}\n", run.first_in_process);
-  out += fmt::format("  {:<26}{:>12}{:>12}{:>15}{:>8}{:>12}{:>15}{:>8}{:>8}{:>8}{:>9}{:>9}{:>12}\n",
+  out += fmt::format("  {:<26}{:>12}{:>12}{:>15}{:>8}{:>12}{:>15}{:>8}{:>8}{:>8}{:>9}{:>9}{:>12}{:>8}\n",
                      "microseconds for a call", "kdray", "fast", "", "other", "robust", "", "other", "k/fast",
-                     "k/rob", "cpu/fast", "cpu/rob", "on device");
+                     "k/rob", "cpu/fast", "cpu/rob", "on device",
+                     find(run.first_answers, "double") ? "double" : "");
   for (const CellResult& cell : run.cells) out += line_of(cell);
   return out;
 }
