@@ -73,6 +73,7 @@ scene::Scene Scene::Impl::begin_model(bool has_moved) const {
     all.texturing = base.texturing;
     all.meshes = base.meshes;
     all.instances = base.instances;
+    all.names = base.names;
   }
   return all;
 }

@@ -1,7 +1,7 @@
 kdray_test(scene_mesh
   SOURCES ply_test.cpp stl_test.cpp obj_test.cpp mtl_test.cpp gltf_test.cpp gltf_material_test.cpp assimp_test.cpp
           mutations_test.cpp odd_files_test.cpp smooth_normals_test.cpp zero_area_test.cpp real_meshes_test.cpp textures_test.cpp maps_test.cpp picture_test.cpp sky_test.cpp
-          gltf_packed_test.cpp gltf_animation_test.cpp webp_picture_test.cpp instances_test.cpp tangents_test.cpp
+          gltf_packed_test.cpp gltf_animation_test.cpp webp_picture_test.cpp instances_test.cpp names_test.cpp tangents_test.cpp
           ../support/zero_area_meshes.cpp
   LIBS kdray::scene kdray::image nlohmann_json::nlohmann_json PNG::PNG
   LABELS unit

@@ -1,5 +1,6 @@
 #include "accel/cache/entry.h"
 
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 namespace kdray::cache {
@@ -109,6 +110,36 @@ void get(const Json& from, std::vector<scene::FileRead>& files) {
   }
 }
 
+// Arrays as bytes: a file may have a run for each of its primitives.
+template <class T>
+Json of_bytes(const std::vector<T>& values) {
+  const auto* const first = reinterpret_cast<const std::uint8_t*>(values.data());
+  return Json::binary({first, first + values.size() * sizeof(T)});
+}
+
+template <class T>
+void get_bytes(const Json& from, std::vector<T>& values) {
+  const std::vector<std::uint8_t>& bytes = from.get_binary();
+  values.resize(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+}
+
+Json of(const std::shared_ptr<const scene::Names>& names) {
+  if (!names) return nullptr;
+  return Json::array(
+      {names->texts, of_bytes(names->materials), of_bytes(names->primitives), of_bytes(names->instances)});
+}
+
+void get(const Json& from, std::shared_ptr<const scene::Names>& names) {
+  if (from.is_null()) return;
+  scene::Names read;
+  from.at(0).get_to(read.texts);
+  get_bytes(from.at(1), read.materials);
+  get_bytes(from.at(2), read.primitives);
+  get_bytes(from.at(3), read.instances);
+  names = std::make_shared<const scene::Names>(std::move(read));
+}
+
 Json of(const kdtree::Statistics& s) {
   const auto& [inner_nodes, leaves, empty_leaves, references, groups, leaves_by_size, largest_leaf, max_depth,
                mean_leaf_depth, duplication, sah_cost, tight_cost] = s;
@@ -153,13 +184,14 @@ void get(const Json& from, prepare::Counts& c) {
 std::string to_bytes(const prepare::Prepared& p) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
                materials, texturing, lights, unlit, camera, cameras, framing, background, sky, ambient,
-               settings, warnings, files, load_options] = p.settings;
+               settings, warnings, files, load_options, names] = p.settings;
   const auto& [scene, geometry, counts, features, tree_depth, tree_nodes, tree, flat, wide, doubles,
                placed_meshes, tree_options, seconds] = p;
   static_cast<void>(doubles),
       static_cast<void>(placed_meshes);  // of scenes that programs make, which are kept in no file
   const Json facts = {{"name", name},
                       {"warnings", warnings},
+                      {"names", of(names)},
                       {"files", of(files)},
                       {"camera", of(camera)},
                       {"cameras", of(cameras)},
@@ -191,6 +223,7 @@ void from_bytes(std::string_view bytes, prepare::Prepared& p) {
   scene::Scene& s = p.settings;
   facts.at("name").get_to(s.name);
   facts.at("warnings").get_to(s.warnings);
+  get(facts.at("names"), s.names);
   get(facts.at("files"), s.files);
   get(facts.at("camera"), s.camera);
   get(facts.at("cameras"), s.cameras);

@@ -41,7 +41,7 @@ kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
 scene::Scene settings_of(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
                materials, texturing, lights, unlit, camera, cameras, framing, background, sky, ambient,
-               settings, warnings, files, load_options] = scene;
+               settings, warnings, files, load_options, names] = scene;
   scene::Sky without_picture = sky;
   without_picture.picture.reset();
   return {.name = name,
@@ -63,7 +63,8 @@ scene::Scene settings_of(const scene::Scene& scene) {
           .settings = settings,
           .warnings = warnings,
           .files = files,
-          .load_options = load_options};
+          .load_options = load_options,
+          .names = names};
 }
 #undef KDRAY_NO_SHAPES
 

@@ -86,6 +86,7 @@ std::string camera_text(const Json& c) {
 
 std::string material_text(const Json& m) {
   std::string text = fmt::format("{} primitives", m["primitives"].get<std::uint64_t>());
+  if (m.contains("name")) text = fmt::format("'{}', {}", m["name"].get<std::string>(), text);
   for (const char* const term : {"emission", "ambient", "diffuse", "specular", "reflect", "transmit"})
     if (const std::string color = color_text(term, m[term]); !color.empty()) text += ", " + color;
   if (m["specular"] != Json::array({0.0, 0.0, 0.0}))
@@ -101,6 +102,21 @@ std::string materials_text(const Json& materials) {
     text += line("", fmt::format("{}: {}", i, material_text(materials[i])));
   if (materials.size() > kMaterialsShown)
     text += line("", fmt::format("and {} more (--json shows all)", materials.size() - kMaterialsShown));
+  return text;
+}
+
+std::string parts_text(const Json& parts) {
+  if (parts.empty()) return "";
+  std::string text = line("parts", fmt::format("{}", parts.size()));
+  for (std::size_t i = 0; i < std::min(parts.size(), kMaterialsShown); ++i) {
+    const Json& p = parts[i];
+    const std::uint64_t primitives = p["primitives"], instances = p.value("instances", std::uint64_t{0});
+    text += line("", fmt::format("'{}', {}", p["name"].get<std::string>(),
+                                 instances > 0 ? fmt::format("{} instances", instances)
+                                               : fmt::format("{} primitives", primitives)));
+  }
+  if (parts.size() > kMaterialsShown)
+    text += line("", fmt::format("and {} more (--json shows all)", parts.size() - kMaterialsShown));
   return text;
 }
 
@@ -184,8 +200,8 @@ std::string report_as_text(const Json& r) {
                                           : vector_text(bounds["min"]) + " to " + vector_text(bounds["max"]));
   text += line("camera", camera_text(r["camera"]));
   text += line("background", background_text(r["background"]));
-  text += lights_text(r["lights"]) + materials_text(r["materials"]) + tree_text(r["tree"]) +
-          memory_text(r["memory"]);
+  text += lights_text(r["lights"]) + materials_text(r["materials"]) + parts_text(r["parts"]) +
+          tree_text(r["tree"]) + memory_text(r["memory"]);
   text += line("time", fmt::format("load {}, build {}, flatten {}",
                                    seconds_in_words(r["seconds"]["load"].get<double>()),
                                    seconds_in_words(r["seconds"]["build"].get<double>()),

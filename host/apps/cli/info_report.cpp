@@ -37,12 +37,13 @@ Json texturing_arrays(const scene::Texturing& texturing) {
 Json scene_arrays(const scene::Scene& scene) {
   const auto& [name, vertices, normals, triangles, KDRAY_SHAPES(KDRAY_KIND_PLURAL) meshes, instances,
                materials, texturing, lights, unlit, camera, cameras, framing, background, sky, ambient,
-               settings, warnings, files, load_options] = scene;
+               settings, warnings, files, load_options, names] = scene;
   Json arrays = {{"vertices", bytes_of(vertices)}, {"normals", bytes_of(normals)}};
   add_kinds(scene, arrays);
   arrays.update({{"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
   if (!texturing.material_maps.empty()) arrays.update(texturing_arrays(texturing));
   if (sky.picture) arrays["sky"] = bytes_of(sky.picture->rgb);
+  if (names) arrays["names"] = names->bytes();
   return arrays;
 }
 
@@ -112,8 +113,32 @@ Json materials_report(const scene::Scene& scene) {
   };
   primitives::for_each_kind([&](auto kind) { count(decltype(kind)::of(scene)); });
   Json list = Json::array();
-  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     list.push_back(material_report(scene.materials[i], uses[i]));
+    const std::string name = scene.names ? scene.names->of_material(static_cast<std::uint32_t>(i)) : "";
+    if (!name.empty()) list.back()["name"] = name;
+  }
+  return list;
+}
+
+// Adds up the numbers in the runs of each name.
+std::vector<std::uint64_t> counts_of(const std::vector<scene::NameRun>& runs, std::size_t n_names) {
+  std::vector<std::uint64_t> counts(n_names);
+  for (std::size_t i = 0; i + 1 < runs.size(); ++i) counts[runs[i].name] += runs[i + 1].first - runs[i].first;
+  return counts;
+}
+
+Json parts_report(const scene::Scene& scene) {
+  Json list = Json::array();
+  if (!scene.names) return list;
+  const auto& [texts, materials, primitives, instances] = *scene.names;
+  const auto n_primitives = counts_of(primitives, texts.size());
+  const auto n_instances = counts_of(instances, texts.size());
+  for (std::size_t i = 1; i < texts.size(); ++i) {
+    if (n_primitives[i] == 0 && n_instances[i] == 0) continue;
+    list.push_back({{"name", texts[i]}, {"primitives", n_primitives[i]}});
+    if (n_instances[i] > 0) list.back()["instances"] = n_instances[i];
+  }
   return list;
 }
 
@@ -183,6 +208,7 @@ Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
   report["background"] = background_report(scene);
   report["lights"] = lights_report(scene);
   report["materials"] = materials_report(scene);
+  report["parts"] = parts_report(scene);
   report["warnings"] = scene.warnings;
   if (const std::string warning = scene::range_warning(geometry); !warning.empty())
     report["warnings"].push_back(warning);

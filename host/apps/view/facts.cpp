@@ -154,6 +154,7 @@ std::string picked_message(std::uint32_t number, const std::optional<Picked>& pi
     json["instance"] = *p.instance;
   else
     json.update({{"geometry", p.geometry}, {"name", p.geometry_name}});
+  if (!p.part.empty()) json["part"] = p.part;
   const auto& materials = scene.settings().materials;
   if (!p.material || *p.material >= materials.size()) return text_of(json);
   const scene::Material& m = materials[*p.material];
@@ -164,6 +165,8 @@ std::string picked_message(std::uint32_t number, const std::optional<Picked>& pi
                       {"transmit", json_of(m.transmit)},
                       {"shine", m.shine},
                       {"index", m.index}};
+  if (const auto& names = scene.settings().names; names && !names->of_material(*p.material).empty())
+    json["material"]["name"] = names->of_material(*p.material);
   return text_of(json);
 }
 

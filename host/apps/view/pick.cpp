@@ -76,6 +76,7 @@ void Picker::name_instance(std::uint32_t number, std::uint32_t instance, Picked&
   picked.kind = "instance";
   picked.primitive = number;
   picked.instance = instance;
+  if (const auto& names = scene_.settings().names) picked.part = names->of_instance(instance);
   for (const layout::Instance& placed : scene_.prepared().flat.instances)
     if (placed.number == instance && placed.material != KDRAY_MESH_MATERIAL)
       picked.material = placed.material;
@@ -90,6 +91,7 @@ void Picker::name(std::uint32_t number, Picked& picked) const {
   KDRAY_SHAPES(KDRAY_FIND)
 #undef KDRAY_FIND
   picked.primitive = number;
+  if (const auto& names = scene_.settings().names) picked.part = names->of_primitive(number);
   for (const GeometryName& geometry : geometries_) {
     picked.geometry = geometry.id;
     picked.geometry_name = geometry.name;

@@ -31,6 +31,7 @@ struct Picked {
   // geometry is named.
   std::optional<std::uint32_t> instance;
   std::string geometry_name, kind;
+  std::string part;  // of its file, by the name that it has there; empty: none
   std::optional<std::uint32_t> material;
 };
 

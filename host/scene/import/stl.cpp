@@ -60,17 +60,20 @@ class AsciiReader {
   Scene read() {
     in_.at_end();
     take("solid");
-    skip_line();
+    begin_solid();
     while (!in_.at_end()) {
       if (is_next("facet")) {
         read_facet();
-      } else if (try_take_end("solid") || try_take("solid")) {
-        skip_line();
+      } else if (try_take_end("solid")) {
+        read_name();
+      } else if (try_take("solid")) {
+        begin_solid();
       } else {
         throw in_.expected("facet or endsolid");
       }
     }
     left_out_.warn(in_.file(), scene_.warnings);
+    scene_.names = names_.finish(scene_.primitive_count(), 0);
     return std::move(scene_);
   }
 
@@ -106,10 +109,15 @@ class AsciiReader {
                   in_.line());
   }
 
-  // A solid's name: whatever is left of the line, or, in a file that is one line, up to what can't be a name.
-  void skip_line() {
+  void begin_solid() { names_.name_primitives(scene_.primitive_count(), names_.add(read_name())); }
+
+  // Returns a solid's name: whatever is left of the line, or, in a file that is one line, up to what can't be a name.
+  std::string read_name() {
     const std::uint32_t line = in_.line();
-    while (!in_.at_end() && in_.line() == line && !begins_statement()) in_.word("a name");
+    std::string name;
+    while (!in_.at_end() && in_.line() == line && !begins_statement())
+      name.append(name.empty() ? "" : " ").append(in_.word("a name"));
+    return name;
   }
 
   // "endsolid", or "facet normal X Y Z outer" on this line: a name may have the first words of that, too.
@@ -153,6 +161,7 @@ class AsciiReader {
 
   TextScanner in_;
   Scene scene_;
+  NameTable names_;
   LeftOut left_out_;
   std::vector<std::uint32_t> corners_;
 };

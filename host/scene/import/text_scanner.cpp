@@ -50,13 +50,46 @@ bool read_number_or_nan(const char* first, const char* last, double& value) {
   return true;
 }
 
-std::string printable(std::string_view token) {
-  constexpr std::size_t kLongest = 40;
-  std::string shown(token.substr(0, kLongest));
-  for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+namespace {
+
+struct Character {
+  std::size_t bytes = 1;
+  std::uint32_t code = 0;  // 0: no UTF-8
+};
+
+// Returns the character that a text begins with. Source: RFC 3629.
+Character first_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) -> std::uint32_t { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return {1, byte(0)};
+  const std::size_t n = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+  if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < n) return {};
+  std::uint32_t code = byte(0) & (0x7fu >> n);
+  for (std::size_t i = 1; i < n; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return {};
+    code = code << 6 | (byte(i) & 0x3f);
   }
-  if (token.size() > kLongest) shown += "...";
+  constexpr std::uint32_t kLeast[] = {0x80, 0x800, 0x10000};
+  const bool surrogate = code >= 0xd800 && code < 0xe000;
+  return code < kLeast[n - 2] || code > 0x10ffff || surrogate ? Character{} : Character{n, code};
+}
+
+bool may_be_shown(std::uint32_t code) {
+  if (code < 0x20 || (code >= 0x7f && code < 0xa0)) return false;
+  const bool directs = code == 0x61c || code == 0x200e || code == 0x200f ||
+                       (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return !directs;
+}
+
+}  // namespace
+
+std::string printable(std::string_view token, std::size_t longest) {
+  std::string shown;
+  while (!token.empty()) {
+    const Character c = first_character(token);
+    if (shown.size() + c.bytes > longest) return shown + "...";
+    shown.append(may_be_shown(c.code) ? token.substr(0, c.bytes) : "?");
+    token.remove_prefix(c.bytes);
+  }
   return shown;
 }
 

@@ -84,8 +84,9 @@ bool read_number(const char* first, const char* last, double& value);
 // Does the same, but also returns true, with NaN, where the word stands for a number that is not finite.
 bool read_number_or_nan(const char* first, const char* last, double& value);
 
-// Returns a token as it may be shown in a message: control characters as '?', at most 40 characters.
-std::string printable(std::string_view token);
+// Returns a token as it may be shown to a person: '?' for what is no UTF-8 and for characters that change how
+// a line is shown (controls, directions of writing, ends of lines), at most `longest` bytes.
+std::string printable(std::string_view token, std::size_t longest = 40);
 
 // ---- LineScanner: a line is a statement (OBJ, MTL): a keyword, words and numbers, or a rest of line. A
 // backslash at the end of a line, blanks after it or not, joins the next one to it. '#' at the start of a

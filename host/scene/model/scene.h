@@ -21,6 +21,7 @@
 #include "kdray/options.h"
 #include "scene/import/files.h"
 #include "scene/model/instances.h"
+#include "scene/model/names.h"
 #include "scene/primitives/shapes.h"
 #include "scene/textures/sky.h"
 #include "scene/textures/texturing.h"
@@ -150,9 +151,10 @@ struct Scene {
   Sky sky;          // in place of the background's colour
   vec3 ambient{1};  // Camb
   RenderSettings settings;
-  std::vector<std::string> warnings;  // one line each: what the loader left out or changed
-  std::vector<FileRead> files;        // what it was loaded from, by load() only
-  LoadOptions load_options;           // that it was loaded with
+  std::vector<std::string> warnings;   // one line each: what the loader left out or changed
+  std::vector<FileRead> files;         // what it was loaded from, by load() only
+  LoadOptions load_options;            // that it was loaded with
+  std::shared_ptr<const Names> names;  // that the file gives; or null
 
   // Counts the scene's own primitives, without its meshes'.
   std::uint32_t primitive_count() const {

@@ -11,6 +11,8 @@ prepare::Prepared with_everything() {
   prepare::Prepared p;
   p.settings.name = "a/\xff\xfe name.obj";  // file names need not be UTF-8
   p.settings.warnings = {"one", "two: \"2\"\n"};
+  p.settings.names = std::make_shared<const scene::Names>(
+      scene::Names{{"", "a \xc3\xbc"}, {0, 1}, {{0, 1}, {7, 0}}, {{2, 1}, {3, 0}}});
   p.settings.files = {{"a/b.obj", Hash{~std::uint64_t{0}, 1}},
                       {"c.mtl", std::nullopt},
                       {.path = "d.png", .content = std::nullopt, .only_named = true}};
@@ -43,6 +45,8 @@ TEST(Facts, ComeBackBitForBit) {
   EXPECT_EQ(to_bytes(back), bytes);
   EXPECT_EQ(back.settings.name, "a/\xff\xfe name.obj");
   EXPECT_EQ(back.settings.files, with_everything().settings.files);
+  ASSERT_TRUE(back.settings.names);
+  EXPECT_EQ(*back.settings.names, *with_everything().settings.names);
   EXPECT_EQ(back.settings.camera->from.y, 1e300);
   EXPECT_TRUE(std::signbit(back.settings.camera->from.z));
   ASSERT_EQ(back.settings.cameras.size(), 2u);
@@ -67,6 +71,7 @@ TEST(Facts, InfinitiesComeBack) {
   EXPECT_EQ(back.geometry.bounds.lo.x, std::numeric_limits<float>::infinity());
   EXPECT_EQ(back.geometry.bounds.hi.z, -std::numeric_limits<float>::infinity());
   EXPECT_FALSE(back.settings.camera);
+  EXPECT_FALSE(back.settings.names);
 }
 
 TEST(Facts, OtherBytesThrow) {

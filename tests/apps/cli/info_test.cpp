@@ -36,6 +36,19 @@ TEST(InfoCommand, CountsBoundsAndMaterialsWithoutADevice) {
   EXPECT_NEAR(info["camera"]["vertical_fov_degrees"], 40, 1e-9);
 }
 
+TEST(InfoCommand, NamesMaterialsAndParts) {
+  const Folder folder;
+  const fs::path scene = folder.put(
+      "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\no \x1b[31mCube\nusemtl brass\nf 1 2 3\nf 1 2 3\no Lid\nf 1 2 3\n");
+  const Json info = Json::parse(kdray({"info", scene, "--json"}, no_device(folder)).out);
+  EXPECT_EQ(info["materials"][0]["name"], "brass");
+  EXPECT_EQ(info["parts"],
+            Json({{{"name", "?[31mCube"}, {"primitives", 2}}, {{"name", "Lid"}, {"primitives", 1}}}));
+  const std::string text = kdray({"info", scene}, no_device(folder)).out;
+  EXPECT_NE(text.find("0: 'brass', 3 primitives"), std::string::npos) << text;
+  EXPECT_NE(text.find("'?[31mCube', 2 primitives"), std::string::npos) << text;
+}
+
 TEST(InfoCommand, TheTreesFiguresAgreeWithEachOther) {
   const Folder folder;
   const fs::path scene = folder / "b.nff";

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "apps/view/facts.h"
 #include "scene/model/scene.h"
 #include "support/device.h"
 #include "support/folder.h"
@@ -49,6 +52,23 @@ TEST_P(PickTest, TellsInstances) {
   EXPECT_FALSE(sphere->instance);
   EXPECT_EQ(sphere->kind, "sphere");
   EXPECT_FALSE(picker.pick({{0, 0, 9}, {0, 0, -1}}));
+}
+
+TEST_P(PickTest, NamesPartsAndMaterials) {
+  const test::Folder folder;
+  const auto file = folder.put(
+      "a.obj",
+      "o left\nv -1 0 0\nv 0 0 0\nv -1 1 0\nusemtl brass\nf 1 2 3\no right\nv 1 0 0\nv 0 1 0\nf 2 4 5\n");
+  const PreparedScene scene(Scene::load(file));
+  Picker picker(scene, {{"", 0, 2}}, {.device = GetParam()});
+  const auto left = picker.pick({{-0.75, 0.25, 9}, {0, 0, -1}}),
+             right = picker.pick({{0.25, 0.25, 9}, {0, 0, -1}});
+  ASSERT_TRUE(left && right);
+  EXPECT_EQ(left->part, "left");
+  EXPECT_EQ(right->part, "right");
+  const auto message = nlohmann::json::parse(picked_message(0, right, scene));
+  EXPECT_EQ(message["part"], "right");
+  EXPECT_EQ(message["material"]["name"], "brass");
 }
 
 KDRAY_FOR_EACH_DEVICE(PickTest);

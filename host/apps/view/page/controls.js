@@ -76,6 +76,7 @@ export function showPicked(card, picked) {
   if (!picked.hit) return;
   if (isInstance) row('primitive', `${picked.primitive} of its mesh`);
   else row('geometry', picked.name ? `${picked.geometry}, ${picked.name}` : String(picked.geometry));
+  if (picked.part) row('part', picked.part);
   row('distance', six(picked.distance));
   row('point', picked.point.map(six).join(', '));
   row('normal', picked.normal.map((x) => x.toFixed(4)).join(', '));
@@ -84,7 +85,7 @@ export function showPicked(card, picked) {
   const swatch = document.createElement('span');
   swatch.className = 'swatch';
   swatch.style.backgroundColor = color(m.diffuse);
-  row('material', swatch, String(m.number));
+  row('material', swatch, m.name ? `${m.number}, ${m.name}` : String(m.number));
   if (brightest(m.reflect) > 0) row('mirrors', `${small.format(100 * brightest(m.reflect))} %`);
   if (brightest(m.transmit) > 0) row('lets through', `${small.format(100 * brightest(m.transmit))} %, index ${small.format(m.index)}`);
 }

@@ -26,7 +26,7 @@ class Reader {
  public:
   Reader(std::string_view text, const std::filesystem::path& path, const LoadOptions& options)
       : document_(text, path),
-        meshes_(document_, scene_),
+        meshes_(document_, scene_, names_),
         pose_(document_, options),
         at_rest_(!options.time) {}
 
@@ -40,6 +40,8 @@ class Reader {
     if (n_hidden_ > 0)
       meshes_.warn(std::to_string(n_hidden_) + " hidden nodes (KHR_node_visibility) are left out");
     meshes_.finish();
+    scene_.names =
+        names_.finish(scene_.primitive_count(), static_cast<std::uint32_t>(scene_.instances.size()));
     expose(scene_);
     if (!scene_.cameras.empty()) scene_.camera = scene_.cameras.front();
     return std::move(scene_);
@@ -124,6 +126,7 @@ class Reader {
   struct Use {
     std::uint64_t mesh;
     dmat4 to_world;
+    std::uint32_t name;
   };
 
   void use_mesh(const JsonNode& index, const JsonNode& node, const dmat4& to_world) {
@@ -139,8 +142,11 @@ class Reader {
 
   void add_uses(std::uint64_t number, const JsonNode& node, const dmat4& to_world, const JsonNode& index) {
     const auto many = extension(node, "EXT_mesh_gpu_instancing");
-    if (!many) return add_use({number, to_world}, index);
-    for (const dmat4& placed : placements_of(*many)) add_use({number, to_world * placed}, index);
+    std::string text = name_of(node);
+    if (text.empty()) text = name_of(used_.at(number).mesh);
+    const std::uint32_t name = names_.add(text);
+    if (!many) return add_use({number, to_world, name}, index);
+    for (const dmat4& placed : placements_of(*many)) add_use({number, to_world * placed, name}, index);
   }
 
   void add_use(const Use& use, const JsonNode& index) {
@@ -191,6 +197,8 @@ class Reader {
     for (std::size_t i = 0; i < uses_.size(); ++i) {
       const Use& use = uses_[i];
       Used& used = used_.at(use.mesh);
+      names_.name_primitives(scene_.primitive_count(), use.name);
+      names_.name_instances(static_cast<std::uint32_t>(scene_.instances.size()), use.name);
       if (const auto own = deformed_.find(i); own != deformed_.end()) {
         meshes_.add(used.mesh, use.to_world, own->second);
         continue;
@@ -225,6 +233,7 @@ class Reader {
 
   Document document_;
   Scene scene_;
+  NameTable names_;
   MeshReader meshes_;
   Pose pose_;
   Deformations deformations_{document_, pose_};

@@ -327,6 +327,11 @@ double number_or(const JsonNode& object, std::string_view key, double otherwise)
   return node ? node->number() : otherwise;
 }
 
+std::string name_of(const JsonNode& object) {
+  const auto name = object.find("name");
+  return name && name->is_string() ? name->string() : std::string();
+}
+
 std::optional<JsonNode> extension(const JsonNode& object, std::string_view name) {
   const auto extensions = object.find("extensions");
   return extensions ? extensions->find(name) : std::nullopt;

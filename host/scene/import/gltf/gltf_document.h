@@ -87,6 +87,8 @@ std::uint64_t whole(const JsonNode& node);
 // Return `key`'s number, or `otherwise` when the object has no such key.
 std::uint64_t whole_or(const JsonNode& object, std::string_view key, std::uint64_t otherwise);
 double number_or(const JsonNode& object, std::string_view key, double otherwise);
+// Returns the object's name, which says nothing of it; empty where it has none.
+std::string name_of(const JsonNode& object);
 // Returns the object's extension of this name.
 std::optional<JsonNode> extension(const JsonNode& object, std::string_view name);
 

@@ -277,7 +277,9 @@ std::uint32_t Materials::number_of(const JsonNode& primitive, Corners at) {
   at.tangents = at.tangents && node && node->find("normalTexture");
   const auto [it, added] = numbers_.try_emplace({index ? whole(*index) : kDefault, at},
                                                 static_cast<std::uint32_t>(scene_.materials.size()));
-  if (added) scene_.materials.push_back(read(node, at));
+  if (!added) return it->second;
+  if (node) names_.name_material(it->second, name_of(*node));
+  scene_.materials.push_back(read(node, at));
   return it->second;
 }
 

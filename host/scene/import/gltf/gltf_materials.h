@@ -39,8 +39,8 @@ class Textures {
 
 class Materials {
  public:
-  Materials(Document& document, Scene& scene)
-      : document_(document), scene_(scene), textures_(document, scene) {}
+  Materials(Document& document, Scene& scene, NameTable& names)
+      : document_(document), scene_(scene), names_(names), textures_(document, scene) {}
 
   // The scene's number of the material that a primitive names, or of glTF's default material. `at`: what
   // the primitive has at its corners; tangents count where a picture bends normals.
@@ -61,6 +61,7 @@ class Materials {
 
   Document& document_;
   Scene& scene_;
+  NameTable& names_;
   Textures textures_;
   // By the file's index, kDefault for no material, and what its corners have.
   std::map<std::pair<std::uint64_t, Corners>, std::uint32_t> numbers_;

@@ -53,8 +53,8 @@ dmat3 normal_matrix(const dmat3& m) {
 
 }  // namespace
 
-MeshReader::MeshReader(Document& document, Scene& scene)
-    : document_(document), scene_(scene), into_(&scene), materials_(document, scene) {}
+MeshReader::MeshReader(Document& document, Scene& scene, NameTable& names)
+    : document_(document), scene_(scene), into_(&scene), materials_(document, scene, names) {}
 
 void MeshReader::add(const JsonNode& mesh, const dmat4& to_world, const Deformation& deformation) {
   for (const JsonNode& primitive : mesh["primitives"].elements())

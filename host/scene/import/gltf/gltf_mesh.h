@@ -31,7 +31,7 @@ void reserve_more(Vector& elements, std::size_t n) {
 
 class MeshReader {
  public:
-  MeshReader(Document& document, Scene& scene);
+  MeshReader(Document& document, Scene& scene, NameTable& names);  // `names` gets those of materials
 
   void add(const JsonNode& mesh, const dmat4& to_world, const Deformation& deformation = {});
   // Returns the mesh by itself, with the scene's materials.

@@ -109,6 +109,17 @@ std::vector<std::array<float, 2>> read_texcoords(const JsonNode& node, std::size
   return out;
 }
 
+// Returns the name of a material that an object names; empty of one that stands there.
+std::string name_in(const JsonNode& material) {
+  return material.is_string() ? material.string() : std::string();
+}
+
+// Returns the name of a part's material: the object's, or else what the part's own file calls it.
+std::string name_of(const Scene& part, std::uint32_t material, const JsonNode& object) {
+  if (const auto own = object.find("material")) return name_in(*own);
+  return part.names ? part.names->of_material(material) : std::string();
+}
+
 }  // namespace
 
 JsonObjects::JsonObjects(Scene& scene, const NamedMaterials& named, JsonMaterials& unnamed,
@@ -189,12 +200,18 @@ void JsonObjects::read_mesh(const JsonNode& object) {
       for (auto& shape : decltype(kind)::of(part)) shape.material = 0;
     });
   }
-  if (const auto instances = object.find("instances")) return append_instances(std::move(part), *instances);
+  if (object.find("instances")) return append_instances(std::move(part), object);
   append(part, object);
 }
 
+std::uint32_t JsonObjects::add_material(const Material& material, const std::string& name) {
+  const std::uint32_t number = materials_.add(material);
+  names_.name_material(number, name);
+  return number;
+}
+
 // Returns the part with the scene's materials in place of its own.
-Scene JsonObjects::adopted(Scene&& part) {
+Scene JsonObjects::adopted(Scene&& part, const JsonNode& object) {
   const std::vector<std::uint32_t> material_maps =
       scene_.texturing.append({.material_maps = part.texturing.material_maps,
                                .textures = part.texturing.textures,
@@ -203,7 +220,8 @@ Scene JsonObjects::adopted(Scene&& part) {
   std::vector<std::uint32_t> numbers;
   for (Material material : part.materials) {
     if (material.maps != kNone) material.maps = material_maps[material.maps];
-    numbers.push_back(materials_.add(material));
+    const auto number = static_cast<std::uint32_t>(numbers.size());
+    numbers.push_back(add_material(material, name_of(part, number, object)));
   }
   for (Triangle& t : part.triangles) t.material = numbers[t.material];
   primitives::for_each_shape([&](auto kind) {
@@ -221,9 +239,10 @@ Scene JsonObjects::adopted(Scene&& part) {
   return mesh;
 }
 
-void JsonObjects::append_instances(Scene&& part, const JsonNode& list) {
+void JsonObjects::append_instances(Scene&& part, const JsonNode& object) {
+  const JsonNode list = object["instances"];
   if (!list.is_array()) throw list.expected("a list of placements");
-  const auto mesh = std::make_shared<const Scene>(adopted(std::move(part)));
+  const auto mesh = std::make_shared<const Scene>(adopted(std::move(part), object));
   if (mesh->primitive_count() == 0) return;
   const bool kept = worth_keeping(mesh->primitive_count(), list.size());
   const auto number = static_cast<std::uint32_t>(scene_.meshes.size());
@@ -231,7 +250,8 @@ void JsonObjects::append_instances(Scene&& part, const JsonNode& list) {
   for (const JsonNode& placement : list.elements()) {
     placement.expect_keys(json_keys::kInstance);
     Instance instance = instance_of(read_transform(placement).value_or(dmat4(1)), number);
-    if (placement.find("material")) instance.material = materials_.add(material_of(placement));
+    if (const auto material = placement.find("material"))
+      instance.material = add_material(material_of(placement), name_in(*material));
     if (const char* const fault = fault_of(instance)) throw placement.error(fault);
     if (kept) {
       scene_.instances.push_back(instance);
@@ -349,7 +369,7 @@ void JsonObjects::append(const Scene& part, const JsonNode& object) {
     if (m == kNone) {
       Material added = part.materials[primitive.material];
       if (added.maps != kNone) added.maps = material_maps[added.maps];
-      m = materials_.add(added);
+      m = add_material(added, name_of(part, primitive.material, object));
     }
     primitive.material = m;
     primitive.number += number_;

@@ -44,7 +44,10 @@ class JsonObjects {
 
   void read(const JsonNode& object);
   // Called once all are read.
-  void finish() { settle_solids(unsettled_, scene_); }
+  void finish() {
+    settle_solids(unsettled_, scene_);
+    scene_.names = names_.finish(scene_.primitive_count(), 0);
+  }
 
  private:
   void read_mesh(const JsonNode& object);
@@ -59,14 +62,16 @@ class JsonObjects {
   void wear(Scene& part, const Material& material) const;
   const Scene& mesh(const JsonNode& file);
   void append(const Scene& part, const JsonNode& object);
-  void append_instances(Scene&& part, const JsonNode& list);
-  Scene adopted(Scene&& part);
+  void append_instances(Scene&& part, const JsonNode& object);
+  Scene adopted(Scene&& part, const JsonNode& object);
+  std::uint32_t add_material(const Material& material, const std::string& name);
 
   Scene& scene_;
   const NamedMaterials& named_;
   JsonMaterials& unnamed_;
   std::filesystem::path folder_;
   MaterialTable materials_;
+  NameTable names_;                      // of materials
   std::map<std::string, Scene> meshes_;  // a file named by several objects is read once
   Unsettled unsettled_;
   std::uint32_t number_ = 0;  // of the next primitive

@@ -73,7 +73,8 @@ class ObjReader {
     if (n_statements_ > 0 && scene_.vertices.empty() && left_out_.count(kNoStatement) == n_statements_)
       throw input_error(in_.file(), 0, "not an OBJ file: no line of it is an OBJ statement");
     color_corners();
-    materials_.finish(!scene_.texturing.colors.empty());
+    materials_.finish(!scene_.texturing.colors.empty(), names_);
+    scene_.names = names_.finish(scene_.primitive_count(), 0);
     if (scene_.texturing.textures.empty()) scene_.texturing.texcoords[0] = {};
     settle_vertices(scene_, [&](std::size_t) { return in_.file() + ":" + std::to_string(bad_vertex_line_); });
     settle_normals(scene_, in_.file());
@@ -103,6 +104,10 @@ class ObjReader {
       read_face();
     } else if (keyword == "usemtl") {
       materials_.use(unquoted(in_.rest()));
+    } else if (keyword == "o" || (keyword == "g" && !has_objects_)) {
+      has_objects_ = keyword == "o";
+      part_ = in_.rest();
+      is_new_part_ = true;
     } else if (keyword == "mtllib") {
       materials_.add_library(in_.rest(), in_.line());
     } else if (keyword == "p" || keyword == "l") {
@@ -291,6 +296,8 @@ class ObjReader {
     if (!smooth) normals_.clear();
     triangle_reserve_.reserve(scene_.triangles, in_.bytes_left());
     if (!has_texcoords_) corner_texcoords_.clear();
+    if (is_new_part_) names_.name_primitives(scene_.primitive_count(), names_.add(part_));
+    is_new_part_ = false;
     add_polygon(scene_, corners_, normals_, materials_.current(), corner_texcoords_);
   }
 
@@ -300,6 +307,10 @@ class ObjReader {
   LineScanner in_;
   Scene scene_;
   ObjMaterials materials_;
+  NameTable names_;
+  std::string
+      part_;  // the name of the faces that follow: an object's, or a group's where there are no objects
+  bool has_objects_ = false, is_new_part_ = false;
   static constexpr std::array<float, 2> kNoTexcoord{0, 0};
 
   bool reads_texcoords_;

@@ -229,13 +229,14 @@ Material ObjMaterials::material_of(const MtlMaterial* mtl, bool colored) {
   return m;
 }
 
-void ObjMaterials::finish(bool colored) {
+void ObjMaterials::finish(bool colored, NameTable& names) {
   const Library library(library_);
   std::size_t n_missing = 0;
   std::string first_missing;
   std::map<std::string, std::size_t> left_out;  // materials, by the statement
   for (const std::string& name : names_) {
     const MtlMaterial* mtl = library.find(name);
+    names.name_material(static_cast<std::uint32_t>(scene_.materials.size()), name);
     scene_.materials.push_back(material_of(mtl, colored));
     if (mtl)
       for (const std::string& what : mtl->left_out) ++left_out[what];

@@ -24,8 +24,8 @@ class ObjMaterials {
   void add_library(std::string_view names, std::uint32_t line);
   void use(std::string_view name);
   std::uint32_t current();  // the material of the faces that follow
-  // Called after the last line. `colored` says whether vertices have colours.
-  void finish(bool colored);
+  // Called after the last line. `colored` says whether vertices have colours; `names` gets the materials'.
+  void finish(bool colored, NameTable& names);
 
  private:
   std::filesystem::path find(const std::string& name) const;
