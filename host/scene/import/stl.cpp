@@ -111,7 +111,8 @@ class AsciiReader {
 
   void begin_solid() { names_.name_primitives(scene_.primitive_count(), names_.add(read_name())); }
 
-  // Returns a solid's name: whatever is left of the line, or, in a file that is one line, up to what can't be a name.
+  // Returns a solid's name: whatever is left of the line, or, in a file that is one line, up to what can't be
+  // a name.
   std::string read_name() {
     const std::uint32_t line = in_.line();
     std::string name;
