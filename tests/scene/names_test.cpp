@@ -38,7 +38,7 @@ TEST(Names, OfObjAreGroupsWhereThereAreNoObjects) {
   ASSERT_TRUE(s.names);
   EXPECT_EQ(s.names->of_primitive(1), "b");
   EXPECT_EQ(s.names->of_primitive(2), "a");
-  EXPECT_EQ(s.names->texts.size(), 3u);  // "", a, b: what has one name is one part
+  EXPECT_EQ(s.names->ends.size(), 3u);  // "", a, b: what has one name is one part
   EXPECT_FALSE(obj(kFace).names);
 }
 
@@ -133,7 +133,7 @@ TEST(Names, TakeLittleMemory) {
   }
   EXPECT_LE(obj(two).names->bytes(), 40000 * 9u);
   const Scene s = obj(many);
-  EXPECT_LE(s.names->bytes(), 40000 * 64u);
+  EXPECT_LE(s.names->bytes(), 40000 * 34u);
   EXPECT_EQ(s.names->of_primitive(39999), "object 39999");
 }
 

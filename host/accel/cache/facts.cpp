@@ -126,17 +126,18 @@ void get_bytes(const Json& from, std::vector<T>& values) {
 
 Json of(const std::shared_ptr<const scene::Names>& names) {
   if (!names) return nullptr;
-  return Json::array(
-      {names->texts, of_bytes(names->materials), of_bytes(names->primitives), of_bytes(names->instances)});
+  const auto& [texts, ends, materials, primitives, instances] = *names;
+  return Json::array({texts, of_bytes(ends), of_bytes(materials), of_bytes(primitives), of_bytes(instances)});
 }
 
 void get(const Json& from, std::shared_ptr<const scene::Names>& names) {
   if (from.is_null()) return;
   scene::Names read;
   from.at(0).get_to(read.texts);
-  get_bytes(from.at(1), read.materials);
-  get_bytes(from.at(2), read.primitives);
-  get_bytes(from.at(3), read.instances);
+  get_bytes(from.at(1), read.ends);
+  get_bytes(from.at(2), read.materials);
+  get_bytes(from.at(3), read.primitives);
+  get_bytes(from.at(4), read.instances);
   names = std::make_shared<const scene::Names>(std::move(read));
 }
 

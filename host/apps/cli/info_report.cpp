@@ -115,7 +115,7 @@ Json materials_report(const scene::Scene& scene) {
   Json list = Json::array();
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     list.push_back(material_report(scene.materials[i], uses[i]));
-    const std::string name = scene.names ? scene.names->of_material(static_cast<std::uint32_t>(i)) : "";
+    const std::string_view name = scene.names ? scene.names->of_material(static_cast<std::uint32_t>(i)) : "";
     if (!name.empty()) list.back()["name"] = name;
   }
   return list;
@@ -131,12 +131,12 @@ std::vector<std::uint64_t> counts_of(const std::vector<scene::NameRun>& runs, st
 Json parts_report(const scene::Scene& scene) {
   Json list = Json::array();
   if (!scene.names) return list;
-  const auto& [texts, materials, primitives, instances] = *scene.names;
-  const auto n_primitives = counts_of(primitives, texts.size());
-  const auto n_instances = counts_of(instances, texts.size());
-  for (std::size_t i = 1; i < texts.size(); ++i) {
+  const auto& [texts, ends, materials, primitives, instances] = *scene.names;
+  const auto n_primitives = counts_of(primitives, ends.size());
+  const auto n_instances = counts_of(instances, ends.size());
+  for (std::uint32_t i = 1; i < ends.size(); ++i) {
     if (n_primitives[i] == 0 && n_instances[i] == 0) continue;
-    list.push_back({{"name", texts[i]}, {"primitives", n_primitives[i]}});
+    list.push_back({{"name", scene.names->text(i)}, {"primitives", n_primitives[i]}});
     if (n_instances[i] > 0) list.back()["instances"] = n_instances[i];
   }
   return list;

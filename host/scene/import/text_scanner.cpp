@@ -1,5 +1,6 @@
 #include "scene/import/text_scanner.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <limits>
@@ -83,6 +84,10 @@ bool may_be_shown(std::uint32_t code) {
 }  // namespace
 
 std::string printable(std::string_view token, std::size_t longest) {
+  const auto plain =
+      std::ranges::find_if(token, [](char c) { return c < 0x20 || c >= 0x7f; }) - token.begin();
+  if (static_cast<std::size_t>(plain) == token.size() && plain <= static_cast<std::ptrdiff_t>(longest))
+    return std::string(token);  // as nearly all are
   std::string shown;
   while (!token.empty()) {
     const Character c = first_character(token);

@@ -1,6 +1,7 @@
 #include "scene/model/names.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "scene/import/text_scanner.h"
 
@@ -9,7 +10,6 @@ namespace kdray::scene {
 namespace {
 
 constexpr std::size_t kLongest = 200;
-const std::string kUnnamed;
 
 std::uint32_t name_at(const std::vector<NameRun>& runs, std::uint32_t number) {
   const auto next = std::ranges::upper_bound(runs, number, {}, &NameRun::first);
@@ -18,33 +18,50 @@ std::uint32_t name_at(const std::vector<NameRun>& runs, std::uint32_t number) {
 
 }  // namespace
 
-const std::string& Names::text(std::uint32_t name) const {
-  return name < texts.size() ? texts[name] : kUnnamed;
+std::string_view Names::text(std::uint32_t name) const {
+  if (name == 0 || name >= ends.size()) return {};
+  const std::uint32_t begin = ends[name - 1], end = ends[name];
+  return begin <= end && end <= texts.size() ? std::string_view(texts).substr(begin, end - begin)
+                                             : std::string_view();
 }
-const std::string& Names::of_material(std::uint32_t number) const {
-  return number < materials.size() ? text(materials[number]) : kUnnamed;
+std::string_view Names::of_material(std::uint32_t number) const {
+  return number < materials.size() ? text(materials[number]) : std::string_view();
 }
-const std::string& Names::of_primitive(std::uint32_t number) const {
+std::string_view Names::of_primitive(std::uint32_t number) const {
   return text(name_at(primitives, number));
 }
-const std::string& Names::of_instance(std::uint32_t number) const {
+std::string_view Names::of_instance(std::uint32_t number) const {
   return text(name_at(instances, number));
 }
 
 std::uint64_t Names::bytes() const {
-  std::uint64_t bytes = materials.size() * sizeof(std::uint32_t) + texts.size() * sizeof(std::string) +
-                        (primitives.size() + instances.size()) * sizeof(NameRun);
-  for (const std::string& text : texts) bytes += text.size();
-  return bytes;
+  return texts.size() + (ends.size() + materials.size()) * sizeof(std::uint32_t) +
+         (primitives.size() + instances.size()) * sizeof(NameRun);
+}
+
+// Returns where the name stands, or is to stand.
+std::uint32_t& NameTable::place_of(std::string_view text) {
+  std::size_t i = std::hash<std::string_view>()(text) % table_.size();
+  while (table_[i] != 0 && names_.text(table_[i]) != text) i = (i + 1) % table_.size();
+  return table_[i];
+}
+
+void NameTable::grow() {
+  table_.assign(std::max<std::size_t>(64, 4 * names_.ends.size()), 0);
+  for (std::uint32_t name = 1; name < names_.ends.size(); ++name) place_of(names_.text(name)) = name;
 }
 
 std::uint32_t NameTable::add(std::string_view text) {
-  if (names_.texts.empty()) names_.texts.emplace_back();
-  if (text.empty()) return 0;
-  const auto [it, added] =
-      numbers_.try_emplace(printable(text, kLongest), static_cast<std::uint32_t>(names_.texts.size()));
-  if (added) names_.texts.push_back(it->first);
-  return it->second;
+  if (names_.ends.empty()) names_.ends.push_back(0);
+  const std::string shown = printable(text, kLongest);
+  if (shown.empty() || names_.texts.size() + shown.size() > 0xffffffffu) return 0;
+  if (2 * (names_.ends.size() + 1) > table_.size()) grow();
+  std::uint32_t& name = place_of(shown);
+  if (name != 0) return name;
+  name = static_cast<std::uint32_t>(names_.ends.size());
+  names_.texts += shown;
+  names_.ends.push_back(static_cast<std::uint32_t>(names_.texts.size()));
+  return name;
 }
 
 void NameTable::name_material(std::uint32_t number, std::string_view text) {

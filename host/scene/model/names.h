@@ -7,10 +7,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 namespace kdray::scene {
@@ -22,22 +20,24 @@ struct NameRun {
 };
 
 struct Names {
-  std::vector<std::string> texts;
+  std::string texts;                           // one after the other: an allocation for each takes longer
+  std::vector<std::uint32_t> ends;             // in them, of each name
   std::vector<std::uint32_t> materials;        // by number; shorter where the last ones have none
   std::vector<NameRun> primitives, instances;  // ascending; the last begins behind the file's last one
   bool operator==(const Names&) const = default;
 
-  const std::string& text(std::uint32_t name) const;
-  const std::string& of_material(std::uint32_t number) const;
-  const std::string& of_primitive(std::uint32_t number) const;
-  const std::string& of_instance(std::uint32_t number) const;
+  std::string_view text(std::uint32_t name) const;
+  std::string_view of_material(std::uint32_t number) const;
+  std::string_view of_primitive(std::uint32_t number) const;
+  std::string_view of_instance(std::uint32_t number) const;
   std::uint64_t bytes() const;
 };
 
 // Collects the names while a file is read.
 class NameTable {
  public:
-  std::uint32_t add(std::string_view text);  // returns the name, which equal texts share
+  // Returns the name, which equal texts share; 0 where there are more than 4 GiB of them.
+  std::uint32_t add(std::string_view text);
   void name_material(std::uint32_t number, std::string_view text);
   // Names what follows from a number on, which is not below those before.
   void name_primitives(std::uint32_t first, std::uint32_t name) { begin(names_.primitives, first, name); }
@@ -48,8 +48,11 @@ class NameTable {
  private:
   static void begin(std::vector<NameRun>& runs, std::uint32_t first, std::uint32_t name);
 
+  std::uint32_t& place_of(std::string_view text);
+  void grow();
+
   Names names_;
-  std::unordered_map<std::string, std::uint32_t> numbers_;
+  std::vector<std::uint32_t> table_;  // names by their hashes, 0: free; at most half of it is used
 };
 
 }  // namespace kdray::scene

@@ -12,7 +12,7 @@ prepare::Prepared with_everything() {
   p.settings.name = "a/\xff\xfe name.obj";  // file names need not be UTF-8
   p.settings.warnings = {"one", "two: \"2\"\n"};
   p.settings.names = std::make_shared<const scene::Names>(
-      scene::Names{{"", "a \xc3\xbc"}, {0, 1}, {{0, 1}, {7, 0}}, {{2, 1}, {3, 0}}});
+      scene::Names{"a \xc3\xbc", {0, 4}, {0, 1}, {{0, 1}, {7, 0}}, {{2, 1}, {3, 0}}});
   p.settings.files = {{"a/b.obj", Hash{~std::uint64_t{0}, 1}},
                       {"c.mtl", std::nullopt},
                       {.path = "d.png", .content = std::nullopt, .only_named = true}};

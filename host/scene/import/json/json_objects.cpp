@@ -117,7 +117,7 @@ std::string name_in(const JsonNode& material) {
 // Returns the name of a part's material: the object's, or else what the part's own file calls it.
 std::string name_of(const Scene& part, std::uint32_t material, const JsonNode& object) {
   if (const auto own = object.find("material")) return name_in(*own);
-  return part.names ? part.names->of_material(material) : std::string();
+  return part.names ? std::string(part.names->of_material(material)) : std::string();
 }
 
 }  // namespace
