@@ -45,7 +45,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "entries are in the machine's own order");
 
 constexpr std::array<char, 8> kMagic = {'k', 'd', 'r', 'a', 'y', 's', 'c', '\n'};
-constexpr std::uint32_t kVersion = 8;  // of the form of entries
+constexpr std::uint32_t kVersion = 9;  // of the form of entries
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kPiece = std::size_t{1} << 20;  // hashed by one thread
 

@@ -155,10 +155,10 @@ TEST_F(EntryTest, CutAndGrownFilesAreSeen) {
 }
 
 TEST_F(EntryTest, AHeaderOfAnotherFormIsRefusedUnderARightChecksum) {
-  ASSERT_TRUE(read(forged(8, std::uint32_t{8})));  // as it is: the forger knows the form
+  ASSERT_TRUE(read(forged(8, std::uint32_t{9})));  // as it is: the forger knows the form
   EXPECT_FALSE(read(forged(0, 'x'))) << "magic";
-  EXPECT_FALSE(read(forged(8, std::uint32_t{7}))) << "an old version";
-  EXPECT_FALSE(read(forged(8, std::uint32_t{9}))) << "a new version";
+  EXPECT_FALSE(read(forged(8, std::uint32_t{8}))) << "an old version";
+  EXPECT_FALSE(read(forged(8, std::uint32_t{10}))) << "a new version";
   EXPECT_FALSE(read(forged(12, std::uint32_t{kSections - 1}))) << "fewer sections";
   EXPECT_FALSE(read(forged(16, whole.size() - 1))) << "another size";
   EXPECT_FALSE(read(forged(24, std::uint64_t{7}))) << "another key";
