@@ -29,17 +29,30 @@ std::uint64_t memory_limit(const State& state, const RenderOptions& o) {
   return o.device_memory > 0 ? std::min(o.device_memory, piece) : piece;
 }
 
+// Rays of a wave, where each of them has a work-item; 0 where they travel between slices: if some device wants
+// these, and between ranks. What they travel through takes more memory than a wave of PDPRT.
+std::uint32_t wave_rays(const State& state, const Job& job) {
+  constexpr std::uint32_t kShare = 4;
+  if (state.ranks) return 0;
+  std::uint32_t least = ~0u;
+  for (const Device& d : state.devices) {
+    if (!d.global) return 0;
+    least = std::min(least, state.scheduler.schedule_for(d, job, false).batch_size);
+  }
+  return std::max(least / kShare, 1u);
+}
+
 odprt::Request request_for(State& state, Job& job) {
   const RenderOptions& o = job.options;
-  // Rays travel between slices on every device.
   wavefront::Schedule schedule = state.scheduler.schedule_for(state.devices.first(), job, true);
   schedule.apply(job.frame, job.features);
   odprt::Request request{request_of(state, job)};
   for (Device& d : state.devices) {
     schedule.n_slices = std::max(schedule.n_slices, state.scheduler.schedule_for(d, job, true).n_slices);
     for (const cl::CommandQueue& queue : d.context.queues())
-      request.queues.push_back({&d.context, queue, &d.programs, request.queues.size()});
+      request.queues.push_back({&d.context, queue, &d.programs, request.queues.size(), d.work_group});
   }
+  request.wave_rays = wave_rays(state, job);
   request.traversal = traversal_of(o.traversal, !state.devices.first().global);
   request.balance = o.balance;
   request.n_slices = schedule.n_slices;

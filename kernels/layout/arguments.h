@@ -73,6 +73,12 @@
   X(Depart, "shade/depart.cl", depart, KDRAY_DEPART_ARGUMENTS)                                  \
   X(TravelWave, "odprt/wave.cl", travel_wave, KDRAY_TRAVEL_WAVE_ARGUMENTS)                      \
   X(Receive, "odprt/receive.cl", receive, KDRAY_RECEIVE_ARGUMENTS)                              \
+  X(TravelPlan, "odprt/stages/plan.cl", travel_plan, KDRAY_TRAVEL_PLAN_ARGUMENTS)               \
+  X(TravelAdmit, "odprt/stages/admit.cl", admit, KDRAY_ADMIT_ARGUMENTS)                         \
+  X(TravelTrace, "odprt/stages/trace.cl", travel_trace, KDRAY_TRAVEL_TRACE_ARGUMENTS)           \
+  X(TravelShade, "odprt/stages/shade.cl", shade, KDRAY_SHADE_ARGUMENTS)                         \
+  X(TravelShadow, "odprt/stages/shadow.cl", travel_shadow, KDRAY_TRAVEL_SHADOW_ARGUMENTS)       \
+  X(TravelReceive, "odprt/stages/receive.cl", travel_receive, KDRAY_RECEIVE_ARGUMENTS)          \
   X(SimdTest, "common/simd_test.cl", simd_test, KDRAY_SIMD_TEST_ARGUMENTS)
 
 #define KDRAY_WAVE_ARGUMENTS(F, X) \
@@ -255,6 +261,51 @@
   X(IO, Traffic, traffic)             \
   X(IO, float, pool)                  \
   X(IO, float, shadow_pool)
+
+// Where every ray has a work-item, of waves 0 to n_waves: the last one closes the account.
+#define KDRAY_TRAVEL_PLAN_ARGUMENTS(F, X) \
+  F(CONSTANT, Frame, frame)               \
+  X(CONSTANT, Travel, travel)             \
+  X(VALUE, u32, wave)                     \
+  X(VALUE, u32, n_waves)                  \
+  X(VALUE, u32, n_tiles)                  \
+  X(IO, Slice, slices)                    \
+  X(IO, Credits, credits)                 \
+  X(IO, Traffic, traffic)                 \
+  X(OUT, u32, sent_counts)
+
+#define KDRAY_TRAVEL_TRACE_ARGUMENTS(F, X) \
+  F(CONSTANT, Frame, frame)                \
+  X(CONSTANT, Travel, travel)              \
+  KDRAY_TRACED_ARRAYS(X)                   \
+  KDRAY_TEXTURING_ARRAYS(X)                \
+  X(IN, PartCell, cells)                   \
+  X(IN, PartCell, subtrees)                \
+  X(IO, Slice, slices)                     \
+  X(IO, Traffic, traffic)                  \
+  X(IO, float, batch)                      \
+  X(IO, float, hits)                       \
+  X(OUT, float, sent_rays)                 \
+  X(OUT, u32, sent_counts)                 \
+  X(OUT, u32, visits)
+
+#define KDRAY_TRAVEL_SHADOW_ARGUMENTS(F, X) \
+  F(CONSTANT, Frame, frame)                 \
+  X(CONSTANT, Travel, travel)               \
+  X(VALUE, u32, first_light)                \
+  KDRAY_TRACED_ARRAYS(X)                    \
+  KDRAY_TEXTURING_ARRAYS(X)                 \
+  X(IN, PartCell, cells)                    \
+  X(IN, PartCell, subtrees)                 \
+  X(IO, Slice, slices)                      \
+  X(IO, Traffic, traffic)                   \
+  X(IO, float, shadow_rays)                 \
+  X(IO, uchar, occluded)                    \
+  X(IN, float, shadow_pool)                 \
+  X(IO, i64, film)                          \
+  X(OUT, float, sent_shadow_rays)           \
+  X(OUT, u32, sent_counts)                  \
+  X(OUT, u32, visits)
 
 #define KDRAY_SIMD_TEST_ARGUMENTS(F, X) \
   F(IN, SimdCase, cases)                \

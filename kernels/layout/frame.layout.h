@@ -99,7 +99,7 @@ typedef struct Slice {
   u32 n_batch;
   u32 n_shadow;
   u32 n_waves;  // with rays in them
-  u32 pad;
+  u32 eye;      // 1: the batch is of eye rays, of those before next_place; where every ray has a work-item
   u32 n_pool[KDRAY_MAX_DEPTH];  // rays of depth d that wait: n_pool[d - 1]
   u64 n_primary, n_primary_hit, n_shadow_rays, n_reflected, n_refracted;
   u64 n_skipped_behind;      // shadow rays to lights behind the surface

@@ -53,10 +53,17 @@ typedef struct Traffic {
   u32 ended[KDRAY_MAX_DEPTH + 1];  // wherever they were made
   u32 n_shadow_pool;               // shadow rays from elsewhere that wait; stays from launch to launch
   u32 n_waves;
-  u32 n_lost;    // rays that the part which found their hit didn't find again: a broken rule
-  u32 n_traced;  // rays of both kinds
+  u32 n_lost;  // rays that the part which found their hit didn't find again: a broken rule
+  u32 pad;
+  u64 n_traced;  // rays of both kinds
   u64 cycles_route;
+  // Where every ray has a work-item: of the wave in work (odprt/stages/plan.cl).
+  u64 n_ended;           // rays that are shaded here
+  u64 n_left;            // shadow rays that go on elsewhere
+  u64 n_primary_before;  // eye rays that were made, and rays of the next depth in the pool
+  u32 n_pool_before;
+  u32 is_counted;  // 1: visits to subtrees are counted
 } Traffic;
-KDRAY_ASSERT_SIZE(Traffic, 544)
+KDRAY_ASSERT_SIZE(Traffic, 584)
 KDRAY_LAYOUT_END
 #endif

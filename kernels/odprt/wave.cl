@@ -84,7 +84,7 @@ static inline void trace_and_shade(const Travels* t, __constant const Frame* fra
 static inline bool run_wave(const Travels* t, TileList tiles, __constant const Frame* frame, u32 slice_id,
                             const Shaders* shaders, const Census* census, const Streams* s) {
   u64 since = cycles();
-  const Account account = account_of(tiles, frame, t->slice, t->credits, t->traffic, &t->out);
+  const Account account = account_of(tiles.n, frame, t->slice, t->credits, t->traffic, &t->out);
   if (!has_space(&account, t->travel)) return false;
   const Work work = choose_work(&account);
   if (work.n == 0) return false;
@@ -100,16 +100,11 @@ static inline bool run_wave(const Travels* t, TileList tiles, __constant const F
 #endif
     return true;
   }
-  admit_rays(&account, &work, slice_id, s->pool,
+  admit_rays(&account, tiles, &work, slice_id, s->pool,
              stream_of(s->batch, slice_id, KDRAY_RAY_FIELDS, frame->batch_capacity), s->film);
   clock_stage(&t->slice->cycles_admit, &since);
   trace_and_shade(t, frame, slice_id, shaders, census, s, work.eye, &since);
   return true;
-}
-
-static inline void begin_account(__global Traffic* traffic) {
-  for (u32 level = 0; level <= KDRAY_MAX_DEPTH; ++level) traffic->made[level] = traffic->ended[level] = 0;
-  traffic->n_lost = traffic->n_traced = 0;
 }
 
 KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_TRAVEL_WAVE_ARGUMENTS)) {

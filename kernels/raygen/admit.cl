@@ -40,12 +40,15 @@ __kernel void admit(KDRAY_PARAMETERS(KDRAY_ADMIT_ARGUMENTS)) {
   const u32 n_batch = wave->n_batch;
   const Stream batch = stream_of(out_batch, 0, KDRAY_RAY_FIELDS, frame->batch_capacity);
   bool is_eye_ray = false;
-  if (i < n_batch && wave->depth > 1) {
+  if (i < n_batch && !wave->eye) {
     const ConstStream pool = const_pool_of_depth(in_pool, frame, 0, wave->depth);
     take_rays(pool, wave->n_pool[wave->depth - 1] + i, batch, i);
   } else if (i < n_batch) {
     is_eye_ray = admit_sample(frame, in_tiles, wave->next_place - n_batch + i, batch, i);
     if (!is_eye_ray) write1(batch, KDRAY_RAY_T_MAX, i, -INFINITY);
+#if KDRAY_ODPRT
+    begin_journey(batch, i);
+#endif
   }
   add_of_group(&wave->n_primary, is_eye_ray ? 1u : 0u, &n_admitted);
 }

@@ -14,16 +14,14 @@ __kernel void plan(KDRAY_PARAMETERS(KDRAY_PLAN_ARGUMENTS)) {
   const u32 depth = choose_depth(frame, wave, n_tiles);
   u32 n = 0;
   if (depth == 1) {
-    const u64 of_entry = samples_of_entry(frame);
-    n = (u32)min(n_tiles * of_entry - wave->next_place, (u64)frame->batch_size);
-    wave->next_place += n;
-    wave->tile = (u32)(wave->next_place / of_entry);
+    n = take_samples(frame, wave, n_tiles, frame->batch_size);
   } else if (depth > 1) {
     const u32 n_pool = min(wave->n_pool[depth - 1], frame->pool_size);  // what found no room was counted
     n = min(n_pool, frame->batch_size);
     wave->n_pool[depth - 1] = n_pool - n;
   }
   wave->depth = depth;
+  wave->eye = depth == 1;
   wave->n_batch = n;
   wave->n_waves += n > 0;
 }

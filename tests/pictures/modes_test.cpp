@@ -20,12 +20,20 @@ struct Way {
   int queues = 1;
   RenderOptions options = exact_options(kWidth, kHeight);
   std::string faults = {};
+  kdray::Schedule schedule = kdray::Schedule::automatic;
 };
 
 Way odprt(int queues, Balance balance, const std::string& more = "") {
   Way way{fmt::format("odprt, {} queues, balance {}{}", queues, static_cast<int>(balance), more), queues};
   way.options.mode = Mode::odprt;
   way.options.balance = balance;
+  return way;
+}
+
+// Every ray has a work-item, as on GPUs.
+Way per_ray(Way way) {
+  way.name += ", a work-item for each ray";
+  way.schedule = kdray::Schedule::global;
   return way;
 }
 
@@ -37,6 +45,7 @@ struct Shot {
 Shot render(const Scene& scene, const Way& way) {
   DeviceOptions device;
   device.queues = way.queues;
+  device.schedule = way.schedule;
   Renderer renderer = api::make_renderer(scene, {}, device_of(device), {.faults = way.faults});
   Picture picture = renderer.render(way.options);
   return {std::move(picture), statistics_of(renderer)};
@@ -69,6 +78,14 @@ TEST_P(Modes, OdprtWithAnyWalk) {
   }
 }
 
+// With five queues the host sorts the rays.
+TEST_P(Modes, OdprtWithAWorkItemForEachRay) {
+  for (const int queues : {1, 2, 5}) expect_same(per_ray(odprt(queues, Balance::pilot)));
+  Way failing = per_ray(odprt(3, Balance::sah));
+  failing.faults = "1@1";
+  EXPECT_TRUE(same_bits(first.picture.rgb, render(scene, failing).picture.rgb));
+}
+
 TEST_P(Modes, OdprtWithTinyBuffers) {
   for (const int rays : {1, 5, 100}) {
     Way way = odprt(3, Balance::sah, fmt::format(", buffers of {}", rays));
@@ -81,6 +98,10 @@ TEST_P(Modes, OdprtWithTinyBuffers) {
     const Shot expected = render(scene, plain), got = render(scene, way);
     EXPECT_TRUE(same_bits(expected.picture.rgb, got.picture.rgb)) << way.name;
     EXPECT_EQ(expected.statistics["rays"], got.statistics["rays"]) << way.name;
+    if (rays < 100) continue;
+    const Shot each = render(scene, per_ray(way));
+    EXPECT_TRUE(same_bits(expected.picture.rgb, each.picture.rgb)) << way.name;
+    EXPECT_EQ(expected.statistics["rays"], each.statistics["rays"]) << way.name;
   }
 }
 
@@ -210,8 +231,9 @@ scene::Scene many_triangles() {
 TEST(Odprt, LessMemoryThanTheSceneTakes) {
   const Scene scene{many_triangles()};
   const Shot whole = render(scene, {"pdprt"});
-  for (const int queues : {1, 2}) {
-    Way way = odprt(queues, Balance::sah, ", streamed");
+  std::vector<Way> ways = {odprt(1, Balance::sah), odprt(2, Balance::sah), per_ray(odprt(2, Balance::sah))};
+  for (Way& way : ways) {
+    const int queues = way.queues;
     way.options.device_memory = std::uint64_t{60} << 20;
     const Shot got = render(scene, way);
     EXPECT_TRUE(same_bits(whole.picture.rgb, got.picture.rgb)) << queues;

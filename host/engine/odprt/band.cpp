@@ -21,7 +21,8 @@ void check(const Worker& worker) {
   wavefront::check(wavefront::sum_of(worker.slices()), n_lost);
 }
 
-std::uint64_t sum_of(std::span<const layout::Traffic> traffic, layout::u32 layout::Traffic::*count) {
+template <class Count>
+std::uint64_t sum_of(std::span<const layout::Traffic> traffic, Count layout::Traffic::*count) {
   std::uint64_t sum = 0;
   for (const layout::Traffic& t : traffic) sum += t.*count;
   return sum;
@@ -119,7 +120,9 @@ void BandRun::take_turns(std::size_t queue) {
 void BandRun::take_entries(std::size_t queue) {
   Shares& shares = band_.shares;
   Worker& worker = *pool_.workers[queue];
-  const std::size_t n = std::min<std::size_t>(worker.launch_tiles(), shares.left() / (4 * shares.n_queues()));
+  // One queue takes all from the beginning.
+  const std::size_t of_left = shares.n_queues() > 1 ? 4 * shares.n_queues() : 1;
+  const std::size_t n = std::min<std::size_t>(worker.launch_tiles(), shares.left() / of_left);
   const std::size_t wanted = std::max<std::size_t>(n, pool_.plan.n_slices), has = worker.tiles_left();
   if (has < wanted) worker.add(shares.take(queue, wanted - has));
   tiles_left_[queue] = worker.tiles_left();

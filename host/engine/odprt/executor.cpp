@@ -66,7 +66,7 @@ void add_visits(const WorkerPool& pool, const Division& division, Result& result
 // Shares the time that the queues were busy out among the stages, by their cycles.
 void share_out_seconds(const WorkerPool& pool, Result& result) {
   std::map<std::string, double> cycles;
-  for (const auto& worker : pool.workers) worker->add_cycles(cycles);
+  for (const auto& worker : pool.workers) worker->add_stages(cycles);
   double busy = 0, sum = 0;
   for (const QueueReport& report : result.queues) busy += report.busy_seconds;
   for (const auto& [stage, n] : cycles) sum += n;

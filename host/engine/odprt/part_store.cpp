@@ -4,6 +4,8 @@
 #include <numeric>
 #include <vector>
 
+#include "layout/compressed.layout.h"
+
 namespace kdray::odprt {
 
 namespace {
@@ -22,11 +24,13 @@ SceneBuffers::Sizes largest_sizes(const Division& division) {
 
 }  // namespace
 
-std::size_t buffer_bytes(const Division& division) {
+std::size_t buffer_bytes(const Division& division, bool compressed) {
   SceneBuffers::Sizes sizes = largest_sizes(division);
   for (const std::size_t no_geometry : {SceneBuffers::Slot::materials, SceneBuffers::Slot::lights})
     sizes[no_geometry] = 0;
-  return std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
+  const std::size_t n_nodes = sizes[SceneBuffers::Slot::wide_nodes] / sizeof(layout::WideNode);
+  return std::accumulate(sizes.begin(), sizes.end(),
+                         compressed ? n_nodes * sizeof(layout::CompressedNode) : std::size_t{0});
 }
 
 SceneBuffers PartStore::scene_of(const Part& part) {
@@ -55,8 +59,10 @@ const LoadedPart& PartStore::get(std::uint32_t number) {
 }
 
 std::size_t PartStore::bytes() const {
-  if (buffers_) return buffer_bytes(division_);
-  return loaded_ ? division_.parts[loaded_->number].geometry_bytes() : 0;
+  if (buffers_) return buffer_bytes(division_, compressed_);
+  if (!loaded_) return 0;
+  const Part& part = division_.parts[loaded_->number];
+  return part.geometry_bytes() + (compressed_ ? part.wide.nodes.size() * sizeof(layout::CompressedNode) : 0);
 }
 
 }  // namespace kdray::odprt

@@ -11,16 +11,22 @@
 namespace kdray::odprt {
 
 // The bytes of buffers that any part's geometry fits into: each array as large as the part with most of it
-// needs. Where parts hold different kinds of primitives, that is more than the largest part.
-std::size_t buffer_bytes(const Division& division);
+// needs. Where parts hold different kinds of primitives, that is more than the largest part. `compressed`: the
+// nodes' compressed form is wanted as well.
+std::size_t buffer_bytes(const Division& division, bool compressed);
 
 class PartStore {
  public:
   // With `streamed` parts come and go; else they are used where they lie, if the device works in the host's
   // memory.
   PartStore(const device::Context& context, cl::CommandQueue queue, const Division& division, const Cut& cut,
-            bool streamed)
-      : context_(context), queue_(std::move(queue)), division_(division), cut_(cut), streamed_(streamed) {}
+            bool streamed, bool compressed)
+      : context_(context),
+        queue_(std::move(queue)),
+        division_(division),
+        cut_(cut),
+        streamed_(streamed),
+        compressed_(compressed) {}
 
   // Loads the part if it isn't there; nothing may be running that reads the last one. What it returns stays
   // until another is asked for.
@@ -36,7 +42,7 @@ class PartStore {
   cl::CommandQueue queue_;
   const Division& division_;
   const Cut& cut_;
-  const bool streamed_;
+  const bool streamed_, compressed_;
   std::optional<wavefront::SceneBuffers> buffers_;  // streamed: large enough for every part
   std::optional<LoadedPart> loaded_;
   std::uint64_t n_loads_ = 0;

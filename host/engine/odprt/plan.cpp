@@ -14,6 +14,7 @@ using wavefront::capacity_for, wavefront::spawned_per_ray;
 
 constexpr std::uint32_t kBatch = 512;                     // large batches keep packets full
 constexpr std::uint32_t kWaves = 16, kLaunchWaves = 256;  // of a slice in a launch, and of all slices
+constexpr std::uint32_t kRayWaves = 8;                    // ... where every ray has a work-item
 // For all slices together, how many rays of a depth may be alive, and how many an outbox holds for a part.
 constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
 constexpr std::uint32_t kMostPlaces = 4;
@@ -23,31 +24,45 @@ constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStr
 // How many rays of a level a slice may have: enough that no queue waits for what others hold, or a few of the
 // buffers that were asked for; and so many that, whoever has the credits for them, some rank has twice what a
 // ray needs (rank_exchange.h).
-std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t least, std::uint32_t n_slices) {
+std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t batch, std::uint32_t least,
+                             std::uint32_t n_slices) {
   if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least * r.n_ranks);
-  const std::uint32_t in_work = kBatch * (std::min(least, 4u) * r.n_queues + 2);
+  const std::uint32_t in_work = batch * (std::min(least, 4u) * r.n_queues + 2);
   return std::max({(r.streamed ? kStreamedRays : kRays) / n_slices, in_work, 2 * least * r.n_ranks});
 }
 
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
 // The bytes of a ray on its way and of two shadow rays.
 constexpr std::size_t kSentBytes = kRayBytes + 2 * KDRAY_SENT_SHADOW_FIELDS * sizeof(float);
-constexpr std::size_t kPoolShare = 32, kOutboxShare = 8;  // of memory that is short: that part of it
+constexpr std::size_t kPoolShare = 32, kOutboxShare = 8, kBatchShare = 8;  // of memory that is short: that part of it
+
+// Rays of a batch: as many as are asked for, fewer where buffers are small or memory is short.
+std::uint32_t batch_of(const PlanRequest& r, std::uint32_t light_batch) {
+  if (r.wave_rays == 0) return kBatch;
+  if (r.ray_buffer > 0) return std::min(r.wave_rays, r.ray_buffer);
+  if (!r.streamed) return r.wave_rays;
+  const std::size_t of_ray =
+      kRayBytes + (KDRAY_HIT_FIELDS + light_batch * (KDRAY_TRAVEL_SHADOW_FIELDS + 2)) * sizeof(float);
+  return static_cast<std::uint32_t>(
+      std::clamp<std::size_t>(r.memory / kBatchShare / of_ray, kBatch, std::max(kBatch, r.wave_rays)));
+}
 
 // Rays for one place and slice.
-std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t n_slices) {
+std::uint32_t outbox_rays(const PlanRequest& r, std::uint32_t batch, std::uint32_t n_slices) {
   if (r.ray_buffer > 0) return r.ray_buffer;
-  if (!r.streamed) return std::max(kOutboxRays / n_slices, 2 * kBatch);
+  if (!r.streamed) return std::max(kOutboxRays / n_slices, r.wave_rays > 0 ? batch : 2 * batch);
   return static_cast<std::uint32_t>(
       std::clamp<std::size_t>(r.memory / kOutboxShare / kSentBytes / n_slices, KDRAY_LANES,
                               std::max(kStreamedOutbox / n_slices, kBatch / 4)));
 }
 
 // Rays of one depth that a slice's pool holds, where that is less than what may be alive.
-std::uint32_t streamed_pool(const PlanRequest& r, std::uint32_t n_slices, std::uint32_t max_depth) {
-  if (!r.streamed) return kStreamedPool;
+std::uint32_t streamed_pool(const PlanRequest& r, std::uint32_t batch, std::uint32_t n_slices,
+                            std::uint32_t max_depth) {
+  const std::uint32_t most = std::max(kStreamedPool, 4 * batch);
+  if (!r.streamed) return most;
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(
-      r.memory / kPoolShare / kRayBytes / max_depth / n_slices, 2 * kBatch, kStreamedPool));
+      r.memory / kPoolShare / kRayBytes / max_depth / n_slices, 2 * kBatch, most));
 }
 
 }  // namespace
@@ -58,21 +73,23 @@ bool host_sorts(const PlanRequest& r) {
 
 Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   Plan plan;
-  plan.n_slices = std::clamp<std::uint32_t>(frame.n_tiles, 1, r.n_slices);
-  plan.n_waves = std::max(kWaves, kLaunchWaves / plan.n_slices);
+  plan.per_ray = r.wave_rays > 0;
+  plan.n_slices = plan.per_ray ? 1 : std::clamp<std::uint32_t>(frame.n_tiles, 1, r.n_slices);
+  plan.n_waves = plan.per_ray ? kRayWaves : std::max(kWaves, kLaunchWaves / plan.n_slices);
   const bool lights = (r.features & KDRAY_FEATURE_LIGHTS) != 0;
   const std::uint32_t n_lights = lights ? frame.n_lights : 0;
-  frame.batch_size = kBatch;
-  frame.batch_capacity = capacity_for(kBatch);
   frame.light_batch = std::min<std::uint32_t>(n_lights, KDRAY_MAX_LIGHT_BATCH);
+  const std::uint32_t batch = batch_of(r, frame.light_batch);
+  frame.batch_size = batch;
+  frame.batch_capacity = capacity_for(batch);
   frame.shadow_capacity = std::max(frame.light_batch, 1u) * frame.batch_capacity;
 
   plan.least.assign(frame.max_depth + 1, std::max(spawned_per_ray(r.features), 1u));
   plan.least[0] = n_lights;
   for (const std::uint32_t least : plan.least)
-    plan.capacity.push_back(level_capacity(r, least, plan.n_slices));
+    plan.capacity.push_back(level_capacity(r, batch, least, plan.n_slices));
   const std::uint32_t largest = *std::max_element(plan.capacity.begin() + 1, plan.capacity.end());
-  const std::uint32_t streamed = streamed_pool(r, plan.n_slices, frame.max_depth);
+  const std::uint32_t streamed = streamed_pool(r, batch, plan.n_slices, frame.max_depth);
   const bool sorts = host_sorts(r);
   frame.pool_size = sorts ? std::min(streamed, largest) : largest;
   frame.pool_capacity = capacity_for(frame.pool_size);
@@ -83,7 +100,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   out.n_places = sorts ? 1 : r.n_parts;
   out.n_slices = plan.n_slices;
   out.ray_fields = wavefront::travel_ray_fields(r.features);
-  out.rays = outbox_rays(r, plan.n_slices);
+  out.rays = outbox_rays(r, batch, plan.n_slices);
   out.shadow = lights ? std::max(r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights) : 1;
   // Where there is one part nothing is ever sent.
   out.ray_capacity = capacity_for(r.n_parts > 1 ? out.rays : 0);

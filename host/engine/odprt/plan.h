@@ -12,6 +12,7 @@
 namespace kdray::odprt {
 
 struct Plan {
+  bool per_ray = false;  // every ray has a work-item, and there is one slice
   std::uint32_t n_slices = 0;
   std::uint32_t n_waves = 0;            // of a slice in one launch, at most
   std::vector<std::uint32_t> capacity;  // of the levels (ray_credits.h)
@@ -26,6 +27,7 @@ struct PlanRequest {
   layout::Features features = 0;
   std::uint32_t n_parts = 1, n_queues = 1, n_ranks = 1;  // of all ranks
   std::uint32_t n_slices = 16;                           // of each queue
+  std::uint32_t wave_rays = 0;                           // where every ray has a work-item; else 0
   std::uint32_t ray_buffer = 0;                          // rays in a place of the outbox; 0: chosen
   std::size_t memory = 0;  // of a queue, when streamed: buffers take a part of it
   bool streamed = false;   // parts come and go: rays wait in the host's memory, and there may be many

@@ -51,11 +51,16 @@ Provision provide_for(const Request& request, std::uint32_t n_parts, bool stream
                          .n_ranks = request.table.place().ranks,
                          // Where memory is short, there are no more slices than compute units, about.
                          .n_slices = streamed ? (request.n_slices + 15) / 16 : request.n_slices,
+                         .wave_rays = request.wave_rays,
                          .ray_buffer = request.ray_buffer,
                          .memory = of_queue,
                          .streamed = streamed};
-  p.n_outboxes = host_sorts(plan) ? 1  // what is sent is copied at once
-                                  : std::clamp(kOutboxPlaces / n_parts, kLeastOutboxes, kMostOutboxes);
+  if (host_sorts(plan))
+    p.n_outboxes = 1;  // what is sent is copied at once
+  else if (request.wave_rays > 0)
+    p.n_outboxes = kLeastOutboxes;  // of many rays each
+  else
+    p.n_outboxes = std::clamp(kOutboxPlaces / n_parts, kLeastOutboxes, kMostOutboxes);
   p.plan = make_plan(p.frame, plan);
   p.bands = wavefront::bands_of(p.frame, film_bytes);
   for (const wavefront::Band& band : p.bands) p.capacity.places = std::max(p.capacity.places, band.n_pixels);
@@ -109,6 +114,7 @@ Provision provide(const Request& request, std::size_t geometry_bytes, std::uint3
   const auto n_queues = static_cast<std::uint32_t>(request.table.n_queues());
   Provision all = provide_for(request, n_queues, false, kMaxFilmBytes);
   if (request.device_memory == 0) return all;
+  if (all.plan.per_ray) geometry_bytes += geometry_bytes / 2;  // nodes lie there compressed as well
   const std::size_t of_queue = request.device_memory / queues_on_a_device(request);
   const double share = kSpareGeometry * static_cast<double>(geometry_bytes) / n_queues;
   if (static_cast<double>(work_of(all) + kMostDirectory) + share <= static_cast<double>(of_queue)) return all;
@@ -117,7 +123,8 @@ Provision provide(const Request& request, std::size_t geometry_bytes, std::uint3
 
 bool fits(const Provision& provision, const Division& division, const Request& request) {
   if (!provision.streamed) return true;
-  const std::size_t largest = buffer_bytes(division) + division.directory.size() * sizeof(layout::PartCell);
+  const std::size_t largest =
+      buffer_bytes(division, provision.plan.per_ray) + division.directory.size() * sizeof(layout::PartCell);
   if (largest <= provision.most_geometry) return true;
   if (provision.n_parts < kMostParts) return false;
   throw too_little(request, (work_of(provision) + largest) * queues_on_a_device(request));

@@ -29,6 +29,7 @@ struct Queue {
   cl::CommandQueue queue;
   wavefront::Programs* programs = nullptr;
   std::size_t number = 0;  // among all queues, also those that are left out
+  std::size_t work_group = 64;  // local size, where every ray has a work-item
 };
 
 // Its frame is with tiles.
@@ -38,6 +39,8 @@ struct Request : frame::Request {
   Traversal traversal = Traversal::automatic;
   Balance balance = Balance::sah;
   std::uint32_t n_slices = 16;  // of each queue: enough for all of its compute units
+  // Rays of a wave where every ray has a work-item: on all devices or on none; 0: slices.
+  std::uint32_t wave_rays = 0;
   std::uint32_t ray_buffer = 0;
   std::uint64_t device_memory = 0;
   std::uint32_t census_every = 0;  // visits to subtrees are counted in one wave of so many

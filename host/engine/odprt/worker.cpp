@@ -15,8 +15,8 @@ cl::Buffer Worker::make(std::size_t bytes, const char* what) {
 
 Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
                const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
-               std::span<const layout::PartCell> directory, const WorkCapacity& capacity,
-               std::size_t max_subtrees)
+               std::size_t work_group, std::span<const layout::PartCell> directory,
+               const WorkCapacity& capacity, std::size_t max_subtrees)
     : context_(context),
       queue_(std::move(queue)),
       frame_(frame),
@@ -35,9 +35,13 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
                             (plan.shadow_pool + 2 * KDRAY_LANES) * sizeof(float),
                         "the waiting shadow rays")),
       visit_buffer_(make(visits_.size() * sizeof(layout::u32), "the subtrees' visits")),
-      inbox_(context, plan.inbox),
-      wave_(programs.kernel<kernels::TravelWave>(features | KDRAY_FEATURE_NUMBERS, traversal)),
-      receive_(programs.kernel<kernels::Receive>(features)) {
+      inbox_(context, plan.inbox) {
+  if (plan.per_ray) {
+    stages_.emplace(programs, features | KDRAY_FEATURE_NUMBERS, work_group);
+  } else {
+    wave_.emplace(programs.kernel<kernels::TravelWave>(features | KDRAY_FEATURE_NUMBERS, traversal));
+    receive_.emplace(programs.kernel<kernels::Receive>(features));
+  }
   bytes_ += inbox_.bytes() + buffers_.bytes;
   if (!directory.empty())
     queue_.enqueueWriteBuffer(cells_, CL_TRUE, 0, directory.size_bytes(), directory.data());
@@ -50,8 +54,13 @@ Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront
   travel_.out_shadow_capacity = plan.outbox.shadow_capacity;
   travel_.shadow_pool = plan.shadow_pool;
   travel_.shadow_pool_capacity = plan.shadow_pool + 2 * KDRAY_LANES;
-  set_arguments(wave_);
-  set_arguments(receive_);
+  for_each_stage([this](auto& stage) { set_arguments(stage); });
+}
+
+template <class Do>
+void Worker::for_each_stage(const Do& act) {
+  if (stages_) return stages_->for_each(act);
+  act(*wave_), act(*receive_);
 }
 
 // What doesn't change from launch to launch.
@@ -123,8 +132,12 @@ void Worker::serve(const LoadedPart& part, std::uint32_t census_every) {
   travel_.n_subtrees = census_every > 0 ? part.n_subtrees : 0;
   travel_.census_every = std::max(census_every, 1u);
   queue_.enqueueWriteBuffer(travel_buffer_, CL_FALSE, 0, sizeof travel_, &travel_);
-  part.scene.set_arguments(wave_);
-  wave_.set(kernels::TravelWave::subtrees, part.subtrees);
+  for_each_stage([&]<class K>(wavefront::Stage<K>& stage) {
+    part.scene.set_arguments(stage);
+    KDRAY_SET_WHERE_TAKEN(K, stage, subtrees, part.subtrees);
+    if constexpr (requires { K::wide_nodes; })
+      if (stages_) stage.set(K::wide_nodes, part.scene.compressed_nodes());
+  });
 }
 
 void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
@@ -136,26 +149,26 @@ void Worker::warm_up(const LoadedPart& part, Outbox& outbox) {
   receive(outbox, std::min(part.number, outbox.shape().n_places - 1));
   const std::vector<layout::Credits> credits(plan_.n_slices);
   launch(credits, outbox);
-  wave_.forget_launches();
-  receive_.forget_launches();
+  for_each_stage([](auto& stage) { stage.forget_launches(); });
 }
 
 void Worker::receive(const Outbox& outbox, std::uint32_t place) {
+  if (stages_) return stages_->receive(queue_, outbox, place);
   using K = kernels::Receive;
-  outbox.set_arguments(receive_);
-  receive_.set(K::place, place).set(K::n_places, outbox.shape().n_places);
-  receive_.set(K::ray_capacity, outbox.shape().ray_capacity);
-  receive_.set(K::shadow_capacity, outbox.shape().shadow_capacity);
-  receive_.launch(queue_, plan_.n_slices, 1);
+  outbox.set_arguments(*receive_);
+  receive_->set(K::place, place).set(K::n_places, outbox.shape().n_places);
+  receive_->set(K::ray_capacity, outbox.shape().ray_capacity);
+  receive_->set(K::shadow_capacity, outbox.shape().shadow_capacity);
+  receive_->launch(queue_, plan_.n_slices, 1);
 }
 
 std::uint64_t Worker::receive(HostRayQueue& host_rays) {
   const OutboxShape& shape = inbox_.shape();
   auto* rays = static_cast<float*>(
-      queue_.enqueueMapBuffer(inbox_.rays(), CL_FALSE, CL_MAP_WRITE, 0,  // the next one waits for both
+      queue_.enqueueMapBuffer(inbox_.rays(), CL_FALSE, CL_MAP_WRITE_INVALIDATE_REGION, 0,  // the next one waits for both
                               shape.n_streams() * shape.ray_fields * shape.ray_capacity * sizeof(float)));
   auto* shadow_rays = static_cast<float*>(queue_.enqueueMapBuffer(
-      inbox_.shadow_rays(), CL_TRUE, CL_MAP_WRITE, 0,
+      inbox_.shadow_rays(), CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0,
       shape.n_streams() * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity * sizeof(float)));
   std::uint64_t total = 0;
   for (std::uint32_t s = 0; s < plan_.n_slices; ++s) {
@@ -184,12 +197,18 @@ std::uint64_t Worker::receive(HostRayQueue& host_rays) {
   return total;
 }
 
+void Worker::launch_waves(const Outbox& outbox) {
+  const auto n_tiles = static_cast<cl_uint>(list_.size());
+  if (stages_) return stages_->launch(queue_, frame_, plan_.n_waves, n_tiles, outbox);
+  wave_->set(kernels::TravelWave::n_tiles, n_tiles);
+  outbox.set_arguments(*wave_);
+  wave_->launch(queue_, plan_.n_slices, 1);
+}
+
 void Worker::launch(std::span<const layout::Credits> credits, Outbox& outbox) {
   queue_.enqueueWriteBuffer(credit_buffer_, CL_FALSE, 0, credits.size_bytes(), credits.data());
   queue_.enqueueFillBuffer(outbox.counts(), cl_uint{0}, 0, outbox.n().size() * sizeof(layout::u32));
-  wave_.set(kernels::TravelWave::n_tiles, static_cast<cl_uint>(list_.size()));
-  outbox.set_arguments(wave_);
-  wave_.launch(queue_, plan_.n_slices, 1);
+  launch_waves(outbox);
   queue_.enqueueReadBuffer(outbox.counts(), CL_FALSE, 0, outbox.n().size() * sizeof(layout::u32),
                            outbox.n().data());
   finish();
@@ -200,8 +219,7 @@ void Worker::finish() {
                            slices_.data());
   queue_.enqueueReadBuffer(traffic_buffer_, CL_TRUE, 0, traffic_.size() * sizeof(layout::Traffic),
                            traffic_.data());
-  wave_.collect_seconds();
-  receive_.collect_seconds();
+  for_each_stage([](auto& stage) { stage.collect_seconds(); });
 }
 
 void Worker::stash(HostRayQueue& host_rays) {
@@ -266,10 +284,19 @@ void Worker::copy_out(const Outbox& outbox, const std::function<HostRayQueue*(st
   queue_.enqueueUnmapMemObject(outbox.shadow_rays(), shadow_rays);
 }
 
-void Worker::add_cycles(std::map<std::string, double>& cycles) const {
-  wavefront::add_cycles(slices_, cycles);
-  for (const layout::Traffic& traffic : traffic_)
-    cycles["route"] += static_cast<double>(traffic.cycles_route);
+void Worker::add_stages(std::map<std::string, double>& times) {
+  if (stages_) {
+    for (const auto& [stage, seconds] : stages_->seconds()) times[stage] += seconds;
+    return;
+  }
+  wavefront::add_cycles(slices_, times);
+  for (const layout::Traffic& traffic : traffic_) times["route"] += static_cast<double>(traffic.cycles_route);
+}
+
+double Worker::busy_seconds() {
+  double sum = 0;
+  for_each_stage([&](auto& stage) { sum += stage.collect_seconds(); });
+  return sum;
 }
 
 std::uint32_t Worker::tiles_left() const {

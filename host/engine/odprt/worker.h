@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "engine/odprt/host_ray_queue.h"
 #include "engine/odprt/outbox.h"
 #include "engine/odprt/plan.h"
+#include "engine/odprt/ray_stages.h"
 #include "engine/odprt/subtrees.h"
 #include "engine/wavefront/programs.h"
 #include "engine/wavefront/scene_buffers.h"
@@ -53,7 +55,8 @@ class Worker {
  public:
   Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
          const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
-         std::span<const layout::PartCell> directory, const WorkCapacity& capacity, std::size_t max_subtrees);
+         std::size_t work_group, std::span<const layout::PartCell> directory, const WorkCapacity& capacity,
+         std::size_t max_subtrees);
   ~Worker();
   Worker(const Worker&) = delete;
 
@@ -101,15 +104,19 @@ class Worker {
   // that part's.
   void copy_out(const Outbox& outbox, const std::function<HostRayQueue*(std::uint32_t)>& host_rays_of);
 
-  void add_cycles(std::map<std::string, double>& cycles) const;  // of the stages, in the band
+  // Adds what the stages took in the band: cycles of slices, else seconds.
+  void add_stages(std::map<std::string, double>& times);
 
   std::size_t bytes() const { return bytes_; }
-  double busy_seconds() { return wave_.collect_seconds() + receive_.collect_seconds(); }
+  double busy_seconds();
 
  private:
   cl::Buffer make(std::size_t bytes, const char* what);
+  template <class Do>
+  void for_each_stage(const Do& act);
   template <class K>
   void set_arguments(wavefront::Stage<K>& stage);
+  void launch_waves(const Outbox& outbox);
 
   const device::Context& context_;
   cl::CommandQueue queue_;
@@ -129,8 +136,10 @@ class Worker {
   std::vector<std::vector<float>>
       stashed_;   // what is being read of the pools: here, since after an error a read may go on
   Outbox inbox_;  // of one part: rays from the host's memory
-  wavefront::Stage<kernels::TravelWave> wave_;
-  wavefront::Stage<kernels::Receive> receive_;
+  // Slices' waves in one launch; or their stages, where every ray has a work-item.
+  std::optional<wavefront::Stage<kernels::TravelWave>> wave_;
+  std::optional<wavefront::Stage<kernels::Receive>> receive_;
+  std::optional<RayStages> stages_;
 };
 
 }  // namespace kdray::odprt

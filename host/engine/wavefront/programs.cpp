@@ -32,6 +32,10 @@ constexpr layout::Features kShading =
     KDRAY_FEATURE_DIRECTIONAL | KDRAY_FEATURE_SPOT | KDRAY_FEATURE_BACKGROUND | KDRAY_FEATURE_FACES |
     KDRAY_FEATURE_SKY | KDRAY_FEATURE_FLOOR | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_KEEP_SHADING;
 
+// What sizes the plan of ODPRT's waves (odprt/choose_work.clh).
+constexpr layout::Features kSizesTravel =
+    KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS;
+
 // A wide form larger than this lies outside of the nearer caches, where fetching ahead is worth its
 // instructions: a tenth is lost at 1 and 3 MB, up to a third gained at 20 MB.
 constexpr std::size_t kNear = 4 << 20;
@@ -47,31 +51,31 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 layout::Features bits_read_by(const std::string& file) {
   if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
   if (file == "wave/plan.cl") return KDRAY_FEATURE_ADAPTIVE;
-  if (file == "raygen/admit.cl")
+  if (file == "odprt/stages/plan.cl") return KDRAY_FEATURE_ADAPTIVE | kSizesTravel;
+  if (file == "raygen/admit.cl" || file == "odprt/stages/admit.cl")
     return KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | KDRAY_FEATURE_FOOTPRINTS | kSamples |
            KDRAY_FEATURE_INSTANCES;
   if (file == "film/add.cl") return KDRAY_FEATURE_INSTANCES;
   if (file == "film/channels.cl") return kGeometry | kTexturing | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
-  if (file == "shade/shade.cl") return kShading;
+  if (file == "shade/shade.cl" || file == "odprt/stages/shade.cl") return kShading;
   if (file == "wave/wave.cl" || file == "odprt/wave.cl")
     return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | kSamples;
-  if (file == "odprt/receive.cl")
+  if (file == "odprt/receive.cl" || file == "odprt/stages/receive.cl")
     return KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_INSTANCES;
-  if (file == "traverse/trace_closest.cl")
+  if (file == "traverse/trace_closest.cl" || file == "odprt/stages/trace.cl")
     return kGeometry | kTexturing | KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS;
-  if (file == "traverse/trace_shadow.cl") return kGeometry | kTexturing;
+  if (file == "traverse/trace_shadow.cl" || file == "odprt/stages/shadow.cl") return kGeometry | kTexturing;
   return kGeometry;
 }
 
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
 // rays are counted; not masks, which a scene has to have, nor textures, whose arrays would be read, nor what
 // changes the form of rays or where they start; and not in ODPRT what sizes its plan
-// (odprt/admit.clh).
+// (odprt/choose_work.clh).
 layout::Features spare_bits_of(const std::string& file) {
   layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks | kSamples |
                                                  KDRAY_FEATURE_INSTANCES);
-  if (file == "odprt/wave.cl")
-    bits &= ~(KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_LIGHTS);
+  if (file == "odprt/wave.cl" || file == "odprt/stages/plan.cl") bits &= ~kSizesTravel;
   return bits;
 }
 
@@ -167,7 +171,8 @@ void Programs::use(const Tuning& t) {
 }
 
 bool Programs::walks_alone(const std::string& file, Traversal traversal) const {
-  const bool is_stage = file == "traverse/trace_closest.cl" || file == "traverse/trace_shadow.cl";
+  const bool is_stage = file == "traverse/trace_closest.cl" || file == "traverse/trace_shadow.cl" ||
+                        file == "odprt/stages/trace.cl" || file == "odprt/stages/shadow.cl";
   return traversal == Traversal::wide && (is_stage || (queries_alone_ && file == "traverse/query.cl"));
 }
 

@@ -94,7 +94,8 @@ void SceneBuffers::upload_lights(const device::Context& context, const flatten::
   if (with_sky) sky = upload(flat.sky, Slot::sky), sky_colors = upload(flat.sky_colors, Slot::sky_colors);
 }
 
-SceneBuffers::SceneBuffers(const device::Context& context, const Sizes& sizes) {
+SceneBuffers::SceneBuffers(const device::Context& context, const Sizes& sizes)
+    : compressed_(std::make_shared<Compressed>(context, Array<layout::WideNode>())) {
   const auto buffers = all();
   for (std::size_t i = 0; i < Slot::kArrays; ++i)
     *buffers[i] = context.buffer(CL_MEM_READ_ONLY, sizes[i], kNames[i]);
@@ -117,6 +118,7 @@ void SceneBuffers::copy(cl::CommandQueue& queue, const flatten::FlatScene& flat,
         queue.enqueueWriteBuffer(*buffers[i], CL_FALSE, 0, pieces[i].bytes, pieces[i].data);
     queue.finish();
   });
+  compressed_ = std::make_shared<Compressed>(compressed_->context, wide.nodes);
 }
 
 }  // namespace kdray::wavefront

@@ -37,8 +37,8 @@ struct SceneBuffers {
   void copy(cl::CommandQueue& queue, const flatten::FlatScene& flat, const flatten::WideForm& wide);
 
   // The wide form's nodes compressed (layout/compressed.layout.h), for kernels that walk it with one ray to a
-  // work-item: they read them in the place of wide_nodes. Made at the first call, by one thread at a time;
-  // not where there is only room.
+  // work-item: they read them in the place of wide_nodes. Made at the first call after the scene has come, by
+  // one thread at a time.
   const cl::Buffer& compressed_nodes() const;
 
   // The scene's lights, and its sky, in place of others, of which there may have been more or fewer.

@@ -44,9 +44,9 @@ TEST(PartStore, HoldsThePartThatWasAskedForLast) {
     costs[0] = static_cast<double>(costs.size());  // parts of unequal size
     const odprt::Division division =
         odprt::divide(scene.flat, scene.wide, cut, costs, {.n_parts = 4, .spare = 1});
-    const std::size_t bytes = odprt::buffer_bytes(division);
+    const std::size_t bytes = odprt::buffer_bytes(division, false);
     for (const bool streamed : {true, false}) {
-      PartStore store(context, queue, division, cut, streamed);
+      PartStore store(context, queue, division, cut, streamed, false);
       EXPECT_EQ(store.bytes(), 0u);
       for (const std::uint32_t part : {3u, 0u, 1u, 1u, 3u, 2u, 0u}) {
         const odprt::LoadedPart& loaded = store.get(part);
