@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <functional>
 
 #include "base/process_memory.h"
@@ -30,11 +31,26 @@ void take_films(WorkerPool& pool, std::span<const layout::i64> of_others,
                 const std::function<void(Films)>& take) {
   std::vector<std::span<const layout::i64>> films;
   if (!of_others.empty()) films.push_back(of_others);
-  for (std::size_t q = 0; q < pool.workers.size(); ++q)
-    films.push_back(on_queue(q, "reading the film", [&] { return pool.workers[q]->map_film(); }));
-  take(films);
-  for (std::size_t q = 0; q < pool.workers.size(); ++q)
-    on_queue(q, "giving back the film", [&] { pool.workers[q]->unmap_film(); });
+  std::exception_ptr of_take;  // no queue's fault
+  const auto take_all = [&] {
+    try {
+      take(films);
+    } catch (...) {
+      of_take = std::current_exception();
+    }
+  };
+  // Each film is there while the next ones are read.
+  const std::function<void(std::size_t)> read_from = [&](std::size_t q) {
+    if (q == pool.workers.size()) return take_all();
+    on_queue(q, "reading the film", [&] {
+      pool.workers[q]->with_film([&](std::span<const layout::i64> film) {
+        films.push_back(film);
+        read_from(q + 1);
+      });
+    });
+  };
+  read_from(0);
+  if (of_take) std::rethrow_exception(of_take);
 }
 
 void add_counts(const std::vector<std::vector<std::uint64_t>>& from,

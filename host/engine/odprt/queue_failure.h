@@ -29,6 +29,8 @@ template <class Call>
 decltype(auto) on_queue(std::size_t queue, const std::string& doing, Call&& call) {
   try {
     return call();
+  } catch (const QueueFailures&) {
+    throw;  // of another queue, on which this call waits
   } catch (...) {
     throw QueueFailures({{queue, device::error_of_queue(std::current_exception(), doing)}});
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "device/opencl/read_back.h"
 #include "layout/features.h"
 #include "layout/rays.layout.h"
 
@@ -326,15 +327,17 @@ std::vector<SubtreeUse> Worker::visits() const {
   return sums;
 }
 
-std::span<const layout::i64> Worker::map_film() {
-  const std::size_t n = n_places_ * 3;
-  mapped_film_ = queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ, 0, n * sizeof(layout::i64));
-  return {static_cast<const layout::i64*>(mapped_film_), n};
-}
-
-void Worker::unmap_film() {
-  queue_.enqueueUnmapMemObject(buffers_.film, mapped_film_);
-  mapped_film_ = nullptr;
+void Worker::with_film(const std::function<void(std::span<const layout::i64>)>& take) {
+  const std::size_t n = n_places_ * 3, bytes = n * sizeof(layout::i64);
+  const auto take_from = [&](const void* sums) { take({static_cast<const layout::i64*>(sums), n}); };
+  if (!context_.works_in_host_memory()) {
+    const device::Piece whole{0, bytes};
+    return device::read_pieces(context_, queue_, buffers_.film, {&whole, 1},
+                               [&](std::size_t, const void* sums) { take_from(sums); });
+  }
+  void* const sums = queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ, 0, bytes);
+  take_from(sums);
+  queue_.enqueueUnmapMemObject(buffers_.film, sums);
 }
 
 }  // namespace kdray::odprt

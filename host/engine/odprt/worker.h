@@ -96,9 +96,8 @@ class Worker {
   std::uint64_t n_waiting() const;   // rays in the pools
   std::vector<SubtreeUse> visits() const;
 
-  // The film's sums, three for each place, until unmap_film().
-  std::span<const layout::i64> map_film();
-  void unmap_film();
+  // Calls take(sums) with the film's, three for each place, which are there until it returns.
+  void with_film(const std::function<void(std::span<const layout::i64>)>& take);
 
   // Copies what an outbox of this queue has to where the rays of the parts that it goes to wait; nullptr: not
   // that part's.
@@ -132,7 +131,6 @@ class Worker {
   std::vector<layout::u32> visits_;
   wavefront::SliceBuffers buffers_;
   cl::Buffer travel_buffer_, cells_, credit_buffer_, traffic_buffer_, shadow_pool_, visit_buffer_;
-  void* mapped_film_ = nullptr;
   std::vector<std::vector<float>>
       stashed_;   // what is being read of the pools: here, since after an error a read may go on
   Outbox inbox_;  // of one part: rays from the host's memory
