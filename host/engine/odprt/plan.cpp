@@ -56,8 +56,8 @@ bool host_sorts(const PlanRequest& r) {
   return r.streamed || r.n_parts > kMostPlaces;
 }
 
-Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
-  Plan plan;
+BufferPlan make_plan(layout::Frame& frame, const PlanRequest& r) {
+  BufferPlan plan;
   plan.n_slices = std::clamp<std::uint32_t>(frame.n_tiles, 1, r.n_slices);
   plan.n_waves = std::max(kWaves, kLaunchWaves / plan.n_slices);
   const bool lights = (r.features & KDRAY_FEATURE_LIGHTS) != 0;
@@ -99,7 +99,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   return plan;
 }
 
-std::size_t work_bytes(const layout::Frame& frame, const Plan& plan, std::size_t band_pixels,
+std::size_t work_bytes(const layout::Frame& frame, const BufferPlan& plan, std::size_t band_pixels,
                        std::size_t n_outboxes) {
   const std::size_t pools = std::size_t{frame.max_depth} * plan.outbox.ray_fields * frame.pool_capacity +
                             std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * (plan.shadow_pool + 2 * KDRAY_LANES);

@@ -14,8 +14,8 @@ cl::Buffer Worker::make(std::size_t bytes, const char* what) {
 }
 
 Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
-               const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
-               std::span<const layout::PartCell> directory, const WorkCapacity& capacity,
+               const layout::Frame& frame, const BufferPlan& plan, layout::Features features,
+               Traversal traversal, std::span<const layout::PartCell> directory, const WorkCapacity& capacity,
                std::size_t max_subtrees)
     : context_(context),
       queue_(std::move(queue)),
