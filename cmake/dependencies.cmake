@@ -29,7 +29,7 @@ if(Boost_FOUND AND turbojpeg_FOUND)
 else()
   set(KDRAY_CAN_VIEW OFF)
 endif()
-# Optional: what glTF files may be packed with (host/scene/abilities.cpp tells users which of them are there).
+# Optional: what glTF files may be packed with (host/scene/import/load.cpp tells users which of them are there).
 pkg_check_modules(draco QUIET IMPORTED_TARGET draco)   # libdraco-dev
 find_package(meshoptimizer CONFIG QUIET)               # libmeshoptimizer-dev
 pkg_check_modules(webp QUIET IMPORTED_TARGET libwebp)  # libwebp-dev

@@ -1,8 +1,8 @@
 // What    A scene's primitives in Embree, as a fast scene and as a robust one, and the numbers that its hits
 //         stand for.
 // Shape   Each kind's geometry is that of kinds.h. Coordinates are those of kdray's tree
-//         (scene/geometry.h). A mesh is a scene of Embree's, in its own space as in kdray, and an instance
-//         one of its instances.
+//         (scene/model/geometry.h). A mesh is a scene of Embree's, in its own space as in kdray, and an
+//         instance one of its instances.
 #pragma once
 
 #include <array>

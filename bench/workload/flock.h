@@ -2,7 +2,7 @@
 // Shape   Their middles lie on a grid, `apart` times the mesh's largest extent from each other: at 1 they
 //         stand side by side, at less they reach into each other. Each is turned about the vertical, and
 //         every second one mirrored. Camera and lights are those that a scene without them gets
-//         (scene/frame.h).
+//         (scene/model/frame.h).
 #pragma once
 
 #include "scene/model/scene.h"

@@ -29,8 +29,8 @@ std::uint64_t memory_limit(const State& state, const RenderOptions& o) {
   return o.device_memory > 0 ? std::min(o.device_memory, piece) : piece;
 }
 
-// Rays of a wave, where each of them has a work-item; 0 where they travel between slices: if some device wants
-// these, and between ranks. What they travel through takes more memory than a wave of PDPRT.
+// Rays of a wave, where each of them has a work-item; 0 where they travel between slices: if some device
+// wants these, and between ranks. What they travel through takes more memory than a wave of PDPRT.
 std::uint32_t wave_rays(const State& state, const Job& job) {
   constexpr std::uint32_t kShare = 4;
   if (state.ranks) return 0;

@@ -23,7 +23,7 @@ struct Job {
   layout::Features features;
   timeline::Timeline* timeline;                                  // null: not wanted
   std::shared_ptr<checkpoint::FrameCheckpoint> checkpoint = {};  // null: there is none
-  // With ranks: the frame's mark, and what a queue's film takes at most (agree.h).
+  // With ranks: the frame's mark, and what a queue's film takes at most (frame_identity.h).
   Hash shared_frame = {};
   std::size_t film_of_ranks = 0;
 };

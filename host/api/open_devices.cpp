@@ -59,7 +59,7 @@ namespace {
 // There is one cache for all who name this folder, so that what any of them has built is kept.
 std::shared_ptr<device::ProgramCache> cache_in(const std::filesystem::path& folder) {
   static std::mutex mutex;
-  // Never destroyed, on purpose: they hold OpenCL's programs (device/context.h).
+  // Never destroyed, on purpose: they hold OpenCL's programs (device/opencl/context.h).
   static auto* const caches = new std::map<std::filesystem::path, std::shared_ptr<device::ProgramCache>>;
   if (folder.empty()) return nullptr;
   const std::lock_guard lock(mutex);

@@ -1,6 +1,5 @@
 // Scenes of doubles (TreeOptions::geometry): every answer against GMP's rationals, over the vertices and rays
 // as they were given: which triangle is hit, by the half-open rule, how often, and where.
-#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "api/rationals.h"
 #include "kdray/kdray.h"
 #include "support/device.h"
 #include "support/errors.h"
@@ -16,9 +16,12 @@
 namespace kdray {
 namespace {
 
+using test::Exact;
+using test::exact;
 using test::fails;
-using Point = std::array<double, 3>;
-using Exact = std::array<mpq_class, 3>;
+using test::minus;
+using test::Point;
+using test::volume;
 
 constexpr unsigned kSeed = 440;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -72,17 +75,6 @@ Mesh sheets() {
 }
 
 // ---- What the rationals say
-
-Exact exact(const Point& p) {
-  return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])};
-}
-Exact minus(const Exact& a, const Exact& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-mpq_class volume(const Exact& a, const Exact& b, const Exact& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
 
 struct Crossing {
   mpq_class t;

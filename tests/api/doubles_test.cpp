@@ -1,6 +1,5 @@
 // Rays and points of doubles near surfaces, where floats can't tell the sides apart: against exact rational
 // arithmetic, and against shapes' own formulas.
-#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <random>
 
+#include "api/rationals.h"
 #include "kdray/kdray.h"
 #include "support/device.h"
 #include "support/errors.h"
@@ -19,8 +19,12 @@ namespace kdray {
 namespace {
 
 using test::Cube;
+using test::Exact;
+using test::exact;
 using test::fails;
-using Point = std::array<double, 3>;
+using test::minus;
+using test::Point;
+using test::volume;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr unsigned kSeed = 39;
@@ -88,18 +92,6 @@ Mesh overlapping_cubes() {
   }
   for (const std::uint32_t v : other.triangles) mesh.triangles.push_back(8 + v);
   return mesh;
-}
-
-using Exact = std::array<mpq_class, 3>;
-Exact exact(const Point& p) {
-  return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])};
-}
-Exact minus(const Exact& a, const Exact& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-mpq_class volume(const Exact& a, const Exact& b, const Exact& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
 // t of all that the half-line crosses, exactly; none where it meets an edge or begins in a plane.

@@ -2,7 +2,8 @@
 """What    Checks the documents: that every link and every named file exists, and that pages stay short.
 Shape   Relative links of all pages, with their anchors; paths in backquotes (host/..., kernels/..., ...) of pages that
         explain how things are now (the logbook may name what is gone); `docs/....md` and other pages named in code;
-        the length of explanation pages; the width of text; links between a page and its logbook both ways.
+        source files named in comments, by name or by the end of their path; the length of explanation pages; the
+        width of text; links between a page and its logbook both ways.
 Errors  Status 1, with a line for each fault: file, line, what is wrong."""
 
 import pathlib
@@ -19,9 +20,14 @@ explanations = sorted((root / "docs" / "design").glob("*.md")) + sorted((root / 
 explanations.append(root / "docs" / "traversal.md")
 logbook = root / "docs" / "logbook"
 wrapped = explanations + sorted(logbook.glob("*.md")) + [root / "docs" / "README.md"]
-CODE = {".h", ".cpp", ".cl", ".clh", ".cmake", ".txt", ".py", ".sh", ".json", ".nff", ""}
+CODE = {".h", ".cpp", ".c", ".cl", ".clh", ".cmake", ".txt", ".py", ".js", ".sh", ".json", ".nff", ""}
 OUTSIDE = {"SOURCES.md"}  # of the test data
-FOLDERS = ("host", "kernels", "tests", "bench", "scripts", "scenes", "docs", "cmake", ".ci")
+FOLDERS = ("host", "kernels", "tests", "bench", "scripts", "scenes", "docs", "cmake", ".ci", "python", "examples")
+C_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+OTHER_COMMENT = re.compile(r"#\s[^\n]*|\"\"\".*?\"\"\"", re.DOTALL)
+SOURCE = re.compile(r"(?<![\w./<>{}*$-])(?:\.{1,2}/)*(\w[\w./-]*\.(?:h|cpp|c|clh?|py|js|cmake))(?![\w(/-]|\.\w)")
+OF_OTHERS = {"src/common/color.c", "tests/generic.py"}  # Radiance's, trimesh's
+PLACEHOLDERS = re.compile(r"(.*/)?[A-Z]+(/.*|\.\w+)|file\.cpp|primitives/x/x\.layout\.h")
 
 faults = []
 
@@ -122,6 +128,18 @@ def check_code(file):
         for name in re.findall(r"(?<![\w/.])([A-Z][A-Z_]+\.md)\b", line):
             if name not in OUTSIDE and not (root / name).exists():
                 fault(file, number, f"there is no {name}")
+    check_comments(file, text)
+
+
+def check_comments(file, text):
+    """Files of sources that comments name: beside the file, or the end of some path."""
+    is_c = file.suffix in {".h", ".cpp", ".c", ".cl", ".clh", ".js"}
+    for comment in (C_COMMENT if is_c else OTHER_COMMENT).finditer(text):
+        for name in SOURCE.finditer(comment[0]):
+            known = name[1] in ends or name[1] in OF_OTHERS or PLACEHOLDERS.fullmatch(name[1])
+            if not known and not (file.parent / name[0]).exists():
+                number = text.count("\n", 0, comment.start() + name.start()) + 1
+                fault(file, number, f"there is no {name[0]}, which a comment names")
 
 
 for page in pages:
@@ -132,6 +150,7 @@ for page in sorted(logbook.glob("*.md")):
     if page.name != "README.md":
         check_both_ways(page)
 code = [f for folder in FOLDERS if folder != "docs" for f in sorted((root / folder).rglob("*"))]
+ends = {"/".join(f.parts[i:]) for f in code for i in range(len(root.parts), len(f.parts))}
 code = [f for f in code + [root / "CMakeLists.txt"] if f.is_file() and f.suffix in CODE and f.stat().st_size < 1 << 20]
 for file in code:
     check_code(file)

@@ -172,7 +172,7 @@ scene::Scene triangles_of_any_coordinates(std::uint64_t seed) {
 }
 
 // Sizes from a millionth of the distance from the origin to ten times that. (Nearer to the origin, beside a
-// scene of this size, products of their lengths would be below what floats hold: math/local_space.h.)
+// scene of this size, products of their lengths would be below what floats hold: base/local_space.h.)
 scene::Scene triangles_of_any_size(std::uint64_t seed) {
   scene::Scene s = with_material();
   for (int i = 0; i < kPrimitives; ++i) {

@@ -1,5 +1,5 @@
 // What    Sets the arguments of a test's own kernel, all of them, in the order of its parameters. kdray's
-//         kernels have their arguments by name (device/kernel.h).
+//         kernels have their arguments by name (device/opencl/kernel.h).
 // Errors  Throws where the kernel takes another number of them.
 #pragma once
 

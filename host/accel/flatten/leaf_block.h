@@ -89,11 +89,11 @@ struct TriangleInBlock {
   }
 };
 
-// The factor of sign_limit (intersect/triangle.clh) that the triangle alone decides, or more: |n|_1 of the
-// normal that the kernels compute in float, and what is added for the tilt, at most 8 times the square of the
-// edges' largest component. With u = 2^-24, an edge is off by u of itself, a product of two by 3u, a
-// component by 3u of the products' sizes and u of itself: here and there together by less than 8u of `size`
-// and 4u of `sum`. What underflows is below 2^-140.
+// The factor of sign_limit (primitives/triangle/intersect.clh) that the triangle alone decides, or more:
+// |n|_1 of the normal that the kernels compute in float, and what is added for the tilt, at most 8 times the
+// square of the edges' largest component. With u = 2^-24, an edge is off by u of itself, a product of two by
+// 3u, a component by 3u of the products' sizes and u of itself: here and there together by less than 8u of
+// `size` and 4u of `sum`. What underflows is below 2^-140.
 inline float sign_limit_factor(const TriangleInBlock& t) {
   float e[2][3];
   for (int k = 0; k < 3; ++k) {

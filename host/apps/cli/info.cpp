@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "accel/flatten/flatten.h"
 #include "accel/flatten/wide.h"
@@ -29,7 +31,7 @@ namespace {
 
 // ---- The report as text for people
 
-constexpr std::size_t kMaterialsShown = 12;  // the rest is counted; --json has them all
+constexpr std::size_t kShown = 12;  // the rest is counted; --json has them all
 
 std::string line(std::string_view name, std::string_view value) {
   return fmt::format("{:<12} {}\n", name, value);
@@ -98,31 +100,30 @@ std::string material_text(const Json& m) {
 
 std::string materials_text(const Json& materials) {
   std::string text = line("materials", fmt::format("{}", materials.size()));
-  for (std::size_t i = 0; i < std::min(materials.size(), kMaterialsShown); ++i)
+  for (std::size_t i = 0; i < std::min(materials.size(), kShown); ++i)
     text += line("", fmt::format("{}: {}", i, material_text(materials[i])));
-  if (materials.size() > kMaterialsShown)
-    text += line("", fmt::format("and {} more (--json shows all)", materials.size() - kMaterialsShown));
+  if (materials.size() > kShown)
+    text += line("", fmt::format("and {} more (--json shows all)", materials.size() - kShown));
   return text;
 }
 
-std::string parts_text(const Json& parts) {
-  if (parts.empty()) return "";
-  std::string text = line("parts", fmt::format("{}", parts.size()));
-  for (std::size_t i = 0; i < std::min(parts.size(), kMaterialsShown); ++i) {
-    const Json& p = parts[i];
+std::string parts_text(const Json& parts, std::size_t n_parts) {
+  if (n_parts == 0) return "";
+  std::string text = line("parts", fmt::format("{}", n_parts));
+  for (const Json& p : parts) {
     const std::uint64_t primitives = p["primitives"], instances = p.value("instances", std::uint64_t{0});
     text += line("", fmt::format("'{}', {}", p["name"].get<std::string>(),
                                  instances > 0 ? fmt::format("{} instances", instances)
                                                : fmt::format("{} primitives", primitives)));
   }
-  if (parts.size() > kMaterialsShown)
-    text += line("", fmt::format("and {} more (--json shows all)", parts.size() - kMaterialsShown));
+  if (n_parts > parts.size())
+    text += line("", fmt::format("and {} more (--json shows all)", n_parts - parts.size()));
   return text;
 }
 
 std::string lights_text(const Json& lights) {
   std::string text = line("lights", fmt::format("{}", lights.size()));
-  for (std::size_t i = 0; i < std::min(lights.size(), kMaterialsShown); ++i) {
+  for (std::size_t i = 0; i < std::min(lights.size(), kShown); ++i) {
     const Json& l = lights[i];
     const bool placed = l.contains("position");
     text += line(
@@ -192,7 +193,7 @@ std::string memory_text(const Json& m) {
   return text;
 }
 
-std::string report_as_text(const Json& r) {
+std::string report_as_text(const Json& r, std::size_t n_parts) {
   const Json& bounds = r["bounds"];
   std::string text = one_line(r["scene"].get<std::string>()) + "\n";
   text += line("primitives", primitives_text(r["primitives"]));
@@ -200,7 +201,7 @@ std::string report_as_text(const Json& r) {
                                           : vector_text(bounds["min"]) + " to " + vector_text(bounds["max"]));
   text += line("camera", camera_text(r["camera"]));
   text += line("background", background_text(r["background"]));
-  text += lights_text(r["lights"]) + materials_text(r["materials"]) + parts_text(r["parts"]) +
+  text += lights_text(r["lights"]) + materials_text(r["materials"]) + parts_text(r["parts"], n_parts) +
           tree_text(r["tree"]) + memory_text(r["memory"]);
   text += line("time", fmt::format("load {}, build {}, flatten {}",
                                    seconds_in_words(r["seconds"]["load"].get<double>()),
@@ -275,7 +276,8 @@ int run(const InfoArgs& o) {
   const std::optional<std::uint64_t> build_peak =
       peak_bytes_of([&] { forms = build_forms_within(scene, geometry, config, o.tree.memory_bytes); });
 
-  Json report = scene_report(scene, geometry);
+  Parts parts = parts_report(scene, o.json ? std::numeric_limits<std::size_t>::max() : kShown);
+  Json report = scene_report(scene, geometry, std::move(parts.first));
   report["tree"] = tree_report(kdtree::measure(forms.tree, geometry, config));
   report["tree"]["build"] = prepare::name_of(o.tree.quality);
   report["memory"] = memory_report({scene, geometry, forms.tree, forms.flat, forms.wide, build_peak,
@@ -283,7 +285,8 @@ int run(const InfoArgs& o) {
   report["seconds"] = {{"load", load_seconds},
                        {"build", geometry_seconds + forms.build_seconds},
                        {"flatten", forms.flatten_seconds}};
-  print(o.json ? report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : report_as_text(report));
+  print(o.json ? report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"
+               : report_as_text(report, parts.count));
   return 0;
 }
 

@@ -1,6 +1,7 @@
 #include "apps/cli/info_report.h"
 
 #include <array>
+#include <utility>
 
 namespace kdray::cli {
 
@@ -121,25 +122,12 @@ Json materials_report(const scene::Scene& scene) {
   return list;
 }
 
-// Adds up the numbers in the runs of each name.
+// Adds up the numbers in the runs of each name; runs of names that there are not are left out.
 std::vector<std::uint64_t> counts_of(const std::vector<scene::NameRun>& runs, std::size_t n_names) {
   std::vector<std::uint64_t> counts(n_names);
-  for (std::size_t i = 0; i + 1 < runs.size(); ++i) counts[runs[i].name] += runs[i + 1].first - runs[i].first;
+  for (std::size_t i = 0; i + 1 < runs.size(); ++i)
+    if (runs[i].name < n_names) counts[runs[i].name] += runs[i + 1].first - runs[i].first;
   return counts;
-}
-
-Json parts_report(const scene::Scene& scene) {
-  Json list = Json::array();
-  if (!scene.names) return list;
-  const auto& [texts, ends, materials, primitives, instances] = *scene.names;
-  const auto n_primitives = counts_of(primitives, ends.size());
-  const auto n_instances = counts_of(instances, ends.size());
-  for (std::uint32_t i = 1; i < ends.size(); ++i) {
-    if (n_primitives[i] == 0 && n_instances[i] == 0) continue;
-    list.push_back({{"name", scene.names->text(i)}, {"primitives", n_primitives[i]}});
-    if (n_instances[i] > 0) list.back()["instances"] = n_instances[i];
-  }
-  return list;
 }
 
 Json lights_report(const scene::Scene& scene) {
@@ -193,7 +181,22 @@ Json background_report(const scene::Scene& scene) {
 
 }  // namespace
 
-Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
+Parts parts_report(const scene::Scene& scene, std::size_t most) {
+  Parts parts;
+  if (!scene.names) return parts;
+  const scene::Names& names = *scene.names;
+  const auto n_primitives = counts_of(names.primitives, names.ends.size());
+  const auto n_instances = counts_of(names.instances, names.ends.size());
+  for (std::uint32_t i = 1; i < names.ends.size(); ++i) {
+    if (n_primitives[i] == 0 && n_instances[i] == 0) continue;
+    if (++parts.count > most) continue;
+    parts.first.push_back({{"name", names.text(i)}, {"primitives", n_primitives[i]}});
+    if (n_instances[i] > 0) parts.first.back()["instances"] = n_instances[i];
+  }
+  return parts;
+}
+
+Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry, Json parts) {
   Json report;
   report["scene"] = scene.name;
   Json counts = {{"total", scene.primitive_count()}};
@@ -208,7 +211,7 @@ Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry) {
   report["background"] = background_report(scene);
   report["lights"] = lights_report(scene);
   report["materials"] = materials_report(scene);
-  report["parts"] = parts_report(scene);
+  report["parts"] = std::move(parts);
   report["warnings"] = scene.warnings;
   if (const std::string warning = scene::range_warning(geometry); !warning.empty())
     report["warnings"].push_back(warning);

@@ -2,6 +2,7 @@
 //         is one source of figures for both.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -15,7 +16,15 @@
 
 namespace kdray::cli {
 
-Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry);
+// The parts of a scene that have primitives or instances: how many there are, and the first of them, `most`
+// or fewer, since a file may have a million.
+struct Parts {
+  std::size_t count = 0;
+  Json first = Json::array();
+};
+Parts parts_report(const scene::Scene& scene, std::size_t most);
+
+Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry, Json parts);
 Json tree_report(const kdtree::Statistics& statistics);
 
 // What takes memory on the way from a file to the device.

@@ -1,6 +1,6 @@
 // What    The rays or points that kdray trace asks about, as their file has them: float or double.
 // Shape   Views of them, as the API takes them (kdray/query.h).
-// Errors  kdray::Error: the file's own (rays/rows_file.h); ErrorCode::out_of_memory where they and their
+// Errors  kdray::Error: the file's own (io/array/rows_file.h); ErrorCode::out_of_memory where they and their
 //         answers don't fit.
 #pragma once
 

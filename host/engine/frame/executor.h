@@ -45,7 +45,7 @@ struct List {
   std::span<const layout::u32> samples = {};  // two words for each place; empty: tiles
   double seconds = kForever;                  // for which entries are begun; the others are left
 
-  std::uint32_t of_runs() const { return samples.empty() ? 0 : 1; }
+  bool has_runs() const { return !samples.empty(); }
 };
 
 // Those of `all` that are not in `left`, in their order.

@@ -4,7 +4,7 @@
 
 namespace kdray::odprt {
 
-Exchange::Exchange(const Plan& plan, const RankTable& table, std::vector<std::size_t> owner,
+Exchange::Exchange(const BufferPlan& plan, const RankTable& table, std::vector<std::size_t> owner,
                    std::vector<std::vector<bool>> direct,
                    std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes, const Shares& shares)
     : table_(table),

@@ -73,7 +73,7 @@ class Exchange {
  public:
   // `owner` has the queue of each part, among those of all ranks; `direct[q][p]`: queue q's outbox can be
   // read by the queue of part p. Else queues are this rank's.
-  Exchange(const Plan& plan, const RankTable& table, std::vector<std::size_t> owner,
+  Exchange(const BufferPlan& plan, const RankTable& table, std::vector<std::size_t> owner,
            std::vector<std::vector<bool>> direct, std::vector<std::vector<std::unique_ptr<Outbox>>>& outboxes,
            const Shares& shares);
 

@@ -190,7 +190,7 @@ void Executor::run(BandWork& work, const std::function<void(double)>& progress) 
 frame::Entries Executor::render(frame::List list, const frame::Sink& sink,
                                 const std::function<void(double)>& progress) {
   BandWork work =
-      work_of({.of_runs = list.of_runs(), .first_pixel = list.first_place, .n_places = list.n_places},
+      work_of({.of_runs = list.has_runs(), .first_pixel = list.first_place, .n_places = list.n_places},
               list.entries, list.samples);
   work.seconds = list.seconds;
   // How many will be left when the time is over can't be told before.

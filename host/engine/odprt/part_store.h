@@ -11,8 +11,8 @@
 namespace kdray::odprt {
 
 // The bytes of buffers that any part's geometry fits into: each array as large as the part with most of it
-// needs. Where parts hold different kinds of primitives, that is more than the largest part. `compressed`: the
-// nodes' compressed form is wanted as well.
+// needs. Where parts hold different kinds of primitives, that is more than the largest part. `compressed`:
+// the nodes' compressed form is wanted as well.
 std::size_t buffer_bytes(const Division& division, bool compressed);
 
 class PartStore {

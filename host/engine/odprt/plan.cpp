@@ -34,7 +34,8 @@ std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t batch, std::uin
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);
 // The bytes of a ray on its way and of two shadow rays.
 constexpr std::size_t kSentBytes = kRayBytes + 2 * KDRAY_SENT_SHADOW_FIELDS * sizeof(float);
-constexpr std::size_t kPoolShare = 32, kOutboxShare = 8, kBatchShare = 8;  // of memory that is short: that part of it
+constexpr std::size_t kPoolShare = 32, kOutboxShare = 8,
+                      kBatchShare = 8;  // of memory that is short: that part of it
 
 // Rays of a batch: as many as are asked for, fewer where buffers are small or memory is short.
 std::uint32_t batch_of(const PlanRequest& r, std::uint32_t light_batch) {
@@ -61,8 +62,8 @@ std::uint32_t streamed_pool(const PlanRequest& r, std::uint32_t batch, std::uint
                             std::uint32_t max_depth) {
   const std::uint32_t most = std::max(kStreamedPool, 4 * batch);
   if (!r.streamed) return most;
-  return static_cast<std::uint32_t>(std::clamp<std::size_t>(
-      r.memory / kPoolShare / kRayBytes / max_depth / n_slices, 2 * kBatch, most));
+  return static_cast<std::uint32_t>(
+      std::clamp<std::size_t>(r.memory / kPoolShare / kRayBytes / max_depth / n_slices, 2 * kBatch, most));
 }
 
 }  // namespace
@@ -71,8 +72,8 @@ bool host_sorts(const PlanRequest& r) {
   return r.streamed || r.n_parts > kMostPlaces;
 }
 
-Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
-  Plan plan;
+BufferPlan make_plan(layout::Frame& frame, const PlanRequest& r) {
+  BufferPlan plan;
   plan.per_ray = r.wave_rays > 0;
   plan.n_slices = plan.per_ray ? 1 : std::clamp<std::uint32_t>(frame.n_tiles, 1, r.n_slices);
   plan.n_waves = plan.per_ray ? kRayWaves : std::max(kWaves, kLaunchWaves / plan.n_slices);
@@ -116,7 +117,7 @@ Plan make_plan(layout::Frame& frame, const PlanRequest& r) {
   return plan;
 }
 
-std::size_t work_bytes(const layout::Frame& frame, const Plan& plan, std::size_t band_pixels,
+std::size_t work_bytes(const layout::Frame& frame, const BufferPlan& plan, std::size_t band_pixels,
                        std::size_t n_outboxes) {
   const std::size_t pools = std::size_t{frame.max_depth} * plan.outbox.ray_fields * frame.pool_capacity +
                             std::size_t{KDRAY_TRAVEL_SHADOW_FIELDS} * (plan.shadow_pool + 2 * KDRAY_LANES);

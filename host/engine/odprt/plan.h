@@ -11,7 +11,7 @@
 
 namespace kdray::odprt {
 
-struct Plan {
+struct BufferPlan {
   bool per_ray = false;  // every ray has a work-item, and there is one slice
   std::uint32_t n_slices = 0;
   std::uint32_t n_waves = 0;            // of a slice in one launch, at most
@@ -39,10 +39,10 @@ struct PlanRequest {
 bool host_sorts(const PlanRequest& request);
 
 // `frame` has tiles; its batch, pool and shadow sizes are set.
-Plan make_plan(layout::Frame& frame, const PlanRequest& request);
+BufferPlan make_plan(layout::Frame& frame, const PlanRequest& request);
 
 // What a worker takes beside geometry, with `n_outboxes` outboxes.
-std::size_t work_bytes(const layout::Frame& frame, const Plan& plan, std::size_t band_pixels,
+std::size_t work_bytes(const layout::Frame& frame, const BufferPlan& plan, std::size_t band_pixels,
                        std::size_t n_outboxes);
 
 }  // namespace kdray::odprt

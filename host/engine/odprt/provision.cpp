@@ -86,7 +86,7 @@ Error too_little(const Request& request, std::size_t needed) {
 // when that is too little for any number of parts.
 std::optional<Provision> try_streamed(const Request& request, std::size_t geometry_bytes,
                                       std::size_t of_queue, std::uint32_t least_parts) {
-  const double geometry = kSpareGeometry * static_cast<double>(geometry_bytes);
+  const double geometry = kMostOfEqualShare * static_cast<double>(geometry_bytes);
   auto n_parts = static_cast<std::uint32_t>(std::max<std::size_t>({request.queues.size(), 2, least_parts}));
   for (;;) {
     Provision p = provide_for(request, n_parts, true, of_queue / 8 * kFilmEighths, of_queue);
@@ -116,7 +116,7 @@ Provision provide(const Request& request, std::size_t geometry_bytes, std::uint3
   if (request.device_memory == 0) return all;
   if (all.plan.per_ray) geometry_bytes += geometry_bytes / 2;  // nodes lie there compressed as well
   const std::size_t of_queue = request.device_memory / queues_on_a_device(request);
-  const double share = kSpareGeometry * static_cast<double>(geometry_bytes) / n_queues;
+  const double share = kMostOfEqualShare * static_cast<double>(geometry_bytes) / n_queues;
   if (static_cast<double>(work_of(all) + kMostDirectory) + share <= static_cast<double>(of_queue)) return all;
   return provide_streamed(request, geometry_bytes, of_queue, least_parts);
 }

@@ -17,14 +17,14 @@ namespace kdray::odprt {
 
 // A part may take this multiple of an equal share of the geometry, since some primitives lie in
 // several parts and parts are of unequal size.
-inline constexpr double kSpareGeometry = 1.3;
+inline constexpr double kMostOfEqualShare = 1.3;
 
 // The most parts that a ray can name.
 inline constexpr std::uint32_t kMostParts = KDRAY_MAX_PARTS;
 
 struct Provision {
   layout::Frame frame;  // with the plan's sizes
-  Plan plan;
+  BufferPlan plan;
   std::uint32_t n_parts = 0;
   std::size_t n_outboxes = 0;     // of a queue
   bool streamed = false;          // parts come and go

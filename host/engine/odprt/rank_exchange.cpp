@@ -33,7 +33,7 @@ struct CreditsHead {
 };
 
 // What this rank's queues need at least.
-std::vector<std::uint32_t> kept(const Plan& plan, std::size_t n_queues) {
+std::vector<std::uint32_t> kept(const BufferPlan& plan, std::size_t n_queues) {
   std::vector<std::uint32_t> kept = plan.least;
   for (std::uint32_t& n : kept) n *= static_cast<std::uint32_t>(n_queues);
   return kept;
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> kept(const Plan& plan, std::size_t n_queues) {
 }  // namespace
 
 RankExchange::RankExchange(const RankTable& table, std::uint32_t list, const RaysKnown& known,
-                           const Plan& plan, Exchange& exchange, Shares& shares,
+                           const BufferPlan& plan, Exchange& exchange, Shares& shares,
                            std::function<bool(layout::u32)> is_entry)
     : table_(table),
       list_(list),

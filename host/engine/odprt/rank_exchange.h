@@ -29,7 +29,7 @@ namespace kdray::odprt {
 class RankExchange {
  public:
   // `is_entry`: whether the list may have such an entry.
-  RankExchange(const RankTable& table, std::uint32_t list, const RaysKnown& known, const Plan& plan,
+  RankExchange(const RankTable& table, std::uint32_t list, const RaysKnown& known, const BufferPlan& plan,
                Exchange& exchange, Shares& shares, std::function<bool(layout::u32)> is_entry);
 
   void step();

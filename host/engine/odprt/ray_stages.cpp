@@ -13,10 +13,11 @@ constexpr Traversal kNone = Traversal::binary, kWalk = Traversal::wide;  // part
 // Returns the programs once all that are wanted are built, side by side.
 wavefront::Programs& built(wavefront::Programs& programs, layout::Features features) {
   using namespace kernels;
-  std::vector<wavefront::Programs::Wanted> wanted = {
-      {TravelPlan::kFile, features, kNone},  {TravelAdmit::kFile, features, kNone},
-      {TravelTrace::kFile, features, kWalk}, {TravelShade::kFile, features, kNone},
-      {TravelReceive::kFile, features, kNone}};
+  std::vector<wavefront::Programs::Wanted> wanted = {{TravelPlan::kFile, features, kNone},
+                                                     {TravelAdmit::kFile, features, kNone},
+                                                     {TravelTrace::kFile, features, kWalk},
+                                                     {TravelShade::kFile, features, kNone},
+                                                     {TravelReceive::kFile, features, kNone}};
   if (features & KDRAY_FEATURE_LIGHTS) wanted.push_back({TravelShadow::kFile, features, kWalk});
   programs.build(wanted);
   return programs;

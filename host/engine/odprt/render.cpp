@@ -37,7 +37,7 @@ std::size_t subtrees_for(std::size_t n_parts) {
 DivideOptions options_for(const Provision& provision, const Request& request) {
   if (request.device_memory == 0) return {provision.n_parts, kSpare, kReplicated};
   return {provision.n_parts,
-          provision.streamed ? kSpare : std::min(kSpare, (kSpareGeometry - 1) / provision.n_parts), 0};
+          provision.streamed ? kSpare : std::min(kSpare, (kMostOfEqualShare - 1) / provision.n_parts), 0};
 }
 
 }  // namespace

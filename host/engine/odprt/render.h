@@ -3,7 +3,7 @@
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: object-distributed parallel ray tracing.
 // Errors  A queue whose device fails, or has too little memory, is left out from then on: the scene is
 //         divided among the others, and the frame begun anew. The error itself when no queue is left, or
-//         there are other ranks. Any other error ends the frame (device/opencl_error.h).
+//         there are other ranks. Any other error ends the frame (device/opencl/opencl_error.h).
 // Ranks   All call render(), with the same frame. Rank 0 has the picture; the result of the others has none.
 #pragma once
 
@@ -28,7 +28,7 @@ struct Queue {
   const device::Context* context = nullptr;
   cl::CommandQueue queue;
   wavefront::Programs* programs = nullptr;
-  std::size_t number = 0;  // among all queues, also those that are left out
+  std::size_t number = 0;       // among all queues, also those that are left out
   std::size_t work_group = 64;  // local size, where every ray has a work-item
 };
 

@@ -15,8 +15,8 @@ cl::Buffer Worker::make(std::size_t bytes, const char* what) {
 }
 
 Worker::Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
-               const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
-               std::size_t work_group, std::span<const layout::PartCell> directory,
+               const layout::Frame& frame, const BufferPlan& plan, layout::Features features,
+               Traversal traversal, std::size_t work_group, std::span<const layout::PartCell> directory,
                const WorkCapacity& capacity, std::size_t max_subtrees)
     : context_(context),
       queue_(std::move(queue)),
@@ -165,9 +165,9 @@ void Worker::receive(const Outbox& outbox, std::uint32_t place) {
 
 std::uint64_t Worker::receive(HostRayQueue& host_rays) {
   const OutboxShape& shape = inbox_.shape();
-  auto* rays = static_cast<float*>(
-      queue_.enqueueMapBuffer(inbox_.rays(), CL_FALSE, CL_MAP_WRITE_INVALIDATE_REGION, 0,  // the next one waits for both
-                              shape.n_streams() * shape.ray_fields * shape.ray_capacity * sizeof(float)));
+  auto* rays = static_cast<float*>(queue_.enqueueMapBuffer(
+      inbox_.rays(), CL_FALSE, CL_MAP_WRITE_INVALIDATE_REGION, 0,  // the next one waits for both
+      shape.n_streams() * shape.ray_fields * shape.ray_capacity * sizeof(float)));
   auto* shadow_rays = static_cast<float*>(queue_.enqueueMapBuffer(
       inbox_.shadow_rays(), CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0,
       shape.n_streams() * KDRAY_SENT_SHADOW_FIELDS * shape.shadow_capacity * sizeof(float)));

@@ -54,7 +54,7 @@ struct WorkCapacity {
 class Worker {
  public:
   Worker(const device::Context& context, cl::CommandQueue queue, wavefront::Programs& programs,
-         const layout::Frame& frame, const Plan& plan, layout::Features features, Traversal traversal,
+         const layout::Frame& frame, const BufferPlan& plan, layout::Features features, Traversal traversal,
          std::size_t work_group, std::span<const layout::PartCell> directory, const WorkCapacity& capacity,
          std::size_t max_subtrees);
   ~Worker();
@@ -120,7 +120,7 @@ class Worker {
   const device::Context& context_;
   cl::CommandQueue queue_;
   layout::Frame frame_;
-  const Plan plan_;
+  const BufferPlan plan_;
   layout::Travel travel_{};
   WorkCapacity capacity_;
   std::size_t bytes_ = 0, n_places_ = 0;

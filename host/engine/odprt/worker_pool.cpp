@@ -20,9 +20,8 @@ void add_worker(const Request& request, const Provision& provision, const Divisi
   pool.workers.push_back(std::make_unique<Worker>(
       *queue.context, queue.queue, *queue.programs, provision.frame, provision.plan, request.features,
       request.traversal, queue.work_group, division.directory, provision.capacity, largest_part(division)));
-  pool.stores.push_back(
-      std::make_unique<PartStore>(*queue.context, queue.queue, division, cut, provision.streamed,
-                                  provision.plan.per_ray));
+  pool.stores.push_back(std::make_unique<PartStore>(*queue.context, queue.queue, division, cut,
+                                                    provision.streamed, provision.plan.per_ray));
   pool.outboxes.emplace_back();
   for (std::size_t i = 0; i < provision.n_outboxes; ++i)
     pool.outboxes.back().push_back(std::make_unique<Outbox>(*queue.context, provision.plan.outbox));

@@ -12,7 +12,7 @@
 namespace kdray::odprt {
 
 struct WorkerPool {
-  Plan plan;
+  BufferPlan plan;
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<std::unique_ptr<PartStore>> stores;
   std::vector<std::vector<std::unique_ptr<Outbox>>> outboxes;  // by worker

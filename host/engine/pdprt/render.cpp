@@ -123,7 +123,7 @@ frame::Entries Executor::render_alone(frame::List list, const frame::Sink& sink,
 
 frame::Entries Executor::serve(frame::List list, const frame::Sink& sink, const Progress& progress) {
   Tiles own = Tiles::open(pool_->size(), list.entries.size());
-  server_->begin({.of_runs = list.of_runs(), .first_pixel = list.first_place}, std::move(list.entries),
+  server_->begin({.of_runs = list.has_runs(), .first_pixel = list.first_place}, std::move(list.entries),
                  list.samples, sink);
   const Timer timer;
   frame::Entries left;

@@ -6,7 +6,7 @@
 //         With ranks, rank 0 has the bag (tile_server.h), and the others get theirs from it (tile_client.h).
 // Errors  A queue whose device fails, or has too little memory, is left alone from then on: the others render
 //         the tiles that it has not delivered. The error of the last queue, when all fail. Any other error
-//         ends the frame (device/opencl_error.h).
+//         ends the frame (device/opencl/opencl_error.h).
 // Source  T. V. Christensen, "Parallel Ray Tracing", DTU 2009: pixel-distributed, bag of tasks.
 #pragma once
 

@@ -29,10 +29,10 @@ class Collection {
 
   // False, and nothing was added: there are more than `at_once_` hits.
   bool add(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
-    const std::span<const QuerySpan> spans = passes_.first(rays, masks);
+    const std::span<const QuerySpan> spans = passes_.trace_first_pass(rays, masks);
     later_.clear();
     std::size_t n_later = 0;
-    const bool all = passes_.others(spans, true, [&](const Passes::More& more) {
+    const bool all = passes_.trace_further_passes(spans, true, [&](const Passes::More& more) {
       later_.push_back(more);
       n_later += more.n;
       return to_.t.size() + n_later <= at_once_;
@@ -160,9 +160,9 @@ void count_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions&
   for (std::size_t first = 0, n = 0; first < rays.size(); first += n) {
     n = passes.next_chunk(rays.size() - first);
     const std::span<const QuerySpan> spans =
-        passes.first(rays.subspan(first, n), masks_of(options, first, n));
+        passes.trace_first_pass(rays.subspan(first, n), masks_of(options, first, n));
     for (std::size_t i = 0; i < n; ++i) counts[first + i] = std::min(spans[i].n_hits, options.max_hits);
-    passes.others(spans, false, [&](const Passes::More& more) {
+    passes.trace_further_passes(spans, false, [&](const Passes::More& more) {
       counts[first + more.ray] += more.n;
       return true;
     });

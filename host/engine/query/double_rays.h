@@ -13,6 +13,7 @@
 #include "engine/query/double_scene.h"
 #include "engine/query/grains.h"
 #include "engine/query/queries.h"
+#include "engine/query/shared_rows.h"
 
 namespace kdray::query {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/query/check_rays.h"
-#include "engine/query/grains.h"
+#include "engine/query/shared_rows.h"
 #include "engine/query/surface.h"
 
 namespace kdray::query {

@@ -71,6 +71,24 @@ struct ExactQuotient {
   }
 };
 
+// The same two in doubles, and the sizes of the terms that they are sums of. a: from the line's origin to the
+// first corner; a_size: the sizes of what a is a difference of.
+struct RoundedQuotient {
+  double volume, facing, volume_size = 0, facing_size = 0;
+
+  RoundedQuotient(const ExactLine::Corners& v, const dvec3& a, const dvec3& a_size, const dvec3& direction) {
+    const dvec3 e = v[1] - v[0], f = v[2] - v[0];
+    const dvec3 n = glm::cross(e, f);
+    volume = glm::dot(n, a), facing = glm::dot(n, direction);
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3, m = (k + 2) % 3;
+      const double part = std::abs(e[l] * f[m]) + std::abs(e[m] * f[l]);
+      volume_size += part * a_size[k];
+      facing_size += part * std::abs(direction[k]);
+    }
+  }
+};
+
 // The same number in as few doubles as there can be: each is below the last place of the next.
 template <int kOther>
 Expansion<48> compressed(const Expansion<kOther>& from) {
@@ -207,16 +225,8 @@ int ExactLine::exact_side_of(const dvec3& p, const dvec3& q) const {
 // Of a line that crosses the triangle: `facing` is the sign of the product of its direction and the normal.
 // Where rounding could have made the sign of t, that is decided exactly, and t lies between the corners.
 double ExactLine::distance_to(const Corners& v, int facing_sign) const {
-  const dvec3 e = v[1] - v[0], f = v[2] - v[0], a = v[0] - origin_;
-  const dvec3 n = glm::cross(e, f);
-  const double volume = glm::dot(n, a), facing = glm::dot(n, direction_);
-  double volume_size = 0, facing_size = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int l = (k + 1) % 3, m = (k + 2) % 3;
-    const double part = std::abs(e[l] * f[m]) + std::abs(e[m] * f[l]);
-    volume_size += part * std::abs(a[k]);
-    facing_size += part * std::abs(direction_[k]);
-  }
+  const dvec3 a = v[0] - origin_;
+  const auto [volume, facing, volume_size, facing_size] = RoundedQuotient(v, a, glm::abs(a), direction_);
   if (std::abs(volume) > kSure * volume_size && std::abs(facing) > kSure * facing_size)
     return volume / facing;
   const int sign = ExactQuotient(v, origin_, rest_, direction_).volume.sign() * facing_sign;
@@ -237,16 +247,8 @@ ExactLine::Bounds ExactLine::around(double t) {
 }
 
 ExactLine::Bounds ExactLine::bounds_of_t(const Corners& v) const {
-  const dvec3 e = v[1] - v[0], f = v[2] - v[0], a = v[0] - origin_ - rest_;
-  const dvec3 n = glm::cross(e, f);
-  const double volume = glm::dot(n, a), facing = glm::dot(n, direction_);
-  double volume_size = 0, facing_size = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int l = (k + 1) % 3, m = (k + 2) % 3;
-    const double part = std::abs(e[l] * f[m]) + std::abs(e[m] * f[l]);
-    volume_size += part * (std::abs(v[0][k]) + std::abs(origin_[k]));
-    facing_size += part * std::abs(direction_[k]);
-  }
+  const auto [volume, facing, volume_size, facing_size] =
+      RoundedQuotient(v, v[0] - origin_ - rest_, glm::abs(v[0]) + glm::abs(origin_), direction_);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (!(std::abs(facing) > 4 * kSure * facing_size)) return {-kInfinity, kInfinity};
   const double t = volume / facing;

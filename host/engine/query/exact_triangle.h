@@ -8,7 +8,7 @@
 //         Coordinates of the origin below 2^-140 and of the direction below 2^-200 count as 0: so no product
 //         underflows. What is told of triangles of doubles (t_of, weights_of, compare_t) takes coordinates of
 //         2^-100 or more: t and the weights are right to the last place, and which t is the lesser is exact.
-// Source  Shewchuk 1997 (scene/predicates.h). Nearly all signs are sure in doubles already.
+// Source  Shewchuk 1997 (scene/model/predicates.h). Nearly all signs are sure in doubles already.
 #pragma once
 
 #include <array>

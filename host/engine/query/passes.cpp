@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "engine/query/grains.h"
+#include "engine/query/shared_rows.h"
 
 namespace kdray::query {
 
@@ -76,7 +76,8 @@ std::size_t Passes::next_chunk(std::size_t left) const {
   return std::min(left, launch_capacity_ / capacity_);
 }
 
-std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<const std::uint32_t> masks) {
+std::span<const QuerySpan> Passes::trace_first_pass(std::span<const Ray> rays,
+                                                    std::span<const std::uint32_t> masks) {
   throw_if_cancelled(cancel_);
   seen_ = look_at(rays);
   if (!faulty_miss_) refuse_faulty(rays, seen_, n_taken_);
@@ -96,7 +97,7 @@ std::span<const QuerySpan> Passes::first(std::span<const Ray> rays, std::span<co
   return spans;
 }
 
-bool Passes::others(std::span<const QuerySpan> spans, bool want_hits, const Found& found) {
+bool Passes::trace_further_passes(std::span<const QuerySpan> spans, bool want_hits, const Found& found) {
   later_hits_.clear();
   std::vector<Rest> rest;
   for (std::uint32_t i = 0; i < spans.size(); ++i)

@@ -1,7 +1,8 @@
 // What    The passes in which all hits of rays are found, chunk by chunk: a first one with short lists, which
 //         are enough for nearly all rays, and further ones for the rays that have more.
-// Shape   begin() a call; for each chunk first(), then others(), and pack() of first_lists() for the hits of
-//         the first pass. Kernels and buffers serve the next call too (query_context.h).
+// Shape   begin() a call; for each chunk trace_first_pass(), then trace_further_passes(), and pack() of
+//         first_lists() for the hits of the first pass. Kernels and buffers serve the next call too
+//         (query_context.h).
 #pragma once
 
 #include <cstdint>
@@ -53,7 +54,8 @@ class Passes {
 
   // The first pass of the next chunk: what it found of each ray. (Looked at just before they are traced, the
   // rays come from memory once.)
-  std::span<const layout::QuerySpan> first(std::span<const Ray> rays, std::span<const std::uint32_t> masks);
+  std::span<const layout::QuerySpan> trace_first_pass(std::span<const Ray> rays,
+                                                      std::span<const std::uint32_t> masks);
 
   // More hits of ray `ray` of the chunk, in their order, and whether it has others.
   struct More {
@@ -66,8 +68,8 @@ class Passes {
   using Found = std::function<bool(const More&)>;  // whether to go on
 
   // Finds all that the chunk's rays have beyond the first pass, but no more than max_hits of a ray. `spans`
-  // is what first() returned. Hits are valid until the next call. Whether it went on to the end.
-  bool others(std::span<const layout::QuerySpan> spans, bool want_hits, const Found& found);
+  // is what trace_first_pass() returned. Hits are valid until the next call. Whether it went on to the end.
+  bool trace_further_passes(std::span<const layout::QuerySpan> spans, bool want_hits, const Found& found);
 
  private:
   struct Rest {

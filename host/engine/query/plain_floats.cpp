@@ -74,8 +74,8 @@ class PlainRays {
         scale_(static_cast<float>(space.scale)),
         center_{static_cast<float>(space.center.x), static_cast<float>(space.center.y),
                 static_cast<float>(space.center.z), 0} {
-    // A power of two, and a centre that floats hold (scene/geometry.h): a coordinate less it is rounded once,
-    // in float or in double.
+    // A power of two, and a centre that floats hold (scene/model/geometry.h): a coordinate less it is rounded
+    // once, in float or in double.
     usable_ = origins_.usable() && directions_.usable() && t_min_.usable() && t_max_.usable() &&
               scale_ >= std::numeric_limits<float>::min() && std::isfinite(scale_) &&
               double{center_[0]} == space.center.x && double{center_[1]} == space.center.y &&

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/query/grains.h"
+#include "base/error.h"
 
 namespace kdray::query {
 
@@ -103,6 +103,10 @@ class PlaceThreads {
 };
 
 }  // namespace
+
+void throw_if_cancelled(const std::optional<Cancel>& cancel) {
+  if (cancel && cancel->is_cancelled()) throw Error(ErrorCode::cancelled, "the query was cancelled");
+}
 
 QueryReport share_rows(const QueryContext& context, std::size_t n, std::size_t few,
                        const std::optional<Cancel>& cancel, const PlaceWork& work) {

@@ -1,11 +1,13 @@
 // What    The rays or points of one call, which all places share: each takes the next rows when it has none
 //         left, as many as take a quarter of a second. A small call goes to the first place alone.
 // Errors  Of several places' errors the one of the first rows is thrown, whichever came first; then nobody
-//         takes further rows.
+//         takes further rows. A cancelled call throws ErrorCode::cancelled.
 // Threads With several places each has a thread of its own, and the caller's looks for cancellation.
 // Why     A ray may cross a hundred thousand triangles, and a point be as far from all of them: so what
 //         bounds a launch is its time, not its size. What is answered doesn't depend on it.
 #pragma once
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -22,6 +24,23 @@
 #include "kdray/query.h"
 
 namespace kdray::query {
+
+// Throws for a call that has been cancelled. The thread that made the call may ask, and no other.
+void throw_if_cancelled(const std::optional<Cancel>& cancel);
+
+// Calls work(first, last) for parts of [0, n), from several threads of the host, where an element may take
+// long; looks for cancellation now and then.
+template <class Work>
+void for_each_slow_grain(std::size_t n, const std::optional<Cancel>& cancel, const Work& work) {
+  constexpr std::size_t kGrain = 64, kLook = 4096;
+  for (std::size_t first = 0; first < n; first += kLook) {
+    throw_if_cancelled(cancel);
+    const std::size_t last = std::min(n, first + kLook);
+    tbb::parallel_for(std::size_t{0}, (last - first + kGrain - 1) / kGrain, [&](std::size_t grain) {
+      work(first + grain * kGrain, std::min(last, first + (grain + 1) * kGrain));
+    });
+  }
+}
 
 class Pace {
  public:

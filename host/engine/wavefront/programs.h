@@ -1,7 +1,7 @@
 // What    The programs of a render, each built for the feature bits it reads, kept for the next render.
 // Shape   One program per kernel file; programs that the features make needless are not built. A program that
 //         is kept from another scene and has more than is wanted may take a program's place
-//         (device/variant.h): its answers are the same, and so is what the host makes for it.
+//         (device/opencl/variant.h): its answers are the same, and so is what the host makes for it.
 #pragma once
 
 #include <map>

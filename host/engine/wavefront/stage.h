@@ -26,7 +26,7 @@ class LaunchClock {
   double seconds_ = 0;
 };
 
-// The kernel that K describes (device/kernel.h).
+// The kernel that K describes (device/opencl/kernel.h).
 template <class K>
 class Stage : public LaunchClock {
  public:

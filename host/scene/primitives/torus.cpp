@@ -187,7 +187,7 @@ Bounds clip(const TorusGeometry& t, const Bounds& region) {
 }
 
 // ---- What is certain about rays and tori, in double. The turns of the distance along a line are found as
-// the kernels find them (kernels/intersect/torus_turns.clh).
+// the kernels find them (kernels/primitives/torus/turns.clh).
 
 namespace {
 

@@ -1,5 +1,5 @@
-// What    Takes rays that another queue has sent into the pools, where every ray has a work-item: item i takes
-//         ray i and shadow ray i.
+// What    Takes rays that another queue has sent into the pools, where every ray has a work-item: item i
+//         takes ray i and shadow ray i.
 // Shape   as odprt/receive.cl, of one slice.
 // Cost    reads and writes 64 B per ray, 60 B per shadow ray.
 // Errors  A pool that is full counts what finds no place (n_pool_overflow): a broken bound, which the host

@@ -1,6 +1,6 @@
-// What    Takes the shadow rays of a wave of ODPRT through their trace, where every ray has a work-item: those
-//         that were just made, or, in a wave without a batch, those that came from elsewhere. What nothing
-//         blocks goes on to the next part, or adds its light where none is left (odprt/shadow.clh).
+// What    Takes the shadow rays of a wave of ODPRT through their trace, where every ray has a work-item:
+//         those that were just made, or, in a wave without a batch, those that came from elsewhere. What
+//         nothing blocks goes on to the next part, or adds its light where none is left (odprt/shadow.clh).
 // Shape   item i serves ray i % batch_size of light i / batch_size, or ray i of those from elsewhere.
 // Cost    as traverse/trace_shadow.cl and film/add.cl, and 64 B for a ray that leaves.
 #define KDRAY_ODPRT 1

@@ -37,7 +37,7 @@ KDRAY_LAYOUT_END
 #define KDRAY_ROW_TRIANGLE_RY 7
 #define KDRAY_ROW_TRIANGLE_RZ 8
 #define KDRAY_ROW_TRIANGLE_LIMIT \
-  9  // |n|_1 + 8|edge|^2 for sign_limit (triangle.clh); < 0: lies across an axis; infinity: it has no area
+  9  // |n|_1 + 8|edge|^2 for sign_limit (intersect.clh); < 0: lies across an axis; infinity: it has no area
 #define KDRAY_ROW_TRIANGLE_INDEX 10
 #define KDRAY_TRIANGLE_ROWS 11
 #define KDRAY_TRIANGLE_IS_CURVED 0  // whether its test reads the square of the direction

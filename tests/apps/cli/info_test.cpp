@@ -1,6 +1,10 @@
 // What    kdray info: the figures of a scene whose figures are known; without any device.
+#include <fmt/format.h>
+
+#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/info_report.h"
 #include "apps/cli/program.h"
 #include "apps/cli/scenes.h"
 #include "support/folder.h"
@@ -47,6 +51,38 @@ TEST(InfoCommand, NamesMaterialsAndParts) {
   const std::string text = kdray({"info", scene}, no_device(folder)).out;
   EXPECT_NE(text.find("0: 'brass', 3 primitives"), std::string::npos) << text;
   EXPECT_NE(text.find("'?[31mCube', 2 primitives"), std::string::npos) << text;
+}
+
+TEST(InfoCommand, TextHasTheFirstPartsAndTheNumberOfAll) {
+  scene::Scene scene;
+  scene::NameTable table;
+  for (std::uint32_t i = 0; i < 100; ++i) table.name_primitives(3 * i, table.add(fmt::format("part {}", i)));
+  scene.names = table.finish(300, 0);
+  const cli::Parts parts = cli::parts_report(scene, 12);
+  EXPECT_EQ(parts.count, 100u);
+  ASSERT_EQ(parts.first.size(), 12u);
+  EXPECT_EQ(parts.first[11], (cli::Json{{"name", "part 11"}, {"primitives", 3}}));
+
+  const Folder folder;
+  std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 100; ++i) obj += fmt::format("o part {}\nf 1 2 3\n", i);
+  const fs::path file = folder.put("parts.obj", obj);
+  EXPECT_EQ(Json::parse(kdray({"info", file, "--json"}, no_device(folder)).out)["parts"].size(), 100u);
+  const std::string text = kdray({"info", file}, no_device(folder)).out;
+  EXPECT_NE(text.find("parts        100\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("'part 11', 1 primitives\n             and 88 more"), std::string::npos) << text;
+}
+
+TEST(InfoCommand, RunsOfNamesThatThereAreNotAreLeftOut) {
+  scene::Scene scene;
+  scene.names = std::make_shared<const scene::Names>(
+      scene::Names{.texts = "lid",
+                   .ends = {0, 3},
+                   .materials = {},
+                   .primitives = {{0, 1}, {2, 0x7fffffff}, {5, 2}, {6, 0}},
+                   .instances = {{0, 0xffffffff}, {1, 0}}});
+  const cli::Parts parts = cli::parts_report(scene, 12);
+  EXPECT_EQ(parts.first, (cli::Json::array({{{"name", "lid"}, {"primitives", 2}}})));
 }
 
 TEST(InfoCommand, TheTreesFiguresAgreeWithEachOther) {

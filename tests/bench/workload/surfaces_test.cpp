@@ -1,5 +1,5 @@
 // What    Normals of primitives, by number, against closed forms. (Of every kind, against the oracle:
-//         bench/kinds_test.cpp.)
+//         tests/bench/kinds_test.cpp.)
 #include "bench/workload/surfaces.h"
 
 #include <gtest/gtest.h>

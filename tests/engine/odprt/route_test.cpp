@@ -64,7 +64,7 @@ __kernel void test(__global const Batch* in, __global Answer* out, uint n) {
   const Real3xN d = {vload16(0, f[3]), vload16(0, f[4]), vload16(0, f[5])};
   const uint16 begun = vload16(0, first);
   Way way = no_way();
-  way.parts = begun == KDRAY_NO_PART ? (uint16)(0u) : begins_at(begun);
+  way.parts = begun == KDRAY_NO_PART ? (uint16)(0u) : encoded_part(begun);
   float16 t_max = vload16(0, f[7]);
   for (u32 step = 0; step < 16; ++step) {
     float16 entry;

@@ -323,7 +323,8 @@ class FeaturesTest : public test::EachDevice {
     }
   }
 
-  // By programs that take the place of the scene's own (device/variant.h): no bit, and no ray, is another.
+  // By programs that take the place of the scene's own (device/opencl/variant.h): no bit, and no ray, is
+  // another.
   void expect_the_same_with_everything(const std::vector<layout::Features>& masks, const Schedule& schedule) {
     for (const layout::Features mask : masks) {
       Subject subject(context_, mask);
