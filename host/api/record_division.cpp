@@ -106,9 +106,8 @@ FrameResult frame_result_of(pdprt::Result&& result, const State& state, const Jo
         queue.tiles_lost));
   }
   told.owners = {result.tile_width, result.tile_height, std::move(result.tile_queues)};
-  told.division.pdprt =
-      Statistics::Pdprt{name_of(job.options.division), state.devices.first().global ? "global" : "slices",
-                        std::move(result.tile_seconds)};
+  told.division.pdprt = Statistics::Pdprt{name_of(job.options.division), std::move(result.tile_seconds)};
+  told.division.schedule = state.devices.first().global ? "global" : "slices";
   return told;
 }
 
@@ -125,6 +124,7 @@ FrameResult frame_result_of(odprt::Result&& result, const State& state, const Jo
   }
   told.owners.of_subtrees = std::move(result.subtree_queues);
   told.divide_seconds = result.divide_seconds;
+  told.division.schedule = result.per_ray ? "global" : "slices";
   Statistics::Odprt odprt;
   odprt.balance = name_of(job.options.balance);
   odprt.parts = result.n_parts;

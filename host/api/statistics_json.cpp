@@ -145,6 +145,7 @@ Json division_json(const Statistics::Division& d) {
                    {"bands", d.bands},
                    {"launches", d.launches},
                    {"waves", d.waves},
+                   {"schedule", d.schedule},
                    {"quarantined", Json::array()},
                    {"per_queue", Json::array()}};
   for (const Statistics::Quarantined& q : d.quarantined)
@@ -152,7 +153,6 @@ Json division_json(const Statistics::Division& d) {
   for (const Statistics::Queue& q : d.per_queue) division["per_queue"].push_back(queue_json(q));
   if (d.pdprt) {
     division["division"] = d.pdprt->division;
-    division["schedule"] = d.pdprt->schedule;
     if (!d.pdprt->tile_seconds.empty()) division["tile_seconds"] = d.pdprt->tile_seconds;
   }
   if (d.ranks)

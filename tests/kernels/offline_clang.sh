@@ -19,7 +19,7 @@ done
 forms=$(sed -nE 's/^#define KDRAY_SIMD_[A-Z0-9]+ ([0-9]+).*/\1/p' "$kernels/layout/simd.h")
 walks=$(sed -nE 's/^#define KDRAY_TRAVERSAL_[A-Z]+ ([0-9]+)$/\1/p' "$kernels/layout/traversal.h")
 compiles() {
-  for file in "$kernels"/*/*.cl; do
+  for file in "$kernels"/*/*.cl "$kernels"/*/*/*.cl; do
     text=$("$clang" -target spir64 -E $common "$file")
     choices=1
     [[ $text == *layout/traversal.h* ]] && choices=$walks

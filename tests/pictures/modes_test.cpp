@@ -81,6 +81,8 @@ TEST_P(Modes, OdprtWithAnyWalk) {
 // With five queues the host sorts the rays.
 TEST_P(Modes, OdprtWithAWorkItemForEachRay) {
   for (const int queues : {1, 2, 5}) expect_same(per_ray(odprt(queues, Balance::pilot)));
+  const Shot shot = render(scene, per_ray(odprt(1, Balance::sah)));
+  EXPECT_EQ(shot.statistics["mode"]["schedule"], "global");
   Way failing = per_ray(odprt(3, Balance::sah));
   failing.faults = "1@1";
   EXPECT_TRUE(same_bits(first.picture.rgb, render(scene, failing).picture.rgb));

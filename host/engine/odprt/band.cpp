@@ -116,14 +116,18 @@ void BandRun::take_turns(std::size_t queue) {
     take_turn(queue, *turn, state, pending);
 }
 
-// Takes as many entries as a launch may begin, and fewer when the end is near.
+// Takes as many entries as a launch may begin, and fewer when the end is near. Where every ray has a
+// work-item a launch takes long however little it does, so they are fewer. One queue takes all from the
+// beginning.
 void BandRun::take_entries(std::size_t queue) {
   Shares& shares = band_.shares;
   Worker& worker = *pool_.workers[queue];
-  // One queue takes all from the beginning.
-  const std::size_t of_left = shares.n_queues() > 1 ? 4 * shares.n_queues() : 1;
-  const std::size_t n = std::min<std::size_t>(worker.launch_tiles(), shares.left() / of_left);
-  const std::size_t wanted = std::max<std::size_t>(n, pool_.plan.n_slices), has = worker.tiles_left();
+  const bool per_ray = pool_.plan.per_ray;
+  const std::size_t n_queues = shares.n_queues(), most = worker.launch_tiles();
+  const std::size_t of_left = n_queues == 1 ? 1 : (per_ray ? 2 : 4) * n_queues;
+  const std::size_t least = per_ray ? most / 16 + 1 : pool_.plan.n_slices;
+  const std::size_t wanted = std::max(std::min(most, shares.left() / of_left), least);
+  const std::size_t has = worker.tiles_left();
   if (has < wanted) worker.add(shares.take(queue, wanted - has));
   tiles_left_[queue] = worker.tiles_left();
 }

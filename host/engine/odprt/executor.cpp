@@ -283,6 +283,7 @@ Result render_frame(const Request& request, const Provision& provision, const Di
   Result result;
   result.exchange = ExchangeCounts(request.table.n_queues());
   result.n_parts = provision.n_parts;
+  result.per_ray = provision.plan.per_ray;
   result.n_cells = static_cast<std::uint32_t>(division.directory.size());
   WorkerPool pool = make_worker_pool(request, provision, division, cut);
   if (request.census_every > 0) result.visits.resize(cut.subtrees.size());

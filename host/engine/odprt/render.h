@@ -61,6 +61,7 @@ struct Quarantined {
 
 struct Result : frame::Result {
   double divide_seconds = 0;
+  bool per_ray = false;  // every ray had a work-item
   std::vector<QueueReport> queues;
   ExchangeCounts exchange{0};
   std::vector<SubtreeUse> visits;             // of each subtree, where counted

@@ -141,7 +141,7 @@ struct Statistics {
 
   // What PDPRT tells of a frame.
   struct Pdprt {
-    std::string division, schedule;
+    std::string division;
     std::vector<double> tile_seconds;  // where a timeline was asked for
   };
   // What ODPRT tells of a frame. Of rays and bytes: row by row, those that the queue of the row's number
@@ -161,7 +161,7 @@ struct Statistics {
   };
   // How a frame was divided and run, in whichever mode.
   struct Division {
-    std::string why;
+    std::string why, schedule;
     std::vector<std::string> devices;
     std::uint64_t sub_devices = 0, programs = 0, programs_known = 0;
     std::uint32_t tile_width = 0, tile_height = 0, tiles = 0, bands = 0;
