@@ -33,6 +33,7 @@ class Engine:
 
     name = ""
     tasks: tuple[str, ...] = TASKS
+    share = 1  # of aimed rays every so manieth is enough: the others are a matter of patience
     dtype: type[np.floating[Any]] = (
         np.float32
     )  # that it computes in: what is given in another is rounded to it before the clock starts
@@ -225,10 +226,29 @@ class Trimesh(Engine):
 
 
 class TrimeshOwn(Trimesh):
-    """trimesh's own tracer, in NumPy over an R-tree; repeated hits are merged, as for counting they have to be."""
+    """trimesh's own tracer, in NumPy over an R-tree; repeated hits are merged, as for counting they have to be.
+
+    It is given some rays at a time, since it holds each with all triangles whose boxes the ray passes.
+    """
 
     name = "trimesh-own"
     tracer = "ray_triangle"
+    at_once = 500
+    share = 10
+
+    def _in_parts(self, given: Any, multiple_hits: bool) -> tuple[Array, ...]:
+        found = []
+        for first in range(0, len(given[0]), self.at_once):
+            part = (a[first : first + self.at_once] for a in given)
+            points, ray, triangle = self.rays.intersects_location(*part, multiple_hits=multiple_hits)
+            found.append((np.reshape(points, (-1, 3)), ray + first, triangle))
+        return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+
+    def run(self, task: str, given: Any) -> Any:  # noqa: D102
+        return self._in_parts(given, multiple_hits=False)
+
+    def count(self, query: Query) -> Array:  # noqa: D102
+        return np.bincount(self._in_parts(self.prepare("closest", query), True)[1], minlength=len(query))
 
 
 class Open3D(Engine):

@@ -61,6 +61,11 @@ class Query:
         directions = None if self.directions is None else self.directions[first:end]
         return Query(self.origins[first:end], directions, self.t_max)
 
+    def every(self, step: int) -> Query:
+        """Every so manieth ray."""
+        directions = None if self.directions is None else self.directions[::step]
+        return Query(self.origins[::step], directions, self.t_max)
+
     def of(self, dtype: type[np.floating[Any]]) -> Query:
         """The same in that precision."""
         parts = (self.origins, self.directions)
