@@ -1,19 +1,20 @@
 import json
 import xml.etree.ElementTree
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
 
 import kdray
 from kdray import bench
-from kdray.bench import command
+from kdray.bench import aimed, command
 from kdray.bench.machine import module
 
 TINY = ["--rays", "400", "--points", "60", "--rounds", "2", "--batches", "1,100"]
 
 
-def installed() -> list[str]:
-    return [name for name in bench.ENGINES if all(module(m) is not None for m in bench.NEEDS[name])]
+def installed(names: Iterable[str] = bench.ENGINES) -> list[str]:
+    return [name for name in names if all(module(m) is not None for m in bench.NEEDS[name])]
 
 
 @pytest.fixture(params=["sphere", "room"])
@@ -73,9 +74,9 @@ def test_what_counts_as_different() -> None:
     assert bench.different(bench.Answer(distances[0]), bench.Answer(distances[1]), 1.0) == 2
 
 
-@pytest.mark.parametrize("name", bench.ENGINES)
+@pytest.mark.parametrize("name", bench.KINDS)
 def test_each_engine_answers_as_kdray_does(small: bench.Mesh, name: str) -> None:
-    if name not in installed():
+    if name not in installed(bench.KINDS):
         pytest.skip(f"{name} is not installed")
     ours = bench.Kdray(small, 1)
     engine = bench.KINDS[name](small, 1)
@@ -142,6 +143,107 @@ def test_a_mesh_file(tmp_path, capsys: pytest.CaptureFixture[str]) -> None:
     np.testing.assert_array_equal(read.triangles, mesh.triangles)
     assert bench.main([str(path), *TINY, "--tasks", "occlusion", "--classes", "primary"]) == 0
     assert f"ball.obj ({len(mesh.triangles)} triangles), occlusion, primary" in capsys.readouterr().out
+
+
+def test_aimed_rays_go_where_they_are_said_to(small: bench.Mesh) -> None:
+    for mesh in (small, aimed.in_doubles(small, 1)):
+        n = 300
+        query = aimed.aim(mesh, n, 5)
+        assert query.directions is not None
+        assert query.origins.dtype == query.directions.dtype == mesh.vertices.dtype
+        vertices, last_place = mesh.vertices.astype(np.float64), np.finfo(mesh.vertices.dtype).eps
+        corners = vertices[mesh.triangles]
+        starts, along = (a.reshape(4, n, 3).astype(np.float64) for a in (query.origins, query.directions))
+        edges = corners[:, 1] - corners[:, 0]
+        normals = np.cross(edges, corners[:, 2] - corners[:, 0])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+
+        def distance(start: np.ndarray, direction: np.ndarray) -> float:
+            return float(np.linalg.norm(np.cross(vertices - start, direction), axis=1).min())  # noqa: B023
+
+        near = 4 * last_place * mesh.size
+        for k in (0, 2, 3):
+            assert max(distance(*ray) for ray in zip(starts[k], along[k], strict=True)) < near
+        for start, direction in zip(starts[1], along[1], strict=True):
+            across = np.cross(direction, edges)
+            across /= np.linalg.norm(across, axis=1, keepdims=True)
+            assert np.abs(np.einsum("ij,ij->i", corners[:, 0] - start, across)).min() < near
+        zero = along[2] == 0
+        assert zero.any(axis=1).all()
+        for i, axis in zip(*np.nonzero(zero), strict=True):
+            assert starts[2][i, axis] in vertices[:, axis]
+        assert all(np.abs(normals @ direction).min() < 300 * last_place for direction in along[3])
+
+
+def test_doubles_are_no_floats_and_round_to_those_they_come_from(small: bench.Mesh) -> None:
+    doubles = aimed.in_doubles(small, 1).vertices
+    assert np.mean(doubles == doubles.astype(np.float32)) < 0.2  # 0 is one
+    places = np.abs(doubles.astype(np.float32).view(np.int32) - small.vertices.view(np.int32))
+    assert places.max() <= 1
+
+
+def test_kdrays_double_geometry_has_no_wrong_hit_and_others_are_judged_by_what_they_say(small: bench.Mesh) -> None:
+    for found in aimed.run(small, ["kdray", "kdray-double"], 250, 1, 1, 20261127):
+        floats, doubles = found["rows"]
+        assert floats["rays"] == 1000
+        assert floats["judged"] > 900
+        for kind in ("lost", "false", "other", "parity"):
+            assert doubles[kind] == [0, 0, 0, 0], (kind, found["numbers"])
+        assert doubles["t_off"]["largest"] <= 2**-51  # two last places
+        assert 0 < floats["t_off"]["median"] < 2**-22
+        assert sum(floats["other"]) > 0  # neighbours, where a ray passes a vertex by less than floats can tell
+        assert found["numbers"] == "double" or floats["parity"][:3] == [0, 0, 0]
+
+
+def test_what_counts_as_wrong_of_aimed_rays() -> None:
+    # A square of two triangles; rays down to its diagonal, into a triangle, past it, and along it.
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
+    square = bench.Mesh("square", vertices, np.array([[0, 1, 2], [0, 2, 3]]), kdray.Camera((0, 0, 1)))
+    origins = np.array([[0.5, 0.5, 1], [0.75, 0.25, 2], [1.5, 0.5, 1], [-1, 0.5, 0]], np.float32)
+    directions = np.array([[0, 0, -1], [0, 0, -1], [0, 0, -1], [1, 0, 0]], np.float32)
+    right = aimed.Right(square, bench.Query(origins, directions))
+    assert right.t.tolist() == [1, 2, np.inf, np.inf]
+    assert right.sure.tolist() == [True, True, True, False]
+
+    def judged(t: list[float], primitive: list[int], count: list[int]) -> list[list[int]]:
+        found = right.judge(bench.Answer(np.array(t), np.array(primitive)), np.array(count))
+        return [found[kind] for kind in ("lost", "false", "other", "parity")]
+
+    none, inf = [0, 0, 0, 0], np.inf
+    for either in (0, 1):
+        assert judged([1, 2, inf, inf], [either, 0, -1, -1], [1, 1, 0, 0]) == [none] * 4
+        assert judged([1, 2, inf, 1], [either, 0, -1, 0], [1, 3, 2, 1]) == [none] * 4
+    assert judged([inf, 2, 1, inf], [-1, 1, 0, -1], [2, 0, 1, 0]) == [
+        [1, 0, 0, 0],
+        [0, 0, 1, 0],
+        [0, 1, 0, 0],
+        [1, 1, 1, 0],
+    ]
+    off = right.judge(bench.Answer(np.array([1.5, 2, inf, inf]), np.array([0, 0, -1, -1])), None)
+    assert off["parity"] is None
+    assert off["t_off"] == {"median": 0.25, "largest": 0.5}
+
+
+def test_aimed_rays_from_the_command_line(tmp_path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("trimesh")
+    mesh = bench.sphere(8)
+    path, figures = tmp_path / "ball.obj", tmp_path / "aimed.json"
+    lines = [f"v {x} {y} {z}" for x, y, z in mesh.vertices.tolist()]
+    lines += ["f " + " ".join(str(i + 1) for i in triangle) for triangle in mesh.triangles.tolist()]
+    path.write_text("\n".join(lines))
+    options = ["--aimed", "--rays", "93", "--rounds", "1", "--json", str(figures)]
+    assert bench.main([str(path), *options]) == 0
+    out = capsys.readouterr().out
+    told = json.loads(figures.read_text())
+    assert told["command"] == "bench aimed"
+    assert [run["numbers"] for run in told["runs"]] == ["float", "double"]
+    for run in told["runs"]:
+        assert [row["engine"] for row in run["rows"]] == installed(bench.KINDS)
+        assert all(row["seconds"] > 0 for row in run["rows"])
+        assert {row["engine"]: row["rays"] for row in run["rows"]}.get("trimesh-own", 40) == 40  # every tenth
+        assert f"ball.obj (112 triangles), {run['numbers']} coordinates" in out
+    for name in set(bench.KINDS) - set(installed(bench.KINDS)):
+        assert f"left out: {name}:" in out
 
 
 def test_what_is_wrong_is_said_before_anything_is_measured(tmp_path, capsys: pytest.CaptureFixture[str]) -> None:

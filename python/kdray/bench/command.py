@@ -8,14 +8,16 @@ import pathlib
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
+from typing import Any
 
 from ..devices import devices
 from ..errors import Error, InputError, NoDeviceError
-from .engines import ENGINES, NEEDS, TASKS
+from . import aimed
+from .engines import ENGINES, KINDS, NEEDS, TASKS
 from .machine import cores, module, processor, versions
 from .measure import Row, run
 from .report import plot, tell, titles
-from .workload import BUILT_IN, CLASSES, read
+from .workload import BUILT_IN, CLASSES, read, room, sphere
 
 
 def _some_of(all_: Sequence[str]) -> Callable[[str], list[str]]:
@@ -46,7 +48,7 @@ def _count(text: str) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m kdray.bench", description=(__doc__ or "").replace("`", ""))
     parser.add_argument("scenes", nargs="*", help="sphere, room (the default: both), or mesh files")
-    parser.add_argument("--rays", type=_count, default=1_000_000, metavar="N", help="of each class (1000000)")
+    parser.add_argument("--rays", type=_count, metavar="N", help="of each class (1000000) or aim (10000)")
     parser.add_argument("--points", type=_count, default=100_000, metavar="N", help="of the others (100000)")
     parser.add_argument(
         "--batches", type=_numbers, default=[1, 1000], metavar="N,N", help="beside all at once (1,1000)"
@@ -57,10 +59,14 @@ def _parser() -> argparse.ArgumentParser:
         "--classes", type=_some_of(CLASSES), default=list(CLASSES), metavar="NAMES", help=", ".join(CLASSES)
     )
     parser.add_argument("--tasks", type=_some_of(TASKS), default=list(TASKS), metavar="NAMES", help=", ".join(TASKS))
-    parser.add_argument("--engines", type=_some_of(ENGINES), metavar="NAMES", help="all that are installed")
+    parser.add_argument("--engines", type=_some_of(tuple(KINDS)), metavar="NAMES", help=", ".join(KINDS))
     parser.add_argument(
         "--reports", action="store_true", help="in place of times: wrong answers where others' users reported such"
     )
+    parser.add_argument(
+        "--aimed", action="store_true", help="wrong hits beside times, of rays at vertices, edges, planes, and grazing"
+    )
+    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of aimed rays (1)")
     parser.add_argument("--json", metavar="FILE", help="write all figures")
     parser.add_argument("--plot", metavar="FILE.svg", help="write bars of the largest batch")
     return parser
@@ -90,18 +96,35 @@ def _reports() -> None:
     print("\n".join(["", *told(peers)]))
 
 
+def _aimed(options: argparse.Namespace, names: list[str], about: dict[str, Any]) -> None:
+    """Wrong hits beside times, of scenes that exact arithmetic can be asked about."""
+    print("\n".join(titles(about)[: 2 + len(about["left_out"])]))
+    runs = []
+    built_in = {"sphere": lambda: sphere(96), "room": lambda: room(1500)}
+    for scene in options.scenes or built_in:
+        mesh = built_in[scene]() if scene in built_in else read(scene)
+        for found in aimed.run(mesh, names, options.rays, options.rounds, options.threads, options.seed):
+            print("\n".join(["", *aimed.table(found)]), flush=True)
+            runs.append(found)
+    if options.json:
+        text = json.dumps({"command": "bench aimed", "seed": options.seed, **about, "runs": runs})
+        lines = text.replace('{"scene"', '\n{"scene"').replace('{"engine"', '\n{"engine"')  # one for each engine
+        pathlib.Path(options.json).write_text(lines + "\n")
+
+
 def _bench(options: argparse.Namespace) -> None:
     options.threads = min(options.threads, cores())
     for path in filter(None, (options.json, options.plot)):
         if not pathlib.Path(path).absolute().parent.is_dir():
             raise InputError(f"{path}: there is no such folder")
     names, left_out = [], {}
-    for name in options.engines or ENGINES:
+    for name in options.engines or (KINDS if options.aimed else ENGINES):
         missing = [needed for needed in NEEDS[name] if module(needed) is None]
         if missing:
             left_out[name] = f"{', '.join(missing)} can't be imported"
         else:
             names.append(name)
+    options.rays = options.rays or (10_000 if options.aimed else 1_000_000)
     device = next((device.name for device in devices() if device.usable), "")
     about = {
         "processor": processor(),
@@ -111,6 +134,9 @@ def _bench(options: argparse.Namespace) -> None:
         "left_out": left_out,
         **{name: getattr(options, name) for name in ("threads", "rays", "points", "rounds")},
     }
+    if options.aimed:
+        _aimed(options, names, about)
+        return
     lines = titles(about)
     print("\n".join(lines))
     rows: list[Row] = []

@@ -9,6 +9,8 @@ import numpy as np
 
 from .workload import Array
 
+GROUP = 16  # triangles that are left out at once: neighbours in the list are mostly neighbours in space
+
 
 def _integers(*arrays: Array) -> tuple[list[Array], Fraction]:
     """The arrays as Python's integers, and what one of them is worth."""
@@ -31,53 +33,75 @@ def _dot(a: Array, b: Array) -> Array:
     return result
 
 
+def _balls(corners: Array) -> tuple[Array, Array]:
+    """Middles and radii of balls about groups of points."""
+    middles = (corners.min(axis=1) + corners.max(axis=1)) / 2
+    return middles, np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+
+
+def _meets(middles: Array, radii: Array, origin: Array, direction: Array) -> Array:
+    """Whether the ray's line may meet each ball: in floats, with far more than they are off by."""
+    to = middles - np.asarray(origin, np.float64)
+    along = np.asarray(direction, np.float64) / np.abs(direction).max()
+    away = np.linalg.norm(to - (to @ along / (along @ along))[:, None] * along, axis=1)
+    found: Array = away <= radii + 1e-9 * (radii + np.linalg.norm(to, axis=1))
+    return found
+
+
 class Exact:
     """A mesh that is asked exactly: slow, and right whatever its size and wherever a ray passes."""
 
     def __init__(self, vertices: Array, triangles: Array) -> None:
         self.corners: Array = np.asarray(vertices, np.float64)[np.asarray(triangles)]
-        self.middles = self.corners.mean(axis=1)
-        self.reach = np.linalg.norm(self.corners - self.middles[:, None], axis=2).max(axis=1)
+        self.balls = _balls(self.corners)
+        groups = np.arange(-(-len(self.corners) // GROUP) * GROUP).clip(max=len(self.corners) - 1)
+        self.group_balls = _balls(self.corners[groups].reshape(-1, 3 * GROUP, 3))
 
     def _near(self, origin: Array, direction: Array) -> Array:
-        """The triangles that the ray's line may meet, and some more: in floats, with far more than they are off by."""
-        to = self.middles - np.asarray(origin, np.float64)
-        along = np.asarray(direction, np.float64) / np.abs(direction).max()
-        away = np.linalg.norm(to - (to @ along / (along @ along))[:, None] * along, axis=1)
-        found: Array = away <= self.reach + 1e-9 * (self.reach + np.linalg.norm(to, axis=1))
+        """The triangles that the ray's line may meet, and some more."""
+        groups = np.flatnonzero(_meets(*self.group_balls, origin, direction))
+        those = (groups[:, None] * GROUP + np.arange(GROUP)).ravel()
+        those = those[those < len(self.corners)]
+        found: Array = those[_meets(self.balls[0][those], self.balls[1][those], origin, direction)]
         return found
 
-    def _seen_from(self, origin: Array, direction: Array) -> tuple[Array, Array, Array, Fraction]:
-        """Of each triangle near it: how its plane lies to the origin, and the ray to each edge; and the unit of t."""
-        (corners, start), unit = _integers(self.corners[self._near(origin, direction)], origin)
+    def _ask(self, origin: Array, direction: Array) -> tuple[float, Array, int, bool]:
+        near = self._near(origin, direction)
+        (corners, start), unit = _integers(self.corners[near], origin)
         (along,), unit_along = _integers(direction)
         corners = corners - start
         sides = _cross(corners, np.roll(corners, -1, axis=1))
-        return _dot(corners[:, 2], sides[:, 0]), sides, _dot(sides, along), unit / unit_along
-
-    def _crossed(self, origin: Array, direction: Array) -> int:
-        """The crossings of a ray that is turned by less than any number, so that it meets no edge."""
-        volume, sides, turns, _ = self._seen_from(origin, direction)
+        # Of each triangle: how its plane lies to the origin, and the ray to each edge.
+        volume, turns = _dot(corners[:, 2], sides[:, 0]), _dot(sides, along)
+        whole = turns.sum(axis=1)
+        met = ((turns >= 0).all(axis=1) | (turns <= 0).all(axis=1)) & (volume * whole > 0)
+        ts = [Fraction(v, w) for v, w in zip(volume[met], whole[met], strict=True)]
+        first = min(ts, default=None)
+        along_one = bool((turns == 0).all(axis=1).any())
+        # The ray is turned by less than any number, so that it meets no edge.
         for axis in range(3):
             turns = np.where(turns == 0, sides[..., axis], turns)
         signs, ahead = np.sign(turns).astype(int), np.sign(volume).astype(int)
-        return int(np.count_nonzero((signs == ahead[:, None]).all(axis=1) & (ahead != 0)))
+        crossed = (signs == ahead[:, None]).all(axis=1) & (ahead != 0)
+        t = math.inf if first is None else float(first * (unit / unit_along))
+        return t, near[met][[t == first for t in ts]], int(np.count_nonzero(crossed)), along_one
+
+    def ask(self, origins: Array, directions: Array) -> tuple[Array, list[Array], Array, Array]:
+        """Of each ray: `first`, the triangles that it meets there, `crossings`, and whether it may lie in a triangle.
+
+        One that lies in a triangle's plane meets it or passes it, as one likes.
+        """
+        answers = [self._ask(o, d) for o, d in zip(origins, directions, strict=True)]
+        t, nearest, crossings, along = zip(*answers, strict=True)
+        return np.array(t), list(nearest), np.array(crossings), np.array(along)
 
     def crossings(self, origins: Array, directions: Array) -> Array:
         """How many triangles each ray crosses, one at an edge or a vertex; none that it begins on."""
-        return np.array([self._crossed(o, d) for o, d in zip(origins, directions, strict=True)])
+        return self.ask(origins, directions)[2]
 
     def first(self, origins: Array, directions: Array) -> Array:
         """The t of each ray's first hit, edges and vertices included, rounded once; inf where there is none."""
-        found = np.full(len(origins), np.inf)
-        for i, (origin, direction) in enumerate(zip(origins, directions, strict=True)):
-            volume, _, turns, unit = self._seen_from(origin, direction)
-            whole = turns.sum(axis=1)
-            met = ((turns >= 0).all(axis=1) | (turns <= 0).all(axis=1)) & (volume * whole > 0)
-            if met.any():
-                t = min(Fraction(v, w) for v, w in zip(volume[met], whole[met], strict=True))
-                found[i] = float(t * unit)
-        return found
+        return self.ask(origins, directions)[0]
 
     def inside(self, points: Array) -> Array:
         """Whether each point lies inside of a closed mesh."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import importlib
 import importlib.metadata
 import os
@@ -13,11 +14,13 @@ import numpy as np
 
 from .. import __version__
 
+EMBREE3 = "libembree3.so.3"
+
 
 def module(name: str) -> Any:
-    """The module of that name, or None where it can't be imported."""
+    """The module of that name, or the shared library (lib...), or None where it can't be loaded."""
     try:
-        return importlib.import_module(name)
+        return ctypes.CDLL(name) if name.startswith("lib") else importlib.import_module(name)
     except Exception:  # whatever keeps it from being imported, it isn't there
         return None
 
@@ -49,4 +52,9 @@ def versions() -> dict[str, str]:
             found[name] = importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:
             continue
+    embree = module(EMBREE3)
+    if embree is not None:
+        embree.rtcNewDevice.restype = ctypes.c_void_p
+        number = embree.rtcGetDeviceProperty(ctypes.c_void_p(embree.rtcNewDevice(None)), 0)
+        found["embree3"] = f"{number // 10000}.{number // 100 % 100}.{number % 100}"
     return found

@@ -158,7 +158,6 @@ class Open3D(Peer):
     """Open3D's RaycastingScene: Embree's robust mode, and one ray for parity."""
 
     name = "Open3D"
-    package = "open3d"
     needs = ("open3d",)
 
     def __init__(self, vertices: Array, triangles: Array) -> None:
@@ -167,6 +166,11 @@ class Open3D(Peer):
         self.tensor = open3d.core.Tensor.from_numpy
         self.scene = open3d.t.geometry.RaycastingScene()
         self.scene.add_triangles(self.tensor(*_floats(vertices)), self.tensor(self.triangles.astype(np.uint32)))
+
+    @classmethod
+    def version(cls) -> str:
+        """Of whichever of its packages is there."""
+        return str(importlib.import_module("open3d").__version__)
 
     def _rays(self, origins: Array, directions: Array) -> Any:
         return self.tensor(np.concatenate(_floats(origins, directions), axis=1))

@@ -47,7 +47,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Query:
-    """Rays (two arrays) or points (one), float32, and how far an occlusion ray goes."""
+    """Rays (two arrays) or points (one), and how far an occlusion ray goes."""
 
     origins: Array
     directions: Array | None = None
@@ -60,6 +60,18 @@ class Query:
         """Rays first to end."""
         directions = None if self.directions is None else self.directions[first:end]
         return Query(self.origins[first:end], directions, self.t_max)
+
+    def every(self, step: int) -> Query:
+        """Every so manieth ray."""
+        directions = None if self.directions is None else self.directions[::step]
+        return Query(self.origins[::step], directions, self.t_max)
+
+    def of(self, dtype: type[np.floating[Any]]) -> Query:
+        """The same in that precision."""
+        parts = (self.origins, self.directions)
+        origins, directions = (a if a is None else np.ascontiguousarray(a, dtype) for a in parts)
+        assert origins is not None
+        return Query(origins, directions, self.t_max)
 
 
 def sphere(n: int = 512) -> Mesh:

@@ -112,6 +112,26 @@ MODES = {
 }
 
 
+def engine(name, seconds, lost, other):
+    counts = {"rays": 2000, "judged": 1000, "lost": lost, "false": [0, 0], "other": other}
+    return {"engine": name, "seconds": seconds, **counts}
+
+
+AIMED = {
+    "command": "bench aimed",
+    "processor": "a processor",
+    "cores": 1,
+    "runs": [
+        {
+            "numbers": "float",
+            "rows": [engine("kdray-double", 0.001, [0, 0], [0, 0]), engine("open3d", 0.0005, [1, 2], [3, 4])],
+        },
+        {"numbers": "float", "rows": [engine("open3d", 0.0005, [0, 3], [7, 0])]},
+        {"numbers": "double", "rows": [engine("kdray-double", 0.002, [0, 0], [0, 0])]},
+    ],
+}
+
+
 def figures(report):
     return dict(plot.DRAW[report["command"]](report))
 
@@ -155,6 +175,17 @@ class Plot(unittest.TestCase):
         boxes = [plot.matplotlib.text.Text.get_window_extent(text).padded(-1) for text in labels]  # without the leader
         for i, box in enumerate(boxes):
             self.assertFalse(any(box.overlaps(other) for other in boxes[:i]), labels[i])
+
+    def test_wrong_hits_are_summed_over_scenes_and_none_is_shown_as_such(self):
+        floats, doubles = figures(AIMED)[""].axes
+        for axes in (floats, doubles):
+            self.assertLess(axes.get_ylim()[0], 0)
+        dots = [
+            [tuple(map(float, line.get_xydata()[0])) for line in axes.lines if line.get_marker() == "o"]
+            for axes in (floats, doubles)
+        ]
+        # Rings, then dots, of each engine; kdray's lie on top. Of 2000 judged rays 6 are lost, and 14 are other.
+        self.assertEqual(dots, [[(4, 3000), (4, 10000), (2, 0), (2, 0)], [(1, 0), (1, 0)]])
 
     def test_a_staircase_has_the_error_that_can_be_had_in_a_given_time(self):
         self.assertEqual(plot.staircase([(1, 9), (4, 5), (6, 2)]), [(1, 9), (4, 9), (4, 5), (6, 5), (6, 2)])
