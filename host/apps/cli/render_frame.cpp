@@ -64,12 +64,11 @@ void tell_of_options_without_effect(const RenderArgs& o) {
 }
 
 // The size is resolved as the renderer will do it (RenderOptions::width).
-void check_memory(const RenderArgs& o, const scene::RenderSettings& asked) {
+void check_memory(const RenderArgs& o, scene::RenderSettings asked) {
   const RenderOptions& render = o.render;
-  const int width = render.width > 0 ? render.width : asked.width.value_or(scene::kDefaultSide);
-  const int height = render.height > 0 ? render.height : asked.height.value_or(scene::kDefaultSide);
-  PictureNeeds picture{.width = static_cast<std::uint64_t>(width),
-                       .height = static_cast<std::uint64_t>(height)};
+  scene::set_size(asked, render.width, render.height);
+  PictureNeeds picture{.width = static_cast<std::uint64_t>(asked.width.value_or(scene::kDefaultSide)),
+                       .height = static_cast<std::uint64_t>(asked.height.value_or(scene::kDefaultSide))};
   for (const std::string& name : render.channels) picture.n_channels += name == "normal" ? 3 : 1;
   if (o.view.transparent) ++picture.n_channels;
   picture.exr = makes_exr(o);
@@ -198,8 +197,9 @@ void FrameMaker::turn(const RenderArgs& o, double turns) {
   const int width = o.render.width, height = o.render.height;
   if (!turntable_) {
     const scene::Scene& seen = seen_->settings();
-    const double asked = scene::aspect_of(scene::settings_of(seen));
-    turntable_.emplace(seen, o.view.view, width > 0 ? static_cast<double>(width) / height : asked);
+    scene::RenderSettings asked = scene::settings_of(seen);
+    scene::set_size(asked, o.render.width, o.render.height);
+    turntable_.emplace(seen, o.view.view, scene::aspect_of(asked));
   }
   seen_ = scene_->scene().seen(turntable_->after(turns), width, height);
   renderer_->look(*seen_);

@@ -100,12 +100,12 @@ std::string scene_message(std::span<const SceneSource> sources, std::size_t numb
                           const SceneRenderer& renderer, const Settings& settings, bool again) {
   const scene::Scene& scene = renderer.scene().settings();
   const RenderOptions& given = settings.render;
-  const scene::RenderSettings asked = scene::settings_of(scene);
+  scene::RenderSettings asked = scene::settings_of(scene);
+  scene::set_size(asked, given.width, given.height);
   Json json = {{"type", "scene"}, {"scene", number}, {"again", again}};
   for (const SceneSource& source : sources) json["names"].push_back(source.name);
-  const int width = given.width > 0 ? given.width : asked.width.value_or(0);
-  const int height = given.height > 0 ? given.height : asked.height.value_or(0);
-  json["size"] = given.width > 0 ? Json{given.width, given.height} : Json(nullptr);
+  const int width = asked.width.value_or(0), height = asked.height.value_or(0);
+  json["size"] = given.width > 0 ? Json{width, height} : Json(nullptr);
   json["camera"] = json_of(renderer.camera(width, height));
   const DBox& box = scene.framing.box;
   json["box"] =
