@@ -155,12 +155,10 @@ void tell_of_scene(OpenedScene& scene) {
 }
 
 // A background that becomes transparent is one colour, in a studio too.
-PreparedScene seen_as(const PreparedScene& scene, const RenderArgs& o) {
-  const PreparedScene shown = in_look(scene, o.view);
-  View view = o.view.view;
+PreparedScene seen_by(View view, const PreparedScene& shown, const RenderArgs& o) {
   const bool in_studio = shown.settings().framing.studio.has_value();
   if (in_studio && o.view.transparent) view.background = {0, 0, 0};
-  return in_studio || o.view.any ? shown.seen(view, o.render.width, o.render.height) : shown;
+  return in_studio || o.view.any || view.from ? shown.seen(view, o.render.width, o.render.height) : shown;
 }
 
 // No rank knows the shape of a scene that is held in shares, by which a studio is furnished.
@@ -188,20 +186,20 @@ FrameMaker::FrameMaker(RenderArgs& o) {
   if (scene_->cache() != "off") tell_of_scene(*scene_);
   o.hooks.whole = scene_->whole();
   if (in_shares) take_plain_look(o, scene_->scene().settings());
-  seen_ = seen_as(scene_->scene(), o);
+  shown_ = in_look(scene_->scene(), o.view);
+  seen_ = seen_by(o.view.view, *shown_, o);
   check_transparent(o, seen_->settings());
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }
 
 void FrameMaker::turn(const RenderArgs& o, double turns) {
-  const int width = o.render.width, height = o.render.height;
   if (!turntable_) {
     const scene::Scene& seen = seen_->settings();
     scene::RenderSettings asked = scene::settings_of(seen);
     scene::set_size(asked, o.render.width, o.render.height);
     turntable_.emplace(seen, o.view.view, scene::aspect_of(asked));
   }
-  seen_ = scene_->scene().seen(turntable_->after(turns), width, height);
+  seen_ = seen_by(turntable_->after(turns), *shown_, o);
   renderer_->look(*seen_);
 }
 
