@@ -97,7 +97,8 @@ Json figures_of(const Statistics& s) {
 }  // namespace
 
 std::string scene_message(std::span<const SceneSource> sources, std::size_t number,
-                          const SceneRenderer& renderer, const Settings& settings, bool again) {
+                          const SceneRenderer& renderer, bool again) {
+  const Settings& settings = renderer.settings();
   const scene::Scene& scene = renderer.scene().settings();
   const RenderOptions& given = settings.render;
   scene::RenderSettings asked = scene::settings_of(scene);
@@ -114,6 +115,8 @@ std::string scene_message(std::span<const SceneSource> sources, std::size_t numb
   json["samples"] = given.samples > 0 ? Json(given.samples) : Json("adaptive");
   json["look"] = kLooks[static_cast<std::size_t>(settings.look)];
   json["headlight"] = settings.view.headlight;
+  if (number < sources.size() && !sources[number].file.empty())
+    json["smooth"] = settings.load.smooth_degrees.value_or(0);
   json["queues"] = settings.device.queues;
   const prepare::Prepared& prepared = renderer.scene().prepared();
   json["primitives"] = prepared.counts.primitives;
