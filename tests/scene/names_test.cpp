@@ -140,7 +140,8 @@ TEST(Names, TakeLittleMemory) {
 TEST(Names, MaterialsAreFoundByThePrimitivesNumber) {
   const Scene s = read_json(R"({"materials": {"red": {"color": [1, 0, 0]}}, "objects": [
       {"type": "sphere", "center": [0, 0, 0], "radius": 1},
-      {"type": "triangles", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "faces": [[0, 1, 2]], "material": "red"},
+      {"type": "triangles", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "faces": [[0, 1, 2]],
+       "material": "red"},
       {"type": "sphere", "center": [0, 0, 0], "radius": 2, "material": "red"}]})",
                             "s.json");
   ASSERT_TRUE(s.names);
