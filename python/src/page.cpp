@@ -65,8 +65,9 @@ class Page {
     settings.device.compute_units = compute_units;
     settings.device.programs = default_program_folder();
     settings.device.remember_programs = true;
-    served_->service.emplace(std::vector<view::SceneSource>{{name, "", [this] { return scene_now(); }}},
-                             settings, scene_);
+    served_->service.emplace(
+        std::vector<view::SceneSource>{{name, "", [this](const LoadOptions&) { return scene_now(); }}},
+        settings, scene_);
     served_->thread = std::thread([s = served_.get()] { s->server.run(*s->service); });
   }
   ~Page() { close(); }

@@ -99,10 +99,26 @@ def test_a_port_that_is_taken_is_told(page, ball):
             ball.view(**wrong)
 
 
-# ---- In a browser
-
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "apps" / "view"))
 from browser import Browser  # type: ignore[import-not-found]  # noqa: E402
+from page_client import PageClient  # type: ignore[import-not-found]  # noqa: E402
+
+
+@pytest.mark.parametrize("options", [{}, {"look": "plain"}])
+def test_it_has_the_look_of_render(ball, tmp_path, options):
+    with ball.view(**options) as view:
+        page = PageClient(view.address)
+        begun = page.receive_until("scene")
+        page.look(False, camera=begun["camera"], width=64, height=48, samples=0, look=None)
+        page.receive_until("final")
+        page.close()
+    assert begun["look"] == options.get("look", "studio")
+    c = begun["camera"]
+    ball.render(kdray.Camera(c["from"], c["at"], c["up"], fov=c["fov"]), (64, 48), **options).save(tmp_path / "a.png")
+    assert page.picture == (tmp_path / "a.png").read_bytes()
+
+
+# ---- In a browser
 
 
 class Notebook(http.server.BaseHTTPRequestHandler):

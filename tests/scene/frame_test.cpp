@@ -71,6 +71,23 @@ TEST(FrameScene, AnUnsizedPictureHasTheAspectRatioOfItsCamera) {
   EXPECT_EQ(size(2, 640), Sides(640, std::nullopt)) << "the file's own size counts";
 }
 
+TEST(FrameScene, AWidthAloneHasTheHeightOfTheAspectRatio) {
+  const auto size = [](RenderSettings settings, int width, int height) {
+    set_size(settings, width, height);
+    return std::pair(settings.width, settings.height);
+  };
+  using Sides = std::pair<std::optional<int>, std::optional<int>>;
+  RenderSettings wide;
+  wide.width = 1024, wide.height = 576;
+  EXPECT_EQ(size(wide, 256, 0), Sides(256, 144));
+  EXPECT_EQ(size(wide, 0, 144), Sides(256, 144));
+  EXPECT_EQ(size(wide, 256, 256), Sides(256, 256));
+  EXPECT_EQ(size(wide, 1, 0), Sides(1, 1));
+  EXPECT_EQ(size(wide, 0, 0), Sides(1024, 576));
+  EXPECT_EQ(size({}, 256, 0), Sides(256, 256));
+  EXPECT_EQ(size({}, 0, 0), Sides());
+}
+
 TEST(FrameScene, LightsSidesTheCameraSees) {
   Scene s = box_of(dvec3(-1), dvec3(1));
   frame_scene(s);

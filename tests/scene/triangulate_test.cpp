@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
+#include "scene/import/load.h"
 #include "scene/model/predicates.h"
 
 namespace kdray::scene {
@@ -204,13 +206,22 @@ TEST(Triangulate, CoversASpiralOfAHundredThousandCorners) {
   EXPECT_NO_FATAL_FAILURE(expect_cover(spiral));
 }
 
+// Of a file, whose line is told.
 TEST(Triangulate, SaysWhenItGaveUp) {
-  std::vector<dvec3> mess;
+  constexpr int kCorners = 60'000;
+  std::string corners = "# a mess\n", face = "f";
   std::mt19937 random(1);
-  for (int i = 0; i < 60'000; ++i) mess.push_back({random() % 1000 * 1.0, random() % 1000 * 1.0, 0});
-  bool finished = true;
-  EXPECT_EQ(triangulate(mess, &finished).size(), mess.size() - 2);
-  EXPECT_FALSE(finished);
+  for (int i = 1; i <= kCorners; ++i) {
+    const auto x = random() % 1000, y = random() % 1000;
+    corners += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+    face += " " + std::to_string(i);
+  }
+  const Scene scene = read_obj(corners + face + "\n", "a.obj");
+  EXPECT_EQ(scene.triangles.size(), std::size_t{kCorners} - 2);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_EQ(
+      scene.warnings[0],
+      "a.obj:60002: a polygon of 60000 corners crosses itself too often to be cut up: part of it is a fan");
 }
 
 TEST(OrientSign, IsExactWhereRoundingDecides) {

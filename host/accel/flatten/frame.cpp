@@ -71,8 +71,10 @@ void set_floor(layout::Frame& f, const scene::Floor& floor, const LocalSpace& sp
 
 RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings& settings) {
   RenderOptions o = options;
-  o.width = pick(o.width, settings.width, scene::kDefaultSide);
-  o.height = pick(o.height, settings.height, scene::kDefaultSide);
+  scene::RenderSettings sized = settings;
+  scene::set_size(sized, o.width, o.height);
+  o.width = sized.width.value_or(scene::kDefaultSide);
+  o.height = sized.height.value_or(scene::kDefaultSide);
   o.depth = pick(o.depth, settings.depth, kDefaultDepth);
   o.samples = o.adaptive_target > 0 ? 1 : pick(o.samples, settings.samples, 1);
   if (!(o.min_weight >= 0)) o.min_weight = settings.min_weight.value_or(kDefaultMinWeight);

@@ -14,6 +14,9 @@ namespace kdray::prepare {
 
 namespace {
 
+// Of a pixel, where neither the user nor the scene says how many: lights have an area.
+constexpr int kSamples = 8;
+
 constexpr std::size_t kRays = 48, kSeen = 16, kGrain = 4096;
 constexpr float kMiss = std::numeric_limits<float>::infinity();
 template <std::size_t n>
@@ -282,7 +285,10 @@ scene::Studio studio_of(const Prepared& p) {
 Prepared in_studio(const Prepared& prepared) {
   Prepared made = prepared;
   scene::Framing& framing = made.settings.framing;
-  if (framing.camera && framing.lights && !framing.box.empty()) framing.studio = studio_of(prepared);
+  if (!framing.camera || !framing.lights || framing.box.empty()) return made;
+  framing.studio = studio_of(prepared);
+  std::optional<int>& samples = made.settings.settings.samples;
+  samples = samples.value_or(kSamples);
   return made;
 }
 

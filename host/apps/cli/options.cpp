@@ -103,10 +103,12 @@ std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
 Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max) {
   Size size;
   const std::size_t cross = text.find_first_of("xX");
-  const bool good = cross != std::string_view::npos && whole_number(text.substr(0, cross), size.width) &&
-                    whole_number(text.substr(cross + 1), size.height) && size.width >= 1 &&
+  const bool is_one = cross == std::string_view::npos;
+  const bool good = whole_number(text.substr(0, cross), size.width) &&
+                    whole_number(is_one ? text : text.substr(cross + 1), size.height) && size.width >= 1 &&
                     size.height >= 1 && size.width <= side_max && size.height <= side_max;
-  if (!good) throw usage_error(option, text, fmt::format("WIDTHxHEIGHT, each from 1 to {}", side_max));
+  if (!good)
+    throw usage_error(option, text, fmt::format("WIDTHxHEIGHT or WIDTH, each from 1 to {}", side_max));
   if (static_cast<long long>(size.width) * size.height > pixels_max)
     throw usage_error(option, text, fmt::format("no more than {} pixels in all", pixels_max));
   return size;
@@ -209,11 +211,13 @@ CLI::Option* add_real(CLI::App& app, const std::string& name, const std::string&
 }
 
 CLI::Option* add_size(CLI::App& app, const std::string& help, int side_max, long long pixels_max, int& width,
-                      int& height) {
-  return add_text(app, "--size", "WxH", help,
-                  [side_max, pixels_max, &width, &height](const std::string& text) {
+                      int& height, OneSide one_side) {
+  return add_text(app, "--size", "WxH|W", help,
+                  [side_max, pixels_max, &width, &height, one_side](const std::string& text) {
                     const Size size = parse_size("--size", text, side_max, pixels_max);
-                    width = size.width, height = size.height;
+                    const bool follows =
+                        one_side == OneSide::by_aspect && text.find_first_of("xX") == std::string::npos;
+                    width = size.width, height = follows ? 0 : size.height;
                   });
 }
 

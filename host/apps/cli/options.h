@@ -87,9 +87,11 @@ CLI::Option* add_int(CLI::App& app, const std::string& name, const std::string& 
                      int& value);
 CLI::Option* add_real(CLI::App& app, const std::string& name, const std::string& shape,
                       const std::string& help, double lo, double hi, double& value);
-// --size WxH
+// What a width alone means: a square, or a height of 0, which follows from the scene's aspect ratio.
+enum class OneSide { square, by_aspect };
+// --size WxH|W
 CLI::Option* add_size(CLI::App& app, const std::string& help, int side_max, long long pixels_max, int& width,
-                      int& height);
+                      int& height, OneSide one_side = OneSide::square);
 CLI::Option* add_path(CLI::App& app, const std::string& name, const std::string& help, std::string& value);
 // --quiet --verbose
 void add_loudness(CLI::App& app, bool& quiet, bool& verbose);

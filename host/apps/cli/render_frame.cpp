@@ -64,12 +64,11 @@ void tell_of_options_without_effect(const RenderArgs& o) {
 }
 
 // The size is resolved as the renderer will do it (RenderOptions::width).
-void check_memory(const RenderArgs& o, const scene::RenderSettings& asked) {
+void check_memory(const RenderArgs& o, scene::RenderSettings asked) {
   const RenderOptions& render = o.render;
-  const int width = render.width > 0 ? render.width : asked.width.value_or(scene::kDefaultSide);
-  const int height = render.height > 0 ? render.height : asked.height.value_or(scene::kDefaultSide);
-  PictureNeeds picture{.width = static_cast<std::uint64_t>(width),
-                       .height = static_cast<std::uint64_t>(height)};
+  scene::set_size(asked, render.width, render.height);
+  PictureNeeds picture{.width = static_cast<std::uint64_t>(asked.width.value_or(scene::kDefaultSide)),
+                       .height = static_cast<std::uint64_t>(asked.height.value_or(scene::kDefaultSide))};
   for (const std::string& name : render.channels) picture.n_channels += name == "normal" ? 3 : 1;
   if (o.view.transparent) ++picture.n_channels;
   picture.exr = makes_exr(o);
@@ -135,9 +134,24 @@ image::Image to_image(const Picture& picture) {
   return image;
 }
 
-image::Written write(Picture&& picture, std::vector<float>&& alpha, const RenderArgs& o) {
+// Returns by each name the numbers that have it, as pairs of the first and how many follow each other.
+std::string manifest_of(const scene::Names& names, const std::vector<scene::NameRun>& runs) {
+  Json manifest = Json::object();
+  for (std::size_t i = 0; i + 1 < runs.size(); ++i)
+    if (const std::string name(names.text(runs[i].name)); !name.empty())
+      manifest[name].push_back({runs[i].first, runs[i + 1].first - runs[i].first});
+  return manifest.empty() ? std::string() : manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+image::Written write(Picture&& picture, std::vector<float>&& alpha, const scene::Names* names,
+                     const RenderArgs& o) {
   std::vector<image::Channel> channels;
-  for (Channel& c : picture.channels) channels.push_back({std::move(c.name), std::move(c.values)});
+  for (Channel& c : picture.channels) {
+    channels.push_back({std::move(c.name), std::move(c.values)});
+    image::Channel& made = channels.back();
+    if (names && made.name == "primitive") made.manifest = manifest_of(*names, names->primitives);
+    if (names && made.name == "instance") made.manifest = manifest_of(*names, names->instances);
+  }
   image::Image image = to_image(picture);
   image.alpha = std::move(alpha);
   picture.rgb = {};  // large pictures: no third copy while the file is made
@@ -156,12 +170,10 @@ void tell_of_scene(OpenedScene& scene) {
 }
 
 // A background that becomes transparent is one colour, in a studio too.
-PreparedScene seen_as(const PreparedScene& scene, const RenderArgs& o) {
-  const PreparedScene shown = in_look(scene, o.view);
-  View view = o.view.view;
+PreparedScene seen_by(View view, const PreparedScene& shown, const RenderArgs& o) {
   const bool in_studio = shown.settings().framing.studio.has_value();
   if (in_studio && o.view.transparent) view.background = {0, 0, 0};
-  return in_studio || o.view.any ? shown.seen(view, o.render.width, o.render.height) : shown;
+  return in_studio || o.view.any || view.from ? shown.seen(view, o.render.width, o.render.height) : shown;
 }
 
 // No rank knows the shape of a scene that is held in shares, by which a studio is furnished.
@@ -189,19 +201,20 @@ FrameMaker::FrameMaker(RenderArgs& o) {
   if (scene_->cache() != "off") tell_of_scene(*scene_);
   o.hooks.whole = scene_->whole();
   if (in_shares) take_plain_look(o, scene_->scene().settings());
-  seen_ = seen_as(scene_->scene(), o);
+  shown_ = in_look(scene_->scene(), o.view);
+  seen_ = seen_by(o.view.view, *shown_, o);
   check_transparent(o, seen_->settings());
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }
 
 void FrameMaker::turn(const RenderArgs& o, double turns) {
-  const int width = o.render.width, height = o.render.height;
   if (!turntable_) {
     const scene::Scene& seen = seen_->settings();
-    const double asked = scene::aspect_of(scene::settings_of(seen));
-    turntable_.emplace(seen, o.view.view, width > 0 ? static_cast<double>(width) / height : asked);
+    scene::RenderSettings asked = scene::settings_of(seen);
+    scene::set_size(asked, o.render.width, o.render.height);
+    turntable_.emplace(seen, o.view.view, scene::aspect_of(asked));
   }
-  seen_ = scene_->scene().seen(turntable_->after(turns), width, height);
+  seen_ = seen_by(turntable_->after(turns), *shown_, o);
   renderer_->look(*seen_);
 }
 
@@ -225,7 +238,8 @@ void FrameMaker::make(RenderArgs& o) {
     for (const std::string& warning : picture.warnings) say(warning);
   Statistics figures = renderer_->statistics();
   const Timer step;
-  const image::Written written = write(std::move(picture), std::move(alpha), o);
+  const image::Written written =
+      write(std::move(picture), std::move(alpha), seen_->settings().names.get(), o);
   figures.seconds.write = step.seconds();
   if (is_first_ && !o.quiet) tell_of_view(*seen_, o.view);
   if (is_first_) {

@@ -59,7 +59,7 @@ class FrameMaker {
   Timer total_;  // since the start, or the last frame's end
   RunFiles files_;
   std::optional<OpenedScene> scene_;
-  std::optional<PreparedScene> seen_;
+  std::optional<PreparedScene> shown_, seen_;  // in its look; and by the frame's view
   std::optional<Renderer> renderer_;
   std::optional<Turntable> turntable_;
   bool is_first_ = true;

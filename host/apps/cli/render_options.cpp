@@ -30,8 +30,10 @@ constexpr std::array<std::string_view, 2> kLooks = {"plain", "studio"};
 }  // namespace
 
 void add_picture_options(CLI::App& app, RenderOptions& o) {
-  add_size(app, "Pixels across and down (default: the scene's or its camera's, or 1024x1024)",
-           kPictureSideMax, kPicturePixelsMax, o.width, o.height);
+  add_size(app,
+           "Pixels across and down, or across alone (default, and what is left out: as the scene or its "
+           "camera has it, or 1024x1024)",
+           kPictureSideMax, kPicturePixelsMax, o.width, o.height, OneSide::by_aspect);
   add_int(app, "--depth", "Deepest ray; the eye ray is 1 (default: the scene's, or 5)", 1, 64, o.depth);
   add_real(app, "--min-weight", "W",
            "Rays of less weight are not traced (default: what can't change an 8-bit picture); 0: trace all",

@@ -34,18 +34,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SceneInput input_of(const ViewArgs& args, const std::string& scene) {
+SceneInput input_of(const std::string& scene, const LoadOptions& load) {
   SceneInput input;
   input.file = scene;
-  input.load = args.load;
+  input.load = load;
   return input;
 }
 
 std::vector<view::SceneSource> sources_of(const ViewArgs& args) {
   std::vector<view::SceneSource> sources;
   for (const std::string& scene : args.scenes) {
-    const auto open = [&args, scene] {
-      OpenedScene opened(input_of(args, scene), args.tree, args.device, args.cache, true);
+    const auto open = [&args, scene](const LoadOptions& load) {
+      OpenedScene opened(input_of(scene, load), args.tree, args.device, args.cache, true);
       opened.keep();
       return view::LoadedScene{opened.scene(), {}};
     };
@@ -160,15 +160,18 @@ int show_page(ViewArgs& args) {
       .is_over = [&stdio] { return stdio.is_closed(); }};
   view::Server server(options);  // before the scene is read: the port may be taken
   args.tree.binary_form = true;  // channels and cells are of it
-  OpenedScene first(input_of(args, args.scenes.front()), args.tree, args.device, args.cache, args.quiet,
+  OpenedScene first(input_of(args.scenes.front(), args.load), args.tree, args.device, args.cache, args.quiet,
                     [&args](const scene::Scene& asked) {
                       if (args.view.any) check_view(asked, args.view.view);
                     });
   first.keep();
-  if (!args.quiet) tell_of_view(in_look(first.scene(), args.view), args.view);
   view::Settings settings{args.view.view, args.render, first.device(), args.load,
                           args.view.look.value_or(Look::studio)};
-  view::ViewService service(sources_of(args), settings, {first.scene(), {}});
+  view::LoadedScene loaded{first.scene(), {}};
+  const PreparedScene shown = in_look(first.scene(), args.view);
+  if (settings.look == Look::studio) loaded.studio = shown;
+  if (!args.quiet) tell_of_view(shown, args.view);
+  view::ViewService service(sources_of(args), settings, std::move(loaded));
   say_where(args, server);
   std::unique_ptr<Temporary> opened;
   if (args.open || (!args.no_open && can_open())) {

@@ -97,15 +97,16 @@ Json figures_of(const Statistics& s) {
 }  // namespace
 
 std::string scene_message(std::span<const SceneSource> sources, std::size_t number,
-                          const SceneRenderer& renderer, const Settings& settings, bool again) {
+                          const SceneRenderer& renderer, bool again) {
+  const Settings& settings = renderer.settings();
   const scene::Scene& scene = renderer.scene().settings();
   const RenderOptions& given = settings.render;
-  const scene::RenderSettings asked = scene::settings_of(scene);
+  scene::RenderSettings asked = scene::settings_of(scene);
+  scene::set_size(asked, given.width, given.height);
   Json json = {{"type", "scene"}, {"scene", number}, {"again", again}};
   for (const SceneSource& source : sources) json["names"].push_back(source.name);
-  const int width = given.width > 0 ? given.width : asked.width.value_or(0);
-  const int height = given.height > 0 ? given.height : asked.height.value_or(0);
-  json["size"] = given.width > 0 ? Json{given.width, given.height} : Json(nullptr);
+  const int width = asked.width.value_or(0), height = asked.height.value_or(0);
+  json["size"] = given.width > 0 ? Json{width, height} : Json(nullptr);
   json["camera"] = json_of(renderer.camera(width, height));
   const DBox& box = scene.framing.box;
   json["box"] =
@@ -114,6 +115,8 @@ std::string scene_message(std::span<const SceneSource> sources, std::size_t numb
   json["samples"] = given.samples > 0 ? Json(given.samples) : Json("adaptive");
   json["look"] = kLooks[static_cast<std::size_t>(settings.look)];
   json["headlight"] = settings.view.headlight;
+  if (number < sources.size() && !sources[number].file.empty())
+    json["smooth"] = settings.load.smooth_degrees.value_or(0);
   json["queues"] = settings.device.queues;
   const prepare::Prepared& prepared = renderer.scene().prepared();
   json["primitives"] = prepared.counts.primitives;

@@ -21,7 +21,7 @@ namespace kdray::view {
 
 // `again`: the scene was opened anew, since a file has changed; the page keeps its camera.
 std::string scene_message(std::span<const SceneSource> sources, std::size_t number,
-                          const SceneRenderer& renderer, const Settings& settings, bool again);
+                          const SceneRenderer& renderer, bool again);
 
 struct FrameFacts {
   std::uint32_t frame = 0, look = 0;

@@ -162,7 +162,7 @@ Pick pick_of(Fields& fields) {
 }  // namespace
 
 Message parse_message(std::string_view text) {
-  static constexpr std::array<std::string_view, 4> kTypes = {"look", "shown", "pick", "cells"};
+  static constexpr std::array<std::string_view, 5> kTypes = {"look", "shown", "pick", "cells", "smooth"};
   const Json value = parsed(text);
   Fields fields(value);
   Message message;
@@ -176,9 +176,13 @@ Message parse_message(std::string_view text) {
     case 2:
       message = pick_of(fields);
       break;
-    default:
+    case 3:
       message = Cells{static_cast<std::size_t>(fields.whole("scene", 0, 1 << 20)),
                       static_cast<int>(fields.whole("depth", 0, kMostCellDepth))};
+      break;
+    default:
+      message =
+          Smooth{static_cast<std::size_t>(fields.whole("scene", 0, 1 << 20)), fields.real("degrees", 0, 180)};
   }
   fields.end();
   return message;

@@ -39,7 +39,13 @@ struct Cells {
   std::size_t scene = 0;
   int depth = 0;
 };
-using Message = std::variant<Look, Shown, Pick, Cells>;
+// To open the scene again with normals for triangles that have none, where the surface turns by no more
+// degrees than so many; 0: without.
+struct Smooth {
+  std::size_t scene = 0;
+  double degrees = 0;
+};
+using Message = std::variant<Look, Shown, Pick, Cells, Smooth>;
 
 Message parse_message(std::string_view text);
 

@@ -28,11 +28,19 @@ Vec3 triple_of(const dvec3& v) {
 }  // namespace
 
 SceneRenderer::SceneRenderer(LoadedScene loaded, const Settings& settings)
-    : loaded_(std::move(loaded)), settings_(settings), studio_(loaded_.scene.in_studio()) {}
+    : loaded_(std::move(loaded)), settings_(settings), studio_(loaded_.studio) {}
+
+const PreparedScene& SceneRenderer::scene(kdray::Look look) const {
+  if (look == kdray::Look::plain) return loaded_.scene;
+  std::call_once(studio_made_, [this] {
+    if (!studio_) studio_ = loaded_.scene.in_studio();
+  });
+  return *studio_;
+}
 
 std::vector<std::filesystem::path> SceneRenderer::files() const {
   std::vector<std::filesystem::path> paths;
-  for (const scene::FileRead& file : scene().settings().files)
+  for (const scene::FileRead& file : loaded_.scene.settings().files)
     if (!file.only_named) paths.push_back(file.path);
   return paths;
 }

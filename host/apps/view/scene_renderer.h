@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,26 +25,27 @@
 namespace kdray::view {
 
 struct LoadedScene {
-  PreparedScene scene;                   // in the plain look
-  std::vector<GeometryName> geometries;  // empty: all of it is geometry 0
+  PreparedScene scene;                       // in the plain look
+  std::vector<GeometryName> geometries;      // empty: all of it is geometry 0
+  std::optional<PreparedScene> studio = {};  // where it has been made already
 };
 
 // A scene that the user has named; pages refer to it by its number in the list of them.
 struct SceneSource {
   std::string name;
-  std::string file;                   // for the command line; empty: there is none that renders it
-  std::function<LoadedScene()> open;  // throws kdray::Error; also called again, when a file has changed
+  std::string file;  // for the command line; empty: there is none that renders it
+  // Throws kdray::Error. Also called again, when a file has changed or is to be read in another way.
+  std::function<LoadedScene(const LoadOptions&)> open;
 };
 
 class SceneRenderer {
  public:
   SceneRenderer(LoadedScene loaded, const Settings& settings);
 
+  const Settings& settings() const { return settings_; }
   // Returns it in the look of the command line, or in another one.
   const PreparedScene& scene() const { return scene(settings_.look); }
-  const PreparedScene& scene(kdray::Look look) const {
-    return look == kdray::Look::studio ? studio_ : loaded_.scene;
-  }
+  const PreparedScene& scene(kdray::Look look) const;
   // Returns all files that were read to make it, and those that were not found.
   std::vector<std::filesystem::path> files() const;
   // Returns the camera of the scene, or of the command line.
@@ -60,7 +62,8 @@ class SceneRenderer {
 
   LoadedScene loaded_;
   Settings settings_;
-  PreparedScene studio_;
+  mutable std::once_flag studio_made_;
+  mutable std::optional<PreparedScene> studio_;  // made when it is first asked for
   std::optional<Renderer> renderer_;
   int queues_ = 0;  // of the renderer
   std::optional<Picker> picker_;

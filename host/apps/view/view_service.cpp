@@ -128,9 +128,25 @@ void ViewService::handle(ClientState& state, const Cells& cells) {
   });
 }
 
+void ViewService::handle(ClientState&, const Smooth& smooth) {
+  if (smooth.scene >= sources_.size() || sources_[smooth.scene].file.empty())
+    throw Error(ErrorCode::input, "the page's message: there is no such file");
+  smooth_[smooth.scene] = smooth.degrees;
+  open_anew(smooth.scene);
+}
+
+Settings ViewService::settings_of(std::size_t scene) const {
+  Settings settings = settings_;
+  if (const auto chosen = smooth_.find(scene); chosen != smooth_.end()) {
+    settings.load.smooth_degrees.reset();
+    if (chosen->second > 0) settings.load.smooth_degrees = chosen->second;
+  }
+  return settings;
+}
+
 void ViewService::send_scene(ClientState& state, std::size_t scene, bool again) {
   state.scene = scene;
-  state.client->send(scene_message(sources_, scene, *open_scenes_.at(scene).renderer, settings_, again));
+  state.client->send(scene_message(sources_, scene, *open_scenes_.at(scene).renderer, again));
 }
 
 void ViewService::send_to_all(const std::string& text, std::optional<std::size_t> scene) {
@@ -154,9 +170,9 @@ void ViewService::open_anew(std::size_t scene) {
 
 void ViewService::open(std::size_t scene) {
   if (opening_[scene] != Opening::no) return;
-  const bool begins = worker_.add([this, scene] {
+  const bool begins = worker_.add([this, scene, load = settings_of(scene).load] {
     try {
-      opened(scene, sources_[scene].open());
+      opened(scene, sources_[scene].open(load));
     } catch (...) {
       not_opened(scene, error_text(std::current_exception()));
     }
@@ -175,10 +191,10 @@ bool ViewService::is_outdated(std::size_t scene) {
 }
 
 void ViewService::opened(std::size_t scene, LoadedScene loaded) {
-  auto renderer = std::make_shared<SceneRenderer>(std::move(loaded), settings_);
-  FileWatcher watcher(renderer->files());
   const std::lock_guard lock(mutex_);
   if (is_outdated(scene)) return;
+  auto renderer = std::make_shared<SceneRenderer>(std::move(loaded), settings_of(scene));
+  FileWatcher watcher(renderer->files());
   const bool again = open_scenes_.contains(scene);
   open_scenes_[scene] = {std::move(renderer), std::move(watcher)};
   send_to_all(busy_message(""), scene);
@@ -339,7 +355,7 @@ void ViewService::pack(const Task& task, std::shared_ptr<const Picture> picture)
            {.kind = "final",
             .type = "image/png",
             .encode_seconds = encoded,
-            .command = file.empty() ? std::string() : command_for(request, settings_, file)},
+            .command = file.empty() ? std::string() : command_for(request, task.renderer->settings(), file)},
            bytes);
     } catch (...) {
       fail(task, error_text(std::current_exception()));

@@ -68,10 +68,13 @@ class ViewService : public ClientHandler {
   void handle(ClientState& state, const Shown& shown);
   void handle(ClientState& state, const Pick& pick);
   void handle(ClientState& state, const Cells& cells);
+  void handle(ClientState& state, const Smooth& smooth);
   ClientState* find_client(const Client& client);
   void send_scene(ClientState& state, std::size_t scene, bool again);
   void send_to_all(const std::string& text, std::optional<std::size_t> scene = {});
 
+  // Returns the command line's settings, and how this scene is read.
+  Settings settings_of(std::size_t scene) const;
   // Has the worker open the scene, which then calls opened() or not_opened().
   void open(std::size_t scene);
   void open_anew(std::size_t scene);
@@ -99,7 +102,8 @@ class ViewService : public ClientHandler {
   std::condition_variable changed_;
   std::list<ClientState> clients_;  // in the order of the next turns (round robin)
   std::map<std::size_t, OpenScene> open_scenes_;
-  std::vector<Opening> opening_;  // by scene
+  std::vector<Opening> opening_;          // by scene
+  std::map<std::size_t, double> smooth_;  // degrees, by scene, as a page has chosen; 0: none
   std::chrono::steady_clock::time_point files_checked_;
   std::optional<Cancel> cancel_;          // of what is being rendered,
   const Client* rendered_for_ = nullptr;  // for which page,

@@ -166,10 +166,12 @@ struct LedgerOptions {
 };
 
 struct RenderOptions {
-  int width = 0, height = 0;  // 0: what the scene or its camera asks for, or 1024x1024
-  int depth = 0;              // 0: what the scene asks for, or 5; the eye ray is depth 1
-  double min_weight = -1;     // < 0: what the scene asks for, or kDefaultMinWeight; 0: no cut
-  int samples = 0;            // per pixel, stratified; 0: what the scene asks for, or 1
+  // 0: what the scene or its camera asks for, or 1024x1024; where one is given, the other follows from the
+  // aspect ratio that these ask for, or 1.
+  int width = 0, height = 0;
+  int depth = 0;           // 0: what the scene asks for, or 5; the eye ray is depth 1
+  double min_weight = -1;  // < 0: what the scene asks for, or kDefaultMinWeight; 0: no cut
+  int samples = 0;         // per pixel, stratified; 0: what the scene asks for, or 1
   // > 0: as many samples in each pixel as an RMSE of that, in linear RGB, is believed to take.
   double adaptive_target = 0;
   PixelGrid grid = PixelGrid::centers;

@@ -232,7 +232,7 @@ class NffReader {
     if (n == 3) return add({0, 1, 2});  // most are, and need no list
     bool finished = true;
     for (const auto& corner : triangulate({scene_.vertices.data() + first_vertex, n}, &finished)) add(corner);
-    if (!finished) warn(polygon_warning(n));
+    if (!finished) scene_.warnings.push_back(in_.error(polygon_warning(n)).what());
   }
 
   void read_view() {

@@ -151,7 +151,8 @@ class AsciiReader {
     }
     if (corners_.size() < 3) throw in_.expected("three lines 'vertex X Y Z'");
     if (finite) {
-      add_polygon(scene_, corners_, {}, 0);
+      if (!add_polygon(scene_, corners_, {}, 0))
+        scene_.warnings.push_back(input_error(in_.file(), line, polygon_warning(corners_.size())).what());
     } else {
       scene_.vertices.resize(corners_[0]);
       left_out_.add("facets have a coordinate that is not finite: they are left out", line);

@@ -134,6 +134,14 @@ double aspect_of(const RenderSettings& settings) {
   return static_cast<double>(*settings.width) / *settings.height;
 }
 
+void set_size(RenderSettings& settings, int width, int height) {
+  if (width <= 0 && height <= 0) return;
+  const auto side = [](double length) { return static_cast<int>(std::lround(std::clamp(length, 1.0, 1e9))); };
+  const double aspect = aspect_of(settings);
+  settings.width = width > 0 ? width : side(height * aspect);
+  settings.height = height > 0 ? height : side(width / aspect);
+}
+
 Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect) {
   const double scale = scale_of(world);
   const DBox box{world.lo * scale, world.hi * scale};

@@ -41,6 +41,9 @@ RenderSettings settings_of(const Scene& scene);
 // Returns the width divided by the height of the picture that the scene asks for.
 double aspect_of(const RenderSettings& settings);
 
+// Puts a size that is given into the settings. Of a side that is 0 where the other isn't, aspect_of() tells.
+void set_size(RenderSettings& settings, int width, int height);
+
 // Returns a view from the front, the right and above (y is up, as in glTF and most OBJ files, unless `wanted`
 // has another direction) onto `wanted.at`, from as near as lets all eight corners of the box into the
 // picture.

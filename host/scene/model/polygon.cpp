@@ -292,17 +292,20 @@ std::string polygon_warning(std::size_t n_corners) {
          " corners crosses itself too often to be cut up: part of it is a fan";
 }
 
-void add_polygon(Scene& scene, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> normals,
+bool add_polygon(Scene& scene, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> normals,
                  std::uint32_t material, std::span<const std::array<float, 2>> texcoords) {
-  if (corners.size() < 3) return;
-  if (corners.size() == 3) return add_triangle(scene, corners, normals, {0, 1, 2}, material, texcoords);
+  if (corners.size() < 3) return true;
+  if (corners.size() == 3) {
+    add_triangle(scene, corners, normals, {0, 1, 2}, material, texcoords);
+    return true;
+  }
   std::vector<dvec3> points;
   points.reserve(corners.size());
   for (const std::uint32_t c : corners) points.push_back(scene.vertices[c]);
   bool finished = true;
   for (const auto& pick : triangulate(points, &finished))
     add_triangle(scene, corners, normals, pick, material, texcoords);
-  if (!finished) scene.warnings.push_back(polygon_warning(points.size()));
+  return finished;
 }
 
 }  // namespace kdray::scene

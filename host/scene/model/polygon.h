@@ -26,8 +26,8 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const dvec3> cor
 
 // Adds a polygon's triangles to a scene, numbered in file order. `corners` index scene.vertices, which must
 // be there already when there are more than three; `normals` (into scene.normals) is empty or as long as
-// `corners`, and so are `texcoords`. scene.warnings names a polygon that can't be cut up well.
-void add_polygon(Scene& scene, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> normals,
+// `corners`, and so are `texcoords`. Returns whether triangulate() finished.
+bool add_polygon(Scene& scene, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> normals,
                  std::uint32_t material, std::span<const std::array<float, 2>> texcoords = {});
 
 // Returns the warning about a polygon that triangulate() did not finish.

@@ -195,7 +195,6 @@ void furnish_studio(Scene& scene, const View& view) {
   const DBox& box = scene.framing.box;
   const Studio& studio = *scene.framing.studio;
   const bool own = view.background || studio.own_background;
-  if (!scene.settings.samples) scene.settings.samples = kStudioSamples;
   const Basis level = level_basis(*scene.camera);
   if (!own) {
     scene.sky = {

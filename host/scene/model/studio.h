@@ -10,14 +10,11 @@
 
 namespace kdray::scene {
 
-// The samples of a pixel where neither the user nor the scene says how many: lights have an area.
-inline constexpr int kStudioSamples = 8;
-
 // Sets what the studio decides of a camera, as far as the view leaves it open. (The view's own values are put
 // into the camera afterwards.)
 void set_studio_camera(Camera& camera, const Framing& framing, const View& view, double aspect);
 
-// Adds lights and samples, a backdrop where the scene has none of its own, and the floor, for the camera.
+// Adds lights, a backdrop where the scene has none of its own, and the floor, for the camera.
 void furnish_studio(Scene& scene, const View& view);
 
 }  // namespace kdray::scene

@@ -167,6 +167,16 @@ TEST(InStudio, AGroundAroundAllIsFloorEnough) {
   EXPECT_FALSE(studio_of(s).stands);
 }
 
+TEST(InStudio, SamplesAreEightUnlessTheFileSaysHowMany) {
+  scene::Scene s = statue(1);
+  s.materials.emplace_back();
+  scene::frame_scene(s);
+  EXPECT_FALSE(prepare(s, {}).settings.settings.samples);
+  EXPECT_EQ(in_studio(prepare(s, {})).settings.settings.samples, 8);
+  s.settings.samples = 3;
+  EXPECT_EQ(in_studio(prepare(s, {})).settings.settings.samples, 3);
+}
+
 TEST(InStudio, AFileWithACameraOrLightsKeepsThem) {
   scene::Scene s = statue(1);
   s.materials.emplace_back();

@@ -16,10 +16,12 @@ TEST(Parse, SizesHaveTwoSidesAndALimit) {
   EXPECT_EQ(size.width, 640);
   EXPECT_EQ(size.height, 480);
   EXPECT_EQ(parse_size("--size", "1X65536", 65536, 1 << 28).height, 65536);
+  EXPECT_EQ(parse_size("--size", "640", 65536, 1 << 28).width, 640);
+  EXPECT_EQ(parse_size("--size", "640", 65536, 1 << 28).height, 640);
   EXPECT_EQ(parse_size("--size", "16384x16384", 65536, 1 << 28).width, 16384);
   EXPECT_TRUE(fails([] { parse_size("--size", "16384x16385", 65536, 1 << 28); }, "pixels", ErrorCode::usage));
-  for (const char* const text :
-       {"", "x", "640", "640x", "x480", "640 x480", "+1x1", "1e2x5", "6.5x5", "99999999999x1"})
+  for (const char* const text : {"", "x", "640x", "x480", "0", "65537", "640.5", "-640", "640 x480", "+1x1",
+                                 "1e2x5", "6.5x5", "99999999999x1"})
     EXPECT_TRUE(fails([&] { parse_size("--size", text, 65536, 1 << 28); }, "--size", ErrorCode::usage))
         << text;
 }

@@ -84,6 +84,7 @@ TEST_F(SequenceTest, ATurntableShowsAllOfTheModelInEachFrame) {
   ASSERT_TRUE(succeeds(kdray({"render", "bar.json", "--turntable", "8", "--size", "64x64", "-q",
                               "--background", "transparent", "-o", "b.exr"},
                              {.folder = folder.path()})));
+  int widest = 0;
   for (int frame = 0; frame < 8; ++frame) {
     const image::Image seen = image::read_picture(folder / fmt::format("b{:04}.exr", frame), {});
     float most = 0, at_edge = 0;
@@ -91,11 +92,26 @@ TEST_F(SequenceTest, ATurntableShowsAllOfTheModelInEachFrame) {
       for (int x = 0; x < 64; ++x) {
         const float alpha = seen.alpha[static_cast<std::size_t>(y * 64 + x)];
         most = std::max(most, alpha);
+        if (alpha > 0) widest = std::max(widest, std::abs(x - 32));
         if (x % 63 == 0 || y % 63 == 0) at_edge = std::max(at_edge, alpha);
       }
     EXPECT_EQ(most, 1) << frame;
     EXPECT_EQ(at_edge, 0) << frame << ": it reaches out of the picture";
   }
+  EXPECT_GE(widest, 26) << "it is framed as closely as that allows";
+}
+
+TEST_F(SequenceTest, ATurntableStandsInTheStudio) {
+  KDRAY_NEED_DEVICE();
+  folder.put("a.obj", "v -1 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+  const auto turned = [&](const std::string& name, const Arguments& more) {
+    Arguments arguments{"render", "a.obj", "--turntable", "2", "--size", "24", "-q", "-o", name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_TRUE(succeeds(kdray(arguments, {.folder = folder.path()})));
+    return folder.get(name.substr(0, 1) + "0001.png");
+  };
+  EXPECT_NE(turned("s.png", {}), turned("p.png", {"--look", "plain"}));
+  EXPECT_EQ(turned("t.png", {"--look", "studio"}), folder.get("s0001.png"));
 }
 
 TEST_F(SequenceTest, ATurntableSaysHowToMakeAFilmOfIt) {

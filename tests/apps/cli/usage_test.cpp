@@ -163,7 +163,7 @@ struct Refused {
 
 TEST(Usage, ValuesThatAreNoneAreRefusedWithWhatIsAccepted) {
   const Refused cases[] = {
-      {"--size", "10", "WIDTHxHEIGHT"},
+      {"--size", "10x", "WIDTHxHEIGHT"},
       {"--size", "0x10", "WIDTHxHEIGHT"},
       {"--size", "10x", "WIDTHxHEIGHT"},
       {"--size", "-4x4", "WIDTHxHEIGHT"},
@@ -188,7 +188,7 @@ TEST(Usage, ValuesThatAreNoneAreRefusedWithWhatIsAccepted) {
       {"--bits", "12", "8, 16"},
       {"--aov", "depth,colour", "primitive"},
       {"--aov", "", "depth"},
-      {"--tile", "8", "WIDTHxHEIGHT"},
+      {"--tile", "8x", "WIDTHxHEIGHT"},
       {"--work-group", "-1", "from 1"},
       {"--tree-depth", "-2", "from 0"},
       {"--cost-traverse", "x", "number"},

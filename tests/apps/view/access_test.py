@@ -141,6 +141,24 @@ def settings(b, folder):
     print("ok  up axis, background, light, what a mode means")
 
 
+def smooth(b, folder, flat):
+    """The file is read again, and its faces have no edges any more; the page stays where it is."""
+
+    def read_with(degrees):
+        seen = b.ask("kdray.state.scene.smooth")
+        b.ask(f"(e => {{ e.value = {degrees}; e.dispatchEvent(new Event('change')); }})(document.getElementById('smooth'))")
+        b.wait(f"kdray.state.scene.smooth === {degrees} && {degrees} !== {seen}")
+        return rest(b)
+
+    before = camera(b)
+    assert "--smooth 90" in read_with(90)
+    assert compare(kdray, b, folder, "smooth") != flat
+    assert camera(b) == before
+    assert b.ask("document.getElementById('smooth-out').value") == "edges up to 90°"
+    assert "--smooth" not in read_with(0)
+    assert compare(kdray, b, folder, "flat again") == flat
+
+
 def looks(b, folder):
     """A scene with neither camera nor lights, in a studio and without; its picture is the command's in both."""
     scene = folder / "roof.obj"
@@ -156,6 +174,7 @@ def looks(b, folder):
         assert compare(kdray, b, folder, "plain") != studio
         choose(b, "look", "studio")
         assert compare(kdray, b, folder, "studio again") == studio
+        smooth(b, folder, studio)
     finally:
         viewer.close()
     print("ok  looks")

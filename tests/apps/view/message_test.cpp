@@ -37,6 +37,9 @@ TEST(Message, ALookIsTakenAsItIs) {
   EXPECT_EQ(look.request.traversal, Traversal::batch);
   EXPECT_EQ(std::get<Shown>(parse_message(R"({"type":"shown","frame":7})")).frame, 7u);
   EXPECT_EQ(std::get<Cells>(parse_message(R"({"type":"cells","scene":0,"depth":9})")).depth, 9);
+  EXPECT_EQ(std::get<Smooth>(parse_message(R"({"type":"smooth","scene":0,"degrees":40})")).degrees, 40);
+  refuses(R"({"type":"smooth","scene":0,"degrees":181})");
+  refuses(R"({"type":"smooth","scene":0})");
 }
 
 // Each field left out, of another type, and out of range.

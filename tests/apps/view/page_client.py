@@ -55,7 +55,7 @@ class PageClient:
         self.buffer += data
 
     def receive(self, limit=PATIENCE):
-        """The next message, of a frame its head; frames are acknowledged."""
+        """The next message, of a frame its head (the rest is `picture`); frames are acknowledged."""
         end = time.monotonic() + limit
         while True:
             n, begin = (self.buffer[1] & 127, 2) if len(self.buffer) > 1 else (1 << 60, 2)
@@ -64,15 +64,20 @@ class PageClient:
             elif n == 127 and len(self.buffer) >= 10:
                 n, begin = struct.unpack_from(">Q", self.buffer, 2)[0], 10
             if len(self.buffer) >= begin + n and begin + n < 1 << 59:
-                opcode, data = self.buffer[0] & 15, self.buffer[begin : begin + n]
+                first, data = self.buffer[0], self.buffer[begin : begin + n]
                 self.buffer = self.buffer[begin + n :]
-                if opcode == 1:
-                    return json.loads(data)
-                if opcode == 2:
-                    head = json.loads(data[4 : 4 + struct.unpack_from("<I", data)[0]])
-                    self.send({"type": "shown", "frame": head["frame"]})
-                    return head
-                continue
+                if first & 15 in (1, 2):
+                    self.opcode, self.message = first & 15, b""
+                if first & 15 <= 2:  # 1 and 2 begin a message, 0 goes on with it
+                    self.message += data
+                if first & 15 > 2 or not first & 0x80:
+                    continue
+                if self.opcode == 1:
+                    return json.loads(self.message)
+                begin = 4 + struct.unpack_from("<I", self.message)[0]
+                head, self.picture = json.loads(self.message[4:begin]), self.message[begin:]
+                self.send({"type": "shown", "frame": head["frame"]})
+                return head
             self._fill(max(0.0, end - time.monotonic()))
 
     def receive_until(self, kind, limit=PATIENCE):

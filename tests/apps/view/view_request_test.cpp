@@ -3,10 +3,15 @@
 
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "accel/prepare/prepared.h"
+#include "apps/view/facts.h"
 #include "apps/view/pick.h"
 #include "apps/view/scene_renderer.h"
 #include "apps/view/view_request.h"
+#include "scene/model/frame.h"
+#include "scene/model/scene.h"
 #include "support/folder.h"
 
 namespace kdray::view {
@@ -73,6 +78,32 @@ TEST(Cells, FillTheBoundsAndDontOverlap) {
     }
     EXPECT_NEAR(sum, volume(whole[0]), 1e-6 * volume(whole[0])) << depth;
   }
+}
+
+TEST(SceneRenderer, MakesTheStudioAtMostOnce) {
+  const test::Folder folder;
+  const PreparedScene plain(Scene::load(folder.put("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), {});
+  const PreparedScene studio = plain.in_studio();
+  Settings in_plain;
+  in_plain.look = kdray::Look::plain;
+  const SceneRenderer given({plain, {}, studio}, {}), making({plain, {}}, in_plain);
+  EXPECT_EQ(&given.scene().prepared(), &studio.prepared()) << "what is there is not made again";
+  EXPECT_EQ(&given.scene(kdray::Look::plain).prepared(), &plain.prepared());
+  EXPECT_EQ(&making.scene().prepared(), &plain.prepared());
+  const PreparedScene& made = making.scene(kdray::Look::studio);
+  EXPECT_TRUE(made.settings().framing.studio);
+  EXPECT_EQ(&made, &making.scene(kdray::Look::studio));
+}
+
+TEST(SceneMessage, AWidthAloneIsASizeOfTheScenesAspectRatio) {
+  const test::Folder folder;
+  const PreparedScene scene(Scene::load(std::string(KDRAY_SOURCE_DIR) + "/scenes/balls.nff"), {});
+  const scene::RenderSettings asked = scene::settings_of(scene.settings());
+  Settings settings;
+  settings.render.width = 64;
+  const SceneRenderer renderer({scene, {}}, settings);
+  const auto message = nlohmann::json::parse(scene_message({}, 0, renderer, false));
+  EXPECT_EQ(message["size"], (nlohmann::json{64, 64 * *asked.height / *asked.width}));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ export class Controls {
         this.showValues();
         changed(id);
       });
+    byId('smooth').addEventListener('input', () => this.showValues());
     for (const n of [0, 1, 2, 3, 4, 6, 8, 16]) byId('queues').add(new Option(n ? String(n) : 'as given', String(n)));
   }
 
@@ -32,10 +33,19 @@ export class Controls {
     this.showValues();
   }
 
+  // How the scene is read; only a file is read again.
+  showReading(scene) {
+    this.byId('smooth-row').hidden = scene.smooth === undefined;
+    this.byId('smooth').value = scene.smooth ?? 0;
+    this.showValues();
+  }
+
   showValues() {
     const {weight, headlight, depth} = this.values(), cells = Number(this.byId('cells').value);
+    const smooth = Number(this.byId('smooth').value);
     const texts = {depth: String(depth), weight: weight < 0 ? 'as given' : small.format(weight),
-                   headlight: headlight > 0 ? String(headlight) : 'off', cells: cells ? `depth ${cells}` : 'none'};
+                   headlight: headlight > 0 ? String(headlight) : 'off',
+                   smooth: smooth ? `edges up to ${smooth}°` : 'as given', cells: cells ? `depth ${cells}` : 'none'};
     for (const [id, text] of Object.entries(texts)) {
       this.byId(`${id}-out`).value = text;
       this.byId(id).setAttribute('aria-valuetext', text);

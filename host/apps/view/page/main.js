@@ -95,6 +95,7 @@ function handleScene(scene) {
     byId('up').value = upAxis(state.camera);
     for (const warning of scene.warnings) console.info('kdray: ' + warning);
   }
+  controls.showReading(scene);
   document.title = `${scene.names[scene.scene]} – kdray view`;
   byId('title').textContent = scene.names[scene.scene];
   byId('scene-row').hidden = scene.names.length < 2;
@@ -251,6 +252,7 @@ const input = new InputController(byId('picture'), view);
 
 byId('scene').onchange = () => askScene(Number(byId('scene').value));
 byId('cells').oninput = askCells;
+byId('smooth').onchange = () => state.scene && link.send({type: 'smooth', scene: state.scene.scene, degrees: Number(byId('smooth').value)});
 byId('copy').onclick = copy;
 byId('save').onclick = save;
 byId('open-panel').onclick = view.panel;

@@ -290,7 +290,7 @@ void JsonObjects::read_triangles(const JsonNode& object) {
     for (const std::uint32_t v : face) corners.push_back(part.vertices[v]);
     bool finished = true;
     const auto cut = triangulate(corners, &finished);
-    if (!finished) scene_.warnings.push_back(polygon_warning(corners.size()));
+    if (!finished) scene_.warnings.push_back(object["faces"].error(polygon_warning(corners.size())).what());
     for (const auto& corner : cut) {
       Triangle t;
       for (std::size_t i = 0; i < 3; ++i) t.vertex[i] = face[corner[i]];

@@ -298,7 +298,8 @@ class ObjReader {
     if (!has_texcoords_) corner_texcoords_.clear();
     if (is_new_part_) names_.name_primitives(scene_.primitive_count(), names_.add(part_));
     is_new_part_ = false;
-    add_polygon(scene_, corners_, normals_, materials_.current(), corner_texcoords_);
+    if (!add_polygon(scene_, corners_, normals_, materials_.current(), corner_texcoords_))
+      scene_.warnings.push_back(in_.error(polygon_warning(corners_.size())).what());
   }
 
   static constexpr std::string_view kNoStatement = "lines that are no OBJ statements are left out";
