@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Every kernel passes an offline OpenCL C 1.2 compile, no device needed: with all features on (every warning an error), for
 # each traversal where there is a choice; with none, and with each bit alone (where code that is switched off leaves
-# unused names behind). Kernels with explicit vectors pass for x86-64 with AVX-512 too, in all forms of common/simd.clh, down
-# to LLVM's code: whether the target has a builtin is not asked before. In double (KDRAY_PRECISION=64) the kernels of the binary
+# unused names behind; bits that leave the same text are compiled once). Kernels with explicit vectors pass for x86-64 with
+# AVX-512 too, in all forms of common/simd.clh, down to LLVM's code: whether the target has a builtin is not asked before. There
+# the automatic walk stands for packets and batches, whose code it has. In double (KDRAY_PRECISION=64) the kernels of the binary
 # walk pass: not odprt's, nor those of the wide form alone, nor the test of float's vectors.
 set -u
 clang=$1 kernels=$2
@@ -18,17 +19,26 @@ for kind in $(sed -nE 's/^#define KDRAY_KIND_[A-Z]+ ([0-9]+)u$/\1/p' "$kernels/l
 done
 forms=$(sed -nE 's/^#define KDRAY_SIMD_[A-Z0-9]+ ([0-9]+).*/\1/p' "$kernels/layout/simd.h")
 walks=$(sed -nE 's/^#define KDRAY_TRAVERSAL_[A-Z]+ ([0-9]+)$/\1/p' "$kernels/layout/traversal.h")
+in_automatic=" $(sed -nE 's/^#define KDRAY_TRAVERSAL_(PACKET|BATCH) ([0-9]+)$/\2/p' "$kernels/layout/traversal.h" | paste -sd' ') "
+# Prints a checksum of the file with this bit alone, in which the bit itself doesn't count.
+text_with() {
+  "$clang" -target spir64 -E -P $common -DKDRAY_TRAVERSAL=0 "-DKDRAY_FEATURES=$2" "$1" | sed "s/\b$2\b/BIT/g" | cksum
+}
 compiles() {
   for file in "$kernels"/*/*.cl "$kernels"/*/*/*.cl; do
     text=$("$clang" -target spir64 -E $common "$file")
     choices=1
     [[ $text == *layout/traversal.h* ]] && choices=$walks
+    declare -A seen=()
     for bit in 0x0 $bits; do
+      key=$(text_with "$file" "${bit}u")
+      [[ -v seen[$key] ]] && continue
+      seen[$key]=$bit
       echo "$plain -Wno-unused -Wno-unused-parameter -DKDRAY_TRAVERSAL=0 -DKDRAY_FEATURES=${bit}u $file"
     done
     for walk in $choices; do
       echo "$plain -DKDRAY_TRAVERSAL=$walk $file"
-      [[ $text == *common/simd.clh* ]] || continue
+      [[ $text == *common/simd.clh* && $in_automatic != *" $walk "* ]] || continue
       for form in $forms; do echo "$x86 -DKDRAY_TRAVERSAL=$walk -DKDRAY_SIMD=$form $file"; done
     done
     if [[ $text == *common/precise.clh* ]]; then  # decides in doubles, or in floats where there are none
