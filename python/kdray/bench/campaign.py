@@ -262,10 +262,10 @@ def take(folder: pathlib.Path, first: int = 0) -> pathlib.Path:
                 seed += 1
 
 
-def go_on(folder: pathlib.Path, units: int, rays: int, files: Sequence[Mesh] = ()) -> int:
-    """Runs so many units more, and returns how many of them have differences."""
+def go_on(folder: pathlib.Path, units: int, rays: int, files: Sequence[Mesh] = (), first: int = 0) -> int:
+    """Runs so many units more, of those from `first` on, and returns how many of them have differences."""
     folder.mkdir(parents=True, exist_ok=True)
-    seed, bad = 0, 0
+    seed, bad = first, 0
     for _ in range(units):
         file = take(folder, seed)
         seed = int(file.stem.removeprefix("unit-"))

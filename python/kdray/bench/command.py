@@ -66,7 +66,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--aimed", action="store_true", help="wrong hits beside times, of rays at vertices, edges, planes, and grazing"
     )
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of aimed rays (1)")
+    parser.add_argument(
+        "--seed", type=int, default=1, metavar="N", help="of aimed rays, or a campaign's first unit (1)"
+    )
     parser.add_argument(
         "--campaign", metavar="FOLDER", help="random scenes, and what kdray answers wrongly, added to that ledger"
     )
@@ -94,7 +96,7 @@ def _campaign(options: argparse.Namespace) -> int:
     folder = pathlib.Path(options.campaign)
     files = [read(scene) for scene in options.scenes]
     try:
-        bad = campaign.go_on(folder, options.units, options.rays or 20_000, files)
+        bad = campaign.go_on(folder, options.units, options.rays or 20_000, files, options.seed)
     except KeyboardInterrupt:
         bad = 1
     print(campaign.totals(folder))
