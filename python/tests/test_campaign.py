@@ -153,6 +153,7 @@ def test_a_folder_is_shared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     with ThreadPoolExecutor(8) as threads:
         taken = list(threads.map(lambda _: campaign.take(tmp_path).name, range(64)))
     assert sorted(taken) == [f"unit-{seed:08}.json" for seed in range(64)]
+    assert campaign._age(tmp_path / "gone") == 0 and campaign._read(tmp_path / "gone") == {}
 
     stand_in(monkeypatch)
     campaign.go_on(tmp_path, 1, 10)  # all before are in work elsewhere

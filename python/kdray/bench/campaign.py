@@ -231,17 +231,27 @@ def ledger(folder: pathlib.Path) -> Iterator[dict[str, Any]]:
 
 
 def _read(file: pathlib.Path) -> dict[str, Any] | None:
-    """A unit's line; empty where it is taken, None where it is no line of a ledger."""
+    """A unit's line; empty where it is taken or was free a moment ago, None where it is no line of a ledger."""
     try:
         text = file.read_text()
         record = json.loads(text) if text else {}
-    except (OSError, ValueError):
+    except FileNotFoundError:
+        return {}
+    except ValueError:
         return None
     if record == {}:
         return {}
     kinds = {"unit": int, "rays": int, "exact": int, "kdray": str, "device": str, "differences": dict}
     whole = isinstance(record, dict) and all(isinstance(record.get(name), kind) for name, kind in kinds.items())
     return record if whole and all(isinstance(n, int) for n in record["differences"].values()) else None
+
+
+def _age(file: pathlib.Path) -> float:
+    """In seconds; 0 where another process has just given it back."""
+    try:
+        return time.time() - file.stat().st_mtime
+    except FileNotFoundError:
+        return 0
 
 
 def take(folder: pathlib.Path, first: int = 0) -> pathlib.Path:
@@ -256,7 +266,7 @@ def take(folder: pathlib.Path, first: int = 0) -> pathlib.Path:
             record = _read(file)
             if record is None:
                 print(f"{file}: damaged; the unit is run again")
-            if record is None or (record == {} and time.time() - file.stat().st_mtime > GIVEN_UP):
+            if record is None or (record == {} and _age(file) > GIVEN_UP):
                 file.unlink(missing_ok=True)
             else:
                 seed += 1
