@@ -12,7 +12,7 @@ from typing import Any
 
 from ..devices import devices
 from ..errors import Error, InputError, NoDeviceError
-from . import aimed
+from . import aimed, campaign
 from .engines import ENGINES, KINDS, NEEDS, TASKS
 from .machine import cores, module, processor, versions
 from .measure import Row, run
@@ -48,7 +48,7 @@ def _count(text: str) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m kdray.bench", description=(__doc__ or "").replace("`", ""))
     parser.add_argument("scenes", nargs="*", help="sphere, room (the default: both), or mesh files")
-    parser.add_argument("--rays", type=_count, metavar="N", help="of each class (1000000) or aim (10000)")
+    parser.add_argument("--rays", type=_count, metavar="N", help="of each class (1000000), aim (10000), unit (20000)")
     parser.add_argument("--points", type=_count, default=100_000, metavar="N", help="of the others (100000)")
     parser.add_argument(
         "--batches", type=_numbers, default=[1, 1000], metavar="N,N", help="beside all at once (1,1000)"
@@ -66,21 +66,41 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--aimed", action="store_true", help="wrong hits beside times, of rays at vertices, edges, planes, and grazing"
     )
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of aimed rays (1)")
+    parser.add_argument(
+        "--seed", type=int, default=1, metavar="N", help="of aimed rays, or a campaign's first unit (1)"
+    )
+    parser.add_argument(
+        "--campaign", metavar="FOLDER", help="random scenes, and what kdray answers wrongly, added to that ledger"
+    )
+    parser.add_argument("--units", type=_count, default=100, metavar="N", help="of a campaign (100)")
     parser.add_argument("--json", metavar="FILE", help="write all figures")
     parser.add_argument("--plot", metavar="FILE.svg", help="write bars of the largest batch")
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Measures and writes a table to stdout; the status: 0, 2 for bad input, 3 without a device, else 1."""
+    """Measures, or runs a campaign's units; the status: 0, 2 for bad input, 3 without a device, else 1."""
     options = _parser().parse_args(argv)
     try:
+        if options.campaign:
+            return _campaign(options)
         _reports() if options.reports else _bench(options)
     except (Error, OSError) as error:
         print(f"kdray bench: {error}", file=sys.stderr)
         return 2 if isinstance(error, InputError) else 3 if isinstance(error, NoDeviceError) else 1
     return 0
+
+
+def _campaign(options: argparse.Namespace) -> int:
+    """1 where a unit of this run has differences, or Ctrl-C ended it."""
+    folder = pathlib.Path(options.campaign)
+    files = [read(scene) for scene in options.scenes]
+    try:
+        bad = campaign.go_on(folder, options.units, options.rays or 20_000, files, options.seed)
+    except KeyboardInterrupt:
+        bad = 1
+    print(campaign.totals(folder))
+    return int(bad > 0)
 
 
 def _reports() -> None:

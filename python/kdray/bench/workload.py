@@ -42,7 +42,7 @@ class Mesh:
     def size(self) -> float:
         """The diagonal of its box."""
         low, high = self.ends
-        return float(np.linalg.norm(high - low))
+        return float(np.linalg.norm(np.subtract(high, low, dtype=np.float64)))
 
 
 @dataclass(frozen=True)
