@@ -20,9 +20,9 @@ constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
 constexpr std::uint32_t kMostPlaces = 4;
 // Shadow rays that may leave where there is nowhere to go.
 constexpr std::uint32_t kAnyNumber = 1u << 30;
-// Where every ray has a work-item, all lights' shadow rays of so many rays have room: a wave is many launches
-// where there are many lights.
-constexpr std::uint32_t kLitRays = 256;
+// Where every ray has a work-item, all lights' shadow rays of so many rays have room, as far as that is not
+// too much: a wave is many launches where there are many lights.
+constexpr std::uint64_t kLitRays = 256, kMostLit = 1u << 22;
 // Where the host sorts: rays that may wait in its memory, in a queue's pool, and in the outbox.
 constexpr std::uint32_t kStreamedRays = 1u << 20, kStreamedPool = 1u << 14, kStreamedOutbox = 1u << 16;
 
@@ -94,8 +94,9 @@ BufferPlan make_plan(layout::Frame& frame, const PlanRequest& r) {
   plan.least[0] = n_lights;
   for (const std::uint32_t least : plan.least)
     plan.capacity.push_back(level_capacity(r, batch, least, plan.n_slices));
-  if (plan.per_ray && r.ray_buffer == 0)
-    plan.capacity[0] = std::max(plan.capacity[0], n_lights * kLitRays * (r.n_queues + 1));
+  const auto lit = static_cast<std::uint32_t>(
+      plan.per_ray && r.ray_buffer == 0 && !r.streamed ? std::min(n_lights * kLitRays, kMostLit) : 0);
+  plan.capacity[0] = std::max(plan.capacity[0], lit * (r.n_queues + 1));
   const std::uint32_t largest = *std::max_element(plan.capacity.begin() + 1, plan.capacity.end());
   const std::uint32_t streamed = streamed_pool(r, batch, plan.n_slices, frame.max_depth);
   const bool sorts = host_sorts(r);
@@ -109,8 +110,7 @@ BufferPlan make_plan(layout::Frame& frame, const PlanRequest& r) {
   out.n_slices = plan.n_slices;
   out.ray_fields = wavefront::travel_ray_fields(r.features);
   out.rays = outbox_rays(r, batch, plan.n_slices);
-  out.shadow = lights ? std::max(r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights) : 1;
-  if (plan.per_ray && r.ray_buffer == 0) out.shadow = std::max(out.shadow, n_lights * kLitRays);
+  out.shadow = lights ? std::max({r.ray_buffer > 0 ? out.rays : 2 * out.rays, n_lights, lit}) : 1;
   // Where there is one part nothing is ever sent.
   out.ray_capacity = capacity_for(r.n_parts > 1 ? out.rays : 0);
   out.shadow_capacity = capacity_for(r.n_parts > 1 ? out.shadow : 0);

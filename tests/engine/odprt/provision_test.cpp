@@ -83,15 +83,30 @@ TEST(Provision, TooLittleIsRefusedWithWhatWouldDo) {
   EXPECT_LE(least_told(least * 5 / 4), 0u) << "a quarter more than what it said is refused";
 }
 
+// A wave of many lights is many launches: where every ray has a work-item it is to be of many rays.
+TEST(Provision, ShadowRaysOfManyLightsHaveRoom) {
+  for (const std::size_t n_queues : {1u, 2u}) {
+    odprt::Request request = request_of(n_queues, 0);
+    request.frame.n_lights = 2000;
+    request.wave_rays = 4096;
+    const odprt::Provision p = odprt::provide(request, std::size_t{10} << 20);
+    EXPECT_GE(p.plan.outbox.shadow, 256u * 2000u);
+    EXPECT_GE(p.plan.capacity[0], n_queues * 256u * 2000u);
+    EXPECT_LE(work_of(p), std::size_t{512} << 20);
+  }
+}
+
 TEST(Provision, WorkersTakeWhatWasComputed) {
   const device::Context context("cpu", 1);
   const prepare::Prepared scene = prepare::prepare(smooth_meshes(), TreeOptions());
   wavefront::Programs programs(context, scene.tree_depth, scene.wide);
-  for (const std::uint32_t ray_buffer : {0u, 1u, 50u}) {
+  for (const auto& [ray_buffer, wave_rays] :
+       {std::pair{0u, 0u}, std::pair{1u, 0u}, std::pair{50u, 0u}, std::pair{0u, 4096u}}) {
     odprt::Request request = request_of(1, 0);
     request.queues[0] = {&context, context.queues().front(), &programs, 0};
     request.features = scene.features;
     request.ray_buffer = ray_buffer;
+    request.wave_rays = wave_rays;
     const odprt::Provision p = odprt::provide(request, 0);
     const odprt::Cut cut = odprt::cut(scene.flat, scene.wide, 16);
     const std::vector<double> costs(cut.subtrees.size(), 1.0);
