@@ -203,6 +203,59 @@ GeometryInfo Scene::info(GeometryId geometry) const {
           added.enabled, added.prototype, static_cast<std::uint32_t>(added.instances.size())};
 }
 
+std::vector<Part> Scene::Impl::parts_of(GeometryId id, std::vector<scene::NameRun> scene::Names::*runs) {
+  std::vector<Part> parts;
+  if (!is_file(id)) static_cast<void>(added(id));
+  if (!is_file(id) || !base.names) return parts;
+  const std::vector<scene::NameRun>& all = *base.names.*runs;
+  for (std::size_t i = 0; i + 1 < all.size(); ++i)
+    if (const std::string_view name = base.names->text(all[i].name); !name.empty())
+      parts.push_back({std::string(name), all[i].first, all[i + 1].first - all[i].first});
+  return parts;
+}
+std::vector<Part> Scene::parts(GeometryId geometry) const {
+  return impl_->parts_of(geometry, &scene::Names::primitives);
+}
+std::vector<Part> Scene::instance_parts(GeometryId geometry) const {
+  return impl_->parts_of(geometry, &scene::Names::instances);
+}
+
+std::vector<MaterialInfo> Scene::materials() const {
+  const scene::Scene& file = impl_->base;
+  const std::size_t n_file = file.materials.size();
+  std::vector<MaterialInfo> all(
+      n_file + std::max<std::size_t>(impl_->materials.size(), impl_->geometries.empty() ? 0 : 1));
+  for (std::uint32_t i = 0; file.names && i < n_file; ++i) all[i].name = file.names->of_material(i);
+  const auto count = [&all](const auto& primitives) {
+    for (const auto& p : primitives) ++all.at(p.material).primitives;
+  };
+  if (impl_->file) primitives::for_each_kind([&](auto kind) { count(decltype(kind)::of(file)); });
+  for (const auto& geometry : impl_->geometries)
+    if (geometry && !geometry->is_instances())
+      all.at(n_file + geometry->material).primitives += geometry->primitive_count();
+  return all;
+}
+
+std::string Scene::name_of(GeometryId geometry, std::uint32_t primitive, std::uint32_t instance) const {
+  if (geometry == kNoGeometry) return {};
+  if (!impl_->is_file(geometry)) return impl_->added(geometry).name;
+  std::string_view part;
+  if (const auto& names = impl_->base.names)
+    part = instance == kNoInstance ? names->of_primitive(primitive) : names->of_instance(instance);
+  return part.empty() ? impl_->file->name : std::string(part);
+}
+
+std::uint32_t Scene::material_of(GeometryId geometry, std::uint32_t primitive, std::uint32_t instance) const {
+  if (geometry == kNoGeometry) return kNoMaterial;
+  if (impl_->is_file(geometry)) return impl_->base.material_of(primitive, instance);
+  const auto n_file = static_cast<std::uint32_t>(impl_->base.materials.size());
+  const scene::AddedGeometry& added = impl_->added(geometry);
+  if (!added.is_instances()) return n_file + added.material;
+  const std::uint32_t own =
+      instance < added.instances.size() ? added.instances.data()[instance].material : scene::kNone;
+  return n_file + (own != scene::kNone ? own : impl_->added(added.of).material);
+}
+
 MaterialId Scene::add_material(const Material& material) {
   impl_->materials.push_back(scene::textured_material(material, impl_->texturing));
   impl_->note_change();

@@ -60,6 +60,7 @@ struct Scene::Impl {
   bool has_instances(GeometryId prototype) const;
   bool is_seen(const scene::AddedGeometry& instances) const;
   query::GeometryTable table() const;
+  std::vector<Part> parts_of(GeometryId id, std::vector<scene::NameRun> scene::Names::*runs);
   void note_change();
   void note_other_geometries();
 

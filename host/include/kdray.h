@@ -140,6 +140,10 @@ KDRAY_API kdray_status kdray_update_vertices(kdray_scene* scene, uint32_t mesh, 
                                              kdray_in normals);
 KDRAY_API kdray_status kdray_remove(kdray_scene* scene, uint32_t geometry);
 KDRAY_API kdray_status kdray_enable(kdray_scene* scene, uint32_t geometry, int enabled);
+/* Of a hit: the name that its file gives the part that was hit, or else its geometry's. Writes as much of it
+ * as `size` bytes hold, ending with a 0. (`instance`: KDRAY_NO_INSTANCE where it lies in none.) */
+KDRAY_API kdray_status kdray_name_of(const kdray_scene* scene, uint32_t geometry, uint32_t primitive,
+                                     uint32_t instance, char* name, size_t size);
 /* Here 0 means no bit: no ray meets it. Masks are for rays; points see every geometry. */
 KDRAY_API kdray_status kdray_set_mask(kdray_scene* scene, uint32_t geometry, uint32_t mask);
 

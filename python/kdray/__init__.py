@@ -28,7 +28,7 @@ from .looks import Camera, Light, Material
 from .open3d import RaycastingScene
 from .picture import Picture
 from .rays import lidar_rays, pinhole_rays
-from .scene import Geometry, Scene, load, set_texture_cache
+from .scene import Geometry, MaterialInfo, Part, Scene, load, set_texture_cache
 from .view import View
 
 try:
@@ -49,8 +49,10 @@ __all__ = [
     "InternalError",
     "Light",
     "Material",
+    "MaterialInfo",
     "NoDeviceError",
     "OutOfMemoryError",
+    "Part",
     "Picture",
     "RaycastingScene",
     "Scene",

@@ -7,7 +7,7 @@ import math
 import os
 import threading
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -28,6 +28,23 @@ _USUAL_OF_INSTANCES = (*_USUAL, "instance")
 
 
 @dataclass(frozen=True)
+class Part:
+    """Primitives of a geometry, or instances, that follow each other and to which its file gives one name."""
+
+    name: str
+    first: int
+    count: int
+
+
+@dataclass(frozen=True)
+class MaterialInfo:
+    """What `Scene.materials` tells of one material."""
+
+    name: str  #: that the file gives it, or ""
+    primitives: int  #: that have it; of what instances are of they don't count, if it is a file's
+
+
+@dataclass(frozen=True)
 class Geometry:
     """What `Scene.info` tells of one geometry."""
 
@@ -38,6 +55,10 @@ class Geometry:
     enabled: bool
     prototype: bool = False  #: seen by its instances alone
     instances: int = 0
+    #: Of its primitives, and of its instances, in ascending order: what an OBJ file's objects or groups, a glTF file's
+    #: nodes, an STL file's solids are called.
+    parts: tuple[Part, ...] = field(default=(), repr=False)
+    instance_parts: tuple[Part, ...] = field(default=(), repr=False)
 
 
 @dataclass
@@ -229,15 +250,15 @@ class Scene:
         fields = _core.shape_fields(kind)
         rest = dict(arrays)
         rows: list[Array | None] = []
-        for field, is_vector, may_be_left_out in fields:
-            if field in rest:
-                rows.append((_points if is_vector else _scalars)(rest.pop(field), field))
+        for column, is_vector, may_be_left_out in fields:
+            if column in rest:
+                rows.append((_points if is_vector else _scalars)(rest.pop(column), column))
             elif may_be_left_out:
                 rows.append(None)
             else:
-                raise errors.UsageError(f"{kind} need {field}=")
+                raise errors.UsageError(f"{kind} need {column}=")
         if rest:
-            known = ", ".join(field for field, _, _ in fields)
+            known = ", ".join(column for column, _, _ in fields)
             raise errors.UsageError(f"{kind} have no {next(iter(rest))}, but {known}")
         return self._add(kind, tuple(rows), name, mask, material, prototype)
 
@@ -332,8 +353,37 @@ class Scene:
         return [self.info(id) for id in self._core.geometries()]
 
     def info(self, id: int) -> Geometry:
-        """Name, mask and number of primitives of a geometry."""
-        return Geometry(id, *self._core.info(id))
+        """Name, mask and number of primitives of a geometry, and the names of its parts."""
+        parts = (tuple(Part(*p) for p in of(id)) for of in (self._core.parts, self._core.instance_parts))
+        return Geometry(id, *self._core.info(id), *parts)
+
+    @property
+    def materials(self) -> list[MaterialInfo]:
+        """The materials that hits may have (`materials_of`): the file's, then those that were added."""
+        return [MaterialInfo(*m) for m in self._core.materials()]
+
+    def names_of(self, hits: Hits | AllHits) -> npt.NDArray[np.object_]:
+        """Of each hit the name of its part or, where that has none, of its geometry; "" for a miss."""
+        geometries = self.geometries
+        by_id = np.full(max((g.id for g in geometries), default=-1) + 2, "", dtype=object)  # the last one is of -1
+        for g in geometries:
+            by_id[g.id] = g.name
+        names = np.array(by_id[hits.geometry], dtype=object)
+        lies_in_one = np.asarray(hits.instance >= 0 if self._has_instances else np.zeros(names.shape, bool))
+        for g in (g for g in geometries if g.parts or g.instance_parts):
+            here = hits.geometry == g.id
+            _put_names(names, here & ~lies_in_one, hits.primitive, g.parts)
+            if g.instance_parts:
+                _put_names(names, here & lies_in_one, hits.instance, g.instance_parts)
+        return names
+
+    def materials_of(self, hits: Hits | AllHits) -> npt.NDArray[np.int32]:
+        """int32: of each hit the place of its material in `materials`; -1 for a miss."""
+        columns = (hits.geometry, hits.primitive, hits.instance if self._has_instances else None)
+        rows = (None if c is None else np.ascontiguousarray(c).reshape(-1).view(np.uint32) for c in columns)
+        out = np.empty(hits.geometry.shape, np.int32)
+        self._core.materials_of(*rows, out.reshape(-1).view(np.uint32))
+        return out
 
     @property
     def primitives(self) -> int:
@@ -868,6 +918,17 @@ def _points(values: ArrayLike, name: str) -> Array:
 
 def _scalars(values: ArrayLike, name: str) -> Array:
     return _arrays.scalars(values, name)[0]
+
+
+def _put_names(names: Array, where: Array, numbers: Array, parts: tuple[Part, ...]) -> None:
+    if not parts:
+        return
+    first = np.array([part.first for part in parts])
+    behind = np.array([part.first + part.count for part in parts])
+    named = np.array([part.name for part in parts], dtype=object)
+    at = np.asarray(np.searchsorted(first, numbers, side="right") - 1)
+    where = np.asarray(where & (at >= 0) & (numbers < behind[at]))
+    names[where] = named[at[where]]
 
 
 def _planes(planes: dict[str, Array], height: int, width: int) -> dict[str, npt.NDArray[np.float32]]:

@@ -83,6 +83,30 @@ void add_geometries(SceneClass& scene) {
     return nb::make_tuple(info.name, info.mask, info.primitives, info.enabled, info.prototype,
                           info.instances);
   });
+  const auto rows_of = [](const std::vector<Part>& parts) {
+    std::vector<std::tuple<std::string, std::uint32_t, std::uint32_t>> rows;
+    for (const Part& p : parts) rows.emplace_back(p.name, p.first, p.count);
+    return rows;
+  };
+  scene.def("parts", [rows_of](const Scene& s, GeometryId id) { return rows_of(s.parts(id)); });
+  scene.def("instance_parts",
+            [rows_of](const Scene& s, GeometryId id) { return rows_of(s.instance_parts(id)); });
+  scene.def("materials", [](const Scene& s) {
+    std::vector<std::pair<std::string, std::uint32_t>> rows;
+    for (const MaterialInfo& m : s.materials()) rows.emplace_back(m.name, m.primitives);
+    return rows;
+  });
+  scene.def(
+      "materials_of",
+      [](const Scene& s, const In& geometry, const In& primitive, const In& instance, const Out& out) {
+        const Words geometries = words_of(geometry), primitives = words_of(primitive),
+                    instances = words_of(instance);
+        words_out(out).fill(0, geometries.size(), [&](std::size_t i) {
+          return std::array{s.material_of(geometries[i][0], primitives[i][0],
+                                          instances.empty() ? kNoInstance : instances[i][0])};
+        });
+      },
+      "geometry"_a, "primitive"_a, "instance"_a.none(), "out"_a);
   scene.def("primitives", &Scene::primitives);
   scene.def("bounds", [](const Scene& s) {
     const std::optional<Extent> extent = s.extent();

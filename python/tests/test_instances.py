@@ -1,6 +1,9 @@
 """Instances: what they answer, what is refused, and that they can be moved, copied and pickled."""
 
+import base64
 import copy
+import json
+import pathlib
 import pickle
 
 import numpy as np
@@ -112,3 +115,30 @@ def test_pictures_are_those_of_copies(ball_mesh: Mesh, rng: np.random.Generator)
         flat.add_mesh(vertices @ place[:, :3].T + place[:, 3], triangles)
     kept, copied = (np.asarray(s.render(camera, (120, 60), look="plain")) for s in (scene, flat))
     assert np.mean(np.abs(kept - copied) > 0.01) < 0.01
+
+
+def test_hits_in_a_files_instances_have_their_nodes_names(tmp_path: pathlib.Path) -> None:
+    """A glTF file with so many nodes of a mesh that it is held once."""
+    n, n_nodes = 2_000, 600
+    corners = np.tile(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32), (n, 1))
+    corners[:, 2] = -np.repeat(np.arange(n), 3) / n
+    uri = "data:application/octet-stream;base64," + base64.b64encode(corners.tobytes()).decode()
+    document = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": list(range(n_nodes))}],
+        "nodes": [{"mesh": 0, "name": f"tree {i}", "translation": [5 * i, 0, 0]} for i in range(n_nodes)],
+        "materials": [{"name": "bark"}, {"name": "unused"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "buffers": [{"byteLength": corners.nbytes, "uri": uri}],
+        "bufferViews": [{"buffer": 0, "byteLength": corners.nbytes}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3 * n}],
+    }
+    (tmp_path / "a.gltf").write_text(json.dumps(document))
+    scene = kdray.load(tmp_path / "a.gltf")
+    (file,) = scene.geometries
+    assert [(p.name, p.first, p.count) for p in file.instance_parts] == [(f"tree {i}", i, 1) for i in range(n_nodes)]
+    hits = scene.closest_hit([[10.2, 0.2, 5], [0.2, 0.2, 5], [3, 0.2, 5]], [0, 0, -1])
+    assert scene.names_of(hits).tolist() == ["tree 2", "tree 0", ""]
+    materials = scene.materials_of(hits)
+    assert [scene.materials[m].name for m in materials[:2]] == ["bark", "bark"] and materials[2] == -1

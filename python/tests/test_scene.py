@@ -158,6 +158,32 @@ def test_files_are_geometry_0_and_are_copied_by_name(tmp_path):
         assert made.all_hits(*DOWN).geometry.tolist() == [1, 1]
 
 
+def test_hits_are_told_by_the_names_that_the_file_gives(tmp_path):
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 3 0 0\nv 4 0 0\nv 3 1 0\nv 6 0 0\nv 7 0 0\nv 6 1 0\n"
+    faces = "f 7 8 9\no left\nusemtl brass\nf 1 2 3\no right\nusemtl tin\nf 4 5 6\n"
+    (tmp_path / "a.obj").write_text(corners + faces)
+    scene = kdray.load(tmp_path / "a.obj")
+    (file,) = scene.geometries
+    assert file.parts == (kdray.Part("left", 1, 1), kdray.Part("right", 2, 1)) and file.instance_parts == ()
+    assert [m.name for m in scene.materials] == ["", "brass", "tin"] and [m.primitives for m in scene.materials] == [
+        1
+    ] * 3
+
+    red = scene.add_material(kdray.Material(diffuse=(1, 0, 0)))
+    scene.add_spheres([9, 0, 0], 1, name="ball", material=red)
+    hits = scene.closest_hit([[[0.2, 0.2, 5], [3.2, 0.2, 5]], [[6.2, 0.2, 5], [9, 0, 5]], [[50, 0, 5]] * 2], [0, 0, -1])
+    names = scene.names_of(hits)
+    assert names.tolist() == [["left", "right"], [file.name, "ball"], ["", ""]]
+    materials = scene.materials_of(hits)
+    assert [scene.materials[m].name for m in materials.ravel()[:3]] == ["brass", "tin", ""]
+    assert materials[1, 1] == 3 + red and scene.materials[3 + red].primitives == 1 and (materials[2] == -1).all()
+    crossed = scene.all_hits([[0.2, 0.2, 5], [9, 0, 5]], [0, 0, -1])
+    assert scene.names_of(crossed).tolist() == ["left", "ball", "ball"]
+    assert scene.materials_of(crossed).tolist() == [1, 3 + red, 3 + red]
+    assert scene.names_of(scene.closest_hit([0.2, 0.2, 5], [0, 0, -1])) == "left" and names.dtype == object
+    assert pickle.loads(pickle.dumps(scene)).names_of(hits).tolist() == names.tolist()
+
+
 def test_files_may_name_what_is_below_the_asset_root(tmp_path):
     for folder in ("scenes", "parts"):
         (tmp_path / folder).mkdir()

@@ -297,5 +297,59 @@ TEST_P(MadeScene, WhatWasMadeUpForAFileIsMadeUpAnew) {
   EXPECT_TRUE(fails([&] { scene.add_light({.kind = static_cast<Light::Kind>(7)}); }, "no such kind"));
 }
 
+TEST(SceneOfAFile, HitsAreToldByName) {
+  const test::Folder folder;
+  Scene scene = Scene::load(folder.put(
+      "a.obj",
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no left\nusemtl brass\nf 1 2 3\nf 1 2 3\no right\nf 1 2 3\n"));
+  const GeometryId file = 0;
+  const std::vector<Part> parts = scene.parts(file);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].name, "left");
+  EXPECT_EQ(parts[0].first, 1u);
+  EXPECT_EQ(parts[0].count, 2u);
+  EXPECT_EQ(parts[1].name, "right");
+  EXPECT_TRUE(scene.instance_parts(file).empty());
+  EXPECT_EQ(scene.name_of(file, 0), scene.info(file).name);
+  EXPECT_EQ(scene.name_of(file, 2), "left");
+  EXPECT_EQ(scene.name_of(kNoGeometry, kNoPrimitive), "");
+
+  const Cube cube;
+  const MaterialId plain = scene.add_material({}), red = scene.add_material({.diffuse = {1, 0, 0}});
+  const GeometryId added = scene.add_mesh({cube.vertices, cube.triangles}, {.name = "cube", .material = red});
+  EXPECT_EQ(scene.name_of(added, 3), "cube");
+  EXPECT_TRUE(scene.parts(added).empty());
+  const std::vector<MaterialInfo> materials = scene.materials();
+  ASSERT_EQ(materials.size(), 4u);  // two of the file's
+  EXPECT_EQ(materials[scene.material_of(file, 3)].name, "brass");
+  EXPECT_EQ(materials[scene.material_of(file, 3)].primitives, 3u);
+  EXPECT_EQ(scene.material_of(file, 4), kNoMaterial);
+  EXPECT_EQ(scene.material_of(added, 0), 2 + red);
+  EXPECT_EQ(materials[2 + red].primitives, 12u);
+  EXPECT_EQ(materials[2 + plain].primitives, 0u);
+  EXPECT_TRUE(fails([&] { static_cast<void>(scene.name_of(7, 0)); }, "no geometry 7", ErrorCode::usage));
+}
+
+TEST(SceneOfAFile, InstancesAreToldByName) {
+  const test::Folder folder;
+  folder.put("square.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\n");
+  LoadOptions options;
+  options.instances = Instances::kept;
+  Scene scene = Scene::load(folder.put("a.json", R"({"materials": {"red": {"color": [1, 0, 0]}}, "objects": [
+      {"type": "mesh", "file": "square.obj", "instances": [{}, {"material": "red"}]}]})"),
+                            options);
+  const auto material = [&](std::uint32_t instance) {
+    return scene.materials().at(scene.material_of(0, 0, instance)).name;
+  };
+  EXPECT_EQ(material(0), "tin");
+  EXPECT_EQ(material(1), "red");
+  const Cube cube;
+  const GeometryId prototype = scene.add_mesh({cube.vertices, cube.triangles}, {.prototype = true});
+  const std::vector<double> at = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  const GeometryId copies = scene.add_instances(prototype, at, {.name = "copies"});
+  EXPECT_EQ(scene.name_of(copies, 0, 0), "copies");
+  EXPECT_EQ(scene.material_of(copies, 0, 0), scene.materials().size() - 1);
+}
+
 }  // namespace
 }  // namespace kdray

@@ -47,6 +47,26 @@ static void check_what_is_wrong(kdray_scene* scene) {
   kdray_cancel_free(NULL);
 }
 
+static void check_names(void) {
+  kdray_scene* scene = NULL;
+  kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
+  kdray_geometry_options options = {0};
+  uint32_t box = 9;
+  char name[8] = "";
+  options.size = sizeof options;
+  options.name = "a box";
+  expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
+  expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, &options, &box) == KDRAY_OK, "a mesh");
+  expect(kdray_name_of(scene, box, 3, KDRAY_NO_INSTANCE, name, sizeof name) == KDRAY_OK &&
+             strcmp(name, "a box") == 0,
+         "its name");
+  expect(kdray_name_of(scene, box, 3, KDRAY_NO_INSTANCE, name, 4) == KDRAY_OK && strcmp(name, "a b") == 0,
+         "as much of its name as fits");
+  expect(kdray_name_of(scene, box, 3, KDRAY_NO_INSTANCE, name, 0) == KDRAY_USAGE, "no bytes for a name");
+  expect(kdray_name_of(scene, 7, 3, KDRAY_NO_INSTANCE, name, sizeof name) == KDRAY_USAGE, "no such geometry");
+  kdray_scene_free(scene);
+}
+
 static void check_answers(const kdray_scene* scene, uint32_t box) {
   const double origins[6] = {0.25, 0.5, 5, 9, 9, 9}, down[3] = {0, 0, -2};
   double t[2];
@@ -402,6 +422,7 @@ int main(void) {
   status = kdray_commit(scene, NULL);
   if (status == KDRAY_NO_DEVICE) return puts("no OpenCL device: skipped"), 0;
   expect(status == KDRAY_OK, "commit");
+  check_names();
   check_answers(scene, box);
   check_cancel_and_picture(scene);
   check_looks();

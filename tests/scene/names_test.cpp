@@ -137,5 +137,21 @@ TEST(Names, TakeLittleMemory) {
   EXPECT_EQ(s.names->of_primitive(39999), "object 39999");
 }
 
+TEST(Names, MaterialsAreFoundByThePrimitivesNumber) {
+  const Scene s = read_json(R"({"materials": {"red": {"color": [1, 0, 0]}}, "objects": [
+      {"type": "sphere", "center": [0, 0, 0], "radius": 1},
+      {"type": "triangles", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "faces": [[0, 1, 2]],
+       "material": "red"},
+      {"type": "sphere", "center": [0, 0, 0], "radius": 2, "material": "red"}]})",
+                            "s.json");
+  ASSERT_TRUE(s.names);
+  const auto name = [&](std::uint32_t number) { return s.names->of_material(s.material_of(number)); };
+  EXPECT_EQ(name(0), "");
+  EXPECT_EQ(name(1), "red");
+  EXPECT_EQ(name(2), "red");
+  EXPECT_EQ(s.material_of(3), kNone);
+  EXPECT_EQ(s.material_of(0, 0), kNone);  // there are no instances
+}
+
 }  // namespace
 }  // namespace kdray::scene

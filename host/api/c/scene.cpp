@@ -196,6 +196,15 @@ kdray_status kdray_update_transforms(kdray_scene* scene, uint32_t instances, kdr
   });
 }
 
+kdray_status kdray_name_of(const kdray_scene* scene, uint32_t geometry, uint32_t primitive, uint32_t instance,
+                           char* name, size_t size) {
+  return guarded([&] {
+    const std::string found = needed(scene, "scene")->scene.name_of(geometry, primitive, instance);
+    if (size == 0) refuse("name: there are no bytes for it");
+    needed(name, "name")[found.copy(name, size - 1)] = 0;
+  });
+}
+
 kdray_status kdray_update_vertices(kdray_scene* scene, uint32_t mesh, kdray_in vertices, kdray_in normals) {
   return guarded([&] {
     needed(scene, "scene")

@@ -134,9 +134,24 @@ image::Image to_image(const Picture& picture) {
   return image;
 }
 
-image::Written write(Picture&& picture, std::vector<float>&& alpha, const RenderArgs& o) {
+// Returns by each name the numbers that have it, as pairs of the first and how many follow each other.
+std::string manifest_of(const scene::Names& names, const std::vector<scene::NameRun>& runs) {
+  Json manifest = Json::object();
+  for (std::size_t i = 0; i + 1 < runs.size(); ++i)
+    if (const std::string name(names.text(runs[i].name)); !name.empty())
+      manifest[name].push_back({runs[i].first, runs[i + 1].first - runs[i].first});
+  return manifest.empty() ? std::string() : manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+image::Written write(Picture&& picture, std::vector<float>&& alpha, const scene::Names* names,
+                     const RenderArgs& o) {
   std::vector<image::Channel> channels;
-  for (Channel& c : picture.channels) channels.push_back({std::move(c.name), std::move(c.values)});
+  for (Channel& c : picture.channels) {
+    channels.push_back({std::move(c.name), std::move(c.values)});
+    image::Channel& made = channels.back();
+    if (names && made.name == "primitive") made.manifest = manifest_of(*names, names->primitives);
+    if (names && made.name == "instance") made.manifest = manifest_of(*names, names->instances);
+  }
   image::Image image = to_image(picture);
   image.alpha = std::move(alpha);
   picture.rgb = {};  // large pictures: no third copy while the file is made
@@ -223,7 +238,8 @@ void FrameMaker::make(RenderArgs& o) {
     for (const std::string& warning : picture.warnings) say(warning);
   Statistics figures = renderer_->statistics();
   const Timer step;
-  const image::Written written = write(std::move(picture), std::move(alpha), o);
+  const image::Written written =
+      write(std::move(picture), std::move(alpha), seen_->settings().names.get(), o);
   figures.seconds.write = step.seconds();
   if (is_first_ && !o.quiet) tell_of_view(*seen_, o.view);
   if (is_first_) {

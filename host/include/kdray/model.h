@@ -25,6 +25,7 @@ using GeometryId = std::uint32_t;
 inline constexpr GeometryId kNoGeometry = 0xffffffffu;
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
+inline constexpr std::uint32_t kNoMaterial = 0xffffffffu;
 
 using MaterialId = std::uint32_t;
 using PictureId = std::uint32_t;

@@ -67,6 +67,17 @@ struct GeometryInfo {
   std::uint32_t instances = 0;  // how many it is of its prototype
 };
 
+// Primitives or instances that follow each other and have one name.
+struct Part {
+  std::string name;
+  std::uint32_t first = 0, count = 0;  // by number
+};
+
+struct MaterialInfo {
+  std::string name;  // that the file gives it; empty: none
+  std::uint32_t primitives = 0;
+};
+
 class Scene {
  public:
   Scene();  // empty
@@ -107,6 +118,20 @@ class Scene {
 
   std::vector<GeometryId> geometries() const;
   GeometryInfo info(GeometryId geometry) const;
+
+  // What the file calls the parts that its primitives, or its instances, are of: OBJ's objects or groups,
+  // glTF's nodes, STL's solids. Parts ascend; what has no name is left out, so that geometries without a file
+  // have none.
+  std::vector<Part> parts(GeometryId geometry) const;
+  std::vector<Part> instance_parts(GeometryId geometry) const;
+  // The materials that hits may have: the file's, then those that were added.
+  std::vector<MaterialInfo> materials() const;
+  // Of a hit: the name of its part, or else of its geometry; and the place of its material in materials().
+  // kNoGeometry, a miss, has an empty name and the material kNoMaterial.
+  std::string name_of(GeometryId geometry, std::uint32_t primitive,
+                      std::uint32_t instance = kNoInstance) const;
+  std::uint32_t material_of(GeometryId geometry, std::uint32_t primitive,
+                            std::uint32_t instance = kNoInstance) const;
 
   // ---- How it looks: for pictures.
 

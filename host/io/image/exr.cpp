@@ -9,6 +9,7 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
 #include <algorithm>
@@ -184,7 +185,11 @@ std::string encode_exr(const Image& image, std::span<const Channel> channels) {
   const float* rgb = &image.pixels.data()->x;
   add("R", rgb, 3), add("G", rgb + 1, 3), add("B", rgb + 2, 3);
   if (!image.alpha.empty()) add("A", image.alpha.data(), 1);
-  for (const Channel& channel : channels) add(exr_name(channel.name), channel.values.data(), 1);
+  for (const Channel& channel : channels) {
+    add(exr_name(channel.name), channel.values.data(), 1);
+    if (!channel.manifest.empty())
+      header.insert("kdray/" + exr_name(channel.name) + "/manifest", Imf::StringAttribute(channel.manifest));
+  }
 
   Imf::StdOSStream stream;
   try {

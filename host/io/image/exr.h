@@ -12,7 +12,7 @@
 namespace kdray::image {
 
 // Writes the colour as R, G and B, its alpha as A where it has one, `channels` under the names that they have
-// in an EXR (exr_name).
+// in an EXR (exr_name), and the manifests of those that have one as attributes, "kdray/CHANNEL/manifest".
 std::string encode_exr(const Image& image, std::span<const Channel> channels);
 
 // Reads R, G and B, or grey from Y alone, and A as alpha. The picture is the file's data window; other

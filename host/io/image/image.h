@@ -22,6 +22,7 @@ struct Image {
 struct Channel {
   std::string name;
   std::vector<float> values;
+  std::string manifest = {};  // JSON: what the numbers are called; kept in an EXR
 };
 
 }  // namespace kdray::image

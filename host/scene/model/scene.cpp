@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -65,6 +66,23 @@ void set_disc(Light& light, const dvec3& normal, double radius) {
   light.kind = LightKind::disc;
   light.across = across * radius;
   light.down = glm::cross(normal, across) * radius;
+}
+
+std::uint32_t Scene::material_of(std::uint32_t number, std::uint32_t instance) const {
+  if (instance != kNone) {
+    if (instance >= instances.size()) return kNone;
+    const Instance& placed = instances.data()[instance];
+    return placed.material != kNone ? placed.material : meshes.at(placed.mesh)->material_of(number);
+  }
+  std::uint32_t material = kNone;
+  primitives::for_each_kind([&](auto kind) {
+    const auto& all = decltype(kind)::of(*this);
+    const auto* const end = all.data() + all.size();
+    const auto* const found = std::ranges::lower_bound(
+        all.data(), end, number, {}, [](const auto& primitive) { return primitive.number; });
+    if (found != end && found->number == number) material = found->material;
+  });
+  return material;
 }
 
 }  // namespace kdray::scene

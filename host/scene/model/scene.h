@@ -161,6 +161,9 @@ struct Scene {
     return static_cast<std::uint32_t>(primitives::count_primitives(*this));
   }
   DBox bounds() const;  // with its instances'
+  // Returns the material of the primitive of that number, which is of the instance's mesh where one is named;
+  // kNone: there is no such primitive.
+  std::uint32_t material_of(std::uint32_t number, std::uint32_t instance = kNone) const;
 };
 
 }  // namespace kdray::scene

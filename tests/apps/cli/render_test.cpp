@@ -54,6 +54,35 @@ TEST(RenderCommand, TheSameOptionsInBothFormatsGiveTheSamePicture) {
   EXPECT_NE(exr.pixels.back().z, 0.4f);
 }
 
+TEST(RenderCommand, AWidthAloneKeepsTheAspectRatioOfTheScene) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const auto height = [&](const fs::path& scene) {
+    EXPECT_TRUE(
+        succeeds(kdray({"render", scene, "--size", "24", "--samples", "1", "-q", "-o", folder / "a.png"})));
+    const image::Image picture = read(folder / "a.png");
+    EXPECT_EQ(picture.width, 24);
+    return picture.height;
+  };
+  EXPECT_EQ(height(folder.put("ball.nff", kSphereOnSquare)), 16) << "its resolution is 48x32";
+  EXPECT_EQ(height(folder.put("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), 24);
+  EXPECT_TRUE(
+      fails_with(kdray({"render", folder / "ball.nff", "--size", "24x"}), 2, "WIDTHxHEIGHT or WIDTH"));
+}
+
+TEST(RenderCommand, AnExrNamesThePartsThatItsPrimitivesAreOf) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", face = "f 1 2 3\n";
+  const fs::path scene =
+      folder.put("a.obj", corners + "o lid\n" + face + face + "o box\n" + face + "o lid\n" + face);
+  ASSERT_TRUE(succeeds(
+      kdray({"render", scene, "--size", "8x8", "--aov", "primitive,depth", "-q", "-o", folder / "a.exr"})));
+  const std::string bytes = folder.get("a.exr");
+  EXPECT_NE(bytes.find("kdray/primitive/manifest"), std::string::npos);
+  EXPECT_NE(bytes.find(R"({"lid":[[0,2],[3,1]],"box":[[2,1]]})"), std::string::npos);
+}
+
 TEST(RenderCommand, TheSummaryIsOneLineAndTheRestIsToldWhenAskedFor) {
   KDRAY_NEED_DEVICE();
   const Folder folder;

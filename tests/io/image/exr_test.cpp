@@ -37,6 +37,20 @@ TEST(Exr, CarriesChannelsUnderTheirUsualNames) {
   EXPECT_TRUE(same_bits(decode_exr(bytes, "a.exr"), image));
 }
 
+TEST(Exr, CarriesWhatTheNumbersOfAChannelAreCalled) {
+  const Image image = noise(4, 3, 2);
+  const std::vector<float> numbers(12, 1);
+  const std::string manifest = R"({"lid":[[0,5]]})";
+  const std::string bytes =
+      encode_exr(image, std::vector<Channel>{{"primitive", numbers, manifest}, {"depth", numbers}});
+  // An attribute is its zero-ended name, its zero-ended type, the length of its value, and that.
+  std::string attribute("kdray/primitive/manifest\0string\0", 32);
+  attribute += static_cast<char>(manifest.size()) + std::string(3, 0) + manifest;
+  EXPECT_NE(bytes.find(attribute), std::string::npos);
+  EXPECT_EQ(bytes.find("kdray/Z"), std::string::npos);
+  EXPECT_TRUE(same_bits(decode_exr(bytes, "a.exr"), image));
+}
+
 TEST(Exr, EveryTruncationIsRefused) {
   const std::string whole = encode_exr(noise(9, 40, 3), {});
   // The last bytes are pixels: the reader must not return black for missing ones.
