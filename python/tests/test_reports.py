@@ -77,6 +77,17 @@ def test_exact_answers_about_a_cube() -> None:
     assert cube.signed_distance(points).tolist() == [2**0.5, -0.5, 5, -0.25, 0.5]
 
 
+def test_where_a_ray_may_touch_alone() -> None:
+    # Along an edge between a front and a back, along one of two fronts, in a side's plane, and through a side.
+    origins = np.array([[-1, 0, 0.5], [-1, -1, 0.5], [-1, 0, 0.5], [0.25, 0.5, -1]])
+    directions = np.array([[1, 1, 0], [1, 1, 0], [1, 0, 0], [0, 0, 1]])
+    t, nearest, crossings, touches = Exact(CUBE, TWELVE).ask(origins, directions)
+    assert touches.tolist() == [True, False, True, False]
+    assert t.tolist() == [1, 1, 1, 1]
+    assert [len(triangles) for triangles in nearest[:2]] == [2, 2]
+    assert (crossings % 2 == 0).all()
+
+
 def test_exact_answers_need_no_scale() -> None:
     for scale in (2.0**-300, 2.0**300):
         cube = Exact(CUBE.astype(np.float64) * scale, TWELVE)

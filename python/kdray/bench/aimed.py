@@ -55,13 +55,13 @@ def aim(mesh: Mesh, n: int, seed: int) -> Query:
 
 
 class Right:
-    """What is right of so many rays of each aim; those that lie in a triangle's plane are `sure` of nothing."""
+    """What is right of so many rays of each aim; those that may touch a surface alone are `sure` of nothing."""
 
     def __init__(self, mesh: Mesh, query: Query) -> None:
         assert query.directions is not None
         exact = Exact(mesh.vertices, mesh.triangles)
-        self.t, nearest, self.crossings, along = exact.ask(query.origins, query.directions)
-        self.sure = ~along
+        self.t, nearest, self.crossings, touches = exact.ask(query.origins, query.directions)
+        self.sure = ~touches
         self.triangles = len(mesh.triangles)
         self.nearest = np.concatenate([triangles + i * self.triangles for i, triangles in enumerate(nearest)])
 

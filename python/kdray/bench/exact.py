@@ -77,23 +77,25 @@ class Exact:
         met = ((turns >= 0).all(axis=1) | (turns <= 0).all(axis=1)) & (volume * whole > 0)
         ts = [Fraction(v, w) for v, w in zip(volume[met], whole[met], strict=True)]
         first = min(ts, default=None)
-        along_one = bool((turns == 0).all(axis=1).any())
+        here = np.flatnonzero(met)[[t == first for t in ts]]
+        touches = bool((turns == 0).all(axis=1).any()) or len(set((volume[here] > 0).tolist())) > 1
         # The ray is turned by less than any number, so that it meets no edge.
         for axis in range(3):
             turns = np.where(turns == 0, sides[..., axis], turns)
         signs, ahead = np.sign(turns).astype(int), np.sign(volume).astype(int)
         crossed = (signs == ahead[:, None]).all(axis=1) & (ahead != 0)
         t = math.inf if first is None else float(first * (unit / unit_along))
-        return t, near[met][[t == first for t in ts]], int(np.count_nonzero(crossed)), along_one
+        return t, near[here], int(np.count_nonzero(crossed)), touches
 
     def ask(self, origins: Array, directions: Array) -> tuple[Array, list[Array], Array, Array]:
-        """Of each ray: `first`, the triangles that it meets there, `crossings`, and whether it may lie in a triangle.
+        """Of each ray: `first`, the triangles that it meets there, `crossings`, and whether it may touch alone.
 
-        One that lies in a triangle's plane meets it or passes it, as one likes.
+        One that lies in a triangle's plane, or first meets an edge between a front and a back, meets the surface or
+        passes it, as one likes.
         """
         answers = [self._ask(o, d) for o, d in zip(origins, directions, strict=True)]
-        t, nearest, crossings, along = zip(*answers, strict=True)
-        return np.array(t), list(nearest), np.array(crossings), np.array(along)
+        t, nearest, crossings, touches = zip(*answers, strict=True)
+        return np.array(t), list(nearest), np.array(crossings), np.array(touches)
 
     def crossings(self, origins: Array, directions: Array) -> Array:
         """How many triangles each ray crosses, one at an edge or a vertex; none that it begins on."""
