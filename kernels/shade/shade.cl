@@ -5,6 +5,7 @@
 
 __kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
   __local Tally of_group;
+  __local u32 spawned[2];
   const u32 i = (u32)get_global_id(0);
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const TexturingArrays texturing = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TEXTURING_ARRAYS);
@@ -19,5 +20,10 @@ __kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
     const bool is_ray = (u32)as_word(read1(batch, KDRAY_RAY_PIXEL, i)) != KDRAY_NO_PIXEL;
     shade_rays(&c, &arrays, &texturing, in_lights, first_light, batch, hits, i, is_ray, io_film);
   }
+#if KDRAY_HAS_REFLECT || KDRAY_HAS_TRANSMIT
+  put_all_into_pool(&c, spawned);
+#else
+  (void)spawned;
+#endif
   add_tally(io_slices, &c.tally, &of_group);
 }

@@ -70,8 +70,8 @@ TEST_P(Modes, OdprtByQueuesAndBalance) {
     for (const Balance balance : {Balance::sah, Balance::pilot}) expect_same(odprt(queues, balance));
 }
 
-// All else here is by the automatic walk, which has the code of packets and batches: these by themselves, for which
-// a program is compiled for seconds, in two scenes that have the most between them.
+// All else here is by the automatic walk, which has the code of packets and batches: these by themselves, for
+// which a program is compiled for seconds, in two scenes that have the most between them.
 TEST_P(Modes, OdprtWithAnyWalk) {
   const std::string& name = GetParam().name;
   const bool by_all = name == "every_kind" || name == "instanced_maps";

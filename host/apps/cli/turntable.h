@@ -1,5 +1,6 @@
 // What    --turntable N: where the camera is in each of N frames, which go once around what it looks at.
-//         Where it was chosen for the scene, it is as far off as takes all of the scene into every frame.
+//         Where it was chosen for the scene, it is as far off as takes all of the scene into every frame; in
+//         a room it looks around.
 #pragma once
 
 #include "kdray/kdray.h"
@@ -19,6 +20,7 @@ class Turntable {
  private:
   View asked_;
   scene::Camera camera_;
+  bool looks_around_ = false;
 };
 
 }  // namespace kdray::cli

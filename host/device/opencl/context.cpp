@@ -79,6 +79,13 @@ const OpenDevice& opened_before_or_now(const FoundDevice& found, int n_queues) {
   return place->second;
 }
 
+// Returns how many bytes of buffers a device may keep for the next frame.
+std::size_t most_kept(const DeviceInfo& info, bool in_host_memory) {
+  constexpr std::size_t kOfHost = std::size_t{512} << 20;
+  const std::size_t share = info.global_memory / 8;
+  return in_host_memory ? std::min(share, kOfHost) : share;
+}
+
 }  // namespace
 
 Context::Context(const std::string& device_spec, int n_queues, int compute_units, Builds builds)
@@ -93,6 +100,8 @@ Context::Context(const std::string& device_spec, int n_queues, int compute_units
   simd_ = simd.form;
   found_.info.vectors = in_words(simd_);
   found_.info.vectors_refused = simd.refused_in_words();
+  kept_ = std::make_shared<KeptBuffers>(
+      most_kept(found_.info, checked("asking " + found_.info.name, [&] { return works_in_host_memory(); })));
 }
 
 Context Context::without_cache() const {
@@ -179,8 +188,13 @@ cl::Buffer Context::buffer(cl_mem_flags flags, std::size_t bytes, const std::str
       const std::shared_ptr<void> memory = allocate(bytes);
       return buffer_over(opened_->context, flags, memory.get(), bytes, memory);
     }
-    return cl::Buffer(opened_->context, flags, std::max<std::size_t>(bytes, 16));
+    return cl::Buffer(opened_->context, flags, std::max(bytes, kLeastBufferBytes));
   });
+}
+
+cl::Buffer Context::kept_buffer(std::size_t bytes, const std::string& what) const {
+  const std::optional<cl::Buffer> kept = kept_->take(bytes);
+  return kept ? *kept : buffer(CL_MEM_READ_WRITE, bytes, what);
 }
 
 cl::Buffer Context::sparse_buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "device/opencl/kept_buffers.h"
 #include "device/opencl/opencl.h"
 #include "device/opencl/platform.h"
 #include "device/opencl/program.h"
@@ -66,6 +67,10 @@ class Context {
   cl::Buffer buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what, bool zeroed,
                                 std::future<void>& made) const;
 
+  // Returns a buffer that a frame has left in kept_buffers(), or a new one.
+  cl::Buffer kept_buffer(std::size_t bytes, const std::string& what) const;
+  KeptBuffers& kept_buffers() const { return *kept_; }
+
   // Returns a buffer for reading what lies at `data`: that memory itself where the device works in the
   // host's, which `owner` then keeps as long as the buffer lives; elsewhere a copy.
   cl::Buffer upload(const void* data, std::size_t bytes, std::shared_ptr<void> owner,
@@ -86,6 +91,7 @@ class Context {
   Builds builds_;
   const OpenDevice* opened_;
   Simd simd_ = Simd::portable;
+  std::shared_ptr<KeptBuffers> kept_;
 };
 
 // Returns why the `i`th of the candidates, the best first, must not be opened; an empty text where it may be.

@@ -1,7 +1,5 @@
 #include "engine/pdprt/queue.h"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <numeric>
 
@@ -138,14 +136,14 @@ void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared
   if (tiles.empty()) return wavefront_.finish();  // another queue was faster
   if (work.samples.empty()) note_costs(tiles, shared);
   std::vector<layout::u32> in_order(tiles.begin(), tiles.end());
-  tbb::parallel_sort(in_order);
+  std::ranges::sort(in_order);
   const std::vector<Delivery> deliveries =
       deliveries_of(in_order, frame_, work.samples.empty(), wavefront_.film_piece());
   std::vector<wavefront::FilmPiece> pieces;
   for (const Delivery& delivery : deliveries) pieces.push_back(delivery.film);
   // Last: what it adds to the counters counts.
-  wavefront_.finish(pieces, [&](std::size_t i, const wavefront::FilmSums& film) {
-    work.sink({{&film.sums, 1}, film.first, frame_.width}, deliveries[i].entries);
+  wavefront_.finish(pieces, work.takes_values, [&](std::size_t i, const wavefront::FilmPart& film) {
+    work.sink({{&film.sums, 1}, film.first, frame_.width, film.values}, deliveries[i].entries);
   });
   if (work.samples.empty()) {
     n_tiles_ += tiles.size();

@@ -89,8 +89,7 @@ void add_pieces(Films films, std::size_t first, std::span<layout::i64> sums) {
 
 class Developer {
  public:
-  explicit Developer(std::uint32_t samples)
-      : scale_(1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples)) {}
+  explicit Developer(std::uint32_t samples) : scale_(film_scale(samples)) {}
 
   // The films' sums from `first` on.
   void operator()(Films films, std::size_t first, std::span<float> rgb) const {
@@ -105,6 +104,10 @@ class Developer {
 };
 
 }  // namespace
+
+double film_scale(std::uint32_t samples) {
+  return 1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples);
+}
 
 void develop(Films films, int samples, std::span<float> rgb) {
   const Developer developer(static_cast<std::uint32_t>(samples));
@@ -123,7 +126,11 @@ void develop_tiles(const PlacedFilms& from, const layout::Frame& frame, std::spa
                    std::span<float> picture) {
   const Developer developer(frame.n_samples);
   for_each_row(frame, tiles, [&](std::size_t x, std::size_t y, std::size_t n) {
-    developer(from.films, from.at(x, y), picture.subspan(3 * (y * frame.width + x), 3 * n));
+    const std::span<float> row = picture.subspan(3 * (y * frame.width + x), 3 * n);
+    if (from.values.empty())
+      developer(from.films, from.at(x, y), row);
+    else
+      std::ranges::copy(from.values.subspan(from.at(x, y), row.size()), row.begin());
   });
 }
 

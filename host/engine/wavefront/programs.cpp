@@ -50,6 +50,7 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 // The bits a file reads: a scene that differs elsewhere shares the program.
 layout::Features bits_read_by(const std::string& file) {
   if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
+  if (file == "film/develop.cl") return 0;
   if (file == "wave/plan.cl") return KDRAY_FEATURE_ADAPTIVE;
   if (file == "odprt/stages/plan.cl") return KDRAY_FEATURE_ADAPTIVE | kSizesTravel;
   if (file == "raygen/admit.cl" || file == "odprt/stages/admit.cl")
@@ -254,6 +255,11 @@ void Programs::build(const std::vector<Wanted>& wanted) {
     programs_.emplace(key, built.program);
   }
   build_seconds_ += timer.seconds();
+}
+
+bool Programs::are_first(const Launches& launches) {
+  const std::lock_guard lock(mutex_);
+  return launched_.emplace(walk_options_, launches).second;
 }
 
 const cl::Program& Programs::program(const Wanted& wanted) {

@@ -6,8 +6,10 @@
 
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "accel/flatten/wide.h"
@@ -88,6 +90,18 @@ class Programs {
   // Builds side by side what kernel() will be asked for, where it was not built before.
   void build(const std::vector<Wanted>& wanted);
 
+  // Launches of these kernels, of `items` work-items in groups of `local`.
+  struct Launches {
+    layout::Features features;
+    Traversal traversal;
+    Precision precision;
+    std::size_t items, local;
+
+    auto operator<=>(const Launches&) const = default;
+  };
+  // Returns whether such launches are the first ones: PoCL compiles a kernel for good with them.
+  bool are_first(const Launches& launches);
+
   double build_seconds() const { return build_seconds_; }
   const ProgramsUsed& used() const { return used_; }
   std::size_t n_built() const {
@@ -115,6 +129,7 @@ class Programs {
   mutable std::mutex mutex_;  // of what is built: queries of several threads ask for kernels
   ProgramsUsed used_;
   std::map<Key, cl::Program> programs_;
+  std::set<std::pair<std::string, Launches>> launched_;  // with walk_options_
 };
 
 }  // namespace kdray::wavefront

@@ -87,24 +87,38 @@ std::size_t StreamForm::largest(const layout::Frame& frame) const {
 }
 
 SliceBuffers::SliceBuffers(const device::Context& context, const layout::Frame& f,
-                           const SliceCapacity& capacity, const StreamForm& form) {
+                           const SliceCapacity& capacity, const StreamForm& form)
+    : kept_(context.kept_buffers()), keeps_film_(!form.film_cleared || !context.works_in_host_memory()) {
   const auto make = [&](std::size_t n_bytes, const char* what) {
     bytes += n_bytes;
-    return context.buffer(CL_MEM_READ_WRITE, n_bytes, what);
+    return context.kept_buffer(n_bytes, what);
   };
   const std::size_t n = capacity.n_slices, pool_bytes = n * form.pool_bytes(f);
   const std::size_t film_bytes = capacity.places * 3 * sizeof(layout::i64);
   frame = make(sizeof(layout::Frame), "the frame");
   slices = make(n * sizeof(layout::Slice), "the slices");
   tiles = make(list_words(capacity) * sizeof(layout::u32), "the list of tiles");
-  pool = form.sparse_pools ? context.sparse_buffer(CL_MEM_READ_WRITE, pool_bytes, "the ray pools")
-                           : context.buffer(CL_MEM_READ_WRITE, pool_bytes, "the ray pools");
+  const std::optional<cl::Buffer> kept_pool = kept_.take(pool_bytes);
+  pool = kept_pool           ? *kept_pool
+         : form.sparse_pools ? context.sparse_buffer(CL_MEM_READ_WRITE, pool_bytes, "the ray pools")
+                             : context.buffer(CL_MEM_READ_WRITE, pool_bytes, "the ray pools");
   batch = make(n * form.batch_bytes(f), "the ray batches");
   hits = make(n * form.hit_bytes(f), "the hits");
   shadow_rays = make(n * form.shadow_bytes(f), "the shadow rays");
   occluded = make(n * f.shadow_capacity, "the occlusion flags");
-  film = context.buffer_made_beside(CL_MEM_READ_WRITE, film_bytes, "the film", form.film_cleared, film_made);
+  const std::optional<cl::Buffer> kept_film = keeps_film_ ? kept_.take(film_bytes) : std::nullopt;
+  film = kept_film ? *kept_film
+                   : context.buffer_made_beside(CL_MEM_READ_WRITE, film_bytes, "the film", form.film_cleared,
+                                                film_made);
   bytes += pool_bytes + film_bytes;
+}
+
+SliceBuffers::~SliceBuffers() {
+  if (film_made.valid()) film_made.wait();
+  if (!keeps_film_) film = {};
+#define KDRAY_LEAVE(name) kept_.leave(name);
+  KDRAY_SLICE_BUFFERS(KDRAY_LEAVE)
+#undef KDRAY_LEAVE
 }
 
 void SliceBuffers::fill(cl::CommandQueue& queue, cl_uint word) const {

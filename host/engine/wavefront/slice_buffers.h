@@ -70,6 +70,9 @@ struct StreamForm {
 struct SliceBuffers {
   SliceBuffers(const device::Context& context, const layout::Frame& frame, const SliceCapacity& capacity,
                const StreamForm& form);
+  SliceBuffers(const SliceBuffers&) = delete;
+  SliceBuffers& operator=(const SliceBuffers&) = delete;
+  ~SliceBuffers();  // leaves the buffers to the next frame; no command may be using them
 
 #define KDRAY_SLICE_BUFFERS(X) \
   X(frame) X(tiles) X(slices) X(pool) X(batch) X(hits) X(shadow_rays) X(occluded) X(film)
@@ -90,6 +93,10 @@ struct SliceBuffers {
 
   // Fills streams and film with a word, once they are there.
   void fill(cl::CommandQueue& queue, cl_uint word) const;
+
+ private:
+  device::KeptBuffers& kept_;
+  bool keeps_film_;  // one that has to be cleared is quicker made anew
 };
 
 // Slices at the beginning of a list: slice s takes the entries s, s + n, ...

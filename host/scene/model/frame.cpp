@@ -55,6 +55,23 @@ void add_lights_for_camera(Scene& scene, const DBox& box) {
   }
 }
 
+// Returns a view from the front, the right and above (y is up, as in glTF and most OBJ files, unless `wanted`
+// has another direction) onto `wanted.at`, from as near as lets all eight corners of the box into the
+// picture.
+Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect) {
+  const double scale = scale_of(world);
+  Camera camera = wanted;
+  camera.at *= scale;
+  const dvec3 away = turned_to(camera.up, glm::normalize(dvec3(0.8, 0.6, 1.2)));
+  camera.from = camera.at + away;
+  double distance =
+      distance_to_fit(corners_of({world.lo * scale, world.hi * scale}), camera, aspect, kMargin);
+  if (!(distance > 0)) distance = scale;  // a single point
+  camera.from = (camera.at + distance * away) / scale;
+  camera.at /= scale;
+  return camera;
+}
+
 // Returns the box of the middles of all but the outermost hundredth of the primitives, on each side of each
 // axis.
 DBox inner_box(std::vector<dvec3> middles) {
@@ -142,40 +159,28 @@ void set_size(RenderSettings& settings, int width, int height) {
   settings.height = height > 0 ? height : side(width / aspect);
 }
 
-Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect) {
-  const double scale = scale_of(world);
-  const DBox box{world.lo * scale, world.hi * scale};
-  Camera camera = wanted;
-  camera.at *= scale;
-  const dvec3 away = turned_to(camera.up, glm::normalize(dvec3(0.8, 0.6, 1.2)));
-  camera.from = camera.at + away;
+double distance_to_fit(std::span<const dvec3> points, const Camera& camera, double aspect, double border) {
   const Basis view = basis_of(camera);
-  const double tan_up = std::tan(camera.vertical_fov / 2) / kMargin;
+  const double tan_up = std::tan(camera.vertical_fov / 2) / border;
   const double tan_side = tan_up * aspect;
   double distance = 0;
-  for (const dvec3& corner : corners_of(box)) {
-    const dvec3 p = corner - camera.at;
+  for (const dvec3& point : points) {
+    const dvec3 p = point - camera.at;
     const double sideways = std::abs(glm::dot(p, view.right)) / tan_side;
     const double upward = std::abs(glm::dot(p, view.up)) / tan_up;
     distance = std::max(distance, std::max(sideways, upward) - glm::dot(p, view.forward));
   }
-  if (!(distance > 0)) distance = scale;  // a single point
-  camera.from = (camera.at + distance * away) / scale;
-  camera.at /= scale;
-  return camera;
+  return distance;
 }
 
-double width_to_show(const DBox& world, const Camera& camera, double aspect) {
-  if (world.empty()) return 0;
-  const double scale = scale_of(world);
-  const DBox box{world.lo * scale, world.hi * scale};
+double width_to_show(std::span<const dvec3> points, const Camera& camera, double aspect) {
   const Basis view = basis_of(camera);
   double half = 0;
-  for (const dvec3& corner : corners_of(box)) {
-    const dvec3 p = corner - camera.from * scale;
+  for (const dvec3& point : points) {
+    const dvec3 p = point - camera.from;
     half = std::max({half, std::abs(glm::dot(p, view.right)), aspect * std::abs(glm::dot(p, view.up))});
   }
-  return 2 * kMargin * half / scale;
+  return 2 * kMargin * half;
 }
 
 void add_lights(Scene& scene) {
@@ -235,7 +240,7 @@ const Camera& numbered_camera(const Scene& scene, int number) {
 
 // Returns the width that shows all; any width does where there is nothing.
 double width_of(const DBox& box, const Camera& camera, double aspect) {
-  const double width = width_to_show(box, camera, aspect);
+  const double width = box.empty() ? 0 : width_to_show(corners_of(box), camera, aspect);
   return width > 0 ? width : 1;
 }
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scene/model/scene.h"
@@ -44,14 +45,12 @@ double aspect_of(const RenderSettings& settings);
 // Puts a size that is given into the settings. Of a side that is 0 where the other isn't, aspect_of() tells.
 void set_size(RenderSettings& settings, int width, int height);
 
-// Returns a view from the front, the right and above (y is up, as in glTF and most OBJ files, unless `wanted`
-// has another direction) onto `wanted.at`, from as near as lets all eight corners of the box into the
-// picture.
-Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect);
+// Returns how far from `camera.at` the eye has to be, on the side where it is, to have all points in the
+// picture; 0 where any distance does. `border`: how much larger the picture is than they are.
+double distance_to_fit(std::span<const dvec3> points, const Camera& camera, double aspect, double border);
 
-// Returns how wide an orthographic picture has to be to show all of the box, and a margin; 0 for an empty
-// one.
-double width_to_show(const DBox& world, const Camera& camera, double aspect);
+// Returns how wide an orthographic picture has to be to show all points, and a margin.
+double width_to_show(std::span<const dvec3> points, const Camera& camera, double aspect);
 
 // Right, up and forward of a camera, unit vectors.
 struct Basis {

@@ -41,19 +41,6 @@ void fit(Camera& camera, const DBox& box, const Basis& view, double aspect) {
   camera.at = aim;
 }
 
-// Returns how far the eye has to be from `at`, which stays in the picture's middle.
-double distance_to_fit(const Camera& camera, const DBox& box, const Basis& view, double aspect) {
-  const double tan_up = std::tan(camera.vertical_fov / 2) / kBorder, tan_side = tan_up * aspect;
-  double distance = 0;
-  for (const dvec3& corner : corners_of(box)) {
-    const dvec3 p = corner - camera.at;
-    distance = std::max(distance, std::max(std::abs(glm::dot(p, view.right)) / tan_side,
-                                           std::abs(glm::dot(p, view.up)) / tan_up) -
-                                      glm::dot(p, view.forward));
-  }
-  return distance > 0 ? distance : 1;
-}
-
 // Makes the box one of a size of about 1 (frame.cpp does so too), so that no product leaves double's range.
 void place_before(Camera& camera, const DBox& world, const dvec3& away, bool keeps_at, double aspect) {
   const double scale = scale_to_one(std::max(largest_component(world.lo), largest_component(world.hi)));
@@ -62,10 +49,12 @@ void place_before(Camera& camera, const DBox& world, const dvec3& away, bool kee
   near.at = keeps_at ? camera.at * scale : box.center();
   near.from = near.at + away;
   const Basis view = basis_of(near);
-  if (keeps_at)
-    near.from = near.at - view.forward * distance_to_fit(near, box, view, aspect);
-  else
+  if (keeps_at) {
+    const double distance = distance_to_fit(corners_of(box), near, aspect, kBorder);
+    near.from = near.at - view.forward * (distance > 0 ? distance : 1);
+  } else {
     fit(near, box, view, aspect);
+  }
   camera.from = near.from / scale, camera.at = near.at / scale;
 }
 

@@ -101,6 +101,23 @@ TEST_F(SequenceTest, ATurntableShowsAllOfTheModelInEachFrame) {
   EXPECT_GE(widest, 26) << "it is framed as closely as that allows";
 }
 
+// Walls, floor and ceiling that face inward hide what is outside; each frame sees another wall.
+TEST_F(SequenceTest, ATurntableInARoomLooksAround) {
+  KDRAY_NEED_DEVICE();
+  folder.put("room.obj",
+             "v -4 0 -4\nv 4 0 -4\nv 4 3 -4\nv -4 3 -4\nv -4 0 5\nv 4 0 5\nv 4 3 5\nv -4 3 5\n"
+             "f 1 2 3 4\nf 6 5 8 7\nf 5 1 4 8\nf 2 6 7 3\nf 5 6 2 1\nf 4 3 7 8\n");
+  ASSERT_TRUE(succeeds(kdray({"render", "room.obj", "--turntable", "4", "--size", "24x24", "-q",
+                              "--background", "transparent", "-o", "r.exr"},
+                             {.folder = folder.path()})));
+  for (int frame = 0; frame < 4; ++frame) {
+    const std::string name = fmt::format("r{:04}.exr", frame);
+    EXPECT_EQ(std::ranges::min(image::read_picture(folder / name, {}).alpha), 1) << frame;
+    for (int other = 0; other < frame; ++other)
+      EXPECT_NE(folder.get(fmt::format("r{:04}.exr", other)), folder.get(name)) << frame;
+  }
+}
+
 TEST_F(SequenceTest, ATurntableStandsInTheStudio) {
   KDRAY_NEED_DEVICE();
   folder.put("a.obj", "v -1 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");

@@ -181,14 +181,14 @@ class Subject {
     schedule.apply(frame, features_);
     const std::vector<layout::u32> tiles = tile_curve(frame.n_tiles_x, 0, frame.n_tiles / frame.n_tiles_x);
     const std::size_t n_pixels = std::size_t{frame.width} * frame.height;
-    Wavefront wavefront(context_, context_.queues().front(), buffers_, programs_, frame, schedule, features_,
-                        {.tiles = tiles.size(), .pixels = n_pixels});
+    Wavefront wavefront(context_, context_.queues().front(), buffers_, schedule.fused ? waves_ : stages_,
+                        frame, schedule, features_, {.tiles = tiles.size(), .pixels = n_pixels});
     wavefront.begin(0);
     std::span<const layout::u32> left = tiles;
     wavefront.render([&](const Progress&) { return std::exchange(left, {}); });
     RenderedFrame rendered;
     const FilmPiece all[] = {{0, n_pixels}};
-    wavefront.finish(all, [&](std::size_t, const FilmSums& film) {
+    wavefront.finish(all, false, [&](std::size_t, const FilmPart& film) {
       rendered.film.assign(film.sums.begin(), film.sums.end());
     });
     rendered.counters = wavefront.counters();
@@ -196,13 +196,13 @@ class Subject {
   }
 
   // The programs have all that they may have, the host goes by the scene as before.
-  void have_everything() { programs_.have_everything(); }
+  void have_everything() { stages_.have_everything(), waves_.have_everything(); }
 
   std::vector<image::Channel> channels() {
     layout::Frame frame = flatten::make_frame(scene_, geometry_, options_);
     Schedule{}.apply(frame, features_);
     const std::vector<std::string> names = {"depth", "normal", "primitive", "cost"};
-    const ChannelQueue queue{context_, buffers_, programs_, context_.queues().front()};
+    const ChannelQueue queue{context_, buffers_, waves_, context_.queues().front()};
     return render_channels({&queue, 1}, frame, geometry_.space, features_, Precision::float32, names);
   }
 
@@ -214,7 +214,9 @@ class Subject {
   flatten::FlatScene flat_ = flatten::flatten(scene_, geometry_, tree_);
   flatten::WideForm wide_ = flatten::make_wide(tree_, flat_, flatten::choose_block(tree_));
   SceneBuffers buffers_{context_, flat_, wide_};
-  Programs programs_{context_, tree_.max_depth, wide_};
+  // Stages' programs are compiled as they stand, since hundreds are: that takes two thirds of the time.
+  Programs stages_{context_, tree_.max_depth, wide_, " -cl-opt-disable"};
+  Programs waves_{context_, tree_.max_depth, wide_};
   RenderOptions options_;
   layout::Features features_;
 };
@@ -410,8 +412,16 @@ TEST_P(FeaturesTest, EverythingStageByStage) {
 TEST_P(FeaturesTest, EverythingInOneLaunch) {
   Schedule fused = kByStages;
   fused.fused = true;
-  for (const auto& masks : {geometry_masks(), materials_masks(), kTexturingMasks, kLightsMasks, kFilmMasks})
+  // One program that has everything serves all of these, but one is compiled for ten seconds for each way in
+  // which rays are made or looks are read.
+  const auto has_own_rays = [](layout::Features mask) { return has(mask, kSamples | kArea | kLens); };
+  for (auto masks : {geometry_masks(), materials_masks(), kLightsMasks, kFilmMasks}) {
+    std::erase_if(masks, has_own_rays);
     expect_the_same_with_everything(masks, fused);
+  }
+  expect_the_same_with_everything({kT | kSmooth | kLit | kMaps | kTextures, kTexturingMasks.back(),
+                                   kT | kLit | kArea | kFallOff | kSamples, kT | kLit | kLens},
+                                  fused);
 }
 
 // NaN of both signs, infinity, small and large numbers, indices far outside of any array.

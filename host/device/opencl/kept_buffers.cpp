@@ -1,0 +1,40 @@
+#include "device/opencl/kept_buffers.h"
+
+#include <algorithm>
+#include <exception>
+
+namespace kdray::device {
+
+std::optional<cl::Buffer> KeptBuffers::take(std::size_t wanted) {
+  const std::size_t bytes = std::max(wanted, kLeastBufferBytes);
+  const std::lock_guard lock(mutex_);
+  const auto place = by_size_.find(bytes);
+  if (place == by_size_.end()) {
+    by_size_.clear();
+    bytes_ = 0;
+    return std::nullopt;
+  }
+  cl::Buffer buffer = place->second;
+  by_size_.erase(place);
+  bytes_ -= bytes;
+  return buffer;
+}
+
+void KeptBuffers::leave(const cl::Buffer& buffer) noexcept {
+  if (!buffer()) return;
+  const std::lock_guard lock(mutex_);
+  try {
+    const std::size_t bytes = buffer.getInfo<CL_MEM_SIZE>();
+    if (bytes > most_ - bytes_) return;
+    by_size_.emplace(bytes, buffer);
+    bytes_ += bytes;
+  } catch (const std::exception&) {  // then it is made again
+  }
+}
+
+std::size_t KeptBuffers::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return bytes_;
+}
+
+}  // namespace kdray::device

@@ -1,0 +1,41 @@
+// What    Buffers that a frame leaves to the next one of its size: making them, and first touching their
+//         pages, takes up to a millisecond, which is a third of a small frame.
+// Shape   One store for each opened device, shared by the copies of its Context. What is taken belongs to the
+//         taker until it is left again; its contents are anybody's.
+// Threads Any.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "device/opencl/opencl.h"
+
+namespace kdray::device {
+
+// OpenCL has no empty buffers.
+inline constexpr std::size_t kLeastBufferBytes = 16;
+
+class KeptBuffers {
+ public:
+  // `most`: bytes that are kept in all.
+  explicit KeptBuffers(std::size_t most) : most_(most) {}
+
+  // Returns a buffer of CL_MEM_READ_WRITE that has just `bytes` (or kLeastBufferBytes). Where none was left,
+  // all others go: frames have another size from now on.
+  std::optional<cl::Buffer> take(std::size_t bytes);
+
+  // No command may use the buffer any more. None is left where it is no buffer, or too large.
+  void leave(const cl::Buffer& buffer) noexcept;
+
+  std::size_t bytes() const;
+
+ private:
+  const std::size_t most_;
+  mutable std::mutex mutex_;
+  std::multimap<std::size_t, cl::Buffer> by_size_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace kdray::device
