@@ -1,6 +1,7 @@
 #include "bench/ablation/bench.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,10 +9,12 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ranges>
 
 #include "accel/flatten/features.h"
 #include "api/hooks.h"
 #include "api/statistics_json.h"
+#include "base/error.h"
 #include "base/timer.h"
 #include "scene/generate/built_in.h"
 
@@ -47,7 +50,7 @@ class AblationScene {
     AblationRow usual = first_frames({.name = "nothing"});
     AblationRun run = describe();
     run.rows.push_back(std::move(usual));
-    for (const Ablation& a : ablations_for(mask_of(run.on))) run.rows.push_back(first_frames(a));
+    for (const Ablation& a : wanted_of(ablations_for(mask_of(run.on)))) run.rows.push_back(first_frames(a));
     std::vector<std::vector<double>> seconds(run.rows.size()), ratios(run.rows.size());
     for (int round = 0; round < options_.repeat; ++round)
       for (std::size_t i = 1; i < run.rows.size(); ++i) {
@@ -64,6 +67,20 @@ class AblationScene {
   }
 
  private:
+  std::vector<Ablation> wanted_of(const std::vector<Ablation>& all) const {
+    if (options_.only.empty()) return all;
+    std::vector<Ablation> wanted;
+    for (const std::string& name : options_.only) {
+      const auto place = std::ranges::find(all, name, &Ablation::name);
+      if (place == all.end())
+        throw Error(ErrorCode::usage,
+                    fmt::format("--only '{}': of {} this can be taken away: {}", name, name_,
+                                fmt::join(all | std::views::transform(&Ablation::name), ", ")));
+      wanted.push_back(*place);
+    }
+    return wanted;
+  }
+
   // To be called after a frame: which features are on is known from then on.
   AblationRun describe() const {
     const nlohmann::json facts = api::statistics_json(renderer_.statistics());

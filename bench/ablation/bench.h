@@ -2,7 +2,8 @@
 //         away: time, rays, time to compile, and whether the picture changes.
 // Shape   One renderer for a scene, which compiles anew for this run whatever it compiled before. A round is
 //         a frame of each variant, each with a usual frame right before it.
-// Errors  Those of scene::load and Renderer. Pictures that differ where none may are counted, not thrown.
+// Errors  Those of scene::load and Renderer; ErrorCode::usage for a name that a scene's table doesn't have.
+//         Pictures that differ where none may are counted, not thrown.
 #pragma once
 
 #include <functional>
@@ -23,6 +24,7 @@ struct AblationOptions {
   int width = 1024, height = 1024, depth = 5;
   int repeat = 5;  // rounds
   std::string device = "auto";
+  std::vector<std::string> only = {};  // by the names in the table; empty: all
 };
 
 struct AblationRow {

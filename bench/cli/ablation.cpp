@@ -46,6 +46,8 @@ Command add_bench_ablation(CLI::App& bench) {
   add_size(*app, "Pixels across and down (default 1024x1024)", kSideMax, kPixelsMax, o.width, o.height);
   add_int(*app, "--depth", "Deepest ray; the eye ray is 1 (default 5)", 1, 32, o.depth);
   add_int(*app, "--repeat", "Rounds to take the median of (default 5)", 1, kRepeatMax, o.repeat);
+  app->add_option("--only", o.only, "Take away these alone, by their names in the table")
+      ->type_name("NAME...");
   add_device_option(*app, "The device, as for render (default: auto)", o.device);
   add_report(*app, c->report);
   return {app, [c] { return run(*c); }};

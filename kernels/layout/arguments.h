@@ -65,7 +65,6 @@
   X(Shade, "shade/shade.cl", shade, KDRAY_SHADE_ARGUMENTS)                                      \
   X(TraceShadow, "traverse/trace_shadow.cl", trace_shadow, KDRAY_TRACE_SHADOW_ARGUMENTS)        \
   X(Add, "film/add.cl", add, KDRAY_ADD_ARGUMENTS)                                               \
-  X(Develop, "film/develop.cl", develop, KDRAY_DEVELOP_ARGUMENTS)                               \
   X(Channels, "film/channels.cl", channels, KDRAY_CHANNELS_ARGUMENTS)                           \
   X(TraceQuery, "traverse/query.cl", trace_query, KDRAY_TRACE_QUERY_ARGUMENTS)                  \
   X(CollectHits, "traverse/collect.cl", collect_hits, KDRAY_COLLECT_HITS_ARGUMENTS)             \
@@ -145,12 +144,6 @@
   X(IN, real, shadow_rays)        \
   X(IN, uchar, occluded)          \
   X(IO, i64, film)
-
-#define KDRAY_DEVELOP_ARGUMENTS(F, X) \
-  F(IN, i64, film)                    \
-  X(OUT, float, values)               \
-  X(VALUE, u64, n_values)             \
-  X(VALUE, double, scale)
 
 #define KDRAY_CHANNELS_ARGUMENTS(F, X) \
   F(CONSTANT, Frame, frame)            \

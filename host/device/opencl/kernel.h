@@ -101,7 +101,6 @@ class Kernel : public AnyKernel {
 
 namespace kdray::kernels {
 using u32 = std::uint32_t;
-using u64 = std::uint64_t;
 using float4 = cl_float4;
 KDRAY_KERNELS(KDRAY_DECLARE_KERNEL)
 }  // namespace kdray::kernels

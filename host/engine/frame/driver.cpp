@@ -204,11 +204,7 @@ void Driver::render_uniform() {
     rgb_made_.get();
     wavefront::develop_tiles(films, frame_, tiles, rgb_);
   };
-  if (!request_.checkpoint) {
-    Round round = round_of_tiles(sink, {});
-    for (Stretch& stretch : round.stretches) stretch.list.takes_values = true;
-    return render(std::move(round));
-  }
+  if (!request_.checkpoint) return render(round_of_tiles(sink, {}));
   rgb_made_.get();
   RawVector<layout::i64> sums(rgb_.size());  // each is written
   render_tiles(sums);

@@ -44,7 +44,6 @@ struct List {
   std::size_t first_place = 0, n_places = 0;  // of the films: the picture's pixels, or samples
   std::span<const layout::u32> samples = {};  // two words for each place; empty: tiles
   double seconds = kForever;                  // for which entries are begun; the others are left
-  bool takes_values = false;                  // the sink takes the picture's values in place of sums
 
   bool has_runs() const { return !samples.empty(); }
 };

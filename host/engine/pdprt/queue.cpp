@@ -142,8 +142,8 @@ void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared
   std::vector<wavefront::FilmPiece> pieces;
   for (const Delivery& delivery : deliveries) pieces.push_back(delivery.film);
   // Last: what it adds to the counters counts.
-  wavefront_.finish(pieces, work.takes_values, [&](std::size_t i, const wavefront::FilmPart& film) {
-    work.sink({{&film.sums, 1}, film.first, frame_.width, film.values}, deliveries[i].entries);
+  wavefront_.finish(pieces, [&](std::size_t i, const wavefront::FilmSums& film) {
+    work.sink({{&film.sums, 1}, film.first, frame_.width}, deliveries[i].entries);
   });
   if (work.samples.empty()) {
     n_tiles_ += tiles.size();

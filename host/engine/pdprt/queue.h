@@ -26,7 +26,6 @@ struct Work {
   std::span<const layout::u32> samples = {};  // empty: tiles
   // A queue delivers what it has when a list has taken so long, and begins another.
   double seconds = std::numeric_limits<double>::infinity();
-  bool takes_values = false;  // the sink, in place of sums
 };
 
 // What the queues of a frame share.

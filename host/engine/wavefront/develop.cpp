@@ -89,7 +89,8 @@ void add_pieces(Films films, std::size_t first, std::span<layout::i64> sums) {
 
 class Developer {
  public:
-  explicit Developer(std::uint32_t samples) : scale_(film_scale(samples)) {}
+  explicit Developer(std::uint32_t samples)
+      : scale_(1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples)) {}
 
   // The films' sums from `first` on.
   void operator()(Films films, std::size_t first, std::span<float> rgb) const {
@@ -104,10 +105,6 @@ class Developer {
 };
 
 }  // namespace
-
-double film_scale(std::uint32_t samples) {
-  return 1.0 / (static_cast<double>(KDRAY_FILM_SCALE) * samples);
-}
 
 void develop(Films films, int samples, std::span<float> rgb) {
   const Developer developer(static_cast<std::uint32_t>(samples));
@@ -126,11 +123,7 @@ void develop_tiles(const PlacedFilms& from, const layout::Frame& frame, std::spa
                    std::span<float> picture) {
   const Developer developer(frame.n_samples);
   for_each_row(frame, tiles, [&](std::size_t x, std::size_t y, std::size_t n) {
-    const std::span<float> row = picture.subspan(3 * (y * frame.width + x), 3 * n);
-    if (from.values.empty())
-      developer(from.films, from.at(x, y), row);
-    else
-      std::ranges::copy(from.values.subspan(from.at(x, y), row.size()), row.begin());
+    developer(from.films, from.at(x, y), picture.subspan(3 * (y * frame.width + x), 3 * n));
   });
 }
 

@@ -5,7 +5,6 @@
 // Why     Integer addition is exact and has no order: bands, tiles and queues give the same bits.
 #pragma once
 
-#include <cstdint>
 #include <span>
 
 #include "layout/frame.layout.h"
@@ -19,15 +18,10 @@ using Films = std::span<const std::span<const layout::i64>>;
 struct PlacedFilms {
   Films films;
   std::size_t first = 0, pitch = 0;  // place of the films; places from a row of pixels to the next
-  // The picture's values in place of sums, which are developed already; empty: they are not.
-  std::span<const float> values = {};
 
   // Where the sums of a pixel are, or with y = 0 those of a sample.
   std::size_t at(std::size_t x, std::size_t y) const { return 3 * (y * pitch + x - first); }
 };
-
-// What sums of so many samples are multiplied with: the product is the picture's value.
-double film_scale(std::uint32_t samples);
 
 // The mean of `samples` samples for each of the pixels.
 void develop(Films films, int samples, std::span<float> rgb);

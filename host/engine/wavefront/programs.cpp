@@ -50,7 +50,6 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 // The bits a file reads: a scene that differs elsewhere shares the program.
 layout::Features bits_read_by(const std::string& file) {
   if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
-  if (file == "film/develop.cl") return 0;
   if (file == "wave/plan.cl") return KDRAY_FEATURE_ADAPTIVE;
   if (file == "odprt/stages/plan.cl") return KDRAY_FEATURE_ADAPTIVE | kSizesTravel;
   if (file == "raygen/admit.cl" || file == "odprt/stages/admit.cl")

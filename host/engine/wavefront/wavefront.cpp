@@ -6,7 +6,6 @@
 #include "device/opencl/clock.h"
 #include "device/opencl/opencl_error.h"
 #include "device/opencl/read_back.h"
-#include "engine/wavefront/develop.h"
 #include "layout/features.h"
 #include "layout/rays.layout.h"
 
@@ -111,7 +110,6 @@ void Wavefront::warm_up() {
   const device::AtWork compiling(context_.builds());
   begin(0);
   launch(launches_[0]);
-  if (develop_) develop(1);
   queue_.finish();
   for_each_stage([](auto& stage) { stage.forget_launches(); });
 }
@@ -136,7 +134,6 @@ void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
   const Traversal none = Traversal::binary;
   const Traversal walk = schedule_.traversal == Traversal::binary ? Traversal::binary : Traversal::wide;
   const bool lights = (features_ & KDRAY_FEATURE_LIGHTS) != 0;
-  make_develop(programs);
   std::vector<Programs::Wanted> wanted = {{Plan::kFile, features_, none, schedule_.precision},
                                           {Admit::kFile, features_, none, schedule_.precision},
                                           {TraceClosest::kFile, features_, walk, schedule_.precision},
@@ -160,25 +157,8 @@ void Wavefront::make_stages(Programs& programs, const SceneBuffers& scene) {
   make(add_, none);
 }
 
-// Of a film that is the host's memory there is nothing to read.
-void Wavefront::make_develop(Programs& programs) {
-  if (!reads_in_pieces() || !context_.info().double_precision) return;
-  develop_.emplace(programs.kernel<kernels::Develop>(0));
-  values_ = context_.kept_buffer(value_bytes(), "the picture's values");
-  develop_->set(kernels::Develop::film, buffers_.film)
-      .set(kernels::Develop::values, values_)
-      .set(kernels::Develop::scale, film_scale(frame_.n_samples));
-}
-
-void Wavefront::develop(std::size_t n_values) {
-  develop_->set(kernels::Develop::n_values, static_cast<std::uint64_t>(n_values));
-  develop_->launch(queue_, n_values, schedule_.work_group);
-  develop_->forget_launches();
-}
-
 Wavefront::~Wavefront() {
   settle();
-  context_.kept_buffers().leave(values_);
 }
 
 // After an error a report, or tiles, may still be on their way.
@@ -341,45 +321,29 @@ bool Wavefront::render(const Feed& feed) {
   }
 }
 
-bool Wavefront::reads_in_pieces() const {
-  return schedule_.film_piece > 0 || !context_.works_in_host_memory();
-}
-
 std::size_t Wavefront::film_piece() const {
-  if (!reads_in_pieces()) return std::numeric_limits<std::size_t>::max();
+  if (schedule_.film_piece == 0 && context_.works_in_host_memory())
+    return std::numeric_limits<std::size_t>::max();
   return (schedule_.film_piece > 0 ? schedule_.film_piece : device::kPieceBytes) / kPlaceBytes;
 }
 
-void Wavefront::read_film(std::span<const FilmPiece> pieces, bool developed,
-                          const std::function<void(std::size_t, const FilmPart&)>& take_film) {
-  const std::size_t place = 3 * (developed ? sizeof(float) : sizeof(layout::i64));
+void Wavefront::finish(std::span<const FilmPiece> pieces,
+                       const std::function<void(std::size_t, const FilmSums&)>& take_film) {
+  const auto take = [&](std::size_t i, const void* sums) {
+    take_film(i, {{static_cast<const layout::i64*>(sums), pieces[i].n * 3}, pieces[i].first});
+  };
   std::vector<device::Piece> bytes;
   for (const FilmPiece& piece : pieces)
-    bytes.push_back({(piece.first - frame_.first_pixel) * place, piece.n * place});
-  const auto take = [&](std::size_t i, const void* memory) {
-    FilmPart part{.sums = {}, .first = pieces[i].first};
-    if (developed)
-      part.values = {static_cast<const float*>(memory), pieces[i].n * 3};
-    else
-      part.sums = {static_cast<const layout::i64*>(memory), pieces[i].n * 3};
-    take_film(i, part);
-  };
-  if (reads_in_pieces())
-    return device::read_pieces(context_, queue_, developed ? values_ : buffers_.film, bytes, take);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    void* const sums =
-        queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ, bytes[i].first, bytes[i].n);
-    take(i, sums);
-    queue_.enqueueUnmapMemObject(buffers_.film, sums);
-  }
-}
-
-void Wavefront::finish(std::span<const FilmPiece> pieces, bool takes_values,
-                       const std::function<void(std::size_t, const FilmPart&)>& take_film) {
-  const bool developed = takes_values && develop_ && !pieces.empty();
+    bytes.push_back({(piece.first - frame_.first_pixel) * kPlaceBytes, piece.n * kPlaceBytes});
   device::checked("reading the film", [&] {
-    if (developed) develop(3 * (pieces.back().first + pieces.back().n - frame_.first_pixel));
-    read_film(pieces, developed, take_film);
+    if (film_piece() < std::numeric_limits<std::size_t>::max())
+      return device::read_pieces(context_, queue_, buffers_.film, bytes, take);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      void* const sums =
+          queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ, bytes[i].first, bytes[i].n);
+      take(i, sums);
+      queue_.enqueueUnmapMemObject(buffers_.film, sums);
+    }
   });
   finish();
 }

@@ -83,12 +83,10 @@ struct Watch {
 // What a queue is to do next: entries to add to its list, none, or std::nullopt to leave everything at once.
 using Feed = std::function<std::optional<std::span<const layout::u32>>(const Progress&)>;
 
-// Sums of the film's places from `first` on, three for each: of the picture's pixels, or of samples. Or the
-// picture's values, which the device has made of them.
-struct FilmPart {
+// Sums of the film's places from `first` on, three for each: of the picture's pixels, or of samples.
+struct FilmSums {
   std::span<const layout::i64> sums;
   std::size_t first;
-  std::span<const float> values = {};
 };
 
 // Places of the film from the picture's pixel, or the sample, `first` on.
@@ -126,10 +124,9 @@ class Wavefront {
   // How many places of the film should be in a piece that is handed over.
   std::size_t film_piece() const;
   // Hands over the pieces one after the other, each with its number; what was rendered since begin() counts
-  // from then on. With `takes_values` they are the picture's values where a device with memory of its own can
-  // make them.
-  void finish(std::span<const FilmPiece> pieces, bool takes_values,
-              const std::function<void(std::size_t, const FilmPart&)>& take_film);
+  // from then on.
+  void finish(std::span<const FilmPiece> pieces,
+              const std::function<void(std::size_t, const FilmSums&)>& take_film);
   // Where nothing was rendered: the launches that found nothing count.
   void finish();
 
@@ -140,7 +137,7 @@ class Wavefront {
   // What was counted over the lists that are finished.
   const Counters& counters() const { return counters_; }
   double busy_seconds() const { return busy_seconds_; }  // of all launches that have ended
-  std::size_t device_bytes() const { return buffers_.bytes + tile_cycle_bytes() + value_bytes(); }
+  std::size_t device_bytes() const { return buffers_.bytes + tile_cycle_bytes(); }
   // Device seconds per stage. Of fused waves they are shares of the launches' time, by the cycles that each
   // stage took; empty where the device has no counter for them.
   const std::map<std::string, double>& stage_seconds() const { return seconds_; }
@@ -154,7 +151,6 @@ class Wavefront {
   };
 
   std::size_t tile_cycle_bytes() const { return schedule_.fused ? capacity_.tiles * sizeof(layout::u64) : 0; }
-  std::size_t value_bytes() const { return develop_ ? 3 * capacity_.pixels * sizeof(float) : 0; }
   template <class K>
   void set_arguments(Stage<K>& stage, const SceneBuffers& scene);
   template <class K>
@@ -163,13 +159,8 @@ class Wavefront {
   void for_each_stage(const Do& act);
   void make_wave(Programs& programs, const SceneBuffers& scene);
   void make_stages(Programs& programs, const SceneBuffers& scene);
-  void make_develop(Programs& programs);
   void place_slices();
   void film_is_made();
-  bool reads_in_pieces() const;
-  void develop(std::size_t n_values);
-  void read_film(std::span<const FilmPiece> pieces, bool developed,
-                 const std::function<void(std::size_t, const FilmPart&)>& take_film);
   void warm_up();
   void begin_list();
   bool enlist(const Feed& feed, const Progress& progress);
@@ -207,8 +198,6 @@ class Wavefront {
   std::optional<Stage<kernels::Shade>> shade_;
   std::optional<Stage<kernels::TraceShadow>> trace_shadow_;
   std::optional<Stage<kernels::Add>> add_;
-  std::optional<Stage<kernels::Develop>> develop_;  // where films are read in pieces
-  cl::Buffer values_;
   // Of the present list, as of the last report (n_listed_: as of the last launch).
   std::uint32_t n_listed_ = 0, n_taken_ = 0;
   Counters list_counters_;

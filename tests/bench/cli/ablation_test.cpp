@@ -39,7 +39,8 @@ TEST(BenchAblation, WritesTableFiguresAndPlot) {
   const Folder folder;
   const auto scene = folder.put("small.nff", kSphereOnSquare);
   const Outcome run = kdray({"bench", "ablation", scene.string(), "--size", "32x24", "--depth", "2",
-                             "--repeat", "2", "--report", (folder / "report").string()});
+                             "--repeat", "2", "--report", (folder / "report").string(), "--only", "no cones",
+                             "shadow rays to lights behind", "everything exact"});
   ASSERT_TRUE(succeeds(run));
   EXPECT_NE(run.err.find("everything exact"), std::string::npos) << run.err;
   const Json json = Json::parse(folder.get("report/ablation.json"));
@@ -48,6 +49,7 @@ TEST(BenchAblation, WritesTableFiguresAndPlot) {
   ASSERT_EQ(json["runs"].size(), 1u);
   const Json& found = json["runs"][0];
   EXPECT_EQ(found["rows"][0]["kind"], "none");
+  EXPECT_EQ(found["rows"].size(), 4u);
   for (const Json& r : found["rows"]) {
     expect_numbers(r["seconds"]);
     expect_numbers(r["ratio"]);
@@ -66,6 +68,11 @@ TEST(BenchAblation, WritesTableFiguresAndPlot) {
 TEST(BenchAblation, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(kdray({"bench", "ablation", "--depth", "0"}).code, 2);
   EXPECT_EQ(kdray({"bench", "ablation", "--cut", "1"}).code, 2);
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const std::string scene = folder.put("small.nff", kSphereOnSquare);
+  EXPECT_TRUE(fails_with(kdray({"bench", "ablation", scene, "--size", "8x8", "--only", "no triangles"}), 2,
+                         "--only 'no triangles': of small this can be taken away: no cones, "));
 }
 
 }  // namespace

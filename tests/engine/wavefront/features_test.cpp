@@ -188,7 +188,7 @@ class Subject {
     wavefront.render([&](const Progress&) { return std::exchange(left, {}); });
     RenderedFrame rendered;
     const FilmPiece all[] = {{0, n_pixels}};
-    wavefront.finish(all, false, [&](std::size_t, const FilmPart& film) {
+    wavefront.finish(all, [&](std::size_t, const FilmSums& film) {
       rendered.film.assign(film.sums.begin(), film.sums.end());
     });
     rendered.counters = wavefront.counters();

@@ -93,10 +93,8 @@ TEST_P(ScheduleTest, NorDoesItWithSeveralSamplesAPixel) {
     expect_same(prepared.render(context, {.tile_width = 4, .tile_height = 3, .batch_size = 7}, options),
                 reference);
     expect_same(
-        prepared.render(
-            context,
-            {.tile_width = 13, .tile_height = 1, .batch_size = 100, .fused = false, .film_piece = 500},
-            options),
+        prepared.render(context, {.tile_width = 13, .tile_height = 1, .batch_size = 100, .fused = false},
+                        options),
         reference);
   }
 }
