@@ -52,9 +52,9 @@ Turntable::Turntable(const scene::Scene& seen, const View& asked, double aspect)
   if (!is_chosen || framing.box.empty()) return;
   looks_around_ = framing.studio && framing.studio->room;
   if (looks_around_) return;
-  const dvec3 away = safe_normalize(camera_.from - camera_.at);
+  const dvec3 way = camera_.from - camera_.at, away = safe_normalize(way);
   if (!asked.at) camera_.at = framing.box.center();
-  camera_.from = camera_.at + away * safe_length(framing.box.extent());
+  camera_.from = camera_.at + way;
   const std::vector<dvec3> points = passed_by(framing.box, camera_.at, safe_normalize(camera_.up));
   if (const double distance = scene::distance_to_fit(points, camera_, aspect, kBorder); distance > 0)
     camera_.from = camera_.at + away * distance;

@@ -188,8 +188,19 @@ cl::Buffer Context::buffer(cl_mem_flags flags, std::size_t bytes, const std::str
       const std::shared_ptr<void> memory = allocate(bytes);
       return buffer_over(opened_->context, flags, memory.get(), bytes, memory);
     }
-    return cl::Buffer(opened_->context, flags, std::max(bytes, kLeastBufferBytes));
+    return made(flags, std::max(bytes, kLeastBufferBytes));
   });
+}
+
+// Returns a new buffer. Where there is no memory for it, what frames have left is given up.
+cl::Buffer Context::made(cl_mem_flags flags, std::size_t bytes) const {
+  try {
+    return cl::Buffer(opened_->context, flags, bytes);
+  } catch (const cl::Error& error) {
+    if (fault_of(error.err()) != Fault::memory || kept_->bytes() == 0) throw;
+    kept_->clear();
+  }
+  return cl::Buffer(opened_->context, flags, bytes);
 }
 
 cl::Buffer Context::kept_buffer(std::size_t bytes, const std::string& what) const {
@@ -199,7 +210,7 @@ cl::Buffer Context::kept_buffer(std::size_t bytes, const std::string& what) cons
 
 cl::Buffer Context::sparse_buffer(cl_mem_flags flags, std::size_t bytes, const std::string& what) const {
   if (bytes < kLargePages || bytes > found_.info.max_allocation) return buffer(flags, bytes, what);
-  return checked("allocating " + what, [&] { return cl::Buffer(opened_->context, flags, bytes); });
+  return checked("allocating " + what, [&] { return made(flags, bytes); });
 }
 
 cl::Buffer Context::buffer_made_beside(cl_mem_flags flags, std::size_t bytes, const std::string& what,

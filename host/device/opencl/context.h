@@ -87,6 +87,8 @@ class Context {
   bool works_in_host_memory() const;
 
  private:
+  cl::Buffer made(cl_mem_flags flags, std::size_t bytes) const;
+
   FoundDevice found_;
   Builds builds_;
   const OpenDevice* opened_;

@@ -7,6 +7,7 @@ namespace kdray::device {
 
 std::optional<cl::Buffer> KeptBuffers::take(std::size_t wanted) {
   const std::size_t bytes = std::max(wanted, kLeastBufferBytes);
+  if (bytes > most_) return std::nullopt;  // such are never left
   const std::lock_guard lock(mutex_);
   const auto place = by_size_.find(bytes);
   if (place == by_size_.end()) {
@@ -30,6 +31,12 @@ void KeptBuffers::leave(const cl::Buffer& buffer) noexcept {
     bytes_ += bytes;
   } catch (const std::exception&) {  // then it is made again
   }
+}
+
+void KeptBuffers::clear() {
+  const std::lock_guard lock(mutex_);
+  by_size_.clear();
+  bytes_ = 0;
 }
 
 std::size_t KeptBuffers::bytes() const {

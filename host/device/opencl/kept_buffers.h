@@ -1,6 +1,6 @@
 // What    Buffers that a frame leaves to the next one of its size: making them, and first touching their
 //         pages, takes up to a millisecond, which is a third of a small frame.
-// Shape   One store for each opened device, shared by the copies of its Context. What is taken belongs to the
+// Shape   One store for each Context and its copies. What is taken belongs to the
 //         taker until it is left again; its contents are anybody's.
 // Threads Any.
 #pragma once
@@ -29,6 +29,7 @@ class KeptBuffers {
   // No command may use the buffer any more. None is left where it is no buffer, or too large.
   void leave(const cl::Buffer& buffer) noexcept;
 
+  void clear();
   std::size_t bytes() const;
 
  private:

@@ -34,7 +34,7 @@ std::span<const Setting> settings() {
       {"waves", &Tuning::waves, {16, 32, 128, 256}, "", true, false, "waves of a slice in one launch"},
       {"work-group",
        &Tuning::work_group,
-       {32, 64, 128, 256},
+       {16, 32, 64, 128, 256},
        "",
        false,
        true,

@@ -256,9 +256,14 @@ void Programs::build(const std::vector<Wanted>& wanted) {
   build_seconds_ += timer.seconds();
 }
 
-bool Programs::are_first(const Launches& launches) {
+bool Programs::are_new(const Launches& launches) const {
   const std::lock_guard lock(mutex_);
-  return launched_.emplace(walk_options_, launches).second;
+  return !launched_.contains({walk_options_, everything_, launches});
+}
+
+void Programs::were_launched(const Launches& launches) {
+  const std::lock_guard lock(mutex_);
+  launched_.emplace(walk_options_, everything_, launches);
 }
 
 const cl::Program& Programs::program(const Wanted& wanted) {

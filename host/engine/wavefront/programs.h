@@ -9,7 +9,6 @@
 #include <set>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "accel/flatten/wide.h"
@@ -90,17 +89,20 @@ class Programs {
   // Builds side by side what kernel() will be asked for, where it was not built before.
   void build(const std::vector<Wanted>& wanted);
 
-  // Launches of these kernels, of `items` work-items in groups of `local`.
+  // Launches of a frame's kernels, of `items` work-items in groups of `local`.
   struct Launches {
     layout::Features features;
     Traversal traversal;
     Precision precision;
+    bool fused;
     std::size_t items, local;
 
     auto operator<=>(const Launches&) const = default;
   };
-  // Returns whether such launches are the first ones: PoCL compiles a kernel for good with them.
-  bool are_first(const Launches& launches);
+  // Return whether there were no such launches yet, since PoCL compiles a kernel for good with the first
+  // ones, and take down that there were.
+  bool are_new(const Launches& launches) const;
+  void were_launched(const Launches& launches);
 
   double build_seconds() const { return build_seconds_; }
   const ProgramsUsed& used() const { return used_; }
@@ -129,7 +131,7 @@ class Programs {
   mutable std::mutex mutex_;  // of what is built: queries of several threads ask for kernels
   ProgramsUsed used_;
   std::map<Key, cl::Program> programs_;
-  std::set<std::pair<std::string, Launches>> launched_;  // with walk_options_
+  std::set<std::tuple<std::string, bool, Launches>> launched_;  // with walk_options_ and everything_
 };
 
 }  // namespace kdray::wavefront

@@ -24,6 +24,7 @@ class LaunchClock {
  private:
   std::deque<cl::Event> launches_;  // whose time is still to be added
   double seconds_ = 0;
+  std::size_t largest_group_ = 0;  // that the kernel can be launched in; 0: not asked yet
 };
 
 // The kernel that K describes (device/opencl/kernel.h).
@@ -40,8 +41,8 @@ class Stage : public LaunchClock {
     return *this;
   }
 
-  // Runs `items` work-items in groups of `local`; the launch is rounded up to whole groups (kernels check
-  // their bound).
+  // Runs `items` work-items in groups of `local`, or of as many as the kernel can have; the launch is rounded
+  // up to whole groups (kernels check their bound).
   cl::Event launch(cl::CommandQueue& queue, std::size_t items, std::size_t local) {
     return LaunchClock::launch(kernel_.ready(), queue, items, local);
   }

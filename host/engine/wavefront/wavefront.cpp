@@ -58,6 +58,18 @@ void Schedule::fit(layout::Frame frame, layout::Features features, std::size_t m
   }
 }
 
+// Returns what `act` does. When it fails, what is under way is waited for first: it uses memory that is about
+// to go, and buffers that the next frame may be given.
+template <class Do>
+auto Wavefront::or_settle(const Do& act) {
+  try {
+    return act();
+  } catch (...) {
+    settle();
+    throw;
+  }
+}
+
 Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, const SceneBuffers& scene,
                      Programs& programs, const layout::Frame& frame, const Schedule& schedule,
                      layout::Features features, const Capacity& capacity)
@@ -71,17 +83,25 @@ Wavefront::Wavefront(const device::Context& context, cl::CommandQueue queue, con
       buffers_(context, frame, {schedule.slices(), capacity_.tiles, capacity_.samples, capacity_.pixels},
                StreamForm::of_device(frame, word_of(schedule.precision), features)),
       tile_cycles_(context.buffer(CL_MEM_READ_WRITE, tile_cycle_bytes(), "the tiles' cycles")) {
-  device::checked("setting up the kernels", [&] {
-    place_slices();
-    if (schedule.fill) buffers_.fill(queue_, *schedule.fill);
-    schedule.fused ? make_wave(programs, scene) : make_stages(programs, scene);
-    if (!schedule.fused) film_is_made();  // which is cleared
-    const std::size_t items = schedule_.fused ? schedule_.slices() : frame_.batch_size;
-    if (programs.are_first({features_, schedule_.traversal, schedule_.precision, items,
-                            schedule_.fused ? 1 : schedule_.work_group}))
-      warm_up();
-    film_is_made();
-  });
+  device::checked("setting up the kernels", [&] { or_settle([&] { set_up(programs, scene); }); });
+}
+
+void Wavefront::set_up(Programs& programs, const SceneBuffers& scene) {
+  place_slices();
+  if (schedule_.fill) buffers_.fill(queue_, *schedule_.fill);
+  schedule_.fused ? make_wave(programs, scene) : make_stages(programs, scene);
+  if (!schedule_.fused) film_is_made();  // which is cleared
+  const Programs::Launches launches{features_,
+                                    schedule_.traversal,
+                                    schedule_.precision,
+                                    schedule_.fused,
+                                    schedule_.fused ? schedule_.slices() : frame_.batch_size,
+                                    schedule_.fused ? 1 : schedule_.work_group};
+  if (programs.are_new(launches)) {
+    warm_up();
+    programs.were_launched(launches);
+  }
+  film_is_made();
 }
 
 void Wavefront::place_slices() {
@@ -215,17 +235,19 @@ void Wavefront::launch(Launch& launch) {
 void Wavefront::begin(std::size_t first_pixel) {
   frame_.first_pixel = static_cast<layout::u32>(first_pixel);
   frame_.samples_at = 0;
-  begin_list();
+  or_settle([&] { begin_list(); });
 }
 
 void Wavefront::begin_samples(std::span<const layout::u32> samples) {
   frame_.first_pixel = 0;
   frame_.samples_at = static_cast<layout::u32>(capacity_.tiles);
-  device::checked("writing the samples", [&] {
-    queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, capacity_.tiles * sizeof(layout::u32),
-                              samples.size_bytes(), samples.data());
+  or_settle([&] {
+    device::checked("writing the samples", [&] {
+      queue_.enqueueWriteBuffer(buffers_.tiles, CL_FALSE, capacity_.tiles * sizeof(layout::u32),
+                                samples.size_bytes(), samples.data());
+    });
+    begin_list();
   });
-  begin_list();
 }
 
 void Wavefront::begin_list() {
@@ -311,14 +333,11 @@ bool Wavefront::render_list(const Feed& feed) {
 }
 
 bool Wavefront::render(const Feed& feed) {
-  try {
+  return or_settle([&] {
     const bool ended = device::checked("rendering", [&] { return render_list(feed); });
     if (!ended) settle();
     return ended;
-  } catch (...) {
-    settle();
-    throw;
-  }
+  });
 }
 
 std::size_t Wavefront::film_piece() const {
@@ -341,8 +360,14 @@ void Wavefront::finish(std::span<const FilmPiece> pieces,
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       void* const sums =
           queue_.enqueueMapBuffer(buffers_.film, CL_TRUE, CL_MAP_READ, bytes[i].first, bytes[i].n);
-      take(i, sums);
-      queue_.enqueueUnmapMemObject(buffers_.film, sums);
+      const auto unmap = [&] { queue_.enqueueUnmapMemObject(buffers_.film, sums); };
+      try {
+        take(i, sums);
+      } catch (...) {
+        unmap();
+        throw;
+      }
+      unmap();
     }
   });
   finish();

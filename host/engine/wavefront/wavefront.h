@@ -114,7 +114,8 @@ class Wavefront {
   // An empty list. The film begins with this pixel of the picture.
   void begin(std::size_t first_pixel);
 
-  // An empty list, of runs of these samples (frame.layout.h), whose places the film has.
+  // An empty list, of runs of these samples (frame.layout.h), whose places the film has. They stay where they
+  // are until render() has returned.
   void begin_samples(std::span<const layout::u32> samples);
 
   // Renders what `feed` gives, which is asked before each launch, until there is nothing left to do. False:
@@ -159,6 +160,9 @@ class Wavefront {
   void for_each_stage(const Do& act);
   void make_wave(Programs& programs, const SceneBuffers& scene);
   void make_stages(Programs& programs, const SceneBuffers& scene);
+  template <class Do>
+  auto or_settle(const Do& act);
+  void set_up(Programs& programs, const SceneBuffers& scene);
   void place_slices();
   void film_is_made();
   void warm_up();

@@ -118,6 +118,13 @@ TEST_F(SequenceTest, ATurntableInARoomLooksAround) {
   }
 }
 
+TEST_F(SequenceTest, ATurntableOfASinglePointIsNoError) {
+  KDRAY_NEED_DEVICE();
+  folder.put("a.obj", "v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n");
+  EXPECT_TRUE(succeeds(
+      kdray({"render", "a.obj", "--turntable", "2", "--size", "8", "-q"}, {.folder = folder.path()})));
+}
+
 TEST_F(SequenceTest, ATurntableStandsInTheStudio) {
   KDRAY_NEED_DEVICE();
   folder.put("a.obj", "v -1 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");

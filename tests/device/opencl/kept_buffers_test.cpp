@@ -37,6 +37,15 @@ TEST_P(KeptBuffersTest, AnotherSizeMeansThatTheOthersAreOfNoMoreUse) {
   EXPECT_EQ(kept.bytes(), 0u);
 }
 
+TEST_P(KeptBuffersTest, WhatIsTooLargeToBeKeptLeavesTheOthersThere) {
+  KeptBuffers kept(1000);
+  kept.leave(made(300));
+  EXPECT_FALSE(kept.take(1001));
+  EXPECT_EQ(kept.bytes(), 300u);
+  kept.clear();
+  EXPECT_EQ(kept.bytes(), 0u);
+}
+
 TEST_P(KeptBuffersTest, ThereIsNoRoomForMoreThanItWasGiven) {
   KeptBuffers kept(1000);
   kept.leave(made(600));
