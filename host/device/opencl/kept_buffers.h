@@ -1,7 +1,7 @@
 // What    Buffers that a frame leaves to the next one of its size: making them, and first touching their
 //         pages, takes up to a millisecond, which is a third of a small frame.
-// Shape   One store for each Context and its copies. What is taken belongs to the
-//         taker until it is left again; its contents are anybody's.
+// Shape   One store for each Context and its copies. What is taken belongs to the taker until it is left
+//         again; its contents are anybody's.
 // Threads Any.
 #pragma once
 
