@@ -32,7 +32,9 @@ def odd_request(random):
         camera["fov"] = random.choice((1e-3, 179.9, 1, 90))
     if random.random() < 0.3:
         camera["ortho"] = random.choice((1e-300, 1e-9, 1, 1e9, 1e300))
-    width, height = (random.choice((1, 2, 15, 64, 333)) for _ in range(2))
+    width, height = random.choice((1, 2, 15, 64, 333)), random.choice((1, 2, 15))  # 256 samples of 64 bounces each may be asked
+    if random.random() < 0.5:
+        width, height = height, width
     return {
         **VIEW_REQUEST, "camera": camera, "width": width, "height": height, "depth": random.choice((0, 1, 5, 64)),
         "samples": random.choice((0, 1, 3, 16, "adaptive")), "weight": random.choice((-1, 0, 1e-6, 1)),

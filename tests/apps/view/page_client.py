@@ -37,9 +37,11 @@ class PageClient:
         self.send({"type": "hello", "token": url.fragment.split("=")[1]})
 
     def send(self, message):
-        text = json.dumps(message).encode()
+        self._send(0x81, json.dumps(message).encode())
+
+    def _send(self, first, text):
         mask = os.urandom(4)
-        head = bytes([0x81]) + (bytes([0x80 | len(text)]) if len(text) < 126 else struct.pack(">BH", 0xFE, len(text)))
+        head = bytes([first]) + (bytes([0x80 | len(text)]) if len(text) < 126 else struct.pack(">BH", 0xFE, len(text)))
         self.socket.sendall(head + mask + bytes(c ^ mask[i % 4] for i, c in enumerate(text)))
 
     def look(self, moving, **changes):
@@ -68,6 +70,8 @@ class PageClient:
                 self.buffer = self.buffer[begin + n :]
                 if first & 15 in (1, 2):
                     self.opcode, self.message = first & 15, b""
+                if first & 15 == 9:  # a ping: who doesn't answer is taken for gone
+                    self._send(0x8A, data)
                 if first & 15 <= 2:  # 1 and 2 begin a message, 0 goes on with it
                     self.message += data
                 if first & 15 > 2 or not first & 0x80:
