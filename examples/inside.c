@@ -15,7 +15,7 @@ static void check(kdray_status status) {
 int main(int argc, char** argv) {
   if (argc != 5) return fprintf(stderr, "use: inside MESH X Y Z\n"), 2;
   kdray_scene* scene;
-  check(kdray_scene_load(argv[1], &scene));
+  check(kdray_scene_load(argv[1], NULL, &scene));
   const kdray_status status = kdray_commit(scene, NULL);
   if (status == KDRAY_NO_DEVICE) return puts("no OpenCL device: skipped"), 0;
   check(status);

@@ -112,7 +112,7 @@ void keep(const DeviceOptions& options, device::ProgramCache& cache) {
 namespace kdray {
 
 std::vector<WarmProgram> warm_up(const DeviceOptions& options,
-                                 const std::function<void(const WarmProgram&)>& told) {
+                                 const std::function<void(const WarmProgram&)>& told, std::uint64_t largest) {
   using namespace api;
   check(options.programs);
   const OpenedDevices opened = open_devices(options);
@@ -122,6 +122,7 @@ std::vector<WarmProgram> warm_up(const DeviceOptions& options,
   std::vector<WarmProgram> all;
   for (const device::Context& context : opened.contexts)
     for (const auto& [form, scenes] : wavefront::Programs::usual_forms()) {
+      if (form.bytes > largest) continue;
       const prepare::Prepared scene = scene_in_blocks(form.block);
       const Tuning tuning = tuned_for(context, engine::runs_globally(options, context), scene.features,
                                       tunings, options.tunings.string())

@@ -80,8 +80,29 @@ KDRAY_API void kdray_set_texture_cache(uint64_t bytes);
 typedef struct kdray_scene kdray_scene;
 
 KDRAY_API kdray_status kdray_scene_new(kdray_scene** scene);
-/* A scene file is geometry 0. */
-KDRAY_API kdray_status kdray_scene_load(const char* file, kdray_scene** scene);
+
+/* What becomes of meshes that a file shows many times: held once where copies would be over a million
+ * primitives, copied, or held once. */
+typedef enum kdray_instances {
+  KDRAY_INSTANCES_AUTOMATIC = 0,
+  KDRAY_INSTANCES_FLAT = 1,
+  KDRAY_INSTANCES_KEPT = 2
+} kdray_instances;
+
+typedef struct kdray_load_options {
+  size_t size;
+  /* Triangles without normals get them where the surface turns by no more, 0 to 180; 0: they stay flat. */
+  double smooth_degrees;
+  const double* time;     /* of a glTF file's animation; NULL: nodes are at rest */
+  const char* animation;  /* its number or name, or "all"; NULL: the first */
+  uint64_t texture_bytes; /* the most that the texels of pictures may take; 0: no limit */
+  int32_t instances;      /* kdray_instances */
+  const char* asset_root; /* a folder below which it may name files that are not beside it; NULL: none */
+} kdray_load_options;
+
+/* A scene file is geometry 0. `options` may be NULL, here and below. */
+KDRAY_API kdray_status kdray_scene_load(const char* file, const kdray_load_options* options,
+                                        kdray_scene** scene);
 /* NULL is no error. */
 KDRAY_API void kdray_scene_free(kdray_scene* scene);
 
@@ -96,7 +117,7 @@ typedef struct kdray_geometry_options {
 } kdray_geometry_options;
 
 /* `triangles`: rows of three indices (32 or 64 bits); `normals`: count = 0, or one for each vertex.
- * Here and below options may be NULL, and so may `id`. */
+ * `id` may be NULL, here and below. */
 KDRAY_API kdray_status kdray_add_mesh(kdray_scene* scene, kdray_in vertices, kdray_in triangles,
                                       kdray_in normals, const kdray_geometry_options* options, uint32_t* id);
 /* Radii: one for each, or one for all. */

@@ -8,12 +8,15 @@
 #include "layout/arguments.h"
 #include "layout/traversal.h"
 
-__kernel void closest_points(KDRAY_PARAMETERS(KDRAY_CLOSEST_POINTS_ARGUMENTS)) {
-  const u32 item = (u32)get_global_id(0);
+KDRAY_BODY void find_closest_point(u32 item, KDRAY_PARAMETERS(KDRAY_CLOSEST_POINTS_ARGUMENTS)) {
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   if (item >= n_points) return;
   PointWalk w;
   begin_point(&w, in_points + item, root_lo, root_hi, reach);
   walk_to_closest(&scene, &w);
   store_closest(&scene, &w, out_closest + item);
+}
+
+__kernel void closest_points(KDRAY_PARAMETERS(KDRAY_CLOSEST_POINTS_ARGUMENTS)) {
+  find_closest_point((u32)get_global_id(0), KDRAY_HAND_ON(KDRAY_CLOSEST_POINTS_ARGUMENTS));
 }

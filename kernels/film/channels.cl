@@ -56,8 +56,7 @@ static inline Seen see(const SceneArrays* scene, __constant const Frame* frame, 
   return seen;
 }
 
-__kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
-  const u32 first = (u32)get_global_id(0) * KDRAY_LANES;
+KDRAY_BODY void write_channels(u32 first, KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
   if (first >= n_pixels) return;
   const u32 n = min(n_pixels - first, KDRAY_LANES);
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
@@ -114,4 +113,8 @@ __kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
     out[6] = -1.0f;
 #endif
   }
+}
+
+__kernel void channels(KDRAY_PARAMETERS(KDRAY_CHANNELS_ARGUMENTS)) {
+  write_channels((u32)get_global_id(0) * KDRAY_LANES, KDRAY_HAND_ON(KDRAY_CHANNELS_ARGUMENTS));
 }

@@ -41,8 +41,7 @@ static inline void receive_shadow_rays(__constant const Travel* travel, ConstStr
   traffic->n_shadow_pool = first + n;
 }
 
-__kernel void receive(KDRAY_PARAMETERS(KDRAY_RECEIVE_ARGUMENTS)) {
-  const u32 s = (u32)get_global_id(0);
+KDRAY_BODY void receive_slice(u32 s, KDRAY_PARAMETERS(KDRAY_RECEIVE_ARGUMENTS)) {
   if (s >= travel->n_slices) return;
   const u32 from = place * travel->n_slices + s;
   receive_rays(frame, const_stream_of(in_sent_rays, from, KDRAY_RAY_FIELDS, ray_capacity),
@@ -51,4 +50,8 @@ __kernel void receive(KDRAY_PARAMETERS(KDRAY_RECEIVE_ARGUMENTS)) {
                       const_stream_of(in_sent_shadow_rays, from, KDRAY_SENT_SHADOW_FIELDS, shadow_capacity),
                       in_sent_counts[n_places * travel->n_slices + from], io_slices + s, io_traffic + s,
                       stream_of(io_shadow_pool, s, KDRAY_TRAVEL_SHADOW_FIELDS, travel->shadow_pool_capacity));
+}
+
+__kernel void receive(KDRAY_PARAMETERS(KDRAY_RECEIVE_ARGUMENTS)) {
+  receive_slice((u32)get_global_id(0), KDRAY_HAND_ON(KDRAY_RECEIVE_ARGUMENTS));
 }

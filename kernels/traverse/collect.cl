@@ -36,8 +36,7 @@ static inline void collect_rays(const SceneArrays* scene, const RaySource* sourc
 }
 #endif
 
-__kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
-  const u32 item = (u32)get_global_id(0);
+KDRAY_BODY void collect_item(u32 item, KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(in_primitive_masks);
   const RaySource source = ray_source(&scene, in_rays, in_ray_masks, 0, space, 0, any_length, 1);
   const Lists lists = {io_hits, io_hit_instances, out_spans, goes_on ? in_after : 0, capacity};
@@ -57,6 +56,10 @@ __kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
   collect_rays(&scene, &source, &lists, first, min(n_rays, first + KDRAY_CHUNK), world_max,
                KDRAY_COHERENT_DISTANCE * world_max * power_of_two(-source.exponent));
 #endif
+}
+
+__kernel void collect_hits(KDRAY_PARAMETERS(KDRAY_COLLECT_HITS_ARGUMENTS)) {
+  collect_item((u32)get_global_id(0), KDRAY_HAND_ON(KDRAY_COLLECT_HITS_ARGUMENTS));
 }
 
 __kernel void pack_hits(KDRAY_PARAMETERS(KDRAY_PACK_HITS_ARGUMENTS)) {

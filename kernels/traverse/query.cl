@@ -36,8 +36,7 @@ static inline void query_binary(const SceneArrays* scene, const RaySource* sourc
 }
 #endif
 
-__kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
-  const u32 item = (u32)get_global_id(0);
+KDRAY_BODY void query_item(u32 item, KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(in_primitive_masks);
   RaySource source = ray_source(&scene, in_rays, in_ray_masks, out_hits, space, any_hit, any_length, as_refs);
 #if KDRAY_HAS_INSTANCES
@@ -64,4 +63,8 @@ __kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
     walk_rays(&scene, &source, first, min(n_rays, first + KDRAY_CHUNK), world_max, false,
               KDRAY_COHERENT_DISTANCE * world_max * power_of_two(-source.exponent));
 #endif
+}
+
+__kernel void trace_query(KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENTS)) {
+  query_item((u32)get_global_id(0), KDRAY_HAND_ON(KDRAY_TRACE_QUERY_ARGUMENTS));
 }

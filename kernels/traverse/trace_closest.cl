@@ -5,10 +5,13 @@
 #include "layout/arguments.h"
 #include "traverse/trace_slice.clh"
 
-__kernel void trace_closest(KDRAY_PARAMETERS(KDRAY_TRACE_CLOSEST_ARGUMENTS)) {
-  const u32 i = (u32)get_global_id(0);
+KDRAY_BODY void trace_closest_hit(u32 i, KDRAY_PARAMETERS(KDRAY_TRACE_CLOSEST_ARGUMENTS)) {
   if (i >= in_slices->n_batch) return;
   const SceneArrays scene = KDRAY_SCENE_FROM_PARAMETERS(0);
   const RaySource source = batch_rays(frame, 0, in_batch, out_hits);
   trace_one(&scene, frame, &source, i);
+}
+
+__kernel void trace_closest(KDRAY_PARAMETERS(KDRAY_TRACE_CLOSEST_ARGUMENTS)) {
+  trace_closest_hit((u32)get_global_id(0), KDRAY_HAND_ON(KDRAY_TRACE_CLOSEST_ARGUMENTS));
 }

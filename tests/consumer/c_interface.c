@@ -27,6 +27,7 @@ static kdray_in doubles(const double* data, size_t count) {
 static void check_what_is_wrong(kdray_scene* scene) {
   kdray_in none = {0}, vertices = floats(corners, 8), triangles = {faces, 12, 0, KDRAY_UINT32};
   kdray_geometry_options unsized = {0};
+  kdray_load_options unsized_load = {0}, wrong_load = {0};
   uint32_t beyond[3] = {0, 1, 8};
   kdray_in bad = {beyond, 1, 0, KDRAY_UINT32}, of_floats = {faces, 12, 0, KDRAY_FLOAT32},
            null = {NULL, 8, 0, KDRAY_FLOAT32};
@@ -40,7 +41,12 @@ static void check_what_is_wrong(kdray_scene* scene) {
   expect(kdray_add_mesh(scene, vertices, triangles, none, &unsized, NULL) == KDRAY_USAGE,
          "a struct without its size");
   expect(kdray_remove(scene, 7) == KDRAY_USAGE, "a geometry that isn't there");
-  expect(kdray_scene_load("no/such/file.obj", &scene) == KDRAY_INPUT, "a file that isn't there");
+  expect(kdray_scene_load("no/such/file.obj", NULL, &scene) == KDRAY_INPUT, "a file that isn't there");
+  expect(kdray_scene_load("no/such/file.obj", &unsized_load, &scene) == KDRAY_USAGE,
+         "options of loading without their size");
+  wrong_load.size = sizeof wrong_load;
+  wrong_load.instances = 3;
+  expect(kdray_scene_load("no/such/file.obj", &wrong_load, &scene) == KDRAY_USAGE, "no such choice");
   expect(kdray_count(scene, NULL, (kdray_out){0}, NULL) != KDRAY_OK, "no rays");
   kdray_scene_free(NULL);
   kdray_all_hits_free(NULL);
@@ -409,7 +415,30 @@ static void check_double_geometry(void) {
   kdray_scene_free(scene);
 }
 
-int main(void) {
+/* Each option gets through: wrong ones are told, and a file that smooths and has a root is read. */
+static void check_loading(const char* box) {
+  kdray_scene* scene = NULL;
+  kdray_load_options options = {0};
+  const double never = NAN;
+  options.size = sizeof options;
+  options.smooth_degrees = 200;
+  expect(kdray_scene_load(box, &options, &scene) == KDRAY_USAGE, "an angle of 200 degrees");
+  options.smooth_degrees = 40;
+  options.asset_root = "no/such/folder";
+  expect(kdray_scene_load(box, &options, &scene) == KDRAY_USAGE, "a root that is no folder");
+  options.asset_root = "/";
+  options.time = &never;
+  expect(kdray_scene_load(box, &options, &scene) == KDRAY_USAGE, "a time that is none");
+  options.time = NULL;
+  options.animation = "walk";
+  expect(kdray_scene_load(box, &options, &scene) == KDRAY_USAGE, "an animation without a time");
+  options.animation = NULL;
+  options.instances = KDRAY_INSTANCES_FLAT;
+  expect(kdray_scene_load(box, &options, &scene) == KDRAY_OK, "a file with options");
+  kdray_scene_free(scene);
+}
+
+int main(int argc, char** argv) {
   kdray_scene* scene = NULL;
   kdray_in none = {0}, triangles = {faces, 12, 0, KDRAY_UINT32};
   uint32_t box = 9;
@@ -419,6 +448,7 @@ int main(void) {
   expect(kdray_add_mesh(scene, floats(corners, 8), triangles, none, NULL, &box) == KDRAY_OK && box == 0,
          "a mesh");
   check_what_is_wrong(scene);
+  if (argc > 1) check_loading(argv[1]);
   status = kdray_commit(scene, NULL);
   if (status == KDRAY_NO_DEVICE) return puts("no OpenCL device: skipped"), 0;
   expect(status == KDRAY_OK, "commit");

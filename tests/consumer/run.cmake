@@ -19,7 +19,7 @@ step(${CMAKE_COMMAND} -DEXAMPLES=${EXAMPLES} -S ${SOURCE} -B ${WORK}/build -G ${
      -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${WORK}/moved)
 step(${CMAKE_COMMAND} --build ${WORK}/build)
 step(${WORK}/build/consumer ${SCENE})
-step(${WORK}/build/c_interface)
+step(${WORK}/build/c_interface ${BOX})
 step(${WORK}/build/lidar ${WORK}/points.ply)
 step(${WORK}/build/picture ${WORK}/picture.ppm)
 execute_process(COMMAND ${WORK}/build/inside ${BOX} 0.5 0.25 0.125 OUTPUT_VARIABLE told COMMAND_ERROR_IS_FATAL ANY)

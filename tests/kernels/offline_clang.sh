@@ -2,14 +2,14 @@
 # Every kernel passes an offline OpenCL C 1.2 compile, no device needed: with all features on (every warning an error), for
 # each traversal where there is a choice; with none, and with each bit alone (where code that is switched off leaves
 # unused names behind; bits that leave the same text are compiled once). Kernels with explicit vectors pass for x86-64 with
-# AVX-512 too, in all forms of common/simd.clh, down to LLVM's code: whether the target has a builtin is not asked before. There
+# AVX-512 too, in all forms of common/simd.clh, down to LLVM's code before it is optimized: whether the target has a builtin is not asked earlier. There
 # the automatic walk stands for packets and batches, whose code it has. In double (KDRAY_PRECISION=64) the kernels of the binary
 # walk pass: not odprt's, nor those of the wide form alone, nor the test of float's vectors.
 set -u
 clang=$1 kernels=$2
 common="-cl-std=CL1.2 -Xclang -finclude-default-header -Wall -Wextra -Wundef -Werror -I$kernels -x cl"
 plain="-target spir64 -fsyntax-only $common"
-x86="-target x86_64-linux-gnu -march=icelake-server -c -emit-llvm -o /dev/null $common"
+x86="-target x86_64-linux-gnu -march=icelake-server -c -emit-llvm -Xclang -disable-llvm-passes -o /dev/null $common"
 bits=$(sed -nE 's/^#define KDRAY_(FEATURE|KEEP)_[A-Z]+ (0x[0-9a-f]+)u.*/\2/p' "$kernels/layout/rules.h")
 for bit in $(sed -nE 's/.*KDRAY_FEATURE\(([0-9]+)\).*/\1/p' "$kernels/layout/features.h"); do
   bits+=" $(printf '0x%x' $((1 << bit)))"

@@ -39,6 +39,24 @@ InstanceOptions options_of(const kdray_instance_options* given) {
   return options;
 }
 
+std::string text_or_none(const char* text) {
+  return text ? text : "";
+}
+
+LoadOptions options_of(const kdray_load_options* given) {
+  const kdray_load_options o = grown(given, "options");
+  constexpr Instances kInstances[] = {Instances::automatic, Instances::flat, Instances::kept};
+  if (o.instances < KDRAY_INSTANCES_AUTOMATIC || o.instances > KDRAY_INSTANCES_KEPT)
+    refuse("options: there is no such choice of instances");
+  LoadOptions options{.animation = text_or_none(o.animation),
+                      .texture_bytes = o.texture_bytes,
+                      .instances = kInstances[o.instances],
+                      .asset_root = text_or_none(o.asset_root)};
+  if (o.smooth_degrees != 0) options.smooth_degrees = o.smooth_degrees;
+  if (o.time) options.time = *o.time;
+  return options;
+}
+
 void put(std::uint32_t* id, std::uint32_t value) {
   if (id != nullptr) *id = value;
 }
@@ -124,10 +142,10 @@ void kdray_set_texture_cache(uint64_t bytes) {
 kdray_status kdray_scene_new(kdray_scene** scene) {
   return guarded([&] { *needed(scene, "scene") = new kdray_scene; });
 }
-kdray_status kdray_scene_load(const char* file, kdray_scene** scene) {
+kdray_status kdray_scene_load(const char* file, const kdray_load_options* options, kdray_scene** scene) {
   return guarded([&] {
     needed(scene, "scene");
-    *scene = new kdray_scene{Scene::load(needed(file, "file")), {}};
+    *scene = new kdray_scene{Scene::load(needed(file, "file"), options_of(options)), {}};
   });
 }
 void kdray_scene_free(kdray_scene* scene) {

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -21,6 +23,7 @@ namespace {
 struct WarmUpArgs {
   DeviceOptions device;
   std::string folder;  // --cache
+  std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
   bool quiet = false;
 };
 
@@ -40,11 +43,12 @@ int run(WarmUpArgs& o) {
   o.device.programs =
       o.folder.empty() ? default_program_folder() : std::filesystem::path(o.folder) / "programs";
   std::string device;
-  const std::vector<WarmProgram> all = warm_up(o.device, [&](const WarmProgram& p) {
+  const auto tell = [&](const WarmProgram& p) {
     if (o.quiet) return;
     if (device != p.device) say(device = p.device);
     say(line_of(p));
-  });
+  };
+  const std::vector<WarmProgram> all = warm_up(o.device, tell, o.largest);
   if (!o.quiet) say(summary_of(all, o.device.programs.string(), timer.seconds()));
   return 0;
 }
@@ -64,6 +68,9 @@ Command add_warm_up(CLI::App& kdray) {
              if (text.empty()) throw usage_error("--cache", text, "a folder");
              o->folder = text;
            });
+  add_text(*app, "--largest", "BYTES",
+           "Only what scenes need whose tree takes no more, as in 4M (default: all scenes)",
+           [o](const std::string& text) { o->largest = parse_bytes("--largest", text); });
   app->add_flag("-q,--quiet", o->quiet, "Say nothing unless something is wrong");
   return {app, [o] { return run(*o); }};
 }

@@ -62,7 +62,14 @@ fs::path make_temporary() {
   return {};
 }
 
+// Kernels of any work-group size alone: PoCL would compile each anew for the first launch's size, and once
+// more for any size where programs are kept. Where that is said already, it stands.
+void compile_for_any_size() {
+  ::setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
+}
+
 PoclCache choose() {
+  compile_for_any_size();
   PoclCache cache;
   cache.folder = cache.preferred = pocls_own();
   cache.why_not = why_no_cache(cache.preferred);

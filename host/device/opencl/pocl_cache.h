@@ -1,12 +1,13 @@
-// What    Chooses the folder that PoCL compiles in, before PoCL looks for it: one that can be written, has
-//         space and may hold programs.
+// What    Tells PoCL, before it begins, to compile a kernel once for work-groups of any size, and chooses the
+//         folder that it compiles in: one that can be written, has space and may hold programs.
 // Why     Without such a folder PoCL offers no device at all, or fails while it compiles, or it or LLVM ends
 //         the process. No home, or one that is read-only, full or mounted with noexec, is common: containers,
 //         services, batch systems, clusters.
 // Shape   PoCL's own choice where it will do; else in kdray's cache folder; else a temporary folder (in
 //         TMPDIR, XDG_RUNTIME_DIR or /dev/shm), which goes with the process, so that the next one compiles
 //         anew.
-// Threads The first call sets an environment variable (POCL_CACHE_DIR), and comes before OpenCL's first.
+// Threads The first call sets environment variables (POCL_WORK_GROUP_SPECIALIZATION, POCL_CACHE_DIR), and
+//         comes before OpenCL's first.
 #pragma once
 
 #include <filesystem>

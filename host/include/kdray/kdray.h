@@ -189,9 +189,11 @@ struct WarmProgram {
 // Compiles beforehand what frames in PDPRT and queries, both with the walk chosen by itself, need of nearly
 // any scene, and keeps it in DeviceOptions::programs: from then on they wait for no compiler there
 // (docs/design/start.md). Takes half a minute or more where nothing is there yet; `told` hears of each
-// program. Throws ErrorCode::input where nothing can be kept, ErrorCode::usage where no folder is named.
+// program. What only trees of more than `largest` bytes take is left out. Throws ErrorCode::input where
+// nothing can be kept, ErrorCode::usage where no folder is named.
 std::vector<WarmProgram> warm_up(const DeviceOptions& device,
-                                 const std::function<void(const WarmProgram&)>& told = {});
+                                 const std::function<void(const WarmProgram&)>& told = {},
+                                 std::uint64_t largest = ~std::uint64_t{0});
 
 // All OpenCL devices; empty when there is no platform. Never throws for want of a device. A device that fails
 // the self-test is not usable; of the options, those on built programs count, and left_out, which is told of

@@ -23,8 +23,8 @@ static inline void admit_shadow_ray(const Travels* t, ConstStream pool, Stream r
 }
 
 // Returns how many leave: 0 or 1.
-static inline u32 take_shadow_ray(const Travels* t, __constant const Frame* frame, const RaySource* source,
-                                  const Census* census, u32 i, bool made_here, __global i64* film) {
+KDRAY_BODY u32 take_shadow_ray(const Travels* t, __constant const Frame* frame, const RaySource* source,
+                               const Census* census, u32 i, bool made_here, __global i64* film) {
   trace_one(t->scene, frame, source, i);
   if (t->traffic->is_counted)
     count_visits_at(census, frame->world_max, source->rays, source->rays, true, i, true);

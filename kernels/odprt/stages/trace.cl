@@ -13,8 +13,8 @@
 #include "wave/shared.clh"
 
 // Returns whether the ray is to be shaded here.
-static inline bool take_ray(const Travels* t, __constant const Frame* frame, const RaySource* source,
-                            const Census* census, u32 i, u32* n_traced) {
+KDRAY_BODY bool take_ray(const Travels* t, __constant const Frame* frame, const RaySource* source,
+                         const Census* census, u32 i, u32* n_traced) {
   if (send_fresh_at(t, true, source->rays, i)) return false;
   trace_one(t->scene, frame, source, i);
   ++*n_traced;

@@ -80,7 +80,7 @@ void put_rays(const fs::path& file) {
 
 TEST_F(WarmUp, ServesWhatComesAfterIt) {
   KDRAY_NEED_DEVICE();
-  const Outcome first = kdray({"warm-up", "--cache", folder_ / "cache"});
+  const Outcome first = kdray({"warm-up", "--largest", "1M", "--cache", folder_ / "cache"});
   ASSERT_TRUE(succeeds(first));
   EXPECT_TRUE(first.out.empty());
   const std::size_t n = n_times(first.err, "compiled in ") - 1;  // the last line is the sum
@@ -89,11 +89,11 @@ TEST_F(WarmUp, ServesWhatComesAfterIt) {
       << first.err;
   EXPECT_GE(n_programs(programs()), n);
 
-  const Outcome second = kdray({"warm-up", "--cache", folder_ / "cache"});
+  const Outcome second = kdray({"warm-up", "--largest", "1M", "--cache", folder_ / "cache"});
   ASSERT_TRUE(succeeds(second));
   EXPECT_NE(second.err.find("0 of " + std::to_string(n) + " compiled"), std::string::npos) << second.err;
   EXPECT_EQ(n_times(second.err, "is there"), n) << second.err;
-  const Outcome quiet = kdray({"warm-up", "-q", "--cache", folder_ / "cache"});
+  const Outcome quiet = kdray({"warm-up", "-q", "--largest", "1M", "--cache", folder_ / "cache"});
   ASSERT_TRUE(succeeds(quiet));
   EXPECT_EQ(quiet.err, "");
 
@@ -113,7 +113,7 @@ TEST_F(WarmUp, ServesWhatComesAfterIt) {
 TEST_F(WarmUp, ServesTheScheduleOfGpusToo) {
   KDRAY_NEED_DEVICE();
   const std::vector<std::string> common = {"--schedule", "global", "--cache", folder_ / "cache"};
-  std::vector<std::string> arguments = {"warm-up", "-q"};
+  std::vector<std::string> arguments = {"warm-up", "-q", "--largest", "1M"};
   arguments.insert(arguments.end(), common.begin(), common.end());
   ASSERT_TRUE(succeeds(kdray(arguments)));
   folder_.put("rich.json", kRich);

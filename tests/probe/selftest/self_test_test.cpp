@@ -23,8 +23,8 @@ class SelfTest : public test::EachDevice {
  protected:
   // The hit's distance is reported one float off.
   void break_kernels() const {
-    test::put_kernels(broken_, "traverse/query16.clh", "scaled = scale_t16(t, ",
-                      "scaled = scale_t16(t * 1.0000002f, ");
+    test::put_kernels(broken_, "traverse/query.clh", "hit.t = scale_t(t, ",
+                      "hit.t = scale_t(t * 1.0000002f, ");
   }
   device::Context context(const std::filesystem::path& folder = {}) const {
     device::Builds builds;
