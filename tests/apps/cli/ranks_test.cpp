@@ -70,11 +70,6 @@ struct MpirunTest : testing::Test {
     return folder.get("a.png");
   }
 
-  // The same by parts, before ranks do it: else each of them compiles the kernels.
-  std::string alone_by_parts(const std::string& scene, const Arguments& more) {
-    return alone(scene, with(more, {"--mode", "odprt"}));
-  }
-
   std::string together(int n, const std::string& scene, const Arguments& more) {
     fs::remove(picture);
     const Outcome run = ranks(n, render(scene, more));
@@ -101,7 +96,6 @@ TEST_F(MpirunTest, PicturesAreTheSameForAnyNumberOfRanks) {
     ASSERT_TRUE(succeeds(kdray({"generate", scenes[i], "--size", "2", "-o", scene})));
     const Arguments size{"--size", "180x140"};
     const std::string whole = alone(scene, size);
-    EXPECT_EQ(alone_by_parts(scene, size), whole);
     const auto rays = told()["rays"]["total"];
     const auto& [n, queues] = ways[i];
     SCOPED_TRACE(scenes[i] + ": " + std::to_string(n) + " ranks of " + queues);
@@ -140,7 +134,6 @@ TEST_F(MpirunTest, SharesOfTheScene) {
   const Arguments view{"--size", "150x110", "--look", "plain"};
   for (const std::string& scene : {ply, nff}) {
     const std::string whole = alone(scene, view);
-    EXPECT_EQ(alone_by_parts(scene, view), whole);
     const auto rays = told()["rays"]["total"];
     for (const auto& [n, queues] : {std::pair(1, "2"), {2, "1"}, {3, "2"}, {4, "1"}, {7, "1"}}) {
       SCOPED_TRACE(scene + ": " + std::to_string(n) + " ranks of " + queues);
@@ -161,7 +154,6 @@ TEST_F(MpirunTest, CheckpointsOfSharesAndOfWholeScenes) {
   const std::string scene = folder.put("ball.ply", ball_ply(30, {.colors = true})).string();
   const Arguments size{"--size", "200x150", "--samples", "4", "--look", "plain"};
   const std::string whole = alone(scene, size), checkpoint = folder / "checkpoint";
-  EXPECT_EQ(alone_by_parts(scene, size), whole);
   const Arguments kept = with(size, {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.05"});
   const Arguments in_shares = with(kept, {"--mode", "odprt", "--hold", "shares"});
   const auto lose_some = [&] {
@@ -192,7 +184,6 @@ TEST_F(MpirunTest, CheckpointsOfSharesAndOfWholeScenes) {
 TEST_F(MpirunTest, WhatIsNotInShares) {
   const std::string scene = folder.put("ball.ply", ball_ply(20, {})).string();
   const Arguments size{"--size", "60x50"};
-  alone_by_parts(scene, size);
   const auto shares_of = [&](const Arguments& more) {
     const Outcome run =
         ranks(2, render(scene, with(with(size, {"--mode", "odprt", "--hold", "shares"}), more)));
