@@ -19,6 +19,7 @@ SMALL = {
     "line_of_sight": ["--masts", "40", "--size", "60"],
     "sun_hours": ["--minutes", "60", "--width", "80"],
     "thickness": ["--width", "80"],
+    "transport": ["--particles", "3000", "--size", "80"],
     "turntable": ["--views", "6", "--size", "20"],
 }
 
@@ -216,6 +217,53 @@ def test_thickness_of_a_slab(tmp_path: pathlib.Path) -> None:
     assert png_size(tmp_path / "thickness.png") == (80, 60)
     said = start("thickness", tmp_path, box_file(tmp_path / "slab.obj", [0, 0, 0], [400, 300, 7]))
     assert "median 7, thinnest 7;" in said
+
+
+@pytest.mark.parametrize("depth", [0.3, 1.0, 4.0])  # mean free paths to a radius
+def test_particles_leave_an_absorbing_ball(depth: float) -> None:
+    example = load("transport")
+    scene, rng, n = kdray.Scene(), np.random.default_rng(3), 100000
+    scene.add_spheres([[0, 0, 0]], [1.5])
+    sides, total = np.array([[1, 0]]), np.array([0, depth / 1.5])
+    points = example.points_in(scene, sides, 1, n, rng)
+    flown, ends, _ = example.walk(scene, sides, points, np.ones(n, int), total, np.ones(2), rng)
+    # Case, de Hoffmann, Placzek, Introduction to the Theory of Neutron Diffusion, 1953: a sphere's escape probability.
+    leave = 3 / (8 * depth**3) * (2 * depth**2 - 1 + (1 + 2 * depth) * np.exp(-2 * depth))
+    assert 1 - ends[1] / n == pytest.approx(leave, abs=4 * (leave * (1 - leave) / n) ** 0.5)
+    assert flown[1] * total[1] == pytest.approx(ends[1], rel=0.03)  # as many collide as their way is long
+    assert flown[0] == ends[0] == 0
+
+
+def test_particles_that_nothing_stops_fly_straight_through_all_volumes() -> None:
+    example = load("transport")
+    scene, rng = kdray.Scene(geometry="double"), np.random.default_rng(4)
+    for size in (1.0, 2.0, 8.0):
+        scene.add_mesh(*example.box(size))
+    sides = np.array([[3, 2], [2, 1], [1, 0]])
+    points = rng.uniform(-0.5, 0.5, (20000, 3))
+    np.testing.assert_array_equal(example.volume_of(scene, sides, points), 3)
+    np.testing.assert_array_equal(
+        example.volume_of(scene, sides, points * 2.5 + [3, 0, 0]),
+        np.where((np.abs(points * 2.5 + [3, 0, 0]) < 4).all(1), 1, 0),
+    )
+    none = np.zeros(4)
+    flown, ends, collisions = example.walk(
+        scene, sides, points, np.full(len(points), 3), none, none, np.random.default_rng(9)
+    )
+    assert len(collisions) == ends.sum() == 0
+    directions = example.isotropic(np.random.default_rng(9), len(points))
+    ways = [((size / 2 - np.sign(directions) * points) / np.abs(directions)).min(1).sum() for size in (1, 2, 8)]
+    np.testing.assert_allclose(flown, [0, ways[2] - ways[1], ways[1] - ways[0], ways[0]], rtol=1e-9)
+
+
+def test_transport_of_a_core_of_ones_own(tmp_path: pathlib.Path) -> None:
+    ring = start("transport", tmp_path)
+    assert png_size(tmp_path / "transport.png") == (80, 80)
+    cube = start("transport", tmp_path, box_file(tmp_path / "cube.obj", [-1, -1, -1], [1, 1, 1]))
+    for said in (ring, cube):
+        shares = [float(line.split("%")[0].split()[-1]) for line in said.splitlines()]
+        assert len(shares) == 4 and sum(shares) == pytest.approx(100, abs=0.3)
+    assert cube != ring
 
 
 def test_the_turntable_goes_around(tmp_path: pathlib.Path) -> None:
