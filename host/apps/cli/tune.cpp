@@ -38,7 +38,7 @@ const std::vector<std::string> kBuiltIn = {"balls", "gears", "boxes"};
 
 struct TuneArgs {
   std::vector<std::string> scenes, merge;
-  std::string file, stats;
+  std::string file, stats, t4;
   bool explain = false, check = false, quiet = false;
   int rounds = kCheckRounds;
   tuning::SearchOptions search;
@@ -132,6 +132,7 @@ void check_outputs(const TuneArgs& o, RunFiles& files) {
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
   files.write("--output", o.file);
   files.write("--stats", o.stats);
+  files.write("--t4", o.t4);
 }
 
 int run(TuneArgs& o) {
@@ -166,6 +167,7 @@ int run(TuneArgs& o) {
   const std::vector<Checked> checked = o.check ? check(o, groups, found) : std::vector<Checked>{};
   if (o.check) print(table_of(checked));
   if (!o.stats.empty()) write_stats(o.stats, json_of(tuned, checked));
+  if (!o.t4.empty()) write_stats(o.t4, t4_of(tuned));
   // Where nothing was kept there is nothing to be slower: the row shows the machine's noise.
   const auto slower = std::ranges::count_if(
       checked, [](const Checked& c) { return c.settings != Tuning{} && c.rival.ratio() > kNoSlower; });
@@ -210,6 +212,8 @@ Command add_tune(CLI::App& kdray) {
       ->type_name("FILE...");
   add_path(*app, "-o,--output", "The file of tunings (default: in the user's data folder)", o->file);
   add_path(*app, "--stats", "Write the search's figures as JSON ('-': to standard output)", o->stats);
+  add_path(*app, "--t4", "Write all that was tried as JSON in T4, the format of Kernel Tuner's results",
+           o->t4);
   app->add_flag("-q,--quiet", o->quiet, "Say nothing unless something is wrong");
   add_text(*app, "--inject-fault", "SETTING=VALUE", "For tests: pictures made with this value count as wrong",
            [o](const std::string& text) { o->injection = parse_injection(text); });

@@ -202,4 +202,36 @@ nlohmann::json json_of(const std::vector<Tuned>& tuned, const std::vector<Checke
   return json;
 }
 
+namespace {
+
+nlohmann::json t4_result(const tuning::Rival& rival) {
+  nlohmann::json configuration = nlohmann::json::object(), runtimes = nlohmann::json::array();
+  for (const tuning::Setting& s : tuning::settings())
+    configuration[std::string(s.name)] = rival.tuning.*s.value;
+  for (const double seconds : rival.seconds) runtimes.push_back(1e3 * seconds);
+  const bool wrong = rival.verdict == tuning::Verdict::wrong, timed = !rival.seconds.empty();
+  nlohmann::json measurements = nlohmann::json::array();
+  if (timed)
+    measurements = {{{"name", "time"}, {"value", 1e3 * median(rival.seconds)}, {"unit", "ms"}},
+                    {{"name", "time_over_best_before"}, {"value", rival.ratio()}, {"unit", ""}}};
+  return {{"configuration", configuration},
+          {"objectives", {"time"}},
+          {"times", {{"runtimes", runtimes}}},
+          {"invalidity", wrong ? "correctness" : (timed ? "correct" : "timeout")},
+          {"correctness", wrong ? 0 : 1},
+          {"measurements", measurements}};
+}
+
+}  // namespace
+
+nlohmann::json t4_of(const std::vector<Tuned>& tuned) {
+  nlohmann::json results = nlohmann::json::array();
+  for (const Tuned& t : tuned) {
+    for (const tuning::Step& step : t.found.steps)
+      for (const tuning::Rival& rival : step.rivals) results.push_back(t4_result(rival));
+    if (!t.found.last.seconds.empty()) results.push_back(t4_result(t.found.last));
+  }
+  return {{"schema_version", "1.0.0"}, {"results", results}};
+}
+
 }  // namespace kdray::cli

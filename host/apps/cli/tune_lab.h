@@ -73,4 +73,8 @@ std::string table_of(const std::vector<Checked>& checked);
 
 nlohmann::json json_of(const std::vector<Tuned>& tuned, const std::vector<Checked>& checked);
 
+// Returns all that was tried in T4 1.0.0, the format of Kernel Tuner's results. Times are of a frame of each
+// scene together, in milliseconds; a setting of 0 is kdray's own choice.
+nlohmann::json t4_of(const std::vector<Tuned>& tuned);
+
 }  // namespace kdray::cli

@@ -43,6 +43,7 @@ void run_round(const Lab& lab, const Tuning& champion, std::vector<Rival*> rival
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     rivals[i]->of_scenes.push_back(over(times[i], own));
     rivals[i]->ratios.push_back(geometric_mean(rivals[i]->of_scenes.back()));
+    rivals[i]->seconds.push_back(std::accumulate(times[i].begin(), times[i].end(), 0.0));
   }
 }
 

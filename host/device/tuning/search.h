@@ -43,6 +43,7 @@ struct Rival {
   // The rival's time over the champion's for each round, as the geometric mean over the scenes.
   std::vector<double> ratios = {};
   std::vector<std::vector<double>> of_scenes = {};  // the same of each scene, by rounds
+  std::vector<double> seconds = {};                 // of all scenes' frames together, by rounds
 
   double ratio() const;                 // the median; 1 without a round
   double worst_scene() const;           // the largest of the scenes' medians

@@ -191,7 +191,7 @@ Bounds clip(const TorusGeometry& t, const Bounds& region) {
 
 namespace {
 
-constexpr int kRootHalvings = 60;
+constexpr int kRootSteps = 240;  // a quarter of them halve
 
 // h, the distance from the torus' circle, along a line.
 class Along {
@@ -208,7 +208,10 @@ class Along {
     find_turns();
   }
 
-  double height(double t) const { return std::hypot(rho(t) - major_, z_ + t * dz_); }
+  double height(double t) const {
+    const double out = rho(t) - major_, up = z_ + t * dz_;
+    return std::sqrt(out * out + up * up);
+  }
   // Half of the slope of the square of the height.
   double slope(double t) const {
     const double away = rho(t), out = glm::dot(across_ + t * moving_, moving_);
@@ -225,17 +228,28 @@ class Along {
 
   // Between lo and hi, on the way down (up: -1) or up, where it comes to `height`; lo or hi where it doesn't.
   double crossing(double lo, double hi, double up, double at) const {
-    return halved(lo, hi, [&](double t) { return up * (height(t) - at) < 0; });
+    return root(lo, hi, [&](double t) { return up * (height(t) - at); });
   }
 
  private:
   double rho(double t) const { return glm::length(across_ + t * moving_); }
 
-  template <class Before>
-  static double halved(double lo, double hi, const Before& before) {
-    for (int i = 0; i < kRootHalvings; ++i) {
-      const double middle = 0.5 * (lo + hi);
-      (before(middle) ? lo : hi) = middle;
+  // Where f, below 0 at lo, is so no longer, to the last bit: by secants, of which an end that stays counts
+  // half (the Illinois method), and halvings between them.
+  template <class Function>
+  static double root(double lo, double hi, const Function& f) {
+    double at_lo = f(lo), at_hi = f(hi);
+    bool was_below = false;
+    for (int i = 0; i < kRootSteps; ++i) {
+      const double middle = 0.5 * (lo + hi), secant = lo + (hi - lo) * (at_lo / (at_lo - at_hi));
+      const double t = i % 4 < 3 && secant > lo && secant < hi ? secant : middle;
+      if (!(t > lo && t < hi)) break;
+      const double value = f(t);
+      const bool below = value<0, stays = i> 0 && below == was_below;
+      was_below = below;
+      (below ? lo : hi) = t;
+      (below ? at_lo : at_hi) = value;
+      if (stays) (below ? at_hi : at_lo) *= 0.5;
     }
     return 0.5 * (lo + hi);
   }
@@ -248,10 +262,10 @@ class Along {
     const bool whole = !(cc < least * least);  // convex all along
     const double first = whole ? hi_ : std::clamp(nearest - half, lo_, hi_);
     const double second = whole ? hi_ : std::clamp(nearest + half, lo_, hi_);
-    const auto falls = [&](double t) { return slope(t) < 0; };
-    left_ = halved(lo_, first, falls);
-    hill_ = halved(first, second, [&](double t) { return slope(t) > 0; });
-    right_ = halved(second, hi_, falls);
+    const auto rises = [&](double t) { return slope(t); };
+    left_ = root(lo_, first, rises);
+    hill_ = root(first, second, [&](double t) { return -slope(t); });
+    right_ = root(second, hi_, rises);
   }
 
   double major_, z_, dz_, square_;

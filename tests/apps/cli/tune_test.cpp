@@ -67,7 +67,8 @@ TEST(Tune, ACandidateWithAWrongPictureIsNotTimed) {
   KDRAY_NEED_DEVICE();
   const Folder folder;
   make_scene(folder);
-  ASSERT_TRUE(succeeds(tune(folder, {"--stats", folder / "search.json", "--inject-fault", "batch=256"})));
+  ASSERT_TRUE(succeeds(tune(folder, {"--stats", folder / "search.json", "--t4", folder / "t4.json",
+                                     "--inject-fault", "batch=256"})));
   const Json search = Json::parse(folder.get("search.json"));
   int seen = 0;
   for (const Json& race : search["tuned"][0]["races"])
@@ -78,6 +79,29 @@ TEST(Tune, ACandidateWithAWrongPictureIsNotTimed) {
         EXPECT_EQ(rival["rounds"], 0);
       }
   EXPECT_GE(seen, 1);
+
+  // The same in T4: schema/T4/1.0.0/results-schema.json of Kernel Tuner.
+  const Json t4 = Json::parse(folder.get("t4.json"));
+  EXPECT_EQ(t4["schema_version"], "1.0.0");
+  std::size_t wrong = 0, timed = 0;
+  for (const Json& result : t4["results"]) {
+    EXPECT_EQ(result["configuration"].size(), 10u) << "every setting";
+    EXPECT_EQ(result["objectives"], Json::array({"time"}));
+    const bool is_wrong = result["configuration"]["batch"] == 256;
+    EXPECT_EQ(result["correctness"], is_wrong ? 0 : 1);
+    if (is_wrong) {
+      ++wrong;
+      EXPECT_EQ(result["invalidity"], "correctness");
+      EXPECT_TRUE(result["times"]["runtimes"].empty());
+    } else if (result["invalidity"] == "correct") {
+      ++timed;
+      EXPECT_GT(result["times"]["runtimes"].at(0), 0.0);
+      EXPECT_EQ(result["measurements"].at(0)["name"], "time");
+    } else {
+      EXPECT_EQ(result["invalidity"], "timeout");
+    }
+  }
+  EXPECT_GE(wrong, 1u);
   EXPECT_NE(Json::parse(folder.get("tune.json"))["entries"][0]["settings"].value("batch", 0), 256);
 }
 
