@@ -42,7 +42,7 @@ def output_of(*arguments, **options):
 
 def options_of(command):
     """The long options that --help lists, each at the beginning of a line."""
-    found = re.findall(r"^  (?:-\w, )?(--[a-z-]+)", output_of(kdray, "help", *command.split()), re.MULTILINE)
+    found = re.findall(r"^  (?:-\w, )?(--[a-z0-9-]+)", output_of(kdray, "help", *command.split()), re.MULTILINE)
     assert found, command
     return set(found)
 
