@@ -29,7 +29,7 @@ std::vector<std::string> words_of(const std::string& text) {
 }
 
 std::set<std::string> options_in(const std::string& text) {
-  static const std::regex kOption("--[a-z][a-z-]*");
+  static const std::regex kOption("--[a-z][a-z0-9-]*");
   std::set<std::string> options;
   for (std::sregex_iterator i(text.begin(), text.end(), kOption), end; i != end; ++i)
     options.insert(i->str());
