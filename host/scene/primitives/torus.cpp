@@ -245,7 +245,8 @@ class Along {
       const double t = i % 4 < 3 && secant > lo && secant < hi ? secant : middle;
       if (!(t > lo && t < hi)) break;
       const double value = f(t);
-      const bool below = value<0, stays = i> 0 && below == was_below;
+      const bool below = value < 0;
+      const bool stays = i > 0 && below == was_below;
       was_below = below;
       (below ? lo : hi) = t;
       (below ? at_lo : at_hi) = value;
