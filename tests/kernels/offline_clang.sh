@@ -5,6 +5,7 @@
 # AVX-512 too, in all forms of common/simd.clh, down to LLVM's code before it is optimized: whether the target has a builtin is not asked earlier. There
 # the automatic walk stands for packets and batches, whose code it has. In double (KDRAY_PRECISION=64) the kernels of the binary
 # walk pass: not odprt's, nor those of the wide form alone, nor the test of float's vectors.
+# Every header passes by itself, but for those that need what their includer defines: a form's masks, or its RaySource.
 set -u
 clang=$1 kernels=$2
 common="-cl-std=CL1.2 -Xclang -finclude-default-header -Wall -Wextra -Wundef -Werror -I$kernels -x cl"
@@ -53,4 +54,13 @@ compiles() {
     echo "$x86 $double"
   done
 }
-compiles | xargs -P "$(nproc)" -L 1 "$clang"
+headers() {
+  find "$kernels" \( -name '*.clh' -o -path '*/layout/*.h' \) -printf '%P\n' |
+    grep -vE '^(common/simd_(portable|avx2|avx512)|traverse/(batch|learn|packet|ray_groups|walk))\.clh$' |
+    while read -r header; do
+      odprt=0
+      [[ $header == odprt/* ]] && odprt=1
+      echo "$plain -Wno-unused -DKDRAY_TRAVERSAL=0 -DKDRAY_ODPRT=$odprt $kernels/$header"
+    done
+}
+{ compiles && headers; } | xargs -P "$(nproc)" -L 1 "$clang"
