@@ -4,7 +4,7 @@
 # Shape   kdray_add_suites(NAME PROGRAM LABELS): tests NAME/SUITE. A case alone: PROGRAM --gtest_filter=SUITE.CASE.
 #         Suites that take over half a minute come first, so that none of them is left to the end by itself: ctest knows what
 #         took how long from its second run on.
-set(kdray_long_suites "(FeaturesTest|MpirunTest|OddFiles|BenchAblation|TraversalTest|Modes|WarmUp|Leaks|DriversThatFail|Adaptive)$")
+set(kdray_long_suites "(FeaturesTest|MpirunTest|OddFiles|BenchAblation|TraversalTest|Modes|AnyWalk|WarmUp|Leaks|DriversThatFail|Adaptive)$")
 function(kdray_add_suites name program labels)
   execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status)
   if(NOT status EQUAL 0)

@@ -70,18 +70,6 @@ TEST_P(Modes, OdprtByQueuesAndBalance) {
     for (const Balance balance : {Balance::sah, Balance::pilot}) expect_same(odprt(queues, balance));
 }
 
-// All else here is by the automatic walk, which has the code of packets and batches: these by themselves, for
-// which a program is compiled for seconds, in two scenes that have the most between them.
-TEST_P(Modes, OdprtWithAnyWalk) {
-  const std::string& name = GetParam().name;
-  if (name != "every_kind" && name != "instanced_maps") GTEST_SKIP() << "other scenes have all walks' code";
-  for (const Traversal walk : {Traversal::wide, Traversal::packet, Traversal::batch}) {
-    Way way = odprt(2, Balance::sah, fmt::format(", walk {}", static_cast<int>(walk)));
-    way.options.traversal = walk;
-    expect_same(way);
-  }
-}
-
 // With five queues the host sorts the rays.
 TEST_P(Modes, OdprtWithAWorkItemForEachRay) {
   for (const int queues : {1, 2, 5}) expect_same(per_ray(odprt(queues, Balance::pilot)));
@@ -164,6 +152,18 @@ TEST_P(Modes, ASequenceOfFramesThatMovesSubtrees) {
     EXPECT_TRUE(same_bits(first.picture.rgb, renderer.render(way.options).rgb)) << "frame " << frame;
 }
 
+// All else here is by the automatic walk, which has the code of the others: these by themselves, for which a
+// program is compiled for seconds, in two scenes that have the most between them.
+class AnyWalk : public Modes {};
+
+TEST_P(AnyWalk, GivesTheSameInOdprt) {
+  for (const Traversal walk : {Traversal::wide, Traversal::packet, Traversal::batch}) {
+    Way way = odprt(2, Balance::sah, fmt::format(", walk {}", static_cast<int>(walk)));
+    way.options.traversal = walk;
+    expect_same(way);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, Modes, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return info.param.name; });
 INSTANTIATE_TEST_SUITE_P(Textured, Modes,
@@ -171,6 +171,11 @@ INSTANTIATE_TEST_SUITE_P(Textured, Modes,
                                          NamedScene{"soft_light", soft_light},
                                          NamedScene{"under_a_sky", under_a_sky},
                                          NamedScene{"instanced", instanced},
+                                         NamedScene{"instanced_maps", instanced_maps}),
+                         [](const auto& info) { return info.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(Modes, AnyWalk,
+                         testing::Values(NamedScene{"every_kind", every_kind},
                                          NamedScene{"instanced_maps", instanced_maps}),
                          [](const auto& info) { return info.param.name; });
 
