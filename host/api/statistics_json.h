@@ -1,4 +1,4 @@
-// What    Statistics as JSON, by the names of docs/cli.md (`--stats`). This header is not installed.
+// What    Statistics as JSON, by the names of docs/statistics.md (`--stats`). This header is not installed.
 #pragma once
 
 #include <nlohmann/json.hpp>

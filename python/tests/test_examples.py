@@ -226,12 +226,12 @@ def test_particles_leave_an_absorbing_ball(depth: float) -> None:
     scene.add_spheres([[0, 0, 0]], [1.5])
     sides, total = np.array([[1, 0]]), np.array([0, depth / 1.5])
     points = example.points_in(scene, sides, 1, n, rng)
-    flown, ends, _ = example.walk(scene, sides, points, np.ones(n, int), total, np.ones(2), rng)
+    flown, ends, lost, _ = example.walk(scene, sides, points, np.ones(n, int), total, np.ones(2), rng)
     # Case, de Hoffmann, Placzek, Introduction to the Theory of Neutron Diffusion, 1953: a sphere's escape probability.
     leave = 3 / (8 * depth**3) * (2 * depth**2 - 1 + (1 + 2 * depth) * np.exp(-2 * depth))
     assert 1 - ends[1] / n == pytest.approx(leave, abs=4 * (leave * (1 - leave) / n) ** 0.5)
     assert flown[1] * total[1] == pytest.approx(ends[1], rel=0.03)  # as many collide as their way is long
-    assert flown[0] == ends[0] == 0
+    assert flown[0] == ends[0] == lost == 0
 
 
 def test_particles_that_nothing_stops_fly_straight_through_all_volumes() -> None:
@@ -247,13 +247,27 @@ def test_particles_that_nothing_stops_fly_straight_through_all_volumes() -> None
         np.where((np.abs(points * 2.5 + [3, 0, 0]) < 4).all(1), 1, 0),
     )
     none = np.zeros(4)
-    flown, ends, collisions = example.walk(
+    flown, ends, lost, collisions = example.walk(
         scene, sides, points, np.full(len(points), 3), none, none, np.random.default_rng(9)
     )
-    assert len(collisions) == ends.sum() == 0
+    assert len(collisions) == ends.sum() == lost == 0
     directions = example.isotropic(np.random.default_rng(9), len(points))
     ways = [((size / 2 - np.sign(directions) * points) / np.abs(directions)).min(1).sum() for size in (1, 2, 8)]
     np.testing.assert_allclose(flown, [0, ways[2] - ways[1], ways[1] - ways[0], ways[0]], rtol=1e-9)
+
+
+def test_particles_without_a_way_out_are_lost() -> None:
+    example = load("transport")
+    scene = kdray.Scene()
+    scene.add_mesh(example.box(2.0)[0], example.box(2.0)[1][2:])  # open at one end
+    scene.add_mesh(*example.box(8.0))
+    sides = np.array([[2, 1], [1, 0]])
+    none, n = np.zeros(3), 6000
+    flown, ends, lost, _ = example.walk(
+        scene, sides, np.zeros((n, 3)), np.full(n, 2), none, none, np.random.default_rng(11)
+    )
+    assert lost == pytest.approx(n / 6, abs=4 * (n * 5 / 36) ** 0.5)  # a sixth of all directions from the middle
+    assert ends.sum() == 0 and flown[2] > 0
 
 
 def test_transport_of_a_core_of_ones_own(tmp_path: pathlib.Path) -> None:
@@ -263,7 +277,12 @@ def test_transport_of_a_core_of_ones_own(tmp_path: pathlib.Path) -> None:
     for said in (ring, cube):
         shares = [float(line.split("%")[0].split()[-1]) for line in said.splitlines()]
         assert len(shares) == 4 and sum(shares) == pytest.approx(100, abs=0.3)
+        assert " 0 are lost" in said
     assert cube != ring
+    (tmp_path / "far.obj").write_text((tmp_path / "cube.obj").read_text().replace("v -1", "v 5").replace("v 1", "v 6"))
+    with pytest.raises(SystemExit, match="none of 100,000 points is in the core"):
+        load("transport").main([str(tmp_path / "far.obj"), "-o", str(tmp_path / "no.png")])
+    assert not (tmp_path / "no.png").exists()
 
 
 def test_the_turntable_goes_around(tmp_path: pathlib.Path) -> None:

@@ -48,7 +48,7 @@ bool all_as_they_were(const std::vector<FileRead>& files, const fs::path& folder
   });
 }
 
-// Warnings name the scene as it was named then.
+// Warnings that are kept name the scene as it was named then: under another name they would be wrong.
 bool says_the_same(const scene::Scene& settings, const fs::path& scene) {
   return settings.warnings.empty() || settings.name == scene.string();
 }

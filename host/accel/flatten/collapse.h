@@ -72,8 +72,8 @@ StackNeeds needs_of_node(const Order& order, std::uint32_t n,
 kdtree::RefRun leaf_run(const kdtree::Tree& tree, std::uint32_t leaf, std::uint32_t kind);
 
 // Rewrites the order words of a node of n children whose bounds are set, where these are no longer cells of a
-// plane: in a refitted form. Of two boxes that one goes first which lies before the other along the axis that
-// parts them most, or along which they overlap least. Children move forward, from the order that there was,
+// plane: in a refitted form. Of two boxes, the one in front along the axis that separates them most, or along
+// which they overlap least, goes first. Children move forward, from the order that there was,
 // past those that they go before: what is still right stays, and where no ray meets both of two boxes, either
 // order will do. An order changes no hit, but a mesh that is turned round would be walked from back to front
 // by the orders that it was built with, which takes rays twice as long.

@@ -18,8 +18,8 @@ namespace {
 
 constexpr int kSteps = 255;
 
-// Whether a slot has a child. In meshes that were moved behind others the word of one without isn't 0 any
-// more, but its box is empty.
+// Whether a slot has a child. In meshes appended behind others an empty slot's word isn't 0, but its
+// box is empty.
 bool holds_child(const layout::WideNode& node, std::uint32_t slot) {
   return node.child[slot] != 0 && node.bounds[0][0][slot] <= node.bounds[0][1][slot];
 }

@@ -16,7 +16,7 @@ constexpr Feature kFeatures[] = {
         {KDRAY_FEATURE_SMOOTH, "smooth normals"},
     {KDRAY_FEATURE_ZERO_AREA, "stitches"},
     {KDRAY_FEATURE_NUMBERS, "primitive numbers"},
-    {KDRAY_FEATURE_MATERIAL_MAPS, "coats"},
+    {KDRAY_FEATURE_MATERIAL_MAPS, "material maps"},
     {KDRAY_FEATURE_CORNER_COLORS, "corner colours"},
     {KDRAY_FEATURE_TEXTURES, "textures"},
     {KDRAY_FEATURE_CUTOUTS, "cut-outs"},
@@ -82,8 +82,9 @@ Features geometry_features(const scene::Scene& scene, const scene::Geometry& geo
   return mask;
 }
 
-bool in_footprints(const scene::Texturing& texturing, const scene::MaterialMaps& c) {
-  const auto used = {c.base, c.normal_map, c.emission_map, c.occlusion_map, c.highlight_map, c.metal_map};
+bool in_footprints(const scene::Texturing& texturing, const scene::MaterialMaps& maps) {
+  const auto used = {maps.base,          maps.normal_map,    maps.emission_map,
+                     maps.occlusion_map, maps.highlight_map, maps.metal_map};
   return some(used, [&](std::uint32_t number) {
     if (number == scene::kNone) return false;
     const scene::Texture& texture = texturing.textures[number];
@@ -91,20 +92,20 @@ bool in_footprints(const scene::Texturing& texturing, const scene::MaterialMaps&
   });
 }
 
-Features features_of_maps(const scene::Texturing& texturing, const scene::MaterialMaps& maps) {
-  const scene::MaterialMaps c = scene::largest_terms(maps);
-  const bool lit =
-      c.emission_map != scene::kNone || c.occlusion_map != scene::kNone || c.highlight_map != scene::kNone;
-  const Features of_maps = when(c.metal_map != scene::kNone, KDRAY_FEATURE_METAL_MAPS) |
-                           when(c.normal_map != scene::kNone, KDRAY_FEATURE_NORMAL_MAPS) |
+Features features_of_maps(const scene::Texturing& texturing, const scene::MaterialMaps& written) {
+  const scene::MaterialMaps maps = scene::largest_terms(written);
+  const bool lit = maps.emission_map != scene::kNone || maps.occlusion_map != scene::kNone ||
+                   maps.highlight_map != scene::kNone;
+  const Features of_maps = when(maps.metal_map != scene::kNone, KDRAY_FEATURE_METAL_MAPS) |
+                           when(maps.normal_map != scene::kNone, KDRAY_FEATURE_NORMAL_MAPS) |
                            when(lit, KDRAY_FEATURE_LIGHT_MAPS);
-  return KDRAY_FEATURE_MATERIAL_MAPS | of_maps | when(c.colored != 0, KDRAY_FEATURE_CORNER_COLORS) |
-         when(of_maps != 0 || c.base != scene::kNone, KDRAY_FEATURE_TEXTURES) |
-         when(in_footprints(texturing, c), KDRAY_FEATURE_FOOTPRINTS) |
-         when(c.mode == scene::Alpha::mask, KDRAY_FEATURE_CUTOUTS) |
-         when(any(c.reflect), KDRAY_FEATURE_REFLECT) |
-         when(any(c.transmit) || c.mode == scene::Alpha::blend, KDRAY_FEATURE_TRANSMIT) |
-         when(any(c.specular), KDRAY_FEATURE_SPECULAR) | when(any(c.diffuse), KDRAY_FEATURE_DIFFUSE);
+  return KDRAY_FEATURE_MATERIAL_MAPS | of_maps | when(maps.colored != 0, KDRAY_FEATURE_CORNER_COLORS) |
+         when(of_maps != 0 || maps.base != scene::kNone, KDRAY_FEATURE_TEXTURES) |
+         when(in_footprints(texturing, maps), KDRAY_FEATURE_FOOTPRINTS) |
+         when(maps.mode == scene::Alpha::mask, KDRAY_FEATURE_CUTOUTS) |
+         when(any(maps.reflect), KDRAY_FEATURE_REFLECT) |
+         when(any(maps.transmit) || maps.mode == scene::Alpha::blend, KDRAY_FEATURE_TRANSMIT) |
+         when(any(maps.specular), KDRAY_FEATURE_SPECULAR) | when(any(maps.diffuse), KDRAY_FEATURE_DIFFUSE);
 }
 
 // A material counts only when a primitive has it. `scene` has the materials, `part` the geometry's shapes.

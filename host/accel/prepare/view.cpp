@@ -21,12 +21,12 @@ void take_out_sky(Prepared& scene) {
 
 // Keeps what maps cut out, since that covers nothing, and removes all else of them.
 void keep_holes(Prepared& white) {
-  for (scene::MaterialMaps& c : white.settings.texturing.material_maps)
-    c = {.alpha = c.alpha,
-         .cutoff = c.cutoff,
-         .base = c.base,
-         .colored = c.colored,
-         .mode = c.mode == scene::Alpha::mask ? c.mode : scene::Alpha::opaque};
+  for (scene::MaterialMaps& maps : white.settings.texturing.material_maps)
+    maps = {.alpha = maps.alpha,
+            .cutoff = maps.cutoff,
+            .base = maps.base,
+            .colored = maps.colored,
+            .mode = maps.mode == scene::Alpha::mask ? maps.mode : scene::Alpha::opaque};
 }
 
 }  // namespace

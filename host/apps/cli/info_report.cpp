@@ -30,7 +30,7 @@ Json texturing_arrays(const scene::Texturing& texturing) {
   for (const auto& picture : pictures) texels += picture->texels.bytes();
   return {{"corner_colors", bytes_of(colors)},
           {"texcoords", bytes_of(texcoords[0]) + bytes_of(texcoords[1]) + bytes_of(tangents)},
-          {"coats", bytes_of(material_maps)},
+          {"material_maps", bytes_of(material_maps)},
           {"textures", bytes_of(textures)},
           {"pictures", texels}};
 }
@@ -71,7 +71,7 @@ Json flat_arrays(const flatten::FlatScene& flat) {
   arrays.update(
       {{"normals", bytes_of(normals)}, {"materials", bytes_of(materials)}, {"lights", bytes_of(lights)}});
   if (!material_maps.empty())
-    arrays.update({{"coats", bytes_of(material_maps)},
+    arrays.update({{"material_maps", bytes_of(material_maps)},
                    {"textures", bytes_of(textures)},
                    {"texels", bytes_of(texels)},
                    {"texcoords", bytes_of(texcoords)},

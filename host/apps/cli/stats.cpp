@@ -16,8 +16,8 @@ constexpr std::array kFirst = {"cache",  "load",    "start",   "self_test", "bui
                                "upload", "compile", "prepare", "trace",     "shade", "render"};
 constexpr std::array kLast = {"keep_programs", "write", "total", "read_rays"};
 
-// Puts the times into the order of docs/cli.md, which is about that of the work; those that only one command
-// has lie between.
+// Puts the times into the order of docs/statistics.md, which is about that of the work; those that only one
+// command has lie between.
 Json in_order(const Json& measured) {
   Json seconds, last;
   for (const char* const name : kFirst) seconds[name] = measured.at(name);

@@ -212,7 +212,7 @@ Command add_tune(CLI::App& kdray) {
       ->type_name("FILE...");
   add_path(*app, "-o,--output", "The file of tunings (default: in the user's data folder)", o->file);
   add_path(*app, "--stats", "Write the search's figures as JSON ('-': to standard output)", o->stats);
-  add_path(*app, "--t4", "Write all that was tried as JSON in T4, the format of Kernel Tuner's results",
+  add_path(*app, "--t4", "Write all that was tried in T4, Kernel Tuner's JSON ('-': to standard output)",
            o->t4);
   app->add_flag("-q,--quiet", o->quiet, "Say nothing unless something is wrong");
   add_text(*app, "--inject-fault", "SETTING=VALUE", "For tests: pictures made with this value count as wrong",

@@ -30,11 +30,17 @@ bool is_double(const View& view) {
   return !view.empty() && view.template first_of<const double>() != nullptr;
 }
 
+// Returns what rounding took from the difference a - b (Knuth's two-sum).
+dvec3 lost_of(const dvec3& a, const dvec3& b, const dvec3& difference) {
+  const dvec3 back = a - difference;
+  return (a - (difference + back)) - (b - back);
+}
+
 }  // namespace
 
 RayArrays::RayArrays(const Rays& rays)
     : rays_(rays),
-      n_(std::max({rays.origins.size(), rays.directions.size()})),
+      n_(std::max(rays.origins.size(), rays.directions.size())),
       in_double_(is_double(rays.origins) || is_double(rays.directions) || is_double(rays.t_min) ||
                  is_double(rays.t_max)) {
   if (rays.origins.empty() || rays.directions.empty()) {
@@ -92,7 +98,7 @@ double LocalFrame::distance_ahead(const dvec3& origin, const dvec3& direction) c
                           std::scalbn(world_direction.z, -length));
   // In local lengths from here on. The origin is the sum of two doubles, since the difference is rounded.
   dvec3 origin = world_origin - space_.center;
-  const dvec3 back = world_origin - origin, rest = (world_origin - (origin + back)) - (space_.center - back);
+  const dvec3 rest = lost_of(world_origin, space_.center, origin);
   origin *= space_.scale;
   double ahead = 0;
   if (!(largest_component(origin) <= (in_double ? near_ : kFar))) {
@@ -112,8 +118,8 @@ std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3
                                                 double t_max) const {
   const std::optional<LocalLine> line = begin_line(origin, direction, true);
   if (!line) return std::nullopt;
-  const dvec3 from_center = origin - space_.center, back = origin - from_center;
-  const dvec3 rest = (origin - (from_center + back)) - (space_.center - back);
+  const dvec3 from_center = origin - space_.center;
+  const dvec3 rest = lost_of(origin, space_.center, from_center);
   // Dividing by the usual unit, a power of two, rounds as scalbn does, and needs no call.
   const auto scaled = [&](double t) {
     return line->exponent == exponent_ ? t / unit_ : std::scalbn(t, -line->exponent);

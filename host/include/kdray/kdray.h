@@ -155,7 +155,7 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-// JSON, by the names of docs/cli.md.
+// JSON, by the names of docs/statistics.md.
 std::string to_json(const Statistics& statistics);
 
 // Wall time.

@@ -1,5 +1,5 @@
 // What    The figures of what a Renderer has done, as values: times, rays, the tree, memory, devices, and how
-//         the work was divided. docs/cli.md tells of each by its name in JSON.
+//         the work was divided. docs/statistics.md tells of each by its name in JSON.
 // Units   Seconds of wall time, except trace, shade, admit, add and route of a frame: device time, added over
 //         the queues; bytes.
 // Shape   What is told by one kind of work alone is optional. Filled in by the Renderer; what only a program

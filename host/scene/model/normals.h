@@ -13,8 +13,8 @@ namespace kdray::scene {
 
 // settle_normals() and settle_vertices() are called once, after the last triangle: then normals all have unit
 // length and vertices are finite. A triangle that uses a normal without a direction is shaded flat, one that
-// uses a vertex which is not finite is left out, and the scene says so. Normals that no triangle uses are
-// dropped. A triangle that is left out keeps its number, and three times the same vertex (geometry.h leaves
+// uses a vertex which is not finite is left out, and the scene says so. Normals without a direction become
+// (0, 0, 1). A triangle that is left out keeps its number, and three times the same vertex (geometry.h leaves
 // out what has no area).
 
 // Returns how many triangles are shaded flat.

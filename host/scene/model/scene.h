@@ -70,8 +70,9 @@ struct Light {
 // the normal and to each other.
 void set_disc(Light& light, const dvec3& normal, double radius);
 
-// A pinhole camera, or an orthographic one. `vertical_fov` spans the full height of the picture, from its
-// lower to its upper edge; the horizontal angle follows from the aspect ratio of the picture (square pixels).
+// A camera with a pinhole or a thin lens, or an orthographic one. `vertical_fov` spans the full height of the
+// picture, from its lower to its upper edge; the horizontal angle follows from the aspect ratio of the
+// picture (square pixels).
 struct Camera {
   dvec3 from{0, 0, 5}, at{0}, up{0, 1, 0};
   double vertical_fov = 0.7853981633974483;

@@ -11,7 +11,7 @@ namespace kdray::scene {
 namespace {
 
 constexpr double kStudioFov = 0.5235987755982988;  // 30 degrees: as a portrait's lens
-constexpr double kRoomFov = 1.0821041362364843;    // 62
+constexpr double kRoomFov = 1.0821041362364843;    // 62 degrees
 constexpr double kBorder = 1.06;                   // the picture by what is in it, across and down
 const dvec3 kFrontRightAbove(0.56, 0.36, 1);       // y is up
 
@@ -90,7 +90,7 @@ const Lamp kLamps[] = {{-0.75, 1.15, 0.75, 0.2, {0.80f, 0.77f, 0.72f}},
                        {1.0, 0.45, 0.7, 0.3, {0.24f, 0.26f, 0.29f}},
                        {0.45, 0.9, -1.0, 0.15, {0.34f, 0.35f, 0.37f}}};
 
-// Of the studio's backdrop: what is above is seen in what mirrors.
+// The backdrop's colours by height: mirrors show the upper ones.
 const SkyStop kBackdrop[] = {{-0.75, {0.66f, 0.66f, 0.66f}},
                              {-0.25, {0.44f, 0.45f, 0.465f}},
                              {0.1, {0.27f, 0.285f, 0.31f}},
@@ -100,7 +100,7 @@ const vec3 kFloorColor(0.60f, 0.60f, 0.60f);
 constexpr float kFloorMirrors = 0.07f;
 constexpr double kFloorInner = 0.9, kFloorRadius = 2.8;  // radii of the scene
 
-// Right and forward on the level, and up.
+// Returns right and forward on the level, and up.
 Basis level_basis(const Camera& camera) {
   const Basis view = basis_of(camera);
   const dvec3 up = safe_normalize(camera.up);
