@@ -150,7 +150,7 @@ class EarClipper {
     triangles_.reserve(size() - 2);
     std::uint32_t at = 0;  // where to look for the next ear
     bool refreshed = false;
-    while (left_ > 3 && work_ < kMostWork) {
+    while (left_ > 3 && work_ < most_work()) {
       const std::optional<std::uint32_t> corner = open_.next(at);
       if (corner && !is_ear(*corner)) {
         open_.remove(*corner);
@@ -170,12 +170,12 @@ class EarClipper {
   }
 
   // Returns whether the polygon was cut to the end, without a fan for the rest.
-  bool finished() const { return work_ < kMostWork; }
+  bool finished() const { return work_ < most_work(); }
 
  private:
-  // Tests of a point against a triangle after which the rest becomes a fan. Only a polygon of many thousand
-  // corners that also crosses itself gets here; it must not hang.
-  static constexpr std::uint64_t kMostWork = 200'000'000;
+  // Tests of a point against a triangle after which the rest becomes a fan: some seconds of them. Simple
+  // polygons take up to 150 a corner; only one of many thousand corners that also crosses itself gets here.
+  std::uint64_t most_work() const { return 50'000'000 + std::uint64_t{500} * size(); }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(p_.size()); }
 
