@@ -95,7 +95,7 @@ TEST_F(Served, WithoutTheTokenNoMessageIsHandled) {
         std::string("x"), std::string()}) {
     clients.push_back(std::make_unique<Client>(port()));
     clients.back()->upgrade(page());
-    clients.back()->send(ws_frame(first) + ws_frame(kLook));
+    clients.back()->send(ws_frame(first) + ws_frame(kLook) + ws_frame("", 8));  // the answer to its closing
   }
   for (const auto& client : clients) EXPECT_TRUE(client->is_closed());
   EXPECT_EQ(counter.n_connected, 0);
