@@ -1,7 +1,7 @@
 // The questions of kdray.h, and its pictures.
 #include <cmath>
 
-#include "api/c/edge.h"
+#include "api/c/boundary.h"
 #include "api/c/handles.h"
 #include "api/c/values.h"
 

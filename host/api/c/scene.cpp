@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "api/c/edge.h"
+#include "api/c/boundary.h"
 #include "api/c/handles.h"
 #include "api/c/values.h"
 

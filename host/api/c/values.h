@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "api/c/edge.h"
+#include "api/c/boundary.h"
 
 namespace kdray::capi {
 

@@ -1,4 +1,4 @@
-// What    The edge between C and C++: exceptions become statuses, structs that grow and arrays become C++'s.
+// What    The boundary of C and C++: exceptions become statuses, structs that grow and arrays become C++'s.
 #pragma once
 
 #include <algorithm>
