@@ -63,4 +63,4 @@ headers() {
       echo "$plain -Wno-unused -DKDRAY_TRAVERSAL=0 -DKDRAY_ODPRT=$odprt $kernels/$header"
     done
 }
-{ compiles && headers; } | xargs -P "$(nproc)" -L 1 "$clang"
+{ compiles; headers; } | xargs -P "$(nproc)" -L 1 "$clang"
