@@ -29,7 +29,9 @@ static inline void collect_rays(const SceneArrays* scene, const RaySource* sourc
   group_all(&others, first, end);
   coherent.n = 0;
 #else
-  group_by_coherence(source, &coherent, &others, first, end, most_apart);
+  RayGroups all;
+  group_all(&all, first, end);
+  divide_by_coherence(source, &all, &coherent, &others, most_apart);
 #endif
   if (coherent.n > 0) collect_packets(scene, source, lists, &coherent, world_max);
   if (others.n > 0) collect_batch(scene, source, lists, &others, world_max);

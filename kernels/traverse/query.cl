@@ -12,6 +12,7 @@
 // Included after the source of rays, which they use.
 #include "traverse/wide.clh"
 #if KDRAY_LANES != 1
+#include "traverse/leaving.clh"
 #include "traverse/walk.clh"
 #endif
 
@@ -59,9 +60,12 @@ KDRAY_BODY void query_item(u32 item, KDRAY_PARAMETERS(KDRAY_TRACE_QUERY_ARGUMENT
 #else
   (void)root_lo, (void)root_hi;
   const u32 first = item * KDRAY_CHUNK;
-  if (first < n_rays)
-    walk_rays(&scene, &source, first, min(n_rays, first + KDRAY_CHUNK), world_max, false,
-              KDRAY_COHERENT_DISTANCE * world_max * power_of_two(-source.exponent));
+  if (first >= n_rays) return;
+  RayGroups groups;
+  group_all(&groups, first, min(n_rays, first + KDRAY_CHUNK));
+  drop_leaving(&scene, &source, &groups, world_max);
+  walk_rays(&scene, &source, &groups, world_max, false,
+            KDRAY_COHERENT_DISTANCE * world_max * power_of_two(-source.exponent));
 #endif
 }
 

@@ -144,7 +144,7 @@ Ray make_ray(const dvec3& o, const dvec3& d, float t_min = 0, float t_max = kInf
 
 class RayMaker {
  public:
-  RayMaker(const scene::Scene& s, unsigned seed) : random_(seed) {
+  RayMaker(const scene::Scene& s, unsigned seed) : random_(seed), of_leaving_(seed + 1) {
     test::Draw draw(seed);
     places_ = places_on(s, draw);
     const DBox box = s.bounds();
@@ -164,6 +164,7 @@ class RayMaker {
     add_at_places(300);
     add_odd_directions(200);
     add_along_surfaces(n_along_surfaces());
+    put_leaving_first(304);
     return std::move(rays_);
   }
   static int n_along_surfaces() { return 300; }
@@ -239,7 +240,19 @@ class RayMaker {
     }
   }
 
-  Random random_;
+  // From surfaces and beside the scene, eight of nine away from it. What comes first decides whether a walk
+  // looks for such rays.
+  void put_leaving_first(int n) {
+    std::vector<Ray> leaving;
+    for (int i = 0; i < n; ++i) {
+      const dvec3 out = of_leaving_.direction();
+      const dvec3 o = i % 2 ? of_leaving_.of(places_).point : center_ + 2 * size_ * out;
+      leaving.push_back(make_ray(o, (i % 9 == 4 ? -1.0 : 1.0) * (out + 0.2 * of_leaving_.direction())));
+    }
+    rays_.insert(rays_.begin(), leaving.begin(), leaving.end());
+  }
+
+  Random random_, of_leaving_;
   std::vector<Place> places_;
   dvec3 center_{0};
   double size_ = 1;
