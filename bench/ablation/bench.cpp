@@ -156,10 +156,8 @@ class AblationScene {
 std::vector<AblationRun> bench_ablation(const AblationOptions& options,
                                         const std::function<void(const AblationRun&)>& done,
                                         const std::function<void(const std::string&)>& working) {
-  static const std::vector<std::string> kDefault = {"balls", "gears", "mount", "rings",  "teapot",
-                                                    "tetra", "tree",  "boxes", "spheres"};
   std::vector<AblationRun> runs;
-  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
+  for (const std::string& name : options.scenes) {
     working(name);
     runs.push_back(AblationScene(options, name).run());
     done(runs.back());

@@ -20,7 +20,8 @@
 namespace kdray::bench {
 
 struct AblationOptions {
-  std::vector<std::string> scenes = {};  // empty: the built-in ones
+  std::vector<std::string> scenes = {"balls", "gears", "mount", "rings",  "teapot",
+                                     "tetra", "tree",  "boxes", "spheres"};
   int width = 1024, height = 1024, depth = 5;
   int repeat = 5;  // rounds
   std::string device = "auto";

@@ -200,9 +200,8 @@ const AccuracyPoint* fastest_within(std::span<const AccuracyPoint> points, doubl
 }
 
 std::vector<AccuracyRun> bench_accuracy(const AccuracyOptions& options, const AccuracyCalls& calls) {
-  static const std::vector<std::string> kDefault = {"balls", "gears", "lamps", "chessboard", "penumbra"};
   std::vector<AccuracyRun> runs;
-  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
+  for (const std::string& name : options.scenes) {
     runs.push_back(AccuracyScene(options, calls, name).run());
     calls.done(runs);
   }

@@ -23,7 +23,7 @@ namespace kdray::bench {
 inline constexpr const char* kPovray = "POV-Ray";  // its points' group
 
 struct AccuracyOptions {
-  std::vector<std::string> scenes = {};  // empty: two generated ones, an interior and the exact ones
+  std::vector<std::string> scenes = {"balls", "gears", "lamps", "chessboard", "penumbra"};
   int width = 512, height = 512;
   int repeat = 5;
   int reference_samples = 256;

@@ -118,9 +118,8 @@ std::vector<int> depths_to_try(int usual) {
 std::vector<DepthRun> bench_depth(const DepthOptions& options,
                                   const std::function<void(const DepthRun&)>& done,
                                   const std::function<void(const std::string&)>& working) {
-  static const std::vector<std::string> kDefault = {"boxes", "balls", "rings", "displaced"};
   std::vector<DepthRun> runs;
-  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
+  for (const std::string& name : options.scenes) {
     working(name);
     runs.push_back(DepthScene(options, name).run());
     done(runs.back());

@@ -20,7 +20,7 @@ namespace kdray::bench {
 inline constexpr double kDearest = 1000;  // of TreeFacts::tight_cost
 
 struct DepthOptions {
-  std::vector<std::string> scenes = {};  // empty: the built-in ones
+  std::vector<std::string> scenes = {"boxes", "balls", "rings", "displaced"};
   BuildQuality quality = BuildQuality::balanced;
   int rays = 1 << 16;  // of a class, at the most
   int repeat = 3;      // rounds

@@ -13,9 +13,8 @@
 #include "bench/accuracy/bench.h"
 #include "bench/accuracy/exact.h"
 #include "bench/accuracy/reference.h"
+#include "bench/cli/bench_command.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/limits.h"
-#include "bench/cli/report_files.h"
 #include "bench/povray/povray.h"
 #include "io/image/picture_file.h"
 
@@ -27,10 +26,7 @@ constexpr int kReferenceSideMax = 16384, kSamplesMax = 65536;
 constexpr long long kReferencePixelsMax = 1 << 24;  // a reference takes 16 times as many
 constexpr const char* kName = "accuracy";
 
-struct AccuracyCommand {
-  bench::AccuracyOptions options;
-  std::string report;
-};
+using AccuracyCommand = BenchCommand<bench::AccuracyOptions>;
 
 void prepare_pictures(const std::string& report) {
   if (report.empty()) return;
@@ -54,7 +50,7 @@ int run(const AccuracyCommand& c) {
             print_table(bench::table_of(runs.back()));
             write_report(c.report, kName, bench::json_of(runs, c.options));
           },
-      .working = [](const std::string& what) { say(what); },
+      .working = say_working,
       .picture =
           [&](const std::string& scene, const std::string& name, const image::Image& image) {
             if (c.report.empty()) return;
@@ -62,8 +58,7 @@ int run(const AccuracyCommand& c) {
             image::write_picture(folder / bench::picture_name(scene, name), image, {}, {});
           }};
   const auto runs = bench::bench_accuracy(c.options, calls);
-  if (const std::size_t n = bench::count_unlike_base(runs); n > 0)
-    throw Error(ErrorCode::internal, fmt::format("{} traversals or trees don't give the base's picture", n));
+  require_none(bench::count_unlike_base(runs), "traversals or trees don't give the base's picture");
   return 0;
 }
 
@@ -81,18 +76,16 @@ Command add_bench_accuracy(CLI::App& bench) {
       kName, "Time against error: samples, depth, least weight and the rest, and POV-Ray's antialiasing");
   const auto c = std::make_shared<AccuracyCommand>();
   bench::AccuracyOptions& o = c->options;
-  add_scenes(*app, o.scenes, "balls gears lamps chessboard penumbra");
+  add_scenes(*app, o.scenes);
   add_size(*app, "Pixels across and down (default 512x512)", kReferenceSideMax, kReferencePixelsMax, o.width,
            o.height);
-  add_int(*app, "--repeat", "Rounds to take the median of (default 5)", 1, kRepeatMax, o.repeat);
   add_text(*app, "--reference-samples", "N",
            "Samples per pixel of the reference, a multiple of 32 (default 256)",
            [&o](const std::string& text) { o.reference_samples = parse_samples(text); });
   app->add_flag_callback(
       "--no-povray", [&o] { o.povray = false; }, "Leave POV-Ray out");
   app->add_flag("--quick", o.quick, "A few settings only");
-  add_device_option(*app, "The device, as for render (default: auto)", o.device);
-  add_report(*app, c->report);
+  add_usual(*app, *c);
   return {app, [c] { return run(*c); }};
 }
 

@@ -1,7 +1,12 @@
-#include "bench/cli/report_files.h"
+#include "bench/cli/bench_command.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cstdio>
 
+#include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "base/write_file.h"
 #include "bench/embree/embree.h"
@@ -51,8 +56,51 @@ void print_table(const std::string& table) {
   std::fprintf(stderr, "%s\n", table.c_str());
 }
 
+void say_working(const std::string& what) {
+  say(what);
+}
+
 void say_without_embree() {
   if (bench::embree_version().empty()) say("this kdray was built without Embree: its columns are left out");
+}
+
+void require_none(std::size_t n, const std::string& what) {
+  if (n > 0) throw Error(ErrorCode::internal, fmt::format("{} {}", n, what));
+}
+
+void add_scenes(CLI::App& app, std::vector<std::string>& scenes) {
+  add_scenes(app, scenes, fmt::format("{}", fmt::join(scenes, " ")));
+}
+
+void add_scenes(CLI::App& app, std::vector<std::string>& scenes, const std::string& default_scenes) {
+  app.add_option("SCENE", scenes,
+                 "Scene files, or names of built-in scenes (default: " + default_scenes + ")")
+      ->type_name("");
+}
+
+void add_rays(CLI::App& app, int& rays) {
+  add_int(app, "--rays", fmt::format("Rays of a class, as a square picture holds them (default {})", rays), 1,
+          kRaysMax, rays);
+}
+
+void add_depth(CLI::App& app, int& depth) {
+  add_int(app, "--depth", fmt::format("Deepest ray; the eye ray is 1 (default {})", depth), 1, 64, depth);
+}
+
+void add_picture_size(CLI::App& app, long long pixels_max, int& width, int& height) {
+  add_size(app, fmt::format("Pixels across and down (default {}x{})", width, height), kSideMax, pixels_max,
+           width, height);
+}
+
+void add_no_embree(CLI::App& app, bool& embree) {
+  app.add_flag_callback(
+      "--no-embree", [&embree] { embree = false; }, "Leave Embree out");
+}
+
+void add_repeat_and_device(CLI::App& app, int& repeat, std::string& device) {
+  add_int(app, "--repeat", fmt::format("Rounds to take the median of (default {})", repeat), 1, kRepeatMax,
+          repeat);
+  add_device_option(app, "The device, as for render (default: auto)", device);
 }
 
 void add_report(CLI::App& app, std::string& report) {
@@ -61,10 +109,14 @@ void add_report(CLI::App& app, std::string& report) {
       ->type_name("DIR");
 }
 
-void add_scenes(CLI::App& app, std::vector<std::string>& scenes, const std::string& default_scenes) {
-  app.add_option("SCENE", scenes,
-                 "Scene files, or names of built-in scenes (default: " + default_scenes + ")")
-      ->type_name("");
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    parts.push_back(text.substr(start, comma - start));
+    start = comma + 1;
+  }
+  return parts;
 }
 
 void require_scenes(const std::vector<std::string>& scenes) {

@@ -1,29 +1,86 @@
-// What    What every `kdray bench` command does: scenes as arguments, tables to stderr, a folder for figures
-//         and their plot, which the script kdray-bench-plot beside the program draws (bench/plot).
+// What    What every `kdray bench` command does: its options, tables to stderr, each as soon as a scene is
+//         done, and a folder for figures and their plot, which the script kdray-bench-plot beside the program
+//         draws (bench/plot).
 // Errors  ErrorCode::input for a folder that can't be made or written, before anything is measured.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/measure/json.h"
 
 namespace kdray::cli {
 
-void add_report(CLI::App& app, std::string& report);
+// The most that options may ask for.
+inline constexpr int kRaysMax = 1 << 26;  // of a class
+inline constexpr int kRepeatMax = 100000;
+inline constexpr int kSideMax = 65536;  // of a picture, across or down
+inline constexpr long long kPixelsMax = 1 << 26;
+
+template <class Options>
+struct BenchCommand {
+  Options options;
+  std::string report;  // the folder; empty: none
+};
+
+// ---- Options; the defaults in their help are the values that they have.
+
+void add_scenes(CLI::App& app, std::vector<std::string>& scenes);
 void add_scenes(CLI::App& app, std::vector<std::string>& scenes, const std::string& default_scenes);
+void add_rays(CLI::App& app, int& rays);  // of a class
+void add_depth(CLI::App& app, int& depth);
+void add_picture_size(CLI::App& app, long long pixels_max, int& width, int& height);
+void add_no_embree(CLI::App& app, bool& embree);
+void add_repeat_and_device(CLI::App& app, int& repeat, std::string& device);
+void add_report(CLI::App& app, std::string& report);
+
+// Those that all have.
+template <class Options>
+void add_usual(CLI::App& app, BenchCommand<Options>& command) {
+  add_repeat_and_device(app, command.options.repeat, command.options.device);
+  add_report(app, command.report);
+}
+
+// Returns the parts of "a,b,c".
+std::vector<std::string> split_list(const std::string& text);
+
+// ---- Running.
 
 // Throws for a name that is neither a file's nor a built-in scene's: before the first scene is measured.
 void require_scenes(const std::vector<std::string>& scenes);
-
 // A folder for the report, made before anything is measured; nothing where there is to be none.
 void prepare_report(const std::string& folder, const std::string& name);
 // Where no plot can be drawn, a line says why; the figures are there all the same.
 void write_report(const std::string& folder, const std::string& name, const bench::Json& json);
 
 void print_table(const std::string& table);
+void say_working(const std::string& what);
 void say_without_embree();
+// Throws that there are so many, where there are any.
+void require_none(std::size_t n, const std::string& what);
+
+// Does one of bench/: run by run, with its table, and then the report.
+template <class Options, class Run>
+std::vector<Run> run_bench(const std::string& name, const Options& options, const std::string& report,
+                           std::vector<Run> (*bench)(const Options&, const std::function<void(const Run&)>&,
+                                                     const std::function<void(const std::string&)>&)) {
+  prepare_report(report, name);
+  if constexpr (requires { options.embree; })
+    if (options.embree) say_without_embree();
+  const auto done = [&](const Run& run) {
+    if constexpr (requires { table_of(run, options); })
+      print_table(table_of(run, options));
+    else
+      print_table(table_of(run));
+  };
+  std::vector<Run> runs = bench(options, done, say_working);
+  write_report(report, name, json_of(runs, options));
+  return runs;
+}
 
 }  // namespace kdray::cli

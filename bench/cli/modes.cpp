@@ -11,9 +11,8 @@
 
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
+#include "bench/cli/bench_command.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/limits.h"
-#include "bench/cli/report_files.h"
 #include "bench/modes/bench.h"
 #include "bench/ranks/bench.h"
 #include "cluster/transport/launcher.h"
@@ -26,9 +25,7 @@ namespace {
 
 constexpr int kQueuesMax = 1024, kSamplesMax = 1024;
 
-struct ModesCommand {
-  bench::ModesOptions options;
-  std::string report;
+struct ModesCommand : BenchCommand<bench::ModesOptions> {
   bool ranks = false;
   int samples = 1;        // with ranks
   double delay_ms = 2.5;  // too
@@ -37,11 +34,8 @@ struct ModesCommand {
 // "1,2,4": each once, in order.
 std::vector<int> parse_queues(const std::string& text) {
   std::vector<int> queues;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', start), text.size());
-    queues.push_back(parse_int("--queues", text.substr(start, comma - start), 1, kQueuesMax));
-    start = comma + 1;
-  }
+  for (const std::string& item : split_list(text))
+    queues.push_back(parse_int("--queues", item, 1, kQueuesMax));
   std::sort(queues.begin(), queues.end());
   queues.erase(std::unique(queues.begin(), queues.end()), queues.end());
   return queues;
@@ -82,18 +76,17 @@ int run_ranks(const ModesCommand& c) {
   if (launched.rank == 0) prepare_report(c.report, "ranks");
   std::vector<bench::RanksRun> runs;
   bench::SceneShelf shelf;
-  bench::run_team(over_mpi ? transport::open_mpi(launched.ranks) : nullptr, n_threads,
-                  [&](bench::Team& team) {
-                    if (over_mpi) {
-                      transport::Ranks all(team.group(team.size()));
-                      transport::share_cores(all);
-                    }
-                    auto of_member = bench::bench_ranks(
-                        team, shelf, over_mpi, asked,
-                        [&](const bench::RanksRun& run) { print_table(bench::table_of(run, asked)); },
-                        [](const std::string& what) { say(what); });
-                    if (team.leads()) runs = std::move(of_member);
-                  });
+  bench::run_team(
+      over_mpi ? transport::open_mpi(launched.ranks) : nullptr, n_threads, [&](bench::Team& team) {
+        if (over_mpi) {
+          transport::Ranks all(team.group(team.size()));
+          transport::share_cores(all);
+        }
+        auto of_member = bench::bench_ranks(
+            team, shelf, over_mpi, asked,
+            [&](const bench::RanksRun& run) { print_table(bench::table_of(run, asked)); }, say_working);
+        if (team.leads()) runs = std::move(of_member);
+      });
   if (launched.rank != 0) return 0;
   write_report(c.report, "ranks", bench::json_of(runs, asked));
   if (bench::count_differing_pictures(runs) > 0)
@@ -104,14 +97,9 @@ int run_ranks(const ModesCommand& c) {
 int run(const ModesCommand& c) {
   require_scenes(c.options.scenes);
   if (c.ranks) return run_ranks(c);
-  prepare_report(c.report, "modes");
-  const auto runs = bench::bench_modes(
-      c.options, [&](const bench::ModesRun& run) { print_table(bench::table_of(run, c.options)); },
-      [](const std::string& what) { say(what); });
+  const auto runs = run_bench("modes", c.options, c.report, bench::bench_modes);
   print_table(bench::summary_of(runs));
-  write_report(c.report, "modes", bench::json_of(runs, c.options));
-  if (const std::size_t n = bench::count_differing_pixels(runs); n > 0)
-    throw Error(ErrorCode::internal, fmt::format("{} pixels are not the bits of the first picture", n));
+  require_none(bench::count_differing_pixels(runs), "pixels are not the bits of the first picture");
   return 0;
 }
 
@@ -122,12 +110,11 @@ Command add_bench_modes(CLI::App& bench) {
       "modes", "PDPRT and ODPRT against one core alone, and a model of up to 10,000 queues");
   const auto c = std::make_shared<ModesCommand>();
   bench::ModesOptions& o = c->options;
-  add_scenes(*app, o.scenes, "balls gears mount rings teapot tetra tree");
+  add_scenes(*app, o.scenes);
   add_text(*app, "--queues", "LIST", "Numbers of queues (default 1,2,4,8)",
            [&o](const std::string& text) { o.queues = parse_queues(text); });
-  add_size(*app, "Pixels across and down (default 1024x1024)", kSideMax, kPixelsMax, o.width, o.height);
-  add_int(*app, "--depth", "Deepest ray; the eye ray is 1 (default 5)", 1, 64, o.depth);
-  add_int(*app, "--repeat", "Rounds to take the median of (default 7)", 1, kRepeatMax, o.repeat);
+  add_picture_size(*app, kPixelsMax, o.width, o.height);
+  add_depth(*app, o.depth);
   add_real(*app, "--bandwidth", "GB/s", "Of a link between queues, for the model (default 10)", 1e-6, 1e9,
            o.model_options.gigabytes_per_second);
   add_real(*app, "--latency", "US", "Microseconds from queue to queue, for the model (default 2)", 0, 1e9,
@@ -137,8 +124,7 @@ Command add_bench_modes(CLI::App& bench) {
   app->add_flag_callback(
       "--no-model", [&o] { o.model = false; }, "Measure only");
   add_ranks(*app, *c);
-  add_device_option(*app, "The device, as for render (default: auto)", o.device);
-  add_report(*app, c->report);
+  add_usual(*app, *c);
   return {app, [c] { return run(*c); }};
 }
 

@@ -10,9 +10,8 @@
 
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
+#include "bench/cli/bench_command.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/limits.h"
-#include "bench/cli/report_files.h"
 #include "bench/race/kdray_contestants.h"
 #include "bench/rays/bench.h"
 #include "bench/workload/rays.h"
@@ -23,34 +22,21 @@ namespace {
 
 constexpr int kCoresMax = 4096;
 
-struct RaysCommand {
-  bench::RaysOptions options;
-  std::string report;
-};
+using RaysCommand = BenchCommand<bench::RaysOptions>;
 
 int run(const RaysCommand& c) {
   require_scenes(c.options.scenes);
-  prepare_report(c.report, "rays");
-  if (c.options.embree) say_without_embree();
-  const auto runs = bench::bench_rays(
-      c.options, [](const bench::RaysRun& run) { print_table(bench::table_of(run)); },
-      [](const std::string& what) { say(what); });
-  write_report(c.report, "rays", bench::json_of(runs, c.options));
-  if (const std::size_t n = bench::count_not_identical(runs); n > 0)
-    throw Error(ErrorCode::internal,
-                fmt::format("{} hits of kdray's traversals are not identical to the binary one's", n));
+  const auto runs = run_bench("rays", c.options, c.report, bench::bench_rays);
+  require_none(bench::count_not_identical(runs),
+               "hits of kdray's traversals are not identical to the binary one's");
   return 0;
 }
 
 // "1,all": numbers of cores, 0 for all.
 std::vector<int> parse_cores(const std::string& text) {
   std::vector<int> cores;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', start), text.size());
-    const std::string item = text.substr(start, comma - start);
+  for (const std::string& item : split_list(text))
     cores.push_back(item == "all" ? 0 : parse_int("--cores", item, 1, kCoresMax));
-    start = comma + 1;
-  }
   return cores;
 }
 
@@ -61,19 +47,15 @@ Command add_bench_rays(CLI::App& bench) {
       bench.add_subcommand("rays", "The same rays through every traversal, and through Embree");
   const auto c = std::make_shared<RaysCommand>();
   bench::RaysOptions& o = c->options;
-  add_scenes(*app, o.scenes, "boxes spheres balls rings");
+  add_scenes(*app, o.scenes);
   add_list(*app, "--classes", "Of rays (default: all)", bench::class_names(), o.classes);
   add_list(*app, "--traversals", "Ways through the tree (default: all)", bench::traversal_names(),
            o.traversals);
-  add_int(*app, "--rays", "Rays of a class, as a square picture holds them (default 1048576)", 1, kRaysMax,
-          o.rays);
-  add_int(*app, "--repeat", "Rounds to take the median of (default 7)", 1, kRepeatMax, o.repeat);
+  add_rays(*app, o.rays);
   add_text(*app, "--cores", "LIST", "Numbers of cores, or all (default 1,all; on a GPU all)",
            [&o](const std::string& text) { o.cores = parse_cores(text); });
-  app->add_flag_callback(
-      "--no-embree", [&o] { o.embree = false; }, "Leave Embree out: kdray's traversals against each other");
-  add_device_option(*app, "The device, as for render (default: auto)", o.device);
-  add_report(*app, c->report);
+  add_no_embree(*app, o.embree);
+  add_usual(*app, *c);
   return {app, [c] { return run(*c); }};
 }
 

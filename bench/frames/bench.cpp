@@ -120,10 +120,8 @@ class FrameBench {
 std::vector<FrameResult> bench_frames(const FramesOptions& options,
                                       const std::function<void(const FrameResult&)>& done,
                                       const std::function<void(const std::string&)>& working) {
-  static const std::vector<std::string> kDefault = {"balls",  "gears", "mount", "rings",
-                                                    "teapot", "tetra", "tree"};
   std::vector<FrameResult> results;
-  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
+  for (const std::string& name : options.scenes) {
     working(name);
     results.push_back(FrameBench(options, name).run());
     done(results.back());

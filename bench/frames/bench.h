@@ -18,7 +18,7 @@
 namespace kdray::bench {
 
 struct FramesOptions {
-  std::vector<std::string> scenes;  // empty: the generators' that are measured elsewhere too
+  std::vector<std::string> scenes = {"balls", "gears", "mount", "rings", "teapot", "tetra", "tree"};
   int width = 1024, height = 1024, depth = 5;
   int repeat = 7;
   std::string device = "auto";

@@ -233,10 +233,8 @@ std::optional<double> ModesRun::speed_up(const ModesRow& row) const {
 std::vector<ModesRun> bench_modes(const ModesOptions& options,
                                   const std::function<void(const ModesRun&)>& done,
                                   const std::function<void(const std::string&)>& working) {
-  static const std::vector<std::string> kDefault = {"balls",  "gears", "mount", "rings",
-                                                    "teapot", "tetra", "tree"};
   std::vector<ModesRun> runs;
-  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
+  for (const std::string& name : options.scenes) {
     working(name);
     runs.push_back(ModesScene(options, name).run());
     done(runs.back());

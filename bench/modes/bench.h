@@ -34,7 +34,7 @@ struct Scheme {
 const std::vector<Scheme>& schemes();
 
 struct ModesOptions {
-  std::vector<std::string> scenes = {};  // empty: the SPD's
+  std::vector<std::string> scenes = {"balls", "gears", "mount", "rings", "teapot", "tetra", "tree"};
   std::vector<int> queues = {1, 2, 4, 8};
   int width = 1024, height = 1024, depth = 5;
   int repeat = 7;

@@ -28,7 +28,6 @@ std::size_t calls_of(std::size_t batch, std::size_t n) {
 }
 
 QueriesOptions resolved(QueriesOptions o) {
-  if (o.scenes.empty()) o.scenes = {"boxes", "spheres"};
   if (o.sets.empty()) o.sets.assign(set_names().begin(), set_names().end());
   if (o.questions.empty()) o.questions.assign(question_names().begin(), question_names().end());
   for (int& batch : o.batches) batch = std::min(batch, o.rays);

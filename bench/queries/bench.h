@@ -21,7 +21,7 @@
 namespace kdray::bench {
 
 struct QueriesOptions {
-  std::vector<std::string> scenes;                         // empty: the built-in ones
+  std::vector<std::string> scenes = {"boxes", "spheres"};
   std::vector<std::string> sets = {}, questions = {};      // empty: all
   std::vector<int> batches = {1, 100, 10'000, 1'000'000};  // rays or points to a call; no more than `rays`
   int rays = 1'000'000;                                    // of a set

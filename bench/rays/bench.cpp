@@ -30,7 +30,6 @@ std::vector<int> default_cores() {
 }
 
 RaysOptions resolved(RaysOptions o) {
-  if (o.scenes.empty()) o.scenes = {"boxes", "spheres", "balls", "rings"};
   if (o.classes.empty()) o.classes = all_of(class_names());
   if (o.traversals.empty()) o.traversals = all_of(traversal_names());
   if (o.cores.empty()) o.cores = default_cores();

@@ -16,7 +16,7 @@
 namespace kdray::bench {
 
 struct RaysOptions {
-  std::vector<std::string> scenes;                         // empty: the built-in ones
+  std::vector<std::string> scenes = {"boxes", "spheres", "balls", "rings"};
   std::vector<std::string> classes = {}, traversals = {};  // empty: all
   int rays = 1 << 20;                                      // of a class, at the most
   int repeat = 7;                                          // rounds

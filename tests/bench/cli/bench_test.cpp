@@ -113,6 +113,18 @@ TEST(Bench, RefusesWhatItDoesNotKnow) {
   EXPECT_TRUE(fails_with(kdray({"bench", "frames", "--size", "0x4"}), 2, "--size"));
 }
 
+// Without scenes a bench would measure nothing, and succeed.
+TEST(Bench, EachNamesTheScenesThatItTakesWithoutOthers) {
+  for (const char* const bench :
+       {"rays", "queries", "frames", "build", "depth", "modes", "accuracy", "ablation", "instances"}) {
+    const Outcome run = kdray({"bench", bench, "--help"});
+    ASSERT_TRUE(succeeds(run)) << bench;
+    const std::size_t scenes = run.out.find("names of built-in scenes (default: ");
+    ASSERT_NE(scenes, std::string::npos) << run.out;
+    EXPECT_NE(run.out[run.out.find("default: ", scenes) + 9], ')') << bench;
+  }
+}
+
 TEST(Bench, AFolderThatCannotBeMadeIsToldFirst) {
   const Folder folder;
   const auto file = folder.put("file", "");
