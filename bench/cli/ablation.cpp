@@ -3,8 +3,6 @@
 //         DIR/ablation.json and a plot beside it.
 // Errors  A picture that changes where a rule claims to be exact: exit code 1, after everything has been
 //         written.
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "apps/cli/options.h"

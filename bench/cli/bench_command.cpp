@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cstdio>
 
 #include "apps/cli/options.h"
@@ -107,16 +106,6 @@ void add_report(CLI::App& app, std::string& report) {
   app.add_option("--report", report,
                  "A folder for the figures (JSON) and a plot (SVG, with python3-matplotlib)")
       ->type_name("DIR");
-}
-
-std::vector<std::string> split_list(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', start), text.size());
-    parts.push_back(text.substr(start, comma - start));
-    start = comma + 1;
-  }
-  return parts;
 }
 
 void require_scenes(const std::vector<std::string>& scenes) {

@@ -46,9 +46,6 @@ void add_usual(CLI::App& app, BenchCommand<Options>& command) {
   add_report(app, command.report);
 }
 
-// Returns the parts of "a,b,c".
-std::vector<std::string> split_list(const std::string& text);
-
 // ---- Running.
 
 // Throws for a name that is neither a file's nor a built-in scene's: before the first scene is measured.

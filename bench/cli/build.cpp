@@ -2,8 +2,6 @@
 //         hostile meshes.
 // Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
 //         DIR/build.json (or growth, hostile) and a plot beside it.
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "apps/cli/options.h"

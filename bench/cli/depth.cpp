@@ -1,8 +1,6 @@
 // What    kdray bench depth: what trees of every maximum depth cost to build, to hold and to trace.
 // Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
 //         DIR/depth.json and a plot beside it.
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "apps/cli/options.h"

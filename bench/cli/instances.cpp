@@ -5,9 +5,6 @@
 //         written.
 #include "bench/instances/bench.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <memory>
 #include <string>
 

@@ -4,8 +4,6 @@
 //         --report DIR the figures go to DIR/modes.json and plots beside it.
 // Errors  Pictures that are not the same bits: exit code 1, after everything has been written. A mode that
 //         fails is told.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 

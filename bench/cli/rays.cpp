@@ -2,9 +2,6 @@
 // Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
 //         DIR/rays.json and a plot beside it.
 // Errors  Hits that differ between kdray's traversals: exit code 1, after everything has been written.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <memory>
 #include <string>
 

@@ -66,14 +66,22 @@ double parse_real(std::string_view option, std::string_view text, double lo, dou
   return value;
 }
 
-std::vector<double> parse_numbers(std::string_view text) {
-  std::vector<double> numbers;
+std::vector<std::string> split_list(std::string_view text) {
+  std::vector<std::string> parts;
   for (std::size_t start = 0; start <= text.size();) {
     const std::size_t comma = std::min(text.find(',', start), text.size());
-    double value = 0;
-    if (!whole_number(text.substr(start, comma - start), value)) return {};
-    numbers.push_back(value);
+    parts.emplace_back(text.substr(start, comma - start));
     start = comma + 1;
+  }
+  return parts;
+}
+
+std::vector<double> parse_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string& part : split_list(text)) {
+    double value = 0;
+    if (!whole_number(part, value)) return {};
+    numbers.push_back(value);
   }
   return numbers;
 }
@@ -152,15 +160,12 @@ std::size_t parse_choice(std::string_view option, std::string_view text,
 std::vector<std::string> parse_list(std::string_view option, std::string_view text,
                                     std::span<const std::string_view> accepted) {
   std::vector<std::string> names;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', start), text.size());
-    const std::string name(text.substr(start, comma - start));
+  for (const std::string& name : split_list(text)) {
     if (std::find(accepted.begin(), accepted.end(), name) == accepted.end())
       throw usage_error(option, text,
                         fmt::format("names from {}, with commas between{}", fmt::join(accepted, ", "),
                                     guess(name, accepted)));
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    start = comma + 1;
   }
   return names;
 }
