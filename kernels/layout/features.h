@@ -40,6 +40,8 @@
 // Lights with an area; removes choosing a place on them, and the word by which rays tell their sample.
 #define KDRAY_FEATURE_AREA_LIGHTS KDRAY_FEATURE(45)
 #define KDRAY_FEATURE_LENS KDRAY_FEATURE(46)  // removes choosing a place on the camera's lens
+// Queries of a scene of doubles (primitives/triangle/filter.clh); removes doubt from hits.
+#define KDRAY_FEATURE_FILTER KDRAY_FEATURE(47)
 // What makes a pixel's samples differ even where the picture is uniform.
 #define KDRAY_FEATURES_NOISY (KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_LENS)
 // Light, bits 48-55, and film, bits 56-63.
@@ -68,14 +70,16 @@
 
 #ifdef __OPENCL_C_VERSION__
 #ifndef KDRAY_FEATURES
-// Instances are left out: streams have other fields with them.
-#define KDRAY_FEATURES (~(KDRAY_KEEP_ALL | KDRAY_FEATURE_INSTANCES))
+// Instances are left out: streams have other fields with them. So is the filter, whose hits mean something
+// else.
+#define KDRAY_FEATURES (~(KDRAY_KEEP_ALL | KDRAY_FEATURE_INSTANCES | KDRAY_FEATURE_FILTER))
 #endif
 #define KDRAY_HAS_KIND(NAME) ((KDRAY_FEATURES & KDRAY_FEATURE_KIND(NAME)) != 0)
 #define KDRAY_HAS_ZERO_AREA ((KDRAY_FEATURES & KDRAY_FEATURE_ZERO_AREA) != 0)
 #define KDRAY_HAS_SMOOTH (KDRAY_HAS_ZERO_AREA || (KDRAY_FEATURES & KDRAY_FEATURE_SMOOTH) != 0)
 #define KDRAY_HAS_NUMBERS ((KDRAY_FEATURES & KDRAY_FEATURE_NUMBERS) != 0)
 #define KDRAY_HAS_MASKS ((KDRAY_FEATURES & KDRAY_FEATURE_MASKS) != 0)
+#define KDRAY_HAS_FILTER ((KDRAY_FEATURES & KDRAY_FEATURE_FILTER) != 0)
 #define KDRAY_HAS_MATERIAL_MAPS ((KDRAY_FEATURES & KDRAY_FEATURE_MATERIAL_MAPS) != 0)
 #define KDRAY_HAS_CORNER_COLORS ((KDRAY_FEATURES & KDRAY_FEATURE_CORNER_COLORS) != 0)
 #define KDRAY_HAS_TEXTURES ((KDRAY_FEATURES & KDRAY_FEATURE_TEXTURES) != 0)

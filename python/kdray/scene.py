@@ -93,8 +93,8 @@ class Scene:
     where t_min is 0.)
 
     With ``geometry="double"`` a scene of meshes alone answers for its vertices as they were given: all questions are
-    decided by exact arithmetic on doubles, and t of float64 rays is the nearest float64 but for its last place, on the
-    host's cores, which takes longer. Pictures are of the vertices rounded to floats, as all is otherwise.
+    decided as exact arithmetic does, and t of float64 rays is the nearest float64 but for its last place. That takes up
+    to a few times as long. Pictures are of the vertices rounded to floats, as all is otherwise.
 
     A scene can be copied and pickled; it then holds its arrays, or the name of the file that it was read from.
 

@@ -2,6 +2,7 @@
 // same answer, bit for bit; and what was refused leaves nothing behind.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -129,6 +130,32 @@ TEST_P(Batches, RaysHaveTheSameHitsAloneAndAmongMany) {
         }
       }
   }
+}
+
+// Rays that end in one place, as those towards a light do, and end behind their starts.
+TEST_P(Batches, AnyHitsBehindTheStartAreThoseOfClosestHits) {
+  const Scene scene = lumps(false);
+  std::mt19937 random(kSeed + 2);
+  std::uniform_real_distribution<float> anywhere(-1, 1), near(-0.05f, 0.05f);
+  constexpr std::size_t kEnds = 100, kRays = 64;
+  std::vector<float> origins, directions;
+  for (std::size_t end = 0; end < kEnds; ++end) {
+    float at[3], way[3];
+    for (int k = 0; k < 3; ++k) at[k] = kCenter[k] + anywhere(random), way[k] = anywhere(random);
+    for (std::size_t i = 0; i < kRays; ++i)
+      for (int k = 0; k < 3; ++k) {
+        directions.push_back(way[k] + near(random));
+        origins.push_back(at[k] + directions.back());  // at t = -1 they are where all of them end
+      }
+  }
+  const std::vector<float> t_min{-2}, t_max{-1};
+  const Rays rays{origins, directions, t_min, t_max};
+  std::vector<float> t(kEnds * kRays);
+  std::vector<std::uint8_t> any(kEnds * kRays);
+  scene.closest(rays, {.t = t});
+  scene.any(rays, any);
+  for (std::size_t i = 0; i < t.size(); ++i) ASSERT_EQ(any[i], std::isfinite(t[i])) << i;
+  EXPECT_GT(std::ranges::count(any, 1), 1000);
 }
 
 TEST_P(Batches, PointsHaveTheSameAnswersAloneAndAmongMany) {

@@ -131,9 +131,12 @@ double places_off(double got, const mpq_class& exact) {
 
 struct RayList {
   std::vector<Point> origins, directions;
+  std::vector<double> t_min, t_max;  // of all, or none
   Rays rays() const {
-    return {{&origins.front()[0], origins.size(), sizeof(Point)},
-            {&directions.front()[0], directions.size(), sizeof(Point)}};
+    Rays rays{{&origins.front()[0], origins.size(), sizeof(Point)},
+              {&directions.front()[0], directions.size(), sizeof(Point)}};
+    if (!t_max.empty()) rays.t_min = t_min, rays.t_max = t_max;
+    return rays;
   }
 };
 
@@ -181,6 +184,74 @@ class DoubleScenes : public test::EachDevice {
     return scene;
   }
 
+  // So many rays that the device looks at them first: packets of one ray's copies, and of others.
+  static constexpr std::size_t kMany = std::size_t{1} << 15;
+
+  static RayList copies_of(const RayList& list, std::size_t copies, bool in_row,
+                           std::vector<std::size_t>& of) {
+    RayList many;
+    of.resize(list.origins.size() * copies);
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      of[i] = in_row ? i / copies : i % list.origins.size();
+      many.origins.push_back(list.origins[of[i]]);
+      many.directions.push_back(list.directions[of[i]]);
+      if (!list.t_max.empty()) {
+        many.t_min.push_back(list.t_min[of[i]]);
+        many.t_max.push_back(list.t_max[of[i]]);
+      }
+    }
+    return many;
+  }
+
+  void many_agree(const Scene& scene, const RayList& list, const std::vector<double>& t,
+                  const std::vector<std::uint32_t>& primitive, const std::vector<double>& u,
+                  const std::vector<double>& v, const std::vector<std::uint8_t>& any) const {
+    for (const bool in_row : {false, true}) {
+      SCOPED_TRACE(in_row);
+      std::vector<std::size_t> of;
+      const RayList many = copies_of(list, kMany / list.origins.size() + 1, in_row, of);
+      std::vector<double> of_t(of.size()), of_u(of.size()), of_v(of.size());
+      std::vector<std::uint32_t> of_primitive(of.size());
+      std::vector<std::uint8_t> of_any(of.size());
+      scene.closest(many.rays(), {.t = of_t, .primitive = of_primitive, .u = of_u, .v = of_v});
+      scene.any(many.rays(), of_any);
+      for (std::size_t i = 0; i < of.size(); ++i) {
+        ASSERT_EQ(of_primitive[i], primitive[of[i]]) << of[i];
+        ASSERT_EQ(of_t[i], t[of[i]]) << of[i];
+        ASSERT_EQ(of_u[i], u[of[i]]) << of[i];
+        ASSERT_EQ(of_v[i], v[of[i]]) << of[i];
+        ASSERT_EQ(of_any[i], any[of[i]]) << of[i];
+      }
+    }
+  }
+
+  void many_count(const Scene& scene, const RayList& list, const std::vector<std::uint32_t>& counts,
+                  const AllHits& all) const {
+    for (const bool in_row : {false, true}) {
+      SCOPED_TRACE(in_row);
+      std::vector<std::size_t> of;
+      const RayList many = copies_of(list, kMany / list.origins.size() + 1, in_row, of);
+      std::vector<std::uint32_t> of_counts(of.size());
+      scene.count(many.rays(), of_counts);
+      AllHitsOptions two;
+      two.max_hits = 2;
+      const AllHits of_all = scene.all(many.rays()), first = scene.all(many.rays(), two);
+      for (std::size_t i = 0; i < of.size(); ++i) {
+        const std::uint64_t begin = all.splits[of[i]], n = all.splits[of[i] + 1] - begin;
+        ASSERT_EQ(of_counts[i], counts[of[i]]) << of[i];
+        ASSERT_EQ(of_all.splits[i + 1] - of_all.splits[i], n) << of[i];
+        ASSERT_EQ(first.splits[i + 1] - first.splits[i], std::min<std::uint64_t>(n, 2)) << of[i];
+        ASSERT_EQ(first.more[i], n > 2) << of[i];
+        for (std::uint64_t k = 0; k < n; ++k) {
+          ASSERT_EQ(of_all.primitive[of_all.splits[i] + k], all.primitive[begin + k]) << of[i];
+          ASSERT_EQ(of_all.t[of_all.splits[i] + k], all.t[begin + k]) << of[i];
+          if (k >= 2) continue;
+          ASSERT_EQ(first.primitive[first.splits[i] + k], all.primitive[begin + k]) << of[i];
+        }
+      }
+    }
+  }
+
   void holds(const Mesh& mesh, const RayList& list) const {
     const Scene scene = scene_of(mesh);
     const std::size_t n = list.origins.size();
@@ -191,6 +262,8 @@ class DoubleScenes : public test::EachDevice {
     scene.any(list.rays(), any);
     scene.count(list.rays(), counts);
     const AllHits all = scene.all(list.rays());
+    many_agree(scene, list, t, primitive, u, v, any);
+    many_count(scene, list, counts, all);
     for (std::size_t i = 0; i < n; ++i) {
       SCOPED_TRACE(i);
       std::vector<Crossing> found = Line(list.origins[i], list.directions[i]).crossings(mesh);
@@ -230,6 +303,140 @@ TEST_P(DoubleScenes, HitsAreThoseOfRationals) {
   holds(beside, aimed(beside, 600, 1e3, random));
   const Mesh near = sheets();
   holds(near, aimed(near, 600, 1, random));
+}
+
+// Beside edges, and from beside faces, by about as much as floats are off.
+RayList beside(const Mesh& mesh, std::size_t n, double size, std::mt19937& random) {
+  std::uniform_real_distribution<double> share(0, 1), way(-1, 1);
+  RayList list;
+  while (list.origins.size() < n) {
+    const std::size_t triangle = random() % mesh.size();
+    const double u = share(random), v = random() % 2 ? 0 : share(random) * (1 - u);
+    const double off = size * std::ldexp(way(random), -18 - static_cast<int>(random() % 10));
+    const double far = random() % 2 ? off : size * std::pow(4.0, static_cast<int>(random() % 8) - 3);
+    Point at = mesh.corner(triangle, 0), origin, direction;
+    for (std::size_t k = 0; k < 3; ++k) {
+      at[k] += u * (mesh.corner(triangle, 1)[k] - at[k]) + v * (mesh.corner(triangle, 2)[k] - at[k]);
+      direction[k] = way(random);
+      origin[k] = at[k] + off * way(random) - far * direction[k];
+    }
+    list.origins.push_back(origin);
+    list.directions.push_back(direction);
+  }
+  return list;
+}
+
+TEST_P(DoubleScenes, WhatFloatsAreNearlySureOfIsAsInRationals) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 6);
+  const Mesh coarse = ring(9, 7, {0.1, 0.2, 0.3}, 1, random);
+  holds(coarse, beside(coarse, 3000, 1, random));
+  // Triangles as small as floats are off by, far from the centre: a needle makes the scene large.
+  Mesh fine = ring(9, 7, {0.7, -0.2, 0.5}, 3e-5, random);
+  fine.vertices.insert(fine.vertices.end(), {{-1, -1, -1}, {1, 1, 1}, {1, 1, 1 + 1e-7}});
+  const auto first = static_cast<std::uint32_t>(fine.vertices.size() - 3);
+  for (std::uint32_t k = 0; k < 3; ++k) fine.triangles.push_back(first + k);
+  holds(fine, beside(fine, 1500, 3e-5, random));
+  holds(fine, beside(fine, 1500, 1, random));
+}
+
+// Through vertices from so far off that a coordinate's last place is more than the scene.
+TEST_P(DoubleScenes, RaysFromFarAwayHitWhatRationalsSay) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 3);
+  const Mesh mesh = ring(9, 7, {0.5, 0.25, -0.5}, 1, random);
+  RayList list;
+  for (const int exponent : {30, 45, 52, 70})
+    for (int i = 0; i < 200; ++i) {
+      const double way = std::ldexp(1, exponent);
+      Point at = mesh.corner(random() % mesh.size(), 0), direction{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        at[k] = std::ldexp(std::round(std::ldexp(at[k], 52 - exponent)), exponent - 52);
+        direction[k] = static_cast<double>(random() % 9) - 4;
+      }
+      if (direction == Point{}) direction[0] = 1;
+      Point origin;
+      for (std::size_t k = 0; k < 3; ++k) origin[k] = at[k] - way * direction[k];
+      list.origins.push_back(origin);
+      list.directions.push_back(direction);
+    }
+  holds(mesh, list);
+}
+
+// Intervals that end where something is hit, or a last place beside it.
+TEST_P(DoubleScenes, IntervalsEndAtTheDoublesTold) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 4);
+  Mesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
+  add(mesh, ring(9, 7, {1e3, 0, 0}, 1.5, random));
+  RayList list = aimed(mesh, 600, 1, random);
+  const Scene scene = scene_of(mesh);
+  const AllHits all = scene.all(list.rays());
+  const auto beside = [&](std::size_t i, double otherwise) {
+    const std::size_t n = all.splits[i + 1] - all.splits[i];
+    if (n == 0 || random() % 4 == 0) return otherwise;
+    const double t = all.t[all.splits[i] + random() % n];
+    const int side = static_cast<int>(random() % 3) - 1;
+    return side == 0 ? t : std::nextafter(t, side * kInfinity);
+  };
+  for (std::size_t i = 0; i < list.origins.size(); ++i) {
+    list.t_min.push_back(beside(i, 0));
+    list.t_max.push_back(beside(i, kInfinity));
+  }
+  const std::size_t n = list.origins.size();
+  std::vector<double> t(n), u(n), v(n);
+  std::vector<std::uint32_t> primitive(n);
+  std::vector<std::uint8_t> any(n);
+  scene.closest(list.rays(), {.t = t, .primitive = primitive, .u = u, .v = v});
+  scene.any(list.rays(), any);
+  many_agree(scene, list, t, primitive, u, v, any);
+  std::vector<std::uint32_t> counts(n);
+  scene.count(list.rays(), counts);
+  many_count(scene, list, counts, scene.all(list.rays()));
+  std::size_t n_hit = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t at = all.splits[i];
+    while (at < all.splits[i + 1] && !(all.t[at] > list.t_min[i])) ++at;
+    const bool hit = at < all.splits[i + 1] && all.t[at] < list.t_max[i];
+    ASSERT_EQ(any[i], hit) << i;
+    ASSERT_EQ(t[i], hit ? all.t[at] : kInfinity) << i;
+    n_hit += hit;
+  }
+  EXPECT_GT(n_hit, 50u);
+}
+
+// Geometries with masks, and rays that see one of them or none.
+TEST_P(DoubleScenes, MasksHoldForManyRays) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 5);
+  const Mesh inner = ring(9, 7, {1e3, 0, 0}, 1, random), outer = ring(9, 7, {1e3, 0, 0}, 1.5, random);
+  Scene scene;
+  scene.set_mask(scene.add_mesh({outer.points(), outer.triangles}), 1);
+  scene.set_mask(scene.add_mesh({inner.points(), inner.triangles}), 2);
+  scene.commit(options());
+  const RayList list = aimed(inner, 500, 1, random);
+  const std::size_t n = list.origins.size(), copies = 40;
+  std::vector<std::uint32_t> few_masks, few_geometry(n), masks, geometry(n * copies);
+  RayList many;
+  for (std::size_t i = 0; i < n; ++i) few_masks.push_back(static_cast<std::uint32_t>(random() % 4));
+  for (std::size_t i = 0; i < n * copies; ++i) {
+    many.origins.push_back(list.origins[i % n]);
+    many.directions.push_back(list.directions[i % n]);
+    masks.push_back(few_masks[i % n]);
+  }
+  Rays few_rays = list.rays(), many_rays = many.rays();
+  few_rays.masks = few_masks, many_rays.masks = masks;
+  scene.closest(few_rays, {.geometry = few_geometry});
+  scene.closest(many_rays, {.geometry = geometry});
+  std::vector<std::uint32_t> few_counts(n), counts(n * copies);
+  scene.count(few_rays, few_counts);
+  scene.count(many_rays, counts);
+  for (std::size_t i = 0; i < n * copies; ++i) {
+    ASSERT_EQ(geometry[i], few_geometry[i % n]) << i;
+    ASSERT_EQ(counts[i], few_counts[i % n]) << i;
+  }
+  EXPECT_GT(std::ranges::count(few_geometry, 0u), 20);
+  EXPECT_GT(std::ranges::count(few_geometry, 1u), 20);
 }
 
 TEST_P(DoubleScenes, ParityOfClosedMeshesIsEven) {

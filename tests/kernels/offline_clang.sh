@@ -18,6 +18,8 @@ done
 for kind in $(sed -nE 's/^#define KDRAY_KIND_[A-Z]+ ([0-9]+)u$/\1/p' "$kernels/layout/kinds.h"); do
   bits+=" $(printf '0x%x' $((1 << (16 + kind))))"
 done
+# A scene of doubles: triangles alone, and the filter.
+filter=$(printf '0x%x' $((1 << 16 | 1 << $(sed -nE 's/.*FEATURE_FILTER KDRAY_FEATURE\(([0-9]+)\).*/\1/p' "$kernels/layout/features.h"))))
 forms=$(sed -nE 's/^#define KDRAY_SIMD_[A-Z0-9]+ ([0-9]+).*/\1/p' "$kernels/layout/simd.h")
 walks=$(sed -nE 's/^#define KDRAY_TRAVERSAL_[A-Z]+ ([0-9]+)$/\1/p' "$kernels/layout/traversal.h")
 in_automatic=" $(sed -nE 's/^#define KDRAY_TRAVERSAL_(PACKET|BATCH) ([0-9]+)$/\2/p' "$kernels/layout/traversal.h" | paste -sd' ') "
@@ -37,6 +39,12 @@ compiles() {
       seen[$key]=$bit
       echo "$plain -Wno-unused -Wno-unused-parameter -DKDRAY_TRAVERSAL=0 -DKDRAY_FEATURES=${bit}u $file"
     done
+    if [[ $file == */traverse/query.cl || $file == */traverse/collect.cl ]]; then
+      for walk in $choices; do
+        echo "$plain -Wno-unused-parameter -DKDRAY_TRAVERSAL=$walk -DKDRAY_FEATURES=${filter}u $file"
+        echo "$x86 -Wno-unused-parameter -DKDRAY_TRAVERSAL=$walk -DKDRAY_FEATURES=${filter}u $file"
+      done
+    fi
     for walk in $choices; do
       echo "$plain -DKDRAY_TRAVERSAL=$walk $file"
       [[ $text == *common/simd.clh* && $in_automatic != *" $walk "* ]] || continue

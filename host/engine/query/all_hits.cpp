@@ -47,6 +47,7 @@ class Collection {
     fill_in_later(spans);
     if (!as_refs_) name_places(passes_.target().scene.flat, {chunk_.instance, chunk_.instance ? n : 0});
     give_back();
+    for (const std::uint32_t ray : passes_.in_doubt()) to_.in_doubt[n_rays_ + ray] = 1;
     n_rays_ += rays.size();
     return true;
   }
@@ -130,6 +131,7 @@ bool all_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions& o
   all.splits.resize(rays.size() + 1);
   all.splits[0] = 0;
   all.more.resize(rays.size());
+  all.in_doubt.assign(rays.size(), 0);
   all.t.clear(), all.primitive.clear(), all.u.clear(), all.v.clear(), all.instance.clear();
   if (rays.empty()) return true;
   passes.begin(rays.size(), options);
@@ -166,6 +168,7 @@ void count_hits(Passes& passes, std::span<const Ray> rays, const CollectOptions&
       counts[first + more.ray] += more.n;
       return true;
     });
+    for (const std::uint32_t ray : passes.in_doubt()) counts[first + ray] = kInDoubtCount;
   }
 }
 

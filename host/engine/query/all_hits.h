@@ -44,7 +44,11 @@ struct LocalHits {
   // The place in the scene's list of the instance that each hit lies in, or kNoInstance; empty where the
   // scene has none.
   RawVector<std::uint32_t> instance;
+  RawVector<std::uint8_t> in_doubt;  // of each ray of a scene of doubles: 1: its hits mean nothing
 };
+
+// A count of a scene of doubles that is in doubt.
+inline constexpr std::uint32_t kInDoubtCount = std::numeric_limits<std::uint32_t>::max();
 
 // Kernels and buffers for it (passes.h).
 class Passes;

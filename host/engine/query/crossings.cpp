@@ -30,7 +30,9 @@ constexpr std::uint64_t kSmallAnswer = std::uint64_t{1} << 26;
 class CollectedRays {
  public:
   CollectedRays(const QueryContext& context, const RayArrays& rays)
-      : rays_(&rays), local_(rays, context.frame), masked_(context.has_masks()) {}
+      : rays_(&rays),
+        local_(rays, context.frame, context.scene().doubles != nullptr),
+        masked_(context.has_masks()) {}
 
   std::span<const Ray> take(std::size_t first, std::size_t n, InvalidRays invalid,
                             const std::optional<Cancel>& cancel) {
@@ -78,12 +80,12 @@ class Answer {
 
   // Of rays of doubles: hits by reference, and instances by index.
   void add(const ExactHits& found) {
-    begin(found.more, [&](std::size_t i) { return found.hits[i].size(); });
+    begin(found.more, [&](std::size_t i) { return found.of(i).size(); });
     const std::size_t first = hits_.more.size() - found.more.size();
     const flatten::FlatScene& flat = context_->scene().flat;
     for_each_index(found.more.size(), [&](std::size_t i) {
       std::size_t at = hits_.splits[first + i];
-      for (const ExactHit& hit : found.hits[i]) {
+      for (const ExactHit& hit : found.of(i)) {
         const bool placed = hit.instance != kNoInstance;
         put(at++, hit.t, hit.u, hit.v, number_of(flat, hit.ref),
             placed ? flat.instances[hit.instance].number : kNoInstance);
@@ -177,7 +179,8 @@ QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut&
                   const QueryOptions& options) {
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "counts");
-  if (context.scene().doubles) {
+  const bool of_doubles = context.scene().doubles != nullptr;
+  if (of_doubles && arrays.size() < kFewForDevice) {
     const DoubleRays in_doubles(context, arrays);
     return in_doubles.run(options, [&](std::size_t first, std::size_t last) {
       if (out.empty()) return;
@@ -195,7 +198,10 @@ QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut&
       const std::span<const Ray> taken = collected.take(next.first, next.n, options.invalid, cancel);
       counts.resize(taken.size());
       count_hits(*passes, taken, {.masks = collected.masks(), .cancel = cancel}, counts);
-      if (arrays.in_double()) ExactRays(context, arrays).count(next.first, counts, cancel);
+      if (of_doubles)
+        DoubleRays(context, arrays).count_in_doubt(next.first, counts, cancel);
+      else if (arrays.in_double())
+        ExactRays(context, arrays).count(next.first, counts, cancel);
       if (!out.empty())
         out.fill(next.first, next.n, [&](std::size_t ray) { return std::array{counts[ray - next.first]}; });
       pace.done(next.n);
@@ -215,8 +221,9 @@ class Collector {
             Answer& answer)
       : options_(options),
         answer_(answer),
-        exact_(rays.in_double()),
-        in_double_(context, rays),
+        exact_(rays.in_double() || context.scene().doubles != nullptr),
+        context_(context),
+        rays_(rays),
         chunks_{{context, rays}, {context, rays}},
         passes_(place.sessions.crossings.borrow()),
         pace_(kFirstRays, kCollected, place.sessions.collected_at_once) {}
@@ -266,7 +273,10 @@ class Collector {
       return 0;
     }
     pace_.done(n, kHitsAtOnce * n / std::max<std::size_t>(chunk.found.t.size(), 1));
-    if (exact_) chunk.exact = in_double_.settle(first, chunk.found, options_.max_hits, cancel);
+    if (context_.scene().doubles)
+      chunk.exact = DoubleRays(context_, rays_).settle(first, chunk.found, options_.max_hits, cancel);
+    else if (exact_)
+      chunk.exact = ExactRays(context_, rays_).settle(first, chunk.found, options_.max_hits, cancel);
     return n;
   }
 
@@ -282,7 +292,8 @@ class Collector {
   const AllHitsOptions& options_;
   Answer& answer_;
   bool exact_;
-  ExactRays in_double_;
+  const QueryContext& context_;
+  const RayArrays& rays_;
   Chunk chunks_[2];
   std::size_t turn_ = 0;
   Sessions<Passes>::Borrowed passes_;
@@ -294,25 +305,12 @@ class Collector {
 
 namespace {
 
+// Of few rays, by the host.
 AllHits all_of_doubles(const QueryContext& context, const RayArrays& arrays, const AllHitsOptions& options,
                        Answer& answer) {
   const DoubleRays in_doubles(context, arrays);
-  std::uint64_t n_invalid = 0;
-  for (std::size_t first = 0, n = 0; first < arrays.size(); first += n) {
-    n = std::min(kCollected, arrays.size() - first);
-    n_invalid += in_doubles.check(first, n, options.invalid);
-    ExactHits found{std::vector<std::vector<ExactHit>>(n), std::vector<std::uint8_t>(n)};
-    for_each_slow_grain(n, options.cancel, [&](std::size_t begin, std::size_t end) {
-      in_doubles.scene().all(in_doubles.questions(first + begin, end - begin),
-                             std::span(found.hits).subspan(begin, end - begin));
-      for (std::size_t i = begin; i < end; ++i) {
-        std::vector<ExactHit>& hits = found.hits[i];
-        found.more[i] = hits.size() > options.max_hits;
-        hits.resize(std::min<std::size_t>(hits.size(), options.max_hits));
-      }
-    });
-    answer.add(found);
-  }
+  const std::uint64_t n_invalid = in_doubles.check(options.invalid);
+  answer.add(in_doubles.all(options.max_hits, options.cancel));
   return answer.take(n_invalid);
 }
 
@@ -321,7 +319,8 @@ AllHits all_of_doubles(const QueryContext& context, const RayArrays& arrays, con
 AllHits all(const QueryContext& context, const Rays& rays, const AllHitsOptions& options) {
   const RayArrays arrays(rays);
   Answer answer(context, arrays.size(), options.max_bytes);
-  if (context.scene().doubles) return all_of_doubles(context, arrays, options, answer);
+  if (context.scene().doubles && arrays.size() < kFewForDevice)
+    return all_of_doubles(context, arrays, options, answer);
   const QueryReport report =
       share_rows(context, arrays.size(), kFirstRays, options.cancel,
                  [&](Place& place, RowTaker& rows, const std::optional<Cancel>& cancel) {

@@ -1,76 +1,59 @@
-// What    Rays of a program against a scene of doubles (double_scene.h): each on the host, in parallel.
+// What    Rays of a program against a scene of doubles: what the host answers by itself, of few rays and of
+//         those that the filter leaves in doubt (double_scene.h), and what it finds in double of hits that
+//         the filter is sure of.
 // Errors  As kdray/query.h says of rays that are none.
 #pragma once
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <atomic>
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "base/error.h"
-#include "engine/query/check_rays.h"
 #include "engine/query/double_scene.h"
-#include "engine/query/grains.h"
+#include "engine/query/exact_rays.h"
 #include "engine/query/queries.h"
 #include "engine/query/shared_rows.h"
 
 namespace kdray::query {
 
+// Calls of fewer rays are the host's: as many take it less time than a first launch takes a device.
+inline constexpr std::size_t kFewForDevice = std::size_t{1} << 14;
+
 class DoubleRays {
  public:
-  DoubleRays(const QueryContext& context, const RayArrays& rays)
-      : context_(&context), rays_(&rays), scene_(context.scene(), context.table) {}
+  DoubleRays(const QueryContext& context, const RayArrays& rays);
 
   const DoubleScene& scene() const { return scene_; }
 
-  // Of these rays, but for those that meet nothing; places count from the first.
-  std::vector<DoubleScene::Question> questions(std::size_t first, std::size_t n) const {
-    std::vector<DoubleScene::Question> asked;
-    asked.reserve(n);
-    for (std::size_t i = first; i < first + n; ++i) {
-      if (rays_->mask(i) == 0 || fault(i) != nullptr) continue;
-      if (const auto ray = context_->frame.double_ray(rays_->origin(i), rays_->direction(i), rays_->t_min(i),
-                                                      rays_->t_max(i)))
-        asked.push_back({*ray, rays_->mask(i), i - first});
-    }
-    return asked;
-  }
+  // None of a ray that meets nothing.
+  std::optional<DoubleScene::Question> question(std::size_t i, std::size_t place) const;
+  // Of these rays; places count from the first.
+  std::vector<DoubleScene::Question> questions(std::size_t first, std::size_t n) const;
+  DoubleLine line(std::size_t i) const;
 
-  // Throws for the first of these rays that is none, where such are errors; counts them.
-  std::uint64_t check(std::size_t first, std::size_t n, InvalidRays invalid) const {
-    std::atomic<std::uint64_t> count{0};
-    for_each_grain(n, [&](std::size_t begin, std::size_t end) {
-      std::uint64_t faults = 0;
-      for (std::size_t i = first + begin; i < first + end; ++i) faults += fault(i) != nullptr;
-      count += faults;
-    });
-    if (count > 0 && invalid == InvalidRays::error) {
-      std::size_t i = first;
-      while (fault(i) == nullptr) ++i;
-      throw Error(ErrorCode::input, fmt::format("ray {}: {}; take it out or repair it", i, fault(i)));
-    }
-    return count;
-  }
+  // Throws for the first ray that is none, where such are errors; counts them.
+  std::uint64_t check(InvalidRays invalid) const;
 
   // Calls answer(first, last) for parts of the rays, from several threads.
   template <class Answer>
   QueryReport run(const QueryOptions& options, const Answer& answer) const {
-    constexpr std::size_t kAtOnce = std::size_t{1} << 16;
-    QueryReport report;
-    for (std::size_t first = 0; first < rays_->size(); first += kAtOnce) {
-      const std::size_t n = std::min(kAtOnce, rays_->size() - first);
-      report.invalid += check(first, n, options.invalid);
-      for_each_slow_grain(n, options.cancel,
-                          [&](std::size_t begin, std::size_t end) { answer(first + begin, first + end); });
-    }
+    const QueryReport report{check(options.invalid)};
+    for_each_slow_grain(rays_->size(), options.cancel, answer);
     return report;
   }
 
+  // All hits of every ray.
+  ExactHits all(std::uint32_t max_hits, const std::optional<Cancel>& cancel) const;
+
+  // Of rays first and on: counts those that are kInDoubtCount (all_hits.h).
+  void count_in_doubt(std::size_t first, std::span<std::uint32_t> counts,
+                      const std::optional<Cancel>& cancel) const;
+  // All hits of rays first and on, from those that the filter is sure of, which are named by reference.
+  ExactHits settle(std::size_t first, const LocalHits& found, std::uint32_t max_hits,
+                   const std::optional<Cancel>& cancel) const;
+
  private:
-  const char* fault(std::size_t i) const {
-    return fault_of(rays_->origin(i), rays_->direction(i), rays_->t_min(i), rays_->t_max(i));
-  }
+  const char* fault(std::size_t i) const;
 
   const QueryContext* context_;
   const RayArrays* rays_;

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/query/double_hits.h"
 #include "engine/query/double_walk.h"
 #include "engine/query/scene_arguments.h"
 #include "engine/query/surface.h"
@@ -20,18 +21,8 @@ using layout::WideNode;
 
 constexpr double kBoxes = 0x1p-18;  // 64u of the reach: see double_scene.h
 
-float rounded_down(double value) {
-  constexpr double kMost = std::numeric_limits<float>::max();
-  return std::nextafterf(static_cast<float>(std::clamp(value, -kMost, kMost)), -HUGE_VALF);
-}
-float rounded_up(double value) {
-  return -rounded_down(-value);
-}
-
-dvec3 without_tiny(dvec3 v) {
-  for (int k = 0; k < 3; ++k)
-    if (std::abs(v[k]) < scene::DoubleTriangles::kLeast) v[k] = 0;
-  return v;
+ExactLine exact_line(const DoubleLine& line) {
+  return {line.origin, line.direction, line.rest};
 }
 
 std::uint32_t ref_of(std::uint32_t triangle) {
@@ -75,15 +66,14 @@ struct DoubleScene::Candidate {
 class DoubleScene::Line : public ExactLine {
  public:
   Line(const DoubleScene& scene, const Question& question)
-      : ExactLine(without_tiny(question.ray.origin), without_tiny(question.ray.direction),
-                  without_tiny(question.ray.rest)),
+      : ExactLine(exact_line(question.ray.line)),
         scene_(&scene),
         ray_(&question.ray),
         end_(question.ray.t_max) {}
 
   LineInFloats in_floats() const {
-    const dvec3 start = ray_->origin + ray_->rest + ray_->start * ray_->direction;
-    LineInFloats line(start, ray_->direction, widened(scene_->margin_, start), scene_->reach_);
+    const dvec3 start = ray_->place_at_start();
+    LineInFloats line(start, ray_->line.direction, widened(scene_->margin_, start), scene_->reach_);
     line.begin = rounded_down(ray_->t_min - ray_->start - slack(ray_->t_min));
     line.end = end_in_floats();
     return line;
@@ -112,12 +102,6 @@ class DoubleScene::Line : public ExactLine {
     if (b.t.most < a.t.least) return false;
     const int order = compare_t(scene_->doubles_->at(a.triangle), scene_->doubles_->at(b.triangle));
     return order != 0 ? order < 0 : scene_->number_of(a.triangle) < scene_->number_of(b.triangle);
-  }
-
-  ExactHit hit(const Candidate& candidate) const {
-    const Corners corners = scene_->doubles_->at(candidate.triangle);
-    const auto [u, v] = weights_of(corners);
-    return {std::scalbn(t_of(corners), ray_->exponent), u, v, ref_of(candidate.triangle), kNoInstance};
   }
 
  private:
@@ -175,6 +159,34 @@ std::vector<DoubleScene::Line> DoubleScene::walk(std::span<const Question> quest
   return lines;
 }
 
+void DoubleScene::tell(std::span<const LineHit> found, std::span<ExactHit> hits) const {
+  constexpr std::size_t kLanes = CrossedTriangles::kLanes, kAhead = kLanes;
+  const auto fetch_ahead = [&](std::size_t i) {
+    if (i + 2 * kAhead < found.size()) __builtin_prefetch(&doubles_->corners[found[i + 2 * kAhead].triangle]);
+    if (i + kAhead >= found.size()) return;
+    for (const std::uint32_t vertex : doubles_->corners[found[i + kAhead].triangle])
+      __builtin_prefetch(&doubles_->vertices[vertex]);
+  };
+  CrossedTriangles crossed;
+  ToldHits told;
+  for (std::size_t first = 0; first < found.size(); first += kLanes) {
+    const std::size_t n = std::min(kLanes, found.size() - first);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      fetch_ahead(first + lane);
+      const LineHit& one = found[first + std::min(lane, n - 1)];
+      crossed.put(lane, one.line, doubles_->at(one.triangle));
+    }
+    tell_hits(crossed, told);
+    for (std::size_t lane = 0; lane < n; ++lane) {
+      const LineHit& one = found[first + lane];
+      const double t =
+          told.is_sure[lane] != 0 ? told.t[lane] : exact_line(one.line).t_of(doubles_->at(one.triangle));
+      hits[first + lane] = {one.line.caller_t(t), told.u[lane], told.v[lane], ref_of(one.triangle),
+                            kNoInstance};
+    }
+  }
+}
+
 std::uint32_t DoubleScene::number_of(std::uint32_t triangle) const {
   return query::number_of(scene_->flat, ref_of(triangle));
 }
@@ -193,8 +205,16 @@ void DoubleScene::closest(std::span<const Question> questions,
         line.end_at(candidate.t.most);
         return true;
       });
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    if (best[i]) hits[questions[i].place] = lines[i].hit(*best[i]);
+  std::vector<LineHit> found;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (!best[i]) continue;
+    found.push_back({questions[i].ray.line, best[i]->triangle});
+    places.push_back(questions[i].place);
+  }
+  std::vector<ExactHit> told(found.size());
+  tell(found, told);
+  for (std::size_t i = 0; i < told.size(); ++i) hits[places[i]] = told[i];
 }
 
 void DoubleScene::any(std::span<const Question> questions, std::span<std::uint8_t> hit) const {
@@ -239,7 +259,11 @@ void DoubleScene::all(std::span<const Question> questions, std::span<std::vector
   collect(questions, [&](std::size_t i, const Line& line, std::vector<Candidate>& candidates) {
     std::sort(candidates.begin(), candidates.end(),
               [&](const Candidate& a, const Candidate& b) { return line.precedes(a, b); });
-    for (const Candidate& candidate : candidates) hits[questions[i].place].push_back(line.hit(candidate));
+    std::vector<LineHit> found;
+    for (const Candidate& candidate : candidates)
+      found.push_back({questions[i].ray.line, candidate.triangle});
+    hits[questions[i].place].resize(found.size());
+    tell(found, hits[questions[i].place]);
   });
 }
 

@@ -1,5 +1,6 @@
 // What    A scene of doubles (TreeOptions::geometry) asked by rays and points, on the host: what exact
-//         arithmetic says of the vertices and rays as the caller gave them.
+//         arithmetic says of the vertices and rays as the caller gave them. Of many rays the device has told
+//         first what floats are sure of (primitives/triangle/filter.clh), and these are the rest.
 // Shape   Rays walk through the wide tree (double_walk.h), whose boxes are those of the floats, widened.
 //         Which triangles a line crosses goes by the half-open rule with exact signs (exact_triangle.h), for
 //         closest hits too: of what shares an edge one is hit. Which of two comes first is decided exactly;
@@ -38,6 +39,12 @@ class DoubleScene {
   };
   // t as the caller's rays have it.
   void closest(std::span<const Question> questions, std::span<std::optional<ExactHit>> hits) const;
+  // Of triangles that lines cross for certain; one for each.
+  struct LineHit {
+    DoubleLine line;
+    std::uint32_t triangle;
+  };
+  void tell(std::span<const LineHit> found, std::span<ExactHit> hits) const;
   void any(std::span<const Question> questions, std::span<std::uint8_t> hit) const;
   // Of count and all: a hit at t = 0 counts where t_min is 0.
   void count(std::span<const Question> questions, std::span<std::uint32_t> counts) const;

@@ -101,23 +101,25 @@ void ExactRays::count(std::size_t first, std::span<std::uint32_t> counts,
 ExactHits ExactRays::settle(std::size_t first, const LocalHits& found, std::uint32_t max_hits,
                             const std::optional<Cancel>& cancel) const {
   const std::size_t n = found.more.size();
-  ExactHits exact{std::vector<std::vector<ExactHit>>(n), {found.more.begin(), found.more.end()}};
+  ExactHits exact(n);
+  std::copy(found.more.begin(), found.more.end(), exact.more.begin());
   for_each_slow_grain(n, cancel, [&](std::size_t begin, std::size_t end) {
+    std::vector<ExactHit> hits;
     for (std::size_t i = begin; i < end; ++i) {
-      std::vector<ExactHit>& hits = exact.hits[i];
       if (begins_near(first + i)) {
         all_hits(first + i, hits);
         exact.more[i] = hits.size() > max_hits;
-        hits.resize(std::min<std::size_t>(hits.size(), max_hits));
+        exact.put(i, std::span(hits).first(std::min<std::size_t>(hits.size(), max_hits)));
         continue;
       }
-      hits.reserve(found.splits[i + 1] - found.splits[i]);
+      hits.clear();
       for (std::size_t k = found.splits[i]; k < found.splits[i + 1]; ++k) {
         const std::uint32_t instance = found.instance.empty() ? kNoInstance : found.instance[k];
         const double t = distance(first + i, found.primitive[k], instance, found.t[k]);
         hits.push_back({t, found.u[k], found.v[k], found.primitive[k], instance});
       }
       scene_.sort(hits);
+      exact.put(i, hits);
     }
   });
   return exact;

@@ -13,13 +13,33 @@
 #include "engine/query/all_hits.h"
 #include "engine/query/exact_scene.h"
 #include "engine/query/queries.h"
+#include "engine/query/shared_rows.h"
 
 namespace kdray::query {
 
 // Of each ray of a chunk.
-struct ExactHits {
-  std::vector<std::vector<ExactHit>> hits;
+class ExactHits {
+ public:
+  ExactHits() = default;
+  explicit ExactHits(std::size_t n_rays)
+      : more(n_rays), ends_(n_rays), grains_((n_rays + kSlowGrain - 1) / kSlowGrain) {}
+
   std::vector<std::uint8_t> more;  // 1: it has more than max_hits
+
+  // Rays of a grain of for_each_slow_grain() get theirs one after the other, by one thread.
+  void put(std::size_t ray, std::span<const ExactHit> hits) {
+    std::vector<ExactHit>& grain = grains_[ray / kSlowGrain];
+    grain.insert(grain.end(), hits.begin(), hits.end());
+    ends_[ray] = static_cast<std::uint32_t>(grain.size());
+  }
+  std::span<const ExactHit> of(std::size_t ray) const {
+    const std::uint32_t first = ray % kSlowGrain == 0 ? 0 : ends_[ray - 1];
+    return std::span(grains_[ray / kSlowGrain]).subspan(first, ends_[ray] - first);
+  }
+
+ private:
+  std::vector<std::uint32_t> ends_;  // where each ray's end in its grain
+  std::vector<std::vector<ExactHit>> grains_;
 };
 
 class ExactRays {

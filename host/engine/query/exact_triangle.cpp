@@ -299,26 +299,6 @@ double ExactLine::t_of(const Corners& v) const {
   return quotient(pair_of(t.volume), pair_of(t.facing));
 }
 
-std::array<double, 2> ExactLine::weights_of(const Corners& v) const {
-  Pair x[3], y[3];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto from_origin = [&](int k) {
-      const Pair d = exact_sum(v[i][k], -origin_[k]);
-      return with_low(d.high, d.low - rest_[k]);
-    };
-    const Pair z = from_origin(kz_);
-    x[i] = from_origin(kx_) * direction_[kz_] + -(z * direction_[kx_]);
-    y[i] = from_origin(ky_) * direction_[kz_] + -(z * direction_[ky_]);
-  }
-  const auto weight = [&](std::size_t p, std::size_t q) {
-    const Pair w = x[q] * y[p] + -(y[q] * x[p]);
-    return std::abs(w.high + w.low);
-  };
-  const double wa = weight(1, 2), wb = weight(2, 0), wc = weight(0, 1), all = wa + wb + wc;
-  if (!(all > 0)) return {1.0 / 3, 1.0 / 3};
-  return {wb / all, wc / all};
-}
-
 int ExactLine::compare_t(const Corners& v, const Corners& w) const {
   const ExactQuotient one(v, origin_, rest_, direction_), other(w, origin_, rest_, direction_);
   const Expansion<48> volume = compressed(one.volume), facing = compressed(one.facing);

@@ -6,7 +6,7 @@
 //         origin a crossing lies is the sign of a volume, of the same exactness.
 // Errors  None in what is decided. t, u and v are off by some 2^-50 of their terms; the sign of t is right.
 //         Coordinates of the origin below 2^-140 and of the direction below 2^-200 count as 0: so no product
-//         underflows. What is told of triangles of doubles (t_of, weights_of, compare_t) takes coordinates of
+//         underflows. What is told of triangles of doubles (t_of, compare_t) takes coordinates of
 //         2^-100 or more: t and the weights are right to the last place, and which t is the lesser is exact.
 // Source  Shewchuk 1997 (scene/model/predicates.h). Nearly all signs are sure in doubles already.
 #pragma once
@@ -41,10 +41,9 @@ class ExactLine {
   };
   Bounds bounds_of_t(const Corners& corners) const;
   static Bounds around(double t);  // the exact t, of what t_of tells
-  // Of a triangle that it crosses: t, the weights of the second and third corner, and the sign of t less that
-  // of another such triangle.
+  // Of a triangle that it crosses: t, and the sign of t less that of another such triangle. (Weights:
+  // double_hits.h.)
   double t_of(const Corners& corners) const;
-  std::array<double, 2> weights_of(const Corners& corners) const;
   int compare_t(const Corners& corners, const Corners& others) const;
 
  private:

@@ -26,6 +26,12 @@ struct HitArrays {
   std::uint32_t* instance;  // by index, or kNoInstance; null where the scene has none
 };
 
+// Whether the filter of a scene of doubles can't tell what the ray crosses: KDRAY_SPAN_IN_DOUBT of
+// hit_list.clh.
+inline bool is_in_doubt(const layout::QuerySpan& span) {
+  return span.n_hits == 0 && span.more == 0 && span.last_number == 0xfffffffeu;
+}
+
 class HitLists {
  public:
   struct Walk {

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "engine/query/check_rays.h"
+#include "engine/query/filter_rays.h"
 #include "engine/query/grains.h"
 #include "engine/query/near_rays.h"
 #include "engine/query/plain_floats.h"
@@ -15,9 +16,6 @@
 namespace kdray::query {
 
 namespace {
-
-// A ray that meets nothing.
-constexpr layout::QueryRay kNoRay{{0, 0, 0}, 0, {1, 0, 0}, -std::numeric_limits<float>::infinity()};
 
 void check_size(std::size_t size, std::size_t n, const char* name) {
   if (size == n || size <= 1) return;
@@ -114,23 +112,31 @@ std::optional<LocalLine> LocalFrame::line(const dvec3& origin, const dvec3& dire
   return begin_line(origin, direction, in_double);
 }
 
+DoubleLine LocalFrame::double_line(const dvec3& origin, const dvec3& direction) const {
+  const dvec3 from_center = origin - space_.center;
+  const dvec3 rest = lost_of(origin, space_.center, from_center);
+  DoubleLine line{from_center * space_.scale, rest * space_.scale, direction, exponent_, unit_};
+  if (const double largest = largest_component(direction); !is_ordinary_length(largest)) {
+    const int length = std::ilogb(largest);
+    for (int k = 0; k < 3; ++k) line.direction[k] = std::scalbn(direction[k], -length);
+    line.exponent -= length;
+    line.unit = 0;
+  }
+  for (dvec3* v : {&line.origin, &line.rest, &line.direction})
+    for (int k = 0; k < 3; ++k)
+      if (std::abs((*v)[k]) < scene::DoubleTriangles::kLeast) (*v)[k] = 0;
+  return line;
+}
+
 std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3& direction, double t_min,
                                                 double t_max) const {
   const std::optional<LocalLine> line = begin_line(origin, direction, true);
   if (!line) return std::nullopt;
-  const dvec3 from_center = origin - space_.center;
-  const dvec3 rest = lost_of(origin, space_.center, from_center);
   // Dividing by the usual unit, a power of two, rounds as scalbn does, and needs no call.
   const auto scaled = [&](double t) {
     return line->exponent == exponent_ ? t / unit_ : std::scalbn(t, -line->exponent);
   };
-  return DoubleRay{from_center * space_.scale,
-                   rest * space_.scale,
-                   line->direction,
-                   line->ahead,
-                   scaled(t_min),
-                   scaled(t_max),
-                   line->exponent};
+  return DoubleRay{double_line(origin, direction), line->ahead, scaled(t_min), scaled(t_max)};
 }
 
 LocalRay LocalFrame::begin(const dvec3& origin, const dvec3& direction, double t_min, double t_max,
@@ -154,7 +160,11 @@ LocalRay LocalFrame::begin(const dvec3& origin, const dvec3& direction, double t
 
 void LocalRays::fill(std::size_t first, std::size_t n, layout::QueryRay* out) {
   moved_.clear();
-  if (!fill_plain_floats(*rays_, *frame_, first, n, out)) fill_any(first, n, out);
+  if (for_filter_) {
+    if (!fill_filter_rays(*rays_, *frame_, first, n, out)) note_invalid(first, n);
+  } else if (!fill_plain_floats(*rays_, *frame_, first, n, out)) {
+    fill_any(first, n, out);
+  }
   if (rays_->rays().masks.empty()) return;
   for (std::size_t i = 0; i < n; ++i)
     if (rays_->mask(first + i) == 0) out[i] = kNoRay;
@@ -169,10 +179,10 @@ void LocalRays::fill_any(std::size_t first, std::size_t n, layout::QueryRay* out
       const dvec3 o = rays_->origin(first + i), d = rays_->direction(first + i);
       const double t_min = rays_->t_min(first + i), t_max = rays_->t_max(first + i);
       LocalRay local{kNoRay, 0, frame_->exponent()};
-      if (fault_of(o, d, t_min, t_max) == nullptr) {
-        local = frame_->begin(o, d, t_min, t_max, rays_->in_double());
-      } else {
+      if (fault_of(o, d, t_min, t_max) != nullptr) {
         all_valid = false;
+      } else {
+        local = frame_->begin(o, d, t_min, t_max, rays_->in_double());
       }
       out[i] = local.ray;
       moved_[i] = {local.ahead, local.exponent};

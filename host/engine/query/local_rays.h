@@ -10,6 +10,8 @@
 //         direction are rounded to float once; lengths change by powers of two.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -62,13 +64,42 @@ struct LocalRay {
   int exponent;
 };
 
-// A ray of a scene of doubles, in its space: exactly origin + rest + t*direction. t is 2^-exponent times the
-// caller's. A walk in floats may begin at `start`, before anything lies.
-struct DoubleRay {
+// A ray that meets nothing.
+inline constexpr layout::QueryRay kNoRay{{0, 0, 0}, 0, {1, 0, 0}, -std::numeric_limits<float>::infinity()};
+
+// A line in the space of a scene of doubles: exactly origin + rest + t*direction. t is 2^-exponent times the
+// caller's. Components below DoubleTriangles::kLeast are 0.
+struct DoubleLine {
   dvec3 origin, rest, direction;
-  double start, t_min, t_max;
   int exponent;
+  double unit;  // 2^exponent, or 0 where that is no ordinary double
+
+  double caller_t(double t) const { return unit != 0 ? t * unit : std::scalbn(t, exponent); }
 };
+
+// A ray of a scene of doubles. A walk in floats may begin at `start`, before anything lies.
+struct DoubleRay {
+  DoubleLine line;
+  double start, t_min, t_max;
+
+  // Rounded once, however far off the origin is.
+  dvec3 place_at_start() const {
+    dvec3 place;
+    for (int k = 0; k < 3; ++k)
+      place[k] = start == 0 ? line.origin[k] + line.rest[k]
+                            : std::fma(start, line.direction[k], line.origin[k]) + line.rest[k];
+    return place;
+  }
+};
+
+// Below and above a value, by a last place of float or two.
+inline float rounded_down(double value) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return std::nextafterf(static_cast<float>(std::clamp(value, -kMost, kMost)), -HUGE_VALF);
+}
+inline float rounded_up(double value) {
+  return -rounded_down(-value);
+}
 
 // The same in doubles: t = ldexp(ahead + local t, exponent).
 struct LocalLine {
@@ -83,6 +114,8 @@ class LocalFrame {
 
   // None where it passes the bounds by, or stays too far from them for floats.
   std::optional<LocalLine> line(const dvec3& origin, const dvec3& direction, bool in_double) const;
+  // The same line in the space of a scene of doubles.
+  DoubleLine double_line(const dvec3& origin, const dvec3& direction) const;
   // None where line() has none.
   std::optional<DoubleRay> double_ray(const dvec3& origin, const dvec3& direction, double t_min,
                                       double t_max) const;
@@ -111,7 +144,9 @@ class LocalFrame {
 // One chunk after the other; its memory is used again.
 class LocalRays {
  public:
-  LocalRays(const RayArrays& rays, const LocalFrame& frame) : rays_(&rays), frame_(&frame) {}
+  // for_filter: see filter_rays.h; then nothing tells world_t.
+  LocalRays(const RayArrays& rays, const LocalFrame& frame, bool for_filter = false)
+      : rays_(&rays), frame_(&frame), for_filter_(for_filter) {}
 
   // Fills out[0, n) with rays [first, first + n), which may be asked for again. One whose mask has no bit
   // meets nothing.
@@ -138,6 +173,7 @@ class LocalRays {
 
   const RayArrays* rays_;
   const LocalFrame* frame_;
+  bool for_filter_;
   std::vector<Moved> moved_;   // empty: all rays of the chunk are as far ahead and as long as usual
   std::size_t looked_at_ = 0;  // rays before this one have been counted where they are invalid
   std::uint64_t n_invalid_ = 0;

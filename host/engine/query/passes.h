@@ -51,6 +51,8 @@ class Passes {
   const Target& target() const { return target_; }
   bool has_instances() const { return !target_.scene.flat.instances.empty(); }
   const NearRays& near_rays() const { return near_rays_; }  // of the chunk in work
+  // Rays of the chunk for which is_in_doubt() held in a pass.
+  std::span<const std::uint32_t> in_doubt() const { return in_doubt_; }
 
   // The first pass of the next chunk: what it found of each ray. (Looked at just before they are traced, the
   // rays come from memory once.)
@@ -97,6 +99,7 @@ class Passes {
   std::span<const Ray> rays_;
   std::vector<Ray> kept_;
   std::span<const std::uint32_t> masks_;
+  std::vector<std::uint32_t> in_doubt_;
 };
 
 }  // namespace kdray::query

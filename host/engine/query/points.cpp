@@ -94,7 +94,8 @@ std::vector<std::uint32_t> crossings_above(const QueryContext& context, Place& p
 }
 
 // Whether each point has an odd number of surfaces above it: it is inside of closed ones. Points of doubles
-// so near to a surface that floats can't tell are looked at in double.
+// so near to a surface that floats can't tell are looked at in double; in a scene of doubles those of which
+// the filter can't.
 std::vector<std::uint8_t> are_inside(const QueryContext& context, Place& place, std::span<const dvec3> points,
                                      bool in_double, const std::optional<Cancel>& cancel) {
   const std::vector<std::uint32_t> counts = crossings_above(context, place, points, cancel);
@@ -102,11 +103,14 @@ std::vector<std::uint8_t> are_inside(const QueryContext& context, Place& place, 
   for_each_index(points.size(), [&](std::size_t i) { inside[i] = counts[i] % 2; });
   if (!in_double && !context.scene().doubles) return inside;
   const ExactScene exact(context.scene());
+  const auto is_in_doubt = [&](std::size_t i, const dvec3& local) {
+    return context.scene().doubles ? counts[i] == kInDoubtCount : exact.is_near(local);
+  };
   for_each_slow_grain(points.size(), cancel, [&](std::size_t begin, std::size_t end) {
     std::vector<ExactHit> hits;
     for (std::size_t i = begin; i < end; ++i) {
       const dvec3 local = context.frame.space().local(points[i]);
-      if (context.frame.is_outside(local) || !exact.is_near(local)) continue;
+      if (context.frame.is_outside(local) || !is_in_doubt(i, local)) continue;
       exact.cross(local, dvec3(kUp[0], kUp[1], kUp[2]), hits);
       inside[i] = hits.size() % 2;
     }

@@ -18,8 +18,9 @@
 
 namespace kdray::query {
 
-// A hit's primitive where the walk failed: KDRAY_QUERY_INVALID of query.clh.
-inline constexpr std::int32_t kFailedWalk = -2;
+// A hit's primitive where the walk failed, and where a scene of doubles leaves it in doubt:
+// KDRAY_QUERY_INVALID and KDRAY_QUERY_IN_DOUBT of query.clh.
+inline constexpr std::int32_t kFailedWalk = -2, kInDoubt = -3;
 [[noreturn]] void throw_failed_walk();
 
 class Session {

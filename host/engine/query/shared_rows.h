@@ -29,10 +29,11 @@ namespace kdray::query {
 void throw_if_cancelled(const std::optional<Cancel>& cancel);
 
 // Calls work(first, last) for parts of [0, n), from several threads of the host, where an element may take
-// long; looks for cancellation now and then.
+// long; looks for cancellation now and then. Each part but the last has kSlowGrain elements.
+inline constexpr std::size_t kSlowGrain = 64;
 template <class Work>
 void for_each_slow_grain(std::size_t n, const std::optional<Cancel>& cancel, const Work& work) {
-  constexpr std::size_t kGrain = 64, kLook = 4096;
+  constexpr std::size_t kGrain = kSlowGrain, kLook = 64 * kGrain;
   for (std::size_t first = 0; first < n; first += kLook) {
     throw_if_cancelled(cancel);
     const std::size_t last = std::min(n, first + kLook);

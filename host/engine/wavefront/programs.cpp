@@ -49,7 +49,8 @@ constexpr int kFarSpread = 5, kFarPairs = 3;
 
 // The bits a file reads: a scene that differs elsewhere shares the program.
 layout::Features bits_read_by(const std::string& file) {
-  if (file == "traverse/query.cl" || file == "traverse/collect.cl") return kGeometry | KDRAY_FEATURE_MASKS;
+  if (file == "traverse/query.cl" || file == "traverse/collect.cl")
+    return kGeometry | KDRAY_FEATURE_MASKS | KDRAY_FEATURE_FILTER;
   if (file == "wave/plan.cl") return KDRAY_FEATURE_ADAPTIVE;
   if (file == "odprt/stages/plan.cl") return KDRAY_FEATURE_ADAPTIVE | kSizesTravel;
   if (file == "raygen/admit.cl" || file == "odprt/stages/admit.cl")
@@ -69,12 +70,12 @@ layout::Features bits_read_by(const std::string& file) {
 }
 
 // The bits that a file's program may have though they are not wanted: not the rules that are off, by which
-// rays are counted; not masks, which a scene has to have, nor textures, whose arrays would be read, nor what
-// changes the form of rays or where they start; and not in ODPRT what sizes its plan
+// rays are counted; not masks, which a scene has to have, nor a filter, nor textures, whose arrays would be
+// read, nor what changes the form of rays or where they start; and not in ODPRT what sizes its plan
 // (odprt/choose_work.clh).
 layout::Features spare_bits_of(const std::string& file) {
-  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | kLooks | kSamples |
-                                                 KDRAY_FEATURE_INSTANCES);
+  layout::Features bits = bits_read_by(file) & ~(KDRAY_KEEP_ALL | KDRAY_FEATURE_MASKS | KDRAY_FEATURE_FILTER |
+                                                 kLooks | kSamples | KDRAY_FEATURE_INSTANCES);
   if (file == "odprt/wave.cl" || file == "odprt/stages/plan.cl") bits &= ~kSizesTravel;
   return bits;
 }

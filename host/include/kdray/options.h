@@ -64,7 +64,7 @@ struct TreeOptions {
   std::uint64_t memory_bytes = 0;
   bool binary_form = true;  // is made too; few options take it (takes_binary_form)
   // float64: queries answer for the vertices as they were given, in doubles, which are kept beside the floats
-  // of the scene, by exact arithmetic on the host (slower). For triangles alone. Pictures are of the floats.
+  // of the scene, as exact arithmetic does (slower). For triangles alone. Pictures are of the floats.
   Precision geometry = Precision::float32;
   bool operator==(const TreeOptions&) const = default;
 };

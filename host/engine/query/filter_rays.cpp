@@ -1,0 +1,178 @@
+#include "engine/query/filter_rays.h"
+
+// As in double_walk.cpp.
+#define HWY_BROKEN_EMU128 0
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/query/filter_rays.cpp"
+// First, as it includes this file for each instruction set.
+#include "hwy/foreach_target.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "engine/query/check_rays.h"
+#include "engine/query/grains.h"
+#include "hwy/highway.h"
+
+#ifndef KDRAY_QUERY_FILTER_ROWS
+#define KDRAY_QUERY_FILTER_ROWS
+namespace kdray::query {
+
+constexpr std::size_t kRaysAtOnce = 8;
+
+// The caller's rays, lane by lane.
+struct FilterRows {
+  double origin[3][kRaysAtOnce], direction[3][kRaysAtOnce], t_min[kRaysAtOnce], t_max[kRaysAtOnce];
+};
+
+struct FilterSpace {
+  double center[3], scale, per_unit;  // local t = t * per_unit
+};
+
+// In the order of QueryRay's fields.
+struct FilteredRows {
+  float fields[8][kRaysAtOnce];
+  double is_ordinary[kRaysAtOnce];  // else 0, and the fields mean nothing
+};
+
+}  // namespace kdray::query
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace kdray::query::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, kRaysAtOnce>;
+using V = hn::Vec<D>;
+
+HWY_ATTR inline void store_floats(V v, float* to) {
+  const hn::Rebind<float, D> floats;
+  hn::StoreU(hn::DemoteTo(floats, v), floats, to);
+}
+
+HWY_ATTR inline V sum_of_sizes(const V (&v)[3]) {
+  return hn::Add(hn::Abs(v[0]), hn::Add(hn::Abs(v[1]), hn::Abs(v[2])));
+}
+
+HWY_ATTR inline V dot(const V (&a)[3], const V (&b)[3]) {
+  return hn::MulAdd(a[0], b[0], hn::MulAdd(a[1], b[1], hn::Mul(a[2], b[2])));
+}
+
+// Lanes from `lane` on, as many as a vector has.
+HWY_ATTR inline void filter_lanes(const FilterRows& rays, const FilterSpace& space, std::size_t lane,
+                                  FilteredRows& out) {
+  constexpr double kFarther = 0x1p13, kFarthest = 0x1p30, kLeastOutward = 0x1p-22;
+  const D d;
+  const auto all = [&](double x) HWY_ATTR { return hn::Set(d, x); };
+  V local[3], rest[3], direction[3];
+  for (int k = 0; k < 3; ++k) {
+    const V origin = hn::LoadU(d, rays.origin[k] + lane), center = all(space.center[k]);
+    const V from_center = hn::Sub(origin, center), back = hn::Sub(origin, from_center);
+    const V lost = hn::Sub(hn::Sub(origin, hn::Add(from_center, back)), hn::Sub(center, back));
+    local[k] = hn::Mul(from_center, all(space.scale));
+    rest[k] = hn::Mul(lost, all(space.scale));
+    direction[k] = hn::LoadU(d, rays.direction[k] + lane);
+  }
+  const V way = sum_of_sizes(local), length = sum_of_sizes(direction);
+  const auto is_far = hn::Gt(way, all(kFarther));
+  // Before it enters the ball about the centre that the scene lies in, whose reach is below 2^11 along each
+  // axis: frusta want t from 0 on.
+  const V length2 = dot(direction, direction);
+  const V nearest = hn::Neg(hn::Div(dot(local, direction), length2));
+  const V before = hn::Div(all(0x1.cp11), hn::Sqrt(length2));
+  const V start = hn::IfThenElseZero(is_far, hn::Sub(nearest, before));
+  for (int k = 0; k < 3; ++k) {
+    store_floats(hn::Add(hn::MulAdd(start, direction[k], local[k]), rest[k]), out.fields[k] + lane);
+    store_floats(direction[k], out.fields[4 + k] + lane);
+  }
+  const V t_min = hn::Mul(hn::LoadU(d, rays.t_min + lane), all(space.per_unit));
+  const V t_max = hn::Mul(hn::LoadU(d, rays.t_max + lane), all(space.per_unit));
+  const V since = hn::Sub(t_min, start);  // nothing lies before 0
+  const V begin = hn::IfThenElse(is_far, hn::Max(since, hn::Zero(d)), since), end = hn::Sub(t_max, start),
+          outward = all(kLeastOutward);
+  store_floats(hn::NegMulAdd(hn::Abs(begin), outward, begin), out.fields[3] + lane);
+  store_floats(hn::MulAdd(hn::Abs(end), outward, end), out.fields[7] + lane);
+  // NaN is in no order.
+  const auto has_length =
+      hn::And(hn::Ge(length, all(3 * double{kShortestOrdinary})), hn::Lt(length, all(kLongestOrdinary)));
+  const auto has_place = hn::And(hn::Le(way, all(kFarthest)), hn::Le(hn::Abs(begin), all(0x1p100)));
+  const auto is_ordinary = hn::And(hn::And(has_length, has_place), hn::Eq(t_max, t_max));
+  hn::StoreU(hn::IfThenElseZero(is_ordinary, all(1)), d, out.is_ordinary + lane);
+}
+
+HWY_ATTR void FilterAll(const FilterRows& rays, const FilterSpace& space, FilteredRows& out) {
+  for (std::size_t lane = 0; lane < kRaysAtOnce; lane += hn::Lanes(D())) filter_lanes(rays, space, lane, out);
+}
+
+}  // namespace kdray::query::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace kdray::query {
+
+HWY_EXPORT(FilterAll);
+
+namespace {
+
+layout::QueryRay filter_ray(const LocalFrame& frame, const RayArrays& rays, std::size_t i) {
+  const auto ray = frame.double_ray(rays.origin(i), rays.direction(i), rays.t_min(i), rays.t_max(i));
+  if (!ray) return kNoRay;
+  const dvec3 start = ray->place_at_start();
+  layout::QueryRay out;
+  for (int k = 0; k < 3; ++k) {
+    out.origin[k] = static_cast<float>(start[k]);
+    out.direction[k] = static_cast<float>(ray->line.direction[k]);
+  }
+  out.t_min = rounded_down(ray->t_min - ray->start);
+  out.t_max = rounded_up(ray->t_max - ray->start);
+  return out;
+}
+
+void put(FilterRows& rows, std::size_t lane, const RayArrays& rays, std::size_t i) {
+  const dvec3 origin = rays.origin(i), direction = rays.direction(i);
+  for (int k = 0; k < 3; ++k) rows.origin[k][lane] = origin[k], rows.direction[k][lane] = direction[k];
+  rows.t_min[lane] = rays.t_min(i);
+  rows.t_max[lane] = rays.t_max(i);
+}
+
+layout::QueryRay ray_of(const FilteredRows& rows, std::size_t lane) {
+  const auto& f = rows.fields;
+  return {{f[0][lane], f[1][lane], f[2][lane]}, f[3][lane], {f[4][lane], f[5][lane], f[6][lane]}, f[7][lane]};
+}
+
+}  // namespace
+
+bool fill_filter_rays(const RayArrays& rays, const LocalFrame& frame, std::size_t first, std::size_t n,
+                      layout::QueryRay* out) {
+  const LocalSpace& s = frame.space();
+  const FilterSpace space{{s.center.x, s.center.y, s.center.z}, s.scale, 1 / frame.unit()};
+  std::atomic<bool> valid{true};
+  for_each_grain(n, [&](std::size_t begin, std::size_t end) {
+    FilterRows rows;
+    FilteredRows filtered;
+    for (std::size_t at = begin; at < end; at += kRaysAtOnce) {
+      const std::size_t n_lanes = std::min(kRaysAtOnce, end - at);
+      for (std::size_t lane = 0; lane < kRaysAtOnce; ++lane)
+        put(rows, lane, rays, first + at + std::min(lane, n_lanes - 1));
+      HWY_DYNAMIC_DISPATCH(FilterAll)(rows, space, filtered);
+      for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+        const std::size_t i = first + at + lane;
+        if (filtered.is_ordinary[lane] != 0) {
+          out[at + lane] = ray_of(filtered, lane);
+        } else if (fault_of(rays.origin(i), rays.direction(i), rays.t_min(i), rays.t_max(i)) == nullptr) {
+          out[at + lane] = filter_ray(frame, rays, i);
+        } else {
+          out[at + lane] = kNoRay;
+          valid.store(false, std::memory_order_relaxed);
+        }
+      }
+    }
+  });
+  return valid;
+}
+
+}  // namespace kdray::query
+#endif
