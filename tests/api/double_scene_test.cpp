@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "api/rationals.h"
@@ -305,6 +306,16 @@ TEST_P(DoubleScenes, HitsAreThoseOfRationals) {
   holds(near, aimed(near, 600, 1, random));
 }
 
+TEST_P(DoubleScenes, OfAnySizeHitsAreThoseOfRationals) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 8);
+  for (const double size : {1e-290, 1e-30, 1e30, 1e290}) {
+    SCOPED_TRACE(size);
+    const Mesh mesh = ring(9, 7, {size, -size, 2 * size}, size, random);
+    holds(mesh, aimed(mesh, 200, size, random));
+  }
+}
+
 // Beside edges, and from beside faces, by about as much as floats are off.
 RayList beside(const Mesh& mesh, std::size_t n, double size, std::mt19937& random) {
   std::uniform_real_distribution<double> share(0, 1), way(-1, 1);
@@ -403,6 +414,56 @@ TEST_P(DoubleScenes, IntervalsEndAtTheDoublesTold) {
     n_hit += hit;
   }
   EXPECT_GT(n_hit, 50u);
+}
+
+// One ray that is none among many, from near by and from afar.
+TEST_P(DoubleScenes, AFaultyRayIsToldAmongMany) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 7);
+  const Mesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
+  const Scene scene = scene_of(mesh);
+  constexpr std::size_t kFaulty = 20011;
+  for (const double away : {0.5, 1e4}) {
+    RayList list;
+    for (std::size_t i = 0; i < kMany; ++i) {
+      list.origins.push_back({1e3, 0, away});
+      list.directions.push_back({0.7, 0.001 * static_cast<double>(i % 100), -away});
+      list.t_min.push_back(0);
+      list.t_max.push_back(kInfinity);
+    }
+    const auto with = [&](double* value, double faulty) {
+      SCOPED_TRACE(faulty);
+      const double sound = std::exchange(*value, faulty);
+      std::vector<double> t(kMany);
+      std::vector<std::uint8_t> any(kMany);
+      std::vector<std::uint32_t> counts(kMany);
+      EXPECT_TRUE(fails([&] { scene.closest(list.rays(), {.t = t}); }, "ray 20011"));
+      EXPECT_TRUE(fails([&] { scene.any(list.rays(), any); }, "ray 20011"));
+      EXPECT_TRUE(fails([&] { scene.count(list.rays(), counts); }, "ray 20011"));
+      EXPECT_TRUE(fails([&] { (void)scene.all(list.rays()); }, "ray 20011"));
+      QueryOptions miss;
+      miss.invalid = InvalidRays::miss;
+      EXPECT_EQ(scene.closest(list.rays(), {.t = t}, miss).invalid, 1);
+      EXPECT_EQ(t[kFaulty], kInfinity);
+      EXPECT_LT(t[kFaulty + 1], kInfinity);
+      EXPECT_EQ(scene.any(list.rays(), any, miss).invalid, 1);
+      EXPECT_EQ(any[kFaulty], 0);
+      EXPECT_EQ(scene.count(list.rays(), counts, miss).invalid, 1);
+      EXPECT_EQ(counts[kFaulty], 0);
+      *value = sound;
+    };
+    Point &origin = list.origins[kFaulty], &direction = list.directions[kFaulty];
+    const double nan = std::nan("");
+    for (const double faulty : {nan, kInfinity, -kInfinity}) {
+      with(&origin[2], faulty);
+      with(&direction[1], faulty);
+      with(&list.t_min[kFaulty], faulty);
+    }
+    with(&list.t_max[kFaulty], nan);
+    const Point sound = std::exchange(direction, Point{});
+    with(&direction[0], 0);
+    direction = sound;
+  }
 }
 
 // Geometries with masks, and rays that see one of them or none.

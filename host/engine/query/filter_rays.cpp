@@ -28,7 +28,7 @@ struct FilterRows {
 };
 
 struct FilterSpace {
-  double center[3], scale, per_unit;  // local t = t * per_unit
+  double center[3], scale, per_unit;  // local t = t * per_unit; NaN: no ray is ordinary
 };
 
 // In the order of QueryRay's fields.
@@ -98,7 +98,7 @@ HWY_ATTR inline void filter_lanes(const FilterRows& rays, const FilterSpace& spa
   // NaN is in no order.
   const auto has_length =
       hn::And(hn::Ge(length, all(3 * double{kShortestOrdinary})), hn::Lt(length, all(kLongestOrdinary)));
-  const auto has_place = hn::And(hn::Le(way, all(kFarthest)), hn::Le(hn::Abs(begin), all(0x1p100)));
+  const auto has_place = hn::And(hn::Le(way, all(kFarthest)), hn::Le(hn::Abs(since), all(0x1p100)));
   const auto is_ordinary = hn::And(hn::And(has_length, has_place), hn::Eq(t_max, t_max));
   hn::StoreU(hn::IfThenElseZero(is_ordinary, all(1)), d, out.is_ordinary + lane);
 }
@@ -148,7 +148,8 @@ layout::QueryRay ray_of(const FilteredRows& rows, std::size_t lane) {
 bool fill_filter_rays(const RayArrays& rays, const LocalFrame& frame, std::size_t first, std::size_t n,
                       layout::QueryRay* out) {
   const LocalSpace& s = frame.space();
-  const FilterSpace space{{s.center.x, s.center.y, s.center.z}, s.scale, 1 / frame.unit()};
+  const FilterSpace space{
+      {s.center.x, s.center.y, s.center.z}, s.scale, frame.ordinary_unit() != 0 ? 1 / frame.unit() : NAN};
   std::atomic<bool> valid{true};
   for_each_grain(n, [&](std::size_t begin, std::size_t end) {
     FilterRows rows;

@@ -115,7 +115,7 @@ std::optional<LocalLine> LocalFrame::line(const dvec3& origin, const dvec3& dire
 DoubleLine LocalFrame::double_line(const dvec3& origin, const dvec3& direction) const {
   const dvec3 from_center = origin - space_.center;
   const dvec3 rest = lost_of(origin, space_.center, from_center);
-  DoubleLine line{from_center * space_.scale, rest * space_.scale, direction, exponent_, unit_};
+  DoubleLine line{from_center * space_.scale, rest * space_.scale, direction, exponent_, ordinary_unit()};
   if (const double largest = largest_component(direction); !is_ordinary_length(largest)) {
     const int length = std::ilogb(largest);
     for (int k = 0; k < 3; ++k) line.direction[k] = std::scalbn(direction[k], -length);
@@ -134,7 +134,7 @@ std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3
   if (!line) return std::nullopt;
   // Dividing by the usual unit, a power of two, rounds as scalbn does, and needs no call.
   const auto scaled = [&](double t) {
-    return line->exponent == exponent_ ? t / unit_ : std::scalbn(t, -line->exponent);
+    return line->exponent == exponent_ && ordinary_unit() != 0 ? t / unit_ : std::scalbn(t, -line->exponent);
   };
   return DoubleRay{double_line(origin, direction), line->ahead, scaled(t_min), scaled(t_max)};
 }

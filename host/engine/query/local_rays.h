@@ -124,6 +124,8 @@ class LocalFrame {
   // The exponent of rays that need no more: those of ordinary length that are not moved.
   int exponent() const { return exponent_; }
   double unit() const { return unit_; }  // 2^exponent()
+  // The same where it and its inverse are ordinary doubles, or 0: of scenes of any size that floats can have.
+  double ordinary_unit() const { return std::isnormal(unit_) && std::isnormal(1 / unit_) ? unit_ : 0; }
   const LocalSpace& space() const { return space_; }
   // Whether a point, in the scene's own space, lies outside of its bounds for certain.
   bool is_outside(const dvec3& local) const {
