@@ -44,6 +44,7 @@ void Committed::open_places(const RayWalk& walk) {
   const std::vector<std::uint32_t> masks = table_.masks(instances);
   for (query::Target& target : query::targets_of(*devices_, traversal, walk.precision)) {
     target.space = LocalSpace();
+    target.filters = scene_.prepared().doubles && target.context.rounds_division_correctly();
     if (!masks.empty())
       target.masks = target.sub_device > 0 ? places_.back().target.masks
                                            : target.context.upload_copy(

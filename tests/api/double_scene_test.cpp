@@ -268,14 +268,19 @@ class DoubleScenes : public test::EachDevice {
     for (std::size_t i = 0; i < n; ++i) {
       SCOPED_TRACE(i);
       std::vector<Crossing> found = Line(list.origins[i], list.directions[i]).crossings(mesh);
-      std::erase_if(found, [](const Crossing& c) { return c.t < 0; });
+      const double t_min = list.t_min.empty() ? 0 : list.t_min[i];
+      const double t_max = list.t_max.empty() ? kInfinity : list.t_max[i];
+      std::erase_if(found, [&](const Crossing& c) {
+        if (c.t < t_min || (t_min != 0 && c.t == t_min)) return true;
+        return std::isinf(t_max) ? t_max < 0 : c.t >= t_max;
+      });
       ASSERT_EQ(counts[i], found.size());
       ASSERT_EQ(all.splits[i + 1] - all.splits[i], found.size());
       for (std::size_t k = 0; k < found.size(); ++k) {
         ASSERT_EQ(all.primitive[all.splits[i] + k], found[k].triangle);
         ASSERT_LT(places_off(all.t[all.splits[i] + k], found[k].t), 2);
       }
-      std::erase_if(found, [](const Crossing& c) { return c.t == 0; });
+      std::erase_if(found, [&](const Crossing& c) { return c.t == t_min; });
       ASSERT_EQ(any[i], !found.empty());
       if (found.empty()) {
         ASSERT_EQ(t[i], kInfinity);
@@ -463,6 +468,53 @@ TEST_P(DoubleScenes, AFaultyRayIsToldAmongMany) {
     const Point sound = std::exchange(direction, Point{});
     with(&direction[0], 0);
     direction = sound;
+  }
+}
+
+// Ends that no float holds, in a packet with others.
+TEST_P(DoubleScenes, IntervalsMayEndAnywhere) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 9);
+  const Mesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
+  for (const double away : {0.5, 1e4}) {
+    RayList list = aimed(mesh, 500, 1, random);
+    for (std::size_t i = 0; i < list.origins.size(); ++i) {
+      const Point& at = mesh.corner(i % mesh.size(), i % 3);
+      list.origins[i] = {at[0] + 0.1, at[1], at[2] + away};
+      for (std::size_t k = 0; k < 3; ++k) list.directions[i][k] = at[k] - list.origins[i][k];
+      constexpr double kMost = std::numeric_limits<double>::max();
+      const double begin[] = {0, -1e300, -kMost, 0, 0, 1e300, -1e-300};
+      const double end[] = {kInfinity, 1e300, kMost, -kInfinity, -1e300, kInfinity, 1e-300};
+      list.t_min.push_back(begin[i % 7]);
+      list.t_max.push_back(end[i % 7]);
+    }
+    holds(mesh, list);
+  }
+}
+
+// Rays of before (Renderer) ask such a scene as they ask any other.
+TEST_P(DoubleScenes, FloatsOfOneAreTracedAsEver) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 10);
+  const Mesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
+  const RayList list = aimed(mesh, 500, 1, random);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < list.origins.size(); ++i) {
+    const Point &o = list.origins[i], &d = list.directions[i];
+    const auto f = [](double v) { return static_cast<float>(v); };
+    rays.push_back({{f(o[0]), f(o[1]), f(o[2])}, 0, {f(d[0]), f(d[1]), f(d[2])}, HUGE_VALF});
+  }
+  CommitOptions in_floats = options();
+  in_floats.tree.geometry = Precision::float32;
+  Scene floats, doubles = scene_of(mesh);
+  floats.add_mesh({mesh.points(), mesh.triangles});
+  floats.commit(in_floats);
+  const DeviceOptions device = options().device;
+  const std::vector<Hit> expected = Renderer(floats.prepared(), device).trace(rays),
+                         hits = Renderer(doubles.prepared(), device).trace(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(hits[i].primitive, expected[i].primitive) << i;
+    ASSERT_EQ(hits[i].t, expected[i].t) << i;
   }
 }
 

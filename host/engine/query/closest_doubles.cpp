@@ -115,7 +115,7 @@ class Settler {
       const std::int32_t ref = found[i].primitive;
       if (ref == kInDoubt) {
         if (const auto question = rays_.question(first + i, i)) in_doubt_.push_back(*question);
-      } else if (ref != -1) {
+      } else if (ref >= 0) {
         places_[n_sure] = i;
         sure_[n_sure++] = {rays_.line(first + i), static_cast<std::uint32_t>(ref) & KDRAY_REF_INDEX_MASK};
       }
@@ -138,7 +138,7 @@ class Settler {
 QueryReport closest_of_doubles(const QueryContext& context, const RayArrays& arrays, const HitsOut& out,
                                const QueryOptions& options) {
   const DoubleRays rays(context, arrays);
-  if (arrays.size() < kFewForDevice)
+  if (!context.filters(arrays.size()))
     return rays.run(options, [&](std::size_t begin, std::size_t end) {
       for_each_block(begin, end, [&](std::size_t first, std::size_t n) {
         HitBlock block(n);
@@ -164,7 +164,7 @@ QueryReport any_of_doubles(const QueryContext& context, const RayArrays& arrays,
   const auto put = [&](std::size_t first, const std::vector<std::uint8_t>& hit) {
     fill(out, first, hit.size(), [&](std::size_t i) { return hit[i]; });
   };
-  if (arrays.size() < kFewForDevice)
+  if (!context.filters(arrays.size()))
     return rays.run(options, [&](std::size_t first, std::size_t last) {
       std::vector<std::uint8_t> hit(last - first);
       rays.scene().any(rays.questions(first, last - first), hit);

@@ -180,7 +180,7 @@ QueryReport count(const QueryContext& context, const Rays& rays, const WordsOut&
   const RayArrays arrays(rays);
   check_out(out.size(), arrays.size(), "counts");
   const bool of_doubles = context.scene().doubles != nullptr;
-  if (of_doubles && arrays.size() < kFewForDevice) {
+  if (of_doubles && !context.filters(arrays.size())) {
     const DoubleRays in_doubles(context, arrays);
     return in_doubles.run(options, [&](std::size_t first, std::size_t last) {
       if (out.empty()) return;
@@ -319,7 +319,7 @@ AllHits all_of_doubles(const QueryContext& context, const RayArrays& arrays, con
 AllHits all(const QueryContext& context, const Rays& rays, const AllHitsOptions& options) {
   const RayArrays arrays(rays);
   Answer answer(context, arrays.size(), options.max_bytes);
-  if (context.scene().doubles && arrays.size() < kFewForDevice)
+  if (context.scene().doubles && !context.filters(arrays.size()))
     return all_of_doubles(context, arrays, options, answer);
   const QueryReport report =
       share_rows(context, arrays.size(), kFirstRays, options.cancel,

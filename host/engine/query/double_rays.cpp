@@ -113,7 +113,7 @@ ExactHits DoubleRays::settle(std::size_t first, const LocalHits& found, std::uin
       if (is_sure[i - begin]) continue;
       if (const auto one = question(first + i, i - begin)) in_doubt.push_back(*one);
     }
-    std::vector<std::vector<ExactHit>> settled(in_doubt.empty() ? 0 : end - begin);
+    std::vector<std::vector<ExactHit>> settled(end - begin);
     scene_.all(in_doubt, settled);
     for (std::size_t i = begin; i < end; ++i)
       is_sure[i - begin] ? exact.put(i, hits_of(i)) : put_first(i, settled[i - begin], max_hits, exact);

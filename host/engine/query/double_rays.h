@@ -16,9 +16,6 @@
 
 namespace kdray::query {
 
-// Calls of fewer rays are the host's: as many take it less time than a first launch takes a device.
-inline constexpr std::size_t kFewForDevice = std::size_t{1} << 14;
-
 class DoubleRays {
  public:
   DoubleRays(const QueryContext& context, const RayArrays& rays);

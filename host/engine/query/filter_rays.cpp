@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "engine/query/check_rays.h"
 #include "engine/query/grains.h"
@@ -99,7 +100,7 @@ HWY_ATTR inline void filter_lanes(const FilterRows& rays, const FilterSpace& spa
   const auto has_length =
       hn::And(hn::Ge(length, all(3 * double{kShortestOrdinary})), hn::Lt(length, all(kLongestOrdinary)));
   const auto has_place = hn::And(hn::Le(way, all(kFarthest)), hn::Le(hn::Abs(since), all(0x1p100)));
-  const auto is_ordinary = hn::And(hn::And(has_length, has_place), hn::Eq(t_max, t_max));
+  const auto is_ordinary = hn::And(hn::And(has_length, has_place), hn::Gt(t_max, all(-HUGE_VAL)));
   hn::StoreU(hn::IfThenElseZero(is_ordinary, all(1)), d, out.is_ordinary + lane);
 }
 
@@ -126,7 +127,8 @@ layout::QueryRay filter_ray(const LocalFrame& frame, const RayArrays& rays, std:
     out.origin[k] = static_cast<float>(start[k]);
     out.direction[k] = static_cast<float>(ray->line.direction[k]);
   }
-  out.t_min = rounded_down(ray->t_min - ray->start);
+  // Finite, as every ray's.
+  out.t_min = std::max(rounded_down(ray->t_min - ray->start), -std::numeric_limits<float>::max());
   out.t_max = rounded_up(ray->t_max - ray->start);
   return out;
 }

@@ -25,7 +25,7 @@ constexpr std::size_t kFewHits = 2048;
 
 layout::Features features_of(const Target& target, const HitLists::Walk& walk) {
   return target.scene.features | (walk.masked ? KDRAY_FEATURE_MASKS : 0) |
-         (target.scene.doubles ? KDRAY_FEATURE_FILTER : 0);
+         (target.filters ? KDRAY_FEATURE_FILTER : 0);
 }
 
 }  // namespace

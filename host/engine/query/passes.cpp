@@ -90,7 +90,7 @@ std::span<const QuerySpan> Passes::trace_first_pass(std::span<const Ray> rays,
   if (!all_near) rays_ = taken;
   const std::span<const QuerySpan> spans = first_.find({rays_, masks_}, !seen_.ordinary, {}, capacity_);
   in_doubt_.clear();
-  if (target_.scene.doubles)
+  if (target_.filters)
     for (std::uint32_t i = 0; i < spans.size(); ++i)
       if (is_in_doubt(spans[i])) in_doubt_.push_back(i);
   const auto n_more =
@@ -136,7 +136,7 @@ bool Passes::pass(std::span<const Rest> rest, bool want_hits, const Found& found
   const std::span<const QuerySpan> spans = later_->find({rays, masks}, !seen_.ordinary, after, capacity);
   const Hits* const hits = want_hits ? packed(spans) : nullptr;
   for (std::size_t k = 0, at = 0; k < rest.size(); at += spans[k++].n_hits) {
-    if (is_in_doubt(spans[k])) in_doubt_.push_back(rest[k].ray);
+    if (target_.filters && is_in_doubt(spans[k])) in_doubt_.push_back(rest[k].ray);
     const std::uint32_t n = std::min(spans[k].n_hits, max_hits_ - rest[k].n_hits);
     if (!found({rest[k].ray, hits, at, n, spans[k].more != 0 || n < spans[k].n_hits})) return false;
     if (spans[k].more != 0 && rest[k].n_hits + n < max_hits_)

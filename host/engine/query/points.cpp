@@ -104,7 +104,7 @@ std::vector<std::uint8_t> are_inside(const QueryContext& context, Place& place, 
   if (!in_double && !context.scene().doubles) return inside;
   const ExactScene exact(context.scene());
   const auto is_in_doubt = [&](std::size_t i, const dvec3& local) {
-    return context.scene().doubles ? counts[i] == kInDoubtCount : exact.is_near(local);
+    return place.target.filters ? counts[i] == kInDoubtCount : exact.is_near(local);
   };
   for_each_slow_grain(points.size(), cancel, [&](std::size_t begin, std::size_t end) {
     std::vector<ExactHit> hits;

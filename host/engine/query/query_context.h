@@ -7,6 +7,7 @@
 //         takes.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <deque>
@@ -98,6 +99,12 @@ struct QueryContext {
 
   const prepare::Prepared& scene() const { return places.front().target.scene; }
   bool has_masks() const { return places.front().target.masks() != nullptr; }
+  // Of a scene of doubles: whether the devices are to look at so many rays first. As few as take the host
+  // less time than a first launch takes a device are the host's.
+  bool filters(std::size_t n_rays) const {
+    constexpr std::size_t kFew = std::size_t{1} << 14;
+    return n_rays >= kFew && std::ranges::all_of(places, [](const Place& p) { return p.target.filters; });
+  }
 };
 
 }  // namespace kdray::query

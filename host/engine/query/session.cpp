@@ -14,7 +14,7 @@ namespace {
 
 layout::Features features_to_trace(const Target& target) {
   return target.scene.features | (target.masks() != nullptr ? KDRAY_FEATURE_MASKS : 0) |
-         (target.scene.doubles ? KDRAY_FEATURE_FILTER : 0);
+         (target.filters ? KDRAY_FEATURE_FILTER : 0);
 }
 
 }  // namespace

@@ -29,6 +29,9 @@ struct Target {
   // How rays walk the tree. Which walks there are in double api/precision.h tells.
   Traversal traversal = Traversal::automatic;
   Precision precision = Precision::float32;
+  // Of a scene of doubles: hits are what its filter is sure of (primitives/triangle/filter.clh), whose bounds
+  // take a device that rounds divisions correctly.
+  bool filters = false;
 
   // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
   Traversal walk() const { return traversal == Traversal::automatic && global ? Traversal::wide : traversal; }
