@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "api/rationals.h"
+#include "api/double_oracle.h"
 #include "kdray/kdray.h"
 #include "support/device.h"
 #include "support/errors.h"
@@ -17,6 +17,7 @@
 namespace kdray {
 namespace {
 
+using namespace test::doubles;
 using test::Exact;
 using test::exact;
 using test::fails;
@@ -25,150 +26,6 @@ using test::Point;
 using test::volume;
 
 constexpr unsigned kSeed = 440;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct Mesh {
-  std::vector<Point> vertices;
-  std::vector<std::uint32_t> triangles;
-
-  const Point& corner(std::size_t triangle, std::size_t i) const {
-    return vertices[triangles[3 * triangle + i]];
-  }
-  std::size_t size() const { return triangles.size() / 3; }
-  Points points() const { return {&vertices.front()[0], vertices.size(), sizeof(Point)}; }
-};
-
-// A closed ring of odd doubles, of this size about this centre.
-Mesh ring(std::uint32_t n, std::uint32_t m, const Point& center, double size, std::mt19937& random) {
-  std::uniform_real_distribution<double> shaken(-0.01, 0.01);
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < n; ++i)
-    for (std::uint32_t k = 0; k < m; ++k) {
-      const double a = 6.283185307 * i / n, b = 6.283185307 * k / m, r = 0.7 + 0.25 * std::cos(b);
-      const Point p{r * std::cos(a), r * std::sin(a), 0.25 * std::sin(b)};
-      Point at;
-      for (std::size_t c = 0; c < 3; ++c) at[c] = center[c] + size * (p[c] + shaken(random));
-      mesh.vertices.push_back(at);
-      const std::uint32_t next_i = (i + 1) % n, next_k = (k + 1) % m;
-      const std::uint32_t p0 = i * m + k, q = next_i * m + k, r2 = next_i * m + next_k, s = i * m + next_k;
-      for (const std::uint32_t v : {p0, q, r2, p0, r2, s}) mesh.triangles.push_back(v);
-    }
-  return mesh;
-}
-
-void add(Mesh& to, const Mesh& other) {
-  const auto first = static_cast<std::uint32_t>(to.vertices.size());
-  to.vertices.insert(to.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const std::uint32_t v : other.triangles) to.triangles.push_back(first + v);
-}
-
-// Sheets 1e-9 apart, and one that is there twice.
-Mesh sheets() {
-  Mesh mesh;
-  for (const double z : {0.0, 1e-9, 2e-9, 2e-9, 3e-9}) {
-    Mesh sheet;
-    sheet.vertices = {
-        {1e3 - 1, 1e3 - 1, z}, {1e3 + 1, 1e3 - 1, z + 1e-10}, {1e3 + 1, 1e3 + 1, z}, {1e3 - 1, 1e3 + 1, z}};
-    sheet.triangles = {0, 1, 2, 0, 2, 3};
-    add(mesh, sheet);
-  }
-  return mesh;
-}
-
-// ---- What the rationals say
-
-struct Crossing {
-  mpq_class t;
-  std::uint32_t triangle;
-  double u, v;
-};
-
-class Line {
- public:
-  Line(const Point& origin, const Point& direction) : o_(exact(origin)), d_(exact(direction)) {
-    for (std::size_t k = 1; k < 3; ++k)
-      if (std::abs(direction[k]) >= std::abs(direction[kz_])) kz_ = k;
-    kx_ = (kz_ + 1) % 3, ky_ = (kz_ + 2) % 3;
-  }
-
-  // All that the line crosses, in its order.
-  std::vector<Crossing> crossings(const Mesh& mesh) const {
-    std::vector<Crossing> found;
-    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-      Exact v[3];
-      for (std::size_t k = 0; k < 3; ++k) v[k] = minus(exact(mesh.corner(i, k)), o_);
-      const int side = side_of(v[0], v[1]);
-      if (side == 0 || side != side_of(v[1], v[2]) || side != side_of(v[2], v[0])) continue;
-      const mpq_class all = volume(v[0], v[1], d_) + volume(v[1], v[2], d_) + volume(v[2], v[0], d_);
-      found.push_back({volume(v[0], v[1], v[2]) / all, i, mpq_class(volume(v[2], v[0], d_) / all).get_d(),
-                       mpq_class(volume(v[0], v[1], d_) / all).get_d()});
-    }
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
-    return found;
-  }
-
- private:
-  std::array<mpq_class, 2> place(const Exact& p) const {
-    return {p[kx_] * d_[kz_] - p[kz_] * d_[kx_], p[ky_] * d_[kz_] - p[kz_] * d_[ky_]};
-  }
-  int side_of(const Exact& from, const Exact& to) const {
-    const auto p = place(from), q = place(to);
-    const mpq_class edge = q[0] * p[1] - q[1] * p[0];
-    if (edge != 0) return sgn(edge);
-    return q[1] != p[1] ? cmp(q[1], p[1]) > 0 ? 1 : -1 : sgn(mpq_class(p[0] - q[0]));
-  }
-
-  Exact o_, d_;
-  std::size_t kx_, ky_, kz_ = 0;
-};
-
-// How many of a double's last places it is off.
-double places_off(double got, const mpq_class& exact) {
-  const double about = exact.get_d(), place = std::nextafter(std::abs(about), kInfinity) - std::abs(about);
-  return std::abs(mpq_class((mpq_class(got) - exact) / mpq_class(place)).get_d());
-}
-
-// ---- Rays
-
-struct RayList {
-  std::vector<Point> origins, directions;
-  std::vector<double> t_min, t_max;  // of all, or none
-  Rays rays() const {
-    Rays rays{{&origins.front()[0], origins.size(), sizeof(Point)},
-              {&directions.front()[0], directions.size(), sizeof(Point)}};
-    if (!t_max.empty()) rays.t_min = t_min, rays.t_max = t_max;
-    return rays;
-  }
-};
-
-// From near and far: at vertices, at places of edges and faces, along axes through vertices, and anywhere.
-RayList aimed(const Mesh& mesh, std::size_t n, double size, std::mt19937& random) {
-  std::uniform_real_distribution<double> share(0, 1), way(-1, 1);
-  RayList list;
-  while (list.origins.size() < n) {
-    const std::size_t triangle = random() % mesh.size(), kind = random() % 5;
-    const double u = share(random), v = kind == 1 ? 0 : share(random) * (1 - u);
-    Point at = mesh.corner(triangle, 0), origin, direction;
-    const double far = std::pow(10.0, std::uniform_int_distribution<int>(0, 3)(random)) * size;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (kind == 1 || kind == 2)
-        at[k] += u * (mesh.corner(triangle, 1)[k] - at[k]) + v * (mesh.corner(triangle, 2)[k] - at[k]);
-      origin[k] = at[k] + far * way(random);
-    }
-    if (kind == 3) {  // the line goes through the vertex exactly
-      const std::size_t axis = random() % 3;
-      origin = at;
-      origin[axis] -= far;
-      direction = {0, 0, 0};
-      direction[axis] = 1;
-    } else {
-      for (std::size_t k = 0; k < 3; ++k) direction[k] = kind == 4 ? way(random) : at[k] - origin[k];
-    }
-    list.origins.push_back(origin);
-    list.directions.push_back(direction);
-  }
-  return list;
-}
 
 class DoubleScenes : public test::EachDevice {
  protected:
@@ -178,7 +35,7 @@ class DoubleScenes : public test::EachDevice {
     options.tree.geometry = Precision::float64;
     return options;
   }
-  Scene scene_of(const Mesh& mesh) const {
+  Scene scene_of(const DoubleMesh& mesh) const {
     Scene scene;
     scene.add_mesh({mesh.points(), mesh.triangles});
     scene.commit(options());
@@ -253,7 +110,7 @@ class DoubleScenes : public test::EachDevice {
     }
   }
 
-  void holds(const Mesh& mesh, const RayList& list) const {
+  void holds(const DoubleMesh& mesh, const RayList& list) const {
     const Scene scene = scene_of(mesh);
     const std::size_t n = list.origins.size();
     std::vector<double> t(n), u(n), v(n);
@@ -300,14 +157,14 @@ TEST_P(DoubleScenes, HitsAreThoseOfRationals) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed);
   // What floats about the scene's centre can't hold: tiny detail far off, and beside what is large.
-  Mesh apart = ring(9, 7, {1e6, -2e6, 3e6}, 1e-4, random);
+  DoubleMesh apart = ring(9, 7, {1e6, -2e6, 3e6}, 1e-4, random);
   holds(apart, aimed(apart, 600, 1e-4, random));
-  Mesh beside = ring(9, 7, {0.1, 0.2, 0.3}, 1e-9, random);
+  DoubleMesh beside = ring(9, 7, {0.1, 0.2, 0.3}, 1e-9, random);
   const RayList at_detail = aimed(beside, 300, 1e-9, random);
   add(beside, ring(5, 5, {3, 4, 5}, 1e3, random));
   holds(beside, at_detail);
   holds(beside, aimed(beside, 600, 1e3, random));
-  const Mesh near = sheets();
+  const DoubleMesh near = sheets();
   holds(near, aimed(near, 600, 1, random));
 }
 
@@ -316,39 +173,18 @@ TEST_P(DoubleScenes, OfAnySizeHitsAreThoseOfRationals) {
   std::mt19937 random(kSeed + 8);
   for (const double size : {1e-290, 1e-30, 1e30, 1e290}) {
     SCOPED_TRACE(size);
-    const Mesh mesh = ring(9, 7, {size, -size, 2 * size}, size, random);
+    const DoubleMesh mesh = ring(9, 7, {size, -size, 2 * size}, size, random);
     holds(mesh, aimed(mesh, 200, size, random));
   }
-}
-
-// Beside edges, and from beside faces, by about as much as floats are off.
-RayList beside(const Mesh& mesh, std::size_t n, double size, std::mt19937& random) {
-  std::uniform_real_distribution<double> share(0, 1), way(-1, 1);
-  RayList list;
-  while (list.origins.size() < n) {
-    const std::size_t triangle = random() % mesh.size();
-    const double u = share(random), v = random() % 2 ? 0 : share(random) * (1 - u);
-    const double off = size * std::ldexp(way(random), -18 - static_cast<int>(random() % 10));
-    const double far = random() % 2 ? off : size * std::pow(4.0, static_cast<int>(random() % 8) - 3);
-    Point at = mesh.corner(triangle, 0), origin, direction;
-    for (std::size_t k = 0; k < 3; ++k) {
-      at[k] += u * (mesh.corner(triangle, 1)[k] - at[k]) + v * (mesh.corner(triangle, 2)[k] - at[k]);
-      direction[k] = way(random);
-      origin[k] = at[k] + off * way(random) - far * direction[k];
-    }
-    list.origins.push_back(origin);
-    list.directions.push_back(direction);
-  }
-  return list;
 }
 
 TEST_P(DoubleScenes, WhatFloatsAreNearlySureOfIsAsInRationals) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 6);
-  const Mesh coarse = ring(9, 7, {0.1, 0.2, 0.3}, 1, random);
+  const DoubleMesh coarse = ring(9, 7, {0.1, 0.2, 0.3}, 1, random);
   holds(coarse, beside(coarse, 3000, 1, random));
   // Triangles as small as floats are off by, far from the centre: a needle makes the scene large.
-  Mesh fine = ring(9, 7, {0.7, -0.2, 0.5}, 3e-5, random);
+  DoubleMesh fine = ring(9, 7, {0.7, -0.2, 0.5}, 3e-5, random);
   fine.vertices.insert(fine.vertices.end(), {{-1, -1, -1}, {1, 1, 1}, {1, 1, 1 + 1e-7}});
   const auto first = static_cast<std::uint32_t>(fine.vertices.size() - 3);
   for (std::uint32_t k = 0; k < 3; ++k) fine.triangles.push_back(first + k);
@@ -360,7 +196,7 @@ TEST_P(DoubleScenes, WhatFloatsAreNearlySureOfIsAsInRationals) {
 TEST_P(DoubleScenes, RaysFromFarAwayHitWhatRationalsSay) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 3);
-  const Mesh mesh = ring(9, 7, {0.5, 0.25, -0.5}, 1, random);
+  const DoubleMesh mesh = ring(9, 7, {0.5, 0.25, -0.5}, 1, random);
   RayList list;
   for (const int exponent : {30, 45, 52, 70})
     for (int i = 0; i < 200; ++i) {
@@ -383,7 +219,7 @@ TEST_P(DoubleScenes, RaysFromFarAwayHitWhatRationalsSay) {
 TEST_P(DoubleScenes, IntervalsEndAtTheDoublesTold) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 4);
-  Mesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
+  DoubleMesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
   add(mesh, ring(9, 7, {1e3, 0, 0}, 1.5, random));
   RayList list = aimed(mesh, 600, 1, random);
   const Scene scene = scene_of(mesh);
@@ -425,7 +261,7 @@ TEST_P(DoubleScenes, IntervalsEndAtTheDoublesTold) {
 TEST_P(DoubleScenes, AFaultyRayIsToldAmongMany) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 7);
-  const Mesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
+  const DoubleMesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
   const Scene scene = scene_of(mesh);
   constexpr std::size_t kFaulty = 20011;
   for (const double away : {0.5, 1e4}) {
@@ -475,7 +311,7 @@ TEST_P(DoubleScenes, AFaultyRayIsToldAmongMany) {
 TEST_P(DoubleScenes, IntervalsMayEndAnywhere) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 9);
-  const Mesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
+  const DoubleMesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
   for (const double away : {0.5, 1e4}) {
     RayList list = aimed(mesh, 500, 1, random);
     for (std::size_t i = 0; i < list.origins.size(); ++i) {
@@ -496,7 +332,7 @@ TEST_P(DoubleScenes, IntervalsMayEndAnywhere) {
 TEST_P(DoubleScenes, FloatsOfOneAreTracedAsEver) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 10);
-  const Mesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
+  const DoubleMesh mesh = ring(9, 7, {1e3, 0, 0}, 1, random);
   const RayList list = aimed(mesh, 500, 1, random);
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < list.origins.size(); ++i) {
@@ -522,7 +358,7 @@ TEST_P(DoubleScenes, FloatsOfOneAreTracedAsEver) {
 TEST_P(DoubleScenes, MasksHoldForManyRays) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 5);
-  const Mesh inner = ring(9, 7, {1e3, 0, 0}, 1, random), outer = ring(9, 7, {1e3, 0, 0}, 1.5, random);
+  const DoubleMesh inner = ring(9, 7, {1e3, 0, 0}, 1, random), outer = ring(9, 7, {1e3, 0, 0}, 1.5, random);
   Scene scene;
   scene.set_mask(scene.add_mesh({outer.points(), outer.triangles}), 1);
   scene.set_mask(scene.add_mesh({inner.points(), inner.triangles}), 2);
@@ -555,7 +391,7 @@ TEST_P(DoubleScenes, MasksHoldForManyRays) {
 TEST_P(DoubleScenes, ParityOfClosedMeshesIsEven) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 1);
-  Mesh mesh = ring(30, 20, {1e5, 1e5, 0}, 1e-3, random);
+  DoubleMesh mesh = ring(30, 20, {1e5, 1e5, 0}, 1e-3, random);
   add(mesh, ring(30, 20, {1e5, 1e5, 0}, 1e-3 * (1 + 1e-12), random));
   const RayList list = aimed(mesh, 20000, 1e-3, random);
   const Scene scene = scene_of(mesh);
@@ -577,7 +413,7 @@ TEST_P(DoubleScenes, ParityOfClosedMeshesIsEven) {
 TEST_P(DoubleScenes, PointsAreMeasuredToTheDoubles) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 2);
-  const Mesh mesh = ring(9, 7, {1e6, -2e6, 3e6}, 1e-4, random);
+  const DoubleMesh mesh = ring(9, 7, {1e6, -2e6, 3e6}, 1e-4, random);
   const Scene scene = scene_of(mesh);
   // Beside the middle of a face, to either side of it.
   std::vector<Point> points;

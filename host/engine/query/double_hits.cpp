@@ -1,8 +1,7 @@
 #include "engine/query/double_hits.h"
 
-// As in double_walk.cpp.
-#define HWY_BROKEN_EMU128 0
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include "base/highway_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/query/double_hits.cpp"
 // First, as it includes this file for each instruction set.

@@ -1,9 +1,7 @@
 #include "engine/query/double_walk.h"
 
-// The fallback for any machine is Highway's emulation of 128 bits, which it avoids with g++ before 12.3 for a
-// fault in products of 16-bit integers (GCC bug 106322); there are none here.
-#define HWY_BROKEN_EMU128 0
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include "base/highway_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/query/double_walk.cpp"
 // First, as it includes this file for each instruction set.
