@@ -1,4 +1,4 @@
-// What    The instruction sets that Highway's files are compiled for; comes before hwy/foreach_target.h.
+// What    The instruction sets that Highway's files are compiled for; comes before Highway's foreach_target.
 // Why     SSSE3 and AVX3_DL would add nothing here. The fallback for any machine is Highway's emulation of
 //         128 bits, which it avoids with g++ before 12.3 for a fault in products of 16-bit integers (GCC bug
 //         106322); there are none here.
