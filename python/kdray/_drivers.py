@@ -6,7 +6,6 @@ An OpenCL loader reads its environment once, so this is done before anything ask
 from __future__ import annotations
 
 import ctypes
-import importlib.metadata
 import os
 import pathlib
 import shutil
@@ -39,11 +38,15 @@ def _choose() -> str:
             return f"as {name} says"
     if _system_has_one():
         return "the system's"
-    pocl = pocl_of_the_extra()
-    if pocl is None:
+    try:
+        import kdray_pocl
+    except ModuleNotFoundError:
         return "none"
-    os.environ["OCL_ICD_VENDORS"] = str(pocl)
-    _lend_linker()
+    os.environ["OCL_ICD_VENDORS"] = str(kdray_pocl.driver())
+    # PoCL links each kernel with `ld`, against the compiler's libraries; bare machines have neither.
+    if not (shutil.which("ld") and shutil.which("cc")):
+        path = os.environ.get("PATH", os.defpath)
+        os.environ["PATH"] = f"{kdray_pocl.linker()}{os.pathsep}{path}"
     return "PoCL of the extra kdray[pocl]"
 
 
@@ -57,32 +60,3 @@ def _system_has_one() -> bool:
             continue  # its library is gone, or can't be loaded
         return True
     return False
-
-
-def pocl_of_the_extra() -> pathlib.Path | None:
-    """The PoCL that pip installed, if it did."""
-    try:
-        files = importlib.metadata.files("pocl-binary-distribution") or []
-    except importlib.metadata.PackageNotFoundError:
-        return None
-    for file in files:
-        if file.name.startswith("libpocl") and ".so" in file.name:
-            path = pathlib.Path(str(file.locate()))
-            if path.exists():
-                return path.resolve()
-    return None
-
-
-def own_linker() -> pathlib.Path | None:
-    """The folder of the linker that the wheel brings along."""
-    folder = pathlib.Path(__file__).parent / "linker"
-    return folder if (folder / "ld").exists() else None
-
-
-def _lend_linker() -> None:
-    """PoCL links each kernel with `ld`, against the compiler's libraries; bare machines have neither."""
-    folder = own_linker()
-    if folder is None or (shutil.which("ld") and shutil.which("cc")):
-        return
-    path = os.environ.get("PATH", os.defpath)
-    os.environ["PATH"] = f"{folder}{os.pathsep}{path}"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import platform
-import shutil
 import sys
 
 import numpy as np
@@ -18,8 +17,6 @@ def doctor() -> int:
     """Writes its findings to stdout; the exit status: 0 where a ray could be traced, else 3."""
     print(f"kdray {__version__}, Python {platform.python_version()}, NumPy {np.__version__}")
     print(f"OpenCL driver: {_drivers.choose()}")
-    if "extra" in _drivers.choose() and not shutil.which("ld"):
-        print("  no `ld` is in PATH: PoCL can't link what it compiles; install binutils")
     print(f"compiled programs are kept in {_core.program_folder() or 'no folder'}")
     found, left_out = devices_and_left_out()
     for line in left_out:

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import kdray
-from kdray import _drivers
 
 
 def run(*words, **named):
@@ -45,8 +44,7 @@ def test_hits_are_the_command_lines_bit_for_bit(tmp_path, rng, scene):
 
 
 def test_the_extras_driver_serves_where_the_system_has_none(tmp_path):
-    if _drivers.pocl_of_the_extra() is None:
-        pytest.skip("the extra kdray[pocl] is not installed")
+    pytest.importorskip("kdray_pocl", reason="the extra kdray[pocl] is not installed")
     import os
 
     empty = tmp_path / "vendors"

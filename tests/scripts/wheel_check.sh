@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# What    The Python package's wheel in a bare Debian root that has no driver and no compiler: wheel_check.sh FOLDER, which
-#         holds it (scripts/wheel). It is installed with PoCL from its own wheel, used, and uninstalled; the first hit and the
-#         first picture are timed.
+# What    The Python package's wheels in a bare Debian root that has no driver and no compiler: wheel_check.sh FOLDER, which
+#         holds kdray's and kdray_pocl's (scripts/wheel). They are installed, used, and uninstalled; the first hit and the first
+#         picture are timed.
 # Shape   mmdebstrap makes the root from the sources that this machine's apt has; what the wheel needs is downloaded before,
 #         so that the root needs no network.
 # Errors  Status 1 at the first step that fails; 77 (skipped) where a root can't be made.
 set -euo pipefail
 wheels=$(realpath "$1")
-ls "$wheels"/kdray-*.whl >/dev/null 2>&1 || { echo "there is no wheel in $1: run scripts/wheel first"; exit 1; }
+ls "$wheels"/kdray-*.whl "$wheels"/kdray_pocl-*.whl >/dev/null 2>&1 ||
+  { echo "the wheels are not in $1: run scripts/wheel and scripts/wheel --pocl first"; exit 1; }
 if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
   echo "skipped: a bare root takes mmdebstrap, and root"
   exit 77
@@ -17,7 +18,7 @@ work=$(mktemp -d)
 root=$work/root
 
 leave() {
-  for place in proc dev; do umount -l "$root/$place" 2>/dev/null || true; done
+  for place in proc dev sys; do umount -l "$root/$place" 2>/dev/null || true; done
   rm -rf --one-file-system "$work"
 }
 trap leave EXIT
@@ -27,14 +28,14 @@ in_root() { chroot "$root" env -i PATH=/venv/bin:/usr/bin:/bin HOME=/home LANG=C
 
 step "a bare root, with Python alone"
 mmdebstrap -q --variant=apt --include=python3-venv bookworm "$root"
-for place in proc dev; do mount --rbind "/$place" "$root/$place"; done
+for place in proc dev sys; do mount --rbind "/$place" "$root/$place"; done
 mkdir -p "$root/wheels" "$root/home"
 python=$(in_root python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 echo "Python $python"
 
 step "the wheel and what it needs"
-python3 -m pip download -q --only-binary :all: --python-version "$python" --no-deps -d "$root/wheels" numpy pocl-binary-distribution
-cp "$wheels"/kdray-*.whl "$root/wheels"
+python3 -m pip download -q --only-binary :all: --python-version "$python" --no-deps -d "$root/wheels" numpy
+cp "$wheels"/kdray{,_pocl}-*.whl "$root/wheels"
 du -ah --apparent-size "$root/wheels" | sort -k 2
 in_root python3 -m venv /venv
 in_root pip install -q --no-index --find-links /wheels kdray
@@ -68,8 +69,8 @@ time in_root kdray render /home/balls.nff -o /home/balls.png
 [ "$(head -c 4 "$root/home/balls.png" | tail -c 3)" = PNG ] || { echo "there is no picture"; exit 1; }
 
 step "removal"
-in_root pip uninstall -q -y kdray pocl-binary-distribution numpy
-rm -r "$root/wheels" "$root/home"
+in_root pip uninstall -q -y kdray kdray-pocl numpy
+rm -r "${root:?}/wheels" "${root:?}/home"
 left=$(in_root find / -xdev -path /proc -prune -o -iname '*kdray*' -print)
 [ -z "$left" ] || { echo "the wheel has left $left"; exit 1; }
 echo "the wheel is installed, used and removed"
