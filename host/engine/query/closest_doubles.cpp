@@ -105,7 +105,7 @@ void put_closest(const DoubleScene& scene, std::span<const DoubleScene::Question
 // What the device has found of blocks of rays, made exact. Its memory serves the next block.
 class Settler {
  public:
-  explicit Settler(const DoubleRays& rays) : rays_(rays), sure_(HitBlock::kMost), told_(HitBlock::kMost) {}
+  explicit Settler(const DoubleRays& rays) : rays_(rays) {}
 
   // Of the rays from `first` on.
   void settle(std::span<const layout::QueryHit> found, std::size_t first, HitBlock& block) {
@@ -116,21 +116,20 @@ class Settler {
       if (ref == kInDoubt) {
         if (const auto question = rays_.question(first + i, i)) in_doubt_.push_back(*question);
       } else if (ref >= 0) {
-        places_[n_sure] = i;
-        sure_[n_sure++] = {rays_.line(first + i), static_cast<std::uint32_t>(ref) & KDRAY_REF_INDEX_MASK};
+        sure_[n_sure++] = i;
       }
     }
-    rays_.scene().tell(std::span(sure_).first(n_sure), std::span(told_).first(n_sure));
-    for (std::size_t i = 0; i < n_sure; ++i) block.put(places_[i], told_[i]);
+    rays_.scene().tell(
+        n_sure, [&](std::size_t k) { return rays_.line(first + sure_[k]); },
+        [&](std::size_t k) { return static_cast<std::uint32_t>(found[sure_[k]].primitive) & KDRAY_REF_INDEX_MASK; },
+        [&](std::size_t k, const ExactHit& hit) { block.put(sure_[k], hit); });
     put_closest(rays_.scene(), in_doubt_, block);
   }
 
  private:
   const DoubleRays& rays_;
   std::vector<DoubleScene::Question> in_doubt_;
-  std::vector<DoubleScene::LineHit> sure_;
-  std::array<std::size_t, HitBlock::kMost> places_;
-  std::vector<ExactHit> told_;
+  std::array<std::size_t, HitBlock::kMost> sure_;
 };
 
 }  // namespace

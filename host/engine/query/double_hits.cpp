@@ -17,7 +17,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, CrossedTriangles::kLanes>;
 using V = hn::Vec<D>;
 
-// Some 2^-104 of a sum's or product's terms exact. Source: Dekker 1971; Joldes, Muller, Popescu 2017.
+// The sum of both. The low one is within some units in the last place of what the high one is a sum of, so it
+// may be the larger where those cancel out. Each operation is off by less than 2^-102 of its terms.
+// Source: Dekker 1971; Joldes, Muller, Popescu 2017.
 struct Pairs {
   V high, low;
 };
@@ -43,15 +45,9 @@ HWY_ATTR inline Pairs exact_product(V a, V b) {
 #endif
 }
 
-HWY_ATTR inline Pairs with_low(V high, V low) {  // |low| is no more than |high|, or high is 0
-  const V sum = hn::Add(high, low);
-  return {sum, hn::Sub(low, hn::Sub(sum, high))};
-}
-
 HWY_ATTR inline Pairs sum(Pairs a, Pairs b) {
-  const Pairs s = exact_sum(a.high, b.high), r = exact_sum(a.low, b.low);
-  const Pairs first = with_low(s.high, hn::Add(s.low, r.high));
-  return with_low(first.high, hn::Add(first.low, r.low));
+  const Pairs s = exact_sum(a.high, b.high);
+  return {s.high, hn::Add(s.low, hn::Add(a.low, b.low))};
 }
 
 HWY_ATTR inline Pairs difference(Pairs a, Pairs b) {
@@ -60,17 +56,31 @@ HWY_ATTR inline Pairs difference(Pairs a, Pairs b) {
 
 HWY_ATTR inline Pairs product(Pairs a, V b) {
   const Pairs p = exact_product(a.high, b);
-  return with_low(p.high, hn::MulAdd(a.low, b, p.low));
+  return {p.high, hn::MulAdd(a.low, b, p.low)};
 }
 
 HWY_ATTR inline Pairs product(Pairs a, Pairs b) {
   const Pairs p = exact_product(a.high, b.high);
-  return with_low(p.high, hn::MulAdd(a.high, b.low, hn::MulAdd(a.low, b.high, p.low)));
+  return {p.high, hn::MulAdd(a.high, b.low, hn::MulAdd(a.low, b.high, p.low))};
+}
+
+template <class Other>
+HWY_ATTR inline void cross(const Pairs (&a)[3], const Other (&b)[3], Pairs (&c)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    c[k] = difference(product(a[l], b[m]), product(a[m], b[l]));
+  }
+}
+
+template <class Other>
+HWY_ATTR inline Pairs dot(const Pairs (&a)[3], const Other (&b)[3]) {
+  return sum(sum(product(a[0], b[0]), product(a[1], b[1])), product(a[2], b[2]));
 }
 
 // To the nearest double, but for 2^-50 of its last place.
 HWY_ATTR inline V quotient(Pairs a, Pairs b) {
-  const V about = hn::Div(a.high, b.high);
+  b = exact_sum(b.high, b.low);
+  const V about = hn::Div(hn::Add(a.high, a.low), b.high);
   const Pairs left = difference(a, product(b, about));
   return hn::Add(about, hn::Div(hn::Add(left.high, left.low), b.high));
 }
@@ -78,91 +88,71 @@ HWY_ATTR inline V quotient(Pairs a, Pairs b) {
 // The lanes from `lane` on, as many as a vector has.
 class Crossed {
  public:
-  HWY_ATTR Crossed(const CrossedTriangles& rows, std::size_t lane) : rows_(rows), lane_(lane) {}
+  HWY_ATTR Crossed(const CrossedTriangles& rows, std::size_t lane) {
+    for (int k = 0; k < 3; ++k) {
+      const V first = load(rows.corner[0][k] + lane), origin = load(rows.origin[k] + lane);
+      e_[k] = exact_sum(load(rows.corner[1][k] + lane), hn::Neg(first));
+      f_[k] = exact_sum(load(rows.corner[2][k] + lane), hn::Neg(first));
+      a_[k] = exact_sum(first, hn::Neg(origin));
+      a_[k].low = hn::Sub(a_[k].low, load(rows.rest[k] + lane));
+      a_size_[k] = hn::Add(hn::Abs(first), hn::Abs(origin));
+      direction_[k] = load(rows.direction[k] + lane);
+    }
+    cross(e_, f_, normal_);
+    facing_ = dot(normal_, direction_);
+  }
 
   // t, and whether enough of it is left.
   HWY_ATTR V t(V* is_sure) const {
-    Pairs e[3], f[3], a[3];
-    V a_size[3];
-    for (int k = 0; k < 3; ++k) {
-      const V first = at(rows_.corner[0][k]), origin = at(rows_.origin[k]);
-      e[k] = exact_sum(at(rows_.corner[1][k]), hn::Neg(first));
-      f[k] = exact_sum(at(rows_.corner[2][k]), hn::Neg(first));
-      a[k] = from_origin(0, k);
-      a_size[k] = hn::Add(hn::Abs(first), hn::Abs(origin));
-    }
-    const V zero = hn::Zero(D());
-    Pairs volume{zero, zero}, facing{zero, zero};
-    V volume_size = zero, facing_size = zero;
+    const Pairs volume = dot(normal_, a_);
+    V volume_size = hn::Zero(D()), facing_size = volume_size;
     for (int k = 0; k < 3; ++k) {
       const int l = (k + 1) % 3, m = (k + 2) % 3;
-      const Pairs n = difference(product(e[l], f[m]), product(e[m], f[l]));
-      const V size = hn::Add(hn::Abs(hn::Mul(e[l].high, f[m].high)), hn::Abs(hn::Mul(e[m].high, f[l].high)));
-      const V direction = at(rows_.direction[k]);
-      volume = sum(volume, product(n, a[k]));
-      facing = sum(facing, product(n, direction));
-      volume_size = hn::MulAdd(size, a_size[k], volume_size);
-      facing_size = hn::MulAdd(size, hn::Abs(direction), facing_size);
+      const V size = hn::MulAdd(hn::Abs(e_[l].high), hn::Abs(f_[m].high),
+                                hn::Mul(hn::Abs(e_[m].high), hn::Abs(f_[l].high)));
+      volume_size = hn::MulAdd(size, a_size_[k], volume_size);
+      facing_size = hn::MulAdd(size, hn::Abs(direction_[k]), facing_size);
     }
     const auto enough = [](Pairs value, V size) HWY_ATTR {
       return hn::Ge(hn::Abs(value.high), hn::Mul(hn::Set(D(), 0x1p-38), size));
     };
-    *is_sure = hn::IfThenElseZero(hn::And(enough(volume, volume_size), enough(facing, facing_size)),
+    *is_sure = hn::IfThenElseZero(hn::And(enough(volume, volume_size), enough(facing_, facing_size)),
                                   hn::Set(D(), 1.0));
-    return quotient(volume, facing);
+    return quotient(volume, facing_);
   }
 
-  // In the plane across the direction's largest axis, z.
-  HWY_ATTR void weights(double* u, double* v) const {
-    const V size_x = hn::Abs(at(rows_.direction[0])), size_y = hn::Abs(at(rows_.direction[1])),
-            size_z = hn::Abs(at(rows_.direction[2]));
-    const auto is_z = hn::And(hn::Ge(size_z, size_x), hn::Ge(size_z, size_y)), is_y = hn::Ge(size_y, size_x);
-    const auto of_axis = [&](int k, auto value) HWY_ATTR {  // of the k-th axis after z
-      return hn::IfThenElse(is_z, value(k), hn::IfThenElse(is_y, value((k + 2) % 3), value((k + 1) % 3)));
+  // Seen from where t lies, which loses less than the origin where that is far off.
+  // Source: Moller, Trumbore 1997.
+  HWY_ATTR void weights(V t, double* u, double* v) const {
+    Pairs near[3], across[3];
+    for (int k = 0; k < 3; ++k) near[k] = difference(a_[k], exact_product(t, direction_[k]));
+    cross(near, direction_, across);
+    const V facing = hn::Add(facing_.high, facing_.low);
+    const auto weight = [&](Pairs w) HWY_ATTR {
+      return hn::Min(hn::Abs(hn::Div(hn::Add(w.high, w.low), facing)), hn::Set(D(), 1.0));
     };
-    const auto direction = [&](int k) HWY_ATTR {
-      return of_axis(k, [&](int l) HWY_ATTR { return at(rows_.direction[l]); });
-    };
-    const auto place = [&](int corner, int k) HWY_ATTR {
-      return Pairs{of_axis(k, [&](int l) HWY_ATTR { return from_origin(corner, l).high; }),
-                   of_axis(k, [&](int l) HWY_ATTR { return from_origin(corner, l).low; })};
-    };
-    const V dx = direction(0), dy = direction(1), dz = direction(2);
-    Pairs x[3], y[3];
-    for (int i = 0; i < 3; ++i) {
-      const Pairs z = place(i, 2);
-      x[i] = difference(product(place(i, 0), dz), product(z, dx));
-      y[i] = difference(product(place(i, 1), dz), product(z, dy));
-    }
-    const auto weight = [&](int p, int q) HWY_ATTR {
-      const Pairs w = difference(product(x[q], y[p]), product(y[q], x[p]));
-      return hn::Abs(hn::Add(w.high, w.low));
-    };
-    const V wa = weight(1, 2), wb = weight(2, 0), wc = weight(0, 1), all = hn::Add(hn::Add(wa, wb), wc);
-    const auto has_area = hn::Gt(all, hn::Zero(D()));
+    const auto has_area = hn::Ne(facing, hn::Zero(D()));
     const V third = hn::Set(D(), 1.0 / 3);
-    hn::StoreU(hn::IfThenElse(has_area, hn::Div(wb, all), third), D(), u + lane_);
-    hn::StoreU(hn::IfThenElse(has_area, hn::Div(wc, all), third), D(), v + lane_);
+    hn::StoreU(hn::IfThenElse(has_area, weight(dot(across, f_)), third), D(), u);
+    hn::StoreU(hn::IfThenElse(has_area, weight(dot(across, e_)), third), D(), v);
   }
 
  private:
-  HWY_ATTR V at(const double* row) const { return hn::LoadU(D(), row + lane_); }
-  HWY_ATTR Pairs from_origin(int corner, int k) const {
-    const Pairs d = exact_sum(at(rows_.corner[corner][k]), hn::Neg(at(rows_.origin[k])));
-    return with_low(d.high, hn::Sub(d.low, at(rows_.rest[k])));
-  }
+  static HWY_ATTR V load(const double* row) { return hn::LoadU(D(), row); }
 
-  const CrossedTriangles& rows_;
-  std::size_t lane_;
+  // Edges from the first corner, and the way to it from the line's origin.
+  Pairs e_[3], f_[3], a_[3], normal_[3], facing_;
+  V a_size_[3], direction_[3];
 };
 
 HWY_ATTR void TellHits(const CrossedTriangles& rows, ToldHits& told) {
   for (std::size_t lane = 0; lane < CrossedTriangles::kLanes; lane += hn::Lanes(D())) {
     const Crossed crossed(rows, lane);
     V is_sure;
-    hn::StoreU(crossed.t(&is_sure), D(), told.t + lane);
+    const V t = crossed.t(&is_sure);
+    hn::StoreU(t, D(), told.t + lane);
     hn::StoreU(is_sure, D(), told.is_sure + lane);
-    crossed.weights(told.u, told.v);
+    crossed.weights(t, told.u + lane, told.v + lane);
   }
 }
 

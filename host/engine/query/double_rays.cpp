@@ -49,10 +49,6 @@ std::vector<DoubleScene::Question> DoubleRays::questions(std::size_t first, std:
   return asked;
 }
 
-DoubleLine DoubleRays::line(std::size_t i) const {
-  return context_->frame.double_line(rays_->origin(i), rays_->direction(i));
-}
-
 std::uint64_t DoubleRays::check(InvalidRays invalid) const {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < rays_->size(); ++i) {
@@ -91,15 +87,14 @@ ExactHits DoubleRays::settle(std::size_t first, const LocalHits& found, std::uin
                              const std::optional<Cancel>& cancel) const {
   ExactHits exact(found.more.size());
   for_each_slow_grain(found.more.size(), cancel, [&](std::size_t begin, std::size_t end) {
-    std::vector<DoubleScene::LineHit> crossed;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (found.splits[i] == found.splits[i + 1]) continue;
-      const DoubleLine line = this->line(first + i);
-      for (std::size_t k = found.splits[i]; k < found.splits[i + 1]; ++k)
-        crossed.push_back({line, found.primitive[k] & KDRAY_REF_INDEX_MASK});
-    }
-    std::vector<ExactHit> told(crossed.size());
-    scene_.tell(crossed, told);
+    std::vector<ExactHit> told(found.splits[end] - found.splits[begin]);
+    std::vector<std::size_t> ray_of;
+    ray_of.reserve(told.size());
+    for (std::size_t i = begin; i < end; ++i) ray_of.insert(ray_of.end(), found.splits[i + 1] - found.splits[i], i);
+    scene_.tell(
+        told.size(), [&](std::size_t k) { return line(first + ray_of[k]); },
+        [&](std::size_t k) { return found.primitive[found.splits[begin] + k] & KDRAY_REF_INDEX_MASK; },
+        [&](std::size_t k, const ExactHit& hit) { told[k] = hit; });
     const auto hits_of = [&](std::size_t i) {
       return std::span(told).subspan(found.splits[i] - found.splits[begin],
                                      found.splits[i + 1] - found.splits[i]);

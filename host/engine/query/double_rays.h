@@ -26,7 +26,9 @@ class DoubleRays {
   std::optional<DoubleScene::Question> question(std::size_t i, std::size_t place) const;
   // Of these rays; places count from the first.
   std::vector<DoubleScene::Question> questions(std::size_t first, std::size_t n) const;
-  DoubleLine line(std::size_t i) const;
+  DoubleLine line(std::size_t i) const {
+    return context_->frame.double_line(rays_->origin(i), rays_->direction(i));
+  }
 
   // Throws for the first ray that is none, where such are errors; counts them.
   std::uint64_t check(InvalidRays invalid) const;

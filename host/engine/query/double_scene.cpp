@@ -7,7 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/query/double_hits.h"
 #include "engine/query/double_walk.h"
 #include "engine/query/scene_arguments.h"
 #include "engine/query/surface.h"
@@ -20,14 +19,6 @@ namespace {
 using layout::WideNode;
 
 constexpr double kBoxes = 0x1p-18;  // 64u of the reach: see double_scene.h
-
-ExactLine exact_line(const DoubleLine& line) {
-  return {line.origin, line.direction, line.rest};
-}
-
-std::uint32_t ref_of(std::uint32_t triangle) {
-  return std::uint32_t{KDRAY_KIND_TRIANGLE} << KDRAY_REF_KIND_SHIFT | triangle;
-}
 
 // Calls visit(rows, n, block) for each block of a leaf of triangles, of which the first n lanes are there,
 // until a call answers false; whether none did.
@@ -66,7 +57,7 @@ struct DoubleScene::Candidate {
 class DoubleScene::Line : public ExactLine {
  public:
   Line(const DoubleScene& scene, const Question& question)
-      : ExactLine(exact_line(question.ray.line)),
+      : ExactLine(exact(question.ray.line)),
         scene_(&scene),
         ray_(&question.ray),
         end_(question.ray.t_max) {}
@@ -159,34 +150,6 @@ std::vector<DoubleScene::Line> DoubleScene::walk(std::span<const Question> quest
   return lines;
 }
 
-void DoubleScene::tell(std::span<const LineHit> found, std::span<ExactHit> hits) const {
-  constexpr std::size_t kLanes = CrossedTriangles::kLanes, kAhead = kLanes;
-  const auto fetch_ahead = [&](std::size_t i) {
-    if (i + 2 * kAhead < found.size()) __builtin_prefetch(&doubles_->corners[found[i + 2 * kAhead].triangle]);
-    if (i + kAhead >= found.size()) return;
-    for (const std::uint32_t vertex : doubles_->corners[found[i + kAhead].triangle])
-      __builtin_prefetch(&doubles_->vertices[vertex]);
-  };
-  CrossedTriangles crossed;
-  ToldHits told;
-  for (std::size_t first = 0; first < found.size(); first += kLanes) {
-    const std::size_t n = std::min(kLanes, found.size() - first);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      fetch_ahead(first + lane);
-      const LineHit& one = found[first + std::min(lane, n - 1)];
-      crossed.put(lane, one.line, doubles_->at(one.triangle));
-    }
-    tell_hits(crossed, told);
-    for (std::size_t lane = 0; lane < n; ++lane) {
-      const LineHit& one = found[first + lane];
-      const double t =
-          told.is_sure[lane] != 0 ? told.t[lane] : exact_line(one.line).t_of(doubles_->at(one.triangle));
-      hits[first + lane] = {one.line.caller_t(t), told.u[lane], told.v[lane], ref_of(one.triangle),
-                            kNoInstance};
-    }
-  }
-}
-
 std::uint32_t DoubleScene::number_of(std::uint32_t triangle) const {
   return query::number_of(scene_->flat, ref_of(triangle));
 }
@@ -205,16 +168,13 @@ void DoubleScene::closest(std::span<const Question> questions,
         line.end_at(candidate.t.most);
         return true;
       });
-  std::vector<LineHit> found;
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (!best[i]) continue;
-    found.push_back({questions[i].ray.line, best[i]->triangle});
-    places.push_back(questions[i].place);
-  }
-  std::vector<ExactHit> told(found.size());
-  tell(found, told);
-  for (std::size_t i = 0; i < told.size(); ++i) hits[places[i]] = told[i];
+  std::vector<std::size_t> hit;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (best[i]) hit.push_back(i);
+  tell(
+      hit.size(), [&](std::size_t k) { return questions[hit[k]].ray.line; },
+      [&](std::size_t k) { return best[hit[k]]->triangle; },
+      [&](std::size_t k, const ExactHit& told) { hits[questions[hit[k]].place] = told; });
 }
 
 void DoubleScene::any(std::span<const Question> questions, std::span<std::uint8_t> hit) const {
@@ -259,11 +219,12 @@ void DoubleScene::all(std::span<const Question> questions, std::span<std::vector
   collect(questions, [&](std::size_t i, const Line& line, std::vector<Candidate>& candidates) {
     std::sort(candidates.begin(), candidates.end(),
               [&](const Candidate& a, const Candidate& b) { return line.precedes(a, b); });
-    std::vector<LineHit> found;
-    for (const Candidate& candidate : candidates)
-      found.push_back({questions[i].ray.line, candidate.triangle});
-    hits[questions[i].place].resize(found.size());
-    tell(found, hits[questions[i].place]);
+    std::vector<ExactHit>& told = hits[questions[i].place];
+    told.resize(candidates.size());
+    tell(
+        told.size(), [&](std::size_t) { return questions[i].ray.line; },
+        [&](std::size_t k) { return candidates[k].triangle; },
+        [&](std::size_t k, const ExactHit& hit) { told[k] = hit; });
   });
 }
 

@@ -16,11 +16,14 @@
 // Threads As many calls at once as there are threads.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "engine/query/double_hits.h"
 #include "engine/query/exact_scene.h"
 #include "engine/query/geometry_table.h"
 #include "engine/query/local_rays.h"
@@ -39,12 +42,9 @@ class DoubleScene {
   };
   // t as the caller's rays have it.
   void closest(std::span<const Question> questions, std::span<std::optional<ExactHit>> hits) const;
-  // Of triangles that lines cross for certain; one for each.
-  struct LineHit {
-    DoubleLine line;
-    std::uint32_t triangle;
-  };
-  void tell(std::span<const LineHit> found, std::span<ExactHit> hits) const;
+  // Of n triangles that lines cross for certain, line(i) that of triangle(i): calls told(i, hit) for each.
+  template <class LineOf, class TriangleOf, class Told>
+  void tell(std::size_t n, const LineOf& line, const TriangleOf& triangle, const Told& told) const;
   void any(std::span<const Question> questions, std::span<std::uint8_t> hit) const;
   // Of count and all: a hit at t = 0 counts where t_min is 0.
   void count(std::span<const Question> questions, std::span<std::uint32_t> counts) const;
@@ -73,10 +73,46 @@ class DoubleScene {
   template <class Collected>
   void collect(std::span<const Question> questions, const Collected& collected) const;
 
+  static ExactLine exact(const DoubleLine& line) { return {line.origin, line.direction, line.rest}; }
+  static std::uint32_t ref_of(std::uint32_t triangle) {
+    return std::uint32_t{KDRAY_KIND_TRIANGLE} << KDRAY_REF_KIND_SHIFT | triangle;
+  }
+  void fetch_ahead(std::size_t i, std::size_t n, const auto& triangle) const {
+    constexpr std::size_t kAhead = CrossedTriangles::kLanes;
+    if (i + 2 * kAhead < n) __builtin_prefetch(&doubles_->corners[triangle(i + 2 * kAhead)]);
+    if (i + kAhead >= n) return;
+    for (const std::uint32_t vertex : doubles_->corners[triangle(i + kAhead)])
+      __builtin_prefetch(&doubles_->vertices[vertex]);
+  }
+
   const prepare::Prepared* scene_;
   const scene::DoubleTriangles* doubles_;
   const GeometryTable* table_;
   double reach_, margin_;
 };
+
+template <class LineOf, class TriangleOf, class Told>
+void DoubleScene::tell(std::size_t n, const LineOf& line, const TriangleOf& triangle, const Told& told) const {
+  constexpr std::size_t kLanes = CrossedTriangles::kLanes;
+  std::array<DoubleLine, kLanes> lines;
+  CrossedTriangles crossed;
+  ToldHits hits;
+  for (std::size_t first = 0; first < n; first += kLanes) {
+    const std::size_t here = std::min(kLanes, n - first);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t i = first + std::min(lane, here - 1);
+      fetch_ahead(i, n, triangle);
+      lines[lane] = line(i);
+      crossed.put(lane, lines[lane], doubles_->at(triangle(i)));
+    }
+    tell_hits(crossed, hits);
+    for (std::size_t lane = 0; lane < here; ++lane) {
+      const std::uint32_t at = triangle(first + lane);
+      const double t = hits.is_sure[lane] != 0 ? hits.t[lane] : exact(lines[lane]).t_of(doubles_->at(at));
+      told(first + lane,
+           ExactHit{lines[lane].caller_t(t), hits.u[lane], hits.v[lane], ref_of(at), kNoInstance});
+    }
+  }
+}
 
 }  // namespace kdray::query

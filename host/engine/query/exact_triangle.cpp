@@ -106,66 +106,21 @@ Expansion<48> compressed(const Expansion<kOther>& from) {
   return few;
 }
 
-// ---- Pairs of doubles, some 2^-104 of a sum's or product's terms exact. Source: Dekker 1971; Joldes,
-// Muller, Popescu 2017.
-
-struct Pair {
-  double high, low;
-};
-
-Pair exact_sum(double a, double b) {
-  const double sum = a + b, back = sum - a;
-  return {sum, (a - (sum - back)) + (b - back)};
-}
-Pair exact_product(double a, double b) {
-  const double high = a * b;
-  return {high, std::fma(a, b, -high)};
-}
-Pair with_low(double high, double low) {  // |low| is no more than |high|, or high is 0
-  const double sum = high + low;
-  return {sum, low - (sum - high)};
-}
-Pair operator+(const Pair& a, const Pair& b) {
-  const Pair s = exact_sum(a.high, b.high), r = exact_sum(a.low, b.low);
-  const Pair first = with_low(s.high, s.low + r.high);
-  return with_low(first.high, first.low + r.low);
-}
-Pair operator-(const Pair& a) {
-  return {-a.high, -a.low};
-}
-Pair operator*(const Pair& a, double b) {
-  const Pair p = exact_product(a.high, b);
-  return with_low(p.high, std::fma(a.low, b, p.low));
-}
-Pair operator*(const Pair& a, const Pair& b) {
-  const Pair p = exact_product(a.high, b.high);
-  return with_low(p.high, std::fma(a.high, b.low, std::fma(a.low, b.high, p.low)));
-}
 template <int kCapacity>
-Pair pair_of(const Expansion<kCapacity>& sum) {
-  Pair pair{0, 0};
-  for (const double part : sum) pair = pair + Pair{part, 0};
-  return pair;
+double rounded(const Expansion<kCapacity>& parts) {
+  double sum = 0;
+  for (const double part : parts) sum += part;
+  return sum;
 }
+
 // To the nearest double, but for 2^-50 of its last place.
-double quotient(const Pair& a, const Pair& b) {
-  const double about = a.high / b.high;
-  const Pair left = a + -(b * about);
-  return about + (left.high + left.low) / b.high;
+double quotient(const Expansion<48>& a, const Expansion<48>& b) {
+  const double divisor = rounded(b), about = rounded(a) / divisor;
+  Expansion<144> left;
+  for (const double part : a) left.add(part);
+  left.add_product(b, -about);
+  return about + rounded(left) / divisor;
 }
-
-// A sum of products in pairs, and what its error is a share of.
-struct SizedSum {
-  Pair sum{0, 0};
-  double size = 0;
-
-  void add(const Pair& a, const Pair& b, double size_of_product) {
-    sum = sum + a * b;
-    size += size_of_product;
-  }
-  // Error below 2^-96 of the size: right to 2^-58 of itself.
-  bool is_sure() const { return std::abs(sum.high) >= 0x1p-38 * size; }
-};
 
 }  // namespace
 
@@ -277,26 +232,8 @@ bool ExactLine::crosses(const Corners& v) const {
 
 // A triangle that the line crosses isn't seen edge-on, so that what is divided by is not 0.
 double ExactLine::t_of(const Corners& v) const {
-  Pair e[3], f[3], a[3];
-  double a_size[3];
-  for (int k = 0; k < 3; ++k) {
-    e[k] = exact_sum(v[1][k], -v[0][k]);
-    f[k] = exact_sum(v[2][k], -v[0][k]);
-    a[k] = exact_sum(v[0][k], -origin_[k]);
-    a[k] = with_low(a[k].high, a[k].low - rest_[k]);
-    a_size[k] = std::abs(v[0][k]) + std::abs(origin_[k]);
-  }
-  SizedSum volume, facing;
-  for (int k = 0; k < 3; ++k) {
-    const int l = (k + 1) % 3, m = (k + 2) % 3;
-    const Pair n = e[l] * f[m] + -(e[m] * f[l]);
-    const double size = std::abs(e[l].high * f[m].high) + std::abs(e[m].high * f[l].high);
-    volume.add(n, a[k], size * a_size[k]);
-    facing.add(n, {direction_[k], 0}, size * std::abs(direction_[k]));
-  }
-  if (volume.is_sure() && facing.is_sure()) return quotient(volume.sum, facing.sum);
   const ExactQuotient t(v, origin_, rest_, direction_);
-  return quotient(pair_of(t.volume), pair_of(t.facing));
+  return quotient(compressed(t.volume), compressed(t.facing));
 }
 
 int ExactLine::compare_t(const Corners& v, const Corners& w) const {

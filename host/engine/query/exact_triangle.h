@@ -41,8 +41,8 @@ class ExactLine {
   };
   Bounds bounds_of_t(const Corners& corners) const;
   static Bounds around(double t);  // the exact t, of what t_of tells
-  // Of a triangle that it crosses: t, and the sign of t less that of another such triangle. (Weights:
-  // double_hits.h.)
+  // Of a triangle that it crosses: t, slowly, and the sign of t less that of another such triangle. (Faster,
+  // and weights: double_hits.h.)
   double t_of(const Corners& corners) const;
   int compare_t(const Corners& corners, const Corners& others) const;
 

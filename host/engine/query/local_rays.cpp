@@ -28,12 +28,6 @@ bool is_double(const View& view) {
   return !view.empty() && view.template first_of<const double>() != nullptr;
 }
 
-// Returns what rounding took from the difference a - b (Knuth's two-sum).
-dvec3 lost_of(const dvec3& a, const dvec3& b, const dvec3& difference) {
-  const dvec3 back = a - difference;
-  return (a - (difference + back)) - (b - back);
-}
-
 }  // namespace
 
 RayArrays::RayArrays(const Rays& rays)
@@ -112,22 +106,6 @@ std::optional<LocalLine> LocalFrame::line(const dvec3& origin, const dvec3& dire
   return begin_line(origin, direction, in_double);
 }
 
-DoubleLine LocalFrame::double_line(const dvec3& origin, const dvec3& direction) const {
-  const dvec3 from_center = origin - space_.center;
-  const dvec3 rest = lost_of(origin, space_.center, from_center);
-  DoubleLine line{from_center * space_.scale, rest * space_.scale, direction, exponent_, ordinary_unit()};
-  if (const double largest = largest_component(direction); !is_ordinary_length(largest)) {
-    const int length = std::ilogb(largest);
-    for (int k = 0; k < 3; ++k) line.direction[k] = std::scalbn(direction[k], -length);
-    line.exponent -= length;
-    line.unit = 0;
-  }
-  for (dvec3* v : {&line.origin, &line.rest, &line.direction})
-    for (int k = 0; k < 3; ++k)
-      if (std::abs((*v)[k]) < scene::DoubleTriangles::kLeast) (*v)[k] = 0;
-  return line;
-}
-
 std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3& direction, double t_min,
                                                 double t_max) const {
   const std::optional<LocalLine> line = begin_line(origin, direction, true);
@@ -136,7 +114,9 @@ std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3
   const auto scaled = [&](double t) {
     return line->exponent == exponent_ && ordinary_unit() != 0 ? t / unit_ : std::scalbn(t, -line->exponent);
   };
-  return DoubleRay{double_line(origin, direction), line->ahead, scaled(t_min), scaled(t_max)};
+  DoubleRay ray{double_line(origin, direction), line->ahead, scaled(t_min), scaled(t_max)};
+  ray.line.drop_tiny();
+  return ray;
 }
 
 LocalRay LocalFrame::begin(const dvec3& origin, const dvec3& direction, double t_min, double t_max,

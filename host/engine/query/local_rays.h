@@ -21,6 +21,7 @@
 
 #include "base/box.h"
 #include "base/local_space.h"
+#include "engine/query/check_rays.h"
 #include "kdray/query.h"
 #include "layout/rays.layout.h"
 #include "scene/model/geometry.h"
@@ -67,14 +68,30 @@ struct LocalRay {
 // A ray that meets nothing.
 inline constexpr layout::QueryRay kNoRay{{0, 0, 0}, 0, {1, 0, 0}, -std::numeric_limits<float>::infinity()};
 
+// Returns what rounding took from the difference a - b (Knuth's two-sum).
+inline dvec3 lost_of(const dvec3& a, const dvec3& b, const dvec3& difference) {
+  const dvec3 back = a - difference;
+  return (a - (difference + back)) - (b - back);
+}
+
 // A line in the space of a scene of doubles: exactly origin + rest + t*direction. t is 2^-exponent times the
-// caller's. Components below DoubleTriangles::kLeast are 0.
+// caller's. In a DoubleRay components below DoubleTriangles::kLeast are 0.
 struct DoubleLine {
   dvec3 origin, rest, direction;
   int exponent;
   double unit;  // 2^exponent, or 0 where that is no ordinary double
 
   double caller_t(double t) const { return unit != 0 ? t * unit : std::scalbn(t, exponent); }
+  void shorten(int by) {
+    for (int k = 0; k < 3; ++k) direction[k] = std::scalbn(direction[k], -by);
+    exponent -= by;
+    unit = 0;
+  }
+  void drop_tiny() {
+    for (dvec3* v : {&origin, &rest, &direction})
+      for (int k = 0; k < 3; ++k)
+        if (std::abs((*v)[k]) < scene::DoubleTriangles::kLeast) (*v)[k] = 0;
+  }
 };
 
 // A ray of a scene of doubles. A walk in floats may begin at `start`, before anything lies.
@@ -115,7 +132,14 @@ class LocalFrame {
   // None where it passes the bounds by, or stays too far from them for floats.
   std::optional<LocalLine> line(const dvec3& origin, const dvec3& direction, bool in_double) const;
   // The same line in the space of a scene of doubles.
-  DoubleLine double_line(const dvec3& origin, const dvec3& direction) const;
+  DoubleLine double_line(const dvec3& origin, const dvec3& direction) const {
+    const dvec3 from_center = origin - space_.center;
+    DoubleLine line{from_center * space_.scale, lost_of(origin, space_.center, from_center) * space_.scale,
+                    direction, exponent_, ordinary_unit()};
+    if (const double largest = largest_component(direction); !is_ordinary_length(largest)) [[unlikely]]
+      line.shorten(std::ilogb(largest));
+    return line;
+  }
   // None where line() has none.
   std::optional<DoubleRay> double_ray(const dvec3& origin, const dvec3& direction, double t_min,
                                       double t_max) const;
