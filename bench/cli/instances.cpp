@@ -3,6 +3,7 @@
 //         DIR/instances.json and a plot beside it.
 // Errors  Hits that differ between kdray's traversals of one form: exit code 1, after everything has been
 //         written.
+#include "base/text.h"
 #include "bench/instances/bench.h"
 
 #include <memory>

@@ -9,6 +9,7 @@
 
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
+#include "base/text.h"
 #include "bench/cli/bench_command.h"
 #include "bench/cli/commands.h"
 #include "bench/modes/bench.h"

@@ -12,6 +12,7 @@
 #include "accel/prepare/quality.h"
 #include "apps/cli/help.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "device/tuning/database.h"
 #include "io/image/css_color.h"
 #include "kdray/kdray.h"
@@ -64,16 +65,6 @@ double parse_real(std::string_view option, std::string_view text, double lo, dou
   if (!whole_number(text, value) || value < lo || value > hi)
     throw usage_error(option, text, fmt::format("a number from {} to {}", lo, hi));
   return value;
-}
-
-std::vector<std::string> split_list(std::string_view text) {
-  std::vector<std::string> parts;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', start), text.size());
-    parts.emplace_back(text.substr(start, comma - start));
-    start = comma + 1;
-  }
-  return parts;
 }
 
 std::vector<double> parse_numbers(std::string_view text) {

@@ -30,9 +30,6 @@ struct Size {
 int parse_int(std::string_view option, std::string_view text, int lo, int hi);
 double parse_real(std::string_view option, std::string_view text, double lo, double hi);
 
-// Returns the parts of "a,b,c".
-std::vector<std::string> split_list(std::string_view text);
-
 // Reads "1,2.5,-3". Returns no numbers where a part is none.
 std::vector<double> parse_numbers(std::string_view text);
 

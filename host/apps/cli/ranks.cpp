@@ -15,6 +15,7 @@
 
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
+#include "base/text.h"
 #include "cluster/transport/launcher.h"
 #include "cluster/transport/mpi.h"
 #include "cluster/transport/simulated.h"
@@ -182,10 +183,7 @@ bool holds_shares(const RenderArgs& o) {
 
 std::string faults_of_rank(const std::string& faults, int rank) {
   std::string own;
-  for (std::size_t first = 0; first < faults.size();) {
-    const std::size_t comma = std::min(faults.find(',', first), faults.size());
-    std::string fault = faults.substr(first, comma - first);
-    first = comma + 1;
+  for (std::string fault : split_list(faults)) {
     if (const std::size_t slash = fault.find('/'); slash != std::string::npos) {
       if (fault.substr(0, slash) != std::to_string(rank)) continue;
       fault = fault.substr(slash + 1);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "device/opencl/host_memory.h"
 #include "device/opencl/opencl_error.h"
 #include "device/opencl/pocl_cache.h"
@@ -55,16 +56,6 @@ OpenDevice open(const cl::Device& device, int n_queues, cl_uint units) {
                                opened.devices[static_cast<std::size_t>(i) % opened.devices.size()],
                                cl_command_queue_properties{CL_QUEUE_PROFILING_ENABLE});
   return opened;
-}
-
-std::vector<std::string> split(const std::string& specs) {
-  std::vector<std::string> parts;
-  for (std::size_t first = 0; first <= specs.size();) {
-    const std::size_t comma = std::min(specs.find(',', first), specs.size());
-    parts.push_back(specs.substr(first, comma - first));
-    first = comma + 1;
-  }
-  return parts;
 }
 
 // What is opened is never destroyed, on purpose: see the header.
@@ -298,7 +289,7 @@ Context open_best(const std::string& spec, int n_queues, const OpenOptions& o) {
 }  // namespace
 
 std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& options) {
-  const std::vector<std::string> parts = split(specs);
+  const std::vector<std::string> parts = split_list(specs);
   const int n = static_cast<int>(parts.size());
   std::vector<Context> contexts;
   for (int i = 0; i < n; ++i) {
@@ -313,7 +304,7 @@ std::vector<Context> open_contexts(const std::string& specs, const OpenOptions& 
 }
 
 void require_devices(const std::string& specs) {
-  for (const std::string& spec : split(specs)) choose_device(spec);
+  for (const std::string& spec : split_list(specs)) choose_device(spec);
 }
 
 std::vector<Context> open_contexts(const std::string& specs, int n_queues, int compute_units) {

@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "device/opencl/opencl.h"
 
 namespace kdray::device {
@@ -34,10 +35,9 @@ std::optional<FaultInjector::Kind> FaultInjector::kind_of(std::string_view name)
 }
 
 FaultInjector::FaultInjector(const std::string& specification) {
-  std::string_view rest = specification;
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    const std::string_view item = rest.substr(0, comma);
+  if (specification.empty()) return;
+  for (const std::string& part : split_list(specification)) {
+    const std::string_view item = part;
     const std::size_t colon = std::min(item.find(':'), item.size());
     const std::string_view place = item.substr(0, colon);
     const std::size_t at = place.find('@');
@@ -52,7 +52,6 @@ FaultInjector::FaultInjector(const std::string& specification) {
     } else {
       throw bad(specification);
     }
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
 }
 

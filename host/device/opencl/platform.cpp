@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cctype>
 
+#include "base/text.h"
 #include "device/opencl/opencl_error.h"
 #include "device/opencl/pocl_cache.h"
 
@@ -28,11 +29,6 @@ std::string trimmed(std::string text) {
   const auto first =
       std::find_if(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) == 0; });
   return std::string(first, text.end());
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 std::string kind_of(cl_device_type type) {

@@ -121,7 +121,9 @@ class Settler {
     }
     rays_.scene().tell(
         n_sure, [&](std::size_t k) { return rays_.line(first + sure_[k]); },
-        [&](std::size_t k) { return static_cast<std::uint32_t>(found[sure_[k]].primitive) & KDRAY_REF_INDEX_MASK; },
+        [&](std::size_t k) {
+          return static_cast<std::uint32_t>(found[sure_[k]].primitive) & KDRAY_REF_INDEX_MASK;
+        },
         [&](std::size_t k, const ExactHit& hit) { block.put(sure_[k], hit); });
     put_closest(rays_.scene(), in_doubt_, block);
   }

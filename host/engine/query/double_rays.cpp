@@ -90,7 +90,8 @@ ExactHits DoubleRays::settle(std::size_t first, const LocalHits& found, std::uin
     std::vector<ExactHit> told(found.splits[end] - found.splits[begin]);
     std::vector<std::size_t> ray_of;
     ray_of.reserve(told.size());
-    for (std::size_t i = begin; i < end; ++i) ray_of.insert(ray_of.end(), found.splits[i + 1] - found.splits[i], i);
+    for (std::size_t i = begin; i < end; ++i)
+      ray_of.insert(ray_of.end(), found.splits[i + 1] - found.splits[i], i);
     scene_.tell(
         told.size(), [&](std::size_t k) { return line(first + ray_of[k]); },
         [&](std::size_t k) { return found.primitive[found.splits[begin] + k] & KDRAY_REF_INDEX_MASK; },

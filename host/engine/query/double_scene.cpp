@@ -57,10 +57,7 @@ struct DoubleScene::Candidate {
 class DoubleScene::Line : public ExactLine {
  public:
   Line(const DoubleScene& scene, const Question& question)
-      : ExactLine(exact(question.ray.line)),
-        scene_(&scene),
-        ray_(&question.ray),
-        end_(question.ray.t_max) {}
+      : ExactLine(exact(question.ray.line)), scene_(&scene), ray_(&question.ray), end_(question.ray.t_max) {}
 
   LineInFloats in_floats() const {
     const dvec3 start = ray_->place_at_start();

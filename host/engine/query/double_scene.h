@@ -92,7 +92,8 @@ class DoubleScene {
 };
 
 template <class LineOf, class TriangleOf, class Told>
-void DoubleScene::tell(std::size_t n, const LineOf& line, const TriangleOf& triangle, const Told& told) const {
+void DoubleScene::tell(std::size_t n, const LineOf& line, const TriangleOf& triangle,
+                       const Told& told) const {
   constexpr std::size_t kLanes = CrossedTriangles::kLanes;
   std::array<DoubleLine, kLanes> lines;
   CrossedTriangles crossed;

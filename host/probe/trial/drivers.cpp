@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "base/temporary.h"
+#include "base/text.h"
 #include "device/opencl/platform.h"
 #include "device/opencl/pocl_cache.h"
 #include "probe/trial/trial.h"
@@ -111,20 +112,11 @@ namespace {
 constexpr const char* kVendors = "OCL_ICD_VENDORS";
 constexpr const char* kTemporary = "kdray-vendors-";
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 // Returns whether one of the names that the user gave is part of the driver's. Numbers and kinds of devices
 // don't count. Names of devices are not meant for drivers either, but one that is part of both counts.
 bool is_insisted(const Driver& driver, const std::string& specs) {
   const std::string name = lower(driver.name());
-  std::string rest = lower(specs);
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    const std::string spec = rest.substr(0, comma);
-    rest.erase(0, comma + 1);
+  for (const std::string& spec : split_list(lower(specs))) {
     const bool names_it = spec.size() > 2 && !device::is_auto(spec) && !device::is_kind(spec);
     if (names_it && name.find(spec) != std::string::npos) return true;
   }

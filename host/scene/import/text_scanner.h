@@ -13,25 +13,10 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "base/vec.h"
 
 namespace kdray::scene {
-
-// ---- Words without regard to capitals, of ASCII alone: keywords, names of materials and files.
-
-constexpr char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-inline std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = lower(c);
-  return out;
-}
-
-inline bool same_word(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
-}
 
 // ---- TextScanner: tokens are separated by white space (new lines included); '#' starts a comment to the end
 // of its line. A number too small for a double is 0. With NotFinite::nan a word for a number that is not
