@@ -18,7 +18,12 @@ copy_licence_of() {
   local file package
   file=$(realpath "$1")
   package=$(dpkg-query -S "$file" "${file#/usr}" 2>/dev/null | head -n 1 | cut -d: -f1) || true
-  [ -z "$package" ] || cp -L "/usr/share/doc/$package/copyright" "$folder/licences/$package"
+  [ -n "$package" ] || return 0
+  cp -L "/usr/share/doc/$package/copyright" "$folder/licences/$package"
+  # Debian's files name the usual licences by where Debian has their texts.
+  grep -ohE '/usr/share/common-licenses/[A-Za-z0-9.-]*[A-Za-z0-9]' "$folder/licences/$package" | sort -u | while read -r text; do
+    [ ! -f "$text" ] || cp -L "$text" "$folder/licences/"
+  done || true
 }
 
 # copy_libraries FOLDER FILE...

@@ -192,6 +192,30 @@ TEST_P(DoubleScenes, WhatFloatsAreNearlySureOfIsAsInRationals) {
   holds(fine, beside(fine, 1500, 1, random));
 }
 
+// Nearly in the plane of the face that they are aimed at.
+TEST_P(DoubleScenes, GrazingRaysHitWhatRationalsSay) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 6);
+  std::uniform_real_distribution<double> share(-1, 1);
+  const DoubleMesh mesh = ring(9, 7, {0.5, 0.25, -0.5}, 1, random);
+  RayList list;
+  for (int i = 0; i < 8000; ++i) {
+    const std::size_t face = random() % mesh.size();
+    const Point a = mesh.corner(face, 0), b = mesh.corner(face, 1), c = mesh.corner(face, 2);
+    const double along = share(random), across = share(random), tilt = std::ldexp(share(random), -i % 54);
+    Point origin, direction;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      const double normal = (b[l] - a[l]) * (c[m] - a[m]) - (b[m] - a[m]) * (c[l] - a[l]);
+      direction[k] = along * (b[k] - a[k]) + across * (c[k] - a[k]) + tilt * normal;
+      origin[k] = (a[k] + b[k] + c[k]) / 3 - 5 * direction[k];
+    }
+    list.origins.push_back(origin);
+    list.directions.push_back(direction);
+  }
+  holds(mesh, list);
+}
+
 // Through vertices from so far off that a coordinate's last place is more than the scene.
 TEST_P(DoubleScenes, RaysFromFarAwayHitWhatRationalsSay) {
   SCOPED_TRACE(kSeed);

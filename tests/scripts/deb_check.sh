@@ -54,7 +54,7 @@ mkdir "$root/packages"
 find "$packages" -name '*.deb' ! -name '*-dbgsym_*' -exec cp {} "$root/packages" \;
 cp /etc/resolv.conf "$root/etc/"
 in_root apt-get -qq update >"$work/apt.log" 2>&1 || { tail -n 30 "$work/apt.log"; exit 1; }
-for place in proc sys dev; do mount --rbind "/$place" "$root/$place"; done
+for place in proc sys dev; do mount --rbind --make-rslave "/$place" "$root/$place"; done
 in_root find / -xdev -path /proc -prune -o -path '/packages' -prune -o -iname '*kdray*' -print >"$work/before"
 
 step "kdray alone, without a driver"

@@ -28,7 +28,7 @@ in_root() { chroot "$root" env -i PATH=/venv/bin:/usr/bin:/bin HOME=/home LANG=C
 
 step "a bare root, with Python alone"
 mmdebstrap -q --variant=apt --include=python3-venv bookworm "$root"
-for place in proc dev sys; do mount --rbind "/$place" "$root/$place"; done
+for place in proc dev sys; do mount --rbind --make-rslave "/$place" "$root/$place"; done
 mkdir -p "$root/wheels" "$root/home"
 python=$(in_root python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 echo "Python $python"

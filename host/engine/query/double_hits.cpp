@@ -18,7 +18,8 @@ using D = hn::CappedTag<double, CrossedTriangles::kLanes>;
 using V = hn::Vec<D>;
 
 // The sum of both. The low one is within some units in the last place of what the high one is a sum of, so it
-// may be the larger where those cancel out. Each operation is off by less than 2^-102 of its terms.
+// may be the larger where those cancel out. Sums and products are off by less than 2^-99 of the sizes of the
+// terms that they were multiplied and added from.
 // Source: Dekker 1971; Joldes, Muller, Popescu 2017.
 struct Pairs {
   V high, low;
@@ -50,8 +51,20 @@ HWY_ATTR inline Pairs sum(Pairs a, Pairs b) {
   return {s.high, hn::Add(s.low, hn::Add(a.low, b.low))};
 }
 
+HWY_ATTR inline Pairs negative(Pairs a) {
+  return {hn::Neg(a.high), hn::Neg(a.low)};
+}
+
 HWY_ATTR inline Pairs difference(Pairs a, Pairs b) {
-  return sum(a, {hn::Neg(b.high), hn::Neg(b.low)});
+  return sum(a, negative(b));
+}
+
+// Of pairs whose low parts are within the last place of the high ones, as is what is returned: off by 2^-104
+// of itself and of the low parts.
+HWY_ATTR inline Pairs precise_sum(Pairs a, Pairs b) {
+  const Pairs s = exact_sum(a.high, b.high), r = exact_sum(a.low, b.low);
+  const Pairs first = exact_sum(s.high, hn::Add(s.low, r.high));
+  return exact_sum(first.high, hn::Add(first.low, r.low));
 }
 
 HWY_ATTR inline Pairs product(Pairs a, V b) {
@@ -79,8 +92,8 @@ HWY_ATTR inline Pairs dot(const Pairs (&a)[3], const Other (&b)[3]) {
 
 // To the nearest double, but for 2^-50 of its last place.
 HWY_ATTR inline V quotient(Pairs a, Pairs b) {
-  b = exact_sum(b.high, b.low);
-  const V about = hn::Div(hn::Add(a.high, a.low), b.high);
+  a = exact_sum(a.high, a.low), b = exact_sum(b.high, b.low);
+  const V about = hn::Div(a.high, b.high);
   const Pairs left = difference(a, product(b, about));
   return hn::Add(about, hn::Div(hn::Add(left.high, left.low), b.high));
 }
@@ -113,28 +126,30 @@ class Crossed {
       volume_size = hn::MulAdd(size, a_size_[k], volume_size);
       facing_size = hn::MulAdd(size, hn::Abs(direction_[k]), facing_size);
     }
-    const auto enough = [](Pairs value, V size) HWY_ATTR {
-      return hn::Ge(hn::Abs(value.high), hn::Mul(hn::Set(D(), 0x1p-38), size));
+    const auto enough = [](Pairs value, V size) HWY_ATTR {  // NaN is not
+      return hn::Ge(hn::Abs(hn::Add(value.high, value.low)), hn::Mul(hn::Set(D(), 0x1p-38), size));
     };
-    *is_sure = hn::IfThenElseZero(hn::And(enough(volume, volume_size), enough(facing_, facing_size)),
-                                  hn::Set(D(), 1.0));
-    return quotient(volume, facing_);
+    const V t = quotient(volume, facing_);
+    const auto is_told = hn::And(enough(facing_, facing_size), hn::Eq(t, t));
+    *is_sure = hn::IfThenElseZero(hn::And(enough(volume, volume_size), is_told), hn::Set(D(), 1.0));
+    return t;
   }
 
   // Seen from where t lies, which loses less than the origin where that is far off.
   // Source: Moller, Trumbore 1997.
   HWY_ATTR void weights(V t, double* u, double* v) const {
     Pairs near[3], across[3];
-    for (int k = 0; k < 3; ++k) near[k] = difference(a_[k], exact_product(t, direction_[k]));
+    for (int k = 0; k < 3; ++k) near[k] = precise_sum(a_[k], negative(exact_product(t, direction_[k])));
     cross(near, direction_, across);
     const V facing = hn::Add(facing_.high, facing_.low);
     const auto weight = [&](Pairs w) HWY_ATTR {
       return hn::Min(hn::Abs(hn::Div(hn::Add(w.high, w.low), facing)), hn::Set(D(), 1.0));
     };
     const auto has_area = hn::Ne(facing, hn::Zero(D()));
-    const V third = hn::Set(D(), 1.0 / 3);
-    hn::StoreU(hn::IfThenElse(has_area, weight(dot(across, f_)), third), D(), u);
-    hn::StoreU(hn::IfThenElse(has_area, weight(dot(across, e_)), third), D(), v);
+    const V second = weight(dot(across, f_)), left = hn::Sub(hn::Set(D(), 1.0), second),
+            third = hn::Min(weight(dot(across, e_)), left), even = hn::Set(D(), 1.0 / 3);
+    hn::StoreU(hn::IfThenElse(has_area, second, even), D(), u);
+    hn::StoreU(hn::IfThenElse(has_area, third, even), D(), v);
   }
 
  private:

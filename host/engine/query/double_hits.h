@@ -1,7 +1,8 @@
 // What    t and the weights of triangles of doubles that lines cross for certain (exact_triangle.h), for
 //         eight at once: in pairs of doubles, in the CPU's widest vectors (Highway).
-// Errors  As ExactLine::t_of, which is to be asked where cancellation leaves too little of a pair; weights
-//         are off by a last place of their terms.
+// Errors  t as ExactLine::t_of, which is to be asked where cancellation leaves too little of a pair; weights
+//         are off by 2^-51, but by more of triangles that are seen nearly edge-on or from over 2^50 times
+//         their size away, and lie in [0, 1] as their sum does.
 #pragma once
 
 #include <cstddef>

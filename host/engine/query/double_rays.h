@@ -26,6 +26,7 @@ class DoubleRays {
   std::optional<DoubleScene::Question> question(std::size_t i, std::size_t place) const;
   // Of these rays; places count from the first.
   std::vector<DoubleScene::Question> questions(std::size_t first, std::size_t n) const;
+  // With components that a question drops for being tiny: t and weights don't feel them.
   DoubleLine line(std::size_t i) const {
     return context_->frame.double_line(rays_->origin(i), rays_->direction(i));
   }

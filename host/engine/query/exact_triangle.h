@@ -6,8 +6,8 @@
 //         origin a crossing lies is the sign of a volume, of the same exactness.
 // Errors  None in what is decided. t, u and v are off by some 2^-50 of their terms; the sign of t is right.
 //         Coordinates of the origin below 2^-140 and of the direction below 2^-200 count as 0: so no product
-//         underflows. What is told of triangles of doubles (t_of, compare_t) takes coordinates of
-//         2^-100 or more: t and the weights are right to the last place, and which t is the lesser is exact.
+//         underflows. Of triangles of doubles, with coordinates of 2^-100 or more, t_of is right to the last
+//         place, and which t is the lesser (compare_t) is exact.
 // Source  Shewchuk 1997 (scene/model/predicates.h). Nearly all signs are sure in doubles already.
 #pragma once
 
