@@ -9,6 +9,7 @@
 
 #include "accel/prepare/prepared.h"
 #include "api/hooks.h"
+#include "api/open_devices.h"
 #include "apps/cli/output.h"
 #include "apps/cli/ranks.h"
 #include "base/process_memory.h"
@@ -77,6 +78,7 @@ OpenedScene::OpenedScene(const SceneInput& input, const TreeOptions& tree, const
     if (!quiet_ && left_out_.insert(why).second) say(why);
   };
   if (!quiet) device_.tunings_ignored = [](const std::string& why) { say(why); };
+  api::leave_out_drivers(device_);  // sets environment variables, which a thread of its own must not
   std::future<OpenSeconds> device_opened =
       std::async(std::launch::async, [&] { return api::open_device(device_, hooks); });
   const auto tell = [&](const scene::Scene& settings) {

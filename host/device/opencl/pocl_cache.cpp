@@ -68,8 +68,15 @@ void compile_for_any_size() {
   ::setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
 }
 
+// PoCL sets this one while it looks for devices, which a thread may do beside others that read variables:
+// adding one moves them all, giving one that is there another value doesn't.
+void add_what_pocl_sets() {
+  ::setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0);
+}
+
 PoclCache choose() {
   compile_for_any_size();
+  add_what_pocl_sets();
   PoclCache cache;
   cache.folder = cache.preferred = pocls_own();
   cache.why_not = why_no_cache(cache.preferred);

@@ -6,8 +6,8 @@
 // Shape   PoCL's own choice where it will do; else in kdray's cache folder; else a temporary folder (in
 //         TMPDIR, XDG_RUNTIME_DIR or /dev/shm), which goes with the process, so that the next one compiles
 //         anew.
-// Threads The first call sets environment variables (POCL_WORK_GROUP_SPECIALIZATION, POCL_CACHE_DIR), and
-//         comes before OpenCL's first.
+// Threads The first call sets environment variables (POCL_WORK_GROUP_SPECIALIZATION, POCL_CACHE_DIR,
+//         HWLOC_PLUGINS_PATH), which no other thread may read meanwhile, and comes before OpenCL's first.
 #pragma once
 
 #include <filesystem>
