@@ -35,6 +35,22 @@ std::vector<Ray> rays_about(const QueriedScene& scene, std::size_t n) {
   return rays;
 }
 
+// Eye rays of a picture, sixteen of a square after the other: packets that share their way into the tree.
+std::vector<Ray> eye_rays(const dvec3& eye, const dvec3& at, double width) {
+  constexpr int kSide = 64, kSquare = 4;
+  const dvec3 ahead = glm::normalize(at - eye), right = glm::normalize(glm::cross(ahead, dvec3(0.1, 1, 0.2))),
+              up = glm::cross(right, ahead);
+  std::vector<Ray> rays;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int square = i / (kSquare * kSquare), of_row = kSide / kSquare;
+    const double x = square % of_row * kSquare + i % kSquare,
+                 y = square / of_row * kSquare + i / kSquare % kSquare;
+    const dvec3 d = ahead + width * ((x / kSide - 0.5) * right + (y / kSide - 0.5) * up);
+    rays.push_back(ray_from(vec3(eye), vec3(d), 0, std::numeric_limits<float>::infinity()));
+  }
+  return rays;
+}
+
 template <class T>
 bool same_bits(const T& a, const T& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
@@ -107,6 +123,43 @@ TEST_F(Walks, FindTheSameOfAllKinds) {
   QueriedScene queried(mixed_scene(100, kSeed));
   expect_one_answer(queried);
   expect_closest_first(queried, 1);
+}
+
+TEST_F(Walks, FindTheSameWherePacketsShareTheirWay) {
+  for (const scene::Scene& scene : {torus(24, 12), cubes(3, 6), icosphere(5), mixed_scene(400, kSeed)}) {
+    QueriedScene queried(scene);
+    const double reach = queried.reach();
+    std::size_t n_hits = 0;
+    for (const double away : {0.05, 0.7, 2.5, 40.0})
+      for (const double width : {0.02, 0.3}) {
+        const std::vector<Ray> rays =
+            eye_rays(dvec3(0.9, 0.3, -0.4) * (away * reach), dvec3(-0.3, 0.1, 0.2) * reach, width);
+        query::Target target = queried.target();
+        target.traversal = Traversal::wide;
+        const std::vector<Hit> one_by_one = query::trace(target, rays, {}).hits;
+        target.traversal = Traversal::packet;
+        EXPECT_TRUE(same_bits(query::trace(target, rays, {}).hits, one_by_one)) << away << " " << width;
+        const LocalHits all = queried.all(rays, {.traversal = Traversal::packet});
+        EXPECT_TRUE(same(all, queried.all(rays, {.traversal = Traversal::wide}))) << away << " " << width;
+        n_hits += all.t.size();
+      }
+    EXPECT_GT(n_hits, 3000);
+  }
+}
+
+// Slopes times such distances overflow, and slots without a child must not be met all the same.
+TEST_F(Walks, EndForRaysFromBeyondFloats) {
+  std::vector<Ray> rays;
+  for (int i = 0; i < 64; ++i)
+    rays.push_back(ray_from(
+        vec3(1e27f, 0, 0),
+        vec3(1, 0.001f + 0.0001f * static_cast<float>(i % 16), 0.003f - 0.0001f * static_cast<float>(i % 16)),
+        0, std::numeric_limits<float>::infinity()));
+  for (int n = 1; n <= 40; ++n) {
+    QueriedScene queried(mixed_scene(n, kSeed));
+    const LocalHits all = queried.all(rays, {.traversal = Traversal::packet});
+    EXPECT_EQ(all.t.size(), 0) << n;
+  }
 }
 
 }  // namespace
